@@ -1,0 +1,1 @@
+//! Anchored Coulomb friction (placeholder).

@@ -1,0 +1,70 @@
+//! The contact seam all models see: where obstacles are, how far away, and how rough.
+//!
+//! [`World`] compiles a scene's obstacles once. Gaps are measured from the cable's *surface*: the distance of
+//! the centre line from the obstacle less the cable radius (and half the thickness of a thin polyline).
+//! Terrain is solid below, polygons inside, circles inside; thin polylines have two sides.
+
+pub mod barrier;
+pub mod friction;
+pub mod geometry;
+
+use crate::math::Vec2;
+use crate::scene::Obstacle;
+
+/// One obstacle feature and where the cable is nearest to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// Distance between cable surface and obstacle surface, m; negative = penetration where a sign exists.
+    pub gap_m: f64,
+    /// Unit normal, from the obstacle to the cable.
+    pub normal: Vec2,
+    /// Nearest point of the obstacle, m.
+    pub point: Vec2,
+    /// Position of the nearest point along the asked cable segment, 0 to 1 (0 for a point query).
+    pub fraction: f64,
+    /// Coulomb friction coefficient with this cable.
+    pub friction: f64,
+    /// Index of the obstacle in the scene.
+    pub obstacle: usize,
+    /// Index of the feature (edge or circle) in the world.
+    pub feature: usize,
+}
+
+/// The obstacles of a scene, ready for queries by one cable.
+#[derive(Clone, Debug, Default)]
+pub struct World {
+    geometry: geometry::Geometry,
+}
+
+impl World {
+    /// Compiles obstacles for a cable of the given friction and radius (m). Degenerate edges are dropped.
+    #[must_use]
+    pub fn new(obstacles: &[Obstacle], cable_friction: f64, cable_radius: f64) -> Self {
+        Self { geometry: geometry::Geometry::new(obstacles, cable_friction, cable_radius) }
+    }
+
+    /// Whether there is nothing to touch.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.geometry.is_empty()
+    }
+
+    /// Signed gap of the cable's centre-line point `p` to the nearest obstacle within `reach` (m), solid
+    /// sides counted as negative.
+    #[must_use]
+    pub fn signed_gap(&self, p: Vec2, reach: f64) -> Option<Gap> {
+        self.geometry.signed_gap(p, reach)
+    }
+
+    /// Every feature within `reach` (m) of the centre-line segment `a`–`b`, unsigned, appended to `out`.
+    pub fn segment_gaps(&self, a: Vec2, b: Vec2, reach: f64, out: &mut Vec<Gap>) {
+        self.geometry.segment_gaps(a, b, reach, out);
+    }
+
+    /// The largest fraction of the move `a0→a1, b0→b1` a centre-line segment can make and keep at least
+    /// `keep` (0 to 1) of each gap it had. 1 = free. Conservative: never lets the segment cross.
+    #[must_use]
+    pub fn free_fraction(&self, from: [Vec2; 2], to: [Vec2; 2], keep: f64) -> f64 {
+        self.geometry.free_fraction(from, to, keep)
+    }
+}

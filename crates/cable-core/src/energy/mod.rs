@@ -1,0 +1,1 @@
+//! Energies: value, gradient, Hessian (placeholder).

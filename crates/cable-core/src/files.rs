@@ -1,0 +1,1 @@
+//! The only file of the core that touches the file system (placeholder).

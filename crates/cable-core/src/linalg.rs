@@ -1,0 +1,1 @@
+//! Block-banded factorisation on faer (placeholder).

@@ -1,0 +1,152 @@
+//! The models of a cable behind one seam: [`Mechanics`] is what each must do, [`Model`] names them.
+//!
+//! A model holds one cable of a scene (a [`Problem`]) and answers two kinds of question: where does it
+//! rest ([`Mechanics::settle`]) and what happens next ([`Mechanics::advance`]). A model that cannot answer
+//! returns a typed error, never a guess.
+
+pub mod auto;
+pub mod catenary;
+pub mod conformance;
+pub mod fem;
+pub mod mass_spring;
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::SolveError;
+use crate::math::Vec2;
+use crate::problem::Problem;
+use crate::solution::{CableSolution, Cost, Warning};
+use crate::state::State;
+
+/// The models a user can ask for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Model {
+    /// The cheapest model that can answer.
+    #[default]
+    Auto,
+    /// Elastic catenaries between supports: no contact, no motion, no discretisation error.
+    Catenary,
+    /// Corrected bar elements with contact, friction, bending, dynamics.
+    Fem,
+    /// Lumped masses and springs, explicit in time.
+    MassSpring,
+}
+
+impl Model {
+    /// Every model that solves by itself.
+    pub const SOLVERS: [Self; 3] = [Self::Catenary, Self::Fem, Self::MassSpring];
+
+    /// The name used on the command line and in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Catenary => "catenary",
+            Self::Fem => "fem",
+            Self::MassSpring => "mass-spring",
+        }
+    }
+
+    /// The model of a name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Auto, Self::Catenary, Self::Fem, Self::MassSpring].into_iter().find(|m| m.name() == name)
+    }
+}
+
+impl std::fmt::Display for Model {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// How finely and how exactly a model works.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// Relative accuracy asked of the tension; models choose their mesh by it where the scene does not.
+    pub tolerance: f64,
+    /// Elements per cable; overrides the scene's `segments`.
+    pub segments: Option<usize>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { tolerance: 1e-3, segments: None }
+    }
+}
+
+/// Whether inertia takes part in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Inertia {
+    /// Masses accelerate.
+    Dynamic,
+    /// Supports move infinitely slowly: friction remembers, masses do not.
+    QuasiStatic,
+}
+
+/// What a step did.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StepReport {
+    /// What it took.
+    pub cost: Cost,
+    /// What the user should know about this step (velocity capped, support held …).
+    pub warnings: Vec<Warning>,
+}
+
+/// What every model does. One cable; time and positions in SI units.
+pub trait Mechanics: Send {
+    /// Which model this is.
+    fn model(&self) -> Model;
+
+    /// Finds the resting place at the present time from the present state (after `new`: from the route)
+    /// and sets velocities to zero.
+    ///
+    /// # Errors
+    /// A typed reason when there is none, or none was found.
+    fn settle(&mut self) -> Result<StepReport, SolveError>;
+
+    /// Advances time by exactly `dt_s` (sub-stepping inside as the model needs). On an error the state is
+    /// the last good one, its time says how far it came.
+    ///
+    /// # Errors
+    /// `TimeStep` for a step that is zero, negative, not finite or too large; `StepFailed` otherwise.
+    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError>;
+
+    /// Where the cable is.
+    fn state(&self) -> State;
+
+    /// Takes over a state of the same cable, resampled on this model's mesh (after an edit, or from another model).
+    ///
+    /// # Errors
+    /// When a number is not finite or the state does not fit the cable.
+    fn adopt(&mut self, state: &State) -> Result<(), SolveError>;
+
+    /// From now on a support follows `target_m` (smoothly and with capped speed in `Dynamic` steps; at the
+    /// next `settle` or quasi-static step it is there) instead of its `motion`.
+    fn drag_support(&mut self, support: usize, target_m: Vec2);
+
+    /// The answer at this instant.
+    fn solution(&self) -> CableSolution;
+
+    /// The problem it solves.
+    fn problem(&self) -> &Arc<Problem>;
+
+    /// A copy with all its history, for reset and compare.
+    fn boxed_clone(&self) -> Box<dyn Mechanics>;
+}
+
+/// Builds the mechanics of one cable. `Auto` must have been resolved (see [`auto::choose`]).
+///
+/// # Errors
+/// `Unsupported` when the model lacks what the scene needs.
+pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Box<dyn Mechanics>, SolveError> {
+    match model {
+        Model::Catenary => Ok(Box::new(catenary::CatenaryModel::new(problem, settings)?)),
+        Model::Fem => Ok(Box::new(fem::FemModel::new(problem, settings)?)),
+        Model::MassSpring => Ok(Box::new(mass_spring::MassSpringModel::new(problem, settings)?)),
+        Model::Auto => build(auto::choose(&problem).0, problem, settings),
+    }
+}

@@ -1,0 +1,238 @@
+//! One cable of a scene in numerical form: what every model reads.
+//!
+//! Arc lengths are unstretched at rest temperature; temperature enters as the factor `thermal_stretch` on
+//! unstretched lengths: strain = length/(thermal_stretch·ds) − 1. Weight and wind are per metre of arc length.
+
+use std::sync::Arc;
+
+use crate::contact::World;
+use crate::error::SceneError;
+use crate::math::{Vec2, vec2};
+use crate::scene::{Cable, Motion, PulleySide, Scene, SupportKind, View};
+
+/// One cable, resolved and validated.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// The scene's cable.
+    pub cable: Cable,
+    /// Index of the cable in the scene.
+    pub cable_index: usize,
+    /// Unstretched length at rest temperature, m.
+    pub length: f64,
+    /// 1 + αΔT.
+    pub thermal_stretch: f64,
+    /// Mass per metre of arc length, kg/m.
+    pub linear_density: f64,
+    /// Weight per metre, N/m, a vector (zero in plan view).
+    pub weight: Vec2,
+    /// Wind per metre as a function of time, N/m.
+    pub wind: Series,
+    /// EA, N.
+    pub axial_stiffness: f64,
+    /// EI, N·m².
+    pub bending_stiffness: f64,
+    /// Cable radius, m.
+    pub radius: f64,
+    /// Supports in order along the cable.
+    pub supports: Vec<SupportPoint>,
+    /// Point loads in order along the cable (those of load supports are in `supports`).
+    pub loads: Vec<PointLoad>,
+    /// What it can touch.
+    pub world: Arc<World>,
+    /// Plan view: friction coefficient with the floor and normal force per metre, N/m.
+    pub floor_friction: Option<(f64, f64)>,
+    /// The way it is first laid, m (empty: straight from support to support, lifted over what is in the way).
+    pub route: Vec<Vec2>,
+}
+
+/// A support, resolved.
+#[derive(Clone, Debug)]
+pub struct SupportPoint {
+    /// Its name.
+    pub name: String,
+    /// What it does.
+    pub kind: SupportKind,
+    /// Where on the cable, m; 0 and length at the ends; None = slides (pulley).
+    pub arc_length: Option<f64>,
+    /// Position at t = 0, m (a pulley's centre); None for load and free.
+    pub at: Option<Vec2>,
+    /// How it moves.
+    pub motion: Option<Motion>,
+    /// Clamp direction of growing arc length, rad.
+    pub angle: Option<f64>,
+    /// Pulley: radius of the cable's centre line round its wheel, m (0 for a point).
+    pub wheel_radius: f64,
+    /// Pulley: on which side.
+    pub side: PulleySide,
+    /// Pulley friction.
+    pub friction: f64,
+    /// Load: force as a function of time, N.
+    pub force: Series,
+    /// Lumped mass, kg.
+    pub mass: f64,
+    /// When it lets go, s.
+    pub release: Option<f64>,
+}
+
+impl SupportPoint {
+    /// Position and velocity at a time, m and m/s; None if it does not hold the cable then.
+    #[must_use]
+    pub fn position_at(&self, time_s: f64) -> Option<(Vec2, Vec2)> {
+        if self.release.is_some_and(|r| time_s >= r) {
+            return None;
+        }
+        match (&self.motion, self.at) {
+            (Some(m), Some(_)) => Some(m.at(time_s)),
+            (None, Some(p)) => Some((p, Vec2::zeros())),
+            _ => None,
+        }
+    }
+}
+
+/// A dead point load.
+#[derive(Clone, Debug)]
+pub struct PointLoad {
+    /// Where on the cable, m.
+    pub arc_length: f64,
+    /// Force as a function of time, N.
+    pub force: Series,
+}
+
+/// A vector as a function of time: linear between knots, constant outside them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Series {
+    times: Vec<f64>,
+    values: Vec<Vec2>,
+}
+
+impl Series {
+    /// The same value at all times.
+    #[must_use]
+    pub fn constant(value: Vec2) -> Self {
+        Self { times: vec![0.0], values: vec![value] }
+    }
+
+    /// Knots; times must increase.
+    #[must_use]
+    pub fn new(times: &[f64], values: &[[f64; 2]]) -> Self {
+        Self { times: times.to_vec(), values: values.iter().map(|v| vec2(*v)).collect() }
+    }
+
+    /// The value at a time (s).
+    #[must_use]
+    pub fn at(&self, time_s: f64) -> Vec2 {
+        let k = self.times.partition_point(|&t| t <= time_s);
+        match (k.checked_sub(1).and_then(|i| self.values.get(i)), self.values.get(k)) {
+            (Some(&a), Some(&b)) => {
+                let f = (time_s - self.times[k - 1]) / (self.times[k] - self.times[k - 1]);
+                a + (b - a) * f
+            }
+            (Some(&a), None) => a,
+            (None, Some(&b)) => b,
+            (None, None) => Vec2::zeros(),
+        }
+    }
+}
+
+/// Resolves every cable of a scene. The scene is validated first.
+///
+/// # Errors
+/// The first thing wrong with the scene.
+pub fn problems(scene: &Scene) -> Result<Vec<Arc<Problem>>, SceneError> {
+    scene.validate()?;
+    let mut out = Vec::with_capacity(scene.cables.len());
+    for (index, cable) in scene.cables.iter().enumerate() {
+        out.push(Arc::new(problem(scene, index, cable)?));
+    }
+    Ok(out)
+}
+
+fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, SceneError> {
+    let env = &scene.environment;
+    let radius = cable.diameter_m / 2.0;
+    let weight_per_m = cable.linear_density_kg_per_m * env.gravity_m_per_s2;
+    let (weight, floor_friction) = match scene.view {
+        View::Elevation => (Vec2::new(0.0, -weight_per_m), None),
+        View::Plan => (Vec2::zeros(), Some((cable.friction, weight_per_m))),
+    };
+    let last = cable.supports.len().saturating_sub(1);
+    let supports = cable
+        .supports
+        .iter()
+        .enumerate()
+        .map(|(k, s)| SupportPoint {
+            name: s.name.clone(),
+            kind: s.kind,
+            arc_length: match (k, s.kind) {
+                (0, _) => Some(0.0),
+                (k, _) if k == last => Some(cable.length_m),
+                (_, SupportKind::Pulley) => None,
+                _ => s.arc_length_m,
+            },
+            at: match s.kind {
+                SupportKind::Load | SupportKind::Free => None,
+                SupportKind::Robot => scene.robot.as_ref().and_then(|r| r.hitch_m()).map(vec2),
+                _ => s.at_m.map(vec2),
+            },
+            motion: s.motion.clone(),
+            angle: s.angle_deg.map(f64::to_radians),
+            wheel_radius: match s.radius_m {
+                Some(r) if r > 0.0 => r + radius,
+                _ => 0.0,
+            },
+            side: s.side.unwrap_or_default(),
+            friction: s.friction.unwrap_or(0.0),
+            force: force_series(s.force_n, &s.times_s, &s.forces_n),
+            mass: s.mass_kg.unwrap_or(0.0),
+            release: s.release_s,
+        })
+        .collect();
+    let mut loads: Vec<PointLoad> = scene
+        .loads
+        .iter()
+        .filter(|l| l.cable == cable.name)
+        .map(|l| PointLoad { arc_length: l.arc_length_m, force: force_series(l.force_n, &l.times_s, &l.forces_n) })
+        .collect();
+    loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
+    Ok(Problem {
+        cable_index,
+        length: cable.length_m,
+        thermal_stretch: 1.0 + cable.thermal_expansion_per_k * env.temperature_change_k,
+        linear_density: cable.linear_density_kg_per_m,
+        weight,
+        wind: force_series(Some(env.wind_n_per_m), &env.wind_times_s, &env.winds_n_per_m),
+        axial_stiffness: cable.axial_stiffness_n,
+        bending_stiffness: cable.bending_stiffness_n_m2,
+        radius,
+        supports,
+        loads,
+        world: Arc::new(World::new(&scene.obstacles, cable.friction, radius)),
+        floor_friction,
+        route: cable.route_m.iter().map(|p| vec2(*p)).collect(),
+        cable: cable.clone(),
+    })
+}
+
+fn force_series(force: Option<[f64; 2]>, times: &[f64], forces: &[[f64; 2]]) -> Series {
+    if times.is_empty() {
+        force.map_or_else(Series::default, |f| Series::constant(vec2(f)))
+    } else {
+        Series::new(times, forces)
+    }
+}
+
+impl Problem {
+    /// Distributed force per metre of arc length at a time, N/m: weight + wind.
+    #[must_use]
+    pub fn body_force(&self, time_s: f64) -> Vec2 {
+        self.weight + self.wind.at(time_s)
+    }
+
+    /// A force that says how large forces are here, N: the whole distributed load, or EA·1e-6 without one.
+    #[must_use]
+    pub fn force_scale(&self) -> f64 {
+        let loads: f64 = self.loads.iter().map(|l| l.force.at(0.0).norm()).sum::<f64>()
+            + self.supports.iter().map(|s| s.force.at(0.0).norm()).sum::<f64>();
+        (self.body_force(0.0).norm() * self.length + loads).max(1e-6 * self.axial_stiffness)
+    }
+}

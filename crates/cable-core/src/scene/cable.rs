@@ -1,0 +1,64 @@
+//! A cable's properties, supports and first route.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Support;
+use crate::math::Point;
+
+/// One cable, every number resolved (a preset has already filled what the file left out).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cable {
+    /// Unique name.
+    pub name: String,
+    /// Preset the numbers started from; on save only what differs from it is written.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub preset: Option<String>,
+    /// Unstretched length at rest temperature, m.
+    pub length_m: f64,
+    /// Mass per unstretched metre, kg/m.
+    pub linear_density_kg_per_m: f64,
+    /// Axial stiffness EA, N: tension = EA × engineering strain.
+    pub axial_stiffness_n: f64,
+    /// Bending stiffness EI, N·m²; 0 for a perfectly flexible cable.
+    #[serde(default)]
+    pub bending_stiffness_n_m2: f64,
+    /// Outside diameter, m.
+    pub diameter_m: f64,
+    /// Material damping, fraction of critical at the cable's first axial mode.
+    #[serde(default)]
+    pub damping_ratio: f64,
+    /// Thermal expansion, 1/K.
+    #[serde(default)]
+    pub thermal_expansion_per_k: f64,
+    /// Tension of the first warning, N.
+    pub service_tension_n: f64,
+    /// Tension at which it breaks, N.
+    pub breaking_tension_n: f64,
+    /// Smallest allowed bend radius, m; 0 = none stated.
+    #[serde(default)]
+    pub min_bend_radius_m: f64,
+    /// Coulomb friction with what does not say otherwise.
+    #[serde(default)]
+    pub friction: f64,
+    /// Elements; left out, the model chooses.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub segments: Option<usize>,
+    /// Whether the cable is an obstacle to itself.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub self_contact: bool,
+    /// The way it is first laid, m; empty = straight from support to support, lifted over what is in the way.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub route_m: Vec<Point>,
+    /// Supports in order along the cable; the first is its start, the last its end.
+    pub supports: Vec<Support>,
+}
+
+impl Cable {
+    /// Cross-section area of the full round, m²: π d²/4 (stress is quoted on it).
+    #[must_use]
+    pub fn area_m2(&self) -> f64 {
+        std::f64::consts::FRAC_PI_4 * self.diameter_m * self.diameter_m
+    }
+}

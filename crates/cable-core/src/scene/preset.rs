@@ -1,0 +1,1 @@
+//! Presets of cables, robots and maps from assets/ (placeholder).

@@ -1,0 +1,187 @@
+//! A scene, a model and its state: the object users hold.
+
+use crate::error::{Error, SolveError};
+use crate::math::Vec2;
+use crate::model::{self, Inertia, Mechanics, Model, Settings, auto};
+use crate::problem::problems;
+use crate::scene::Scene;
+use crate::solution::{Cost, Solution, Warning};
+use crate::state::State;
+
+/// A scene being solved.
+pub struct Simulation {
+    scene: Scene,
+    model: Model,
+    reason: String,
+    cables: Vec<Box<dyn Mechanics>>,
+    start: Option<Vec<Box<dyn Mechanics>>>,
+    cost: Cost,
+    warnings: Vec<Warning>,
+}
+
+impl Simulation {
+    /// Validates the scene and builds the model of each of its cables, at their routes, at rest.
+    ///
+    /// # Errors
+    /// What is wrong with the scene, or what the model cannot do.
+    pub fn new(scene: Scene, model: Model) -> Result<Self, Error> {
+        Self::with_settings(scene, model, Settings::default())
+    }
+
+    /// As [`Self::new`], with settings.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_settings(scene: Scene, model: Model, settings: Settings) -> Result<Self, Error> {
+        let problems = problems(&scene)?;
+        let (mut chosen, mut reason) = (model, "asked for".to_owned());
+        if model == Model::Auto {
+            // One model for the whole scene: the highest rung any cable needs.
+            (chosen, reason) = problems
+                .iter()
+                .map(|p| auto::choose(p))
+                .max_by_key(|(m, _)| *m == Model::Fem)
+                .unwrap_or((Model::Catenary, String::new()));
+        }
+        let cables =
+            problems.into_iter().map(|p| model::build(chosen, p, settings)).collect::<Result<_, SolveError>>()?;
+        Ok(Self { scene, model: chosen, reason, cables, start: None, cost: Cost::default(), warnings: Vec::new() })
+    }
+
+    /// The scene being solved.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The model in use.
+    #[must_use]
+    pub fn model(&self) -> Model {
+        self.model
+    }
+
+    /// Time reached, s.
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        self.cables.first().map_or(0.0, |c| c.state().time_s)
+    }
+
+    /// Finds where everything rests. The first answer is kept as the start that [`Self::reset`] returns to.
+    ///
+    /// # Errors
+    /// A typed reason when there is no resting place, or none was found; the state is then as before.
+    pub fn settle(&mut self) -> Result<Solution, SolveError> {
+        self.each(|c| c.settle())?;
+        if self.start.is_none() {
+            self.start = Some(self.cables.iter().map(|c| c.boxed_clone()).collect());
+        }
+        Ok(self.solution())
+    }
+
+    /// Advances time with inertia by `dt_s` (s).
+    ///
+    /// # Errors
+    /// See [`Mechanics::advance`].
+    pub fn step(&mut self, dt_s: f64) -> Result<(), SolveError> {
+        self.each(|c| c.advance(dt_s, Inertia::Dynamic))
+    }
+
+    /// Advances time without inertia by `dt_s` (s).
+    ///
+    /// # Errors
+    /// See [`Mechanics::advance`].
+    pub fn step_quasi_static(&mut self, dt_s: f64) -> Result<(), SolveError> {
+        self.each(|c| c.advance(dt_s, Inertia::QuasiStatic))
+    }
+
+    fn each(
+        &mut self,
+        mut f: impl FnMut(&mut Box<dyn Mechanics>) -> Result<crate::model::StepReport, SolveError>,
+    ) -> Result<(), SolveError> {
+        let (mut cost, mut warnings) = (Cost::default(), Vec::new());
+        for c in &mut self.cables {
+            let report = f(c)?;
+            cost.iterations += report.cost.iterations;
+            cost.halved_steps += report.cost.halved_steps;
+            if !(report.cost.residual_n <= cost.residual_n) {
+                cost.residual_n = report.cost.residual_n;
+            }
+            cost.inner_step_s = cost.inner_step_s.max(report.cost.inner_step_s);
+            warnings.extend(report.warnings);
+        }
+        self.cost = cost;
+        self.warnings = warnings;
+        Ok(())
+    }
+
+    /// The answer at this instant.
+    #[must_use]
+    pub fn solution(&self) -> Solution {
+        Solution {
+            time_s: self.time_s(),
+            model: self.model,
+            reason: self.reason.clone(),
+            cables: self.cables.iter().map(|c| c.solution()).collect(),
+            warnings: self.warnings.clone(),
+            cost: self.cost,
+        }
+    }
+
+    /// Drags a support by hand: see [`Mechanics::drag_support`].
+    pub fn drag_support(&mut self, cable: usize, support: usize, target_m: Vec2) {
+        if let Some(c) = self.cables.get_mut(cable) {
+            c.drag_support(support, target_m);
+        }
+    }
+
+    /// Back to the first settled state, bit for bit.
+    pub fn reset(&mut self) {
+        if let Some(start) = &self.start {
+            self.cables = start.iter().map(|c| c.boxed_clone()).collect();
+            self.cost = Cost::default();
+            self.warnings.clear();
+        }
+    }
+
+    /// Where each cable is, to hand over to a simulation of an edited scene.
+    #[must_use]
+    pub fn states(&self) -> Vec<State> {
+        self.cables.iter().map(|c| c.state()).collect()
+    }
+
+    /// Takes over states of the same cables (after an edit).
+    ///
+    /// # Errors
+    /// When a state does not fit its cable.
+    pub fn adopt(&mut self, states: &[State]) -> Result<(), SolveError> {
+        for (c, s) in self.cables.iter_mut().zip(states) {
+            c.adopt(s)?;
+        }
+        Ok(())
+    }
+}
+
+impl Clone for Simulation {
+    fn clone(&self) -> Self {
+        let copy = |v: &Vec<Box<dyn Mechanics>>| v.iter().map(|c| c.boxed_clone()).collect();
+        Self {
+            scene: self.scene.clone(),
+            model: self.model,
+            reason: self.reason.clone(),
+            cables: copy(&self.cables),
+            start: self.start.as_ref().map(copy),
+            cost: self.cost,
+            warnings: self.warnings.clone(),
+        }
+    }
+}
+
+impl std::fmt::Debug for Simulation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Simulation")
+            .field("scene", &self.scene.name)
+            .field("model", &self.model)
+            .field("time_s", &self.time_s())
+            .finish()
+    }
+}

@@ -1,0 +1,201 @@
+//! What an answer holds, whichever model gave it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::model::Model;
+
+/// The answer of a model at an instant, all cables of the scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Solution {
+    /// Time, s.
+    pub time_s: f64,
+    /// The model that gave it.
+    pub model: Model,
+    /// Why that model.
+    pub reason: String,
+    /// One a cable, in the scene's order.
+    pub cables: Vec<CableSolution>,
+    /// What the user should know.
+    pub warnings: Vec<Warning>,
+    /// What the last solve or step took.
+    pub cost: Cost,
+}
+
+/// The answer for one cable.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CableSolution {
+    /// The cable's name.
+    pub name: String,
+    /// Nodes in order of arc length.
+    pub nodes: Vec<Node>,
+    /// Supports in the scene's order.
+    pub supports: Vec<SupportReaction>,
+    /// Contacts in order of arc length.
+    pub contacts: Vec<ContactReport>,
+    /// Estimated relative error of the largest tension; None = not estimated.
+    pub error_estimate: Option<f64>,
+}
+
+/// One point of the cable.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Node {
+    /// Unstretched arc length at rest temperature, m.
+    pub arc_length_m: f64,
+    /// Position, m.
+    pub x_m: f64,
+    /// Position, m.
+    pub y_m: f64,
+    /// Velocity, m/s.
+    pub vx_m_per_s: f64,
+    /// Velocity, m/s.
+    pub vy_m_per_s: f64,
+    /// Tension at this point (not the mean of an element), N.
+    pub tension_n: f64,
+    /// Engineering strain.
+    pub strain: f64,
+    /// Tension over the full round cross-section, Pa.
+    pub stress_pa: f64,
+    /// d(angle)/d(unstretched length), 1/m.
+    pub curvature_per_m: f64,
+}
+
+/// What the cable does to a support.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SupportReaction {
+    /// The support's name.
+    pub name: String,
+    /// Where it is, m.
+    pub x_m: f64,
+    /// Where it is, m.
+    pub y_m: f64,
+    /// Force of the cable on the support, N.
+    pub reaction_x_n: f64,
+    /// Force of the cable on the support, N.
+    pub reaction_y_n: f64,
+    /// Where on the cable it sits now, m.
+    pub arc_length_m: f64,
+    /// Pulley: tension on the side of smaller arc length, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tension_before_n: Option<f64>,
+    /// Pulley: tension on the side of greater arc length, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tension_after_n: Option<f64>,
+}
+
+/// Whether a contact holds or slides.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ContactState {
+    /// Held by friction.
+    #[default]
+    Stick,
+    /// Sliding.
+    Slip,
+}
+
+/// One contact of the cable with an obstacle: a point, or a stretch (a lay or a wrap).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContactReport {
+    /// The obstacle's name.
+    pub obstacle: String,
+    /// Middle of the contact, m.
+    pub x_m: f64,
+    /// Middle of the contact, m.
+    pub y_m: f64,
+    /// Arc length of its middle, m.
+    pub arc_length_m: f64,
+    /// Outward normal (obstacle to cable), unit vector.
+    pub normal: [f64; 2],
+    /// Normal force integrated over the contact, N.
+    pub normal_n: f64,
+    /// Friction force on the cable along growing arc length, integrated over the contact, N.
+    pub friction_n: f64,
+    /// Holds or slides.
+    pub state: ContactState,
+    /// Wrap: how far the cable turns, °.
+    pub turn_deg: f64,
+    /// Tension before the contact (smaller arc length), N.
+    pub tension_before_n: f64,
+    /// Tension after the contact (greater arc length), N.
+    pub tension_after_n: f64,
+}
+
+/// What a solve or step took. The core has no clock: wall time is the caller's to measure.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Cost {
+    /// Newton iterations, or explicit sub-steps.
+    pub iterations: usize,
+    /// Steps that had to be halved.
+    pub halved_steps: usize,
+    /// Largest unbalanced force left, N.
+    pub residual_n: f64,
+    /// Inner time step, s; 0 for statics.
+    pub inner_step_s: f64,
+}
+
+/// Something the user should know, with its place.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Warning {
+    /// What kind.
+    pub kind: WarningKind,
+    /// The cable's name.
+    pub cable: String,
+    /// Where on the cable, m.
+    pub arc_length_m: f64,
+    /// The quantity's value, in its own unit (N, 1/m, m …).
+    pub value: f64,
+    /// Its limit, same unit.
+    pub limit: f64,
+    /// What, where, why and what it does to the result, with figures and units.
+    pub message: String,
+}
+
+/// The kinds of warning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WarningKind {
+    /// Tension above the service tension.
+    ServiceTension,
+    /// Tension above the breaking tension.
+    BreakingTension,
+    /// Bend radius below the smallest allowed.
+    BendRadius,
+    /// With friction a resting place is not unique.
+    NotUnique,
+    /// A support was stopped by an obstacle, or its speed was capped.
+    SupportHeld,
+    /// Damping or velocity was raised to keep the motion stable.
+    Stabilised,
+    /// The mesh is too coarse for the asked accuracy.
+    Accuracy,
+}
+
+/// The largest tension and where.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MaxTension {
+    /// Tension, N.
+    pub tension_n: f64,
+    /// Index of the cable.
+    pub cable: usize,
+    /// Arc length, m.
+    pub arc_length_m: f64,
+}
+
+impl Solution {
+    /// The largest tension over all cables (NaN propagates).
+    #[must_use]
+    pub fn max_tension(&self) -> MaxTension {
+        let mut best = MaxTension { tension_n: f64::NEG_INFINITY, ..MaxTension::default() };
+        for (cable, c) in self.cables.iter().enumerate() {
+            for n in &c.nodes {
+                if n.tension_n > best.tension_n || n.tension_n.is_nan() {
+                    best = MaxTension { tension_n: n.tension_n, cable, arc_length_m: n.arc_length_m };
+                }
+                if n.tension_n.is_nan() {
+                    return best;
+                }
+            }
+        }
+        best
+    }
+}

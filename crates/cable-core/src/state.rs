@@ -1,0 +1,38 @@
+//! Where a cable is at an instant, in a form every model can give and take.
+
+use crate::math::Vec2;
+
+/// Positions, velocities and material coordinates of one cable at an instant.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct State {
+    /// Time, s.
+    pub time_s: f64,
+    /// Unstretched arc length of each node at rest temperature, m, increasing.
+    pub arc_length_m: Vec<f64>,
+    /// Position of each node, m.
+    pub position_m: Vec<Vec2>,
+    /// Velocity of each node, m/s.
+    pub velocity_m_per_s: Vec<Vec2>,
+}
+
+impl State {
+    /// The first node with a number that is not finite.
+    #[must_use]
+    pub fn first_non_finite(&self) -> Option<usize> {
+        (0..self.position_m.len()).find(|&i| {
+            !(self.position_m[i].iter().all(|v| v.is_finite())
+                && self.velocity_m_per_s.get(i).is_none_or(|v| v.iter().all(|c| c.is_finite())))
+        })
+    }
+
+    /// Position at a material coordinate, linear between nodes, m.
+    #[must_use]
+    pub fn position_at(&self, arc_length_m: f64) -> Option<Vec2> {
+        let n = self.arc_length_m.len();
+        let k = self.arc_length_m.partition_point(|&s| s <= arc_length_m).clamp(1, n.max(2) - 1);
+        let (s0, s1) = (*self.arc_length_m.get(k - 1)?, *self.arc_length_m.get(k)?);
+        let (a, b) = (*self.position_m.get(k - 1)?, *self.position_m.get(k)?);
+        let f = if s1 > s0 { ((arc_length_m - s0) / (s1 - s0)).clamp(0.0, 1.0) } else { 0.0 };
+        Some(a + (b - a) * f)
+    }
+}
