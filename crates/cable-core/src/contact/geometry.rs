@@ -1,36 +1,334 @@
-//! The only file that imports parry2d. Placeholder until the contact engine lands.
+//! Obstacles as features in trees; the only file that imports parry2d.
+//!
+//! parry2d's own contact calls are two-sided for polylines, so only its bounding volume tree is used, for
+//! candidates; distances and signs are worked out here. A *body* is one obstacle, a *feature* one of its
+//! edges, corners or circles. Polygons are wound so that the solid lies right of travel, as with terrain
+//! drawn left to right; the outward normal is then always left of an edge.
+//!
+//! The sign of a distance follows from the nearest feature: left or right of an edge; at a corner, outside
+//! if the corner is convex and inside if it is not. (The angle-weighted pseudo-normal of Bærentzen and Aanæs,
+//! "Signed distance computation using the angle weighted pseudonormal", IEEE TVCG 2005, says the same in 2D.)
+
+use std::ops::Range;
+
+use parry2d_f64::bounding_volume::Aabb;
+use parry2d_f64::math::Vector;
+use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy};
 
 use super::Gap;
-use crate::math::Vec2;
-use crate::scene::Obstacle;
+use super::distance::nearest_fraction;
+use crate::math::{Point, Vec2, cross, perp, vec2};
+use crate::scene::{Obstacle, Shape};
 
-/// Compiled obstacle features with their tree.
+/// Edges that turn by less (rad) are one edge: a corner the cable cannot feel would only cost time.
+const STRAIGHT: f64 = 1e-12;
+
+/// The obstacles of a scene with their trees.
 #[derive(Clone, Debug, Default)]
 pub struct Geometry {
-    count: usize,
+    bodies: Vec<Body>,
+}
+
+/// One obstacle.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Index in the scene.
+    pub obstacle: usize,
+    /// Coulomb friction coefficient with the cable.
+    pub friction: f64,
+    /// Distance of the cable's centre line from the edges when it touches, m.
+    pub offset: f64,
+    /// Edges, in order; empty for a circle.
+    pub edges: Vec<Edge>,
+    /// Centre of a circle; `offset` then includes its radius.
+    pub center: Option<Vec2>,
+    /// Number of this body's first feature: edge k is feature first + 2k, the corner at its start first + 2k + 1.
+    pub first: usize,
+    solid: bool,
+    closed: bool,
+    bvh: Bvh,
+}
+
+/// A straight piece of a boundary; outside is left of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Edge {
+    /// Start, m.
+    pub p: Vec2,
+    /// End, m.
+    pub q: Vec2,
+    /// Unit vector from start to end.
+    pub tangent: Vec2,
+}
+
+/// A corner of a body or a circle: a point with an offset.
+#[derive(Clone, Copy, Debug)]
+pub struct Corner {
+    /// Where, m.
+    pub at: Vec2,
+    /// Feature number.
+    pub feature: usize,
+    /// Unit tangents of the edges before and after it, if there are such.
+    pub before: Option<Vec2>,
+    /// See `before`.
+    pub after: Option<Vec2>,
+}
+
+impl Corner {
+    /// Whether the boundary turns away from the outside here (an open end counts).
+    #[must_use]
+    pub fn is_convex(&self) -> bool {
+        match (self.before, self.after) {
+            (Some(t1), Some(t2)) => cross(t1, t2) < 0.0 || (cross(t1, t2) == 0.0 && t1.dot(&t2) < 0.0),
+            _ => true,
+        }
+    }
+
+    /// How many of the edges that meet here have this corner as their nearest point to `p`, and how many meet.
+    #[must_use]
+    pub fn clamped(&self, p: Vec2) -> (usize, usize) {
+        let d = p - self.at;
+        let before = self.before.map(|t| d.dot(&t) >= 0.0);
+        let after = self.after.map(|t| d.dot(&t) <= 0.0);
+        (
+            usize::from(before == Some(true)) + usize::from(after == Some(true)),
+            usize::from(before.is_some()) + usize::from(after.is_some()),
+        )
+    }
+}
+
+impl Edge {
+    /// Outward unit normal.
+    #[must_use]
+    pub fn normal(&self) -> Vec2 {
+        perp(self.tangent)
+    }
+
+    /// Length, m.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        (self.q - self.p).norm()
+    }
+}
+
+impl Body {
+    /// Edge indices whose boxes meet the given box.
+    pub fn candidates(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = usize> {
+        let query = Aabb::new(Vector::new(low.x, low.y), Vector::new(high.x, high.y));
+        self.bvh
+            .leaves(move |node| {
+                let (n, x) = (node.mins(), node.maxs());
+                n.x <= query.maxs.x && n.y <= query.maxs.y && x.x >= query.mins.x && x.y >= query.mins.y
+            })
+            .map(|leaf| leaf as usize)
+            .filter(|&k| k < self.edges.len())
+    }
+
+    /// The corner at the start of edge `k`; `k` = number of edges asks for the end of an open line.
+    #[must_use]
+    pub fn corner(&self, k: usize) -> Option<Corner> {
+        let n = self.edges.len();
+        let tangent = |k: usize| self.edges.get(k).map(|e| e.tangent);
+        let (before, after, at) = match k {
+            _ if n == 0 || k > n || (k == n && self.closed) => return None,
+            0 if self.closed => (tangent(n - 1), tangent(0), self.edges.first()?.p),
+            0 => (None, tangent(0), self.edges.first()?.p),
+            k if k == n => (tangent(n - 1), None, self.edges.last()?.q),
+            k => (tangent(k - 1), tangent(k), self.edges.get(k)?.p),
+        };
+        Some(Corner { at, feature: self.first + 2 * k + 1, before, after })
+    }
+
+    /// Corners that a candidate edge answers for: its start, and the end of an open line's last edge.
+    pub fn corners_of(&self, k: usize) -> impl Iterator<Item = Corner> {
+        let last = (k + 1 == self.edges.len() && !self.closed).then_some(k + 1);
+        std::iter::once(k).chain(last).filter_map(|k| self.corner(k))
+    }
+
+    /// Whether contact at a corner can be felt by a straight segment: not where a solid recedes from it.
+    #[must_use]
+    pub fn juts_out(&self, corner: &Corner) -> bool {
+        !self.solid || corner.is_convex()
+    }
+
+    /// A contact of this body at distance `distance` of the centre line, along `normal`.
+    #[must_use]
+    pub fn gap(&self, feature: usize, distance: f64, normal: Vec2, point: Vec2) -> Gap {
+        Gap {
+            gap_m: distance - self.offset,
+            normal,
+            point,
+            fraction: 0.0,
+            friction: self.friction,
+            obstacle: self.obstacle,
+            feature,
+        }
+    }
+
+    fn signed_gap(&self, p: Vec2, reach: f64) -> Option<Gap> {
+        if let Some(c) = self.center {
+            let gap = self.gap(self.first, (p - c).norm(), unit_or(p - c, Vec2::y()), c);
+            return (gap.gap_m <= reach).then_some(gap);
+        }
+        let r = Vec2::repeat(reach + self.offset);
+        let mut best: Option<(f64, usize, f64)> = None;
+        for k in self.candidates(p - r, p + r) {
+            let e = &self.edges[k];
+            let f = nearest_fraction(p, e.p, e.q);
+            let d = (p - (e.p + (e.q - e.p) * f)).norm();
+            // Ties (a shared corner) go to the lower edge, whatever the order of the tree.
+            if best.is_none_or(|(b, j, _)| d < b || (d == b && k < j)) {
+                best = Some((d, k, f));
+            }
+        }
+        let (d, k, f) = best?;
+        let e = self.edges[k];
+        let at = e.p + (e.q - e.p) * f;
+        let corner = if f == 0.0 {
+            self.corner(k)
+        } else if f == 1.0 {
+            self.corner(if k + 1 == self.edges.len() && self.closed { 0 } else { k + 1 })
+        } else {
+            None
+        };
+        let side = match corner {
+            _ if !self.solid => 1.0,
+            // Under the end of an open ground is inside, beyond it outside.
+            Some(Corner { before: None, .. }) if p.x >= at.x => (p - at).dot(&e.normal()).signum(),
+            Some(Corner { after: None, .. }) if p.x <= at.x => (p - at).dot(&e.normal()).signum(),
+            Some(c) if c.is_convex() => 1.0,
+            Some(_) => -1.0,
+            None => (p - e.p).dot(&e.normal()).signum(),
+        };
+        let normal = unit_or((p - at) * side, e.normal());
+        let gap = self.gap(corner.map_or(self.first + 2 * k, |c| c.feature), d * side, normal, at);
+        (d <= reach + self.offset).then_some(gap)
+    }
+}
+
+fn unit_or(v: Vec2, fallback: Vec2) -> Vec2 {
+    let n = v.norm();
+    if n == 0.0 { fallback } else { v / n }
 }
 
 impl Geometry {
-    /// Compiles obstacles.
+    /// Compiles obstacles for a cable of the given friction and radius (m).
     #[must_use]
-    pub fn new(obstacles: &[Obstacle], _cable_friction: f64, _cable_radius: f64) -> Self {
-        Self { count: obstacles.len() }
+    pub fn new(obstacles: &[Obstacle], cable_friction: f64, cable_radius: f64) -> Self {
+        let mut bodies: Vec<Body> = Vec::with_capacity(obstacles.len());
+        for (obstacle, o) in obstacles.iter().enumerate() {
+            let (points, closed, solid, center, grow) = match &o.shape {
+                Shape::Terrain { points_m } => (left_to_right(clean(points_m, false)), false, true, None, 0.0),
+                Shape::Polygon { points_m } => (clockwise(clean(points_m, true)), true, true, None, 0.0),
+                Shape::Polyline { points_m, thickness_m } => {
+                    (clean(points_m, false), false, false, None, thickness_m / 2.0)
+                }
+                Shape::Circle { center_m, radius_m } => (Vec::new(), false, true, Some(vec2(*center_m)), *radius_m),
+            };
+            let edges = edges_of(&points, closed);
+            if edges.is_empty() && center.is_none() {
+                continue;
+            }
+            let first = bodies.last().map_or(0, |b| b.features().end);
+            let leaves = edges.iter().map(|e| {
+                let (low, high) = (e.p.inf(&e.q), e.p.sup(&e.q));
+                Aabb::new(Vector::new(low.x, low.y), Vector::new(high.x, high.y))
+            });
+            let bvh = Bvh::from_iter(BvhBuildStrategy::Binned, leaves.enumerate());
+            bodies.push(Body {
+                obstacle,
+                friction: o.friction.unwrap_or(cable_friction),
+                offset: cable_radius + grow,
+                edges,
+                center,
+                first,
+                solid,
+                closed,
+                bvh,
+            });
+        }
+        Self { bodies }
     }
+
     /// Whether there is no feature.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.count == 0
+        self.bodies.is_empty()
     }
+
+    /// The bodies, in the order of the scene.
+    #[must_use]
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
     /// See [`super::World::signed_gap`].
     #[must_use]
-    pub fn signed_gap(&self, _p: Vec2, _reach: f64) -> Option<Gap> {
-        None
+    pub fn signed_gap(&self, p: Vec2, reach: f64) -> Option<Gap> {
+        let mut best: Option<Gap> = None;
+        for g in self.bodies.iter().filter_map(|b| b.signed_gap(p, reach)) {
+            if best.is_none_or(|b| g.gap_m < b.gap_m) {
+                best = Some(g);
+            }
+        }
+        best
     }
-    /// See [`super::World::segment_gaps`].
-    pub fn segment_gaps(&self, _a: Vec2, _b: Vec2, _reach: f64, _out: &mut Vec<Gap>) {}
-    /// See [`super::World::free_fraction`].
-    #[must_use]
-    pub fn free_fraction(&self, _from: [Vec2; 2], _to: [Vec2; 2], _keep: f64) -> f64 {
-        1.0
+}
+
+impl Body {
+    fn features(&self) -> Range<usize> {
+        self.first..self.first + 2 * self.edges.len() + 2
     }
+}
+
+/// Points as vectors without repeats, non-finite ones and corners that do not turn.
+fn clean(points: &[Point], closed: bool) -> Vec<Vec2> {
+    let mut out: Vec<Vec2> = Vec::with_capacity(points.len());
+    for p in points.iter().map(|p| vec2(*p)).filter(|p| p.iter().all(|c| c.is_finite())) {
+        if out.last() != Some(&p) {
+            out.push(p);
+        }
+    }
+    while closed && out.len() > 1 && out.first() == out.last() {
+        out.pop();
+    }
+    let n = out.len();
+    let turns = |i: usize| {
+        if !closed && (i == 0 || i + 1 == n) {
+            return true;
+        }
+        let (u, v) = (out[i] - out[(i + n - 1) % n], out[(i + 1) % n] - out[i]);
+        !(cross(u, v).abs() <= STRAIGHT * u.norm() * v.norm() && u.dot(&v) > 0.0)
+    };
+    (0..n).filter(|&i| turns(i)).map(|i| out[i]).collect()
+}
+
+fn left_to_right(mut points: Vec<Vec2>) -> Vec<Vec2> {
+    if points.first().zip(points.last()).is_some_and(|(a, b)| a.x > b.x) {
+        points.reverse();
+    }
+    points
+}
+
+fn clockwise(mut points: Vec<Vec2>) -> Vec<Vec2> {
+    // Twice the area about the first corner, so that a polygon far from the origin keeps its digits.
+    let Some(&o) = points.first() else { return points };
+    let area: f64 = points.windows(2).map(|w| cross(w[0] - o, w[1] - o)).sum();
+    if area > 0.0 {
+        points.reverse();
+    }
+    points
+}
+
+fn edges_of(points: &[Vec2], closed: bool) -> Vec<Edge> {
+    let n = points.len();
+    if n < 2 || (closed && n < 3) {
+        return Vec::new();
+    }
+    let count = if closed { n } else { n - 1 };
+    (0..count)
+        .map(|i| {
+            let (p, q) = (points[i], points[(i + 1) % n]);
+            Edge { p, q, tangent: (q - p) / (q - p).norm() }
+        })
+        .collect()
 }

@@ -5,8 +5,13 @@
 //! Terrain is solid below, polygons inside, circles inside; thin polylines have two sides.
 
 pub mod barrier;
+pub mod distance;
 pub mod friction;
 pub mod geometry;
+pub mod pairs;
+mod sweep;
+#[cfg(test)]
+mod tests;
 
 use crate::math::Vec2;
 use crate::scene::Obstacle;
@@ -50,13 +55,14 @@ impl World {
     }
 
     /// Signed gap of the cable's centre-line point `p` to the nearest obstacle within `reach` (m), solid
-    /// sides counted as negative.
+    /// sides counted as negative. A point more than `reach` plus the cable radius inside a solid is not found.
     #[must_use]
     pub fn signed_gap(&self, p: Vec2, reach: f64) -> Option<Gap> {
         self.geometry.signed_gap(p, reach)
     }
 
-    /// Every feature within `reach` (m) of the centre-line segment `a`–`b`, unsigned, appended to `out`.
+    /// Every feature within `reach` (m) of the centre-line segment `a`–`b`, unsigned, appended to `out`: edges and
+    /// corners seen from its ends (`fraction` exactly 0 or 1), corners and circles seen from its inside.
     pub fn segment_gaps(&self, a: Vec2, b: Vec2, reach: f64, out: &mut Vec<Gap>) {
         self.geometry.segment_gaps(a, b, reach, out);
     }
@@ -66,5 +72,11 @@ impl World {
     #[must_use]
     pub fn free_fraction(&self, from: [Vec2; 2], to: [Vec2; 2], keep: f64) -> f64 {
         self.geometry.free_fraction(from, to, keep)
+    }
+
+    /// The compiled obstacles, for models that build their own contact pairs.
+    #[must_use]
+    pub fn geometry(&self) -> &geometry::Geometry {
+        &self.geometry
     }
 }

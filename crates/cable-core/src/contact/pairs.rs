@@ -1,0 +1,138 @@
+//! Contact pairs between a chain of cable segments and the obstacles: smooth in the chain's position.
+//!
+//! Two families, each complete for one kind of touch, as in Li et al., "Incremental Potential Contact",
+//! ACM TOG 2020: cable node against boundary edges, and boundary corner (or circle) against cable segments.
+//! Where two edges meet, both have the corner as nearest point of a node there; counted plainly a node
+//! passing a flat joint would feel a bump. So corners enter by inclusion and exclusion (Li, Ferguson, Schneider
+//! et al., "Convergent incremental potential contact", 2023):
+//!
+//!   Σ over edges b(d(p, edge)) − Σ over inner corners b(d(p, corner)),
+//!
+//! which leaves b once on a flat or convex boundary and is continuous across a concave one. Terms that
+//! cancel are not emitted; what remains has weight +1 or, at a shallow concave corner, −1.
+
+use super::Gap;
+use super::geometry::{Body, Geometry};
+use crate::math::Vec2;
+
+/// A contact pair with its sign.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// Where and how far; `fraction` lies strictly inside (0, 1) for a corner against a segment.
+    pub gap: Gap,
+    /// +1 or −1.
+    pub weight: f64,
+}
+
+impl Geometry {
+    /// Pairs of one node: against edges and corners within `reach`, and against the corners that lie in the
+    /// wedge between its two segments. `before` and `after` are its neighbours in the chain.
+    pub fn node_pairs(
+        &self,
+        before: Option<Vec2>,
+        p: Vec2,
+        after: Option<Vec2>,
+        reach: f64,
+        out: &mut impl FnMut(Pair),
+    ) {
+        for body in self.bodies() {
+            let r = Vec2::repeat(reach + body.offset);
+            let (low, high) = (p - r, p + r);
+            if let Some(c) = body.center {
+                push_wedge(body, body.first, c, [before, Some(p), after], reach, out);
+            }
+            for k in body.candidates(low, high) {
+                push_edge(body, k, p, reach, out);
+                for corner in body.corners_of(k) {
+                    push_corner(body, &corner, p, reach, out);
+                    if body.juts_out(&corner) {
+                        push_wedge(body, corner.feature, corner.at, [before, Some(p), after], reach, out);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Pairs of the inside of one segment against corners and circles within `reach`.
+    pub fn segment_pairs(&self, a: Vec2, b: Vec2, reach: f64, out: &mut impl FnMut(Pair)) {
+        for body in self.bodies() {
+            if let Some(c) = body.center {
+                push_segment(body, body.first, c, [a, b], reach, out);
+            }
+            let r = Vec2::repeat(reach + body.offset);
+            for k in body.candidates(a.inf(&b) - r, a.sup(&b) + r) {
+                for corner in body.corners_of(k).filter(|c| body.juts_out(c)) {
+                    push_segment(body, corner.feature, corner.at, [a, b], reach, out);
+                }
+            }
+        }
+    }
+
+    /// See [`super::World::segment_gaps`].
+    pub fn segment_gaps(&self, a: Vec2, b: Vec2, reach: f64, out: &mut Vec<Gap>) {
+        let mut keep = |pair: Pair, fraction: f64| {
+            if pair.weight > 0.0 {
+                out.push(Gap { fraction, ..pair.gap });
+            }
+        };
+        self.node_pairs(None, a, Some(b), reach, &mut |p| keep(p, 0.0));
+        self.segment_pairs(a, b, reach, &mut |p| keep(p, p.gap.fraction));
+        self.node_pairs(Some(a), b, None, reach, &mut |p| keep(p, 1.0));
+    }
+}
+
+/// Node against the inside of an edge.
+fn push_edge(body: &Body, k: usize, p: Vec2, reach: f64, out: &mut impl FnMut(Pair)) {
+    let e = &body.edges[k];
+    let along = (p - e.p).dot(&e.tangent);
+    if !(along > 0.0 && (p - e.q).dot(&e.tangent) < 0.0) {
+        return;
+    }
+    let height = (p - e.p).dot(&e.normal());
+    let side = if height < 0.0 { -1.0 } else { 1.0 };
+    let gap = body.gap(body.first + 2 * k, height.abs(), e.normal() * side, e.p + e.tangent * along);
+    if gap.gap_m < reach {
+        out(Pair { gap, weight: 1.0 });
+    }
+}
+
+/// Node against a corner: what inclusion and exclusion leave of it.
+fn push_corner(body: &Body, corner: &super::geometry::Corner, p: Vec2, reach: f64, out: &mut impl FnMut(Pair)) {
+    let (clamped, edges) = corner.clamped(p);
+    let weight = if edges == 2 { clamped as f64 - 1.0 } else { clamped as f64 };
+    push_point(body, corner.feature, [p, corner.at], weight, reach, out);
+}
+
+/// Corner or circle against a node, seen from it: what inclusion and exclusion over the node's segments leave.
+fn push_wedge(body: &Body, feature: usize, v: Vec2, chain: [Option<Vec2>; 3], reach: f64, out: &mut impl FnMut(Pair)) {
+    let [before, Some(p), after] = chain else { return };
+    let beyond = |other: Option<Vec2>| other.map(|o| (v - p).dot(&(o - p)) <= 0.0);
+    let (b, a) = (beyond(before), beyond(after));
+    let clamped = f64::from(u8::from(b == Some(true)) + u8::from(a == Some(true)));
+    let weight = if b.is_some() && a.is_some() { clamped - 1.0 } else { clamped };
+    push_point(body, feature, [p, v], weight, reach, out);
+}
+
+fn push_point(body: &Body, feature: usize, [p, v]: [Vec2; 2], weight: f64, reach: f64, out: &mut impl FnMut(Pair)) {
+    let d = (p - v).norm();
+    if weight != 0.0 && d > 0.0 && d - body.offset < reach {
+        out(Pair { gap: body.gap(feature, d, (p - v) / d, v), weight });
+    }
+}
+
+/// Corner or circle against the inside of a segment.
+fn push_segment(body: &Body, feature: usize, v: Vec2, [a, b]: [Vec2; 2], reach: f64, out: &mut impl FnMut(Pair)) {
+    let (d, l2) = (b - a, (b - a).norm_squared());
+    let along = (v - a).dot(&d);
+    if !(along > 0.0 && along < l2) {
+        return;
+    }
+    let fraction = along / l2;
+    let away = a + d * fraction - v;
+    let distance = away.norm();
+    if distance > 0.0 && distance - body.offset < reach {
+        let mut gap = body.gap(feature, distance, away / distance, v);
+        gap.fraction = fraction;
+        out(Pair { gap, weight: 1.0 });
+    }
+}

@@ -1,0 +1,89 @@
+//! Conservative advancement: how far a moving segment can go and cross nothing.
+//!
+//! For each feature the distance D(t) of the moving segment falls no faster than v = max(|Δa|, |Δb|) per unit
+//! of t, so t may grow by (D − D_keep)/v again and again without D passing D_keep (Mirtich, "Impulse-based
+//! dynamic simulation of rigid body systems", 1996; additive form of Li et al., "Codimensional incremental
+//! potential contact", ACM TOG 2021).
+
+use super::distance::{point_segment, segment_segment};
+use super::geometry::Geometry;
+use crate::math::Vec2;
+
+/// Steps of advancement per feature. Fewer return a shorter free way at glancing approach (still safe); the
+/// distance left shrinks geometrically, and 1e5 random sweeps never used more than 40.
+const MAX_ADVANCES: usize = 48;
+
+/// Advancement ends when what is left to advance is this part of the gap: smaller costs steps, larger gives away free way.
+const CLOSE_ENOUGH: f64 = 0.02;
+
+/// Distances are trusted to this many units in the last place of the coordinates.
+const ULPS: f64 = 16.0;
+
+/// Largest part of a gap that can be asked to stay.
+const MAX_KEEP: f64 = 0.9;
+
+impl Geometry {
+    /// See [`super::World::free_fraction`].
+    #[must_use]
+    pub fn free_fraction(&self, from: [Vec2; 2], to: [Vec2; 2], keep: f64) -> f64 {
+        let [a, b] = from;
+        let (da, db) = (to[0] - a, to[1] - b);
+        let speed = if da.norm_squared() > db.norm_squared() { da.norm() } else { db.norm() };
+        if !(da.norm_squared() + db.norm_squared()).is_finite() {
+            return 0.0;
+        }
+        if speed == 0.0 {
+            return 1.0;
+        }
+        let keep = keep.clamp(0.0, MAX_KEEP);
+        let (low, high) = (a.inf(&b).inf(&to[0]).inf(&to[1]), a.sup(&b).sup(&to[0]).sup(&to[1]));
+        let noise = ULPS * f64::EPSILON * (low.abs().max() + high.abs().max());
+        // A feature farther from the swept box than this keeps its part of the gap by itself.
+        let margin = speed * keep / (1.0 - keep) + noise;
+        let mut free = 1.0;
+        for body in self.bodies() {
+            let r = Vec2::repeat(body.offset + margin);
+            if let Some(c) = body.center {
+                let distance = |t: f64| point_segment(c, a + da * t, b + db * t);
+                free = advance(distance, body.offset, [speed, keep, noise], free);
+            }
+            for k in body.candidates(low - r, high + r) {
+                let e = &body.edges[k];
+                let distance = |t: f64| segment_segment(a + da * t, b + db * t, e.p, e.q);
+                free = advance(distance, body.offset, [speed, keep, noise], free);
+            }
+        }
+        free
+    }
+}
+
+/// The free way up to `limit` against one feature.
+fn advance(distance: impl Fn(f64) -> f64, offset: f64, [speed, keep, noise]: [f64; 3], limit: f64) -> f64 {
+    let d0 = distance(0.0);
+    // A cable already overlapping (not this model's doing) still must not be crossed by its centre line; a centre
+    // line already across cannot be crossed again, and holding it there would trap it.
+    if d0 <= 0.0 {
+        return limit;
+    }
+    let surface = if d0 - offset > noise { offset } else { 0.0 };
+    let gap = d0 - surface;
+    let floor = surface + keep * gap + noise;
+    let close = CLOSE_ENOUGH * gap;
+    let (mut t, mut d) = (0.0, d0);
+    for _ in 0..MAX_ADVANCES {
+        let room = d - floor;
+        if !(room > 0.0) {
+            return t;
+        }
+        let next = t + room / speed;
+        if next >= limit {
+            return limit;
+        }
+        t = next;
+        d = distance(t);
+        if room <= close {
+            return t;
+        }
+    }
+    t
+}
