@@ -1,4 +1,13 @@
-//! The `Fem` model (placeholder: refuses everything).
+//! Rung 2: finite elements. Two parts share the work:
+//!
+//! - [`statics`]: a cable that touches nothing but its supports, at rest or pulled slowly;
+//! - [`dynamics`]: anything that moves, and anything with obstacles or a floor to rub on, at rest or not.
+//!
+//! [`FemModel`] decides which part is asked, and hands the state over when the question changes.
+
+pub mod assembly;
+pub mod dynamics;
+pub mod statics;
 
 use std::sync::Arc;
 
@@ -9,10 +18,22 @@ use crate::problem::Problem;
 use crate::solution::CableSolution;
 use crate::state::State;
 
+/// Which part holds the present state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    Statics,
+    Dynamics,
+}
+
 /// The model's mechanics of one cable.
 #[derive(Clone, Debug)]
 pub struct FemModel {
     problem: Arc<Problem>,
+    /// Where a support was dragged to by hand, m.
+    dragged: Vec<Option<Vec2>>,
+    statics: statics::Statics,
+    dynamics: dynamics::Dynamics,
+    present: Part,
 }
 
 impl FemModel {
@@ -20,34 +41,89 @@ impl FemModel {
     ///
     /// # Errors
     /// `Unsupported` when the scene needs what the model lacks.
-    pub fn new(problem: Arc<Problem>, _settings: Settings) -> Result<Self, SolveError> {
-        Ok(Self { problem })
+    pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
+        let statics = statics::Statics::new(problem.clone(), settings)?;
+        let dynamics = dynamics::Dynamics::new(problem.clone(), settings)?;
+        let present = if touches_nothing(&problem) { Part::Statics } else { Part::Dynamics };
+        Ok(Self { dragged: vec![None; problem.supports.len()], problem, statics, dynamics, present })
     }
+
+    /// Makes `part` the one that holds the present state.
+    fn ask(&mut self, part: Part) -> Result<(), SolveError> {
+        if self.present != part {
+            match part {
+                Part::Statics => self.statics.adopt(&self.dynamics.state())?,
+                Part::Dynamics => self.dynamics.adopt(&self.statics.state())?,
+            }
+            self.present = part;
+        }
+        Ok(())
+    }
+}
+
+/// Whether the cable can touch nothing but its supports.
+fn touches_nothing(problem: &Problem) -> bool {
+    problem.world.is_empty() && problem.floor_friction.is_none()
 }
 
 impl Mechanics for FemModel {
     fn model(&self) -> Model {
         Model::Fem
     }
+
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        Err(SolveError::Unsupported { model: Model::Fem, feature: "not built yet".to_owned() })
+        if touches_nothing(&self.problem) {
+            self.ask(Part::Statics)?;
+            self.statics.settle(&self.dragged)
+        } else {
+            self.dynamics.settle(&self.dragged)
+        }
     }
-    fn advance(&mut self, _dt_s: f64, _inertia: Inertia) -> Result<StepReport, SolveError> {
-        Err(SolveError::Unsupported { model: Model::Fem, feature: "not built yet".to_owned() })
+
+    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+        if !(dt_s > 0.0 && dt_s.is_finite()) {
+            return Err(SolveError::TimeStep { dt_s, allowed: "more than 0 s" });
+        }
+        if inertia == Inertia::QuasiStatic && touches_nothing(&self.problem) {
+            self.ask(Part::Statics)?;
+            self.statics.advance(dt_s, &self.dragged)
+        } else {
+            self.ask(Part::Dynamics)?;
+            self.dynamics.advance(dt_s, inertia, &self.dragged)
+        }
     }
+
     fn state(&self) -> State {
-        State::default()
+        match self.present {
+            Part::Statics => self.statics.state(),
+            Part::Dynamics => self.dynamics.state(),
+        }
     }
-    fn adopt(&mut self, _state: &State) -> Result<(), SolveError> {
-        Ok(())
+
+    fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+        match self.present {
+            Part::Statics => self.statics.adopt(state),
+            Part::Dynamics => self.dynamics.adopt(state),
+        }
     }
-    fn drag_support(&mut self, _support: usize, _target_m: Vec2) {}
+
+    fn drag_support(&mut self, support: usize, target_m: Vec2) {
+        if let Some(d) = self.dragged.get_mut(support) {
+            *d = Some(target_m);
+        }
+    }
+
     fn solution(&self) -> CableSolution {
-        CableSolution::default()
+        match self.present {
+            Part::Statics => self.statics.solution(),
+            Part::Dynamics => self.dynamics.solution(),
+        }
     }
+
     fn problem(&self) -> &Arc<Problem> {
         &self.problem
     }
+
     fn boxed_clone(&self) -> Box<dyn Mechanics> {
         Box::new(self.clone())
     }

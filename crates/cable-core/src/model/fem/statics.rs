@@ -1,0 +1,67 @@
+//! Rest of a cable that touches nothing but its supports (placeholder: refuses everything).
+
+use std::sync::Arc;
+
+use crate::error::SolveError;
+use crate::math::Vec2;
+use crate::model::{Model, Settings, StepReport};
+use crate::problem::Problem;
+use crate::solution::CableSolution;
+use crate::state::State;
+
+/// A cable at rest on its supports.
+#[derive(Clone, Debug)]
+pub struct Statics {
+    state: State,
+}
+
+fn refused() -> SolveError {
+    SolveError::Unsupported { model: Model::Fem, feature: "not built yet".to_owned() }
+}
+
+impl Statics {
+    /// Builds it at the route.
+    ///
+    /// # Errors
+    /// `Unsupported` when the scene needs what it lacks.
+    pub fn new(_problem: Arc<Problem>, _settings: Settings) -> Result<Self, SolveError> {
+        Ok(Self { state: State::default() })
+    }
+
+    /// Finds the resting place at the present time; `dragged` are the hand-set support positions, m.
+    ///
+    /// # Errors
+    /// A typed reason when there is none, or none was found.
+    pub fn settle(&mut self, _dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
+        Err(refused())
+    }
+
+    /// Moves supports on by `dt_s` without inertia; friction remembers.
+    ///
+    /// # Errors
+    /// As `Mechanics::advance`.
+    pub fn advance(&mut self, _dt_s: f64, _dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
+        Err(refused())
+    }
+
+    /// Takes over a state of the same cable.
+    ///
+    /// # Errors
+    /// When a number is not finite or the state does not fit the cable.
+    pub fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+        self.state = state.clone();
+        Ok(())
+    }
+
+    /// Where the cable is.
+    #[must_use]
+    pub fn state(&self) -> State {
+        self.state.clone()
+    }
+
+    /// The answer at this instant.
+    #[must_use]
+    pub fn solution(&self) -> CableSolution {
+        CableSolution::default()
+    }
+}
