@@ -9,10 +9,16 @@ pub mod file;
 pub mod load;
 pub mod motion;
 pub mod obstacle;
+mod path;
 pub mod preset;
+mod range;
+mod read;
 pub mod robot;
+pub mod schema;
 pub mod support;
+mod support_rules;
 pub mod validate;
+mod way;
 
 pub use cable::Cable;
 pub use load::Load;

@@ -34,7 +34,8 @@ pub enum Heading {
 
 /// One leg of a scripted path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged, deny_unknown_fields)]
+#[serde(untagged, try_from = "TaskKeys")]
+#[schemars(!try_from, deny_unknown_fields)]
 pub enum RobotTask {
     /// Drive until the tracks' middle is at x.
     Drive {
@@ -50,10 +51,38 @@ pub enum RobotTask {
     },
 }
 
+/// The keys of a leg as they stand in a file: flat, so that a fault keeps its place.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TaskKeys {
+    to_x_m: Option<f64>,
+    speed_m_per_s: Option<f64>,
+    wait_s: Option<f64>,
+}
+
+impl TryFrom<TaskKeys> for RobotTask {
+    type Error = &'static str;
+
+    fn try_from(keys: TaskKeys) -> Result<Self, Self::Error> {
+        match (keys.to_x_m, keys.speed_m_per_s, keys.wait_s) {
+            (Some(to_x_m), Some(speed_m_per_s), None) => Ok(Self::Drive { to_x_m, speed_m_per_s }),
+            (None, None, Some(wait_s)) => Ok(Self::Wait { wait_s }),
+            _ => Err("a leg has either `to_x_m` and `speed_m_per_s`, or `wait_s`"),
+        }
+    }
+}
+
 impl Robot {
-    /// Where the cable hangs on it, m (placeholder until presets carry the hitch).
+    /// Where the cable hangs on it, m; None for an unknown preset. On level ground: a robot that tilts turns
+    /// its hitch with it.
     #[must_use]
     pub fn hitch_m(&self) -> Option<Point> {
-        Some(self.at_m)
+        let preset = super::preset::robot_preset(&self.preset)?;
+        let back = preset.hitch_back_m.value;
+        let x = match self.heading {
+            Heading::Right => self.at_m[0] - back,
+            Heading::Left => self.at_m[0] + back,
+        };
+        Some([x, self.at_m[1] + preset.hitch_up_m.value])
     }
 }
