@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::files::FileError;
 use crate::math::Vec2;
 use crate::model::Model;
 
@@ -14,11 +15,14 @@ pub enum Error {
     /// The model has no answer.
     #[error(transparent)]
     Solve(#[from] SolveError),
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
 }
 
 /// Why a scene is refused.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("{}{path}: {fault}", .at.map(|a| format!("line {}, column {}: ", a.line, a.column)).unwrap_or_default())]
+#[error("{}{}{fault}", .at.map(|a| format!("line {}, column {}: ", a.line, a.column)).unwrap_or_default(), if .path.is_empty() { String::new() } else { format!("{path}: ") })]
 pub struct SceneError {
     /// Where in the scene, for example `cables[0].length_m`.
     pub path: String,

@@ -38,6 +38,7 @@ pub mod solution;
 pub mod state;
 
 pub use error::{Error, SceneError, SolveError};
+pub use files::FileError;
 pub use math::{Mat2, Vec2};
 pub use model::{Model, Settings};
 pub use scene::{Cable, Load, Obstacle, Robot, Scene, Support};

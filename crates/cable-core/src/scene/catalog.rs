@@ -1,42 +1,71 @@
-//! Named scenes used by tests, benches, examples and the viewer alike (placeholder list).
+//! Named scenes from `assets/scenes/`, used by tests, benches, examples and the viewer alike.
 
-use super::{Cable, Environment, Scene, Support, View};
+use super::{Environment, Scene, VERSION, View};
 
-/// A cable between two points, sagging freely.
-#[must_use]
-pub fn hanging_span() -> Scene {
-    Scene {
-        version: super::VERSION,
-        name: "Hanging span".to_owned(),
+macro_rules! scenes {
+    ($($(#[$doc:meta])* $name:ident = $id:literal;)+) => {
+        $(
+            $(#[$doc])*
+            #[must_use]
+            pub fn $name() -> Scene {
+                read(include_str!(concat!("../../../../assets/scenes/", $id, ".toml")))
+            }
+        )+
+
+        /// Every catalogue scene, in the order a picker shows them: short id, scene.
+        #[must_use]
+        pub fn all() -> Vec<(&'static str, Scene)> {
+            vec![$(($id, $name())),+]
+        }
+
+        /// The text of every catalogue scene, with its comments: short id, text.
+        pub const TEXTS: &[(&str, &str)] =
+            &[$(($id, include_str!(concat!("../../../../assets/scenes/", $id, ".toml")))),+];
+    };
+}
+
+scenes! {
+    /// The opening scene: a waste tank, a cable from a riser over mounds and a beam, out and back.
+    tank = "tank";
+    /// A cable between two points, sagging freely.
+    hanging_span = "hanging-span";
+    /// One end far above the other.
+    steep_span = "steep-span";
+    /// A steel rope 0.01 % longer than its span.
+    near_taut = "near-taut";
+    /// A long cable whose middle lies on the floor.
+    slack_to_floor = "slack-to-floor";
+    /// Waypoints: a wheel with friction and a frictionless eye.
+    pulley_waypoints = "pulley-waypoints";
+    /// From a riser over a beam to a hitch near the floor.
+    over_beam = "over-beam";
+    /// Pulled half round a pipe.
+    round_post = "round-post";
+    /// Hung over a pipe and drawn down until it slips.
+    draped_slipping = "draped-slipping";
+    /// A tail dragged over a floor.
+    floor_drag = "floor-drag";
+    /// Both ends let go above rough ground.
+    rubble_drop = "rubble-drop";
+    /// From above, between two posts.
+    plan_posts = "plan-posts";
+    /// Clamped ends and a bending stiffness.
+    clamped_stiff = "clamped-stiff";
+    /// Point loads, wind and temperature.
+    loads_wind_heat = "loads-wind-heat";
+}
+
+/// An embedded scene. One that cannot be read (a test sees to it that none is) has no cables and is refused
+/// wherever it is solved.
+fn read(text: &str) -> Scene {
+    Scene::from_toml(text).unwrap_or_else(|e| Scene {
+        version: VERSION,
+        name: e.to_string(),
         view: View::Elevation,
         environment: Environment::default(),
-        cables: vec![Cable {
-            name: "cable".to_owned(),
-            preset: None,
-            length_m: 12.0,
-            linear_density_kg_per_m: 1.246,
-            axial_stiffness_n: 2.0e6,
-            bending_stiffness_n_m2: 0.0,
-            diameter_m: 0.028,
-            damping_ratio: 0.02,
-            thermal_expansion_per_k: 1.7e-5,
-            service_tension_n: 800.0,
-            breaking_tension_n: 10_000.0,
-            min_bend_radius_m: 0.14,
-            friction: 0.5,
-            segments: None,
-            self_contact: false,
-            route_m: Vec::new(),
-            supports: vec![Support::fixed("left", [0.0, 5.0]), Support::fixed("right", [10.0, 5.0])],
-        }],
+        cables: Vec::new(),
         obstacles: Vec::new(),
         loads: Vec::new(),
         robot: None,
-    }
-}
-
-/// Every catalogue scene, in the order a picker shows them: short id, scene.
-#[must_use]
-pub fn all() -> Vec<(&'static str, Scene)> {
-    vec![("hanging-span", hanging_span())]
+    })
 }

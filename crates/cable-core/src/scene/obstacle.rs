@@ -79,7 +79,8 @@ impl TryFrom<ObstacleKeys> for Obstacle {
 
     fn try_from(keys: ObstacleKeys) -> Result<Self, String> {
         let needs = |kind: &str, key: &str| format!("a {kind} needs `{key}`");
-        let has_not = |kind: &str, key: &str, there: bool| if there { Err(format!("a {kind} has no `{key}`")) } else { Ok(()) };
+        let has_not =
+            |kind: &str, key: &str, there: bool| if there { Err(format!("a {kind} has no `{key}`")) } else { Ok(()) };
         let line = |kind: &str, points: Option<Vec<Point>>| {
             has_not(kind, "center_m", keys.center_m.is_some())?;
             has_not(kind, "radius_m", keys.radius_m.is_some())?;

@@ -228,9 +228,11 @@ mod tests {
         for (id, text) in ROBOTS {
             let read: RobotPreset = toml::from_str(text).unwrap_or_else(|e| panic!("{id}: {e}"));
             let top = read.outline_m.iter().map(|p| p[1]).fold(0.0, f64::max);
-            let (left, right) =
-                read.outline_m.iter().fold((0.0_f64, 0.0_f64), |(l, r), p| (l.min(p[0]), r.max(p[0])));
-            assert!((top - read.height_m.value).abs() < 1e-9 && (right - left - read.length_m.value).abs() < 1e-9, "{id}");
+            let (left, right) = read.outline_m.iter().fold((0.0_f64, 0.0_f64), |(l, r), p| (l.min(p[0]), r.max(p[0])));
+            assert!(
+                (top - read.height_m.value).abs() < 1e-9 && (right - left - read.length_m.value).abs() < 1e-9,
+                "{id}"
+            );
             assert!(read.outline_m.iter().all(|p| p[1] >= 0.0), "{id}");
         }
         for (id, text) in MAPS {
@@ -247,8 +249,17 @@ mod tests {
     fn every_figure_has_a_source_and_lies_in_its_band() {
         let cables = cable_presets().iter().flat_map(|p| p.figures().map(|(key, f)| (p.id, key, f)));
         let robots = robot_presets().iter().flat_map(|p| {
-            [&p.mass_kg, &p.width_m, &p.height_m, &p.length_m, &p.speed_m_per_s, &p.drive_pull_n, &p.hitch_back_m, &p.hitch_up_m]
-                .map(|f| (p.id, "", f))
+            [
+                &p.mass_kg,
+                &p.width_m,
+                &p.height_m,
+                &p.length_m,
+                &p.speed_m_per_s,
+                &p.drive_pull_n,
+                &p.hitch_back_m,
+                &p.hitch_up_m,
+            ]
+            .map(|f| (p.id, "", f))
         });
         for (id, key, figure) in cables.chain(robots) {
             assert!(!figure.source.is_empty(), "{id} {key}");

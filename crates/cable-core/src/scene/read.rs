@@ -339,9 +339,9 @@ where
 
     fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Refusal> {
         match self.value.take() {
-            Some((key, value)) => seed
-                .deserialize(Value(value))
-                .map_err(|e| e.inside(Step::Key(key.to_owned()), value.span())),
+            Some((key, value)) => {
+                seed.deserialize(Value(value)).map_err(|e| e.inside(Step::Key(key.to_owned()), value.span()))
+            }
             None => seed.deserialize(self.default.into_deserializer()),
         }
     }

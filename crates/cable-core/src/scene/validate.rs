@@ -231,10 +231,7 @@ fn check_obstacle(obstacle: &Obstacle, at: &Path<'_>) -> Result<usize, SceneErro
 /// Signed area by the shoelace formula about the first point, m².
 fn area(corners: &[Point]) -> f64 {
     let Some(o) = corners.first() else { return 0.0 };
-    corners
-        .windows(2)
-        .map(|w| ((w[0][0] - o[0]) * (w[1][1] - o[1]) - (w[1][0] - o[0]) * (w[0][1] - o[1])) / 2.0)
-        .sum()
+    corners.windows(2).map(|w| ((w[0][0] - o[0]) * (w[1][1] - o[1]) - (w[1][0] - o[0]) * (w[0][1] - o[1])) / 2.0).sum()
 }
 
 fn check_robot(robot: &Robot, at: &Path<'_>) -> Checked {
