@@ -191,7 +191,7 @@ fn byte_order_mark_and_crlf_are_accepted_and_other_encodings_named() {
     assert!(Scene::from_toml_bytes(&utf16).unwrap_err().to_string().contains("UTF-16"));
     let mut latin = FULL.as_bytes().to_vec();
     latin[40] = 0xe4;
-    assert!(Scene::from_toml_bytes(&latin).unwrap_err().to_string().contains("line 3, column 15: this is not UTF-8"));
+    assert!(Scene::from_toml_bytes(&latin).unwrap_err().to_string().contains("line 4, column 8: this is not UTF-8"));
     for empty in ["", " \n", "\u{feff}"] {
         assert!(Scene::from_toml(empty).unwrap_err().to_string().contains("empty"));
     }
