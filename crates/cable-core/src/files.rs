@@ -45,7 +45,7 @@ pub enum FileError {
         /// The file.
         path: String,
         /// What is wrong.
-        fault: SceneError,
+        fault: Box<SceneError>,
     },
     /// It cannot be written.
     #[error("cannot write {path}: {reason}")]
@@ -77,7 +77,8 @@ pub fn load_scene(path: impl AsRef<Path>) -> Result<Scene, FileError> {
     let path = path.as_ref();
     // Three bytes more for a byte order mark.
     let bytes = read_limited(path, MAX_TEXT_BYTES as u64 + 3)?;
-    Scene::from_toml_bytes(&bytes).map_err(|fault| FileError::Scene { path: path.display().to_string(), fault })
+    Scene::from_toml_bytes(&bytes)
+        .map_err(|fault| FileError::Scene { path: path.display().to_string(), fault: Box::new(fault) })
 }
 
 /// Saves a scene: whole or not at all. Comments of a file it replaces are lost.

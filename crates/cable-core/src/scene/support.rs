@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Motion;
-use crate::math::Point;
+use crate::math::{Point, vec2};
 
 /// What a support does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -113,6 +113,14 @@ impl Support {
     #[must_use]
     pub fn pulley(name: impl Into<String>, at_m: Point) -> Self {
         Self { at_m: Some(at_m), ..Self::new(name, SupportKind::Pulley) }
+    }
+
+    /// Moves the support, and the whole of its motion with it, so that both still agree at the start.
+    pub fn move_to(&mut self, at_m: Point) {
+        if let (Some(old), Some(motion)) = (self.at_m, self.motion.as_mut()) {
+            motion.shift(vec2(at_m) - vec2(old));
+        }
+        self.at_m = Some(at_m);
     }
 
     /// A free end.

@@ -34,6 +34,16 @@ fn of_a_preset_only_the_differences_are_written() {
     assert!(scene.to_toml().contains("length_m = nan"));
 }
 
+#[test]
+fn a_support_takes_its_motion_along() {
+    let mut scene = catalog::tank();
+    let hitch = &mut scene.cables[0].supports[1];
+    hitch.move_to([4.0, 1.0]);
+    let way = hitch.motion.as_ref().unwrap();
+    assert_eq!((way.at(0.0).0.x, way.at(0.0).0.y), (4.0, 1.0));
+    scene.validate().unwrap();
+}
+
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![Just(0.0), -100.0..100.0f64, (-3.0..3.0f64).prop_map(|e| 10f64.powf(e)), Just(-0.0)]
 }
