@@ -1,2 +1,91 @@
-//! Placeholder.
-fn main() {}
+//! `cable-viewer [SCENE]`: opens the window, or draws it to a file.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use cable_core::Scene;
+use cable_core::scene::catalog;
+use cable_viewer::{ViewerApp, scene_file, screenshot};
+use clap::Parser;
+
+/// The cable simulator's window.
+#[derive(Parser)]
+#[command(version, about)]
+struct Arguments {
+    /// Scene file to open; left out: the first scene of the catalogue.
+    scene: Option<PathBuf>,
+    /// Draw the window to this PNG file instead of opening it.
+    #[arg(long, value_name = "FILE")]
+    screenshot: Option<PathBuf>,
+    /// Size of the window or picture, in points.
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x800", value_parser = parse_size)]
+    size: [u32; 2],
+}
+
+/// Largest picture side, pixels: what every GPU can draw.
+const MOST_PIXELS: u32 = 8192;
+
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    match sides {
+        Some(size) if size.iter().all(|s| (1..=MOST_PIXELS).contains(s)) => Ok(size),
+        _ => Err(format!("write it as 1280x800, each side 1 to {MOST_PIXELS}")),
+    }
+}
+
+fn main() -> ExitCode {
+    match run(Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("cable-viewer: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: Arguments) -> Result<(), String> {
+    let (scene, path) = first_scene(arguments.scene)?;
+    if let Some(picture) = arguments.screenshot {
+        return screenshot::save(scene, &picture, arguments.size);
+    }
+    let size = arguments.size.map(|s| s as f32);
+    let options = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("Cable simulator")
+            .with_inner_size(size)
+            .with_min_inner_size([640.0, 400.0]),
+        ..eframe::NativeOptions::default()
+    };
+    let create = Box::new(|cc: &eframe::CreationContext<'_>| {
+        Ok(Box::new(ViewerApp::new(&cc.egui_ctx, scene, path)) as Box<dyn eframe::App>)
+    });
+    eframe::run_native("cable-viewer", options, create).map_err(|e| explain(&e))
+}
+
+fn first_scene(path: Option<PathBuf>) -> Result<(Scene, Option<PathBuf>), String> {
+    match path {
+        Some(path) => {
+            let scene = scene_file::load(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+            Ok((scene, Some(path)))
+        }
+        None => {
+            let first = catalog::all().into_iter().next();
+            Ok((first.map(|(_, s)| s).ok_or("the catalogue is empty: name a scene file")?, None))
+        }
+    }
+}
+
+/// One sentence with the remedy for what keeps a window from opening.
+fn explain(error: &eframe::Error) -> String {
+    match error {
+        eframe::Error::WinitEventLoop(_) | eframe::Error::Winit(_) => format!(
+            "no window can be opened here ({error}); run it in a desktop session or set DISPLAY, \
+             or draw a picture with --screenshot FILE"
+        ),
+        eframe::Error::Wgpu(_) => format!(
+            "no graphics adapter was found ({error}); install a Vulkan driver \
+             (Debian: mesa-vulkan-drivers) or try WGPU_BACKEND=gl"
+        ),
+        other => format!("the window could not be opened: {other}"),
+    }
+}

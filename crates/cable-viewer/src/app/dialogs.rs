@@ -1,0 +1,120 @@
+//! Draws the open dialog.
+
+use std::path::PathBuf;
+
+use egui::{Context, Id, Modal, Ui};
+
+use crate::command::{Command, FileCommand};
+use crate::dialog::Dialog;
+use crate::state::AppState;
+
+/// Draws the dialog, if one is open.
+pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
+    let Some(dialog) = &mut state.dialog else { return };
+    let name = state.scene.name.clone();
+    let response = Modal::new(Id::new("dialog")).show(ctx, |ui| {
+        ui.set_max_width(460.0);
+        match dialog {
+            Dialog::Message { title, text } => message(ui, title, text, commands),
+            Dialog::Open { path } => ask_path(ui, "Open a scene", path, false, commands),
+            Dialog::SaveAs { path } => ask_path(ui, "Save the scene as", path, true, commands),
+            Dialog::Unsaved { then } => unsaved(ui, &name, then, commands),
+            Dialog::Help => help(ui, commands),
+        }
+    });
+    if response.should_close() {
+        commands.push(close());
+    }
+}
+
+fn close() -> Command {
+    Command::File(FileCommand::SetDialog(None))
+}
+
+fn message(ui: &mut Ui, title: &str, text: &str, commands: &mut Vec<Command>) {
+    ui.heading(title);
+    ui.add_space(6.0);
+    ui.label(text);
+    ui.add_space(10.0);
+    if ui.button("Close").clicked() {
+        commands.push(close());
+    }
+}
+
+/// A path to type, and the system's own dialog for those who have one.
+fn ask_path(ui: &mut Ui, title: &str, path: &mut String, saving: bool, commands: &mut Vec<Command>) {
+    ui.heading(title);
+    ui.add_space(6.0);
+    let mut done = false;
+    ui.horizontal(|ui| {
+        let label = ui.label("Path");
+        let field = ui.add(egui::TextEdit::singleline(path).desired_width(320.0)).labelled_by(label.id);
+        done |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+        if ui.button("Browse…").on_hover_text("The system's file dialog; needs a desktop portal").clicked() {
+            let dialog = rfd::FileDialog::new().add_filter("scene", &["toml"]);
+            let picked = if saving { dialog.set_file_name("scene.toml").save_file() } else { dialog.pick_file() };
+            if let Some(picked) = picked {
+                *path = picked.display().to_string();
+            }
+        }
+    });
+    ui.add_space(10.0);
+    ui.horizontal(|ui| {
+        done |= ui.button(if saving { "Save" } else { "Open" }).clicked();
+        if ui.button("Cancel").clicked() {
+            commands.push(close());
+        }
+    });
+    if done && !path.trim().is_empty() {
+        let path = PathBuf::from(path.trim());
+        commands.push(Command::File(if saving { FileCommand::SaveAs(path) } else { FileCommand::Open(path) }));
+    }
+}
+
+fn unsaved(ui: &mut Ui, name: &str, then: &Command, commands: &mut Vec<Command>) {
+    ui.heading("Unsaved changes");
+    ui.add_space(6.0);
+    ui.label(format!("“{name}” has changes that are not saved."));
+    ui.add_space(10.0);
+    ui.horizontal(|ui| {
+        if ui.button("Save…").clicked() {
+            commands.push(close());
+            commands.push(Command::File(FileCommand::Save));
+        }
+        if ui.button("Go on without saving").clicked() {
+            commands.push(Command::File(FileCommand::Discard(Box::new(then.clone()))));
+        }
+        if ui.button("Cancel").clicked() {
+            commands.push(close());
+        }
+    });
+}
+
+fn help(ui: &mut Ui, commands: &mut Vec<Command>) {
+    ui.heading("Pointer and keys");
+    ui.add_space(6.0);
+    egui::Grid::new("keys").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
+        for (what, does) in [
+            ("Drag a support, waypoint or corner", "Moves it; the cable follows"),
+            ("Drag an obstacle", "Moves all of it"),
+            ("Double-click the cable", "Adds a waypoint"),
+            ("Drag the background", "Moves the view"),
+            ("Wheel", "Zooms at the pointer"),
+            ("F", "Fits the scene"),
+            ("Space", "Runs or pauses"),
+            ("→", "One step of 1/60 s"),
+            ("R", "Back to the start"),
+            ("Del", "Removes what is selected"),
+            ("Ctrl+Z, Ctrl+Shift+Z", "Undo, redo"),
+            ("Ctrl+O, Ctrl+S", "Open, save"),
+        ] {
+            ui.strong(what);
+            ui.label(does);
+            ui.end_row();
+        }
+    });
+    ui.add_space(10.0);
+    if ui.button("Close").clicked() {
+        commands.push(close());
+    }
+}

@@ -1,0 +1,74 @@
+//! The keyboard. Single keys are left to a text field that has the focus.
+
+use egui::{Context, Key, KeyboardShortcut, Modifiers};
+
+use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
+use crate::state::AppState;
+
+/// Ctrl or ⌘ with a key.
+const fn with_command(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND, key)
+}
+
+/// Opens a file.
+pub const OPEN: KeyboardShortcut = with_command(Key::O);
+/// Saves.
+pub const SAVE: KeyboardShortcut = with_command(Key::S);
+/// Saves under another name.
+pub const SAVE_AS: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S);
+/// Back by one edit.
+pub const UNDO: KeyboardShortcut = with_command(Key::Z);
+/// Forward by one edit.
+pub const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+
+/// Pushes what the keys of this frame ask for.
+pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
+    if state.dialog.is_some() {
+        if ctx.input(|i| i.key_pressed(Key::Escape)) {
+            commands.push(Command::File(FileCommand::SetDialog(None)));
+        }
+        return;
+    }
+    // The longer shortcut first: ctrl+shift+S contains ctrl+S.
+    for (shortcut, command) in [
+        (SAVE_AS, Command::File(FileCommand::AskSaveAs)),
+        (SAVE, Command::File(FileCommand::Save)),
+        (OPEN, Command::File(FileCommand::AskOpen)),
+    ] {
+        if ctx.input_mut(|i| i.consume_shortcut(&shortcut)) {
+            commands.push(command);
+        }
+    }
+    if ctx.egui_wants_keyboard_input() {
+        return;
+    }
+    for (shortcut, command) in [(REDO, SceneCommand::Redo), (UNDO, SceneCommand::Undo)] {
+        if ctx.input_mut(|i| i.consume_shortcut(&shortcut)) {
+            commands.push(Command::Scene(command));
+        }
+    }
+    let plain = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
+    if plain(Key::F) {
+        commands.push(Command::View(ViewCommand::Fit));
+    }
+    if plain(Key::Space) {
+        commands.push(Command::Playback(PlaybackCommand::TogglePause));
+    }
+    if plain(Key::ArrowRight) {
+        commands.push(Command::Playback(PlaybackCommand::Step));
+    }
+    if plain(Key::R) {
+        commands.push(Command::Playback(PlaybackCommand::Reset));
+    }
+    if plain(Key::F1) {
+        commands.push(Command::File(FileCommand::SetDialog(Some(crate::dialog::Dialog::Help))));
+    }
+    if (plain(Key::Delete) || plain(Key::Backspace))
+        && let Some(item) = state.selected
+    {
+        commands.push(Command::Scene(SceneCommand::Remove(item)));
+    }
+    if plain(Key::Escape) {
+        commands.push(Command::View(ViewCommand::Select(None)));
+    }
+}

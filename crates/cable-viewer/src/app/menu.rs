@@ -1,0 +1,139 @@
+//! The menu bar and the status line.
+
+use cable_core::scene::catalog;
+use egui::{Button, KeyboardShortcut, MenuBar, Ui};
+
+use super::keys;
+use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
+use crate::dialog::Dialog;
+use crate::state::AppState;
+
+/// The menu bar.
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    MenuBar::new().ui(ui, |ui| {
+        ui.menu_button("File", |ui| file(ui, commands));
+        ui.menu_button("Edit", |ui| edit(ui, state, commands));
+        ui.menu_button("View", |ui| view(ui, state, commands));
+        ui.menu_button("Scenes", |ui| scenes(ui, commands));
+        if ui.button("Help").clicked() {
+            commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::Help))));
+        }
+        ui.separator();
+        ui.strong(title(state));
+    });
+}
+
+/// The scene's name, with a dot while unsaved.
+fn title(state: &AppState) -> String {
+    let name = if state.scene.name.is_empty() { "Untitled scene" } else { &state.scene.name };
+    let mark = if state.unsaved() { " ●" } else { "" };
+    format!("{name}{mark}")
+}
+
+fn entry(ui: &mut Ui, text: &str, shortcut: Option<&KeyboardShortcut>) -> bool {
+    let mut button = Button::new(text);
+    if let Some(shortcut) = shortcut {
+        button = button.shortcut_text(ui.ctx().format_shortcut(shortcut));
+    }
+    let clicked = ui.add(button).clicked();
+    if clicked {
+        ui.close();
+    }
+    clicked
+}
+
+fn file(ui: &mut Ui, commands: &mut Vec<Command>) {
+    for (text, shortcut, command) in [
+        ("Open…", Some(&keys::OPEN), FileCommand::AskOpen),
+        ("Save", Some(&keys::SAVE), FileCommand::Save),
+        ("Save as…", Some(&keys::SAVE_AS), FileCommand::AskSaveAs),
+        ("Quit", None, FileCommand::Quit),
+    ] {
+        if entry(ui, text, shortcut) {
+            commands.push(Command::File(command));
+        }
+    }
+}
+
+fn edit(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let (undo, redo) = state.undo.available();
+    for (text, shortcut, enabled, command) in
+        [("Undo", &keys::UNDO, undo, SceneCommand::Undo), ("Redo", &keys::REDO, redo, SceneCommand::Redo)]
+    {
+        ui.add_enabled_ui(enabled, |ui| {
+            if entry(ui, text, Some(shortcut)) {
+                commands.push(Command::Scene(command));
+            }
+        });
+    }
+    ui.separator();
+    ui.add_enabled_ui(state.selected.is_some(), |ui| {
+        if entry(ui, "Remove selected", None)
+            && let Some(item) = state.selected
+        {
+            commands.push(Command::Scene(SceneCommand::Remove(item)));
+        }
+    });
+    if entry(ui, "Reset to start", None) {
+        commands.push(Command::Playback(PlaybackCommand::Reset));
+    }
+}
+
+fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    if entry(ui, "Fit scene (F)", None) {
+        commands.push(Command::View(ViewCommand::Fit));
+    }
+    if entry(ui, "Recentre on the cable", None) {
+        commands.push(Command::View(ViewCommand::Recentre));
+    }
+    ui.separator();
+    let mut layers = state.layers;
+    ui.checkbox(&mut layers.grid, "Grid");
+    ui.checkbox(&mut layers.labels, "Labels");
+    ui.checkbox(&mut layers.contacts, "Contacts");
+    ui.checkbox(&mut layers.forces, "Forces");
+    ui.checkbox(&mut layers.nodes, "Nodes");
+    ui.separator();
+    ui.checkbox(&mut layers.snap, "Snap to grid").on_hover_text("Dragged points land on the finest grid lines shown");
+    if layers != state.layers {
+        commands.push(Command::View(ViewCommand::SetLayers(layers)));
+    }
+    ui.separator();
+    let mut theme = state.theme;
+    ui.radio_value(&mut theme, egui::ThemePreference::System, "Theme of the system");
+    ui.radio_value(&mut theme, egui::ThemePreference::Light, "Light theme");
+    ui.radio_value(&mut theme, egui::ThemePreference::Dark, "Dark theme");
+    if theme != state.theme {
+        commands.push(Command::View(ViewCommand::SetTheme(theme)));
+    }
+}
+
+fn scenes(ui: &mut Ui, commands: &mut Vec<Command>) {
+    for (id, scene) in catalog::all() {
+        if entry(ui, &scene.name, None) {
+            commands.push(Command::File(FileCommand::OpenCatalogue(id.to_owned())));
+        }
+    }
+}
+
+/// The status line: cursor, model, time taken.
+pub fn status(ui: &mut Ui, state: &AppState) {
+    ui.horizontal(|ui| {
+        match state.cursor_m {
+            Some([x, y]) => ui.monospace(format!("x {x:9.3} m   y {y:9.3} m")),
+            None => ui.monospace("x         – m   y         – m"),
+        };
+        ui.separator();
+        if let Some(solution) = &state.snapshot.solution {
+            ui.label(format!("{} model", solution.model)).on_hover_text(&solution.reason);
+            ui.separator();
+            ui.label(format!("t = {:.3} s", solution.time_s));
+            ui.separator();
+        }
+        ui.label(format!("solved in {:.2} ms", state.snapshot.solve_wall_s * 1e3));
+        if let Some(latency) = state.edit_latency_s {
+            ui.separator();
+            ui.label(format!("edit to picture {:.0} ms", latency * 1e3));
+        }
+    });
+}

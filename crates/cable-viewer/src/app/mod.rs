@@ -1,0 +1,149 @@
+//! The window: takes in the worker's answers, lays out panels and canvas, applies what they push.
+
+mod dialogs;
+mod keys;
+mod layout;
+mod menu;
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use cable_core::Scene;
+
+use crate::command::{self, Command, Effects};
+use crate::state::{AppState, WorkerStatus};
+use crate::theme;
+use crate::worker::Worker;
+use crate::worker::engine::Report;
+
+/// The eframe application.
+pub struct ViewerApp {
+    /// What is on screen.
+    pub state: AppState,
+    worker: Worker,
+    threaded: bool,
+    /// When the edit not yet answered was sent, with its number.
+    asked: Option<(u64, Instant)>,
+}
+
+impl ViewerApp {
+    /// Opens a scene with a solver thread.
+    #[must_use]
+    pub fn new(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>) -> Self {
+        Self::start(ctx, scene, path, true)
+    }
+
+    /// Opens a scene that is solved within each frame, for tests and still pictures.
+    #[must_use]
+    pub fn inline(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>) -> Self {
+        Self::start(ctx, scene, path, false)
+    }
+
+    fn start(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>, threaded: bool) -> Self {
+        theme::install(ctx);
+        let worker = new_worker(ctx, threaded);
+        let mut app = Self { state: AppState::new(scene, path), worker, threaded, asked: None };
+        let mut effects = Effects::default();
+        command::submit_scene(&mut app.state, true, &mut effects);
+        app.carry_out(ctx, effects);
+        app
+    }
+
+    /// Applies commands as if panels had pushed them.
+    pub fn apply(&mut self, ctx: &egui::Context, commands: Vec<Command>) {
+        let mut effects = Effects::default();
+        for command in commands {
+            command::apply(&mut self.state, command, &mut effects);
+        }
+        self.carry_out(ctx, effects);
+    }
+
+    /// The worker has answered every edit.
+    #[must_use]
+    pub fn settled(&self) -> bool {
+        self.asked.is_none()
+    }
+
+    fn carry_out(&mut self, ctx: &egui::Context, effects: Effects) {
+        if effects.restart_worker {
+            self.worker = new_worker(ctx, self.threaded);
+        }
+        if !effects.request.is_empty() {
+            if effects.request.number > 0 {
+                // An edit that joins one still unanswered keeps the earlier clock: the delay shown is the longest.
+                let began = self.asked.map_or_else(Instant::now, |(_, began)| began);
+                self.asked = Some((effects.request.number, began));
+            }
+            self.worker.submit(effects.request);
+            ctx.request_repaint();
+        }
+        if effects.quit {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+
+    /// Takes in what the worker has done since the last frame.
+    fn take_answers(&mut self, ctx: &egui::Context) {
+        if let Some(report) = self.worker.poll() {
+            self.show(report);
+        }
+        self.state.worker = self.worker.status();
+        if !self.threaded && !self.state.playback.paused {
+            ctx.request_repaint();
+        }
+        if matches!(self.state.worker, WorkerStatus::Dead(_)) {
+            self.state.snapshot.stale = true;
+            self.asked = None;
+        }
+    }
+
+    fn show(&mut self, report: Report) {
+        let state = &mut self.state;
+        if report.history_restarts {
+            state.history.clear();
+        }
+        for sample in report.samples {
+            state.history.push(sample);
+        }
+        if report.paused_itself {
+            state.playback.paused = true;
+        }
+        state.snapshot = report.snapshot;
+        if let Some((number, began)) = self.asked
+            && state.snapshot.edit >= number
+        {
+            state.edit_latency_s = Some(began.elapsed().as_secs_f64());
+            self.asked = None;
+        }
+    }
+}
+
+fn new_worker(ctx: &egui::Context, threaded: bool) -> Worker {
+    if threaded {
+        let ctx = ctx.clone();
+        Worker::thread(move || ctx.request_repaint())
+    } else {
+        Worker::inline()
+    }
+}
+
+impl eframe::App for ViewerApp {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        let ctx = ui.ctx().clone();
+        self.take_answers(&ctx);
+        ctx.set_theme(self.state.theme);
+        let mut commands = Vec::new();
+        keys::read(&ctx, &self.state, &mut commands);
+        layout::ui(ui, &mut self.state, &mut commands);
+        dialogs::ui(&ctx, &mut self.state, &mut commands);
+        if ctx.input(|i| i.viewport().close_requested()) && self.state.unsaved() && !self.state.closing {
+            ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            commands.push(Command::File(command::FileCommand::Quit));
+        }
+        self.apply(&ctx, commands);
+    }
+
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
+    }
+}

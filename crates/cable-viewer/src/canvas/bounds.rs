@@ -1,0 +1,70 @@
+//! The rectangle of the world that things take up.
+
+use cable_core::math::Point;
+use cable_core::scene::Shape;
+
+use crate::state::AppState;
+
+/// Grows with each point put in; points that are not finite are left out.
+#[derive(Clone, Copy, Debug)]
+struct Bounds {
+    low: Point,
+    high: Point,
+}
+
+impl Bounds {
+    const EMPTY: Self = Self { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
+
+    fn add(&mut self, p: Point) {
+        if p.iter().all(|v| v.is_finite()) {
+            for (k, v) in p.into_iter().enumerate() {
+                self.low[k] = self.low[k].min(v);
+                self.high[k] = self.high[k].max(v);
+            }
+        }
+    }
+
+    fn or_unit(self) -> [Point; 2] {
+        if self.low[0] <= self.high[0] { [self.low, self.high] } else { [[-1.0; 2], [1.0; 2]] }
+    }
+}
+
+fn add_cables(state: &AppState, bounds: &mut Bounds) {
+    if let Some(solution) = &state.snapshot.solution {
+        for n in solution.cables.iter().flat_map(|c| &c.nodes) {
+            bounds.add([n.x_m, n.y_m]);
+        }
+    }
+    for s in state.scene.cables.iter().flat_map(|c| &c.supports) {
+        if let Some(p) = s.at_m {
+            bounds.add(p);
+        }
+    }
+}
+
+/// Least and greatest corner of the cables and their supports, m.
+#[must_use]
+pub fn cables(state: &AppState) -> [Point; 2] {
+    let mut bounds = Bounds::EMPTY;
+    add_cables(state, &mut bounds);
+    bounds.or_unit()
+}
+
+/// Least and greatest corner of the whole scene, m.
+#[must_use]
+pub fn scene(state: &AppState) -> [Point; 2] {
+    let mut bounds = Bounds::EMPTY;
+    add_cables(state, &mut bounds);
+    for obstacle in &state.scene.obstacles {
+        match &obstacle.shape {
+            Shape::Terrain { points_m } | Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => {
+                points_m.iter().for_each(|&p| bounds.add(p));
+            }
+            Shape::Circle { center_m, radius_m } => {
+                bounds.add([center_m[0] - radius_m, center_m[1] - radius_m]);
+                bounds.add([center_m[0] + radius_m, center_m[1] + radius_m]);
+            }
+        }
+    }
+    bounds.or_unit()
+}

@@ -1,0 +1,122 @@
+//! Commands about files, scenes to open, dialogs and the window.
+
+use std::path::{Path, PathBuf};
+
+use cable_core::Scene;
+use cable_core::scene::catalog;
+
+use super::{Command, Effects, submit_scene};
+use crate::dialog::Dialog;
+use crate::scene_file;
+use crate::state::AppState;
+
+/// Files and the window.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FileCommand {
+    /// Asks which file to open.
+    AskOpen,
+    /// Opens a file; on an error the present scene stays.
+    Open(PathBuf),
+    /// Opens a catalogue scene by its short id.
+    OpenCatalogue(String),
+    /// Saves where it came from, else asks where to.
+    Save,
+    /// Asks where to save.
+    AskSaveAs,
+    /// Saves to a file.
+    SaveAs(PathBuf),
+    /// Shows a dialog, or closes it.
+    SetDialog(Option<Dialog>),
+    /// Goes on without saving.
+    Discard(Box<Command>),
+    /// Starts the solver thread anew after it died.
+    RestartWorker,
+    /// Closes the window.
+    Quit,
+}
+
+/// Does one of them.
+pub fn apply(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
+    if replaces_scene(&command) && state.unsaved() {
+        state.dialog = Some(Dialog::Unsaved { then: Box::new(Command::File(command)) });
+        return;
+    }
+    carry_out(state, command, effects);
+}
+
+fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
+    match command {
+        FileCommand::AskOpen => state.dialog = Some(Dialog::Open { path: path_text(state) }),
+        FileCommand::AskSaveAs => state.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
+        FileCommand::Open(path) => match scene_file::load(&path) {
+            Ok(scene) => open(state, scene, Some(path), effects),
+            Err(text) => complain(state, &format!("“{}” was not opened", path.display()), text),
+        },
+        FileCommand::OpenCatalogue(id) => {
+            if let Some((_, scene)) = catalog::all().into_iter().find(|(k, _)| *k == id) {
+                open(state, scene, None, effects);
+            }
+        }
+        FileCommand::Save => match state.document.path.clone() {
+            Some(path) => save(state, &path),
+            None => state.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
+        },
+        FileCommand::SaveAs(path) => save(state, &path),
+        FileCommand::SetDialog(dialog) => state.dialog = dialog,
+        FileCommand::Discard(then) => {
+            state.dialog = None;
+            match *then {
+                Command::File(command) => carry_out(state, command, effects),
+                other => super::apply(state, other, effects),
+            }
+        }
+        FileCommand::RestartWorker => {
+            effects.restart_worker = true;
+            submit_scene(state, true, effects);
+        }
+        FileCommand::Quit => {
+            state.closing = true;
+            effects.quit = true;
+        }
+    }
+}
+
+fn replaces_scene(command: &FileCommand) -> bool {
+    matches!(
+        command,
+        FileCommand::Open(_) | FileCommand::OpenCatalogue(_) | FileCommand::Quit
+    )
+}
+
+fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut Effects) {
+    let fresh = AppState::new(scene, path);
+    state.scene = fresh.scene;
+    state.scene_fault = fresh.scene_fault;
+    state.document = fresh.document;
+    state.undo = fresh.undo;
+    state.selected = None;
+    state.hovered = None;
+    state.playback.paused = true;
+    state.camera.fit_wanted = true;
+    state.dialog = None;
+    submit_scene(state, true, effects);
+}
+
+fn save(state: &mut AppState, path: &Path) {
+    match scene_file::save(path, &state.scene) {
+        Ok(()) => {
+            state.document.path = Some(path.to_owned());
+            state.document.saved = state.scene.clone();
+            state.dialog = None;
+        }
+        Err(text) => complain(state, &format!("“{}” was not saved", path.display()), text),
+    }
+}
+
+fn complain(state: &mut AppState, title: &str, text: String) {
+    state.dialog = Some(Dialog::Message { title: title.to_owned(), text });
+}
+
+fn path_text(state: &AppState) -> String {
+    state.document.path.as_ref().map_or_else(|| "scene.toml".to_owned(), |p| p.display().to_string())
+}

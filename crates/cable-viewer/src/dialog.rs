@@ -1,0 +1,30 @@
+//! The one dialog that may be open, as data; `app/dialogs.rs` draws it.
+
+/// What the user is asked or told.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Dialog {
+    /// Something went wrong; the old scene is kept.
+    Message {
+        /// One line.
+        title: String,
+        /// What, where, why, what to do.
+        text: String,
+    },
+    /// Where to read a scene from.
+    Open {
+        /// The path as typed so far.
+        path: String,
+    },
+    /// Where to save to.
+    SaveAs {
+        /// The path as typed so far.
+        path: String,
+    },
+    /// The scene has unsaved changes and something is about to replace it.
+    Unsaved {
+        /// What goes on once the user agrees.
+        then: Box<crate::command::Command>,
+    },
+    /// Keys and pointer.
+    Help,
+}

@@ -1,0 +1,10 @@
+//! Plots panel: tension and reactions against time.
+
+use crate::command::Command;
+use crate::state::AppState;
+
+/// Draws it.
+pub fn ui(ui: &mut egui::Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let _ = (state, commands);
+    ui.weak("Nothing here yet");
+}

@@ -1,0 +1,10 @@
+//! Solver panel: the model, its mesh and accuracy, what it did.
+
+use crate::command::Command;
+use crate::state::AppState;
+
+/// Draws it.
+pub fn ui(ui: &mut egui::Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let _ = (state, commands);
+    ui.weak("Nothing here yet");
+}

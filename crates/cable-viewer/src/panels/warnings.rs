@@ -1,0 +1,10 @@
+//! Warnings panel: what the user should know.
+
+use crate::command::Command;
+use crate::state::AppState;
+
+/// Draws it.
+pub fn ui(ui: &mut egui::Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let _ = (state, commands);
+    ui.weak("Nothing here yet");
+}

@@ -1,0 +1,1 @@
+//! Plots against time (egui_plot) with decimation and export.

@@ -1,0 +1,210 @@
+//! What is on screen: everything panels and the canvas read. Only [`crate::command::apply`] changes it.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use cable_core::math::Point;
+use cable_core::{Model, Scene, SceneError, Settings, Solution};
+
+use crate::camera::Camera;
+use crate::colour::ColourScale;
+use crate::dialog::Dialog;
+use crate::history::History;
+use crate::undo::Undo;
+
+/// Everything the window shows.
+#[derive(Debug)]
+pub struct AppState {
+    /// The scene being edited; may be half-typed.
+    pub scene: Scene,
+    /// What is wrong with it now, if anything.
+    pub scene_fault: Option<SceneError>,
+    /// Where the scene comes from and whether it is saved.
+    pub document: Document,
+    /// Scenes before and after the present one.
+    pub undo: Undo,
+    /// What the user picked.
+    pub selected: Option<Item>,
+    /// What the pointer is over.
+    pub hovered: Option<Item>,
+    /// Where the pointer is, m; None outside the canvas.
+    pub cursor_m: Option<Point>,
+    /// The part of the world on screen.
+    pub camera: Camera,
+    /// Whether and how fast time runs.
+    pub playback: Playback,
+    /// The model asked for.
+    pub model: Model,
+    /// Mesh and accuracy asked for.
+    pub settings: Settings,
+    /// How the cable is coloured.
+    pub colour: ColourScale,
+    /// What is drawn.
+    pub layers: Layers,
+    /// The latest answer.
+    pub snapshot: Snapshot,
+    /// How the solver thread is doing.
+    pub worker: WorkerStatus,
+    /// Tension and reactions against time since the last start.
+    pub history: History,
+    /// Number of the last edit sent to the worker.
+    pub edits_sent: u64,
+    /// Time from the last edit to the first picture that shows it, s.
+    pub edit_latency_s: Option<f64>,
+    /// The user agreed to close the window without saving.
+    pub closing: bool,
+    /// The dialog that is open.
+    pub dialog: Option<Dialog>,
+    /// Light or dark.
+    pub theme: egui::ThemePreference,
+}
+
+/// Where the scene comes from.
+#[derive(Clone, Debug)]
+pub struct Document {
+    /// Its file, if it has one.
+    pub path: Option<PathBuf>,
+    /// As it was when last saved or loaded.
+    pub saved: Scene,
+}
+
+/// A thing on the canvas that can be picked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Item {
+    /// A whole cable.
+    Cable(usize),
+    /// A support of a cable.
+    Support {
+        /// Index of the cable.
+        cable: usize,
+        /// Index of the support.
+        support: usize,
+    },
+    /// A whole obstacle.
+    Obstacle(usize),
+    /// A corner of an obstacle.
+    Corner {
+        /// Index of the obstacle.
+        obstacle: usize,
+        /// Index of the corner.
+        corner: usize,
+    },
+    /// A point load.
+    Load(usize),
+}
+
+/// Whether and how fast time runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Playback {
+    /// Time stands still.
+    pub paused: bool,
+    /// Simulated seconds per second, 0.01 to 4.
+    pub speed: f64,
+}
+
+impl Playback {
+    /// Slowest speed factor.
+    pub const MIN_SPEED: f64 = 0.01;
+    /// Fastest speed factor.
+    pub const MAX_SPEED: f64 = 4.0;
+}
+
+/// What is drawn on the canvas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layers {
+    /// Grid lines and axes.
+    pub grid: bool,
+    /// Names and coordinates.
+    pub labels: bool,
+    /// Contact normals and friction.
+    pub contacts: bool,
+    /// Loads, reactions and wind.
+    pub forces: bool,
+    /// The model's nodes.
+    pub nodes: bool,
+    /// Dragged points land on the grid.
+    pub snap: bool,
+}
+
+/// The latest answer of the worker.
+#[derive(Clone, Debug, Default)]
+pub struct Snapshot {
+    /// The scene it answers, as it was then.
+    pub scene: Option<Arc<Scene>>,
+    /// The last good answer.
+    pub solution: Option<Arc<Solution>>,
+    /// Wall time of the solve or of the steps it took, s.
+    pub solve_wall_s: f64,
+    /// Why the present scene has no answer.
+    pub error: Option<String>,
+    /// `solution` is not of the present scene (it failed, or is still being solved).
+    pub stale: bool,
+    /// Simulated seconds per second actually reached; None while paused.
+    pub real_speed: Option<f64>,
+    /// Number of the last edit it includes.
+    pub edit: u64,
+}
+
+/// How the solver thread is doing.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum WorkerStatus {
+    /// Waiting for work.
+    #[default]
+    Idle,
+    /// Working on an edit.
+    Busy,
+    /// Gone, with what it said last.
+    Dead(String),
+}
+
+impl AppState {
+    /// The window's contents when it opens on a scene.
+    #[must_use]
+    pub fn new(scene: Scene, path: Option<PathBuf>) -> Self {
+        Self {
+            scene_fault: scene.validate().err(),
+            document: Document { path, saved: scene.clone() },
+            scene,
+            undo: Undo::default(),
+            selected: None,
+            hovered: None,
+            cursor_m: None,
+            camera: Camera::default(),
+            playback: Playback { paused: true, speed: 1.0 },
+            model: Model::Auto,
+            settings: Settings::default(),
+            colour: ColourScale::default(),
+            layers: Layers { grid: true, labels: true, contacts: true, forces: true, nodes: false, snap: false },
+            snapshot: Snapshot::default(),
+            worker: WorkerStatus::Idle,
+            history: History::default(),
+            edits_sent: 0,
+            edit_latency_s: None,
+            closing: false,
+            dialog: None,
+            theme: egui::ThemePreference::System,
+        }
+    }
+
+    /// The scene differs from its file.
+    #[must_use]
+    pub fn unsaved(&self) -> bool {
+        self.scene != self.document.saved
+    }
+
+    /// The cable that panels edit: the selected one, else that of the selected support, else the first.
+    #[must_use]
+    pub fn current_cable(&self) -> usize {
+        let index = match self.selected {
+            Some(Item::Cable(cable) | Item::Support { cable, .. }) => cable,
+            Some(Item::Load(k)) => self
+                .scene
+                .loads
+                .get(k)
+                .and_then(|l| self.scene.cables.iter().position(|c| c.name == l.cable))
+                .unwrap_or(0),
+            _ => 0,
+        };
+        index.min(self.scene.cables.len().saturating_sub(1))
+    }
+}

@@ -1,0 +1,61 @@
+//! Undo and redo: the scenes before and after the present one, a drag being one entry.
+
+use cable_core::Scene;
+
+/// Scenes to go back and forward to.
+#[derive(Clone, Debug, Default)]
+pub struct Undo {
+    before: Vec<Scene>,
+    after: Vec<Scene>,
+    /// The kind of the last edit: further ones of the same kind (a drag, a slider) join it.
+    last: Option<EditKind>,
+}
+
+/// Edits that join into one entry while they follow each other.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EditKind(pub String);
+
+/// Most entries kept; the oldest are forgotten.
+const DEPTH: usize = 200;
+
+impl Undo {
+    /// Keeps `scene`, about to be changed by an edit of a kind.
+    pub fn record(&mut self, scene: &Scene, kind: EditKind) {
+        self.after.clear();
+        if self.last.as_ref() == Some(&kind) {
+            return;
+        }
+        self.last = Some(kind);
+        if self.before.len() == DEPTH {
+            self.before.remove(0);
+        }
+        self.before.push(scene.clone());
+    }
+
+    /// The next edit is a new entry, whatever its kind.
+    pub fn close_entry(&mut self) {
+        self.last = None;
+    }
+
+    /// The scene before `present`, which becomes the one to redo.
+    pub fn back(&mut self, present: &Scene) -> Option<Scene> {
+        let scene = self.before.pop()?;
+        self.after.push(present.clone());
+        self.last = None;
+        Some(scene)
+    }
+
+    /// The scene undone last.
+    pub fn forward(&mut self, present: &Scene) -> Option<Scene> {
+        let scene = self.after.pop()?;
+        self.before.push(present.clone());
+        self.last = None;
+        Some(scene)
+    }
+
+    /// Whether there is something to undo, to redo.
+    #[must_use]
+    pub fn available(&self) -> (bool, bool) {
+        (!self.before.is_empty(), !self.after.is_empty())
+    }
+}

@@ -1,0 +1,199 @@
+//! The thread that owns the simulation, so that the window never waits for physics.
+//!
+//! Both ways hold one slot, not a queue: requests merge into the waiting one, the latest answer replaces
+//! the one not yet shown, so memory and delay are bounded whatever the pointer does.
+
+pub mod engine;
+pub mod request;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use engine::{Engine, FRAME_S, Report};
+use request::Request;
+
+use crate::state::WorkerStatus;
+
+/// The window's end.
+pub struct Worker {
+    kind: Kind,
+}
+
+enum Kind {
+    Thread { shared: Arc<Shared>, handle: Option<JoinHandle<()>> },
+    Inline { engine: Box<Engine>, report: Option<Report> },
+}
+
+#[derive(Default)]
+struct Shared {
+    slots: Mutex<Slots>,
+    wake: Condvar,
+}
+
+#[derive(Default)]
+struct Slots {
+    request: Option<Request>,
+    report: Option<Report>,
+    busy: bool,
+    stop: bool,
+}
+
+impl Shared {
+    /// A panic is caught outside the lock, so a poisoned lock still guards whole values.
+    fn lock(&self) -> MutexGuard<'_, Slots> {
+        self.slots.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Report {
+    /// Takes in a later report that overtook this one.
+    fn merge(&mut self, later: Self) {
+        self.snapshot = later.snapshot;
+        self.paused_itself |= later.paused_itself;
+        if later.history_restarts {
+            self.history_restarts = true;
+            self.samples.clear();
+        }
+        self.samples.extend(later.samples);
+        let excess = self.samples.len().saturating_sub(crate::history::History::CAPACITY);
+        self.samples.drain(..excess);
+    }
+}
+
+impl Worker {
+    /// Starts the thread; `shown` is called whenever there is something new to show.
+    #[must_use]
+    pub fn thread(shown: impl Fn() + Send + 'static) -> Self {
+        let shared = Arc::new(Shared::default());
+        let theirs = Arc::clone(&shared);
+        let handle = std::thread::Builder::new()
+            .name("cable solver".to_owned())
+            .spawn(move || work(&theirs, &shown))
+            .ok();
+        Self { kind: Kind::Thread { shared, handle } }
+    }
+
+    /// Does the work in [`Self::submit`] and [`Self::poll`] themselves, for tests and still pictures.
+    #[must_use]
+    pub fn inline() -> Self {
+        Self { kind: Kind::Inline { engine: Box::default(), report: None } }
+    }
+
+    /// Asks; never waits for the answer.
+    pub fn submit(&mut self, request: Request) {
+        match &mut self.kind {
+            Kind::Thread { shared, .. } => {
+                let mut slots = shared.lock();
+                match &mut slots.request {
+                    Some(waiting) => waiting.merge(request),
+                    None => slots.request = Some(request),
+                }
+                drop(slots);
+                shared.wake.notify_one();
+            }
+            Kind::Inline { engine, report } => keep(report, guarded(engine, |e| e.handle(request))),
+        }
+    }
+
+    /// What is new since the last call. Inline: lets one frame pass first if time runs.
+    pub fn poll(&mut self) -> Option<Report> {
+        match &mut self.kind {
+            Kind::Thread { shared, .. } => shared.lock().report.take(),
+            Kind::Inline { engine, report } => {
+                if engine.playing() {
+                    keep(report, guarded(engine, Engine::tick));
+                }
+                report.take()
+            }
+        }
+    }
+
+    /// How it is doing.
+    #[must_use]
+    pub fn status(&self) -> WorkerStatus {
+        match &self.kind {
+            Kind::Inline { .. } => WorkerStatus::Idle,
+            Kind::Thread { shared, handle } => match handle {
+                Some(handle) if !handle.is_finished() => {
+                    let slots = shared.lock();
+                    if slots.busy || slots.request.is_some() { WorkerStatus::Busy } else { WorkerStatus::Idle }
+                }
+                Some(_) => WorkerStatus::Dead("the solver thread has ended".to_owned()),
+                None => WorkerStatus::Dead("the solver thread could not be started".to_owned()),
+            },
+        }
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        if let Kind::Thread { shared, .. } = &self.kind {
+            // Not joined: a long solve must not keep the window from closing.
+            shared.lock().stop = true;
+            shared.wake.notify_one();
+        }
+    }
+}
+
+fn keep(slot: &mut Option<Report>, report: Report) {
+    match slot {
+        Some(waiting) => waiting.merge(report),
+        None => *slot = Some(report),
+    }
+}
+
+fn work(shared: &Shared, shown: &impl Fn()) {
+    let mut engine = Engine::default();
+    let frame = Duration::from_secs_f64(FRAME_S);
+    let mut next_tick = Instant::now();
+    loop {
+        let request = {
+            let mut slots = shared.lock();
+            slots.busy = false;
+            loop {
+                if slots.stop {
+                    return;
+                }
+                let now = Instant::now();
+                if slots.request.is_some() || (engine.playing() && now >= next_tick) {
+                    break;
+                }
+                slots = if engine.playing() {
+                    let wait = shared.wake.wait_timeout(slots, next_tick.saturating_duration_since(now));
+                    wait.unwrap_or_else(PoisonError::into_inner).0
+                } else {
+                    shared.wake.wait(slots).unwrap_or_else(PoisonError::into_inner)
+                };
+            }
+            slots.busy = slots.request.is_some();
+            slots.request.take()
+        };
+        let report = match request {
+            Some(request) => guarded(&mut engine, |e| e.handle(request)),
+            None => {
+                // A late frame is not made up for: time runs slower instead of falling behind for ever.
+                next_tick = Instant::now().max(next_tick + frame);
+                guarded(&mut engine, Engine::tick)
+            }
+        };
+        keep(&mut shared.lock().report, report);
+        shown();
+    }
+}
+
+/// Runs a job; a panic inside becomes a report with its words.
+fn guarded(engine: &mut Engine, job: impl FnOnce(&mut Engine) -> Report) -> Report {
+    match catch_unwind(AssertUnwindSafe(|| job(engine))) {
+        Ok(report) => report,
+        Err(payload) => {
+            let message = payload
+                .downcast_ref::<&str>()
+                .map(|s| (*s).to_owned())
+                .or_else(|| payload.downcast_ref::<String>().cloned())
+                .unwrap_or_else(|| "no message".to_owned());
+            engine.abandon(&message)
+        }
+    }
+}

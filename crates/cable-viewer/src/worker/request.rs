@@ -1,0 +1,87 @@
+//! What the window asks of the worker. Requests merge: the latest scene, drag and speed win.
+
+use cable_core::math::Point;
+use cable_core::{Model, Scene, Settings};
+
+use crate::state::Playback;
+
+/// Everything asked since the worker last looked.
+#[derive(Clone, Debug, Default)]
+pub struct Request {
+    /// The scene to solve from now on.
+    pub edit: Option<Edit>,
+    /// A support dragged while time runs.
+    pub drag: Option<Drag>,
+    /// Back to the start.
+    pub reset: bool,
+    /// Time runs or stands still.
+    pub playback: Option<Playback>,
+    /// Single steps to take.
+    pub steps: u32,
+    /// Number of the last edit, reset or step in it.
+    pub number: u64,
+}
+
+/// A scene to solve.
+#[derive(Clone, Debug)]
+pub struct Edit {
+    /// The scene.
+    pub scene: Scene,
+    /// The model to solve it with.
+    pub model: Model,
+    /// Mesh and accuracy.
+    pub settings: Settings,
+    /// Another scene, not a change of the present one: nothing is carried over.
+    pub fresh: bool,
+}
+
+/// A support dragged while time runs.
+#[derive(Clone, Debug)]
+pub struct Drag {
+    /// Index of the cable.
+    pub cable: usize,
+    /// Index of the support.
+    pub support: usize,
+    /// Where to, m.
+    pub to_m: Point,
+    /// The scene with the support there, for the next rebuild.
+    pub scene: Scene,
+}
+
+/// Most single steps waiting: more would keep the window behind for seconds after a held key.
+const MOST_STEPS: u32 = 60;
+
+impl Request {
+    /// Takes in a later request.
+    pub fn merge(&mut self, later: Self) {
+        if let Some(edit) = later.edit {
+            let fresh = edit.fresh || self.edit.as_ref().is_some_and(|e| e.fresh);
+            if edit.fresh {
+                self.reset = false;
+                self.steps = 0;
+            }
+            self.drag = None;
+            self.edit = Some(Edit { fresh, ..edit });
+        }
+        if let Some(drag) = later.drag {
+            if let Some(edit) = &mut self.edit {
+                edit.scene = drag.scene;
+            } else {
+                self.drag = Some(drag);
+            }
+        }
+        if later.reset {
+            self.reset = true;
+            self.steps = 0;
+        }
+        self.playback = later.playback.or(self.playback);
+        self.steps = (self.steps + later.steps).min(MOST_STEPS);
+        self.number = self.number.max(later.number);
+    }
+
+    /// Nothing is asked.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.edit.is_none() && self.drag.is_none() && !self.reset && self.playback.is_none() && self.steps == 0
+    }
+}
