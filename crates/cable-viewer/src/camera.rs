@@ -73,7 +73,8 @@ impl Camera {
             return;
         }
         self.centre_m = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
-        let room = |k: usize, points: f32| f64::from((points - 2.0 * BORDER[k]).max(40.0)) / (high[k] - low[k]).max(1e-3);
+        let room =
+            |k: usize, points: f32| f64::from((points - 2.0 * BORDER[k]).max(40.0)) / (high[k] - low[k]).max(1e-3);
         let scale = room(0, canvas.width()).min(room(1, canvas.height()));
         self.points_per_m = scale.clamp(*SCALE.start(), *SCALE.end());
     }

@@ -12,7 +12,7 @@ use crate::state::AppState;
 pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
     let Some(dialog) = &mut state.dialog else { return };
     let name = state.scene.name.clone();
-    let response = Modal::new(Id::new("dialog")).show(ctx, |ui| {
+    let response = Modal::new(Id::unique("dialog")).show(ctx, |ui| {
         ui.set_max_width(460.0);
         match dialog {
             Dialog::Message { title, text } => message(ui, title, text, commands),

@@ -82,10 +82,7 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
 }
 
 fn replaces_scene(command: &FileCommand) -> bool {
-    matches!(
-        command,
-        FileCommand::Open(_) | FileCommand::OpenCatalogue(_) | FileCommand::Quit
-    )
+    matches!(command, FileCommand::Open(_) | FileCommand::OpenCatalogue(_) | FileCommand::Quit)
 }
 
 fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut Effects) {

@@ -68,10 +68,8 @@ impl Worker {
     pub fn thread(shown: impl Fn() + Send + 'static) -> Self {
         let shared = Arc::new(Shared::default());
         let theirs = Arc::clone(&shared);
-        let handle = std::thread::Builder::new()
-            .name("cable solver".to_owned())
-            .spawn(move || work(&theirs, &shown))
-            .ok();
+        let handle =
+            std::thread::Builder::new().name("cable solver".to_owned()).spawn(move || work(&theirs, &shown)).ok();
         Self { kind: Kind::Thread { shared, handle } }
     }
 
