@@ -5,8 +5,14 @@
 //!
 //! [`FemModel`] decides which part is asked, and hands the state over when the question changes.
 
+mod answer;
 pub mod assembly;
 pub mod dynamics;
+pub mod element;
+mod estimate;
+mod layout;
+mod network;
+mod span;
 pub mod statics;
 
 use std::sync::Arc;

@@ -1,22 +1,56 @@
-//! Rest of a cable that touches nothing but its supports (placeholder: refuses everything).
+//! Rest of a cable that touches nothing but its supports, and slow motion from rest to rest.
+//!
+//! A flexible cable is solved span by span (`span`, `network`): no start can fail, and what is found is in tension and
+//! stable by construction. The mesh follows the error estimate where the scene does not give one.
 
 use std::sync::Arc;
 
+use super::answer::{self, Point};
+use super::element::Material;
+use super::estimate;
+use super::layout::{Hold, Layout, place};
+use super::network::{Failure, Network};
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::{Model, Settings, StepReport};
 use crate::problem::Problem;
-use crate::solution::CableSolution;
+use crate::solution::{CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
+
+/// Elements to start with where nothing says how many: 1e-6 for a usual span, and 50 µs.
+const FIRST_SEGMENTS: usize = 40;
+/// Most elements the error estimate may ask for. Beyond, rounding grows faster than the error falls.
+const MOST_SEGMENTS: usize = 4000;
+/// Part of the tolerance the estimate must stay below.
+const SAFETY: f64 = 0.5;
+/// Order of the corrected bar.
+const ORDER: f64 = 4.0;
+/// Rounds of mesh refinement.
+const MAX_MESHES: usize = 6;
+/// Weight given to a weightless slack cable, in parts of EA: it has no shape of its own, this gives it the shape of the
+/// limit of little weight. Far below any tension asked for.
+const HINT_OF_WEIGHT: f64 = 1e-12;
+/// Smoothing tension in parts of the load, see [`Material::smoothing`].
+const SMOOTHING: f64 = 1e-9;
+/// Longest move of a support in one slow step where friction must remember the way, in parts of the cable length.
+const SLOW_MOVE: f64 = 0.01;
+/// Most slow steps in one call.
+const MAX_SLOW_STEPS: f64 = 400.0;
+/// How often a slow step may be halved.
+const MAX_HALVINGS: usize = 8;
 
 /// A cable at rest on its supports.
 #[derive(Clone, Debug)]
 pub struct Statics {
-    state: State,
-}
-
-fn refused() -> SolveError {
-    SolveError::Unsupported { model: Model::Fem, feature: "not built yet".to_owned() }
+    problem: Arc<Problem>,
+    settings: Settings,
+    time: f64,
+    segments: usize,
+    /// Arc length at each support that slides, m.
+    slid: Vec<Option<f64>>,
+    network: Option<Network>,
+    points: Vec<Point>,
+    estimate: Option<f64>,
 }
 
 impl Statics {
@@ -24,24 +58,230 @@ impl Statics {
     ///
     /// # Errors
     /// `Unsupported` when the scene needs what it lacks.
-    pub fn new(_problem: Arc<Problem>, _settings: Settings) -> Result<Self, SolveError> {
-        Ok(Self { state: State::default() })
+    pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
+        let given = settings.segments.or(problem.cable.segments);
+        let mut new = Self {
+            segments: given.unwrap_or(FIRST_SEGMENTS),
+            slid: vec![None; problem.supports.len()],
+            network: None,
+            points: Vec::new(),
+            estimate: None,
+            time: 0.0,
+            problem,
+            settings,
+        };
+        new.lay_straight();
+        Ok(new)
+    }
+
+    /// The straight way through the supports, before the first answer; ends that hang hang down.
+    fn lay_straight(&mut self) {
+        let mut layout = Layout::new(&self.problem, self.time, &[], &self.slid);
+        layout.cut(self.segments);
+        let Some((first, last)) = layout.anchored() else { return };
+        let down = self.problem.body_force(self.time);
+        let down = if down.norm() > 0.0 { down / down.norm() } else { Vec2::new(0.0, -1.0) };
+        let stops = &layout.stops;
+        let at = |k: usize| -> Vec2 {
+            let anchor = |j: usize| stops[j].point(0).unwrap_or_default();
+            let (a, b) = (
+                (0..=k).rev().find(|&j| stops[j].anchors()).unwrap_or(first),
+                (k..stops.len()).find(|&j| stops[j].anchors()).unwrap_or(last),
+            );
+            if k < first || k > last {
+                return anchor(a.max(first).min(last))
+                    + down * (stops[k].arc_length - stops[a.max(first).min(last)].arc_length).abs();
+            }
+            let width = stops[b].arc_length - stops[a].arc_length;
+            let f = if width > 0.0 { (stops[k].arc_length - stops[a].arc_length) / width } else { 0.0 };
+            anchor(a) + (anchor(b) - anchor(a)) * f
+        };
+        let point = |arc_length: f64, at: Vec2| Point {
+            arc_length,
+            at,
+            before: Vec2::zeros(),
+            after: Vec2::zeros(),
+            curvature: 0.0,
+        };
+        self.points.clear();
+        for k in 0..stops.len() - 1 {
+            let (a, b, s, d) = (at(k), at(k + 1), stops[k].arc_length, stops[k + 1].arc_length - stops[k].arc_length);
+            for e in 0..stops[k].cells {
+                let f = e as f64 / stops[k].cells as f64;
+                self.points.push(point(s + d * f, a + (b - a) * f));
+            }
+        }
+        self.points.push(point(layout.length, at(stops.len() - 1)));
     }
 
     /// Finds the resting place at the present time; `dragged` are the hand-set support positions, m.
     ///
     /// # Errors
     /// A typed reason when there is none, or none was found.
-    pub fn settle(&mut self, _dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
-        Err(refused())
+    pub fn settle(&mut self, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
+        let time = self.time;
+        self.rest_at(time, dragged)
     }
 
     /// Moves supports on by `dt_s` without inertia; friction remembers.
     ///
     /// # Errors
     /// As `Mechanics::advance`.
-    pub fn advance(&mut self, _dt_s: f64, _dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
-        Err(refused())
+    pub fn advance(&mut self, dt_s: f64, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
+        let (start, end) = (self.time, self.time + dt_s);
+        let rubs = self.problem.supports.iter().any(|s| s.friction > 0.0);
+        let steps = if rubs { self.slow_steps(start, end, dragged) } else { 1.0 };
+        let mut report = StepReport::default();
+        let (mut step, mut halvings) = (dt_s / steps, 0);
+        while self.time < end {
+            let next = if self.time + 1.5 * step >= end { end } else { self.time + step };
+            match self.rest_at(next, dragged) {
+                Ok(r) => {
+                    report.cost.iterations += r.cost.iterations;
+                    report.cost.residual_n = r.cost.residual_n;
+                    report.warnings = r.warnings;
+                }
+                Err(error) if halvings == MAX_HALVINGS || !rubs => return Err(error),
+                Err(_) => {
+                    step *= 0.5;
+                    halvings += 1;
+                    report.cost.halved_steps += 1;
+                }
+            }
+        }
+        Ok(report)
+    }
+
+    /// How many slow steps the moves of the supports ask for.
+    fn slow_steps(&self, start: f64, end: f64, dragged: &[Option<Vec2>]) -> f64 {
+        let mut longest: f64 = 0.0;
+        for k in 0..self.problem.supports.len() {
+            let from =
+                self.network.as_ref().and_then(|n| n.layout.stops.iter().find(|s| s.support == Some(k))?.point(0));
+            let from = from.or(place(&self.problem, k, start, &[]));
+            let to = place(&self.problem, k, end, dragged);
+            if let (Some(a), Some(b)) = (from, to) {
+                longest = longest.max((b - a).norm());
+            }
+        }
+        (longest / (SLOW_MOVE * self.problem.length)).ceil().clamp(1.0, MAX_SLOW_STEPS)
+    }
+
+    /// Rest at a time; on an error nothing has changed.
+    fn rest_at(&mut self, time: f64, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
+        let adaptive = self.settings.segments.or(self.problem.cable.segments).is_none();
+        let mut layout = Layout::new(&self.problem, time, dragged, &self.slid);
+        if layout.stops.len() < 2 || layout.anchored().is_none() {
+            return Err(SolveError::NoRestingPlace { why: "nothing holds the cable".to_owned() });
+        }
+        let (material, hinted) = self.material(time, &layout);
+        let (mut segments, mut iterations) = (self.segments, 0);
+        layout.cut(segments);
+        let mut network = Network::new(layout, material);
+        if let Some(old) = &self.network {
+            network.start_from(old);
+        }
+        network.solve().map_err(|f| self.error(&network, f))?;
+        let mut estimate = estimate::relative_error(&network);
+        iterations += network.steps;
+        for _ in 0..MAX_MESHES {
+            if !(adaptive && estimate > SAFETY * self.settings.tolerance && segments < MOST_SEGMENTS) {
+                break;
+            }
+            let factor = (estimate / (SAFETY * self.settings.tolerance)).powf(1.0 / ORDER);
+            segments = ((segments as f64 * factor.clamp(1.2, 4.0)).ceil() as usize).min(MOST_SEGMENTS);
+            network.layout.cut(segments);
+            network.solve().map_err(|f| self.error(&network, f))?;
+            iterations += network.steps;
+            estimate = estimate::relative_error(&network);
+        }
+        self.time = time;
+        self.segments = segments;
+        for stop in &network.layout.stops {
+            if let (Some(k), Hold::Pulley(_)) = (stop.support, stop.hold)
+                && let Some(slid) = self.slid.get_mut(k)
+            {
+                *slid = Some(stop.arc_length + 0.5 * stop.lap);
+            }
+        }
+        answer::points(&network, &mut self.points);
+        self.estimate = Some(estimate);
+        let cost = Cost { iterations, residual_n: network.residual, ..Cost::default() };
+        self.network = Some(network);
+        Ok(StepReport { cost, warnings: self.warnings(hinted) })
+    }
+
+    /// What the elements share, and whether a weightless cable was given a hint of weight.
+    fn material(&self, time: f64, layout: &Layout) -> (Material, bool) {
+        let problem = &self.problem;
+        let mut body = problem.body_force(time);
+        let loads: f64 = layout.stops.iter().map(|s| s.load.norm()).sum();
+        let hinted = !(body.norm() > 0.0);
+        if hinted {
+            body = Vec2::new(0.0, -HINT_OF_WEIGHT * problem.axial_stiffness / problem.length);
+        }
+        let material = Material {
+            axial_stiffness: problem.axial_stiffness,
+            thermal_stretch: problem.thermal_stretch,
+            body,
+            smoothing: SMOOTHING * (body.norm() * problem.length + loads),
+        };
+        (material, hinted)
+    }
+
+    fn warnings(&self, hinted: bool) -> Vec<Warning> {
+        let problem = &self.problem;
+        let mut out = Vec::new();
+        let mut warn = |kind, value: f64, limit: f64, message: String| {
+            out.push(Warning { kind, cable: problem.cable.name.clone(), arc_length_m: 0.0, value, limit, message });
+        };
+        if let Some(rubbing) = problem.supports.iter().find(|s| s.friction > 0.0) {
+            let message = format!(
+                "Pulley `{}` rubs, so a resting place is not unique: this is the one of least sliding from the way the cable was laid or moved",
+                rubbing.name
+            );
+            warn(WarningKind::NotUnique, rubbing.friction, 0.0, message);
+        }
+        if hinted && problem.loads.is_empty() {
+            let message = "The cable has no weight: where it is slack its shape is that of a very light one".to_owned();
+            warn(WarningKind::NotUnique, 0.0, 0.0, message);
+        }
+        if let Some(estimate) = self.estimate
+            && !(estimate <= self.settings.tolerance)
+        {
+            let message = format!(
+                "{} elements give the largest tension to about {:.1e}; {:.1e} was asked for: use more segments",
+                self.segments, estimate, self.settings.tolerance
+            );
+            warn(WarningKind::Accuracy, estimate, self.settings.tolerance, message);
+        }
+        out
+    }
+
+    /// A failure in the words of the user.
+    fn error(&self, network: &Network, failure: Failure) -> SolveError {
+        let name = |k: usize| {
+            let support =
+                network.layout.stops.get(k).and_then(|s| s.support).and_then(|i| self.problem.supports.get(i));
+            support.map_or_else(|| "?".to_owned(), |s| s.name.clone())
+        };
+        let not_converged = |k: usize, residual_n: f64| SolveError::NotConverged {
+            model: Model::Fem,
+            iterations: network.steps,
+            residual_n,
+            node: network.layout.stops.iter().take(k).map(|s| s.cells).sum(),
+            at_m: network.layout.stops.get(k).and_then(|s| s.point(0)).unwrap_or_default(),
+        };
+        match failure {
+            Failure::Span(k, residual) | Failure::Unbalanced(k, residual) => not_converged(k, residual),
+            Failure::RunsOut(k) => {
+                SolveError::NoRestingPlace { why: format!("the cable runs out through pulley `{}`", name(k)) }
+            }
+            Failure::LeavesWheel(k) => SolveError::NoRestingPlace {
+                why: format!("the cable does not press on the wheel of pulley `{}` on the side it runs on", name(k)),
+            },
+            Failure::Unstable(k) => SolveError::Indefinite { model: Model::Fem, node: k },
+        }
     }
 
     /// Takes over a state of the same cable.
@@ -49,19 +289,59 @@ impl Statics {
     /// # Errors
     /// When a number is not finite or the state does not fit the cable.
     pub fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
-        self.state = state.clone();
+        if let Some(node) = state.first_non_finite() {
+            return Err(SolveError::NonFinite { quantity: "position or velocity", node, time_s: state.time_s });
+        }
+        let near = 1e-6 * self.problem.length;
+        let fits = state.arc_length_m.len() == state.position_m.len()
+            && state.arc_length_m.first().is_some_and(|s| s.abs() <= near)
+            && state.arc_length_m.last().is_some_and(|s| (s - self.problem.length).abs() <= near);
+        if !fits {
+            let feature = "a state of a cable of another length".to_owned();
+            return Err(SolveError::Unsupported { model: Model::Fem, feature });
+        }
+        self.time = state.time_s;
+        for (k, support) in self.problem.supports.iter().enumerate() {
+            if let (None, Some((at, _))) = (support.arc_length, support.position_at(state.time_s)) {
+                self.slid[k] = Some(super::layout::nearest(&state.position_m, &state.arc_length_m, at));
+            }
+        }
+        self.network = None;
+        self.estimate = None;
+        self.points.clear();
+        self.points.extend(state.arc_length_m.iter().zip(&state.position_m).map(|(&arc_length, &at)| Point {
+            arc_length,
+            at,
+            before: Vec2::zeros(),
+            after: Vec2::zeros(),
+            curvature: 0.0,
+        }));
         Ok(())
     }
 
     /// Where the cable is.
     #[must_use]
     pub fn state(&self) -> State {
-        self.state.clone()
+        State {
+            time_s: self.time,
+            arc_length_m: self.points.iter().map(|p| p.arc_length).collect(),
+            position_m: self.points.iter().map(|p| p.at).collect(),
+            velocity_m_per_s: vec![Vec2::zeros(); self.points.len()],
+        }
     }
 
     /// The answer at this instant.
     #[must_use]
     pub fn solution(&self) -> CableSolution {
-        CableSolution::default()
+        let supports = self.network.as_ref().map_or_else(Vec::new, |n| {
+            answer::reactions(&self.problem, &n.layout, &n.forces, n.material.body, &self.points)
+        });
+        CableSolution {
+            name: self.problem.cable.name.clone(),
+            nodes: self.points.iter().map(|p| p.node(&self.problem, p.tension())).collect(),
+            supports,
+            contacts: Vec::new(),
+            error_estimate: self.estimate,
+        }
     }
 }

@@ -1,0 +1,224 @@
+//! From a solved network to nodes and support reactions.
+
+use super::layout::{Hold, Layout, Stop, Wheel};
+use super::network::Network;
+use super::span::elements;
+use crate::math::{Vec2, cross, perp};
+use crate::problem::Problem;
+use crate::solution::{Node, SupportReaction};
+
+/// Nodes on a wheel for each radian the cable turns on it: the chord then lies within 0.1 % of the radius.
+const NODES_PER_RADIAN: f64 = 10.0;
+
+/// A point of the cable with the tension force just before and just after it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Arc length, m.
+    pub arc_length: f64,
+    /// Where it is, m.
+    pub at: Vec2,
+    /// Tension force before it, N.
+    pub before: Vec2,
+    /// Tension force after it, N.
+    pub after: Vec2,
+    /// d(angle)/d(arc length), 1/m.
+    pub curvature: f64,
+}
+
+impl Point {
+    /// The larger of the tensions beside it, N: the one that breaks the cable.
+    #[must_use]
+    pub fn tension(&self) -> f64 {
+        let (a, b) = (self.before.norm(), self.after.norm());
+        if a <= b { b } else { a }
+    }
+
+    /// As an answer holds it.
+    #[must_use]
+    pub fn node(&self, problem: &Problem, tension_n: f64) -> Node {
+        let area = std::f64::consts::PI * problem.radius * problem.radius;
+        Node {
+            arc_length_m: self.arc_length,
+            x_m: self.at.x,
+            y_m: self.at.y,
+            tension_n,
+            strain: tension_n / problem.axial_stiffness,
+            stress_pa: tension_n / area,
+            curvature_per_m: self.curvature,
+            ..Node::default()
+        }
+    }
+}
+
+/// All points of a solved network in order of arc length, appended to `out`.
+pub fn points(network: &Network, out: &mut Vec<Point>) {
+    out.clear();
+    let layout = &network.layout;
+    let Some((first, last)) = layout.anchored() else { return };
+    let end = layout.stops.len() - 1;
+    if first > 0 {
+        let force = -layout.stops[0].load;
+        let mut reach = Vec2::zeros();
+        elements(&network.material, layout, (0, first), force, |ds, f| reach += network.material.respond(ds, f).chord);
+        let anchor = layout.stops[first].point(0).unwrap_or_default();
+        run(network, (0, first), anchor - reach, force, out);
+    }
+    for (&ends, span) in network.ends.iter().zip(&network.spans) {
+        let start = layout.stops[ends.0].point(1).unwrap_or_default();
+        anchor(network, ends.0, out);
+        run(network, ends, start, span.force, out);
+    }
+    anchor(network, last, out);
+    if last < end {
+        let start = layout.stops[last].point(1).unwrap_or_default();
+        run(network, (last, end), start, network.forces[last][1], out);
+        let load = layout.stops[end].load;
+        let tip = out.last().map_or(start, |p| p.at) + last_chord(network, end);
+        out.push(Point { arc_length: layout.length, at: tip, before: load, after: load, curvature: 0.0 });
+    }
+}
+
+/// Chord of the last element of a hanging end.
+fn last_chord(network: &Network, end: usize) -> Vec2 {
+    let (stop, tip) = (&network.layout.stops[end - 1], &network.layout.stops[end]);
+    let ds = (tip.arc_length - stop.leaves()) / stop.cells as f64;
+    network.material.respond(ds, tip.load + network.material.body * (0.5 * ds)).chord
+}
+
+/// Curvature of a perfectly flexible cable: dF/ds = −q turns F by cross(F, −q)/|F|².
+fn free_curvature(force: Vec2, body: Vec2, smoothing: f64) -> f64 {
+    -cross(force, body) / (force.norm_squared() + smoothing * smoothing)
+}
+
+/// The points between two stops; of the two only the first, and only where it does not anchor.
+fn run(network: &Network, (first, last): (usize, usize), start: Vec2, force: Vec2, out: &mut Vec<Point>) {
+    let (layout, material) = (&network.layout, &network.material);
+    let (mut at, mut force) = (start, force);
+    for k in first..last {
+        let stop = &layout.stops[k];
+        let before = force;
+        if k > first {
+            force -= stop.load;
+        }
+        let ds = (layout.stops[k + 1].arc_length - stop.leaves()) / stop.cells as f64;
+        let drop = material.body * ds;
+        for e in 0..stop.cells {
+            let f = force - drop * e as f64;
+            if e > 0 || !stop.anchors() {
+                let before = if e == 0 { before } else { f };
+                let curvature = free_curvature(f, material.body, material.smoothing);
+                out.push(Point { arc_length: stop.leaves() + ds * e as f64, at, before, after: f, curvature });
+            }
+            at += material.respond(ds, f - drop * 0.5).chord;
+        }
+        force -= drop * stop.cells as f64;
+    }
+}
+
+/// The points at an anchor: one, or those round a wheel.
+fn anchor(network: &Network, k: usize, out: &mut Vec<Point>) {
+    let stop = &network.layout.stops[k];
+    let [before, after] = network.forces[k];
+    let (Some(meets), Some(leaves)) = (stop.point(0), stop.point(1)) else { return };
+    match stop.hold {
+        Hold::Pulley(wheel) if wheel.radius > 0.0 && stop.lap > 0.0 => {
+            let tangent = |point: Vec2, arc_length: f64, force: Vec2, curvature: f64| Point {
+                arc_length,
+                at: point,
+                before: force,
+                after: force,
+                curvature,
+            };
+            let turn = wheel_turn(&wheel, before);
+            let curvature = turn / stop.lap;
+            out.push(tangent(meets, stop.arc_length, before, curvature));
+            let count = (turn.abs() * NODES_PER_RADIAN).ceil() as usize;
+            let start = wheel.contact[0].y.atan2(wheel.contact[0].x);
+            for i in 1..count {
+                let f = i as f64 / count as f64;
+                let n = Vec2::new((start + turn * f).cos(), (start + turn * f).sin());
+                let tension = before.norm().powf(1.0 - f) * after.norm().powf(f);
+                let force = perp(n) * (turn.signum() * tension);
+                out.push(tangent(wheel.center + n * wheel.radius, stop.arc_length + stop.lap * f, force, curvature));
+            }
+            out.push(tangent(leaves, stop.leaves(), after, curvature));
+        }
+        _ => {
+            let side = if after.norm_squared() > 0.0 { after } else { before };
+            let curvature = free_curvature(side, network.material.body, network.material.smoothing);
+            out.push(Point { arc_length: stop.arc_length, at: meets, before, after, curvature });
+        }
+    }
+}
+
+/// The angle through which the contact point goes round a wheel, positive counter-clockwise, rad.
+fn wheel_turn(wheel: &Wheel, before: Vec2) -> f64 {
+    let [meets, leaves] = wheel.contact;
+    let clockwise = cross(meets, before) < 0.0;
+    let turn = super::element::turn_between(meets, leaves);
+    if clockwise && turn > 1e-9 {
+        turn - std::f64::consts::TAU
+    } else if !clockwise && turn < -1e-9 {
+        turn + std::f64::consts::TAU
+    } else {
+        turn
+    }
+}
+
+/// Force of the cable on a stop, N: it is pulled back along the cable before it and on along the cable after it, and
+/// carries the load that acts there, and the cable on its wheel.
+#[must_use]
+pub fn reaction(stop: &Stop, [before, after]: [Vec2; 2], body: Vec2) -> Vec2 {
+    match stop.hold {
+        Hold::Free => -stop.load,
+        _ => after - before + stop.load + body * stop.lap,
+    }
+}
+
+/// The reactions of all supports, in the scene's order.
+#[must_use]
+pub fn reactions(
+    problem: &Problem,
+    layout: &Layout,
+    forces: &[[Vec2; 2]],
+    body: Vec2,
+    points: &[Point],
+) -> Vec<SupportReaction> {
+    let mut out = Vec::with_capacity(problem.supports.len());
+    for (k, support) in problem.supports.iter().enumerate() {
+        let Some((index, stop)) = layout.stops.iter().enumerate().find(|(_, s)| s.support == Some(k)) else {
+            let at = support.at.unwrap_or_default();
+            out.push(SupportReaction {
+                name: support.name.clone(),
+                x_m: at.x,
+                y_m: at.y,
+                ..SupportReaction::default()
+            });
+            continue;
+        };
+        let middle = stop.arc_length + 0.5 * stop.lap;
+        let at = match stop.hold {
+            Hold::Fixed(p) => p,
+            Hold::Pulley(w) => w.center,
+            Hold::Free => position_at(points, middle),
+        };
+        let force = reaction(stop, forces[index], body);
+        let pulley = matches!(stop.hold, Hold::Pulley(_));
+        out.push(SupportReaction {
+            name: support.name.clone(),
+            x_m: at.x,
+            y_m: at.y,
+            reaction_x_n: force.x,
+            reaction_y_n: force.y,
+            arc_length_m: middle,
+            tension_before_n: pulley.then(|| forces[index][0].norm()),
+            tension_after_n: pulley.then(|| forces[index][1].norm()),
+        });
+    }
+    out
+}
+
+fn position_at(points: &[Point], arc_length: f64) -> Vec2 {
+    let k = points.partition_point(|p| p.arc_length < arc_length - 1e-9 * arc_length.abs());
+    points.get(k).or(points.last()).map_or(Vec2::zeros(), |p| p.at)
+}

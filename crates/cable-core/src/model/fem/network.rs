@@ -1,0 +1,600 @@
+//! Spans joined at pulleys: how much cable lies on each side.
+//!
+//! Each span is solved for itself (`span`); what joins them is the arc length `s` at each pulley. With the tension
+//! before and after a pulley, ρ = ln(T_after/T_before), and the bounds of Coulomb's law (capstan: ±μ·turn):
+//! ```text
+//! frictionless   ρ = 0
+//! stick          s = s_old,      −μφ ≤ ρ ≤ μφ
+//! slip           ρ = −μφ where s grew (the cable went to the side before), ρ = +μφ where it shrank
+//! ```
+//! ρ is the slope of the energy in `s` but for a positive factor, so a resting place is stable where ∂ρ/∂s is
+//! positive: the pivots of the (tridiagonal) Newton matrix must be. When Newton stalls or ends at an unstable place,
+//! each pulley in turn is bisected for a change of ρ from − to +, which only stable places have.
+//!
+//! On a wheel the cable runs from where it meets the wheel to where it leaves it; along the arc, with t the direction
+//! and n the outward normal, dT = −q·t ds ± μ (T dα − q·n ds).
+
+use super::element::{Material, turn_between};
+use super::layout::{Hold, Layout, Wheel};
+use super::span::{self, Span, elements};
+use crate::math::{Vec2, perp};
+use crate::scene::PulleySide;
+
+/// Newton steps for the pulleys together. Measured: 3 to 8.
+const MAX_STEPS: usize = 40;
+/// Rounds of bisection.
+const MAX_ROUNDS: usize = 60;
+/// Tensions at a pulley agree when ln of their ratio is off by less than this.
+const BALANCED: f64 = 1e-12;
+/// As above where no step makes it smaller (a stiff cable: ρ has lost its last digits).
+const BALANCED_AT_LEAST: f64 = 1e-8;
+/// Part of the room to the next stop that a step may take.
+const ROOM: f64 = 0.4;
+/// Least cable between a pulley and the next stop, in parts of the cable.
+const LEAST: f64 = 1e-7;
+/// Rounds to find where a cable meets and leaves its wheels; each gains the ratio of radius to span.
+const WHEEL_ROUNDS: usize = 80;
+/// Steps of the integration round a wheel.
+const WHEEL_STEPS: usize = 16;
+/// Rounds of wheels end when no contact point moves by more than this angle, rad.
+const WHEEL_STILL: f64 = 1e-12;
+
+/// Why there is no answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Failure {
+    /// The span that starts at this stop could not be solved; the force left, N.
+    Span(usize, f64),
+    /// The cable runs out through the pulley at this stop.
+    RunsOut(usize),
+    /// The balance at the pulley of this stop could not be found; the force left, N.
+    Unbalanced(usize, f64),
+    /// The only balance found at this stop is one the cable runs away from.
+    Unstable(usize),
+    /// The cable leaves its wheel.
+    LeavesWheel(usize),
+}
+
+/// The cable between its stops.
+#[derive(Clone, Debug)]
+pub struct Network {
+    /// The stops.
+    pub layout: Layout,
+    /// What the elements share.
+    pub material: Material,
+    /// The stops at each span's ends.
+    pub ends: Vec<(usize, usize)>,
+    /// The spans' answers, as `ends`.
+    pub spans: Vec<Span>,
+    /// Tension force just before and just after each stop, N.
+    pub forces: Vec<[Vec2; 2]>,
+    /// Newton steps of all kinds.
+    pub steps: usize,
+    /// Largest unbalanced force, N.
+    pub residual: f64,
+    /// Arc length at each stop before anything slid (friction remembers it), m.
+    held_at: Vec<f64>,
+    warm: bool,
+}
+
+/// The law of a pulley at the present forces.
+struct Balance {
+    /// ln(T_after/T_before).
+    ratio: f64,
+    /// Its bounds and its frictionless value: lower, frictionless, upper.
+    law: [f64; 3],
+}
+
+impl Network {
+    /// A network that has not been solved.
+    #[must_use]
+    pub fn new(layout: Layout, material: Material) -> Self {
+        let ends: Vec<_> = layout.spans().collect();
+        let mut network = Self {
+            spans: vec![Span::default(); ends.len()],
+            forces: vec![[Vec2::zeros(); 2]; layout.stops.len()],
+            held_at: layout.stops.iter().map(|s| s.arc_length).collect(),
+            ends,
+            layout,
+            material,
+            steps: 0,
+            residual: 0.0,
+            warm: false,
+        };
+        network.meet_wheels_straight();
+        network
+    }
+
+    /// Takes over the forces of a network with the same stops, to start from.
+    pub fn start_from(&mut self, other: &Self) {
+        if other.ends == self.ends && other.warm {
+            self.spans.clone_from(&other.spans);
+            self.warm = true;
+        }
+    }
+
+    /// Solves everything.
+    ///
+    /// # Errors
+    /// Why there is no answer.
+    pub fn solve(&mut self) -> Result<(), Failure> {
+        self.steps = 0;
+        let wheels = self.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.radius > 0.0));
+        for _ in 0..WHEEL_ROUNDS {
+            self.balance()?;
+            if !wheels || self.meet_wheels()? <= WHEEL_STILL {
+                break;
+            }
+        }
+        self.warm = true;
+        Ok(())
+    }
+
+    /// Solves the spans for the present arc lengths.
+    fn solve_spans(&mut self) -> Result<(), Failure> {
+        self.residual = 0.0;
+        for i in 0..self.ends.len() {
+            self.solve_span(i)?;
+        }
+        self.hang_tails();
+        Ok(())
+    }
+
+    fn solve_span(&mut self, i: usize) -> Result<(), Failure> {
+        let (first, last) = self.ends[i];
+        let (Some(a), Some(b)) = (self.layout.stops[first].point(1), self.layout.stops[last].point(0)) else {
+            return Err(Failure::Span(first, f64::NAN));
+        };
+        let d = b - a;
+        let solve = |guess| span::solve(&self.material, &self.layout, (first, last), d, guess);
+        let warm = if self.warm || self.spans[i].steps > 0 { solve(self.spans[i].force) } else { None };
+        let cold = || solve(span::first_guess(&self.material, &self.layout, (first, last), d));
+        let span = warm.or_else(cold).ok_or(Failure::Span(first, f64::NAN))?;
+        self.steps += span.steps;
+        if !(span.residual <= self.residual) {
+            self.residual = span.residual;
+        }
+        self.forces[first][1] = span.force;
+        self.forces[last][0] = span.walk.end_force;
+        self.spans[i] = span;
+        Ok(())
+    }
+
+    /// Forces of the stretches that end free: the load beyond.
+    fn hang_tails(&mut self) {
+        let Some((first, last)) = self.layout.anchored() else { return };
+        let end = self.layout.stops.len() - 1;
+        self.forces[0][0] = Vec2::zeros();
+        self.forces[end][1] = Vec2::zeros();
+        if first > 0 {
+            let start = -self.layout.stops[0].load;
+            self.forces[first][0] = elements(&self.material, &self.layout, (0, first), start, |_, _| ());
+        }
+        if last < end {
+            let stops = &self.layout.stops;
+            let loads: Vec2 = stops[last + 1..].iter().map(|s| s.load).sum();
+            self.forces[last][1] = loads + self.material.body * (stops[end].arc_length - stops[last].leaves());
+        }
+    }
+
+    fn wheel(&self, stop: usize) -> Option<Wheel> {
+        match self.layout.stops[stop].hold {
+            Hold::Pulley(w) => Some(w),
+            _ => None,
+        }
+    }
+
+    fn pulleys(&self) -> Vec<usize> {
+        (0..self.layout.stops.len()).filter(|&k| self.wheel(k).is_some()).collect()
+    }
+
+    fn law(&self, stop: usize, wheel: &Wheel) -> Balance {
+        let [before, after] = self.forces[stop];
+        let ratio = (after.norm() / before.norm()).ln();
+        if wheel.radius > 0.0 {
+            let law = [-1.0, 0.0, 1.0].map(|sign| self.round_wheel(wheel, before, sign));
+            return Balance { ratio, law };
+        }
+        let bound = wheel.friction * turn_between(before, after).abs();
+        Balance { ratio, law: [-bound, 0.0, bound] }
+    }
+
+    /// ln(T_after/T_before) round a wheel with friction pulling along (`sign` +1) or against.
+    fn round_wheel(&self, wheel: &Wheel, before: Vec2, sign: f64) -> f64 {
+        let m = &self.material;
+        let [meets, leaves] = wheel.contact;
+        let clockwise = self.clockwise(wheel, before);
+        let turn = arc(meets, leaves, clockwise);
+        let start = meets.y.atan2(meets.x);
+        let slope = |alpha: f64, tension: f64| {
+            let angle = start - clockwise * alpha;
+            let n = Vec2::new(angle.cos(), angle.sin());
+            let t = perp(n) * -clockwise;
+            let ds = wheel.radius / (m.thermal_stretch * (1.0 + tension / m.axial_stiffness));
+            -m.body.dot(&t) * ds + sign * wheel.friction * (tension - m.body.dot(&n) * ds)
+        };
+        let (first, h) = (before.norm(), turn / WHEEL_STEPS as f64);
+        let mut tension = first;
+        for k in 0..WHEEL_STEPS {
+            let a = h * k as f64;
+            let k1 = slope(a, tension);
+            let k2 = slope(a + 0.5 * h, tension + 0.5 * h * k1);
+            let k3 = slope(a + 0.5 * h, tension + 0.5 * h * k2);
+            let k4 = slope(a + h, tension + h * k3);
+            tension += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+        }
+        (tension / first).ln()
+    }
+
+    /// +1 where the cable runs clockwise round the wheel, −1 the other way.
+    fn clockwise(&self, wheel: &Wheel, travel: Vec2) -> f64 {
+        let right = if travel.x < 0.0 { -1.0 } else { 1.0 };
+        match wheel.side {
+            PulleySide::Over => right,
+            PulleySide::Under => -right,
+        }
+    }
+
+    /// The way the cable passes a stop, from the anchor before to the anchor after.
+    fn passing(&self, stop: usize) -> Vec2 {
+        let near = |k: usize| match self.layout.stops[k].hold {
+            Hold::Free => None,
+            Hold::Fixed(p) => Some(p),
+            Hold::Pulley(w) => Some(w.center),
+        };
+        let here = near(stop).unwrap_or_default();
+        let before = (0..stop).rev().find_map(near).unwrap_or(here);
+        let after = (stop + 1..self.layout.stops.len()).find_map(near).unwrap_or(here);
+        after - before
+    }
+
+    /// Contact points for straight cables, to start with.
+    fn meet_wheels_straight(&mut self) {
+        for k in self.pulleys() {
+            let Some(mut wheel) = self.wheel(k) else { continue };
+            if wheel.radius > 0.0 {
+                let clockwise = self.clockwise(&wheel, self.passing(k));
+                let up = Vec2::new(0.0, if wheel.side == PulleySide::Over { 1.0 } else { -1.0 });
+                let tilt = perp(up) * clockwise * if wheel.side == PulleySide::Over { 0.05 } else { -0.05 };
+                wheel.contact = [(up + tilt).normalize(), (up - tilt).normalize()];
+                self.layout.stops[k].hold = Hold::Pulley(wheel);
+            }
+        }
+    }
+
+    /// Moves the contact points to where the forces say; returns the largest move, rad.
+    fn meet_wheels(&mut self) -> Result<f64, Failure> {
+        let mut largest = 0.0;
+        for k in self.pulleys() {
+            let Some(mut wheel) = self.wheel(k).filter(|w| w.radius > 0.0) else { continue };
+            let [before, after] = self.forces[k];
+            let clockwise = self.clockwise(&wheel, self.passing(k));
+            let contact = [perp(before) * (clockwise / before.norm()), perp(after) * (clockwise / after.norm())];
+            let turn = arc(contact[0], contact[1], clockwise);
+            if turn > 1.5 * std::f64::consts::PI {
+                return Err(Failure::LeavesWheel(k));
+            }
+            let moved = (0..2).map(|i| (contact[i] - wheel.contact[i]).norm()).sum::<f64>();
+            if !(moved <= largest) {
+                largest = moved;
+            }
+            wheel.contact = contact;
+            let tension = 0.5 * (before.norm() + after.norm());
+            let lap =
+                wheel.radius * turn / (self.material.thermal_stretch * (1.0 + tension / self.material.axial_stiffness));
+            let stop = &mut self.layout.stops[k];
+            stop.arc_length -= 0.5 * (lap - stop.lap);
+            stop.lap = lap;
+            stop.hold = Hold::Pulley(wheel);
+        }
+        Ok(largest)
+    }
+
+    /// How far the arc length at a pulley has moved since friction last held, m (the middle of a wheel's arc).
+    fn slid(&self, stop: usize) -> f64 {
+        self.layout.stops[stop].arc_length + 0.5 * self.layout.stops[stop].lap - self.held_at[stop]
+    }
+
+    /// What is wrong at a pulley: 0 where it rests, else positive where the arc length must shrink. `None`: held.
+    fn fault(&self, stop: usize, wheel: &Wheel) -> Option<f64> {
+        let b = self.law(stop, wheel);
+        if !(wheel.friction > 0.0) {
+            return Some(b.ratio - b.law[1]);
+        }
+        let slid = self.slid(stop);
+        let still = 1e-12 * self.layout.length;
+        if slid > still {
+            Some(b.ratio - b.law[0])
+        } else if slid < -still {
+            Some(b.ratio - b.law[2])
+        } else if b.ratio < b.law[0] {
+            Some(b.ratio - b.law[0])
+        } else if b.ratio > b.law[2] {
+            Some(b.ratio - b.law[2])
+        } else {
+            None
+        }
+    }
+
+    /// Finds the arc length at every pulley.
+    fn balance(&mut self) -> Result<(), Failure> {
+        self.solve_spans()?;
+        let pulleys = self.pulleys();
+        if pulleys.is_empty() {
+            return Ok(());
+        }
+        if self.newton(&pulleys) {
+            return Ok(());
+        }
+        for _ in 0..MAX_ROUNDS {
+            let moved = self.bisect_each()?;
+            if moved < 1e-2 * self.layout.length && self.newton(&self.pulleys()) {
+                return Ok(());
+            }
+        }
+        let pulleys = self.pulleys();
+        let worst = pulleys.iter().copied().find(|&k| self.wheel(k).and_then(|w| self.fault(k, &w)).is_some());
+        let stop = worst.unwrap_or(0);
+        Err(Failure::Unbalanced(stop, self.unbalance(stop)))
+    }
+
+    fn unbalance(&self, stop: usize) -> f64 {
+        let fault = self.wheel(stop).and_then(|w| self.fault(stop, &w)).unwrap_or(0.0);
+        fault.abs() * self.forces[stop][0].norm()
+    }
+
+    /// Newton on all pulleys; true when they rest in a stable place.
+    fn newton(&mut self, pulleys: &[usize]) -> bool {
+        let faults = |n: &Self| -> Vec<Option<f64>> {
+            pulleys.iter().map(|&k| n.wheel(k).and_then(|w| n.fault(k, &w))).collect()
+        };
+        let size = |f: &[Option<f64>]| f.iter().flatten().fold(0.0, |a: f64, b| if b.abs() <= a { a } else { b.abs() });
+        let mut now = faults(self);
+        for _ in 0..MAX_STEPS {
+            let (step, stable) = self.newton_step(pulleys, &now);
+            if size(&now) <= BALANCED {
+                self.residual =
+                    pulleys.iter().map(|&k| self.unbalance(k)).fold(self.residual, |a, b| if b <= a { a } else { b });
+                return stable;
+            }
+            let from: Vec<f64> = pulleys.iter().map(|&k| self.layout.stops[k].arc_length).collect();
+            let mut alpha = 1.0;
+            let mut better = false;
+            for _ in 0..12 {
+                self.move_pulleys(pulleys, &from, &step, alpha);
+                self.steps += 1;
+                if self.solve_spans().is_ok() {
+                    let next = faults(self);
+                    if size(&next) < size(&now) {
+                        now = next;
+                        better = true;
+                        break;
+                    }
+                }
+                alpha *= 0.5;
+            }
+            if !better {
+                self.move_pulleys(pulleys, &from, &step, 0.0);
+                return self.solve_spans().is_ok() && stable && size(&now) <= BALANCED_AT_LEAST;
+            }
+        }
+        false
+    }
+
+    /// Moves every pulley by `alpha` of its step, within its room, and not beyond where friction held it.
+    fn move_pulleys(&mut self, pulleys: &[usize], from: &[f64], step: &[f64], alpha: f64) {
+        for (i, &k) in pulleys.iter().enumerate() {
+            self.layout.stops[k].arc_length = from[i];
+        }
+        let mut limited = Vec::with_capacity(pulleys.len());
+        for (i, &k) in pulleys.iter().enumerate() {
+            let stops = &self.layout.stops;
+            let down = ROOM * (from[i] - stops[k - 1].leaves());
+            let up = ROOM * (stops[k + 1].arc_length - from[i] - stops[k].lap);
+            let mut move_by = (alpha * step[i]).clamp(-down, up);
+            let slid = self.slid(k);
+            let friction = self.wheel(k).is_some_and(|w| w.friction > 0.0);
+            if friction && slid * (slid + move_by) < 0.0 {
+                move_by = -slid;
+            }
+            limited.push(from[i] + move_by);
+        }
+        for (i, &k) in pulleys.iter().enumerate() {
+            self.layout.stops[k].arc_length = limited[i];
+        }
+    }
+
+    /// The Newton step of each pulley's arc length, and whether all pivots are positive.
+    fn newton_step(&self, pulleys: &[usize], faults: &[Option<f64>]) -> (Vec<f64>, bool) {
+        let n = pulleys.len();
+        let (mut diagonal, mut below, mut above) = (vec![1.0; n], vec![0.0; n], vec![0.0; n]);
+        let mut right: Vec<f64> = faults.iter().map(|f| -f.unwrap_or(0.0)).collect();
+        for (i, &k) in pulleys.iter().enumerate() {
+            let Some(fault) = faults[i] else { continue };
+            let Some(wheel) = self.wheel(k) else { continue };
+            let [before, after] = self.forces[k];
+            let own = self.rates_at(k, k);
+            let rate = |r: [Vec2; 2]| self.fault_rate(&wheel, fault, [before, after], r);
+            diagonal[i] = rate(own);
+            if i > 0 {
+                below[i] = rate(self.rates_at(k, pulleys[i - 1]));
+            }
+            if i + 1 < n {
+                above[i] = rate(self.rates_at(k, pulleys[i + 1]));
+            }
+        }
+        let mut stable = true;
+        for i in 0..n {
+            if i > 0 {
+                let factor = below[i] / diagonal[i - 1];
+                diagonal[i] -= factor * above[i - 1];
+                right[i] -= factor * right[i - 1];
+            }
+            if !(diagonal[i] > 0.0) {
+                stable = false;
+                diagonal[i] = if diagonal[i] < 0.0 { -diagonal[i] } else { 1.0 };
+            }
+        }
+        for i in (0..n).rev() {
+            let next = if i + 1 < n { above[i] * right[i + 1] } else { 0.0 };
+            right[i] = (right[i] - next) / diagonal[i];
+        }
+        (right, stable)
+    }
+
+    /// Adds what frictionless pulleys do to small changes of the forces beside the stops: they slide until the tensions
+    /// agree again.
+    pub fn let_pulleys_follow(&self, changes: &mut [[Vec2; 2]]) {
+        let pulleys = self.pulleys();
+        let faults: Vec<Option<f64>> = pulleys
+            .iter()
+            .map(|&k| {
+                let (wheel, [before, after]) = (self.wheel(k)?, self.forces[k]);
+                self.fault(k, &wheel)?;
+                Some(self.fault_rate(&wheel, 0.0, [before, after], changes[k]))
+            })
+            .collect();
+        let (slides, _) = self.newton_step(&pulleys, &faults);
+        for (&of, slide) in pulleys.iter().zip(slides) {
+            for (k, change) in changes.iter_mut().enumerate() {
+                let rates = self.rates_at(k, of);
+                change[0] += rates[0] * slide;
+                change[1] += rates[1] * slide;
+            }
+        }
+    }
+
+    /// ∂(force before, force after the pulley at stop `k`)/∂(arc length at the pulley of stop `of`).
+    fn rates_at(&self, k: usize, of: usize) -> [Vec2; 2] {
+        let mut rates = [Vec2::zeros(); 2];
+        for (span, &ends) in self.spans.iter().zip(&self.ends) {
+            let by_end = if ends.1 == of {
+                true
+            } else if ends.0 == of {
+                false
+            } else {
+                continue;
+            };
+            if ends.1 == k {
+                rates[0] += span.force_rates(&self.material, &self.layout, ends, by_end)[1];
+            }
+            if ends.0 == k {
+                rates[1] += span.force_rates(&self.material, &self.layout, ends, by_end)[0];
+            }
+        }
+        if let Some((first, last)) = self.layout.anchored()
+            && of == k
+        {
+            if k == first && first > 0 {
+                rates[0] -= self.material.body;
+            }
+            if k == last && last + 1 < self.layout.stops.len() {
+                rates[1] -= self.material.body;
+            }
+        }
+        rates
+    }
+
+    /// How the fault at a pulley changes when the forces beside it change by `rates`.
+    fn fault_rate(&self, wheel: &Wheel, fault: f64, [before, after]: [Vec2; 2], rates: [Vec2; 2]) -> f64 {
+        let ratio = after.dot(&rates[1]) / after.norm_squared() - before.dot(&rates[0]) / before.norm_squared();
+        if !(wheel.friction > 0.0) {
+            return ratio;
+        }
+        let turn = turn_between(before, after);
+        let turning =
+            perp(after).dot(&rates[1]) / after.norm_squared() - perp(before).dot(&rates[0]) / before.norm_squared();
+        // The bound that holds: the lower one where ρ lies below it or the pulley gave cable to the side before.
+        let lower = (after.norm() / before.norm()).ln() - fault < 0.0;
+        let sign = if lower { -1.0 } else { 1.0 };
+        ratio - sign * wheel.friction * turn.signum() * turning
+    }
+
+    /// One round of bisection over the pulleys; returns the largest move, m.
+    fn bisect_each(&mut self) -> Result<f64, Failure> {
+        let mut largest = 0.0;
+        for p in 0..self.pulleys().len() {
+            let k = self.pulleys()[p];
+            let before = self.layout.stops[k].arc_length;
+            self.bisect(k)?;
+            let moved = (self.layout.stops.get(k).map_or(before, |s| s.arc_length) - before).abs();
+            if !(moved <= largest) {
+                largest = moved;
+            }
+        }
+        Ok(largest)
+    }
+
+    /// Brings one pulley to rest with the others held: the change of its fault from − to +.
+    fn bisect(&mut self, stop: usize) -> Result<(), Failure> {
+        let Some(wheel) = self.wheel(stop) else { return Ok(()) };
+        let start = self.layout.stops[stop].arc_length;
+        let held = if wheel.friction > 0.0 { start - self.slid(stop) } else { start };
+        self.try_at(stop, held)?;
+        let Some(fault) = self.fault(stop, &wheel) else { return Ok(()) };
+        let least = LEAST * self.layout.length;
+        let limit = if fault < 0.0 {
+            self.layout.stops[stop + 1].arc_length - self.layout.stops[stop].lap - least
+        } else {
+            self.layout.stops[stop - 1].leaves() + least
+        };
+        // From where friction held it towards the limit; the fault keeps its sign until it rests.
+        let (mut near, mut far) = (held, limit);
+        self.try_at(stop, limit)?;
+        let at_limit = self.fault(stop, &wheel);
+        if at_limit.is_some_and(|f| f * fault > 0.0) {
+            return self.pass(stop, fault < 0.0);
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (near + far);
+            self.try_at(stop, middle)?;
+            match self.fault(stop, &wheel) {
+                Some(f) if f * fault > 0.0 => near = middle,
+                _ => far = middle,
+            }
+            if (far - near).abs() <= 1e-6 * self.layout.length {
+                break;
+            }
+        }
+        self.try_at(stop, far)
+    }
+
+    fn try_at(&mut self, stop: usize, arc_length: f64) -> Result<(), Failure> {
+        self.layout.stops[stop].arc_length = arc_length;
+        for i in 0..self.ends.len() {
+            if self.ends[i].0 == stop || self.ends[i].1 == stop {
+                self.solve_span(i)?;
+            }
+        }
+        self.hang_tails();
+        Ok(())
+    }
+
+    /// A pulley that wants beyond the stop beside it: past a load the load changes sides, past an end it runs out.
+    fn pass(&mut self, stop: usize, up: bool) -> Result<(), Failure> {
+        let other = if up { stop + 1 } else { stop - 1 };
+        let inner = other > 0 && other + 1 < self.layout.stops.len();
+        if !inner {
+            return Err(Failure::RunsOut(stop));
+        }
+        if self.layout.stops[other].anchors() {
+            return Err(Failure::Unbalanced(stop, self.unbalance(stop)));
+        }
+        let cells = (self.layout.stops[stop].cells, self.layout.stops[other].cells);
+        self.layout.stops.swap(stop, other);
+        self.held_at.swap(stop, other);
+        (self.layout.stops[stop].cells, self.layout.stops[other].cells) = cells;
+        let least = 2.0 * LEAST * self.layout.length * if up { 1.0 } else { -1.0 };
+        let load_at = self.layout.stops[stop].arc_length;
+        self.layout.stops[other].arc_length = load_at + least - if up { 0.0 } else { self.layout.stops[other].lap };
+        self.ends = self.layout.spans().collect();
+        self.spans = vec![Span::default(); self.ends.len()];
+        self.warm = false;
+        self.solve_spans()
+    }
+}
+
+/// The angle the cable turns through on a wheel between two contact directions, 0 to 2π.
+fn arc(meets: Vec2, leaves: Vec2, clockwise: f64) -> f64 {
+    let turn = -clockwise * turn_between(meets, leaves);
+    if turn < -1e-9 { turn + std::f64::consts::TAU } else { turn }
+}
