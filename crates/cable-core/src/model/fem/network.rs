@@ -48,8 +48,6 @@ pub enum Failure {
     RunsOut(usize),
     /// The balance at the pulley of this stop could not be found; the force left, N.
     Unbalanced(usize, f64),
-    /// The only balance found at this stop is one the cable runs away from.
-    Unstable(usize),
     /// The cable leaves its wheel.
     LeavesWheel(usize),
 }

@@ -59,6 +59,10 @@ impl Statics {
     /// # Errors
     /// `Unsupported` when the scene needs what it lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
+        if problem.bending_stiffness > 0.0 {
+            let feature = "bending stiffness at rest is not built yet".to_owned();
+            return Err(SolveError::Unsupported { model: Model::Fem, feature });
+        }
         let given = settings.segments.or(problem.cable.segments);
         let mut new = Self {
             segments: given.unwrap_or(FIRST_SEGMENTS),
@@ -280,7 +284,6 @@ impl Statics {
             Failure::LeavesWheel(k) => SolveError::NoRestingPlace {
                 why: format!("the cable does not press on the wheel of pulley `{}` on the side it runs on", name(k)),
             },
-            Failure::Unstable(k) => SolveError::Indefinite { model: Model::Fem, node: k },
         }
     }
 
