@@ -134,8 +134,9 @@ fn plain(expected: &dyn Expected) -> String {
 
 /// The known name nearest to a mistyped one, if any is near enough to be meant.
 pub(super) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
-    // Jaro–Winkler similarity below which a hint is noise: 0.9 misses `lenght` → `length_m`, 0.6 offers anything.
-    const SIMILAR_ENOUGH: f64 = 0.75;
+    // Jaro–Winkler similarity below which a hint is noise: 0.95 misses `lenght` for `length_m`, 0.75 offers
+    // `name` for `a`.
+    const SIMILAR_ENOUGH: f64 = 0.8;
     // A hostile key of megabytes would be compared in quadratic time.
     const LONGEST_NAME: usize = 200;
     if name.len() > LONGEST_NAME {

@@ -12,7 +12,7 @@ use crate::math::Point;
 const MAX_CABLES: usize = 1000;
 /// Most supports of a cable, and most loads of a scene.
 pub(super) const MAX_POINTS_ON_CABLE: usize = 10_000;
-/// Most corner points of all obstacles together, about what the longest text can hold.
+/// Most corner points of all obstacles together: twice what the longest text can hold.
 const MAX_OBSTACLE_POINTS: usize = 500_000;
 /// Most knots of a route, motion, series or robot path.
 const MAX_KNOTS: usize = 100_000;
