@@ -1,5 +1,8 @@
 //! Scenes: files in and out, what is refused and how, presets, the catalogue, motion.
 
+// clippy.toml's permission for tests does not reach the helpers beside them.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 mod catalogue;
 mod faults;
 mod files;
