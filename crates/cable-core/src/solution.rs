@@ -170,6 +170,39 @@ pub enum WarningKind {
     Accuracy,
 }
 
+impl WarningKind {
+    /// Every kind.
+    pub const ALL: [Self; 7] = [
+        Self::ServiceTension,
+        Self::BreakingTension,
+        Self::BendRadius,
+        Self::NotUnique,
+        Self::SupportHeld,
+        Self::Stabilised,
+        Self::Accuracy,
+    ];
+
+    /// The name used in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ServiceTension => "service-tension",
+            Self::BreakingTension => "breaking-tension",
+            Self::BendRadius => "bend-radius",
+            Self::NotUnique => "not-unique",
+            Self::SupportHeld => "support-held",
+            Self::Stabilised => "stabilised",
+            Self::Accuracy => "accuracy",
+        }
+    }
+
+    /// The kind of a name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|k| k.name() == name)
+    }
+}
+
 /// The largest tension and where.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MaxTension {
