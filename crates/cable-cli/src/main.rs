@@ -1,2 +1,37 @@
-//! Placeholder.
-fn main() {}
+//! The headless program `cable`: where a cable rests, what happens to it over time, whether a scene is sound.
+//!
+//! Exit codes: 0 answered, 1 no solution or not converged, 2 bad input, 74 could not write.
+
+mod answer;
+mod args;
+mod output;
+mod run;
+mod solve;
+mod table;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Arguments, Command};
+use output::Failure;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let done = match arguments.command {
+        Command::Solve(a) => solve::solve(&a),
+        Command::Run(a) => run::run(&a),
+        Command::Check { scene } => solve::check(&scene),
+        Command::Schema => solve::schema(),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            output::report(&failure);
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+/// What every command ends in.
+type Done = Result<(), Failure>;

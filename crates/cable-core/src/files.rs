@@ -9,6 +9,7 @@ use atomic_write_file::AtomicWriteFile;
 use thiserror::Error;
 
 use crate::error::SceneError;
+use crate::record::RunWriter;
 use crate::scene::Scene;
 use crate::scene::file::MAX_TEXT_BYTES;
 
@@ -143,4 +144,23 @@ pub fn write_atomic_with(
 pub fn create_folder(path: impl AsRef<Path>) -> Result<(), FileError> {
     let path = path.as_ref();
     fs::create_dir_all(path).map_err(|e| FileError::write(path, &e))
+}
+
+/// The open tables of a run folder.
+pub type RunFolder = RunWriter<BufWriter<fs::File>>;
+
+/// Makes a run folder (and those above it), writes `scene.toml` and opens its tables, which grow as the run goes.
+/// Those of an earlier run in the same folder are replaced.
+///
+/// # Errors
+/// Why the folder or a file in it cannot be made.
+pub fn create_run(folder: impl AsRef<Path>, scene: &Scene) -> Result<RunFolder, FileError> {
+    let folder = folder.as_ref();
+    create_folder(folder)?;
+    save_scene(folder.join("scene.toml"), scene)?;
+    let open = |name: &str| {
+        let path = folder.join(name);
+        fs::File::create(&path).map(BufWriter::new).map_err(|e| FileError::write(&path, &e))
+    };
+    Ok(RunWriter::new(open("history.csv")?, open("nodes.csv")?, open("events.csv")?))
 }

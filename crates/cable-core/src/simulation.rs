@@ -2,7 +2,8 @@
 
 use crate::error::{Error, SolveError};
 use crate::math::Vec2;
-use crate::model::{self, Inertia, Mechanics, Model, Settings, auto};
+use crate::model::auto::{self, Question};
+use crate::model::{self, Inertia, Mechanics, Model, Settings};
 use crate::problem::problems;
 use crate::scene::Scene;
 use crate::solution::{Cost, Solution, Warning};
@@ -33,19 +34,45 @@ impl Simulation {
     /// # Errors
     /// As [`Self::new`].
     pub fn with_settings(scene: Scene, model: Model, settings: Settings) -> Result<Self, Error> {
+        Self::for_question(scene, model, settings, Question::Rest)
+    }
+
+    /// As [`Self::with_settings`]; `Model::Auto` is resolved for the question that will be asked. One model serves
+    /// the whole scene: the highest rung any cable needs, and the next one up where a model lacks a feature.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn for_question(scene: Scene, model: Model, settings: Settings, question: Question) -> Result<Self, Error> {
         let problems = problems(&scene)?;
+        let build_all = |m: Model| {
+            problems.iter().map(|p| model::build(m, p.clone(), settings)).collect::<Result<Vec<_>, SolveError>>()
+        };
         let (mut chosen, mut reason) = (model, "asked for".to_owned());
         if model == Model::Auto {
-            // One model for the whole scene: the highest rung any cable needs.
             (chosen, reason) = problems
                 .iter()
-                .map(|p| auto::choose(p))
+                .map(|p| auto::choose(p, question))
                 .max_by_key(|(m, _)| *m == Model::Fem)
                 .unwrap_or((Model::Catenary, String::new()));
         }
-        let cables =
-            problems.into_iter().map(|p| model::build(chosen, p, settings)).collect::<Result<_, SolveError>>()?;
-        Ok(Self { scene, model: chosen, reason, cables, start: None, cost: Cost::default(), warnings: Vec::new() })
+        let mut cables = build_all(chosen);
+        if model == Model::Auto
+            && chosen != Model::Fem
+            && let Err(SolveError::Unsupported { feature, .. }) = &cables
+        {
+            reason = format!("{chosen} cannot answer this scene: {feature}");
+            chosen = Model::Fem;
+            cables = build_all(chosen);
+        }
+        Ok(Self {
+            scene,
+            model: chosen,
+            reason,
+            cables: cables?,
+            start: None,
+            cost: Cost::default(),
+            warnings: Vec::new(),
+        })
     }
 
     /// The scene being solved.
@@ -58,6 +85,12 @@ impl Simulation {
     #[must_use]
     pub fn model(&self) -> Model {
         self.model
+    }
+
+    /// Why that model.
+    #[must_use]
+    pub fn reason(&self) -> &str {
+        &self.reason
     }
 
     /// Time reached, s.

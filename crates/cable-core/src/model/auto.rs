@@ -1,12 +1,23 @@
 //! Chooses the cheapest model that can answer, and says why.
 
-use super::Model;
+use super::{Inertia, Model};
 use crate::problem::Problem;
 
-/// The model for a question at rest, and the reason in one sentence.
+/// What is asked of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Question {
+    /// Where does it rest?
+    Rest,
+    /// What happens over time?
+    History(Inertia),
+}
+
+/// The model for a question, and the reason in one sentence.
 #[must_use]
-pub fn choose(problem: &Problem) -> (Model, String) {
-    if problem.bending_stiffness > 0.0 {
+pub fn choose(problem: &Problem, question: Question) -> (Model, String) {
+    if question == Question::History(Inertia::Dynamic) {
+        (Model::Fem, "masses move".to_owned())
+    } else if problem.bending_stiffness > 0.0 {
         (Model::Fem, "the cable has bending stiffness".to_owned())
     } else if !problem.world.is_empty() || problem.floor_friction.is_some() {
         (Model::Fem, "the scene has obstacles the cable can touch".to_owned())

@@ -147,6 +147,6 @@ pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<
         Model::Catenary => Ok(Box::new(catenary::CatenaryModel::new(problem, settings)?)),
         Model::Fem => Ok(Box::new(fem::FemModel::new(problem, settings)?)),
         Model::MassSpring => Ok(Box::new(mass_spring::MassSpringModel::new(problem, settings)?)),
-        Model::Auto => build(auto::choose(&problem).0, problem, settings),
+        Model::Auto => build(auto::choose(&problem, auto::Question::Rest).0, problem, settings),
     }
 }

@@ -255,17 +255,7 @@ const NODE_COLUMNS: [&str; 11] = [
 const EVENT_COLUMNS: [&str; 7] = ["time_s", "kind", "cable", "arc_length_m", "value", "limit", "message"];
 
 fn node_values(n: &Node) -> [f64; 9] {
-    [
-        n.arc_length_m,
-        n.x_m,
-        n.y_m,
-        n.vx_m_per_s,
-        n.vy_m_per_s,
-        n.tension_n,
-        n.strain,
-        n.stress_pa,
-        n.curvature_per_m,
-    ]
+    [n.arc_length_m, n.x_m, n.y_m, n.vx_m_per_s, n.vy_m_per_s, n.tension_n, n.strain, n.stress_pa, n.curvature_per_m]
 }
 
 /// Rust prints the fewest digits that read back to the same f64.
@@ -347,11 +337,7 @@ fn rows<R: Read>(
     Ok(())
 }
 
-fn expect_columns<R: Read>(
-    table: &'static str,
-    from: &mut csv::Reader<R>,
-    expected: &[&str],
-) -> Result<(), ReadError> {
+fn expect_columns<R: Read>(table: &'static str, from: &mut csv::Reader<R>, expected: &[&str]) -> Result<(), ReadError> {
     let found = from.headers().map_err(|e| row_error(table, 1, e))?;
     match expected.iter().enumerate().find(|(k, name)| found.get(*k) != Some(**name)) {
         None => Ok(()),
@@ -376,7 +362,17 @@ pub fn read_nodes(from: impl Read) -> Result<Vec<NodeRow>, ReadError> {
         out.push(NodeRow {
             time_s: parse(NODES, r, 0, "time_s")?,
             cable: r.get(1).unwrap_or_default().to_owned(),
-            node: Node { arc_length_m, x_m, y_m, vx_m_per_s, vy_m_per_s, tension_n, strain, stress_pa, curvature_per_m },
+            node: Node {
+                arc_length_m,
+                x_m,
+                y_m,
+                vx_m_per_s,
+                vy_m_per_s,
+                tension_n,
+                strain,
+                stress_pa,
+                curvature_per_m,
+            },
         });
         Ok(())
     })?;
@@ -442,3 +438,7 @@ pub fn read_history(from: impl Read) -> Result<HistoryTable, ReadError> {
     })?;
     Ok(table)
 }
+
+#[cfg(test)]
+#[path = "tables_tests.rs"]
+mod tests;

@@ -1,0 +1,163 @@
+//! The JSON object of an answer: SI units in the key names, never a number that is not finite.
+
+use cable_core::solution::{ContactReport, ContactState, Node, Solution, SupportReaction, Warning};
+use serde::Serialize;
+
+/// What `solve --json` prints, and `run --json` for each time.
+#[derive(Debug, Serialize)]
+pub struct Answer<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_s: Option<f64>,
+    pub model: &'static str,
+    pub reason: &'a str,
+    pub converged: bool,
+    pub residual_n: f64,
+    pub iterations: usize,
+    pub wall_time_s: f64,
+    /// Estimated relative error of the greatest tension; null where the model gives none.
+    pub error_estimate: Option<f64>,
+    pub max_tension_n: f64,
+    pub max_tension_arc_length_m: f64,
+    pub supports: Vec<Support<'a>>,
+    pub nodes: Vec<NodeEntry<'a>>,
+    pub contacts: Vec<Contact<'a>>,
+    pub warnings: &'a [Warning],
+}
+
+#[derive(Debug, Serialize)]
+pub struct Support<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cable: Option<&'a str>,
+    #[serde(flatten)]
+    support: &'a SupportReaction,
+}
+
+#[derive(Debug, Serialize)]
+pub struct NodeEntry<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cable: Option<&'a str>,
+    arc_length_m: f64,
+    x_m: f64,
+    y_m: f64,
+    tension_n: f64,
+    strain: f64,
+    stress_pa: f64,
+    curvature_per_m: f64,
+}
+
+#[derive(Debug, Serialize)]
+pub struct Contact<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cable: Option<&'a str>,
+    obstacle: &'a str,
+    x_m: f64,
+    y_m: f64,
+    arc_length_m: f64,
+    normal_n: f64,
+    friction_n: f64,
+    state: ContactState,
+    turn_deg: f64,
+    tension_before_n: f64,
+    tension_after_n: f64,
+}
+
+/// What `--json` prints where there is no answer.
+#[derive(Debug, Serialize)]
+pub struct NoAnswer<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_s: Option<f64>,
+    pub model: &'static str,
+    pub reason: &'a str,
+    pub converged: bool,
+    pub error: String,
+}
+
+/// The answer of a solution, or the name of the number in it that is not finite.
+pub fn answer(s: &Solution, wall_time_s: f64, time_s: Option<f64>) -> Result<Answer<'_>, String> {
+    check_finite(s)?;
+    let top = s.max_tension();
+    let several = s.cables.len() > 1;
+    let mut out = Answer {
+        time_s,
+        model: s.model.name(),
+        reason: &s.reason,
+        converged: true,
+        residual_n: s.cost.residual_n,
+        iterations: s.cost.iterations,
+        wall_time_s,
+        error_estimate: s.cables.iter().filter_map(|c| c.error_estimate).reduce(f64::max),
+        max_tension_n: top.tension_n,
+        max_tension_arc_length_m: top.arc_length_m,
+        supports: Vec::new(),
+        nodes: Vec::with_capacity(s.cables.iter().map(|c| c.nodes.len()).sum()),
+        contacts: Vec::new(),
+        warnings: &s.warnings,
+    };
+    for c in &s.cables {
+        let cable = several.then_some(c.name.as_str());
+        out.supports.extend(c.supports.iter().map(|support| Support { cable, support }));
+        out.nodes.extend(c.nodes.iter().map(|n| node(cable, n)));
+        out.contacts.extend(c.contacts.iter().map(|k| contact(cable, k)));
+    }
+    Ok(out)
+}
+
+fn node<'a>(cable: Option<&'a str>, n: &Node) -> NodeEntry<'a> {
+    NodeEntry {
+        cable,
+        arc_length_m: n.arc_length_m,
+        x_m: n.x_m,
+        y_m: n.y_m,
+        tension_n: n.tension_n,
+        strain: n.strain,
+        stress_pa: n.stress_pa,
+        curvature_per_m: n.curvature_per_m,
+    }
+}
+
+fn contact<'a>(cable: Option<&'a str>, k: &'a ContactReport) -> Contact<'a> {
+    Contact {
+        cable,
+        obstacle: &k.obstacle,
+        x_m: k.x_m,
+        y_m: k.y_m,
+        arc_length_m: k.arc_length_m,
+        normal_n: k.normal_n,
+        friction_n: k.friction_n,
+        state: k.state,
+        turn_deg: k.turn_deg,
+        tension_before_n: k.tension_before_n,
+        tension_after_n: k.tension_after_n,
+    }
+}
+
+/// `serde_json` would write such a number as null, which nobody could read back.
+fn check_finite(s: &Solution) -> Result<(), String> {
+    let all = |values: &[f64]| values.iter().all(|v| v.is_finite());
+    for c in &s.cables {
+        for (i, n) in c.nodes.iter().enumerate() {
+            if !all(&[n.arc_length_m, n.x_m, n.y_m, n.tension_n, n.strain, n.stress_pa, n.curvature_per_m]) {
+                return Err(format!("node {i} of cable `{}`", c.name));
+            }
+        }
+        for r in &c.supports {
+            let tensions = [r.tension_before_n.unwrap_or(0.0), r.tension_after_n.unwrap_or(0.0)];
+            if !all(&[r.x_m, r.y_m, r.reaction_x_n, r.reaction_y_n, r.arc_length_m]) || !all(&tensions) {
+                return Err(format!("support `{}` of cable `{}`", r.name, c.name));
+            }
+        }
+        for k in &c.contacts {
+            let forces = [k.normal_n, k.friction_n, k.turn_deg, k.tension_before_n, k.tension_after_n];
+            if !all(&[k.x_m, k.y_m, k.arc_length_m]) || !all(&forces) {
+                return Err(format!("a contact of cable `{}` with `{}`", c.name, k.obstacle));
+            }
+        }
+        if c.error_estimate.is_some_and(|e| !e.is_finite()) {
+            return Err(format!("the error estimate of cable `{}`", c.name));
+        }
+    }
+    if s.warnings.iter().any(|w| !all(&[w.arc_length_m, w.value, w.limit])) {
+        return Err("a number of a warning".to_owned());
+    }
+    if !all(&[s.cost.residual_n, s.time_s]) { Err("the residual".to_owned()) } else { Ok(()) }
+}

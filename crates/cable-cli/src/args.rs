@@ -1,0 +1,127 @@
+//! Arguments of the program.
+
+use std::path::PathBuf;
+
+use cable_core::Model;
+use clap::{Args, Parser, Subcommand};
+
+#[derive(Debug, Parser)]
+#[command(
+    name = "cable",
+    version,
+    about = "Where a cable goes, how hard it pulls, where it rubs",
+    after_help = "Exit codes: 0 answered, 1 no solution or not converged, 2 bad input, 74 could not write."
+)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Find where everything rests at time 0
+    Solve(SolveArguments),
+    /// Follow the scene over time and write a run folder
+    Run(RunArguments),
+    /// Say whether a scene can be solved, without solving it
+    Check {
+        /// Scene file (TOML)
+        scene: PathBuf,
+    },
+    /// Print the JSON Schema of a scene file
+    Schema,
+}
+
+#[derive(Debug, Args)]
+pub struct Common {
+    /// Scene file (TOML)
+    pub scene: PathBuf,
+    /// auto, catenary, fem or mass-spring
+    #[arg(long, default_value = "auto", value_parser = model)]
+    pub model: Model,
+    /// Relative accuracy asked of the tension
+    #[arg(long, default_value_t = 1e-3, value_parser = tolerance)]
+    pub tolerance: f64,
+    /// Print JSON objects (one a line) instead of text
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct SolveArguments {
+    #[command(flatten)]
+    pub common: Common,
+}
+
+#[derive(Debug, Args)]
+pub struct RunArguments {
+    #[command(flatten)]
+    pub common: Common,
+    /// How long: 10s, 250ms, 2min
+    #[arg(long = "for", value_parser = duration_s)]
+    pub duration_s: f64,
+    /// Time between outputs [default: 1/60 s]
+    #[arg(long, value_parser = interval_s, default_value = "0.016666666666666666s", hide_default_value = true)]
+    pub every: f64,
+    /// Without inertia: supports move infinitely slowly, friction remembers
+    #[arg(long)]
+    pub quasi_static: bool,
+    /// Folder for scene.toml, history.csv, nodes.csv and events.csv; those of an earlier run there are replaced
+    #[arg(long)]
+    pub out: PathBuf,
+}
+
+fn model(text: &str) -> Result<Model, String> {
+    Model::from_name(text).ok_or_else(|| "the models are auto, catenary, fem and mass-spring".to_owned())
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(v) if v > 0.0 && v < 1.0 => Ok(v),
+        _ => Err("must be a number above 0 and below 1".to_owned()),
+    }
+}
+
+/// A time with its unit: `10s`, `250ms`, `2min`; a bare number is seconds.
+fn time_s(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let units = [("ms", 1e-3), ("min", 60.0), ("s", 1.0)];
+    let (number, unit_s) = units.iter().find_map(|(u, s)| text.strip_suffix(u).map(|n| (n, *s))).unwrap_or((text, 1.0));
+    number.trim().parse::<f64>().ok().map(|v| v * unit_s).filter(|v| v.is_finite())
+}
+
+fn duration_s(text: &str) -> Result<f64, String> {
+    time_s(text)
+        .filter(|v| (0.0..=1e7).contains(v))
+        .ok_or_else(|| "must be a time from 0s to 1e7s, such as 10s".to_owned())
+}
+
+fn interval_s(text: &str) -> Result<f64, String> {
+    time_s(text)
+        .filter(|v| (1e-6..=1e7).contains(v))
+        .ok_or_else(|| "must be a time from 1e-6s to 1e7s, such as 0.02s".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_with_units() {
+        assert_eq!(time_s("10s"), Some(10.0));
+        assert_eq!(time_s("0.02s"), Some(0.02));
+        assert_eq!(time_s("250ms"), Some(0.25));
+        assert_eq!(time_s("2min"), Some(120.0));
+        assert_eq!(time_s("1.5"), Some(1.5));
+        for bad in ["", "s", "ten", "NaNs", "infs", "1e400s", "10 parsecs"] {
+            assert_eq!(time_s(bad), None, "{bad}");
+        }
+        assert!(duration_s("-1s").is_err() && interval_s("0s").is_err() && tolerance("NaN").is_err());
+    }
+
+    #[test]
+    fn the_command_line_is_sound() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+}

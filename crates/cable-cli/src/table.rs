@@ -1,0 +1,86 @@
+//! An answer as text.
+
+use std::fmt::Write as _;
+
+use cable_core::solution::{ContactState, Solution};
+
+/// A table with units. Writing to a `String` cannot fail, so its results are not looked at.
+pub fn table(s: &Solution) -> String {
+    let mut t = String::new();
+    let top = s.max_tension();
+    let _ = writeln!(t, "Model             {} ({})", s.model, s.reason);
+    let _ = writeln!(t, "Time              {} s", s.time_s);
+    let name = s.cables.get(top.cable).map_or("", |c| &c.name);
+    let _ = writeln!(t, "Greatest tension  {:.6} N, at {:.4} m of `{name}`", top.tension_n, top.arc_length_m);
+    for c in &s.cables {
+        if let Some(e) = c.error_estimate {
+            let _ = writeln!(t, "Estimated error   {:.1e} of the greatest tension of `{}`", e, c.name);
+        }
+    }
+    let _ = writeln!(t, "Residual          {:.2e} N after {} iterations", s.cost.residual_n, s.cost.iterations);
+    for c in &s.cables {
+        supports(&mut t, c);
+        contacts(&mut t, c);
+    }
+    for w in &s.warnings {
+        let _ = writeln!(t, "\nWarning: {}", w.message);
+    }
+    t
+}
+
+fn supports(t: &mut String, c: &cable_core::solution::CableSolution) {
+    let wide = c.supports.iter().map(|r| r.name.chars().count()).max().unwrap_or(0).max(7);
+    let _ = writeln!(t, "\nCable `{}`, force on each support", c.name);
+    let _ = writeln!(
+        t,
+        "  {:wide$}  {:>10} {:>10} {:>10} {:>13} {:>13} {:>13} {:>13}",
+        "support", "along m", "x m", "y m", "x N", "y N", "before N", "after N"
+    );
+    for r in &c.supports {
+        let tension = |v: Option<f64>| v.map_or_else(|| "–".to_owned(), |v| format!("{v:.4}"));
+        let _ = writeln!(
+            t,
+            "  {:wide$}  {:>10.4} {:>10.4} {:>10.4} {:>13.4} {:>13.4} {:>13} {:>13}",
+            r.name,
+            r.arc_length_m,
+            r.x_m,
+            r.y_m,
+            r.reaction_x_n,
+            r.reaction_y_n,
+            tension(r.tension_before_n),
+            tension(r.tension_after_n)
+        );
+    }
+}
+
+fn contacts(t: &mut String, c: &cable_core::solution::CableSolution) {
+    if c.contacts.is_empty() {
+        return;
+    }
+    let wide = c.contacts.iter().map(|k| k.obstacle.chars().count()).max().unwrap_or(0).max(8);
+    let _ = writeln!(t, "\nCable `{}`, contacts", c.name);
+    let _ = writeln!(
+        t,
+        "  {:wide$}  {:>10} {:>10} {:>10} {:>13} {:>13} {:>6} {:>9} {:>13} {:>13}",
+        "obstacle", "along m", "x m", "y m", "normal N", "friction N", "state", "turn °", "before N", "after N"
+    );
+    for k in &c.contacts {
+        let state = match k.state {
+            ContactState::Stick => "stick",
+            ContactState::Slip => "slip",
+        };
+        let _ = writeln!(
+            t,
+            "  {:wide$}  {:>10.4} {:>10.4} {:>10.4} {:>13.4} {:>13.4} {state:>6} {:>9.3} {:>13.4} {:>13.4}",
+            k.obstacle,
+            k.arc_length_m,
+            k.x_m,
+            k.y_m,
+            k.normal_n,
+            k.friction_n,
+            k.turn_deg,
+            k.tension_before_n,
+            k.tension_after_n
+        );
+    }
+}
