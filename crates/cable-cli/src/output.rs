@@ -45,6 +45,7 @@ impl Failure {
         match e {
             Error::Scene(e) => Self::Scene(scene.to_owned(), Box::new(e)),
             Error::Solve(e) => Self::Solve(Box::new(e)),
+            Error::File(e) => Self::File(e),
         }
     }
 }
