@@ -123,7 +123,7 @@ fn locate(table: &DeTable<'_>, path: &str) -> Option<usize> {
 }
 
 /// Line and column of a byte, both from 1.
-fn position(text: &str, offset: usize) -> TextPosition {
+pub(super) fn position(text: &str, offset: usize) -> TextPosition {
     let before = text.get(..offset).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |i| i + 1);
     TextPosition {

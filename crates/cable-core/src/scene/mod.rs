@@ -17,6 +17,7 @@ pub mod robot;
 pub mod schema;
 pub mod support;
 mod support_rules;
+pub mod survey;
 pub mod validate;
 mod way;
 

@@ -1,6 +1,6 @@
 //! The bundled scenes: readable, valid by the schema, and laid clear of what stands in their way.
 
-use cable_core::scene::{Robot, Shape, SupportKind, catalog};
+use cable_core::scene::{Robot, Shape, SupportKind, catalog, preset};
 use cable_core::{Scene, Vec2};
 
 fn vec2(p: [f64; 2]) -> Vec2 {
@@ -137,4 +137,25 @@ fn a_hitch_hangs_behind_its_robot() {
     assert_eq!(robot.hitch_m(), Some([x - 0.9, y + 0.4]));
     robot.preset = "none".to_owned();
     assert_eq!(robot.hitch_m(), None);
+}
+
+#[test]
+fn every_map_and_every_cable_preset_makes_a_valid_scene() {
+    for map in preset::map_presets() {
+        let scene = Scene { obstacles: map.obstacles.clone(), ..catalog::hanging_span() };
+        scene.validate().unwrap_or_else(|e| panic!("{}: {e}", map.id));
+        let Shape::Terrain { points_m } = &map.obstacles[0].shape else { panic!("{} has no ground", map.id) };
+        let wide = points_m.iter().map(|p| p[0]).fold(0.0, f64::max) - 1.0;
+        assert!((2.0 * wide - map.inside_width_m.value).abs() < 1e-9, "{}: drawn {} m wide", map.id, 2.0 * wide);
+        assert!(map.riser_at_m[0].abs() < wide, "{}", map.id);
+    }
+    let text = |id: &str| catalog::TEXTS[1].1.replace("soow-6-4", id);
+    for cable in preset::cable_presets() {
+        let scene = Scene::from_toml(&text(cable.id)).unwrap_or_else(|e| panic!("{}: {e}", cable.id));
+        assert_eq!(scene.cables[0].linear_density_kg_per_m, cable.linear_density_kg_per_m.value);
+    }
+    for robot in preset::robot_presets() {
+        let text = format!("{}\n[robot]\npreset = \"{}\"\nat_m = [0.0, 0.0]\n", text("soow-6-4"), robot.id);
+        Scene::from_toml(&text).unwrap_or_else(|e| panic!("{}: {e}", robot.id));
+    }
 }
