@@ -1,1 +1,0 @@
-//! Rung 0: the elastic catenary (placeholder).

@@ -1,0 +1,234 @@
+//! What holds the cable at an instant, and what pulls on it.
+
+use std::f64::consts::PI;
+
+use crate::catenary::PointForce;
+use crate::error::SolveError;
+use crate::math::{Vec2, perp};
+use crate::model::Model;
+use crate::problem::{Problem, SupportPoint};
+use crate::scene::{PulleySide, SupportKind};
+
+/// A point the cable cannot leave: held there, or sliding through.
+#[derive(Clone, Debug)]
+pub(super) struct Anchor {
+    /// Index of the support.
+    pub support: usize,
+    /// Where it is (a wheel's centre), m.
+    pub at: Vec2,
+    /// Material point held, m; None = slides.
+    pub held: Option<f64>,
+    /// Radius of the centre line round the wheel, m; 0 = a point.
+    pub radius: f64,
+    /// Friction coefficient.
+    pub friction: f64,
+    /// Wheel: outward normal = facing × (tangent turned +90°).
+    pub facing: f64,
+}
+
+/// The cable's holds and loads at an instant.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    /// In order along the cable; at least one.
+    pub anchors: Vec<Anchor>,
+    /// Dead loads in order, those at the very ends of a dangling cable included, N.
+    pub loads: Vec<PointForce>,
+    /// Load per metre of unstretched length, N/m.
+    pub weight: Vec2,
+    /// Whether the start and the end dangle.
+    pub free: [bool; 2],
+    /// Dead force on a dangling start and end, N.
+    pub end_force: [Vec2; 2],
+}
+
+/// Where a support is now: by hand, by its motion, or not at all.
+fn place(s: &SupportPoint, dragged: Option<Vec2>, time_s: f64) -> Option<Vec2> {
+    let p = s.position_at(time_s).map(|(p, _)| p)?;
+    Some(dragged.unwrap_or(p))
+}
+
+impl Layout {
+    /// The layout at a time.
+    ///
+    /// # Errors
+    /// `NoRestingPlace` when nothing holds the cable.
+    pub fn new(p: &Problem, dragged: &[Option<Vec2>], time_s: f64) -> Result<Self, SolveError> {
+        let gravity = if p.linear_density > 0.0 { p.weight / p.linear_density } else { Vec2::zeros() };
+        let mut anchors = Vec::with_capacity(p.supports.len());
+        let mut loads: Vec<PointForce> =
+            p.loads.iter().map(|l| PointForce { arc_length: l.arc_length, force: l.force.at(time_s) }).collect();
+        for (k, s) in p.supports.iter().enumerate() {
+            let at = place(s, dragged.get(k).copied().flatten(), time_s);
+            match (s.kind, at) {
+                (SupportKind::Load | SupportKind::Free, _) => {
+                    if let Some(arc_length) = s.arc_length {
+                        loads.push(PointForce { arc_length, force: s.force.at(time_s) + gravity * s.mass });
+                    }
+                }
+                (_, None) => {}
+                (SupportKind::Pulley, Some(at)) => anchors.push(Anchor {
+                    support: k,
+                    at,
+                    held: None,
+                    radius: s.wheel_radius,
+                    friction: s.friction,
+                    facing: 0.0,
+                }),
+                (_, Some(at)) => anchors.push(Anchor {
+                    support: k,
+                    at,
+                    held: s.arc_length,
+                    radius: 0.0,
+                    friction: 0.0,
+                    facing: 0.0,
+                }),
+            }
+        }
+        loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
+        let first_held = anchors.first().is_some_and(|a| a.held == Some(0.0));
+        let last_held = anchors.last().is_some_and(|a| a.held == Some(p.length));
+        let mut layout = Self {
+            anchors,
+            weight: p.body_force(time_s),
+            free: [!first_held, !last_held],
+            end_force: [0.0, p.length].map(|end| {
+                loads.iter().filter(|l| l.arc_length == end).fold(Vec2::zeros(), |sum, l| sum + l.force)
+            }),
+            loads,
+        };
+        if layout.anchors.is_empty() {
+            return Err(SolveError::NoRestingPlace { why: "nothing holds the cable".to_owned() });
+        }
+        layout.face_wheels(p);
+        Ok(layout)
+    }
+
+    /// Which side of its wheel the cable runs on, seen along it: over means above where it travels to the right.
+    fn face_wheels(&mut self, p: &Problem) {
+        let centres: Vec<Vec2> = self.anchors.iter().map(|a| a.at).collect();
+        for (k, a) in self.anchors.iter_mut().enumerate() {
+            let before = if k > 0 { centres[k - 1] } else { a.at };
+            let after = centres.get(k + 1).copied().unwrap_or(a.at);
+            let right = if after.x - before.x < 0.0 { -1.0 } else { 1.0 };
+            let over = if p.supports[a.support].side == PulleySide::Over { 1.0 } else { -1.0 };
+            a.facing = right * over;
+        }
+    }
+
+    /// Loads that act at a held material point, where the support takes them, N.
+    pub fn loads_at(&self, arc_length: f64) -> Vec2 {
+        self.loads.iter().filter(|l| l.arc_length == arc_length).fold(Vec2::zeros(), |sum, l| sum + l.force)
+    }
+
+    /// Total load between two material points, N.
+    pub fn load_between(&self, from: f64, to: f64) -> Vec2 {
+        let inside = self.loads.iter().filter(|l| l.arc_length > from && l.arc_length < to);
+        inside.fold(self.weight * (to - from), |sum, l| sum + l.force)
+    }
+
+    /// Where each anchor sits on the cable when the material is spread evenly along the way: m of arc length.
+    ///
+    /// Along the route the ends of the scene give, else straight from anchor to anchor; a dangling end takes
+    /// what a taut cable leaves over.
+    pub fn spread(&self, p: &Problem) -> Vec<f64> {
+        let way = self.way(p);
+        let (n, total) = (self.anchors.len(), way.1);
+        let way = way.0;
+        let last = way[n - 1];
+        let spare = if p.length > last - way[0] { p.length - (last - way[0]) } else { 0.05 * p.length };
+        // Known material points, as (way, s), the ends of the cable where they dangle included.
+        let mut known: Vec<(f64, f64)> = Vec::with_capacity(n + 2);
+        if self.free[0] {
+            let head = if p.route.len() > 1 { way[0] } else if self.free[1] { 0.5 * spare } else { spare };
+            known.push((way[0] - head, 0.0));
+        }
+        known.extend(self.anchors.iter().zip(&way).filter_map(|(a, w)| a.held.map(|s| (*w, s))));
+        if self.free[1] {
+            let tail = if p.route.len() > 1 { total - last } else if self.free[0] { 0.5 * spare } else { spare };
+            known.push((last + tail, p.length));
+        }
+        self.anchors
+            .iter()
+            .zip(&way)
+            .map(|(a, w)| {
+                a.held.unwrap_or_else(|| {
+                    let k = known.partition_point(|(kw, _)| kw <= w).clamp(1, known.len().max(2) - 1);
+                    match (known.get(k - 1), known.get(k)) {
+                        (Some(a), Some(b)) if b.0 > a.0 => a.1 + (b.1 - a.1) * (w - a.0) / (b.0 - a.0),
+                        _ => 0.5 * p.length,
+                    }
+                })
+            })
+            .collect()
+    }
+
+    /// How far along the way each anchor lies, and the length of the whole way, m.
+    fn way(&self, p: &Problem) -> (Vec<f64>, f64) {
+        let mut out = Vec::with_capacity(self.anchors.len());
+        if p.route.len() > 1 {
+            let (mut from, mut total) = (0.0, 0.0);
+            for w in p.route.windows(2) {
+                total += (w[1] - w[0]).norm();
+            }
+            for a in &self.anchors {
+                from = nearest_along(&p.route, a.at, from);
+                out.push(from);
+            }
+            return (out, total);
+        }
+        let mut sum = 0.0;
+        for (k, a) in self.anchors.iter().enumerate() {
+            if k > 0 {
+                sum += (a.at - self.anchors[k - 1].at).norm();
+            }
+            out.push(sum);
+        }
+        (out, sum)
+    }
+}
+
+/// Arc length along a polyline of its point nearest to `p`, not before `from`, m.
+pub(super) fn nearest_along(line: &[Vec2], p: Vec2, from: f64) -> f64 {
+    let (mut best, mut best_distance, mut sum) = (from, f64::INFINITY, 0.0);
+    for w in line.windows(2) {
+        let d = w[1] - w[0];
+        let l = d.norm();
+        if l > 0.0 {
+            let u = ((p - w[0]).dot(&d) / (l * l)).clamp(0.0, 1.0);
+            let at = sum + u * l;
+            let distance = (w[0] + d * u - p).norm();
+            if at >= from && distance < best_distance {
+                (best, best_distance) = (at, distance);
+            }
+        }
+        sum += l;
+    }
+    best
+}
+
+/// An angle brought to the 2π around `near`.
+pub(super) fn angle_near(angle: f64, near: f64) -> f64 {
+    angle - 2.0 * PI * ((angle - near) / (2.0 * PI)).round()
+}
+
+/// Direction of an angle.
+pub(super) fn direction(angle: f64) -> Vec2 {
+    Vec2::new(angle.cos(), angle.sin())
+}
+
+/// The angle of a vector.
+pub(super) fn angle_of(v: Vec2) -> f64 {
+    v.y.atan2(v.x)
+}
+
+impl Anchor {
+    /// Where the centre line touches the wheel when it runs at `angle`, m.
+    pub fn touch(&self, angle: f64) -> Vec2 {
+        self.at + perp(direction(angle)) * (self.facing * self.radius)
+    }
+}
+
+/// The model's refusal.
+pub(super) fn unsupported(feature: impl Into<String>) -> SolveError {
+    SolveError::Unsupported { model: Model::Catenary, feature: feature.into() }
+}
