@@ -31,7 +31,11 @@ fn stiffness(input: &Value) -> f64 {
 
 #[track_caller]
 fn near(case: &str, what: &str, got: f64, expected: f64, bound: f64) {
-    assert!((got - expected).abs() <= bound, "{case}: {what} = {got:e}, expected {expected:e}, off by {:e}", got - expected);
+    assert!(
+        (got - expected).abs() <= bound,
+        "{case}: {what} = {got:e}, expected {expected:e}, off by {:e}",
+        got - expected
+    );
 }
 
 /// Equilibrium of the whole, closure, and the moment of the load about the start, by Simpson.
@@ -192,7 +196,13 @@ fn point_load_family() {
             near(&case, "sag_node", -dead_node.y, number(&input, "sag_node"), length);
         }
         // Equilibrium: the ends carry weight and load, H is the same on both sides.
-        near(&case, "vertical balance", end.y - start.y, number(&input, "w") * (lengths.0 + lengths.1) + p, 1e-13 * start.norm());
+        near(
+            &case,
+            "vertical balance",
+            end.y - start.y,
+            number(&input, "w") * (lengths.0 + lengths.1) + p,
+            1e-13 * start.norm(),
+        );
         near(&case, "horizontal balance", end.x, start.x, 1e-13 * start.norm());
     }
 }
@@ -203,7 +213,13 @@ fn thermal_family() {
         let w = number(&input, "w0");
         let s = Span {
             thermal_stretch: 1.0 + number(&input, "alpha") * number(&input, "dT"),
-            ..span(number(&input, "X"), number(&input, "Z"), number(&input, "L0"), Vec2::new(0.0, -w), stiffness(&input))
+            ..span(
+                number(&input, "X"),
+                number(&input, "Z"),
+                number(&input, "L0"),
+                Vec2::new(0.0, -w),
+                stiffness(&input),
+            )
         };
         let c = Catenary::solve(&s).unwrap_or_else(|e| panic!("{case}: {e}"));
         let force = TOLERANCE * c.max_tension();

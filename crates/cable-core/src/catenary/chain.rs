@@ -95,6 +95,14 @@ impl<'a> Chain<'a> {
         })
     }
 
+    /// ∫ T + T²/2EA ds for a start force (N), N·m.
+    #[must_use]
+    pub fn complementary(&self, start_force: Vec2) -> f64 {
+        let frame = Frame::new(self.weight, start_force);
+        let (h, v) = frame.split(start_force);
+        self.energy(frame, h, v).phi
+    }
+
     fn energy(&self, frame: Frame, h: f64, v: f64) -> Energy {
         let mut sum = Energy::default();
         let (mut h, mut v) = (h, v);

@@ -12,7 +12,7 @@
 mod chain;
 mod kernel;
 
-pub use chain::{Chain, PointForce};
+pub use chain::{Chain, ChainForce, PointForce};
 
 use kernel::Piece;
 
@@ -301,11 +301,7 @@ impl Catenary {
     pub fn sag_s(&self) -> f64 {
         let w = self.span.weight.norm();
         let (x, z) = self.frame.split(self.span.chord);
-        if w > 0.0 && x > 0.0 {
-            ((self.h * z / x - self.va) / w).clamp(0.0, self.span.length)
-        } else {
-            self.lowest_s()
-        }
+        if w > 0.0 && x > 0.0 { ((self.h * z / x - self.va) / w).clamp(0.0, self.span.length) } else { self.lowest_s() }
     }
 
     /// Greatest distance below the chord, measured along the load, m (below the lower end where the chord has
@@ -314,11 +310,7 @@ impl Catenary {
     pub fn sag(&self) -> f64 {
         let (x, z) = self.frame.split(self.span.chord);
         let (px, pz) = self.frame.split(self.position_at(self.sag_s()));
-        if x > 0.0 {
-            z * (px / x) - pz
-        } else {
-            (if z < 0.0 { z } else { 0.0 }) - pz
-        }
+        if x > 0.0 { z * (px / x) - pz } else { (if z < 0.0 { z } else { 0.0 }) - pz }
     }
 }
 

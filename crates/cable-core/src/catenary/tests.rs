@@ -2,13 +2,7 @@ use super::*;
 use proptest::prelude::*;
 
 fn span(x: f64, z: f64, length: f64, w: f64, ea: f64) -> Span {
-    Span {
-        chord: Vec2::new(x, z),
-        length,
-        weight: Vec2::new(0.0, -w),
-        axial_stiffness: ea,
-        thermal_stretch: 1.0,
-    }
+    Span { chord: Vec2::new(x, z), length, weight: Vec2::new(0.0, -w), axial_stiffness: ea, thermal_stretch: 1.0 }
 }
 
 /// The widest grid of the method notes: shapes × L/chord × EA, weight 10 N/m.
@@ -44,13 +38,17 @@ fn grid_closes_in_few_iterations() {
 #[test]
 fn hessian_is_the_derivative_of_the_gradient_and_gradient_of_the_energy() {
     // Both branches and their borders; central differences.
-    for (h, v) in [(5.0, -0.5), (0.7, 0.3), (0.3, -0.5), (0.05, -0.2), (0.2, 0.8), (0.2, -1.9), (-0.3, -0.4), (50.0, 9.0)] {
+    for (h, v) in
+        [(5.0, -0.5), (0.7, 0.3), (0.3, -0.5), (0.05, -0.2), (0.2, 0.8), (0.2, -1.9), (-0.3, -0.4), (50.0, 9.0)]
+    {
         for (w, eps) in [(1.0, 1e-3), (1.0, 0.5), (0.0, 0.1), (0.5, 0.0)] {
             let p = Piece { w, l: 1.3, eps };
             let (e, d) = (p.energy(h, v), 1e-5);
             let (r, l) = (p.energy(h + d, v), p.energy(h - d, v));
             let (u, b) = (p.energy(h, v + d), p.energy(h, v - d));
-            let near = |a: f64, b: f64, what: &str| assert!((a - b).abs() < 2e-7 * (1.0 + a.abs()), "{what} {a} {b} at {h} {v} {w}");
+            let near = |a: f64, b: f64, what: &str| {
+                assert!((a - b).abs() < 2e-7 * (1.0 + a.abs()), "{what} {a} {b} at {h} {v} {w}")
+            };
             near(e.x, (r.phi - l.phi) / (2.0 * d), "x");
             near(e.z, (u.phi - b.phi) / (2.0 * d), "z");
             near(e.k11, (r.x - l.x) / (2.0 * d), "k11");
@@ -111,7 +109,8 @@ fn a_chain_of_one_piece_is_the_catenary_and_splitting_changes_nothing() {
 }
 
 fn wide() -> impl Strategy<Value = (Span, f64)> {
-    let signed = prop_oneof![Just(0.0), -3.0..3.0f64].prop_map(|e: f64| if e == 0.0 { 0.0 } else { e.signum() * 10f64.powf(e.abs() - 1.0) });
+    let signed = prop_oneof![Just(0.0), -3.0..3.0f64]
+        .prop_map(|e: f64| if e == 0.0 { 0.0 } else { e.signum() * 10f64.powf(e.abs() - 1.0) });
     (signed.clone(), signed, -0.045..2.0f64, 3.0..9.0f64, -6.0..4.0f64, 0.0..1.0f64).prop_filter_map(
         "coincident ends have no chord to scale by",
         |(x, z, ratio, ea, w, turn)| {

@@ -74,14 +74,9 @@ impl Layout {
                     friction: s.friction,
                     facing: 0.0,
                 }),
-                (_, Some(at)) => anchors.push(Anchor {
-                    support: k,
-                    at,
-                    held: s.arc_length,
-                    radius: 0.0,
-                    friction: 0.0,
-                    facing: 0.0,
-                }),
+                (_, Some(at)) => {
+                    anchors.push(Anchor { support: k, at, held: s.arc_length, radius: 0.0, friction: 0.0, facing: 0.0 })
+                }
             }
         }
         loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
@@ -91,9 +86,8 @@ impl Layout {
             anchors,
             weight: p.body_force(time_s),
             free: [!first_held, !last_held],
-            end_force: [0.0, p.length].map(|end| {
-                loads.iter().filter(|l| l.arc_length == end).fold(Vec2::zeros(), |sum, l| sum + l.force)
-            }),
+            end_force: [0.0, p.length]
+                .map(|end| loads.iter().filter(|l| l.arc_length == end).fold(Vec2::zeros(), |sum, l| sum + l.force)),
             loads,
         };
         if layout.anchors.is_empty() {
@@ -139,12 +133,24 @@ impl Layout {
         // Known material points, as (way, s), the ends of the cable where they dangle included.
         let mut known: Vec<(f64, f64)> = Vec::with_capacity(n + 2);
         if self.free[0] {
-            let head = if p.route.len() > 1 { way[0] } else if self.free[1] { 0.5 * spare } else { spare };
+            let head = if p.route.len() > 1 {
+                way[0]
+            } else if self.free[1] {
+                0.5 * spare
+            } else {
+                spare
+            };
             known.push((way[0] - head, 0.0));
         }
         known.extend(self.anchors.iter().zip(&way).filter_map(|(a, w)| a.held.map(|s| (*w, s))));
         if self.free[1] {
-            let tail = if p.route.len() > 1 { total - last } else if self.free[0] { 0.5 * spare } else { spare };
+            let tail = if p.route.len() > 1 {
+                total - last
+            } else if self.free[0] {
+                0.5 * spare
+            } else {
+                spare
+            };
             known.push((last + tail, p.length));
         }
         self.anchors

@@ -1,18 +1,52 @@
-//! The `Catenary` model (placeholder: refuses everything).
+//! Rung 0 as a model: exact elastic catenaries between supports, loads and pulleys. Statics and slow motion with
+//! friction that remembers; no obstacles within reach, no bending, no inertia.
+//!
+//! What is unknown is only where the material sits at each pulley ([`slide`]); everything between is a convex
+//! problem of two forces ([`crate::catenary`]). With friction the resting place depends on how the cable was
+//! laid: [`Mechanics::settle`] takes it spread evenly along its way and lets it slip only where friction cannot
+//! hold it.
+
+mod equilibrium;
+mod layout;
+mod report;
+mod slide;
+mod wheel;
 
 use std::sync::Arc;
 
+use self::equilibrium::{Equilibrium, Start, first_arcs, solve};
+use self::layout::{Layout, nearest_along, unsupported};
+use self::report::{report, straight};
+use self::slide::Mode;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::problem::Problem;
-use crate::solution::CableSolution;
+use crate::solution::{CableSolution, Cost, Node, SupportReaction, Warning, WarningKind};
 use crate::state::State;
+
+/// Supports move by at most this part of the cable in one solve of a slow motion. Larger: slip that starts and
+/// reverses inside a step is missed. Smaller: more solves for the same answer. 1 % halved changed the drags of
+/// the reference scenes by less than 1e-6.
+const STEP: f64 = 0.01;
+/// Halvings of a slow step before it is given up.
+const MAX_HALVINGS: u32 = 10;
+/// Longest time step taken, s.
+const LONGEST_STEP_S: f64 = 1e6;
 
 /// The model's mechanics of one cable.
 #[derive(Clone, Debug)]
 pub struct CatenaryModel {
     problem: Arc<Problem>,
+    time_s: f64,
+    dragged: Vec<Option<Vec2>>,
+    /// Supports of the anchors the balance is for (a released one drops out).
+    anchored: Vec<usize>,
+    balance: Option<Equilibrium>,
+    /// Material points a state from elsewhere gave, by support.
+    adopted: Vec<Option<f64>>,
+    nodes: Vec<Node>,
+    reactions: Vec<SupportReaction>,
 }
 
 impl CatenaryModel {
@@ -21,7 +55,136 @@ impl CatenaryModel {
     /// # Errors
     /// `Unsupported` when the scene needs what the model lacks.
     pub fn new(problem: Arc<Problem>, _settings: Settings) -> Result<Self, SolveError> {
-        Ok(Self { problem })
+        if problem.bending_stiffness > 0.0 {
+            return Err(unsupported("the cable has bending stiffness"));
+        }
+        if problem.floor_friction.is_some() {
+            return Err(unsupported("in plan view the floor rubs everywhere"));
+        }
+        if problem.cable.self_contact {
+            return Err(unsupported("the cable can touch itself"));
+        }
+        let n = problem.supports.len();
+        let mut model = Self {
+            problem,
+            time_s: 0.0,
+            dragged: vec![None; n],
+            anchored: Vec::new(),
+            balance: None,
+            adopted: vec![None; n],
+            nodes: Vec::new(),
+            reactions: Vec::new(),
+        };
+        // What nothing holds has no route to show; `settle` says so.
+        if let Ok(layout) = Layout::new(&model.problem, &model.dragged, 0.0) {
+            model.nodes = straight(&model.problem, &layout, &layout.spread(&model.problem));
+        } else {
+            let at = model.problem.route.first().copied().unwrap_or_else(Vec2::zeros);
+            let length = model.problem.length;
+            let node = |s: f64| Node { arc_length_m: s, x_m: at.x + s, y_m: at.y, ..Node::default() };
+            model.nodes = vec![node(0.0), node(length)];
+        }
+        Ok(model)
+    }
+
+    /// Balance of a layout, from what the present one remembers (`fresh`: from the even spread).
+    fn balance(&self, layout: &Layout, fresh: bool) -> Result<Equilibrium, SolveError> {
+        let spread = layout.spread(&self.problem);
+        let (mut sigma, mut arcs) = (spread, first_arcs(layout));
+        let mut modes: Vec<Mode> = layout
+            .anchors
+            .iter()
+            .map(|a| if a.held.is_none() && a.friction <= 0.0 { Mode::Slip(0.0) } else { Mode::Stick })
+            .collect();
+        for (i, a) in layout.anchors.iter().enumerate() {
+            if a.held.is_some() {
+                continue;
+            }
+            if let Some(s) = self.adopted.get(a.support).copied().flatten() {
+                sigma[i] = s;
+            }
+            let Some(old) = self.balance.as_ref().filter(|_| !fresh) else { continue };
+            if let Some(j) = self.anchored.iter().position(|s| *s == a.support) {
+                (sigma[i], arcs[i], modes[i]) = (old.sigma[j], old.arcs[j], old.modes[j]);
+            }
+        }
+        let held = sigma.clone();
+        let start = Start { held: &held, sigma, modes: modes.clone(), arcs: arcs.clone() };
+        let found = solve(&self.problem, layout, start);
+        if found.is_ok() || fresh {
+            return found;
+        }
+        // The last slip directions may be a bad start: from all holding.
+        for (m, a) in modes.iter_mut().zip(&layout.anchors) {
+            if a.friction > 0.0 {
+                *m = Mode::Stick;
+            }
+        }
+        solve(&self.problem, layout, Start { held: &held, sigma: held.clone(), modes, arcs })
+    }
+
+    /// Takes a balance as the state at a time.
+    fn accept(&mut self, layout: &Layout, e: Equilibrium, time_s: f64) -> Result<StepReport, SolveError> {
+        let (nodes, reactions) = report(&self.problem, layout, &e);
+        if let Some(node) =
+            nodes.iter().position(|n| !(n.x_m.is_finite() && n.y_m.is_finite() && n.tension_n.is_finite()))
+        {
+            return Err(SolveError::NonFinite { quantity: "position or tension", node, time_s });
+        }
+        self.refuse_contact(&nodes)?;
+        let cost = Cost { iterations: e.iterations, residual_n: e.residual, ..Cost::default() };
+        self.nodes = nodes;
+        self.reactions = reactions;
+        self.anchored = layout.anchors.iter().map(|a| a.support).collect();
+        self.balance = Some(e);
+        self.adopted.iter_mut().for_each(|a| *a = None);
+        self.time_s = time_s;
+        Ok(StepReport { cost, warnings: Vec::new() })
+    }
+
+    /// Obstacles are for other models, unless the cable hangs clear of them.
+    fn refuse_contact(&self, nodes: &[Node]) -> Result<(), SolveError> {
+        let world = &self.problem.world;
+        if world.is_empty() {
+            return Ok(());
+        }
+        let at = |n: &Node| Vec2::new(n.x_m, n.y_m);
+        let mut gaps = Vec::new();
+        for w in nodes.windows(2) {
+            gaps.clear();
+            world.segment_gaps(at(&w[0]), at(&w[1]), self.problem.radius, &mut gaps);
+            let inside = world.signed_gap(at(&w[0]), self.problem.length).is_some_and(|g| g.gap_m < 0.0);
+            if inside || gaps.iter().any(|g| g.gap_m < 0.0) {
+                let s = w[0].arc_length_m;
+                return Err(unsupported(format!("the cable reaches an obstacle {s:.3} m along it")));
+            }
+        }
+        Ok(())
+    }
+
+    /// One slow step to a time, at once.
+    fn slow_step(&mut self, time_s: f64) -> Result<StepReport, SolveError> {
+        let layout = Layout::new(&self.problem, &self.dragged, time_s)?;
+        let e = self.balance(&layout, false)?;
+        self.accept(&layout, e, time_s)
+    }
+
+    /// How far any support moves between two times, m.
+    fn support_travel(&self, from_s: f64, to_s: f64) -> f64 {
+        let mut most = 0.0f64;
+        for s in &self.problem.supports {
+            if let (Some((a, _)), Some((b, _))) = (s.position_at(from_s), s.position_at(to_s)) {
+                let d = (b - a).norm();
+                if d > most {
+                    most = d;
+                }
+            }
+        }
+        most
+    }
+
+    fn has_friction(&self) -> bool {
+        self.problem.supports.iter().any(|s| s.friction > 0.0)
     }
 }
 
@@ -29,25 +192,128 @@ impl Mechanics for CatenaryModel {
     fn model(&self) -> Model {
         Model::Catenary
     }
+
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        Err(SolveError::Unsupported { model: Model::Catenary, feature: "not built yet".to_owned() })
+        let layout = Layout::new(&self.problem, &self.dragged, self.time_s)?;
+        let e = match self.balance(&layout, false) {
+            Ok(e) => e,
+            Err(_) => self.balance(&layout, true)?,
+        };
+        let mut report = self.accept(&layout, e, self.time_s)?;
+        if self.has_friction() {
+            report.warnings.push(Warning {
+                kind: WarningKind::NotUnique,
+                cable: self.problem.cable.name.clone(),
+                arc_length_m: 0.0,
+                value: 0.0,
+                limit: 0.0,
+                message: "With friction the resting place depends on how the cable was laid: this is the one laid evenly along its way with the least sliding".to_owned(),
+            });
+        }
+        Ok(report)
     }
-    fn advance(&mut self, _dt_s: f64, _inertia: Inertia) -> Result<StepReport, SolveError> {
-        Err(SolveError::Unsupported { model: Model::Catenary, feature: "not built yet".to_owned() })
+
+    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+        if inertia == Inertia::Dynamic {
+            return Err(unsupported("motion with inertia"));
+        }
+        if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
+            return Err(SolveError::TimeStep { dt_s, allowed: "0 < dt ≤ 1e6 s" });
+        }
+        let (start, end) = (self.time_s, self.time_s + dt_s);
+        let pieces = (self.support_travel(start, end) / (STEP * self.problem.length)).ceil().clamp(1.0, 1000.0);
+        let (mut step, mut total, mut halvings) = (dt_s / pieces, StepReport::default(), 0);
+        while self.time_s < end {
+            let next = if self.time_s + 1.000_001 * step >= end { end } else { self.time_s + step };
+            let before = self.clone();
+            match self.slow_step(next) {
+                Ok(r) => {
+                    total.cost.iterations += r.cost.iterations;
+                    total.cost.residual_n = r.cost.residual_n;
+                }
+                Err(SolveError::NotConverged { node, residual_n, iterations, .. }) => {
+                    *self = before;
+                    halvings += 1;
+                    step *= 0.5;
+                    total.cost.halved_steps += 1;
+                    if halvings > MAX_HALVINGS {
+                        return Err(SolveError::StepFailed {
+                            model: Model::Catenary,
+                            time_s: self.time_s,
+                            dt_s: step,
+                            node,
+                            residual_n,
+                            cause: format!("no balance in {iterations} iterations"),
+                        });
+                    }
+                }
+                Err(e) => {
+                    *self = before;
+                    return Err(e);
+                }
+            }
+        }
+        Ok(total)
     }
+
     fn state(&self) -> State {
-        State::default()
+        let mut state = State { time_s: self.time_s, ..State::default() };
+        for n in &self.nodes {
+            // One node where the tension jumps.
+            if state.arc_length_m.last().is_none_or(|s| n.arc_length_m > *s) {
+                state.arc_length_m.push(n.arc_length_m);
+                state.position_m.push(Vec2::new(n.x_m, n.y_m));
+                state.velocity_m_per_s.push(Vec2::zeros());
+            }
+        }
+        state
     }
-    fn adopt(&mut self, _state: &State) -> Result<(), SolveError> {
+
+    fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+        if let Some(node) = state.first_non_finite() {
+            return Err(SolveError::NonFinite { quantity: "position", node, time_s: state.time_s });
+        }
+        self.time_s = state.time_s;
+        let line = &state.position_m;
+        let mut lengths = vec![0.0];
+        for w in line.windows(2) {
+            lengths.push(lengths[lengths.len() - 1] + (w[1] - w[0]).norm());
+        }
+        let mut from = 0.0;
+        for (k, s) in self.problem.supports.iter().enumerate() {
+            if let (None, Some((at, _))) = (s.arc_length, s.position_at(self.time_s)) {
+                from = nearest_along(line, at, from);
+                let i = lengths.partition_point(|l| *l <= from).clamp(1, lengths.len().max(2) - 1);
+                let (Some(l0), Some(l1)) = (lengths.get(i - 1), lengths.get(i)) else { continue };
+                let (Some(s0), Some(s1)) = (state.arc_length_m.get(i - 1), state.arc_length_m.get(i)) else { continue };
+                let f = if l1 > l0 { (from - l0) / (l1 - l0) } else { 0.0 };
+                self.adopted[k] = Some((s0 + f * (s1 - s0)).clamp(0.0, self.problem.length));
+            }
+        }
+        self.balance = None;
         Ok(())
     }
-    fn drag_support(&mut self, _support: usize, _target_m: Vec2) {}
-    fn solution(&self) -> CableSolution {
-        CableSolution::default()
+
+    fn drag_support(&mut self, support: usize, target_m: Vec2) {
+        if let Some(d) = self.dragged.get_mut(support) {
+            *d = Some(target_m);
+        }
     }
+
+    fn solution(&self) -> CableSolution {
+        CableSolution {
+            name: self.problem.cable.name.clone(),
+            nodes: self.nodes.clone(),
+            supports: self.reactions.clone(),
+            contacts: Vec::new(),
+            error_estimate: Some(0.0),
+        }
+    }
+
     fn problem(&self) -> &Arc<Problem> {
         &self.problem
     }
+
     fn boxed_clone(&self) -> Box<dyn Mechanics> {
         Box::new(self.clone())
     }

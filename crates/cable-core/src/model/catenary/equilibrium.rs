@@ -1,0 +1,304 @@
+//! The solve: which pulleys slip, where the material lies, where wheels are touched.
+
+use super::layout::{Layout, angle_near, angle_of, unsupported};
+use super::slide::{Arc, Mode, Slide, Stretches};
+use crate::error::SolveError;
+use crate::math::Vec2;
+use crate::model::Model;
+use crate::problem::Problem;
+
+/// A balance found.
+#[derive(Clone, Debug)]
+pub(super) struct Equilibrium {
+    /// Material point at each anchor, m.
+    pub sigma: Vec<f64>,
+    pub modes: Vec<Mode>,
+    pub arcs: Vec<Arc>,
+    pub stretches: Stretches,
+    pub iterations: usize,
+    /// Largest unbalanced tension at a pulley, N.
+    pub residual: f64,
+}
+
+/// Where a solve starts and what friction remembers.
+pub(super) struct Start<'a> {
+    /// Material points friction holds, m.
+    pub held: &'a [f64],
+    /// First guess of the material points, m.
+    pub sigma: Vec<f64>,
+    pub modes: Vec<Mode>,
+    pub arcs: Vec<Arc>,
+}
+
+/// Newton iterations at most for one set of modes; 60 pulleys from a cold start took 25.
+const MAX_ITERATIONS: usize = 200;
+/// Halvings of one step at most.
+const MAX_HALVINGS: usize = 40;
+/// Rounds of wheel geometry at most; κR = 0.5 takes 12.
+const MAX_ROUNDS: usize = 60;
+/// Balance wanted at a pulley, relative to its tension.
+const BALANCE: f64 = 1e-13;
+/// Balance accepted where round-off allows no better.
+const BALANCE_ACCEPTED: f64 = 1e-9;
+/// Wheel angles wanted, rad.
+const ANGLE: f64 = 1e-12;
+/// A step keeps this part of every stretch. Smaller: stretches shrink to nothing in a bad step.
+const KEEP: f64 = 0.2;
+/// A dangling end shorter than this part of the cable has run off its pulley.
+const RUN_OFF: f64 = 1e-6;
+/// Below this part of the energy a predicted decrease is round-off.
+const ENERGY_NOISE: f64 = 1e-9;
+/// A pulley slips when friction is exceeded by this much (in ln T). Smaller: chatter of round-off.
+const CONE: f64 = 1e-10;
+/// Sets of modes changed together; after that one pulley at a time, which cannot cycle so easily.
+const TOGETHER: usize = 12;
+
+/// The arcs of straight ways from wheel to wheel.
+pub(super) fn first_arcs(layout: &Layout) -> Vec<Arc> {
+    let n = layout.anchors.len();
+    let towards = |k: usize, from: Vec2| -> Option<f64> {
+        let d = layout.anchors.get(k)?.at - from;
+        (d.norm() > 0.0).then(|| angle_of(d))
+    };
+    (0..n)
+        .map(|k| {
+            let a = &layout.anchors[k];
+            if a.radius == 0.0 {
+                return Arc::default();
+            }
+            let hang = |force: Vec2| if force.norm() > 0.0 { angle_of(force) } else { angle_of(layout.weight) };
+            let arrive = match k.checked_sub(1) {
+                Some(j) => towards(j, a.at).map(|t| angle_of(-super::layout::direction(t))),
+                None => Some(hang(layout.end_force[0] + layout.weight)).map(|t| angle_of(-super::layout::direction(t))),
+            };
+            let leave = if k + 1 < n { towards(k + 1, a.at) } else { Some(hang(layout.end_force[1] + layout.weight)) };
+            let arrive = arrive.unwrap_or(0.0);
+            let leave = leave.unwrap_or(arrive);
+            // Between a quarter turn back and three quarters round.
+            let turn = angle_near(a.facing * (arrive - leave), std::f64::consts::FRAC_PI_2);
+            let turn = if turn > 0.0 { turn } else { 0.0 };
+            Arc { arrive, turn, mark: arrive - 0.5 * a.facing * turn, material: a.radius * turn }
+        })
+        .collect()
+}
+
+/// Finds the balance.
+pub(super) fn solve(p: &Problem, layout: &Layout, start: Start<'_>) -> Result<Equilibrium, SolveError> {
+    let Start { held, mut sigma, mut modes, mut arcs } = start;
+    let wheels = layout.anchors.iter().any(|a| a.radius > 0.0);
+    let mut iterations = 0;
+    let mut lifted = None;
+    for _ in 0..MAX_ROUNDS {
+        let slide = Slide { problem: p, layout, arcs: &arcs };
+        let found = contact(&slide, held, sigma, modes)?;
+        iterations += found.iterations;
+        let m = |k: usize| called_upon(&slide, &found.stretches, k, found.modes[k]);
+        let (turned, off, lift) = slide.turned(&found.stretches, m);
+        if !wheels || (off <= ANGLE && lift.is_none()) {
+            return Ok(Equilibrium { iterations, ..found });
+        }
+        (sigma, modes, arcs, lifted) = (found.sigma, found.modes, turned, lift);
+    }
+    match lifted {
+        Some(k) => {
+            let name = p.supports.get(layout.anchors[k].support).map_or("", |s| s.name.as_str());
+            Err(unsupported(format!("the cable lifts off the wheel of `{name}`")))
+        }
+        None => Err(not_converged(layout, 0, iterations, f64::NAN)),
+    }
+}
+
+/// The friction a pulley uses, as m.
+pub(super) fn called_upon(slide: &Slide<'_>, s: &Stretches, k: usize, mode: Mode) -> f64 {
+    let (Some(b), Some(a)) = Slide::forces(s, k) else { return 0.0 };
+    match mode {
+        Mode::Slip(m) => m,
+        Mode::Stick => {
+            let turn = slide.turn(k, b, a);
+            if turn > 0.0 { slide.excess(k, b, a, 0.0).0 / turn } else { 0.0 }
+        }
+    }
+}
+
+fn not_converged(layout: &Layout, node: usize, iterations: usize, residual_n: f64) -> SolveError {
+    let at_m = layout.anchors.get(node).map_or(Vec2::zeros(), |a| a.at);
+    SolveError::NotConverged { model: Model::Catenary, iterations, residual_n, node, at_m }
+}
+
+/// Balance with friction: pulleys hold or slip, each as its cone and its direction demand.
+fn contact(slide: &Slide<'_>, held: &[f64], sigma: Vec<f64>, modes: Vec<Mode>) -> Result<Equilibrium, SolveError> {
+    let layout = slide.layout;
+    let (mut sigma, mut modes) = (sigma, modes);
+    let mut iterations = 0;
+    for round in 0..4 * TOGETHER + 4 * layout.anchors.len() {
+        let found = newton(slide, sigma, &modes)?;
+        iterations += found.iterations;
+        sigma = found.sigma;
+        let mut changed = false;
+        for (k, a) in layout.anchors.iter().enumerate() {
+            if a.held.is_some() || a.friction <= 0.0 || (changed && round >= TOGETHER) {
+                continue;
+            }
+            let (Some(b), Some(f)) = Slide::forces(&found.stretches, k) else { continue };
+            let next = match modes[k] {
+                Mode::Stick if slide.excess(k, b, f, a.friction).0 > CONE => Mode::Slip(a.friction),
+                Mode::Stick if slide.excess(k, b, f, -a.friction).0 < -CONE => Mode::Slip(-a.friction),
+                // Friction +μ holds material back from going on to the side after: σ must have fallen.
+                Mode::Slip(m) if m * (sigma[k] - held[k]) > 1e-12 * a.friction * slide.problem.length => {
+                    sigma[k] = held[k];
+                    Mode::Stick
+                }
+                same => same,
+            };
+            changed |= next != modes[k];
+            modes[k] = next;
+        }
+        if !changed {
+            return Ok(Equilibrium { sigma, modes, arcs: slide.arcs.to_vec(), iterations, ..found });
+        }
+    }
+    Err(not_converged(layout, 0, iterations, f64::NAN))
+}
+
+/// One row of the three-diagonal system.
+type Row = [f64; 3];
+
+/// Residuals and slopes at every anchor (zero, one where nothing slides) and the worst relative residual.
+fn rows(slide: &Slide<'_>, s: &Stretches, modes: &[Mode], smooth: bool) -> Option<(Vec<f64>, Vec<Row>, f64, f64)> {
+    let n = modes.len();
+    let (mut r, mut j) = (vec![0.0; n], vec![[0.0, 1.0, 0.0]; n]);
+    let (mut worst, mut newtons) = (0.0f64, 0.0f64);
+    for k in 0..n {
+        let Mode::Slip(m) = modes[k] else { continue };
+        let (rk, mut row) = slide.row(s, k, m, smooth)?;
+        if k == 0 || modes[k - 1] == Mode::Stick {
+            row[0] = 0.0;
+        }
+        if k + 1 == n || modes[k + 1] == Mode::Stick {
+            row[2] = 0.0;
+        }
+        let tension = Slide::forces(s, k).1?.norm();
+        let relative = if smooth { rk.abs() / (slide.problem.thermal_stretch * tension) } else { rk.abs() };
+        if !(relative <= worst) {
+            worst = relative;
+        }
+        if !(relative * tension <= newtons) {
+            newtons = relative * tension;
+        }
+        (r[k], j[k]) = (rk, row);
+    }
+    Some((r, j, worst, newtons))
+}
+
+/// −J⁻¹ r for a three-diagonal J, by elimination; in `descend` the pivots are lifted until all are positive, so
+/// that the step goes down in energy.
+fn step(r: &[f64], j: &[Row], descend: bool) -> Option<Vec<f64>> {
+    let n = r.len();
+    let largest = j.iter().fold(0.0f64, |m, row| if row[1].abs() > m { row[1].abs() } else { m });
+    let mut shift = 0.0;
+    'shifted: for _ in 0..60 {
+        let (mut d, mut p) = (vec![0.0; n], vec![0.0; n]);
+        for k in 0..n {
+            let (mut pivot, mut rhs) = (j[k][1] + shift, -r[k]);
+            if k > 0 {
+                let factor = j[k][0] / d[k - 1];
+                pivot -= factor * j[k - 1][2];
+                rhs -= factor * p[k - 1];
+            }
+            if descend && !(pivot > 1e-12 * largest) {
+                shift = if shift > 0.0 { 4.0 * shift } else { 1e-3 * largest };
+                continue 'shifted;
+            }
+            (d[k], p[k]) = (pivot, rhs);
+        }
+        for k in (0..n).rev() {
+            let next = if k + 1 < n { j[k][2] * p[k + 1] } else { 0.0 };
+            p[k] = (p[k] - next) / d[k];
+        }
+        return p.iter().all(|v| v.is_finite()).then_some(p);
+    }
+    None
+}
+
+/// Largest part of a step that keeps some of every stretch.
+fn room(slide: &Slide<'_>, s: &Stretches, p: &[f64]) -> f64 {
+    let mut alpha = 1.0f64;
+    for (i, stretch) in s.all.iter().enumerate() {
+        let Some(stretch) = stretch else { continue };
+        let from = if i == 0 { 0.0 } else { p[i - 1] };
+        let to = if i == slide.arcs.len() { 0.0 } else { p[i] };
+        let (length, change) = (stretch.to - stretch.from, to - from);
+        if change < 0.0 && alpha * -change > (1.0 - KEEP) * length {
+            alpha = (1.0 - KEEP) * length / -change;
+        }
+    }
+    alpha
+}
+
+/// Newton for σ with the modes given.
+fn newton(slide: &Slide<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equilibrium, SolveError> {
+    let layout = slide.layout;
+    let smooth = modes.iter().all(|m| matches!(m, Mode::Stick | Mode::Slip(0.0)));
+    let mut sigma = sigma;
+    let lost = |iterations| not_converged(layout, 0, iterations, f64::NAN);
+    let mut s = slide.stretches(&sigma, None).ok_or_else(|| lost(0))?;
+    let mut iterations = s.iterations;
+    for _ in 0..MAX_ITERATIONS {
+        let (r, j, worst, newtons) = rows(slide, &s, modes, smooth).ok_or_else(|| lost(iterations))?;
+        let end = move |sigma, s, residual| Equilibrium {
+            sigma,
+            modes: modes.to_vec(),
+            arcs: Vec::new(),
+            stretches: s,
+            iterations,
+            residual,
+        };
+        if worst <= BALANCE {
+            return Ok(end(sigma, s, newtons));
+        }
+        run_off(slide, &s)?;
+        let p = step(&r, &j, smooth).ok_or_else(|| lost(iterations))?;
+        let slope: f64 = r.iter().zip(&p).map(|(a, b)| a * b).sum();
+        let size = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>();
+        let (energy, norm) = (s.energy, size(&r));
+        let mut alpha = room(slide, &s, &p);
+        let mut next = None;
+        for _ in 0..MAX_HALVINGS {
+            let trial: Vec<f64> = sigma.iter().zip(&p).map(|(a, b)| a + alpha * b).collect();
+            if let Some(t) = slide.stretches(&trial, Some(&s)) {
+                iterations += t.iterations;
+                let down = smooth && t.energy - energy <= 1e-4 * alpha * slope;
+                let noise = !smooth || alpha * slope.abs() <= ENERGY_NOISE * energy.abs();
+                let closer = noise
+                    && rows(slide, &t, modes, smooth).is_some_and(|(rt, ..)| size(&rt) < (1.0 - 1e-4 * alpha) * norm);
+                if down || closer {
+                    next = Some((trial, t));
+                    break;
+                }
+            }
+            alpha *= 0.5;
+        }
+        match next {
+            Some((trial, t)) => (sigma, s) = (trial, t),
+            None if worst <= BALANCE_ACCEPTED => return Ok(end(sigma, s, newtons)),
+            None => return Err(not_converged(layout, 0, iterations, newtons)),
+        }
+    }
+    Err(lost(iterations))
+}
+
+/// A dangling end that has run through its pulley.
+fn run_off(slide: &Slide<'_>, s: &Stretches) -> Result<(), SolveError> {
+    let ends = [(0, 0), (s.all.len() - 1, slide.arcs.len() - 1)];
+    for (i, k) in ends {
+        let short = s.all[i].is_some_and(|e| e.to - e.from < RUN_OFF * slide.problem.length);
+        let anchor = &slide.layout.anchors[k];
+        if short && anchor.held.is_none() {
+            let name = slide.problem.supports.get(anchor.support).map_or("", |p| p.name.as_str());
+            return Err(SolveError::NoRestingPlace {
+                why: format!("the cable runs off through pulley `{name}`, which nothing holds back"),
+            });
+        }
+    }
+    Ok(())
+}

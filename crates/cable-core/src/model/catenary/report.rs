@@ -1,0 +1,208 @@
+//! The answer: nodes close enough that straight lines between them are good, and what supports feel.
+
+use super::equilibrium::{Equilibrium, called_upon};
+use super::layout::Layout;
+use super::slide::Slide;
+use super::wheel::pass;
+use crate::catenary::Catenary;
+use crate::math::{Vec2, perp};
+use crate::problem::Problem;
+use crate::scene::SupportKind;
+use crate::solution::{Node, SupportReaction};
+
+/// Between two nodes the cable leaves a straight line by no more than this part of its length. Larger: a
+/// picture shows corners, and sag read between nodes is off by as much. Smaller: thousands of nodes.
+const FLATNESS: f64 = 1e-5;
+/// Between two nodes tension leaves a straight line by no more than this part of itself.
+const TENSION_FLATNESS: f64 = 5e-5;
+/// Tensions below this part of the greatest are not resolved further (a fold, where T → 0 in a point).
+const TENSION_FLOOR: f64 = 0.02;
+/// Nodes a catenary has at least: 2 to this power + 1.
+const LEAST_DEPTH: u32 = 2;
+/// Halvings of a catenary at most.
+const MOST_DEPTH: u32 = 12;
+/// Nodes on a wheel, less one.
+const WHEEL_NODES: usize = 24;
+
+/// A point of the answer.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    s: f64,
+    at: Vec2,
+    tension: f64,
+    curvature: f64,
+}
+
+/// Collects nodes of one cable.
+struct Nodes<'a> {
+    problem: &'a Problem,
+    flat: f64,
+    least_tension: f64,
+    out: Vec<Node>,
+}
+
+impl Nodes<'_> {
+    fn push(&mut self, p: Point) {
+        let strain = p.tension / self.problem.axial_stiffness;
+        let node = Node {
+            arc_length_m: p.s,
+            x_m: p.at.x,
+            y_m: p.at.y,
+            tension_n: p.tension,
+            strain,
+            stress_pa: p.tension / self.problem.cable.area_m2(),
+            curvature_per_m: p.curvature,
+            ..Node::default()
+        };
+        // A node twice at the same material point only where the tension jumps (a load, a rubbing pulley).
+        if let Some(last) = self.out.last_mut()
+            && node.arc_length_m - last.arc_length_m <= 1e-12 * self.problem.length
+            && (node.tension_n - last.tension_n).abs() <= 1e-9 * node.tension_n
+        {
+            last.curvature_per_m = node.curvature_per_m;
+            return;
+        }
+        self.out.push(node);
+    }
+
+    /// One catenary, from material point `s0` at position `at`.
+    fn catenary(&mut self, s0: f64, at: Vec2, c: &Catenary) {
+        let point = |s: f64| {
+            let curvature = c.curvature_at(s);
+            // A fold is a point without tension: its direction turns at once, and no number says how sharply.
+            let curvature = if c.tension_at(s) > 0.0 { curvature } else { 0.0 };
+            Point { s: s0 + s, at: at + c.position_at(s), tension: c.tension_at(s), curvature }
+        };
+        let (a, b) = (point(0.0), point(c.span().length));
+        self.push(a);
+        self.refine(&point, (a, b), (0.0, c.span().length), 0);
+        self.push(b);
+    }
+
+    fn refine(&mut self, point: &impl Fn(f64) -> Point, ends: (Point, Point), (s0, s1): (f64, f64), depth: u32) {
+        let s = 0.5 * (s0 + s1);
+        let middle = point(s);
+        let off = ((ends.0.at + ends.1.at) * 0.5 - middle.at).norm();
+        let tension = (0.5 * (ends.0.tension + ends.1.tension) - middle.tension).abs();
+        let scale = if middle.tension > self.least_tension { middle.tension } else { self.least_tension };
+        let rough = off > self.flat || tension > TENSION_FLATNESS * scale;
+        if depth < LEAST_DEPTH || rough && depth < MOST_DEPTH {
+            self.refine(point, (ends.0, middle), (s0, s), depth + 1);
+            self.push(middle);
+            self.refine(point, (middle, ends.1), (s, s1), depth + 1);
+        }
+    }
+}
+
+/// Nodes and reactions of a balance.
+pub(super) fn report(p: &Problem, layout: &Layout, e: &Equilibrium) -> (Vec<Node>, Vec<SupportReaction>) {
+    let slide = Slide { problem: p, layout, arcs: &e.arcs };
+    let greatest = e.stretches.all.iter().flatten().fold(0.0f64, |m, s| {
+        let t = if s.start.norm() > s.end.norm() { s.start.norm() } else { s.end.norm() };
+        if t > m { t } else { m }
+    });
+    let mut nodes =
+        Nodes { problem: p, flat: FLATNESS * p.length, least_tension: TENSION_FLOOR * greatest, out: Vec::new() };
+    let n = layout.anchors.len();
+    for i in 0..=n {
+        if let Some(s) = e.stretches.all[i] {
+            let chain = slide.chain(s.from, s.to);
+            // A dangling start is laid back from its anchor.
+            let origin = if i > 0 {
+                slide.touches(i - 1).1
+            } else {
+                let across =
+                    chain.spans(s.start, Vec2::zeros()).fold(Vec2::zeros(), |_, (_, at, c)| at + c.span().chord);
+                slide.touches(0).0 - across
+            };
+            for (s0, at, c) in chain.spans(s.start, origin) {
+                nodes.catenary(s0, at, &c);
+            }
+        }
+        if i < n && layout.anchors[i].radius > 0.0 {
+            wheel_nodes(&mut nodes, &slide, e, i);
+        }
+    }
+    let reactions = reactions(p, &slide, e, &nodes.out);
+    (nodes.out, reactions)
+}
+
+fn wheel_nodes(nodes: &mut Nodes<'_>, slide: &Slide<'_>, e: &Equilibrium, k: usize) {
+    let (a, arc) = (&slide.layout.anchors[k], &e.arcs[k]);
+    let (Some(before), Some(_)) = Slide::forces(&e.stretches, k) else { return };
+    let m = called_upon(slide, &e.stretches, k, e.modes[k]);
+    let chain = slide.chain(0.0, 1.0);
+    let from = e.sigma[k] - arc.split(a.facing).0;
+    for i in 0..=WHEEL_NODES {
+        let psi = arc.turn * i as f64 / WHEEL_NODES as f64;
+        let passed = pass(&chain, a, before.norm(), (arc.arrive, psi), m);
+        let lambda = chain.thermal_stretch * (1.0 + passed.tension / chain.axial_stiffness);
+        nodes.push(Point {
+            s: from + passed.material,
+            at: a.touch(arc.arrive - a.facing * psi),
+            tension: passed.tension,
+            curvature: -a.facing * lambda / a.radius,
+        });
+    }
+}
+
+fn reactions(p: &Problem, slide: &Slide<'_>, e: &Equilibrium, nodes: &[Node]) -> Vec<SupportReaction> {
+    let at_node = |s: f64| {
+        let k = nodes.partition_point(|n| n.arc_length_m < s - 1e-12 * p.length);
+        nodes.get(k).map_or(Vec2::zeros(), |n| Vec2::new(n.x_m, n.y_m))
+    };
+    p.supports
+        .iter()
+        .enumerate()
+        .map(|(k, s)| {
+            let mut r = SupportReaction { name: s.name.clone(), ..SupportReaction::default() };
+            let Some(i) = slide.layout.anchors.iter().position(|a| a.support == k) else {
+                // A dead load or nothing: the cable pulls back with what pulls it.
+                let arc_length = s.arc_length.unwrap_or(0.0);
+                let at = at_node(arc_length);
+                let load = if matches!(s.kind, SupportKind::Load | SupportKind::Free) {
+                    slide.layout.loads_at(arc_length)
+                } else {
+                    Vec2::zeros()
+                };
+                (r.x_m, r.y_m, r.arc_length_m) = (at.x, at.y, arc_length);
+                (r.reaction_x_n, r.reaction_y_n) = (-load.x, -load.y);
+                return r;
+            };
+            let a = &slide.layout.anchors[i];
+            let (before, after) = Slide::forces(&e.stretches, i);
+            let (ahead, behind) = e.arcs[i].split(a.facing);
+            let (from, to) = (e.sigma[i] - ahead, e.sigma[i] + behind);
+            let own =
+                if a.radius > 0.0 { slide.layout.load_between(from, to) } else { slide.layout.loads_at(e.sigma[i]) };
+            let zero = Vec2::zeros();
+            let force = after.unwrap_or(zero) - before.unwrap_or(zero) + own;
+            (r.x_m, r.y_m, r.arc_length_m) = (a.at.x, a.at.y, 0.5 * (from + to));
+            (r.reaction_x_n, r.reaction_y_n) = (force.x, force.y);
+            if a.held.is_none() {
+                r.tension_before_n = before.map(|f| f.norm());
+                r.tension_after_n = after.map(|f| f.norm());
+            }
+            r
+        })
+        .collect()
+}
+
+/// Nodes before anything is solved: straight ways with the material spread evenly, dangling ends straight along
+/// their load.
+pub(super) fn straight(p: &Problem, layout: &Layout, sigma: &[f64]) -> Vec<Node> {
+    let hang = |force: Vec2| {
+        let f = if force.norm() > 0.0 { force } else { layout.weight };
+        if f.norm() > 0.0 { f / f.norm() } else { -perp(Vec2::x()) }
+    };
+    let mut out = Vec::with_capacity(sigma.len() + 2);
+    let node = |s: f64, at: Vec2| Node { arc_length_m: s, x_m: at.x, y_m: at.y, ..Node::default() };
+    if let (true, Some(a), Some(s)) = (layout.free[0], layout.anchors.first(), sigma.first()) {
+        out.push(node(0.0, a.at + hang(layout.end_force[0]) * *s));
+    }
+    out.extend(layout.anchors.iter().zip(sigma).map(|(a, s)| node(*s, a.at)));
+    if let (true, Some(a), Some(s)) = (layout.free[1], layout.anchors.last(), sigma.last()) {
+        out.push(node(p.length, a.at + hang(layout.end_force[1]) * (p.length - s)));
+    }
+    out
+}
