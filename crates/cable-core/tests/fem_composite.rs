@@ -45,6 +45,19 @@ fn quantity(cable: &CableSolution, path: &str) -> f64 {
     }
 }
 
+/// These values of the clamped span were shot forward from A through 48 boundary layers, where rounding grows by e⁴⁸:
+/// they put 2.625 m of cable over a distance of 4.25 m, and the clamp moment at B below that at A, where the slope is
+/// less. (The moments of inclined clamped spans at both ends are tested in `fem_statics.rs`.)
+const SHOT_TOO_FAR: [&str; 7] = [
+    "x_at(5.25)",
+    "y_at(5.25)",
+    "x_at(7.875)",
+    "y_at(7.875)",
+    "tension_at(7.875)",
+    "abs_curvature_at(5.25)",
+    "abs_curvature_at(10.5)",
+];
+
 /// Every check of a group, with the stated tolerance times `factor`.
 fn holds(group: &str, factor: f64) {
     let mut failures = Vec::new();
@@ -63,6 +76,9 @@ fn holds(group: &str, factor: f64) {
             let solution = simulation.solution();
             for check in run["checks"].as_array().unwrap() {
                 let (path, expected) = (check["path"].as_str().unwrap(), check["expect"].as_f64().unwrap());
+                if group == "clamped-EI" && SHOT_TOO_FAR.contains(&path) {
+                    continue;
+                }
                 let found = quantity(&solution.cables[0], path);
                 let off = (found - expected).abs() / check["tolerance"].as_f64().unwrap();
                 worst = worst.max(off);
@@ -84,4 +100,9 @@ fn pulleys() {
 #[test]
 fn loads_wind_and_temperature() {
     holds("loads-wind-thermal", 0.5);
+}
+
+#[test]
+fn clamped_with_bending_stiffness() {
+    holds("clamped-EI", 0.5);
 }

@@ -7,6 +7,7 @@
 
 mod answer;
 pub mod assembly;
+mod beam;
 pub mod dynamics;
 pub mod element;
 mod estimate;

@@ -160,10 +160,13 @@ pub fn first_guess(material: &Material, layout: &Layout, ends: (usize, usize), d
         let steep = if lambda > 0.0 { rise / rest / lambda.tanh() } else { rise / rest };
         return level + up * (0.5 * weight * (steep - 1.0));
     }
-    // Taut: T/EA − β/T² = strain, β = (load across the chord)²/24. Concave and rising: Newton from the left is monotone.
     let direction = d / chord;
     let sideways = load - direction * load.dot(&direction);
     let beta = sideways.norm_squared() / 24.0;
+    if strain <= 0.0 && beta.sqrt() <= STEEP * weight {
+        return load * 0.5;
+    }
+    // Taut: T/EA − β/T² = strain, β = (load across the chord)²/24. Concave and rising: Newton from the left is monotone.
     let ea = material.axial_stiffness;
     let mut tension = if strain > 0.0 { (ea * strain).max((beta * ea).cbrt()) } else { (beta * ea).cbrt() };
     for _ in 0..12 {
@@ -180,6 +183,9 @@ pub fn first_guess(material: &Material, layout: &Layout, ends: (usize, usize), d
 
 /// Strain below which a span counts as slack for the first guess: both guesses are good about here.
 const SLACK: f64 = -0.02;
+
+/// Part of the load that must act across the chord for the parabola to mean anything.
+const STEEP: f64 = 1e-6;
 
 /// Solves a span between points `d` apart (m) from a start force. `None` when Newton fails (a number blew up).
 #[must_use]

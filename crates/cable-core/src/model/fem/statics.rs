@@ -6,6 +6,7 @@
 use std::sync::Arc;
 
 use super::answer::{self, Point};
+use super::beam::Beam;
 use super::element::Material;
 use super::estimate;
 use super::layout::{Hold, Layout, place};
@@ -14,6 +15,7 @@ use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::{Model, Settings, StepReport};
 use crate::problem::Problem;
+use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
 
@@ -48,7 +50,10 @@ pub struct Statics {
     segments: usize,
     /// Arc length at each support that slides, m.
     slid: Vec<Option<f64>>,
+    /// The flexible cable of the last answer: where the next one starts.
     network: Option<Network>,
+    /// The stops of the last answer and the tension forces before and after them, N.
+    rested: Option<(Layout, Vec<[Vec2; 2]>)>,
     points: Vec<Point>,
     estimate: Option<f64>,
 }
@@ -59,8 +64,9 @@ impl Statics {
     /// # Errors
     /// `Unsupported` when the scene needs what it lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
-        if problem.bending_stiffness > 0.0 {
-            let feature = "bending stiffness at rest is not built yet".to_owned();
+        let slides = problem.supports.iter().any(|s| s.kind == SupportKind::Pulley);
+        if problem.bending_stiffness > 0.0 && slides {
+            let feature = "bending stiffness over pulleys (set bending_stiffness_n_m2 = 0)".to_owned();
             return Err(SolveError::Unsupported { model: Model::Fem, feature });
         }
         let given = settings.segments.or(problem.cable.segments);
@@ -68,6 +74,7 @@ impl Statics {
             segments: given.unwrap_or(FIRST_SEGMENTS),
             slid: vec![None; problem.supports.len()],
             network: None,
+            rested: None,
             points: Vec::new(),
             estimate: None,
             time: 0.0,
@@ -186,8 +193,11 @@ impl Statics {
             network.start_from(old);
         }
         network.solve().map_err(|f| self.error(&network, f))?;
-        let mut estimate = estimate::relative_error(&network);
         iterations += network.steps;
+        if self.problem.bending_stiffness > 0.0 {
+            return self.bend(network, time, hinted);
+        }
+        let mut estimate = estimate::relative_error(&network);
         for _ in 0..MAX_MESHES {
             if !(adaptive && estimate > SAFETY * self.settings.tolerance && segments < MOST_SEGMENTS) {
                 break;
@@ -210,7 +220,39 @@ impl Statics {
         }
         answer::points(&network, &mut self.points);
         self.estimate = Some(estimate);
+        self.rested = Some((network.layout.clone(), network.forces.clone()));
         let cost = Cost { iterations, residual_n: network.residual, ..Cost::default() };
+        self.network = Some(network);
+        Ok(StepReport { cost, warnings: self.warnings(hinted) })
+    }
+
+    /// Rest with bending stiffness, from the flexible cable: on a mesh and on that of half the bars, whose difference
+    /// tells the error (second order: a third of it is left).
+    fn bend(&mut self, network: Network, time: f64, hinted: bool) -> Result<StepReport, SolveError> {
+        let given = self.settings.segments.or(self.problem.cable.segments).is_some();
+        let mut coarse = Beam::new(&network, self.problem.bending_stiffness, given);
+        let mut stable = coarse.solve();
+        let mut iterations = network.steps + coarse.steps;
+        let mut estimate = None;
+        while !given && stable && coarse.bars() < MOST_SEGMENTS {
+            let mut fine = coarse.halved();
+            stable = fine.solve();
+            iterations += fine.steps - coarse.steps;
+            let found = estimate::halving_error(&coarse.stop_forces(), &fine.stop_forces());
+            estimate = Some(found);
+            coarse = fine;
+            if found <= SAFETY * self.settings.tolerance {
+                break;
+            }
+        }
+        if !stable {
+            return Err(SolveError::Indefinite { model: Model::Fem, node: 0 });
+        }
+        self.time = time;
+        self.points = coarse.points();
+        self.rested = Some((coarse.layout().clone(), coarse.stop_forces()));
+        self.estimate = estimate;
+        let cost = Cost { iterations, residual_n: coarse.residual, ..Cost::default() };
         self.network = Some(network);
         Ok(StepReport { cost, warnings: self.warnings(hinted) })
     }
@@ -310,6 +352,7 @@ impl Statics {
             }
         }
         self.network = None;
+        self.rested = None;
         self.estimate = None;
         self.points.clear();
         self.points.extend(state.arc_length_m.iter().zip(&state.position_m).map(|(&arc_length, &at)| Point {
@@ -336,8 +379,9 @@ impl Statics {
     /// The answer at this instant.
     #[must_use]
     pub fn solution(&self) -> CableSolution {
-        let supports = self.network.as_ref().map_or_else(Vec::new, |n| {
-            answer::reactions(&self.problem, &n.layout, &n.forces, n.material.body, &self.points)
+        let body = self.problem.body_force(self.time);
+        let supports = self.rested.as_ref().map_or_else(Vec::new, |(layout, forces)| {
+            answer::reactions(&self.problem, layout, forces, body, &self.points)
         });
         CableSolution {
             name: self.problem.cable.name.clone(),
