@@ -34,7 +34,7 @@ pub struct Material {
     /// Weight and wind, N per metre of arc length.
     pub body: Vec2,
     /// Tension below which directions are smoothed, N. Too large: bends become round; 0: a fold of the cable in one
-    /// Gauss point divides by zero. Set to 1e-9 of the load, where neither shows.
+    /// Gauss point divides by zero.
     pub smoothing: f64,
 }
 

@@ -22,6 +22,8 @@ use crate::scene::PulleySide;
 
 /// Newton steps for the pulleys together. Measured: 3 to 8.
 const MAX_STEPS: usize = 40;
+/// Powers of ten by which a fold is rounded off at first: to a tenth of the load, where any start converges.
+const ROUNDED: i32 = 6;
 /// Rounds of bisection.
 const MAX_ROUNDS: usize = 60;
 /// Tensions at a pulley agree when ln of their ratio is off by less than this.
@@ -145,8 +147,9 @@ impl Network {
         let d = b - a;
         let solve = |guess| span::solve(&self.material, &self.layout, (first, last), d, guess);
         let warm = if self.warm || self.spans[i].steps > 0 { solve(self.spans[i].force) } else { None };
-        let cold = || solve(span::first_guess(&self.material, &self.layout, (first, last), d));
-        let span = warm.or_else(cold).ok_or(Failure::Span(first, f64::NAN))?;
+        let guess = span::first_guess(&self.material, &self.layout, (first, last), d);
+        let span = warm.or_else(|| solve(guess)).or_else(|| self.unfold((first, last), d, guess));
+        let span = span.ok_or(Failure::Span(first, f64::NAN))?;
         self.steps += span.steps;
         if !(span.residual <= self.residual) {
             self.residual = span.residual;
@@ -155,6 +158,21 @@ impl Network {
         self.forces[last][0] = span.walk.end_force;
         self.spans[i] = span;
         Ok(())
+    }
+
+    /// A span folded so sharply that one element turns round in itself: where its tension vanishes D has a kink, which is
+    /// rounded off and then sharpened tenfold at a time.
+    fn unfold(&self, ends: (usize, usize), d: Vec2, guess: Vec2) -> Option<Span> {
+        let (mut force, mut steps) = (guess, 0);
+        for power in (0..=ROUNDED).rev() {
+            let material = Material { smoothing: self.material.smoothing * 10f64.powi(power), ..self.material };
+            let span = span::solve(&material, &self.layout, ends, d, force)?;
+            (force, steps) = (span.force, steps + span.steps);
+            if power == 0 {
+                return Some(Span { steps, ..span });
+            }
+        }
+        None
     }
 
     /// Forces of the stretches that end free: the load beyond.

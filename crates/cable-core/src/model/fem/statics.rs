@@ -29,11 +29,12 @@ const SAFETY: f64 = 0.5;
 const ORDER: f64 = 4.0;
 /// Rounds of mesh refinement.
 const MAX_MESHES: usize = 6;
-/// Weight given to a weightless slack cable, in parts of EA: it has no shape of its own, this gives it the shape of the
-/// limit of little weight. Far below any tension asked for.
+/// Weight given to a weightless cable, in parts of its loads (of EA without loads): where it is slack it has no shape
+/// of its own, this gives it that of a very light one. Far below any tension asked for.
 const HINT_OF_WEIGHT: f64 = 1e-12;
-/// Smoothing tension in parts of the load, see [`Material::smoothing`].
-const SMOOTHING: f64 = 1e-9;
+/// Smoothing tension in parts of the load, see [`Material::smoothing`]. Seen only where the tension falls to it; at 1e-9
+/// a fold at EA 1e9 closed to 1e-8 m only, for want of digits of the force.
+const SMOOTHING: f64 = 1e-7;
 /// Longest move of a support in one slow step where friction must remember the way, in parts of the cable length.
 const SLOW_MOVE: f64 = 0.01;
 /// Most slow steps in one call.
@@ -264,7 +265,8 @@ impl Statics {
         let loads: f64 = layout.stops.iter().map(|s| s.load.norm()).sum();
         let hinted = !(body.norm() > 0.0);
         if hinted {
-            body = Vec2::new(0.0, -HINT_OF_WEIGHT * problem.axial_stiffness / problem.length);
+            let scale = if loads > 0.0 { loads } else { problem.axial_stiffness };
+            body = Vec2::new(0.0, -HINT_OF_WEIGHT * scale / problem.length);
         }
         let material = Material {
             axial_stiffness: problem.axial_stiffness,
