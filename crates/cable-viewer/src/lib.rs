@@ -17,6 +17,7 @@ pub mod screenshot;
 pub mod state;
 pub mod theme;
 pub mod undo;
+pub mod units;
 pub mod worker;
 
 pub use app::ViewerApp;

@@ -20,6 +20,20 @@ struct Arguments {
     /// Size of the window or picture, in points.
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x800", value_parser = parse_size)]
     size: [u32; 2],
+    /// Colours of the window or picture.
+    #[arg(long, value_enum, default_value_t = Theme::System)]
+    theme: Theme,
+}
+
+/// Colours of the window.
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Theme {
+    /// As the system has it; dark where it does not say.
+    System,
+    /// Dark on light.
+    Light,
+    /// Light on dark.
+    Dark,
 }
 
 /// Largest picture side, pixels: what every GPU can draw.
@@ -45,8 +59,13 @@ fn main() -> ExitCode {
 
 fn run(arguments: Arguments) -> Result<(), String> {
     let (scene, path) = first_scene(arguments.scene)?;
+    let theme = match arguments.theme {
+        Theme::System => egui::ThemePreference::System,
+        Theme::Light => egui::ThemePreference::Light,
+        Theme::Dark => egui::ThemePreference::Dark,
+    };
     if let Some(picture) = arguments.screenshot {
-        return screenshot::save(scene, &picture, arguments.size);
+        return screenshot::save(scene, &picture, arguments.size, theme);
     }
     let size = arguments.size.map(|s| s as f32);
     let options = eframe::NativeOptions {
@@ -57,7 +76,9 @@ fn run(arguments: Arguments) -> Result<(), String> {
         ..eframe::NativeOptions::default()
     };
     let create = Box::new(|cc: &eframe::CreationContext<'_>| {
-        Ok(Box::new(ViewerApp::new(&cc.egui_ctx, scene, path)) as Box<dyn eframe::App>)
+        let mut app = ViewerApp::new(&cc.egui_ctx, scene, path);
+        app.state.theme = theme;
+        Ok(Box::new(app) as Box<dyn eframe::App>)
     });
     eframe::run_native("cable-viewer", options, create).map_err(|e| explain(&e))
 }

@@ -1,23 +1,76 @@
 //! The window drawn to a picture file, without a window.
 
+use std::future::Future;
 use std::path::Path;
+use std::pin::pin;
+use std::task::{Context, Poll, Waker};
 
 use cable_core::Scene;
+use eframe::egui_wgpu;
 use egui_kittest::Harness;
+use egui_kittest::wgpu::{WgpuTestRenderer, default_wgpu_setup};
+use image::RgbaImage;
 
 use crate::ViewerApp;
+
+/// Frames after which a picture is taken: the first lays out, the second fits and solves, the others settle scroll bars.
+const FRAMES: usize = 6;
 
 /// Draws a scene at a size in points and writes a PNG.
 ///
 /// # Errors
 /// What is missing, in one sentence with the remedy.
-pub fn save(scene: Scene, path: &Path, size: [u32; 2]) -> Result<(), String> {
+pub fn save(scene: Scene, path: &Path, size: [u32; 2], theme: egui::ThemePreference) -> Result<(), String> {
+    let picture = draw(scene, size, theme)?;
+    picture.save(path).map_err(|e| format!("{} could not be written: {e}", path.display()))
+}
+
+/// Draws a scene at a size in points.
+///
+/// # Errors
+/// What is missing, in one sentence with the remedy.
+pub fn draw(scene: Scene, size: [u32; 2], theme: egui::ThemePreference) -> Result<RgbaImage, String> {
     let mut harness = Harness::builder()
         .with_size([size[0] as f32, size[1] as f32])
         .with_render_cursor(false)
         .allow_missing_glyphs()
-        .build_eframe(|cc| ViewerApp::inline(&cc.egui_ctx, scene, None));
-    harness.run_steps(4);
-    let picture = harness.render()?;
-    picture.save(path).map_err(|e| format!("{} could not be written: {e}", path.display()))
+        .with_accessibility_check(false)
+        .renderer(renderer()?)
+        .build_eframe(|cc| {
+            let mut app = ViewerApp::inline(&cc.egui_ctx, scene, None);
+            app.state.theme = theme;
+            app
+        });
+    harness.run_steps(FRAMES);
+    harness.render()
+}
+
+/// A renderer on whatever adapter there is.
+///
+/// # Errors
+/// There is none.
+pub fn renderer() -> Result<WgpuTestRenderer, String> {
+    let setup = default_wgpu_setup();
+    let configuration = egui_wgpu::WgpuConfiguration { wgpu_setup: setup.clone(), ..Default::default() };
+    let state = ready(async move {
+        let instance = setup.new_instance().await;
+        egui_wgpu::RenderState::create(&configuration, &instance, None, egui_wgpu::RendererOptions::PREDICTABLE).await
+    });
+    state.map(WgpuTestRenderer::from_render_state).map_err(|e| {
+        format!(
+            "no graphics adapter was found ({e}); install a Vulkan driver (Debian: mesa-vulkan-drivers) or try WGPU_BACKEND=gl"
+        )
+    })
+}
+
+/// Waits for a future; the native ones of wgpu are ready at once, so that polling is enough.
+fn ready<T>(future: impl Future<Output = T>) -> T {
+    let mut future = pin!(future);
+    let mut context = Context::from_waker(Waker::noop());
+    loop {
+        if let Poll::Ready(value) = future.as_mut().poll(&mut context) {
+            return value;
+        }
+        std::thread::yield_now();
+    }
 }

@@ -27,6 +27,8 @@ pub struct AppState {
     pub selected: Option<Item>,
     /// What the pointer is over.
     pub hovered: Option<Item>,
+    /// What is being dragged.
+    pub grabbed: Option<Grab>,
     /// Where the pointer is, m; None outside the canvas.
     pub cursor_m: Option<Point>,
     /// The part of the world on screen.
@@ -91,6 +93,15 @@ pub enum Item {
     },
     /// A point load.
     Load(usize),
+}
+
+/// A thing being dragged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grab {
+    /// What.
+    pub item: Item,
+    /// From the pointer to it when it was picked up, m.
+    pub offset_m: Point,
 }
 
 /// Whether and how fast time runs.
@@ -168,6 +179,7 @@ impl AppState {
             undo: Undo::default(),
             selected: None,
             hovered: None,
+            grabbed: None,
             cursor_m: None,
             camera: Camera::default(),
             playback: Playback { paused: true, speed: 1.0 },

@@ -3,7 +3,7 @@
 use cable_core::math::Point;
 
 use crate::colour::ColourScale;
-use crate::state::{AppState, Item, Layers};
+use crate::state::{AppState, Grab, Item, Layers};
 
 /// Changes what is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,6 +12,8 @@ pub enum ViewCommand {
     Select(Option<Item>),
     /// The pointer is over a thing, or over nothing, at a point of the world (m).
     Hover(Option<Item>, Option<Point>),
+    /// Picks a thing up, or lets it go.
+    Grab(Option<Grab>),
     /// Moves the world with the pointer, points.
     Pan(egui::Vec2),
     /// Scales about a world point, m.
@@ -48,6 +50,7 @@ pub fn apply(state: &mut AppState, command: ViewCommand) {
             state.hovered = item;
             state.cursor_m = at_m;
         }
+        ViewCommand::Grab(grab) => state.grabbed = grab,
         ViewCommand::Pan(delta) => state.camera.pan(delta),
         ViewCommand::Zoom { about_m, factor } => state.camera.zoom(about_m, factor),
         ViewCommand::Fit => state.camera.fit_wanted = true,

@@ -1,0 +1,152 @@
+//! The pointer on the canvas: hover, pick, drag, pan, zoom, add a waypoint.
+
+use cable_core::math::Point;
+use cable_core::scene::Shape;
+use egui::{CursorIcon, PointerButton, Pos2, Response, Ui};
+
+use super::{grid, pick, supports};
+use crate::command::{Command, SceneCommand, ViewCommand};
+use crate::state::{AppState, Grab, Item};
+
+/// How near to the cable a double-click adds a waypoint, points.
+const WAYPOINT_REACH: f32 = 14.0;
+/// Zoom per point of wheel: e^0.0025 ≈ a tenth a notch of 40 points. Larger overshoots, smaller tires.
+const WHEEL: f64 = 0.0025;
+
+/// Reads the pointer.
+pub fn read(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Command>) {
+    let canvas = response.rect;
+    hover(ui, response, state, commands);
+    wheel(ui, response, state, commands);
+    if response.double_clicked() {
+        if let Some(p) = response.interact_pointer_pos()
+            && let Some((cable, arc_length_m, at_m)) = pick::cable_at(state, canvas, p, WAYPOINT_REACH)
+        {
+            commands.push(Command::Scene(SceneCommand::AddWaypoint { cable, arc_length_m, at_m }));
+        }
+    } else if response.clicked()
+        && let Some(p) = response.interact_pointer_pos()
+    {
+        response.request_focus();
+        commands.push(Command::View(ViewCommand::Select(pick::item_at(state, canvas, p))));
+    }
+    drag(ui, response, state, commands);
+}
+
+fn hover(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Command>) {
+    let pointer = response.hover_pos();
+    let item = match &state.grabbed {
+        Some(grab) => Some(grab.item),
+        None => pointer.and_then(|p| pick::item_at(state, response.rect, p)),
+    };
+    let cursor_m = pointer.map(|p| state.camera.to_world(response.rect, p));
+    if item != state.hovered || cursor_m != state.cursor_m {
+        commands.push(Command::View(ViewCommand::Hover(item, cursor_m)));
+    }
+    if pointer.is_none() && state.grabbed.is_none() {
+        return;
+    }
+    let icon = match (state.grabbed.is_some(), item) {
+        (true, _) => CursorIcon::Grabbing,
+        (false, Some(Item::Cable(_))) => CursorIcon::PointingHand,
+        (false, Some(item)) if place(state, item).is_some() => CursorIcon::Grab,
+        (false, Some(_)) => CursorIcon::PointingHand,
+        (false, None) if response.dragged() => CursorIcon::AllScroll,
+        (false, None) => CursorIcon::Default,
+    };
+    ui.ctx().set_cursor_icon(icon);
+}
+
+fn wheel(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Command>) {
+    let Some(p) = response.hover_pos() else { return };
+    let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
+    let factor = f64::from(pinch) * (f64::from(scroll) * WHEEL).exp();
+    if factor != 1.0 {
+        let about_m = state.camera.to_world(response.rect, p);
+        commands.push(Command::View(ViewCommand::Zoom { about_m, factor }));
+    }
+}
+
+fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Command>) {
+    let canvas = response.rect;
+    if response.drag_started_by(PointerButton::Primary)
+        && let Some(p) = ui.input(|i| i.pointer.press_origin())
+        && let Some(item) = pick::item_at(state, canvas, p)
+    {
+        commands.push(Command::View(ViewCommand::Select(Some(item))));
+        if let Some(at) = place(state, item) {
+            let w = state.camera.to_world(canvas, p);
+            let grab = Grab { item, offset_m: [at[0] - w[0], at[1] - w[1]] };
+            commands.push(Command::View(ViewCommand::Grab(Some(grab))));
+            // The pointer has moved on since the press.
+            if let Some(now) = response.interact_pointer_pos() {
+                move_to(state, &grab, canvas, now, commands);
+            }
+            return;
+        }
+    }
+    match &state.grabbed {
+        Some(grab) => {
+            if response.dragged_by(PointerButton::Primary)
+                && let Some(p) = response.interact_pointer_pos()
+            {
+                move_to(state, grab, canvas, p, commands);
+            }
+            if response.drag_stopped() || !ui.input(|i| i.pointer.primary_down()) {
+                commands.push(Command::View(ViewCommand::Grab(None)));
+                commands.push(Command::Scene(SceneCommand::EditDone));
+            }
+        }
+        None => {
+            let delta = response.drag_delta();
+            if response.dragged() && delta != egui::Vec2::ZERO {
+                commands.push(Command::View(ViewCommand::Pan(delta)));
+            }
+        }
+    }
+}
+
+fn move_to(state: &AppState, grab: &Grab, canvas: egui::Rect, p: Pos2, commands: &mut Vec<Command>) {
+    if let Item::Load(k) = grab.item {
+        // A load slides along its cable.
+        if let Some((cable, arc_length_m, _)) = pick::cable_at(state, canvas, p, f32::INFINITY)
+            && let Some(mut value) = state.scene.loads.get(k).cloned()
+            && state.scene.cables.get(cable).is_some_and(|c| c.name == value.cable)
+        {
+            value.arc_length_m = arc_length_m;
+            commands.push(Command::Scene(SceneCommand::SetLoad { load: k, value }));
+        }
+        return;
+    }
+    let w = state.camera.to_world(canvas, p);
+    let mut to_m = [w[0] + grab.offset_m[0], w[1] + grab.offset_m[1]];
+    if state.layers.snap {
+        let [_, step] = grid::steps(&state.camera);
+        to_m = to_m.map(|v| (v / step).round() * step);
+    }
+    commands.push(Command::Scene(SceneCommand::Move { item: grab.item, to_m }));
+}
+
+/// Where a thing that can be dragged is, m; None for one that cannot.
+fn place(state: &AppState, item: Item) -> Option<Point> {
+    match item {
+        Item::Support { cable, support } => {
+            state.scene.cables.get(cable)?.supports.get(support)?.at_m?;
+            supports::place(state, cable, support)
+        }
+        Item::Corner { obstacle, corner } => match &state.scene.obstacles.get(obstacle)?.shape {
+            Shape::Terrain { points_m } | Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => {
+                points_m.get(corner).copied()
+            }
+            Shape::Circle { .. } => None,
+        },
+        Item::Obstacle(k) => match &state.scene.obstacles.get(k)?.shape {
+            // The whole ground is not dragged by accident: its corners are.
+            Shape::Terrain { .. } => None,
+            Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => points_m.first().copied(),
+            Shape::Circle { center_m, .. } => Some(*center_m),
+        },
+        Item::Load(k) => super::forces::load_at(state, k).map(|(at, _)| at),
+        Item::Cable(_) => None,
+    }
+}

@@ -1,0 +1,102 @@
+//! Supports as the signs engineers draw, and the labels of everything.
+
+use cable_core::math::Point;
+use cable_core::scene::{Support, SupportKind};
+use egui::{Color32, Pos2, Stroke, vec2};
+
+use super::view::View;
+use crate::state::{AppState, Item};
+use crate::units;
+
+/// Where a support is on screen now: where the scene puts it, or where the cable took it.
+#[must_use]
+pub fn place(state: &AppState, cable: usize, support: usize) -> Option<Point> {
+    let s = state.scene.cables.get(cable)?.supports.get(support)?;
+    let solved = state.snapshot.solution.as_ref().and_then(|x| x.cables.get(cable));
+    let answer = solved.and_then(|c| c.supports.get(support)).map(|r| [r.x_m, r.y_m]);
+    // A moving or free support is where the answer says; a still one where it is being edited.
+    match (s.at_m, &s.motion) {
+        (Some(at), None) => Some(at),
+        (Some(at), Some(_)) => answer.or(Some(at)),
+        (None, _) => answer,
+    }
+}
+
+/// The signs.
+pub fn draw(view: &View<'_>, state: &AppState) {
+    for (cable, c) in state.scene.cables.iter().enumerate() {
+        for (support, s) in c.supports.iter().enumerate() {
+            let Some(at) = place(state, cable, support) else { continue };
+            let p = view.at(at);
+            let item = Some(Item::Support { cable, support });
+            if state.selected == item || state.hovered == item {
+                let strong = if state.selected == item { 0.5 } else { 0.28 };
+                view.painter.circle_filled(p, 15.0, view.palette.accent.gamma_multiply(strong));
+            }
+            sign(view, p, s);
+        }
+    }
+}
+
+fn sign(view: &View<'_>, p: Pos2, s: &Support) {
+    let (ink, paper) = (view.palette.support, view.palette.background);
+    let line = Stroke::new(1.6, ink);
+    let painter = view.painter;
+    match s.kind {
+        SupportKind::Fixed => {
+            let feet = [p + vec2(-7.0, 11.0), p + vec2(7.0, 11.0)];
+            painter.add(egui::Shape::convex_polygon(vec![p, feet[1], feet[0]], paper, line));
+            painter.line_segment([feet[0] + vec2(-3.0, 0.0), feet[1] + vec2(3.0, 0.0)], line);
+            painter.circle(p, 3.4, ink, Stroke::new(1.2, paper));
+        }
+        SupportKind::Clamped => {
+            let along = s.angle_deg.unwrap_or(0.0).to_radians();
+            let t = vec2(along.cos() as f32, -along.sin() as f32);
+            let n = vec2(-t.y, t.x);
+            painter.line_segment([p - n * 10.0, p + n * 10.0], Stroke::new(3.0, ink));
+            painter.arrow(p, t * 22.0, Stroke::new(1.2, ink));
+            painter.circle(p, 3.4, ink, Stroke::new(1.2, paper));
+        }
+        SupportKind::Pulley => {
+            let radius = view.points(s.radius_m.unwrap_or(0.0)).max(6.5);
+            painter.circle(p, radius, paper.gamma_multiply(0.6), line);
+            painter.circle_filled(p, 2.2, ink);
+        }
+        SupportKind::Robot => {
+            painter.rect(egui::Rect::from_center_size(p, vec2(13.0, 10.0)), 2.0, paper, line, egui::StrokeKind::Middle);
+        }
+        SupportKind::Load | SupportKind::Free => {
+            painter.circle(p, 4.0, paper, line);
+        }
+    }
+}
+
+/// Names and coordinates of supports, the largest tension, then the figures of the arrows while there is room.
+pub fn labels(view: &mut View<'_>, state: &AppState, figures: Vec<(Pos2, String, Color32)>) {
+    let text_colour = view.palette.text;
+    let mut spots = Vec::new();
+    for (cable, c) in state.scene.cables.iter().enumerate() {
+        for (support, s) in c.supports.iter().enumerate() {
+            if let Some(at) = place(state, cable, support) {
+                let p = view.at(at);
+                view.taken.push(egui::Rect::from_center_size(p, vec2(16.0, 16.0)));
+                spots.push((p, format!("{}  ({:.2}, {:.2}) m", s.name, at[0], at[1])));
+            }
+        }
+    }
+    for (p, text) in spots {
+        view.label(p, &text, 11.5, text_colour);
+    }
+    if let Some(solution) = &state.snapshot.solution {
+        let most = solution.max_tension();
+        let node = solution.cables.get(most.cable).and_then(|c| c.nodes.iter().find(|n| n.arc_length_m >= most.arc_length_m));
+        if let Some(n) = node {
+            let p = view.at([n.x_m, n.y_m]);
+            view.painter.circle_stroke(p, 9.0, Stroke::new(1.5, text_colour));
+            view.label(p, &format!("max {}", units::force(most.tension_n)), 11.5, text_colour);
+        }
+    }
+    for (p, text, colour) in figures {
+        view.label(p, &text, 11.0, colour);
+    }
+}

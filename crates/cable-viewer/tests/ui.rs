@@ -1,0 +1,3 @@
+//! The window driven as a user would, without a display.
+#[test]
+fn nothing() {}
