@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use cable_core::Scene;
+use cable_core::{Model, Scene};
 use cable_core::scene::catalog;
+use cable_viewer::command::Command;
 use cable_viewer::{ViewerApp, scene_file, screenshot};
 use clap::Parser;
 
@@ -23,6 +24,14 @@ struct Arguments {
     /// Colours of the window or picture.
     #[arg(long, value_enum, default_value_t = Theme::System)]
     theme: Theme,
+    /// Model to solve with: auto, catenary, fem or mass-spring.
+    #[arg(long, default_value = "auto", value_parser = parse_model)]
+    model: Model,
+}
+
+/// A model by its name on the command line.
+fn parse_model(text: &str) -> Result<Model, String> {
+    Model::from_name(text).ok_or_else(|| "one of auto, catenary, fem, mass-spring".to_owned())
 }
 
 /// Colours of the window.
@@ -65,7 +74,10 @@ fn run(arguments: Arguments) -> Result<(), String> {
         Theme::Dark => egui::ThemePreference::Dark,
     };
     if let Some(picture) = arguments.screenshot {
-        return screenshot::save(scene, &picture, arguments.size, theme);
+        return screenshot::save(scene, &picture, arguments.size, |app, ctx| {
+            app.state.theme = theme;
+            app.apply(ctx, vec![Command::SetModel(arguments.model)]);
+        });
     }
     let size = arguments.size.map(|s| s as f32);
     let options = eframe::NativeOptions {
@@ -78,6 +90,7 @@ fn run(arguments: Arguments) -> Result<(), String> {
     let create = Box::new(|cc: &eframe::CreationContext<'_>| {
         let mut app = ViewerApp::new(&cc.egui_ctx, scene, path);
         app.state.theme = theme;
+        app.apply(&cc.egui_ctx, vec![Command::SetModel(arguments.model)]);
         Ok(Box::new(app) as Box<dyn eframe::App>)
     });
     eframe::run_native("cable-viewer", options, create).map_err(|e| explain(&e))

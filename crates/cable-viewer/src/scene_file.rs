@@ -3,20 +3,20 @@
 use std::path::Path;
 
 use cable_core::Scene;
+use cable_core::files;
 
 /// Reads a scene.
 ///
 /// # Errors
 /// What is wrong and where, in words.
 pub fn load(path: &Path) -> Result<Scene, String> {
-    let text = std::fs::read_to_string(path).map_err(|e| e.to_string())?;
-    Scene::from_toml(&text).map_err(|e| e.to_string())
+    files::load_scene(path).map_err(|e| e.to_string())
 }
 
-/// Writes a scene.
+/// Writes a scene; the old file stays whole until the new one is.
 ///
 /// # Errors
 /// Why it could not, in words.
 pub fn save(path: &Path, scene: &Scene) -> Result<(), String> {
-    std::fs::write(path, scene.to_toml()).map_err(|e| e.to_string())
+    files::save_scene(path, scene).map_err(|e| e.to_string())
 }

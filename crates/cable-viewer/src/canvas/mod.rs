@@ -12,7 +12,7 @@ mod supports;
 mod triangulate;
 mod view;
 
-use egui::{Rect, Sense, Ui, WidgetInfo, WidgetType, vec2};
+use egui::{Rect, Role, Sense, Ui, WidgetInfo, vec2};
 
 use crate::command::Command;
 use crate::state::AppState;
@@ -23,7 +23,7 @@ use view::View;
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::click_and_drag());
     let rect = response.rect;
-    response.widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, "Canvas"));
+    response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Canvas"));
     if !rect.is_positive() {
         return;
     }
@@ -72,10 +72,10 @@ fn name_supports(ui: &Ui, canvas: Rect, state: &AppState) {
         for (support, s) in c.supports.iter().enumerate() {
             let Some(at) = supports::place(state, cable, support) else { continue };
             let spot = Rect::from_center_size(state.camera.to_screen(canvas, at), vec2(20.0, 20.0));
-            let id = ui.id().with(("support", cable, support));
+            let id = ui.scope_id().with(("support", cable, support));
             let response = ui.interact(spot.intersect(canvas), id, Sense::hover());
             let text = format!("Support {} of {}", s.name, c.name);
-            response.widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, &text));
+            response.widget_info(|| WidgetInfo::labeled(Role::GraphicsSymbol, true, &text));
         }
     }
 }
