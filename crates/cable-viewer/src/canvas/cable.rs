@@ -15,7 +15,7 @@ const FEATHER: f32 = 0.8;
 const MITER: f32 = 2.0;
 
 /// All cables.
-pub fn draw(view: &View<'_>, state: &AppState) {
+pub fn draw(view: &mut View<'_>, state: &AppState) {
     let Some(solution) = &state.snapshot.solution else { return };
     let solved = state.snapshot.scene.as_deref().unwrap_or(&state.scene);
     let range = state.colour.range(solution);
@@ -38,6 +38,9 @@ pub fn draw(view: &View<'_>, state: &AppState) {
         });
     }
     view.painter.add(mesh);
+    for pair in solution.cables.iter().flat_map(|c| c.nodes.windows(2)) {
+        view.avoid_line(view.at([pair[0].x_m, pair[0].y_m]), view.at([pair[1].x_m, pair[1].y_m]));
+    }
     if state.layers.nodes {
         for n in solution.cables.iter().flat_map(|c| &c.nodes) {
             let p = view.at([n.x_m, n.y_m]);

@@ -13,7 +13,7 @@ use crate::units;
 const LENGTH: [f64; 2] = [64.0, 9.0];
 
 /// All arrows; their figures go to `figures` for the labels to place.
-pub fn draw(view: &View<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
+pub fn draw(view: &mut View<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
     let Some(solution) = &state.snapshot.solution else { return };
     let greatest = greatest(state);
     let scale = |f: Point| screen_vector(f, greatest);
@@ -79,7 +79,7 @@ fn tangent_at(cable: &CableSolution, arc_length_m: f64, normal: Point) -> Point 
 }
 
 fn reactions(
-    view: &View<'_>,
+    view: &mut View<'_>,
     cable: &CableSolution,
     scale: &impl Fn(Point) -> Vec2,
     figures: &mut Vec<(Pos2, String, Color32)>,
@@ -89,6 +89,7 @@ fn reactions(
         if along != Vec2::ZERO {
             let at = view.at([s.x_m, s.y_m]);
             view.arrow(at, along, Stroke::new(2.0, view.palette.reaction));
+            view.avoid_line(at, at + along);
             let figure = units::force(s.reaction_x_n.hypot(s.reaction_y_n));
             figures.push((at + along, figure, view.palette.reaction));
         }
@@ -111,7 +112,7 @@ pub fn load_at(state: &AppState, load: usize) -> Option<(Point, Point)> {
 }
 
 fn loads(
-    view: &View<'_>,
+    view: &mut View<'_>,
     state: &AppState,
     cable: usize,
     answer: &CableSolution,
@@ -123,6 +124,7 @@ fn loads(
         let colour = if picked { view.palette.accent } else { view.palette.load };
         let tail = view.at(at);
         view.arrow(tail, along, Stroke::new(2.6, colour));
+        view.avoid_line(tail, tail + along);
         view.painter.circle_filled(tail, 3.5, colour);
         figures.push((tail + along, units::force(force[0].hypot(force[1])), colour));
     };

@@ -21,7 +21,8 @@ use view::View;
 
 /// Draws the scene into the rest of the window and reads the pointer.
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
-    let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::click_and_drag());
+    // Not focusable: single keys go to the window while the canvas is in use.
+    let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::CLICK | Sense::DRAG);
     let rect = response.rect;
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Canvas"));
     if !rect.is_positive() {
@@ -40,6 +41,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         painter: &painter,
         palette: theme::palette(ui.visuals()),
         taken: Vec::new(),
+        avoided: Vec::new(),
     };
     draw(&mut view, state);
 }

@@ -27,7 +27,6 @@ pub fn read(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<C
     } else if response.clicked()
         && let Some(p) = response.interact_pointer_pos()
     {
-        response.request_focus();
         commands.push(Command::View(ViewCommand::Select(pick::item_at(state, canvas, p))));
     }
     drag(ui, response, state, commands);

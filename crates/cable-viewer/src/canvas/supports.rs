@@ -4,7 +4,7 @@ use cable_core::math::Point;
 use cable_core::scene::{Support, SupportKind};
 use egui::{Color32, Pos2, Stroke, vec2};
 
-use super::view::View;
+use super::view::{Place, View};
 use crate::state::{AppState, Item};
 use crate::units;
 
@@ -79,24 +79,28 @@ pub fn labels(view: &mut View<'_>, state: &AppState, figures: Vec<(Pos2, String,
         for (support, s) in c.supports.iter().enumerate() {
             if let Some(at) = place(state, cable, support) {
                 let p = view.at(at);
-                view.taken.push(egui::Rect::from_center_size(p, vec2(16.0, 16.0)));
-                spots.push((p, format!("{}  ({:.2}, {:.2}) m", s.name, at[0], at[1])));
+                view.taken.push(egui::Rect::from_min_max(p + vec2(-10.0, -8.0), p + vec2(10.0, 13.0)));
+                let [x, y] = at.map(|v| units::coordinate(v, 0.01));
+                spots.push((p, format!("{}  ({x}, {y}) m", s.name)));
             }
         }
     }
-    for (p, text) in spots {
-        view.label(p, &text, 11.5, text_colour);
+    for (p, text) in &spots {
+        view.label(*p, text, text_colour, Place::Must);
     }
     if let Some(solution) = &state.snapshot.solution {
         let most = solution.max_tension();
-        let node = solution.cables.get(most.cable).and_then(|c| c.nodes.iter().find(|n| n.arc_length_m >= most.arc_length_m));
-        if let Some(n) = node {
+        let cable = solution.cables.get(most.cable);
+        if let Some(n) = cable.and_then(|c| c.nodes.iter().find(|n| n.arc_length_m >= most.arc_length_m)) {
             let p = view.at([n.x_m, n.y_m]);
-            view.painter.circle_stroke(p, 9.0, Stroke::new(1.5, text_colour));
-            view.label(p, &format!("max {}", units::force(most.tension_n)), 11.5, text_colour);
+            // At a support its own sign marks the place.
+            if spots.iter().all(|(s, _)| s.distance(p) > 14.0) {
+                view.painter.circle_stroke(p, 9.0, Stroke::new(1.5, text_colour));
+            }
+            view.label(p, &format!("max {}", units::force(most.tension_n)), text_colour, Place::Must);
         }
     }
     for (p, text, colour) in figures {
-        view.label(p, &text, 11.0, colour);
+        view.label(p, &text, colour, Place::IfRoom);
     }
 }

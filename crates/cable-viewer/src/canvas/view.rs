@@ -18,6 +18,17 @@ pub struct View<'a> {
     pub palette: &'a Palette,
     /// Rectangles that labels must not cover.
     pub taken: Vec<Rect>,
+    /// What labels should not cover if there is room elsewhere: the cable, arrows.
+    pub avoided: Vec<Rect>,
+}
+
+/// Whether a label may cover the cable or an arrow where there is no other room.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// It may.
+    Must,
+    /// It is left out instead.
+    IfRoom,
 }
 
 impl View<'_> {
@@ -47,12 +58,26 @@ impl View<'_> {
         self.painter.add(egui::Shape::convex_polygon(vec![tip, neck + side, neck - side], stroke.color, Stroke::NONE));
     }
 
-    /// A label on a plate near a point, where it covers nothing placed before; false if there is no room.
-    pub fn label(&mut self, near: Pos2, text: &str, size: f32, colour: egui::Color32) -> bool {
-        if !self.rect.expand(40.0).contains(near) {
-            return false;
+    /// Labels placed later keep off a line on screen if they can.
+    pub fn avoid_line(&mut self, a: Pos2, b: Pos2) {
+        /// Points between two squares along the line.
+        const SPACING: f32 = 7.0;
+        if !self.rect.intersects(Rect::from_two_pos(a, b)) {
+            return;
         }
-        let galley = self.painter.layout_no_wrap(text.to_owned(), FontId::proportional(size), colour);
+        let parts = ((b - a).length() / SPACING).ceil().clamp(1.0, 400.0);
+        for k in 0..=parts as usize {
+            self.avoided.push(Rect::from_center_size(a + (b - a) * (k as f32 / parts), vec2(6.0, 6.0)));
+        }
+    }
+
+    /// A label on a plate near a point, where it covers nothing placed before.
+    pub fn label(&mut self, near: Pos2, text: &str, colour: egui::Color32, place: Place) {
+        const SIZE: f32 = 11.5;
+        if !self.rect.expand(40.0).contains(near) {
+            return;
+        }
+        let galley = self.painter.layout_no_wrap(text.to_owned(), FontId::proportional(SIZE), colour);
         let plate = galley.size() + vec2(8.0, 4.0);
         let gap = 10.0;
         let (w, h) = (plate.x, plate.y);
@@ -65,23 +90,25 @@ impl View<'_> {
             vec2(-w / 2.0, 2.2 * gap),
             vec2(3.0 * gap, -h / 2.0),
             vec2(-3.0 * gap - w, -h / 2.0),
+            vec2(-w / 2.0, -4.5 * gap - h),
+            vec2(2.0 * gap, -4.0 * gap - h),
+            vec2(-2.0 * gap - w, -4.0 * gap - h),
         ];
-        for spot in spots {
-            let rect = Rect::from_min_size(near + spot, plate);
-            if self.rect.contains_rect(rect) && !self.taken.iter().any(|t| t.intersects(rect)) {
-                self.painter.rect(
-                    rect,
-                    3.0,
-                    self.palette.plate,
-                    Stroke::new(1.0, self.palette.plate_line),
-                    egui::StrokeKind::Inside,
-                );
-                self.painter.galley(rect.min + vec2(4.0, 2.0), galley, colour);
-                self.taken.push(rect.expand(1.0));
-                return true;
-            }
+        let rects = spots.map(|spot| Rect::from_min_size(near + spot, plate)).into_iter();
+        let open: Vec<Rect> = rects
+            .filter(|r| self.rect.contains_rect(*r) && !self.taken.iter().any(|t| t.intersects(*r)))
+            .collect();
+        let covered = |r: &Rect| self.avoided.iter().filter(|t| t.intersects(*r)).count();
+        let Some((hidden, &rect)) = open.iter().map(|r| (covered(r), r)).min_by_key(|(hidden, _)| *hidden) else {
+            return;
+        };
+        if hidden > 0 && place == Place::IfRoom {
+            return;
         }
-        false
+        let line = Stroke::new(1.0, self.palette.plate_line);
+        self.painter.rect(rect, 3.0, self.palette.plate, line, egui::StrokeKind::Inside);
+        self.painter.galley(rect.min + vec2(4.0, 2.0), galley, colour);
+        self.taken.push(rect.expand(1.0));
     }
 
     /// Plain text; returns where it is.

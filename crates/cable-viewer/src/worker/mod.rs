@@ -195,3 +195,39 @@ fn guarded(engine: &mut Engine, job: impl FnOnce(&mut Engine) -> Report) -> Repo
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_in_the_solver_is_caught_and_said() {
+        let mut engine = Engine::default();
+        let report = guarded(&mut engine, |_| std::panic::panic_any("index out of bounds"));
+        assert!(report.snapshot.stale && report.paused_itself);
+        assert!(report.snapshot.error.is_some_and(|e| e.contains("index out of bounds")));
+        // It goes on with the next request.
+        let report = guarded(&mut engine, |e| e.handle(Request { reset: true, number: 3, ..Request::default() }));
+        assert_eq!(report.snapshot.edit, 3);
+    }
+
+    #[test]
+    fn later_requests_win_and_steps_are_bounded() {
+        let scene = cable_core::scene::catalog::hanging_span();
+        let edit = |fresh, name: &str| {
+            let mut scene = scene.clone();
+            scene.name = name.to_owned();
+            let (model, settings) = (cable_core::Model::Auto, cable_core::Settings::default());
+            Request { edit: Some(request::Edit { scene, model, settings, fresh }), ..Request::default() }
+        };
+        let mut waiting = edit(true, "first");
+        for _ in 0..1000 {
+            waiting.merge(Request { steps: 1, ..Request::default() });
+        }
+        waiting.merge(edit(false, "last"));
+        let merged = waiting.edit.expect("an edit");
+        assert_eq!(merged.scene.name, "last");
+        assert!(merged.fresh, "the new scene must not inherit the old one's state");
+        assert!(waiting.steps <= 60);
+    }
+}

@@ -1,5 +1,8 @@
 //! The window driven as a user would, without a display. The worker runs inline: one frame, one answer.
 
+mod pictures;
+mod timing;
+
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, PlaybackCommand, ViewCommand};
