@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use cable_core::{Model, Scene};
 use cable_core::scene::catalog;
+use cable_core::{Model, Scene};
 use cable_viewer::command::Command;
 use cable_viewer::{ViewerApp, scene_file, screenshot};
 use clap::Parser;

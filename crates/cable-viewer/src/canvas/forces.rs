@@ -71,7 +71,8 @@ fn contacts(view: &View<'_>, cable: &CableSolution, scale: &impl Fn(Point) -> Ve
 fn tangent_at(cable: &CableSolution, arc_length_m: f64, normal: Point) -> Point {
     let k = cable.nodes.partition_point(|n| n.arc_length_m < arc_length_m);
     let t = [normal[1], -normal[0]];
-    let (Some(a), Some(b)) = (cable.nodes.get(k.saturating_sub(1)), cable.nodes.get(k + 1).or(cable.nodes.last())) else {
+    let (Some(a), Some(b)) = (cable.nodes.get(k.saturating_sub(1)), cable.nodes.get(k + 1).or(cable.nodes.last()))
+    else {
         return t;
     };
     let forward = t[0] * (b.x_m - a.x_m) + t[1] * (b.y_m - a.y_m) >= 0.0;

@@ -16,8 +16,10 @@ pub const STRIP: [f32; 2] = [46.0, 20.0];
 pub fn steps(camera: &Camera) -> [f64; 2] {
     let least = LEAST_SPACING / camera.points_per_m;
     let power = 10f64.powf(least.log10().floor());
-    let (factor, parts) =
-        [(1.0, 5.0), (2.0, 4.0), (5.0, 5.0), (10.0, 5.0)].into_iter().find(|(f, _)| f * power >= least).unwrap_or((10.0, 5.0));
+    let (factor, parts) = [(1.0, 5.0), (2.0, 4.0), (5.0, 5.0), (10.0, 5.0)]
+        .into_iter()
+        .find(|(f, _)| f * power >= least)
+        .unwrap_or((10.0, 5.0));
     [factor * power, factor * power / parts]
 }
 

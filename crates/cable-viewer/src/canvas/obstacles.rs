@@ -14,7 +14,8 @@ const HATCH: [f32; 2] = [9.0, 8.0];
 /// All of them.
 pub fn draw(view: &View<'_>, state: &AppState) {
     for (k, obstacle) in state.scene.obstacles.iter().enumerate() {
-        let touched = |item: Item| item == Item::Obstacle(k) || matches!(item, Item::Corner { obstacle, .. } if obstacle == k);
+        let touched =
+            |item: Item| item == Item::Obstacle(k) || matches!(item, Item::Corner { obstacle, .. } if obstacle == k);
         let selected = state.selected.is_some_and(touched);
         let stroke = if selected {
             Stroke::new(2.5, view.palette.accent)

@@ -112,11 +112,12 @@ fn obstacle_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
 /// Even–odd rule.
 fn inside(points: &[Point], p: Point) -> bool {
     let n = points.len();
-    (0..n).filter(|&i| {
-        let (a, b) = (points[i], points[(i + 1) % n]);
-        (a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (b[0] - a[0]) * (p[1] - a[1]) / (b[1] - a[1])
-    })
-    .count()
+    (0..n)
+        .filter(|&i| {
+            let (a, b) = (points[i], points[(i + 1) % n]);
+            (a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (b[0] - a[0]) * (p[1] - a[1]) / (b[1] - a[1])
+        })
+        .count()
         % 2
         == 1
 }

@@ -51,8 +51,10 @@ mod tests {
         let arrow = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [2.0, 1.0], [0.0, 3.0]];
         let whole: f64 = (0..5).map(|i| area2([0.0; 2], arrow[i], arrow[(i + 1) % 5])).sum();
         for points in [arrow.to_vec(), arrow.iter().rev().copied().collect()] {
-            let parts: Vec<f64> =
-                triangulate(&points).iter().map(|t| area2(points[t[0] as usize], points[t[1] as usize], points[t[2] as usize])).collect();
+            let parts: Vec<f64> = triangulate(&points)
+                .iter()
+                .map(|t| area2(points[t[0] as usize], points[t[1] as usize], points[t[2] as usize]))
+                .collect();
             assert_eq!(parts.len(), 3);
             assert!(parts.iter().all(|&a| a > 0.0));
             assert!((parts.iter().sum::<f64>() - whole.abs()).abs() < 1e-12);

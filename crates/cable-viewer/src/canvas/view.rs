@@ -95,9 +95,8 @@ impl View<'_> {
             vec2(-2.0 * gap - w, -4.0 * gap - h),
         ];
         let rects = spots.map(|spot| Rect::from_min_size(near + spot, plate)).into_iter();
-        let open: Vec<Rect> = rects
-            .filter(|r| self.rect.contains_rect(*r) && !self.taken.iter().any(|t| t.intersects(*r)))
-            .collect();
+        let open: Vec<Rect> =
+            rects.filter(|r| self.rect.contains_rect(*r) && !self.taken.iter().any(|t| t.intersects(*r))).collect();
         let covered = |r: &Rect| self.avoided.iter().filter(|t| t.intersects(*r)).count();
         let Some((hidden, &rect)) = open.iter().map(|r| (covered(r), r)).min_by_key(|(hidden, _)| *hidden) else {
             return;

@@ -126,7 +126,10 @@ fn every_catalogue_scene_is_drawn() {
     for (id, scene) in catalog::all() {
         let harness = open(scene);
         let state = &harness.state().state;
-        assert!(state.snapshot.solution.is_some() || state.snapshot.error.is_some(), "{id} shows neither answer nor cause");
+        assert!(
+            state.snapshot.solution.is_some() || state.snapshot.error.is_some(),
+            "{id} shows neither answer nor cause"
+        );
     }
 }
 

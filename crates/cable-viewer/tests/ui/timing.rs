@@ -56,7 +56,10 @@ fn edits_at_200_nodes_are_timed() {
         delays.push(harness.state().state.edit_latency_s.expect("an answer") * 1e3);
     }
     delays.sort_by(f64::total_cmp);
-    println!("edit to first frame that shows it, 200 elements: median {:.1} ms, worst {:.1} ms", delays[20], delays[39]);
+    println!(
+        "edit to first frame that shows it, 200 elements: median {:.1} ms, worst {:.1} ms",
+        delays[20], delays[39]
+    );
 }
 
 #[test]
