@@ -1,6 +1,8 @@
 //! Whole scenes without obstacles against reference answers (`tests/data/composite.json`): pulleys, point loads, wind,
 //! temperature, clamps.
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 use cable_core::scene::Scene;
 use cable_core::solution::{CableSolution, Node};
 use cable_core::{Model, Simulation};

@@ -1,6 +1,8 @@
 //! FEM statics of cables that touch nothing but their supports: accuracy ladders against closed forms, every start,
 //! equilibrium, symmetry.
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 use cable_core::scene::{Scene, Support, SupportKind, catalog};
 use cable_core::solution::CableSolution;
 use cable_core::{Load, Model, Settings, Simulation, SolveError};

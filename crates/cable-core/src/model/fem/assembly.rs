@@ -204,8 +204,9 @@ impl System {
         let mut clamps = mesh.clamps.iter().peekable();
         for node in 0..mesh.nodes() {
             if let Some(clamp) = clamps.next_if(|c| c.node == node) {
-                for e in node.saturating_sub(1)..(node + 1).min(rest.len()) {
-                    let bend = ClampBend { stiffness, length: 0.5 * rest[e], direction: clamp.direction };
+                let first = node.saturating_sub(1);
+                for (e, rest) in rest.iter().enumerate().take(node + 1).skip(first) {
+                    let bend = ClampBend { stiffness, length: 0.5 * rest, direction: clamp.direction };
                     value += self.add_energy(&bend, [e, e + 1], x, curvature);
                 }
             } else if node > 0 && node < rest.len() {

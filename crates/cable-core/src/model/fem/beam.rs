@@ -323,9 +323,9 @@ impl Beam {
     fn assemble_bend(&self, e: usize, bending: f64, g: &mut [f64], h: &mut BandMatrix) {
         let n = self.bars.len();
         if let Some(clamp) = self.clamp_before(e) {
-            for bar in e.saturating_sub(1)..(e + 1).min(n) {
+            for (bar, g) in g.iter_mut().enumerate().take(e + 1).skip(e.saturating_sub(1)) {
                 let k = bending / (0.5 * self.rest(bar));
-                g[bar] += k * (self.angles[bar] - nearest_turn(clamp, self.angles[bar]));
+                *g += k * (self.angles[bar] - nearest_turn(clamp, self.angles[bar]));
                 h.add(bar, bar, k);
             }
         } else if e > 0 && e < n {
@@ -354,6 +354,18 @@ impl Beam {
         (self.angles[e] - self.angles[e - 1]) / (0.5 * (self.bars[e - 1].ds + self.bars[e].ds))
     }
 
+    /// The direction at the node before bar `e`, rad.
+    fn node_angle(&self, e: usize) -> f64 {
+        match (self.clamp_before(e), e.checked_sub(1).and_then(|i| self.angles.get(i)), self.angles.get(e)) {
+            (Some(clamp), _, _) => clamp,
+            (None, Some(before), Some(after)) => {
+                let (a, b) = (self.bars[e - 1].ds, self.bars[e].ds);
+                (before * b + after * a) / (a + b)
+            }
+            (None, before, after) => before.or(after).copied().unwrap_or(0.0),
+        }
+    }
+
     /// All nodes; `before` and `after` of each hold the tension along the cable there (the shear is left out).
     #[must_use]
     pub fn points(&self) -> Vec<Point> {
@@ -368,20 +380,13 @@ impl Beam {
         let mut at = (0..n).filter(|&e| self.bars[e].stretch < first).fold(anchor, |p, e| p - chord(e));
         let mut out = Vec::with_capacity(n + 1);
         for e in 0..=n {
-            let angle = match (self.clamp_before(e), e) {
-                (Some(a), _) => a,
-                (None, 0) => self.angles[0],
-                (None, e) if e == n => self.angles[n - 1],
-                _ => {
-                    let (a, b) = (self.bars[e - 1].ds, self.bars[e].ds);
-                    (self.angles[e - 1] * b + self.angles[e] * a) / (a + b)
-                }
-            };
+            let angle = self.node_angle(e);
             let t = Vec2::new(angle.cos(), angle.sin());
             let stretch = self.bars.get(e).map_or(self.layout.stops.len() - 1, |b| b.stretch);
             let at_stop = e == n || e == 0 || self.bars[e - 1].stretch != stretch;
-            let [before, after] =
-                if at_stop { forces[stretch] } else { [middle[e] + self.material.body * (0.5 * self.bars[e].ds); 2] };
+            let half = self.bars.get(e).map_or(Vec2::zeros(), |b| self.material.body * (0.5 * b.ds));
+            let inside = middle.get(e).map_or(Vec2::zeros(), |f| f + half);
+            let [before, after] = if at_stop { forces[stretch] } else { [inside; 2] };
             let arc_length = self.bars.get(e).map_or(self.layout.length, |b| b.start);
             if at_stop && let Some(p) = self.layout.stops[stretch].point(0) {
                 at = p;

@@ -44,8 +44,30 @@ fn force_errors(network: &Network) -> Vec<[Vec2; 2]> {
         errors[ends.0][1] = off;
         errors[ends.1][0] = off;
     }
-    network.let_pulleys_follow(&mut errors);
+    let_pulleys_follow(network, &mut errors);
     errors
+}
+
+/// Adds what frictionless pulleys do to small changes of the forces beside the stops: they slide until the tensions
+/// agree again.
+fn let_pulleys_follow(network: &Network, changes: &mut [[Vec2; 2]]) {
+    let pulleys = network.pulleys();
+    let faults: Vec<Option<f64>> = pulleys
+        .iter()
+        .map(|&k| {
+            let (wheel, [before, after]) = (network.wheel(k)?, network.forces[k]);
+            network.fault(k, &wheel)?;
+            Some(network.fault_rate(&wheel, 0.0, [before, after], changes[k]))
+        })
+        .collect();
+    let (slides, _) = network.newton_step(&pulleys, &faults);
+    for (&of, slide) in pulleys.iter().zip(slides) {
+        for (k, change) in changes.iter_mut().enumerate() {
+            let rates = network.rates_at(k, of);
+            change[0] += rates[0] * slide;
+            change[1] += rates[1] * slide;
+        }
+    }
 }
 
 /// Estimated relative error of the largest tension on the finer of two meshes, second order: a third of the change.

@@ -15,6 +15,7 @@ mod layout;
 mod network;
 mod span;
 pub mod statics;
+mod wheel;
 
 use std::sync::Arc;
 

@@ -10,15 +10,12 @@
 //! ρ is the slope of the energy in `s` but for a positive factor, so a resting place is stable where ∂ρ/∂s is
 //! positive: the pivots of the (tridiagonal) Newton matrix must be. When Newton stalls or ends at an unstable place,
 //! each pulley in turn is bisected for a change of ρ from − to +, which only stable places have.
-//!
-//! On a wheel the cable runs from where it meets the wheel to where it leaves it; along the arc, with t the direction
-//! and n the outward normal, dT = −q·t ds ± μ (T dα − q·n ds).
+//! Wheels with a radius are in `wheel`.
 
 use super::element::{Material, turn_between};
 use super::layout::{Hold, Layout, Wheel};
 use super::span::{self, Span, elements};
 use crate::math::{Vec2, perp};
-use crate::scene::PulleySide;
 
 /// Newton steps for the pulleys together. Measured: 3 to 8.
 const MAX_STEPS: usize = 40;
@@ -36,8 +33,6 @@ const ROOM: f64 = 0.4;
 const LEAST: f64 = 1e-7;
 /// Rounds to find where a cable meets and leaves its wheels; each gains the ratio of radius to span.
 const WHEEL_ROUNDS: usize = 80;
-/// Steps of the integration round a wheel.
-const WHEEL_STEPS: usize = 16;
 /// Rounds of wheels end when no contact point moves by more than this angle, rad.
 const WHEEL_STILL: f64 = 1e-12;
 
@@ -192,14 +187,16 @@ impl Network {
         }
     }
 
-    fn wheel(&self, stop: usize) -> Option<Wheel> {
+    /// The pulley at a stop.
+    pub(super) fn wheel(&self, stop: usize) -> Option<Wheel> {
         match self.layout.stops[stop].hold {
             Hold::Pulley(w) => Some(w),
             _ => None,
         }
     }
 
-    fn pulleys(&self) -> Vec<usize> {
+    /// The stops with pulleys.
+    pub(super) fn pulleys(&self) -> Vec<usize> {
         (0..self.layout.stops.len()).filter(|&k| self.wheel(k).is_some()).collect()
     }
 
@@ -214,104 +211,13 @@ impl Network {
         Balance { ratio, law: [-bound, 0.0, bound] }
     }
 
-    /// ln(T_after/T_before) round a wheel with friction pulling along (`sign` +1) or against.
-    fn round_wheel(&self, wheel: &Wheel, before: Vec2, sign: f64) -> f64 {
-        let m = &self.material;
-        let [meets, leaves] = wheel.contact;
-        let clockwise = self.clockwise(wheel, before);
-        let turn = arc(meets, leaves, clockwise);
-        let start = meets.y.atan2(meets.x);
-        let slope = |alpha: f64, tension: f64| {
-            let angle = start - clockwise * alpha;
-            let n = Vec2::new(angle.cos(), angle.sin());
-            let t = perp(n) * -clockwise;
-            let ds = wheel.radius / (m.thermal_stretch * (1.0 + tension / m.axial_stiffness));
-            -m.body.dot(&t) * ds + sign * wheel.friction * (tension - m.body.dot(&n) * ds)
-        };
-        let (first, h) = (before.norm(), turn / WHEEL_STEPS as f64);
-        let mut tension = first;
-        for k in 0..WHEEL_STEPS {
-            let a = h * k as f64;
-            let k1 = slope(a, tension);
-            let k2 = slope(a + 0.5 * h, tension + 0.5 * h * k1);
-            let k3 = slope(a + 0.5 * h, tension + 0.5 * h * k2);
-            let k4 = slope(a + h, tension + h * k3);
-            tension += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
-        }
-        (tension / first).ln()
-    }
-
-    /// +1 where the cable runs clockwise round the wheel, −1 the other way.
-    fn clockwise(&self, wheel: &Wheel, travel: Vec2) -> f64 {
-        let right = if travel.x < 0.0 { -1.0 } else { 1.0 };
-        match wheel.side {
-            PulleySide::Over => right,
-            PulleySide::Under => -right,
-        }
-    }
-
-    /// The way the cable passes a stop, from the anchor before to the anchor after.
-    fn passing(&self, stop: usize) -> Vec2 {
-        let near = |k: usize| match self.layout.stops[k].hold {
-            Hold::Free => None,
-            Hold::Fixed(p) => Some(p),
-            Hold::Pulley(w) => Some(w.center),
-        };
-        let here = near(stop).unwrap_or_default();
-        let before = (0..stop).rev().find_map(near).unwrap_or(here);
-        let after = (stop + 1..self.layout.stops.len()).find_map(near).unwrap_or(here);
-        after - before
-    }
-
-    /// Contact points for straight cables, to start with.
-    fn meet_wheels_straight(&mut self) {
-        for k in self.pulleys() {
-            let Some(mut wheel) = self.wheel(k) else { continue };
-            if wheel.radius > 0.0 {
-                let clockwise = self.clockwise(&wheel, self.passing(k));
-                let up = Vec2::new(0.0, if wheel.side == PulleySide::Over { 1.0 } else { -1.0 });
-                let tilt = perp(up) * clockwise * if wheel.side == PulleySide::Over { 0.05 } else { -0.05 };
-                wheel.contact = [(up + tilt).normalize(), (up - tilt).normalize()];
-                self.layout.stops[k].hold = Hold::Pulley(wheel);
-            }
-        }
-    }
-
-    /// Moves the contact points to where the forces say; returns the largest move, rad.
-    fn meet_wheels(&mut self) -> Result<f64, Failure> {
-        let mut largest = 0.0;
-        for k in self.pulleys() {
-            let Some(mut wheel) = self.wheel(k).filter(|w| w.radius > 0.0) else { continue };
-            let [before, after] = self.forces[k];
-            let clockwise = self.clockwise(&wheel, self.passing(k));
-            let contact = [perp(before) * (clockwise / before.norm()), perp(after) * (clockwise / after.norm())];
-            let turn = arc(contact[0], contact[1], clockwise);
-            if turn > 1.5 * std::f64::consts::PI {
-                return Err(Failure::LeavesWheel(k));
-            }
-            let moved = (0..2).map(|i| (contact[i] - wheel.contact[i]).norm()).sum::<f64>();
-            if !(moved <= largest) {
-                largest = moved;
-            }
-            wheel.contact = contact;
-            let tension = 0.5 * (before.norm() + after.norm());
-            let lap =
-                wheel.radius * turn / (self.material.thermal_stretch * (1.0 + tension / self.material.axial_stiffness));
-            let stop = &mut self.layout.stops[k];
-            stop.arc_length -= 0.5 * (lap - stop.lap);
-            stop.lap = lap;
-            stop.hold = Hold::Pulley(wheel);
-        }
-        Ok(largest)
-    }
-
     /// How far the arc length at a pulley has moved since friction last held, m (the middle of a wheel's arc).
     fn slid(&self, stop: usize) -> f64 {
         self.layout.stops[stop].arc_length + 0.5 * self.layout.stops[stop].lap - self.held_at[stop]
     }
 
     /// What is wrong at a pulley: 0 where it rests, else positive where the arc length must shrink. `None`: held.
-    fn fault(&self, stop: usize, wheel: &Wheel) -> Option<f64> {
+    pub(super) fn fault(&self, stop: usize, wheel: &Wheel) -> Option<f64> {
         let b = self.law(stop, wheel);
         if !(wheel.friction > 0.0) {
             return Some(b.ratio - b.law[1]);
@@ -420,7 +326,7 @@ impl Network {
     }
 
     /// The Newton step of each pulley's arc length, and whether all pivots are positive.
-    fn newton_step(&self, pulleys: &[usize], faults: &[Option<f64>]) -> (Vec<f64>, bool) {
+    pub(super) fn newton_step(&self, pulleys: &[usize], faults: &[Option<f64>]) -> (Vec<f64>, bool) {
         let n = pulleys.len();
         let (mut diagonal, mut below, mut above) = (vec![1.0; n], vec![0.0; n], vec![0.0; n]);
         let mut right: Vec<f64> = faults.iter().map(|f| -f.unwrap_or(0.0)).collect();
@@ -457,30 +363,8 @@ impl Network {
         (right, stable)
     }
 
-    /// Adds what frictionless pulleys do to small changes of the forces beside the stops: they slide until the tensions
-    /// agree again.
-    pub fn let_pulleys_follow(&self, changes: &mut [[Vec2; 2]]) {
-        let pulleys = self.pulleys();
-        let faults: Vec<Option<f64>> = pulleys
-            .iter()
-            .map(|&k| {
-                let (wheel, [before, after]) = (self.wheel(k)?, self.forces[k]);
-                self.fault(k, &wheel)?;
-                Some(self.fault_rate(&wheel, 0.0, [before, after], changes[k]))
-            })
-            .collect();
-        let (slides, _) = self.newton_step(&pulleys, &faults);
-        for (&of, slide) in pulleys.iter().zip(slides) {
-            for (k, change) in changes.iter_mut().enumerate() {
-                let rates = self.rates_at(k, of);
-                change[0] += rates[0] * slide;
-                change[1] += rates[1] * slide;
-            }
-        }
-    }
-
     /// ∂(force before, force after the pulley at stop `k`)/∂(arc length at the pulley of stop `of`).
-    fn rates_at(&self, k: usize, of: usize) -> [Vec2; 2] {
+    pub(super) fn rates_at(&self, k: usize, of: usize) -> [Vec2; 2] {
         let mut rates = [Vec2::zeros(); 2];
         for (span, &ends) in self.spans.iter().zip(&self.ends) {
             let by_end = if ends.1 == of {
@@ -511,7 +395,7 @@ impl Network {
     }
 
     /// How the fault at a pulley changes when the forces beside it change by `rates`.
-    fn fault_rate(&self, wheel: &Wheel, fault: f64, [before, after]: [Vec2; 2], rates: [Vec2; 2]) -> f64 {
+    pub(super) fn fault_rate(&self, wheel: &Wheel, fault: f64, [before, after]: [Vec2; 2], rates: [Vec2; 2]) -> f64 {
         let ratio = after.dot(&rates[1]) / after.norm_squared() - before.dot(&rates[0]) / before.norm_squared();
         if !(wheel.friction > 0.0) {
             return ratio;
@@ -607,10 +491,4 @@ impl Network {
         self.warm = false;
         self.solve_spans()
     }
-}
-
-/// The angle the cable turns through on a wheel between two contact directions, 0 to 2π.
-fn arc(meets: Vec2, leaves: Vec2, clockwise: f64) -> f64 {
-    let turn = -clockwise * turn_between(meets, leaves);
-    if turn < -1e-9 { turn + std::f64::consts::TAU } else { turn }
 }

@@ -1,0 +1,113 @@
+//! A cable round the wheels of its pulleys.
+//!
+//! The cable runs from where it meets a wheel to where it leaves it, tangent at both; these contact points follow the
+//! forces of the spans beside (a few rounds, each gains the ratio of radius to span). Along the arc, with t the direction
+//! and n the outward normal, dT = −q·t ds ± μ (T dα − q·n ds): the capstan with the weight on the wheel.
+
+use super::element::turn_between;
+use super::layout::{Hold, Wheel};
+use super::network::{Failure, Network};
+use crate::math::{Vec2, perp};
+use crate::scene::PulleySide;
+
+/// Steps of the integration round a wheel.
+const WHEEL_STEPS: usize = 16;
+
+impl Network {
+    /// ln(T_after/T_before) round a wheel with friction pulling along (`sign` +1) or against.
+    pub(super) fn round_wheel(&self, wheel: &Wheel, before: Vec2, sign: f64) -> f64 {
+        let m = &self.material;
+        let [meets, leaves] = wheel.contact;
+        let clockwise = self.clockwise(wheel, before);
+        let turn = arc(meets, leaves, clockwise);
+        let start = meets.y.atan2(meets.x);
+        let slope = |alpha: f64, tension: f64| {
+            let angle = start - clockwise * alpha;
+            let n = Vec2::new(angle.cos(), angle.sin());
+            let t = perp(n) * -clockwise;
+            let ds = wheel.radius / (m.thermal_stretch * (1.0 + tension / m.axial_stiffness));
+            -m.body.dot(&t) * ds + sign * wheel.friction * (tension - m.body.dot(&n) * ds)
+        };
+        let (first, h) = (before.norm(), turn / WHEEL_STEPS as f64);
+        let mut tension = first;
+        for k in 0..WHEEL_STEPS {
+            let a = h * k as f64;
+            let k1 = slope(a, tension);
+            let k2 = slope(a + 0.5 * h, tension + 0.5 * h * k1);
+            let k3 = slope(a + 0.5 * h, tension + 0.5 * h * k2);
+            let k4 = slope(a + h, tension + h * k3);
+            tension += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+        }
+        (tension / first).ln()
+    }
+
+    /// +1 where the cable runs clockwise round the wheel, −1 the other way.
+    fn clockwise(&self, wheel: &Wheel, travel: Vec2) -> f64 {
+        let right = if travel.x < 0.0 { -1.0 } else { 1.0 };
+        match wheel.side {
+            PulleySide::Over => right,
+            PulleySide::Under => -right,
+        }
+    }
+
+    /// The way the cable passes a stop, from the anchor before to the anchor after.
+    fn passing(&self, stop: usize) -> Vec2 {
+        let near = |k: usize| match self.layout.stops[k].hold {
+            Hold::Free => None,
+            Hold::Fixed(p) => Some(p),
+            Hold::Pulley(w) => Some(w.center),
+        };
+        let here = near(stop).unwrap_or_default();
+        let before = (0..stop).rev().find_map(near).unwrap_or(here);
+        let after = (stop + 1..self.layout.stops.len()).find_map(near).unwrap_or(here);
+        after - before
+    }
+
+    /// Contact points for straight cables, to start with.
+    pub(super) fn meet_wheels_straight(&mut self) {
+        for k in self.pulleys() {
+            let Some(mut wheel) = self.wheel(k) else { continue };
+            if wheel.radius > 0.0 {
+                let clockwise = self.clockwise(&wheel, self.passing(k));
+                let up = Vec2::new(0.0, if wheel.side == PulleySide::Over { 1.0 } else { -1.0 });
+                let tilt = perp(up) * clockwise * if wheel.side == PulleySide::Over { 0.05 } else { -0.05 };
+                wheel.contact = [(up + tilt).normalize(), (up - tilt).normalize()];
+                self.layout.stops[k].hold = Hold::Pulley(wheel);
+            }
+        }
+    }
+
+    /// Moves the contact points to where the forces say; returns the largest move, rad.
+    pub(super) fn meet_wheels(&mut self) -> Result<f64, Failure> {
+        let mut largest = 0.0;
+        for k in self.pulleys() {
+            let Some(mut wheel) = self.wheel(k).filter(|w| w.radius > 0.0) else { continue };
+            let [before, after] = self.forces[k];
+            let clockwise = self.clockwise(&wheel, self.passing(k));
+            let contact = [perp(before) * (clockwise / before.norm()), perp(after) * (clockwise / after.norm())];
+            let turn = arc(contact[0], contact[1], clockwise);
+            if turn > 1.5 * std::f64::consts::PI {
+                return Err(Failure::LeavesWheel(k));
+            }
+            let moved = (0..2).map(|i| (contact[i] - wheel.contact[i]).norm()).sum::<f64>();
+            if !(moved <= largest) {
+                largest = moved;
+            }
+            wheel.contact = contact;
+            let tension = 0.5 * (before.norm() + after.norm());
+            let lap =
+                wheel.radius * turn / (self.material.thermal_stretch * (1.0 + tension / self.material.axial_stiffness));
+            let stop = &mut self.layout.stops[k];
+            stop.arc_length -= 0.5 * (lap - stop.lap);
+            stop.lap = lap;
+            stop.hold = Hold::Pulley(wheel);
+        }
+        Ok(largest)
+    }
+}
+
+/// The angle the cable turns through on a wheel between two contact directions, 0 to 2π.
+fn arc(meets: Vec2, leaves: Vec2, clockwise: f64) -> f64 {
+    let turn = -clockwise * turn_between(meets, leaves);
+    if turn < -1e-9 { turn + std::f64::consts::TAU } else { turn }
+}
