@@ -1,8 +1,9 @@
 //! From a solved network to nodes and support reactions.
 
-use super::layout::{Hold, Layout, Stop, Wheel};
+use super::layout::{Hold, Layout, Stop};
 use super::network::Network;
 use super::span::elements;
+use super::wheel;
 use crate::math::{Vec2, cross, perp};
 use crate::problem::Problem;
 use crate::solution::{Node, SupportReaction};
@@ -129,7 +130,7 @@ fn anchor(network: &Network, k: usize, out: &mut Vec<Point>) {
                 after: force,
                 curvature,
             };
-            let turn = wheel_turn(&wheel, before);
+            let turn = wheel::turn(&wheel, before);
             let curvature = turn / stop.lap;
             out.push(tangent(meets, stop.arc_length, before, curvature));
             let count = (turn.abs() * NODES_PER_RADIAN).ceil() as usize;
@@ -137,7 +138,7 @@ fn anchor(network: &Network, k: usize, out: &mut Vec<Point>) {
             for i in 1..count {
                 let f = i as f64 / count as f64;
                 let n = Vec2::new((start + turn * f).cos(), (start + turn * f).sin());
-                let tension = before.norm().powf(1.0 - f) * after.norm().powf(f);
+                let tension = wheel::tension(&wheel, &network.material, [before, after], f);
                 let force = perp(n) * (turn.signum() * tension);
                 out.push(tangent(wheel.center + n * wheel.radius, stop.arc_length + stop.lap * f, force, curvature));
             }
@@ -148,20 +149,6 @@ fn anchor(network: &Network, k: usize, out: &mut Vec<Point>) {
             let curvature = free_curvature(side, network.material.body, network.material.smoothing);
             out.push(Point { arc_length: stop.arc_length, at: meets, before, after, curvature });
         }
-    }
-}
-
-/// The angle through which the contact point goes round a wheel, positive counter-clockwise, rad.
-fn wheel_turn(wheel: &Wheel, before: Vec2) -> f64 {
-    let [meets, leaves] = wheel.contact;
-    let clockwise = cross(meets, before) < 0.0;
-    let turn = super::element::turn_between(meets, leaves);
-    if clockwise && turn > 1e-9 {
-        turn - std::f64::consts::TAU
-    } else if !clockwise && turn < -1e-9 {
-        turn + std::f64::consts::TAU
-    } else {
-        turn
     }
 }
 

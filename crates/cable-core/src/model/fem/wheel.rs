@@ -4,10 +4,10 @@
 //! forces of the spans beside (a few rounds, each gains the ratio of radius to span). Along the arc, with t the direction
 //! and n the outward normal, dT = −q·t ds ± μ (T dα − q·n ds): the capstan with the weight on the wheel.
 
-use super::element::turn_between;
+use super::element::{Material, turn_between};
 use super::layout::{Hold, Wheel};
 use super::network::{Failure, Network};
-use crate::math::{Vec2, perp};
+use crate::math::{Vec2, cross, perp};
 use crate::scene::PulleySide;
 
 /// Steps of the integration round a wheel.
@@ -94,7 +94,9 @@ impl Network {
                 largest = moved;
             }
             wheel.contact = contact;
-            let tension = 0.5 * (before.norm() + after.norm());
+            // Simpson's mean over the arc.
+            let tension = [0.0, 0.5, 1.0].map(|f| tension(&wheel, &self.material, [before, after], f));
+            let tension = (tension[0] + 4.0 * tension[1] + tension[2]) / 6.0;
             let lap =
                 wheel.radius * turn / (self.material.thermal_stretch * (1.0 + tension / self.material.axial_stiffness));
             let stop = &mut self.layout.stops[k];
@@ -110,4 +112,32 @@ impl Network {
 fn arc(meets: Vec2, leaves: Vec2, clockwise: f64) -> f64 {
     let turn = -clockwise * turn_between(meets, leaves);
     if turn < -1e-9 { turn + std::f64::consts::TAU } else { turn }
+}
+
+/// The angle through which the contact point goes round a wheel, positive counter-clockwise, rad.
+#[must_use]
+pub fn turn(wheel: &Wheel, before: Vec2) -> f64 {
+    let [meets, leaves] = wheel.contact;
+    let clockwise = cross(meets, before) < 0.0;
+    let turn = turn_between(meets, leaves);
+    if clockwise && turn > 1e-9 {
+        turn - std::f64::consts::TAU
+    } else if !clockwise && turn < -1e-9 {
+        turn + std::f64::consts::TAU
+    } else {
+        turn
+    }
+}
+
+/// Tension at a fraction of the arc, N: weight and wind along the way from the first contact, and what friction adds in
+/// proportion.
+#[must_use]
+pub fn tension(wheel: &Wheel, material: &Material, [before, after]: [Vec2; 2], fraction: f64) -> f64 {
+    let (first, last) = (before.norm(), after.norm());
+    let stretch = material.thermal_stretch * (1.0 + 0.5 * (first + last) / material.axial_stiffness);
+    let start = wheel.contact[0].y.atan2(wheel.contact[0].x);
+    let angle = start + fraction * turn(wheel, before);
+    let carried = |n: Vec2| material.body.dot(&(n - wheel.contact[0])) * wheel.radius / stretch;
+    let rubbed = last - first + carried(wheel.contact[1]);
+    first - carried(Vec2::new(angle.cos(), angle.sin())) + fraction * rubbed
 }
