@@ -61,11 +61,14 @@ pub struct Beam {
     pub residual: f64,
 }
 
-/// How a stiffness was met.
+/// What a solve found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Outcome {
+pub enum Outcome {
+    /// A stable equilibrium.
     Stable,
+    /// An equilibrium it runs away from.
     Unstable,
+    /// None.
     Failed,
 }
 
@@ -198,11 +201,12 @@ impl Beam {
         if first { self.layout.stops[here].clamp } else { None }
     }
 
-    /// Solves it. True when a stable equilibrium was found.
-    pub fn solve(&mut self) -> bool {
+    /// Solves it.
+    pub fn solve(&mut self) -> Outcome {
         let start = (self.angles.clone(), self.forces.clone());
-        if self.newton(self.bending) == Outcome::Stable {
-            return true;
+        let mut outcome = self.newton(self.bending);
+        if outcome == Outcome::Stable {
+            return outcome;
         }
         // Up from a softer cable: `part` of the bending stiffness was met last, `factor` is the next rise.
         (self.angles, self.forces) = start;
@@ -210,9 +214,10 @@ impl Beam {
         let mut saved = (self.angles.clone(), self.forces.clone());
         for _ in 0..MAX_TRIES {
             let next = (part * factor).min(1.0);
-            if self.newton(self.bending * next) == Outcome::Stable {
+            outcome = self.newton(self.bending * next);
+            if outcome == Outcome::Stable {
                 if next >= 1.0 {
-                    return true;
+                    return outcome;
                 }
                 (part, factor) = (next, factor * 2.0);
                 saved = (self.angles.clone(), self.forces.clone());
@@ -221,7 +226,7 @@ impl Beam {
                 factor = factor.sqrt().max(1.01);
             }
         }
-        false
+        outcome
     }
 
     /// Newton at a bending stiffness.

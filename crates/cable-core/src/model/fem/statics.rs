@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::answer::{self, Point};
-use super::beam::Beam;
+use super::beam::{Beam, Outcome};
 use super::element::Material;
 use super::estimate;
 use super::layout::{Hold, Layout, place};
@@ -232,12 +232,12 @@ impl Statics {
     fn bend(&mut self, network: Network, time: f64, hinted: bool) -> Result<StepReport, SolveError> {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
         let mut coarse = Beam::new(&network, self.problem.bending_stiffness, given);
-        let mut stable = coarse.solve();
+        let mut outcome = coarse.solve();
         let mut iterations = network.steps + coarse.steps;
         let mut estimate = None;
-        while !given && stable && coarse.bars() < MOST_SEGMENTS {
+        while !given && outcome == Outcome::Stable && coarse.bars() < MOST_SEGMENTS {
             let mut fine = coarse.halved();
-            stable = fine.solve();
+            outcome = fine.solve();
             iterations += fine.steps - coarse.steps;
             let found = estimate::halving_error(&coarse.stop_forces(), &fine.stop_forces());
             estimate = Some(found);
@@ -246,8 +246,17 @@ impl Statics {
                 break;
             }
         }
-        if !stable {
-            return Err(SolveError::Indefinite { model: Model::Fem, node: 0 });
+        if given && outcome == Outcome::Stable {
+            // The given mesh is kept; the finer one only tells its error, four thirds of the change.
+            let mut fine = coarse.halved();
+            if fine.solve() == Outcome::Stable {
+                estimate = Some(4.0 * estimate::halving_error(&coarse.stop_forces(), &fine.stop_forces()));
+            }
+        }
+        match outcome {
+            Outcome::Stable => {}
+            Outcome::Unstable => return Err(SolveError::Indefinite { model: Model::Fem, node: 0 }),
+            Outcome::Failed => return Err(self.error(&network, Failure::Span(0, coarse.residual))),
         }
         self.time = time;
         self.points = coarse.points();
