@@ -23,8 +23,9 @@ impl Default for Camera {
 /// Smallest and largest scale, points per metre. Beyond them f32 screen coordinates lose whole pixels.
 const SCALE: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 
-/// Free border round a fitted scene, points: room for labels, axis numbers and the legend.
-const BORDER: [f32; 2] = [90.0, 70.0];
+/// Free border of a fitted scene, points: left (axis numbers), right (legend), top, bottom.
+/// Smaller and labels or the legend cover the ends of the cable; larger wastes the window.
+const BORDER: [f32; 4] = [84.0, 146.0, 56.0, 64.0];
 
 impl Camera {
     /// World (m) to screen.
@@ -72,10 +73,46 @@ impl Camera {
         if !(low.iter().chain(&high).all(|v| v.is_finite()) && canvas.is_positive()) {
             return;
         }
-        self.centre_m = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
+        let [left, right, top, bottom] = BORDER;
         let room =
-            |k: usize, points: f32| f64::from((points - 2.0 * BORDER[k]).max(40.0)) / (high[k] - low[k]).max(1e-3);
-        let scale = room(0, canvas.width()).min(room(1, canvas.height()));
+            |k: usize, points: f32, border: f32| f64::from((points - border).max(40.0)) / (high[k] - low[k]).max(1e-3);
+        let scale = room(0, canvas.width(), left + right).min(room(1, canvas.height(), top + bottom));
         self.points_per_m = scale.clamp(*SCALE.start(), *SCALE.end());
+        // The middle of the free part is off the middle of the canvas.
+        self.centre_m = [
+            0.5 * (low[0] + high[0]) + f64::from(right - left) / 2.0 / self.points_per_m,
+            0.5 * (low[1] + high[1]) + f64::from(top - bottom) / 2.0 / self.points_per_m,
+        ];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CANVAS: Rect = Rect { min: pos2(200.0, 30.0), max: pos2(1000.0, 630.0) };
+
+    #[test]
+    fn screen_and_world_are_inverse_and_zoom_keeps_the_point_under_the_pointer() {
+        let mut camera = Camera { centre_m: [3.0, -2.0], points_per_m: 37.0, fit_wanted: false };
+        let pointer = pos2(431.0, 222.0);
+        let before = camera.to_world(CANVAS, pointer);
+        assert!(camera.to_screen(CANVAS, before).distance(pointer) < 1e-3);
+        for factor in [1.7, 0.2, 1e9, 1e-30, f64::NAN, 0.0] {
+            camera.zoom(before, factor);
+            assert!(camera.to_screen(CANVAS, before).distance(pointer) < 1e-2, "factor {factor}");
+        }
+    }
+
+    #[test]
+    fn a_fitted_scene_lies_inside_its_border() {
+        let mut camera = Camera::default();
+        for bounds in [[[0.0, 0.0], [10.0, 1.0]], [[-5.0, 100.0], [-4.0, 220.0]], [[2.0, 2.0], [2.0, 2.0]]] {
+            camera.fit(CANVAS, bounds);
+            let free = Rect::from_min_max(CANVAS.min + egui::vec2(83.0, 55.0), CANVAS.max - egui::vec2(145.0, 63.0));
+            for corner in bounds {
+                assert!(free.contains(camera.to_screen(CANVAS, corner)), "{bounds:?}");
+            }
+        }
     }
 }

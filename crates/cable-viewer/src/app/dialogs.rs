@@ -96,11 +96,11 @@ fn help(ui: &mut Ui, commands: &mut Vec<Command>) {
     egui::Grid::new("keys").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
         for (what, does) in [
             ("Drag a support, waypoint or corner", "Moves it; the cable follows"),
-            ("Drag an obstacle", "Moves all of it"),
+            ("Drag an obstacle", "Moves all of it; click it to see its corners"),
             ("Double-click the cable", "Adds a waypoint"),
             ("Drag the background", "Moves the view"),
             ("Wheel", "Zooms at the pointer"),
-            ("F", "Fits the scene"),
+            ("F, C", "Fits the scene, recentres on the cable"),
             ("Space", "Runs or pauses"),
             ("→", "One step of 1/60 s"),
             ("R", "Back to the start"),

@@ -51,6 +51,9 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     if plain(Key::F) {
         commands.push(Command::View(ViewCommand::Fit));
     }
+    if plain(Key::C) {
+        commands.push(Command::View(ViewCommand::Recentre));
+    }
     if plain(Key::Space) {
         commands.push(Command::Playback(PlaybackCommand::TogglePause));
     }

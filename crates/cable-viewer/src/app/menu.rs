@@ -6,7 +6,7 @@ use egui::{Button, KeyboardShortcut, MenuBar, Ui};
 use super::keys;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::dialog::Dialog;
-use crate::state::AppState;
+use crate::state::{AppState, WorkerStatus};
 
 /// The menu bar.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -24,7 +24,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 /// The scene's name, with a dot while unsaved.
-fn title(state: &AppState) -> String {
+pub fn title(state: &AppState) -> String {
     let name = if state.scene.name.is_empty() { "Untitled scene" } else { &state.scene.name };
     let mark = if state.unsaved() { " ●" } else { "" };
     format!("{name}{mark}")
@@ -74,8 +74,11 @@ fn edit(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             commands.push(Command::Scene(SceneCommand::Remove(item)));
         }
     });
-    if entry(ui, "Reset to start", None) {
+    if entry(ui, "Reset to start (R)", None) {
         commands.push(Command::Playback(PlaybackCommand::Reset));
+    }
+    if matches!(state.worker, WorkerStatus::Dead(_)) && entry(ui, "Restart the solver", None) {
+        commands.push(Command::File(FileCommand::RestartWorker));
     }
 }
 
@@ -83,7 +86,7 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if entry(ui, "Fit scene (F)", None) {
         commands.push(Command::View(ViewCommand::Fit));
     }
-    if entry(ui, "Recentre on the cable", None) {
+    if entry(ui, "Recentre on the cable (C)", None) {
         commands.push(Command::View(ViewCommand::Recentre));
     }
     ui.separator();

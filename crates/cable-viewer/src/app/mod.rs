@@ -22,6 +22,8 @@ pub struct ViewerApp {
     pub state: AppState,
     worker: Worker,
     threaded: bool,
+    /// As last sent to the window.
+    title: String,
     /// When the edit not yet answered was sent, with its number.
     asked: Option<(u64, Instant)>,
 }
@@ -42,7 +44,7 @@ impl ViewerApp {
     fn start(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>, threaded: bool) -> Self {
         theme::install(ctx);
         let worker = new_worker(ctx, threaded);
-        let mut app = Self { state: AppState::new(scene, path), worker, threaded, asked: None };
+        let mut app = Self { state: AppState::new(scene, path), worker, threaded, title: String::new(), asked: None };
         let mut effects = Effects::default();
         command::submit_scene(&mut app.state, true, &mut effects);
         app.carry_out(ctx, effects);
@@ -141,6 +143,11 @@ impl eframe::App for ViewerApp {
             commands.push(Command::File(command::FileCommand::Quit));
         }
         self.apply(&ctx, commands);
+        let title = format!("{} – Cable simulator", menu::title(&self.state));
+        if title != self.title {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
     }
 
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {

@@ -51,8 +51,11 @@ fn corners(view: &View<'_>, shape: &Shape, state: &AppState) {
     for (k, &p) in points_m.iter().enumerate() {
         let is = |item: Option<Item>| matches!(item, Some(Item::Corner { corner, .. }) if corner == k);
         let fill = if is(state.selected) || is(state.hovered) { view.palette.accent } else { view.palette.background };
-        let handle = egui::Rect::from_center_size(view.at(p), vec2(7.0, 7.0));
-        view.painter.rect(handle, 1.0, fill, Stroke::new(1.5, view.palette.accent), egui::StrokeKind::Middle);
+        let next = points_m.get(k + 1).or(points_m.get(k.wrapping_sub(1)));
+        let crowded = next.is_some_and(|&q| view.at(q).distance(view.at(p)) < 14.0);
+        let side = if crowded { 4.0 } else { 7.0 };
+        let handle = egui::Rect::from_center_size(view.at(p), vec2(side, side));
+        view.painter.rect(handle, 1.0, fill, Stroke::new(1.2, view.palette.accent), egui::StrokeKind::Middle);
     }
 }
 

@@ -37,8 +37,13 @@ pub fn item_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
         offer(forces::load_at(state, load).and_then(|(at, _)| near(at, CORNER)), Item::Load(load));
     }
     for (obstacle, o) in state.scene.obstacles.iter().enumerate() {
-        for (corner, &at) in corners(&o.shape).iter().enumerate() {
-            offer(near(at, CORNER), Item::Corner { obstacle, corner });
+        // Corners can be picked once their handles are shown; before, the whole obstacle is.
+        if !handles_shown(state, obstacle) {
+            continue;
+        }
+        let points = corners(&o.shape);
+        for (corner, &at) in points.iter().enumerate() {
+            offer(near(at, corner_reach(state, points, corner)), Item::Corner { obstacle, corner });
         }
     }
     if let Some((_, item)) = best {
@@ -48,6 +53,24 @@ pub fn item_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
         return Some(Item::Cable(cable));
     }
     obstacle_at(state, canvas, p)
+}
+
+/// The obstacle, or one of its corners, is selected.
+#[must_use]
+pub fn handles_shown(state: &AppState, index: usize) -> bool {
+    match state.selected {
+        Some(Item::Obstacle(k)) => k == index,
+        Some(Item::Corner { obstacle, .. }) => obstacle == index,
+        _ => false,
+    }
+}
+
+/// How near counts as on a corner, points: less where corners are close, so that the body can still be picked.
+fn corner_reach(state: &AppState, points: &[Point], corner: usize) -> f32 {
+    let Some(&p) = points.get(corner) else { return 0.0 };
+    let neighbours = [corner.checked_sub(1), corner.checked_add(1)].into_iter().flatten().filter_map(|k| points.get(k));
+    let nearest = neighbours.map(|q| (q[0] - p[0]).hypot(q[1] - p[1])).fold(f64::INFINITY, f64::min);
+    ((0.35 * nearest * state.camera.points_per_m) as f32).clamp(3.0, CORNER)
 }
 
 fn corners(shape: &Shape) -> &[Point] {

@@ -3,7 +3,7 @@
 mod pictures;
 mod timing;
 
-use cable_core::scene::catalog;
+use cable_core::scene::{Shape, catalog};
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, PlaybackCommand, ViewCommand};
 use cable_viewer::state::Item;
@@ -119,6 +119,53 @@ fn dragging_the_background_moves_the_view_and_not_the_scene() {
     drag(&mut harness, canvas.left_top() + Vec2::new(120.0, 160.0), Vec2::new(50.0, 20.0));
     assert_ne!(harness.state().state.camera.centre_m, before);
     assert!(!harness.state().state.unsaved());
+}
+
+#[test]
+fn an_obstacle_is_dragged_whole_and_its_corners_once_it_is_selected() {
+    let mut scene = catalog::hanging_span();
+    let square = [[4.0, -1.0], [6.0, -1.0], [6.0, 0.0], [4.0, 0.0]];
+    scene.obstacles.push(cable_core::Obstacle {
+        name: "beam".to_owned(),
+        shape: Shape::Polygon { points_m: square.to_vec() },
+        friction: None,
+    });
+    let mut harness = open(scene);
+    let canvas = harness.get_by_label("Canvas").rect();
+    let corners = |harness: &Harness<'_, ViewerApp>| match &harness.state().state.scene.obstacles[0].shape {
+        Shape::Polygon { points_m } => points_m.clone(),
+        other => panic!("{other:?}"),
+    };
+    let camera = harness.state().state.camera;
+    let metre = camera.points_per_m as f32;
+    drag(&mut harness, camera.to_screen(canvas, [5.0, -0.5]), Vec2::new(metre, -0.5 * metre));
+    for (p, q) in square.iter().zip(corners(&harness)) {
+        assert!((q[0] - p[0] - 1.0).abs() < 0.02 && (q[1] - p[1] - 0.5).abs() < 0.02, "{p:?} {q:?}");
+    }
+    drag(&mut harness, camera.to_screen(canvas, [7.0, 0.5]), Vec2::new(0.5 * metre, 0.0));
+    let after = corners(&harness);
+    assert!((after[2][0] - 7.5).abs() < 0.02 && (after[1][0] - 7.0).abs() < 0.02, "{after:?}");
+}
+
+#[test]
+fn the_wheel_zooms_at_the_pointer() {
+    let mut harness = open(catalog::hanging_span());
+    let canvas = harness.get_by_label("Canvas").rect();
+    let pointer = canvas.center() + Vec2::new(90.0, -70.0);
+    let before = harness.state().state.camera;
+    harness.hover_at(pointer);
+    harness.step();
+    harness.event(egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: Vec2::new(0.0, 80.0),
+        phase: egui::TouchPhase::Move,
+        modifiers: Modifiers::NONE,
+    });
+    harness.run_steps(30);
+    let after = harness.state().state.camera;
+    assert!(after.points_per_m > 1.1 * before.points_per_m);
+    let (p, q) = (before.to_world(canvas, pointer), after.to_world(canvas, pointer));
+    assert!((p[0] - q[0]).hypot(p[1] - q[1]) < 1e-6, "{p:?} {q:?}");
 }
 
 #[test]

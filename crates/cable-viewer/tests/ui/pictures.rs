@@ -1,8 +1,9 @@
 //! Pictures of the canvas compared with those in `tests/snapshots`. After an intended change:
 //! `UPDATE_SNAPSHOTS=1 cargo test -p cable-viewer --test ui`.
 
-use cable_core::Model;
 use cable_core::scene::catalog;
+use cable_core::solution::{CableSolution, ContactReport, ContactState, Cost, Node};
+use cable_core::{Model, Solution};
 use cable_viewer::command::Command;
 use cable_viewer::state::{AppState, Item};
 use cable_viewer::{canvas, screenshot, theme};
@@ -65,6 +66,47 @@ fn no_answer_dark() {
     state.snapshot.error = Some("fem did not converge in 60 iterations: unbalanced force 3.2 N at node 7".to_owned());
     state.snapshot.stale = true;
     compare("no_answer_dark", state, Theme::Dark);
+}
+
+/// What a contact looks like, whatever a model would answer: a cable laid over a beam by hand.
+#[test]
+fn contacts_dark() {
+    let scene = catalog::over_beam();
+    let ends: Vec<[f64; 2]> = scene.cables[0].supports.iter().filter_map(|s| s.at_m).collect();
+    let top = [0.5 * (ends[0][0] + ends[1][0]), ends[0][1].max(ends[1][1]) - 0.5];
+    let node = |s: f64, p: [f64; 2], tension_n: f64| Node {
+        arc_length_m: s,
+        x_m: p[0],
+        y_m: p[1],
+        tension_n,
+        ..Node::default()
+    };
+    let contact = |x: f64, normal_n: f64, friction_n: f64, state: ContactState| ContactReport {
+        x_m: top[0] + x,
+        y_m: top[1],
+        arc_length_m: 5.0,
+        normal: [0.0, 1.0],
+        normal_n,
+        friction_n,
+        state,
+        ..ContactReport::default()
+    };
+    let cable = CableSolution {
+        name: scene.cables[0].name.clone(),
+        nodes: vec![node(0.0, ends[0], 120.0), node(5.0, top, 150.0), node(10.0, ends[1], 90.0)],
+        contacts: vec![contact(-0.3, 60.0, 25.0, ContactState::Stick), contact(0.3, 20.0, -20.0, ContactState::Slip)],
+        ..CableSolution::default()
+    };
+    let mut state = AppState::new(scene, None);
+    state.snapshot.solution = Some(std::sync::Arc::new(Solution {
+        time_s: 0.0,
+        model: Model::Fem,
+        reason: String::new(),
+        cables: vec![cable],
+        warnings: Vec::new(),
+        cost: Cost::default(),
+    }));
+    compare("contacts_dark", state, Theme::Dark);
 }
 
 #[test]
