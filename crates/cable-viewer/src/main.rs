@@ -113,7 +113,7 @@ fn first_scene(path: Option<PathBuf>) -> Result<(Scene, Option<PathBuf>), String
 fn explain(error: &eframe::Error) -> String {
     match error {
         eframe::Error::WinitEventLoop(_) | eframe::Error::Winit(_) => format!(
-            "no window can be opened here ({error}); run it in a desktop session or set DISPLAY, \
+            "no window can be opened here: no display answers; run it in a desktop session or set DISPLAY, \
              or draw a picture with --screenshot FILE"
         ),
         eframe::Error::Wgpu(_) => format!(

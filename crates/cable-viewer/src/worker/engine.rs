@@ -134,8 +134,12 @@ impl Engine {
             self.history_restarts = true;
             self.samples.clear();
         }
-        self.edit = Some(edit.clone());
-        match self.rebuild(&edit, old.as_ref()) {
+        // Models are compared by what they answer for the scene as laid, not for where another model left the cable.
+        let same_model = self.edit.as_ref().is_some_and(|e| e.model == edit.model && e.settings == edit.settings);
+        let from = old.as_ref().filter(|o| same_model || o.time_s() > 0.0);
+        let rebuilt = self.rebuild(&edit, from);
+        self.edit = Some(edit);
+        match rebuilt {
             Ok((simulation, kept)) => {
                 self.simulation = Some(simulation);
                 self.start_kept = kept;
@@ -190,8 +194,10 @@ impl Engine {
     fn reset(&mut self) -> Result<(), Error> {
         self.history_restarts = true;
         self.samples.clear();
+        // At the start already: lay the cable anew, which forgets the friction of edits since.
         if self.start_kept
             && let Some(simulation) = &mut self.simulation
+            && simulation.time_s() > 0.0
         {
             simulation.reset();
             return Ok(());

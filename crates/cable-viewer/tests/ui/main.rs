@@ -159,6 +159,7 @@ fn the_wheel_zooms_at_the_pointer() {
         unit: egui::MouseWheelUnit::Point,
         delta: Vec2::new(0.0, 80.0),
         phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
         modifiers: Modifiers::NONE,
     });
     harness.run_steps(30);
