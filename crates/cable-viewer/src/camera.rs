@@ -61,8 +61,8 @@ impl Camera {
         }
         let scale = (self.points_per_m * factor).clamp(*SCALE.start(), *SCALE.end());
         let k = self.points_per_m / scale;
-        for (centre, about) in self.centre_m.iter_mut().zip(about_m) {
-            *centre = about + (*centre - about) * k;
+        for i in 0..2 {
+            self.centre_m[i] = about_m[i] + (self.centre_m[i] - about_m[i]) * k;
         }
         self.points_per_m = scale;
     }

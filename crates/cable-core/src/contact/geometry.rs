@@ -34,6 +34,8 @@ pub struct Geometry {
 pub struct Body {
     /// Index in the scene.
     pub obstacle: usize,
+    /// Name in the scene.
+    pub name: String,
     /// Coulomb friction coefficient with the cable.
     pub friction: f64,
     /// Distance of the cable's centre line from the edges when it touches, m.
@@ -42,7 +44,8 @@ pub struct Body {
     pub edges: Vec<Edge>,
     /// Centre of a circle; `offset` then includes its radius.
     pub center: Option<Vec2>,
-    /// Number of this body's first feature: edge k is feature first + 2k, the corner at its start first + 2k + 1.
+    /// Number of this body's first feature: edge k is feature first + 2k, the corner at its start
+    /// first + 2k + 1, a circle first + 1.
     pub first: usize,
     solid: bool,
     closed: bool,
@@ -81,6 +84,12 @@ impl Corner {
             (Some(t1), Some(t2)) => cross(t1, t2) < 0.0 || (cross(t1, t2) == 0.0 && t1.dot(&t2) < 0.0),
             _ => true,
         }
+    }
+
+    /// Direction outwards: the sum of the normals that meet here (not a unit vector; 0 at the tip of a spike).
+    #[must_use]
+    pub fn outward(&self) -> Vec2 {
+        perp(self.before.unwrap_or_default() + self.after.unwrap_or_default())
     }
 
     /// How many of the edges that meet here have this corner as their nearest point to `p`, and how many meet.
@@ -166,7 +175,7 @@ impl Body {
 
     fn signed_gap(&self, p: Vec2, reach: f64) -> Option<Gap> {
         if let Some(c) = self.center {
-            let gap = self.gap(self.first, (p - c).norm(), unit_or(p - c, Vec2::y()), c);
+            let gap = self.gap(self.first + 1, (p - c).norm(), unit_or(p - c, Vec2::y()), c);
             return (gap.gap_m <= reach).then_some(gap);
         }
         let r = Vec2::repeat(reach + self.offset);
@@ -236,6 +245,7 @@ impl Geometry {
             let bvh = Bvh::from_iter(BvhBuildStrategy::Binned, leaves.enumerate());
             bodies.push(Body {
                 obstacle,
+                name: o.name.clone(),
                 friction: o.friction.unwrap_or(cable_friction),
                 offset: cable_radius + grow,
                 edges,
@@ -259,6 +269,14 @@ impl Geometry {
     #[must_use]
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
+    }
+
+    /// Direction outwards of the corner that a gap is to; None if it is not to a corner of a solid.
+    #[must_use]
+    pub fn outward_of(&self, gap: &Gap) -> Option<Vec2> {
+        let body = self.bodies.iter().find(|b| b.features().contains(&gap.feature)).filter(|b| b.solid)?;
+        let local = gap.feature - body.first;
+        (local % 2 == 1).then(|| body.corner(local / 2)).flatten().map(|c| c.outward())
     }
 
     /// See [`super::World::signed_gap`].

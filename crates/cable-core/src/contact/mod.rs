@@ -74,6 +74,12 @@ impl World {
         self.geometry.free_fraction(from, to, keep)
     }
 
+    /// Name of an obstacle by its index in the scene; empty if it was dropped.
+    #[must_use]
+    pub fn obstacle_name(&self, obstacle: usize) -> &str {
+        self.geometry.bodies().iter().find(|b| b.obstacle == obstacle).map_or("", |b| &b.name)
+    }
+
     /// The compiled obstacles, for models that build their own contact pairs.
     #[must_use]
     pub fn geometry(&self) -> &geometry::Geometry {

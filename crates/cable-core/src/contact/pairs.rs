@@ -39,7 +39,7 @@ impl Geometry {
             let r = Vec2::repeat(reach + body.offset);
             let (low, high) = (p - r, p + r);
             if let Some(c) = body.center {
-                push_wedge(body, body.first, c, [before, Some(p), after], reach, out);
+                push_wedge(body, body.first + 1, c, [before, Some(p), after], reach, out);
             }
             for k in body.candidates(low, high) {
                 push_edge(body, k, p, reach, out);
@@ -57,7 +57,7 @@ impl Geometry {
     pub fn segment_pairs(&self, a: Vec2, b: Vec2, reach: f64, out: &mut impl FnMut(Pair)) {
         for body in self.bodies() {
             if let Some(c) = body.center {
-                push_segment(body, body.first, c, [a, b], reach, out);
+                push_segment(body, body.first + 1, c, [a, b], reach, out);
             }
             let r = Vec2::repeat(reach + body.offset);
             for k in body.candidates(a.inf(&b) - r, a.sup(&b) + r) {

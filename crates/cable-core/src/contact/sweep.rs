@@ -19,6 +19,11 @@ const CLOSE_ENOUGH: f64 = 0.02;
 /// Distances are trusted to this many units in the last place of the coordinates.
 const ULPS: f64 = 16.0;
 
+/// A gap below this (m) counts as touching: only the centre line is then kept from crossing. Supports are drawn
+/// right on the ground, with a gap of a rounding error; keeping a part of that would hold them for ever. The
+/// barrier never lets a free node come so near.
+const TOUCHING: f64 = 1e-9;
+
 /// Largest part of a gap that can be asked to stay.
 const MAX_KEEP: f64 = 0.9;
 
@@ -65,7 +70,7 @@ fn advance(distance: impl Fn(f64) -> f64, offset: f64, [speed, keep, noise]: [f6
     if d0 <= 0.0 {
         return limit;
     }
-    let surface = if d0 - offset > noise { offset } else { 0.0 };
+    let surface = if d0 - offset > noise + TOUCHING { offset } else { 0.0 };
     let gap = d0 - surface;
     let floor = surface + keep * gap + noise;
     let close = CLOSE_ENOUGH * gap;

@@ -7,6 +7,7 @@
 pub mod auto;
 pub mod catenary;
 pub mod conformance;
+pub mod drive;
 pub mod fem;
 pub mod mass_spring;
 

@@ -1,7 +1,5 @@
 //! The window driven as a user would, without a display. The worker runs inline: one frame, one answer.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // tests may fail loudly, helpers included
-
 mod pictures;
 mod timing;
 

@@ -198,7 +198,8 @@ impl System {
         energy.value(&local)
     }
 
-    fn add_bending(&mut self, mesh: &Mesh, x: &[Vec2], curvature: Curvature) -> f64 {
+    /// Adds the bending energy at `x` (m); returns its value, J.
+    pub fn add_bending(&mut self, mesh: &Mesh, x: &[Vec2], curvature: Curvature) -> f64 {
         let (stiffness, rest) = (mesh.bending_stiffness, &mesh.rest_length);
         let mut value = 0.0;
         let mut clamps = mesh.clamps.iter().peekable();

@@ -8,6 +8,12 @@
 mod answer;
 pub mod assembly;
 mod beam;
+pub mod contact_report;
+pub mod contact_set;
+pub mod contact_start;
+pub mod contact_step;
+#[cfg(test)]
+mod contact_tests;
 pub mod dynamics;
 pub mod element;
 mod estimate;

@@ -1,0 +1,203 @@
+//! The contacts of a mesh at an instant, and the friction each carries.
+
+use super::assembly::Mesh;
+use crate::contact::barrier::Barrier;
+use crate::contact::friction;
+use crate::contact::pairs::Pair;
+use crate::math::Vec2;
+use crate::problem::Problem;
+
+/// Sliding at which friction is fully mobilised (ε), m. 1e-6 costs half as many iterations again, 1e-4 creeps.
+pub const SLIDE: f64 = 1e-5;
+
+/// One contact pair of the mesh: a node, or the inside of a segment (from `node` to `node + 1`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Node, or first node of the segment.
+    pub node: usize,
+    /// Whether the segment's inside touches (a corner or a circle).
+    pub on_segment: bool,
+    /// Pair as found.
+    pub pair: Pair,
+}
+
+impl Touch {
+    /// Weights of the two nodes that carry it.
+    #[must_use]
+    pub fn shares(&self) -> [f64; 2] {
+        if self.on_segment { [1.0 - self.pair.gap.fraction, self.pair.gap.fraction] } else { [1.0, 0.0] }
+    }
+
+    /// A field's value at the touching point.
+    #[must_use]
+    pub fn interpolate(&self, x: &[Vec2]) -> Vec2 {
+        let [a, b] = self.shares();
+        if self.on_segment { x[self.node] * a + x[self.node + 1] * b } else { x[self.node] }
+    }
+
+    /// Direction in which friction acts: the normal turned clockwise.
+    #[must_use]
+    pub fn tangent(&self) -> Vec2 {
+        Vec2::new(self.pair.gap.normal.y, -self.pair.gap.normal.x)
+    }
+
+    /// Normal force, N.
+    #[must_use]
+    pub fn load(&self, barrier: &Barrier) -> f64 {
+        -barrier.at(self.pair.gap.gap_m).slope * self.pair.weight
+    }
+}
+
+/// What friction remembers of a contact after an accepted step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Memory {
+    node: usize,
+    on_segment: bool,
+    feature: usize,
+    obstacle: usize,
+    slid: f64,
+}
+
+/// Friction of one contact during a step: the normal force and direction are frozen, the sliding is not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rub {
+    /// The contact.
+    pub touch: Touch,
+    /// Unit vector of positive sliding.
+    pub tangent: Vec2,
+    /// Largest friction force μN, N.
+    pub limit: f64,
+    /// Sliding remembered at the start of the step, m.
+    pub slid: f64,
+    /// Where the touching material was at the start of the step, m.
+    pub origin: Vec2,
+}
+
+impl Rub {
+    /// Sliding since the anchor, m.
+    #[must_use]
+    pub fn sliding(&self, x: &[Vec2]) -> f64 {
+        self.slid + self.tangent.dot(&(self.touch.interpolate(x) - self.origin))
+    }
+}
+
+/// All contacts of a mesh with their history.
+#[derive(Clone, Debug)]
+pub struct ContactSet {
+    /// The barrier.
+    pub barrier: Barrier,
+    /// Friction of the present step.
+    pub rubs: Vec<Rub>,
+    memory: Vec<Memory>,
+    scratch: Vec<Touch>,
+    /// Plan view: sliding of each node remembered, m.
+    pub floor_slid: Vec<Vec2>,
+}
+
+impl ContactSet {
+    /// No contact yet.
+    #[must_use]
+    pub fn new(barrier: Barrier, nodes: usize) -> Self {
+        Self {
+            barrier,
+            rubs: Vec::new(),
+            memory: Vec::new(),
+            scratch: Vec::new(),
+            floor_slid: vec![Vec2::zeros(); nodes],
+        }
+    }
+
+    /// Forgets all friction.
+    pub fn forget(&mut self) {
+        self.memory.clear();
+        self.rubs.clear();
+        self.floor_slid.fill(Vec2::zeros());
+    }
+
+    /// Finds the contacts of the mesh at `x` (m), in order of arc length. Held nodes push on nothing.
+    pub fn find(&self, problem: &Problem, mesh: &Mesh, x: &[Vec2], out: &mut Vec<Touch>) {
+        out.clear();
+        if problem.world.is_empty() {
+            return;
+        }
+        let (geometry, reach, last) = (problem.world.geometry(), self.barrier.reach, x.len().saturating_sub(1));
+        for node in 0..x.len() {
+            if !mesh.held[node] {
+                let before = node.checked_sub(1).map(|k| x[k]);
+                let after = x.get(node + 1).copied();
+                geometry.node_pairs(before, x[node], after, reach, &mut |pair| {
+                    out.push(Touch { node, on_segment: false, pair });
+                });
+            }
+            if node < last && !(mesh.held[node] && mesh.held[node + 1]) {
+                geometry.segment_pairs(x[node], x[node + 1], reach, &mut |pair| {
+                    out.push(Touch { node, on_segment: true, pair });
+                });
+            }
+        }
+    }
+
+    /// Sets up friction for a step that began at `start`: contacts and normal forces as at `now` (m).
+    pub fn prepare(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
+        let mut touches = std::mem::take(&mut self.scratch);
+        self.find(problem, mesh, now, &mut touches);
+        self.rubs.clear();
+        for touch in &touches {
+            let limit = touch.pair.gap.friction * touch.load(&self.barrier);
+            if limit > 0.0 {
+                let slid = self.remembered(touch);
+                let origin = touch.interpolate(start);
+                self.rubs.push(Rub { touch: *touch, tangent: touch.tangent(), limit, slid, origin });
+            }
+        }
+        self.scratch = touches;
+    }
+
+    /// The sliding a contact starts with: its own, else that of the same material on the same obstacle (it crossed
+    /// a corner), else that of a neighbour at the same feature (the material moved past it), else none.
+    fn remembered(&self, touch: &Touch) -> f64 {
+        let low = self.memory.partition_point(|m| m.node + 2 < touch.node);
+        let near = self.memory[low..].iter().take_while(|m| m.node <= touch.node + 2);
+        let gap = &touch.pair.gap;
+        let mut best = (0, 0.0);
+        for m in near {
+            let same_kind = m.on_segment == touch.on_segment;
+            let rank = match (m.feature == gap.feature, m.node == touch.node && same_kind) {
+                (true, true) => 3,
+                (false, true) if m.obstacle == gap.obstacle => 2,
+                (true, false) if same_kind => 1,
+                _ => 0,
+            };
+            if rank > best.0 {
+                best = (rank, m.slid);
+            }
+        }
+        best.1
+    }
+
+    /// Accepts the step from `start` to `end` (m): anchors follow what slid.
+    pub fn commit(&mut self, problem: &Problem, mesh: &Mesh, end: &[Vec2], start: &[Vec2]) {
+        self.prepare(problem, mesh, end, start);
+        self.memory.clear();
+        for rub in &self.rubs {
+            let gap = &rub.touch.pair.gap;
+            self.memory.push(Memory {
+                node: rub.touch.node,
+                on_segment: rub.touch.on_segment,
+                feature: gap.feature,
+                obstacle: gap.obstacle,
+                slid: friction::return_map(rub.sliding(end), SLIDE),
+            });
+        }
+        if problem.floor_friction.is_some() {
+            for (slid, (e, s)) in self.floor_slid.iter_mut().zip(end.iter().zip(start)) {
+                *slid = friction::return_map_plane(*slid + (e - s), SLIDE);
+            }
+        }
+        // What is left in `rubs` now tells of the state reached: nothing slides further from here.
+        for (rub, memory) in self.rubs.iter_mut().zip(&self.memory) {
+            rub.slid = memory.slid;
+            rub.origin = rub.touch.interpolate(end);
+        }
+    }
+}

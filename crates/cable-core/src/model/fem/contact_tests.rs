@@ -1,0 +1,199 @@
+//! Friction, landing, corners and thrown ends against closed forms and against crossing.
+
+use std::sync::Arc;
+
+use super::dynamics::Dynamics;
+use crate::math::Vec2;
+use crate::model::{Inertia, Settings};
+use crate::problem::problems;
+use crate::scene::{Cable, Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
+
+const RADIUS: f64 = 0.014;
+
+fn scene(cable: impl FnOnce(&mut Cable), obstacles: Vec<Obstacle>) -> Scene {
+    let mut scene = catalog::hanging_span();
+    cable(&mut scene.cables[0]);
+    scene.obstacles = obstacles;
+    scene
+}
+
+fn floor(friction: f64) -> Obstacle {
+    let shape = Shape::Terrain { points_m: vec![[-100.0, 0.0], [100.0, 0.0]] };
+    Obstacle { name: "floor".to_owned(), shape, friction: Some(friction) }
+}
+
+fn build(scene: &Scene) -> Dynamics {
+    Dynamics::new(Arc::clone(&problems(scene).unwrap()[0]), Settings::default()).unwrap()
+}
+
+/// A cable of 12 m on a floor, its end pulled along it at the height at which the barrier carries its weight
+/// (an end held at the surface itself pulls its neighbour down: +0.3 % at this mesh).
+fn drag(segments: usize) -> Scene {
+    let height = RADIUS + 0.87e-3;
+    let pull = Motion { times_s: vec![0.0, 6.0], points_m: vec![[12.0, height], [13.5, height]] };
+    scene(
+        |c| {
+            c.axial_stiffness_n = 1e5;
+            c.segments = Some(segments);
+            c.route_m = vec![[0.0, RADIUS], [12.0, RADIUS]];
+            let end = Support { motion: Some(pull), ..Support::fixed("pull", [12.0, height]) };
+            c.supports = vec![Support::free("tail"), end];
+        },
+        vec![floor(0.5)],
+    )
+}
+
+fn weight_per_m() -> f64 {
+    1.246 * crate::scene::STANDARD_GRAVITY
+}
+
+#[test]
+fn dragging_along_a_floor_takes_the_friction_of_its_weight() {
+    let expected = 0.5 * weight_per_m() * 12.0;
+    // With inertia the start leaves an axial wave that dies out in 1.5 s (material damping of 1e-3 s): its mean is read.
+    for (inertia, from, until, within) in [(Inertia::QuasiStatic, 0.8, 1.0, 1e-3), (Inertia::Dynamic, 2.0, 4.0, 5e-3)] {
+        let mut d = build(&drag(60));
+        d.settle(&[]).unwrap();
+        let (mut sum, mut count) = (0.0, 0.0);
+        while d.state().time_s < until {
+            d.advance(1.0 / 60.0, inertia, &[]).unwrap();
+            assert!(d.smallest_gap() > 0.0);
+            if d.state().time_s > from {
+                sum -= d.solution().supports[1].reaction_x_n;
+                count += 1.0;
+            }
+        }
+        let pull = sum / count;
+        assert!((pull / expected - 1.0).abs() < within, "{inertia:?}: {pull} N, expected {expected} N");
+    }
+}
+
+#[test]
+fn a_held_end_does_not_creep() {
+    let mut d = build(&drag(40));
+    d.settle(&[]).unwrap();
+    for _ in 0..30 {
+        d.advance(1.0 / 60.0, Inertia::QuasiStatic, &[]).unwrap();
+    }
+    // Dragged support stays where the hand put it: the pull must stay too.
+    let here = d.state().position_m.last().copied();
+    let hand = [None, here];
+    d.advance(1.0 / 60.0, Inertia::Dynamic, &hand).unwrap();
+    let (before, start) = (-d.solution().supports[1].reaction_x_n, d.state());
+    for _ in 0..120 {
+        d.advance(1.0 / 60.0, Inertia::Dynamic, &hand).unwrap();
+    }
+    let after = -d.solution().supports[1].reaction_x_n;
+    assert!((after / before - 1.0).abs() < 1e-2, "{before} N became {after} N");
+    for (a, b) in start.position_m.iter().zip(&d.state().position_m) {
+        assert!((a - b).norm() < 1e-3);
+    }
+}
+
+fn corner(load: f64) -> Scene {
+    let beam = Shape::Polygon { points_m: vec![[0.0, -0.2], [0.2, -0.2], [0.2, 0.0], [0.0, 0.0]] };
+    scene(
+        |c| {
+            c.length_m = 4.0;
+            c.linear_density_kg_per_m = 0.5;
+            c.axial_stiffness_n = 4e4;
+            c.diameter_m = 0.004;
+            c.segments = Some(50);
+            let way = 4.0 - 2.0f64.hypot(0.0);
+            c.route_m = vec![[-0.003, 0.003 - way], [-0.003, 0.003], [1.997, 0.003]];
+            let hang = Support { force_n: Some([0.0, -load]), ..Support::new("load", SupportKind::Load) };
+            c.supports = vec![hang, Support::fixed("end", [1.997, 0.003])];
+        },
+        vec![Obstacle { name: "beam".to_owned(), shape: beam, friction: Some(0.3) }],
+    )
+}
+
+#[test]
+fn a_load_over_a_corner_rests_and_stays() {
+    let mut d = build(&corner(50.0));
+    d.settle(&[]).unwrap();
+    let start = d.state();
+    for _ in 0..60 {
+        d.advance(1.0 / 60.0, Inertia::Dynamic, &[]).unwrap();
+        assert!(d.smallest_gap() > 0.0);
+    }
+    let moved = (d.state().position_m[0] - start.position_m[0]).norm();
+    assert!(moved < 1e-3, "{moved}");
+}
+
+#[test]
+fn an_end_thrown_ten_metres_in_a_frame_does_not_pass_a_beam() {
+    let beam = Shape::Polygon { points_m: vec![[15.0, -50.0], [15.05, -50.0], [15.05, 50.0], [15.0, 50.0]] };
+    let beam = Obstacle { name: "beam".to_owned(), shape: beam, friction: Some(0.3) };
+    let scene = scene(|c| c.segments = Some(40), vec![beam]);
+    let mut d = build(&scene);
+    d.settle(&[None, None]).unwrap();
+    let hand = [None, Some(Vec2::new(20.0, 5.0))];
+    let mut held = false;
+    for _ in 0..60 {
+        let report = d.advance(1.0 / 60.0, Inertia::Dynamic, &hand).unwrap();
+        held |= !report.warnings.is_empty();
+        for p in &d.state().position_m {
+            assert!(p.x < 15.0 - RADIUS && p.iter().all(|c| c.is_finite()), "{p}");
+        }
+    }
+    assert!(held);
+}
+
+#[test]
+fn a_cable_dropped_on_rubble_loses_no_step_and_never_penetrates() {
+    let mut points = Vec::new();
+    for i in 0..=80 {
+        let height = 0.35 * (f64::from(i) * 12.9898).sin() * (f64::from(i) * 4.1).cos();
+        points.push([-10.0 + 0.6 * f64::from(i), height]);
+    }
+    let rubble =
+        Obstacle { name: "rubble".to_owned(), shape: Shape::Terrain { points_m: points }, friction: Some(1.0) };
+    let mut scene = scene(
+        |c| {
+            c.length_m = 30.0;
+            c.segments = Some(200);
+            c.route_m = vec![[-5.0, 2.0], [25.0, 2.0]];
+            let let_go = |name: &str, at| Support { release_s: Some(0.05), ..Support::fixed(name, at) };
+            c.supports = vec![let_go("left", [-5.0, 2.0]), let_go("right", [25.0, 2.0])];
+        },
+        vec![rubble],
+    );
+    scene.name = "rubble".to_owned();
+    let mut d = build(&scene);
+    d.settle(&[]).unwrap();
+    let mut halved = 0;
+    for _ in 0..240 {
+        halved += d.advance(1.0 / 60.0, Inertia::Dynamic, &[]).unwrap().cost.halved_steps;
+        assert!(d.smallest_gap() > 0.0);
+    }
+    let state = d.state();
+    let highest = state.position_m.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
+    assert_eq!(halved, 0);
+    assert!(highest < 0.6, "{highest} m: it has not landed after 4 s");
+}
+
+#[test]
+fn the_same_run_gives_the_same_bits() {
+    let run = || {
+        let mut d = build(&drag(30));
+        d.settle(&[]).unwrap();
+        for _ in 0..20 {
+            d.advance(1.0 / 60.0, Inertia::Dynamic, &[]).unwrap();
+        }
+        d.state()
+    };
+    assert_eq!(run(), run());
+}
+
+#[test]
+fn the_answer_lists_the_floor() {
+    let mut d = build(&drag(60));
+    d.settle(&[]).unwrap();
+    let s = d.solution();
+    assert_eq!(s.contacts.len(), 1);
+    // The end that is held stands on its support with half of its element.
+    let expected = weight_per_m() * 12.0 * (1.0 - 0.5 / 60.0);
+    assert!((s.contacts[0].normal_n / expected - 1.0).abs() < 1e-3, "{:?}", s.contacts[0]);
+    assert_eq!(s.contacts[0].obstacle, "floor");
+}
