@@ -27,7 +27,7 @@ pub mod contact;
 pub mod energy;
 pub mod error;
 pub mod files;
-pub mod linalg;
+
 pub mod math;
 pub mod model;
 pub mod problem;
@@ -37,6 +37,7 @@ pub mod simulation;
 pub mod solution;
 pub mod state;
 
+pub use cable_linalg as linalg;
 pub use error::{Error, SceneError, SolveError};
 pub use files::FileError;
 pub use math::{Mat2, Vec2};
