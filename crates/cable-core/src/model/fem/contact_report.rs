@@ -194,7 +194,8 @@ fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> Conta
     };
     let unit = if normal.norm() > 0.0 { normal.normalize() } else { first.pair.gap.normal };
     let middle = (a + b) * 0.5;
-    let (e0, e1) = (x[before + 1] - x[before], x[after + 1] - x[after]);
+    // Summed bar by bar: a wrap may go round more than once.
+    let turned: f64 = (before..after).map(|e| turn(x[e + 1] - x[e], x[e + 2] - x[e + 1])).sum();
     let frictionless = first.pair.gap.friction == 0.0;
     ContactReport {
         obstacle: d.problem.world.obstacle_name(first.pair.gap.obstacle).to_owned(),
@@ -205,7 +206,7 @@ fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> Conta
         normal_n,
         friction_n,
         state: if frictionless || slips > 0.5 * limit { ContactState::Slip } else { ContactState::Stick },
-        turn_deg: turn(e0, e1).to_degrees(),
+        turn_deg: turned.to_degrees(),
         tension_before_n: tension[before],
         tension_after_n: tension[after],
     }
