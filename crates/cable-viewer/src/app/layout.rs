@@ -15,7 +15,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     Panel::top("menu").show(ui, |ui| menu::ui(ui, state, commands));
     Panel::bottom("status").show(ui, |ui| menu::status(ui, state));
     Panel::bottom("playback").show(ui, |ui| panels::playback::ui(ui, state, commands));
-    Panel::left("edit").default_size(290.0).size_range(220.0..=420.0).show(ui, |ui| {
+    Panel::left("edit").default_size(336.0).size_range(220.0..=420.0).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             section(ui, "Scene", panels::scene::ui, state, commands);
             section(ui, "Cable", panels::cable::ui, state, commands);
@@ -23,13 +23,13 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
             section(ui, "Solver", panels::solver::ui, state, commands);
         });
     });
-    Panel::right("read").default_size(270.0).size_range(200.0..=420.0).show(ui, |ui| {
+    Panel::right("read").default_size(320.0).size_range(200.0..=420.0).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             section(ui, "Warnings", panels::warnings::ui, state, commands);
             section(ui, "Readouts", panels::readouts::ui, state, commands);
         });
     });
-    Panel::bottom("plots").resizable(true).default_size(150.0).size_range(60.0..=500.0).show(ui, |ui| {
+    Panel::bottom("plots").resizable(true).default_size(210.0).size_range(60.0..=500.0).show(ui, |ui| {
         panels::plots::ui(ui, state, commands);
     });
     CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));

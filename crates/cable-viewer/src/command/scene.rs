@@ -2,7 +2,7 @@
 
 use cable_core::math::Point;
 use cable_core::scene::{Environment, Shape, Support};
-use cable_core::{Cable, Load, Obstacle};
+use cable_core::{Cable, Load, Obstacle, Scene};
 
 use super::{Effects, next_number, submit_scene};
 use crate::state::{AppState, Item};
@@ -12,6 +12,8 @@ use crate::worker::request::{Drag, Request};
 /// Changes the scene. Indices that do not exist change nothing.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SceneCommand {
+    /// The whole scene, for edits that touch several parts at once (a map, a rename).
+    SetScene(Box<Scene>),
     /// The scene's name.
     SetName(String),
     /// Gravity, wind, temperature.
@@ -146,6 +148,7 @@ fn after_edit(state: &mut AppState, dragged: Option<(usize, usize, Point)>, effe
 fn change(state: &mut AppState, command: SceneCommand) {
     let scene = &mut state.scene;
     match command {
+        SceneCommand::SetScene(value) => *scene = *value,
         SceneCommand::SetName(name) => scene.name = name,
         SceneCommand::SetEnvironment(value) => scene.environment = value,
         SceneCommand::SetCable { cable, value } => set(&mut scene.cables, cable, *value),

@@ -1,10 +1,115 @@
-//! Environment panel: gravity, wind, temperature.
+//! Environment panel: gravity, wind, temperature, view.
 
-use crate::command::Command;
+use cable_core::scene::{Environment, View};
+use egui::Ui;
+
+use super::cable::labelled;
+use super::property::{Known, Quantity, row};
+use super::unit::Unit;
+use super::{fault, field};
+use crate::command::{Command, SceneCommand};
 use crate::state::AppState;
 
+/// What the environment panel edits: how it is shown, its key, how it is read and written.
+type Entry = (Quantity, &'static str, fn(&Environment) -> f64, fn(&mut Environment, f64));
+
+const GRAVITY: Entry = (
+    Quantity {
+        name: "Gravity",
+        unit: Unit::M_PER_S2,
+        usual: [0.0, 25.0],
+        logarithmic: false,
+        help: "Acceleration of free fall: down in a side view, into the page in a plan view. Standard is 9.80665 m/s², the Moon's 1.62 m/s².",
+    },
+    "gravity_m_per_s2",
+    |e| e.gravity_m_per_s2,
+    |e, v| e.gravity_m_per_s2 = v,
+);
+const WIND_X: Entry = (
+    Quantity {
+        name: "Wind to the right",
+        unit: Unit::N_PER_M,
+        usual: [-50.0, 50.0],
+        logarithmic: false,
+        help: "Force of wind or stream on each metre of unstretched cable, to the right. Negative: to the left.",
+    },
+    "wind_n_per_m",
+    |e| e.wind_n_per_m[0],
+    |e, v| e.wind_n_per_m[0] = v,
+);
+const WIND_Y: Entry = (
+    Quantity {
+        name: "Wind upwards",
+        unit: Unit::N_PER_M,
+        usual: [-50.0, 50.0],
+        logarithmic: false,
+        help: "Force of wind or stream on each metre of unstretched cable, upwards. Negative: downwards.",
+    },
+    "wind_n_per_m",
+    |e| e.wind_n_per_m[1],
+    |e, v| e.wind_n_per_m[1] = v,
+);
+const TEMPERATURE: Entry = (
+    Quantity {
+        name: "Temperature rise",
+        unit: Unit::K,
+        usual: [-60.0, 120.0],
+        logarithmic: false,
+        help: "Degrees above the temperature at which the lengths are given. Changes each length by its thermal expansion.",
+    },
+    "temperature_change_k",
+    |e| e.temperature_change_k,
+    |e, v| e.temperature_change_k = v,
+);
+
 /// Draws it.
-pub fn ui(ui: &mut egui::Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let _ = (state, commands);
-    ui.weak("Nothing here yet");
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    view(ui, state, commands);
+    let environment = &state.scene.environment;
+    for (quantity, key, get, set) in [GRAVITY, WIND_X, WIND_Y, TEMPERATURE] {
+        let wind = key == "wind_n_per_m";
+        if wind && !environment.winds_n_per_m.is_empty() {
+            continue;
+        }
+        let known = Known {
+            value: get(environment),
+            origin: Some((get(&state.document.saved.environment), "as loaded".to_owned())),
+            ..Known::default()
+        };
+        let change = row(ui, &quantity, &known);
+        if let Some(value) = change.value {
+            let mut changed = environment.clone();
+            set(&mut changed, value);
+            commands.push(Command::Scene(SceneCommand::SetEnvironment(changed)));
+        }
+        if change.done {
+            commands.push(Command::Scene(SceneCommand::EditDone));
+        }
+        let component = if quantity.name == WIND_X.0.name { "[0]" } else { "[1]" };
+        let path = format!("environment.{key}{}", if wind { component } else { "" });
+        fault::inline(ui, state, &path, commands);
+    }
+    if !environment.winds_n_per_m.is_empty() {
+        let count = environment.winds_n_per_m.len();
+        ui.weak(format!("Wind changes with time: {count} values in the scene file"))
+            .on_hover_text("Edit wind_times_s and winds_n_per_m in the scene file");
+    }
+}
+
+fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    labelled(ui, "View", "Side view", |ui| {
+        let mut view = state.scene.view;
+        let side = ui.selectable_value(&mut view, View::Elevation, "Side view");
+        let side = side.on_hover_text("Seen from the side: gravity points down");
+        let plan = ui.selectable_value(&mut view, View::Plan, "Plan view");
+        plan.on_hover_text("Seen from above: gravity points into the page and the floor rubs everywhere");
+        if view != state.scene.view {
+            let scene = cable_core::Scene { view, ..state.scene.clone() };
+            commands.push(Command::Scene(SceneCommand::SetScene(Box::new(scene))));
+        }
+        side
+    });
+    if let Some(found) = fault::at(state, "view") {
+        field::fault(ui, &fault::sentence(&found.fault));
+    }
 }

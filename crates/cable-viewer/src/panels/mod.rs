@@ -2,9 +2,14 @@
 
 pub mod cable;
 pub mod environment;
+pub mod fault;
+pub mod field;
+pub mod icon;
 pub mod playback;
 pub mod plots;
+pub mod property;
 pub mod readouts;
 pub mod scene;
 pub mod solver;
+pub mod unit;
 pub mod warnings;

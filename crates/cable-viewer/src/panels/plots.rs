@@ -1,10 +1,79 @@
-//! Plots panel: tension and reactions against time.
+//! Plots panel: tension, stress or strain over time and along the cable.
 
+use egui::{ComboBox, Id, Ui};
+
+use super::field;
+use crate::colour::Quantity;
 use crate::command::Command;
+use crate::plot::{View, along, time};
 use crate::state::AppState;
 
+/// Below this width the graphs stand one under the other, points.
+const SIDE_BY_SIDE: f32 = 560.0;
+/// Lowest graph that can still be read, points.
+const LEAST_HEIGHT: f32 = 90.0;
+
+/// How much of the past can be followed.
+const WINDOWS: [(Option<f64>, &str); 4] =
+    [(Some(10.0), "Last 10 s"), (Some(60.0), "Last 60 s"), (Some(300.0), "Last 300 s"), (None, "All")];
+
 /// Draws it.
-pub fn ui(ui: &mut egui::Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let _ = (state, commands);
-    ui.weak("Nothing here yet");
+pub fn ui(ui: &mut Ui, state: &AppState, _commands: &mut Vec<Command>) {
+    let id = Id::unique("plot view");
+    let mut view: View = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+    ui.horizontal_wrapped(|ui| controls(ui, state, &mut view));
+    ui.data_mut(|d| d.insert_temp(id, view));
+    let wide = ui.available_width() >= SIDE_BY_SIDE;
+    let room = ui.available_height() - ui.spacing().item_spacing.y;
+    let height = if wide { room } else { room / 2.0 }.max(LEAST_HEIGHT);
+    if wide {
+        ui.columns_const(|[left, right]| {
+            time::ui(left, state, view, height);
+            along_cable(right, state, view, height);
+        });
+    } else {
+        time::ui(ui, state, view, height);
+        along_cable(ui, state, view, height);
+    }
+}
+
+fn controls(ui: &mut Ui, state: &AppState, view: &mut View) {
+    for quantity in Quantity::ALL {
+        let help = match quantity {
+            Quantity::Tension => "Pull in the cable",
+            Quantity::Stress => "Tension over the full round section",
+            Quantity::Strain => "Change of length over length",
+        };
+        ui.selectable_value(&mut view.quantity, quantity, quantity.name()).on_hover_text(help);
+    }
+    ui.separator();
+    ui.checkbox(&mut view.follow, "Follow").on_hover_text(
+        "The graphs keep up with the data. Off: drag to move, scroll with Ctrl to zoom, double-click to fit",
+    );
+    let present = WINDOWS.iter().find(|(w, _)| *w == view.window_s).map_or("", |(_, text)| text);
+    let combo = ComboBox::from_id_salt("window").selected_text(present).width(84.0);
+    let shown = combo.show_ui(ui, |ui| {
+        for (window_s, text) in WINDOWS {
+            ui.selectable_value(&mut view.window_s, window_s, text);
+        }
+    });
+    field::name(&shown.response, "Time window");
+    shown.response.on_hover_text("How much of the past the time graph follows");
+    if state.history.samples.is_empty() {
+        ui.weak("Press play to record over time");
+    } else if state.scene.cables.len() > 1 && view.quantity != Quantity::Tension {
+        ui.weak("Over time: tension, as there are several cables");
+    }
+}
+
+fn along_cable(ui: &mut Ui, state: &AppState, view: View, height: f32) {
+    let index = state.current_cable();
+    let scene = state.snapshot.scene.as_deref().unwrap_or(&state.scene);
+    let answer = state.snapshot.solution.as_deref().and_then(|s| s.cables.get(index));
+    match (scene.cables.get(index), answer) {
+        (Some(cable), Some(solved)) => along::ui(ui, cable, solved, view, height),
+        _ => {
+            ui.weak("Nothing solved yet");
+        }
+    }
 }

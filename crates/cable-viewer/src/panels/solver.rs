@@ -1,10 +1,131 @@
 //! Solver panel: the model, its mesh and accuracy, what it did.
 
+use cable_core::{Model, Settings, Solution};
+use egui::{Grid, Ui};
+
+use super::property::{Known, Quantity, row};
+use super::unit::{self, Unit};
 use crate::command::Command;
-use crate::state::AppState;
+use crate::state::{AppState, WorkerStatus};
+
+const TOLERANCE: Quantity = Quantity {
+    name: "Tolerance",
+    unit: Unit::PERCENT,
+    usual: [1e-6, 1e-1],
+    logarithmic: true,
+    help: "Relative accuracy asked of the tension. Models choose their mesh by it where nothing else says how many segments.",
+};
+const SEGMENTS: Quantity = Quantity {
+    name: "Segments per cable",
+    unit: Unit::COUNT,
+    usual: [4.0, 1000.0],
+    logarithmic: true,
+    help: "Elements every cable is cut into; overrides the cables' own numbers. More: finer and slower.",
+};
+
+const MODELS: [(Model, &str, &str); 4] = [
+    (Model::Auto, "Automatic", "The cheapest model that can answer the scene; the reason stands below"),
+    (
+        Model::Catenary,
+        "Catenary",
+        "Closed form between supports: no discretisation error. No contact, no bending stiffness, no motion",
+    ),
+    (Model::Fem, "FEM", "Finite elements with contact, friction, bending and dynamics"),
+    (Model::MassSpring, "Mass-spring", "Lumped masses and springs, explicit in time: shows motion, settles slowly"),
+];
+
+/// What is set when the user first fixes the number and nothing was solved yet.
+const FIRST_SEGMENTS: usize = 100;
 
 /// Draws it.
-pub fn ui(ui: &mut egui::Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let _ = (state, commands);
-    ui.weak("Nothing here yet");
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        for (model, name, help) in MODELS {
+            if ui.selectable_label(state.model == model, name).on_hover_text(help).clicked() {
+                commands.push(Command::SetModel(model));
+            }
+        }
+    });
+    let answer = state.snapshot.solution.as_deref();
+    if let Some(answer) = answer {
+        let why = if state.model == Model::Auto { format!(": {}", answer.reason) } else { String::new() };
+        ui.label(format!("Solved with {}{why}", model_name(answer.model)));
+    }
+    mesh(ui, state, commands);
+    cost(ui, state, answer);
+}
+
+fn mesh(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let Settings { tolerance, segments } = state.settings;
+    let usual = Settings::default();
+    let origin = Some((usual.tolerance, "the default".to_owned()));
+    let known = Known { value: tolerance, origin, ..Known::default() };
+    if let Some(tolerance) = row(ui, &TOLERANCE, &known).value {
+        // A solver told to be exact, or not to be, would run for ever or not at all.
+        let tolerance = tolerance.clamp(1e-9, 0.5);
+        commands.push(Command::SetSettings(Settings { tolerance, ..state.settings }));
+    }
+    let mut fixed = segments.is_some();
+    let help = "Off: the cable's own number, else by the tolerance";
+    if ui.checkbox(&mut fixed, "Same number of segments for every cable").on_hover_text(help).changed() {
+        let count = largest_mesh(state.snapshot.solution.as_deref()).unwrap_or(FIRST_SEGMENTS);
+        commands.push(Command::SetSettings(Settings { segments: fixed.then_some(count), ..state.settings }));
+    }
+    let Some(count) = segments else { return };
+    let known = Known { value: count as f64, ..Known::default() };
+    if let Some(value) = row(ui, &SEGMENTS, &known).value {
+        // The range of the scene file's `segments`.
+        let segments = Some(value.round().clamp(1.0, 1e5) as usize);
+        commands.push(Command::SetSettings(Settings { segments, ..state.settings }));
+    }
+}
+
+fn largest_mesh(answer: Option<&Solution>) -> Option<usize> {
+    let nodes = answer?.cables.iter().map(|c| c.nodes.len()).max()?;
+    nodes.checked_sub(1).filter(|&n| n > 0)
+}
+
+fn cost(ui: &mut Ui, state: &AppState, answer: Option<&Solution>) {
+    let Some(answer) = answer else {
+        ui.weak("Nothing solved yet");
+        return;
+    };
+    let cost = answer.cost;
+    let status = match &state.worker {
+        WorkerStatus::Idle => "ready",
+        WorkerStatus::Busy => "working…",
+        WorkerStatus::Dead(_) => "stopped, see warnings",
+    };
+    let step = if cost.inner_step_s > 0.0 { unit::duration(cost.inner_step_s) } else { "none, at rest".to_owned() };
+    let segments = largest_mesh(Some(answer)).map_or_else(|| "–".to_owned(), |n| n.to_string());
+    let rows = [
+        ("Wall time", unit::duration(state.snapshot.solve_wall_s), "Time the last solve or step took"),
+        (
+            "Iterations",
+            cost.iterations.to_string(),
+            "Newton iterations, or explicit sub-steps, of the last solve or step",
+        ),
+        (
+            "Residual",
+            format!("{} N", unit::significant(cost.residual_n, 2)),
+            "Largest force left unbalanced at a node: the smaller, the closer to equilibrium",
+        ),
+        ("Inner time step", step, "The step the model takes inside a frame"),
+        ("Halved steps", cost.halved_steps.to_string(), "Steps that failed and were taken in halves"),
+        ("Segments", segments, "Segments of the finest cable as solved"),
+        ("Solver thread", status.to_owned(), "The thread that solves while the window stays usable"),
+    ];
+    ui.separator();
+    Grid::new("cost").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
+        for (name, value, help) in rows {
+            ui.weak(name).on_hover_text(help);
+            ui.label(value).on_hover_text(help);
+            ui.end_row();
+        }
+    });
+}
+
+fn model_name(model: Model) -> &'static str {
+    MODELS.iter().find(|(m, _, _)| *m == model).map_or(model.name(), |(_, name, _)| name)
 }

@@ -1,10 +1,220 @@
-//! Warnings panel: what the user should know.
+//! Warnings panel: what is wrong, where, why, what it does to the result, and the fix where one change is one.
 
-use crate::command::Command;
-use crate::state::AppState;
+use cable_core::scene::SupportKind;
+use cable_core::solution::{Warning, WarningKind};
+use cable_core::{Settings, Solution};
+use egui::{Color32, Frame, RichText, Ui};
+
+use super::fault::{self, Fix};
+use super::icon::{self, Icon};
+use super::unit;
+use crate::command::{Command, FileCommand, SceneCommand, ViewCommand};
+use crate::state::{AppState, Item, WorkerStatus};
+
+/// Most warnings drawn; the rest is counted. A cable that is too tight everywhere can have one a node.
+const MOST: usize = 30;
+
+/// How bad something is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Severity {
+    /// The result does not hold, or the cable breaks.
+    Stop,
+    /// The result holds and the cable does not like it.
+    Caution,
+    /// Worth knowing.
+    Note,
+}
+
+/// One entry of the list.
+struct Entry {
+    severity: Severity,
+    title: String,
+    text: String,
+    /// Where to look, m.
+    at_m: Option<[f64; 2]>,
+    /// What to pick.
+    item: Option<Item>,
+    fix: Option<Fix>,
+}
 
 /// Draws it.
-pub fn ui(ui: &mut egui::Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let _ = (state, commands);
-    ui.weak("Nothing here yet");
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let entries = entries(state);
+    if entries.is_empty() {
+        ui.horizontal(|ui| {
+            icon::sign(ui, Icon::Check, ui.visuals().text_color());
+            ui.weak("Nothing to warn of");
+        });
+        return;
+    }
+    for (k, entry) in entries.iter().take(MOST).enumerate() {
+        ui.push_id(k, |ui| card(ui, k, entry, commands));
+    }
+    if entries.len() > MOST {
+        ui.weak(format!("and {} more", entries.len() - MOST));
+    }
+}
+
+fn entries(state: &AppState) -> Vec<Entry> {
+    let mut list = Vec::new();
+    list.extend(dead_worker(state));
+    list.extend(scene_fault(state));
+    if let (Some(error), None) = (&state.snapshot.error, &state.scene_fault) {
+        let text = format!("{}. The picture and the figures are of the last scene that was solved.", capital(error));
+        list.push(Entry { title: "No answer".to_owned(), ..entry(Severity::Stop, text) });
+    }
+    if let Some(answer) = state.snapshot.solution.as_deref() {
+        list.extend(answer.warnings.iter().map(|w| of_warning(state, answer, w)));
+    }
+    // A stable sort: equals stay in the order of the answer.
+    list.sort_by_key(|e| e.severity);
+    list
+}
+
+fn entry(severity: Severity, text: String) -> Entry {
+    Entry { severity, title: String::new(), text, at_m: None, item: None, fix: None }
+}
+
+fn capital(text: &str) -> String {
+    let text = text.trim_end_matches('.');
+    let mut chars = text.chars();
+    chars.next().map_or_else(String::new, |c| c.to_uppercase().chain(chars).collect())
+}
+
+fn dead_worker(state: &AppState) -> Option<Entry> {
+    let WorkerStatus::Dead(words) = &state.worker else { return None };
+    let fix = Fix { label: "Start it again".to_owned(), command: Command::File(FileCommand::RestartWorker) };
+    let text = format!("{}. The scene is safe; nothing is solved until it runs again.", capital(words));
+    Some(Entry { title: "The solver stopped".to_owned(), fix: Some(fix), ..entry(Severity::Stop, text) })
+}
+
+fn scene_fault(state: &AppState) -> Option<Entry> {
+    let found = state.scene_fault.as_ref()?;
+    let text = format!(
+        "{} {}. The picture and the figures are of the last scene that could be solved.",
+        found.path,
+        fault::sentence(&found.fault)
+    );
+    let title = "The scene cannot be solved".to_owned();
+    Some(Entry { title, fix: fault::fix(state), ..entry(Severity::Stop, text) })
+}
+
+fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
+    let (severity, title) = match warning.kind {
+        WarningKind::BreakingTension => (Severity::Stop, "Breaks here"),
+        WarningKind::ServiceTension => (Severity::Caution, "Above the service tension"),
+        WarningKind::BendRadius => (Severity::Caution, "Bent too tightly"),
+        WarningKind::Accuracy => (Severity::Caution, "Less accurate than asked"),
+        WarningKind::SupportHeld => (Severity::Caution, "A support was held back"),
+        WarningKind::Stabilised => (Severity::Caution, "The motion was stabilised"),
+        WarningKind::NotUnique => (Severity::Note, "One of several resting places"),
+    };
+    let index = state.scene.cables.iter().position(|c| c.name == warning.cable);
+    let place = format!("{} at {:.2}\u{a0}m", warning.cable, warning.arc_length_m);
+    let figures = figures(warning).map_or_else(String::new, |f| format!(" – {f}"));
+    Entry {
+        severity,
+        title: format!("{title}: {place}{figures}"),
+        text: warning.message.clone(),
+        at_m: position(answer, warning),
+        item: index.map(Item::Cable),
+        fix: remedy(state, answer, warning, index),
+    }
+}
+
+/// The value and its limit, in the warning's own unit.
+fn figures(warning: &Warning) -> Option<String> {
+    let Warning { value, limit, .. } = *warning;
+    match warning.kind {
+        WarningKind::ServiceTension | WarningKind::BreakingTension => {
+            Some(format!("{} of {}", unit::force(value), unit::force(limit)))
+        }
+        WarningKind::BendRadius => Some(format!("{} of {}", unit::length(value), unit::length(limit))),
+        WarningKind::Accuracy => Some(format!("{} of {}", unit::percent(value), unit::percent(limit))),
+        WarningKind::NotUnique | WarningKind::SupportHeld | WarningKind::Stabilised => None,
+    }
+}
+
+fn position(answer: &Solution, warning: &Warning) -> Option<[f64; 2]> {
+    let cable = answer.cables.iter().find(|c| c.name == warning.cable)?;
+    let distance = |s: f64| (s - warning.arc_length_m).abs();
+    let nearest = cable.nodes.iter().min_by(|a, b| distance(a.arc_length_m).total_cmp(&distance(b.arc_length_m)))?;
+    Some([nearest.x_m, nearest.y_m])
+}
+
+/// One change that takes the warning's cause away, where there is one.
+fn remedy(state: &AppState, answer: &Solution, warning: &Warning, index: Option<usize>) -> Option<Fix> {
+    match warning.kind {
+        WarningKind::Accuracy => {
+            let nodes = answer.cables.iter().map(|c| c.nodes.len()).max()?;
+            let segments = 2 * nodes.saturating_sub(1).max(1);
+            let settings = Settings { segments: Some(segments), ..state.settings };
+            Some(Fix { label: format!("Use {segments} segments"), command: Command::SetSettings(settings) })
+        }
+        WarningKind::BendRadius => wheel(state, answer, warning, index?),
+        _ => None,
+    }
+}
+
+/// A bend at a pulley whose wheel is too small: a wheel as large as the cable needs.
+fn wheel(state: &AppState, answer: &Solution, warning: &Warning, cable: usize) -> Option<Fix> {
+    let of = state.scene.cables.get(cable)?;
+    let solved = answer.cables.get(cable)?;
+    // The bend of a wheel lies within a wheel's radius of where the cable leaves it.
+    let near = |s: f64| (s - warning.arc_length_m).abs() <= of.min_bend_radius_m;
+    let support = of.supports.iter().zip(&solved.supports).position(|(s, r)| {
+        s.kind == SupportKind::Pulley && s.radius_m.unwrap_or(0.0) < of.min_bend_radius_m && near(r.arc_length_m)
+    })?;
+    let mut value = of.supports.get(support)?.clone();
+    value.radius_m = Some(of.min_bend_radius_m);
+    let label = format!("Give {} a wheel of {}", value.name, unit::length(of.min_bend_radius_m));
+    let command = SceneCommand::SetSupport { cable, support, value: Box::new(value) };
+    Some(Fix { label, command: Command::Scene(command) })
+}
+
+fn card(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
+    let colour = match entry.severity {
+        Severity::Stop => ui.visuals().error_fg_color,
+        Severity::Caution => ui.visuals().warn_fg_color,
+        Severity::Note => ui.visuals().weak_text_color.unwrap_or(Color32::GRAY),
+    };
+    let sign = match entry.severity {
+        Severity::Stop => Icon::Stop,
+        Severity::Caution => Icon::Caution,
+        Severity::Note => Icon::Note,
+    };
+    Frame::group(ui.style()).inner_margin(6).show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        ui.horizontal_top(|ui| {
+            icon::sign(ui, sign, colour);
+            ui.vertical(|ui| {
+                ui.label(RichText::new(&entry.title).strong());
+                ui.label(&entry.text);
+                if entry.at_m.is_some() || entry.fix.is_some() {
+                    ui.horizontal_wrapped(|ui| actions(ui, number, entry, commands));
+                }
+            });
+        });
+    });
+}
+
+fn actions(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
+    if let Some(at_m) = entry.at_m {
+        let show = ui.button("Show").on_hover_text(format!("Centres the picture on {}", unit::position(at_m)));
+        super::field::name(&show, &format!("Show warning {}", number + 1));
+        if show.clicked() {
+            commands.push(Command::View(ViewCommand::CentreOn(at_m)));
+            if entry.item.is_some() {
+                commands.push(Command::View(ViewCommand::Select(entry.item)));
+            }
+        }
+    }
+    if let Some(fix) = &entry.fix
+        && ui.button(&fix.label).on_hover_text("Puts this right; undo takes it back").clicked()
+    {
+        commands.push(fix.command.clone());
+        if matches!(fix.command, Command::Scene(_)) {
+            commands.push(Command::Scene(SceneCommand::EditDone));
+        }
+    }
 }

@@ -1,1 +1,265 @@
-//! Plots against time (egui_plot) with decimation and export.
+//! Graphs of tension, stress and strain: along the cable and against time.
+
+pub mod along;
+pub mod series;
+pub mod time;
+
+use cable_core::Cable;
+use egui::{Color32, Id, RichText, Sense, Stroke, Ui, vec2};
+use egui_plot::{GridInput, GridMark, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
+
+use crate::colour::Quantity;
+use crate::panels::field;
+use crate::panels::unit::{self, DIGITS, significant};
+use series::{Series, value_at};
+
+/// Colours of the lines, distinct to colour-blind eyes (after M. Okabe and K. Ito, “Color Universal Design”, 2008).
+pub const LINES: [Color32; 3] =
+    [Color32::from_rgb(0, 114, 178), Color32::from_rgb(0, 158, 115), Color32::from_rgb(170, 110, 190)];
+/// The service limit.
+const SERVICE: Color32 = Color32::from_rgb(230, 159, 0);
+/// The breaking limit.
+const BREAKING: Color32 = Color32::from_rgb(213, 60, 40);
+
+/// A limit is kept in view once the data reach this share of it; before, it would press the data flat.
+const NEAR: f64 = 0.5;
+/// Free room above the data, as a share of their range.
+const HEADROOM: f64 = 0.12;
+
+/// Lowest graph that can still be read, points.
+const LEAST_HEIGHT: f32 = 70.0;
+/// Distance of numbers on the horizontal axis, points: close enough to read between, far enough not to touch.
+const COLUMN: f32 = 80.0;
+/// Distance of numbers on the vertical axis, points.
+const ROW: f32 = 24.0;
+
+/// What the user asked of the graphs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// What goes up.
+    pub quantity: Quantity,
+    /// The view follows the data.
+    pub follow: bool,
+    /// How much of the past is followed, s; None = all of it.
+    pub window_s: Option<f64>,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self { quantity: Quantity::Tension, follow: true, window_s: Some(10.0) }
+    }
+}
+
+/// What a graph shows and how.
+pub struct Graph<'a> {
+    /// Names the graph to tests and screen readers.
+    pub title: &'a str,
+    /// What goes up, and its unit.
+    pub quantity: Quantity,
+    /// What goes right, and its unit, such as `Time` and `s`.
+    pub across: [&'a str; 2],
+    /// Left and right end in view while following.
+    pub range: [f64; 2],
+    /// Service and breaking limit, SI.
+    pub limits: [f64; 2],
+    /// The view follows the data; else it can be dragged and zoomed.
+    pub follow: bool,
+    /// Height, points.
+    pub height: f32,
+}
+
+/// Service and breaking limit of a quantity, SI.
+#[must_use]
+pub fn limits(quantity: Quantity, cable: &Cable) -> [f64; 2] {
+    let per_newton = per_newton(quantity, cable);
+    [cable.service_tension_n * per_newton, cable.breaking_tension_n * per_newton]
+}
+
+/// The quantity of a cable under one newton, SI.
+#[must_use]
+pub fn per_newton(quantity: Quantity, cable: &Cable) -> f64 {
+    match quantity {
+        Quantity::Tension => 1.0,
+        Quantity::Stress => 1.0 / cable.area_m2(),
+        Quantity::Strain => 1.0 / cable.axial_stiffness_n,
+    }
+}
+
+/// Lowest and highest value in view, SI.
+fn vertical_range(lines: &[Series], limits: [f64; 2]) -> [f64; 2] {
+    let values = || lines.iter().flat_map(|l| &l.points).map(|p| p[1]).filter(|v| v.is_finite());
+    let low = values().fold(0.0, f64::min);
+    let greatest = values().fold(0.0, f64::max);
+    let high = limits.into_iter().filter(|limit| greatest > NEAR * limit).fold(greatest, f64::max);
+    let height = if high > low { high - low } else { 1.0 };
+    [if low < 0.0 { low - HEADROOM * height } else { 0.0 }, low + (1.0 + HEADROOM) * height]
+}
+
+/// Draws lines (SI values) with their limits.
+pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) {
+    let [low, high] = vertical_range(lines, graph.limits);
+    let (symbol, si) = graph.quantity.unit(high);
+    let [across, across_symbol] = graph.across;
+    let read = |x: f64| {
+        let mut text = format!("{} {across_symbol}", significant(x, DIGITS));
+        for line in lines {
+            if let Some(value) = value_at(&line.points, x) {
+                text += &format!("\n{}: {} {symbol}", line.name, significant(value / si, DIGITS));
+            }
+        }
+        text
+    };
+    let follow = graph.follow;
+    let top = ui.cursor().top();
+    let title = legend(ui, graph, lines);
+    let height = (graph.height - (ui.cursor().top() - top)).max(LEAST_HEIGHT);
+    let columns = f64::from(ui.available_width() / COLUMN).max(1.0);
+    let rows = f64::from((height - 40.0) / ROW).max(1.0);
+    let plot = Plot::new(graph.title)
+        .height(height)
+        .x_axis_label(format!("{across}, {across_symbol}"))
+        .y_axis_label(format!("{}, {symbol}", graph.quantity.name()))
+        .y_axis_min_width(44.0)
+        .allow_drag(!follow)
+        .allow_zoom(!follow)
+        .allow_boxed_zoom(!follow)
+        .allow_double_click_reset(!follow)
+        .allow_scroll(false)
+        .allow_axis_zoom_drag(!follow)
+        .x_grid_spacer(|input| marks(input, columns))
+        .y_grid_spacer(|input| marks(input, rows))
+        .x_axis_formatter(|mark, _| tick(mark))
+        .y_axis_formatter(|mark, _| tick(mark))
+        .label_formatter(|at| {
+            let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = at;
+            Some(read(position.x))
+        });
+    let response = plot.show(ui, |plot| {
+        if follow {
+            let [left, right] = graph.range;
+            plot.set_plot_bounds(PlotBounds::from_min_max([left, low / si], [right, high / si]));
+        }
+        for (line, colour) in lines.iter().zip(LINES) {
+            let points: Vec<[f64; 2]> = line.points.iter().map(|p| [p[0], p[1] / si]).collect();
+            plot.line(egui_plot::Line::new(line.name.clone(), points).color(colour).width(2.0));
+        }
+        draw_limits(plot, graph.limits, si, symbol);
+    });
+    let last = lines.iter().filter_map(|l| Some((l, l.points.last()?)));
+    let spoken: Vec<String> =
+        last.map(|(l, p)| format!("{} {} {symbol}", l.name, significant(p[1] / si, DIGITS))).collect();
+    let figure = response.response.labelled_by(title);
+    figure.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Figure, true, graph.title));
+    field::name(&figure, graph.title);
+    ui.ctx().accesskit_node_builder(figure.id, |node| node.set_description(spoken.join(", ")));
+}
+
+/// The round step (1, 2 or 5 times a power of ten) that cuts a range into about so many parts.
+fn round_step(range: f64, parts: f64) -> f64 {
+    let raw = range / parts;
+    if !(raw.is_finite() && raw > 0.0) {
+        return 1.0;
+    }
+    let power = 10_f64.powf(raw.log10().floor());
+    let step = [1.0, 2.0, 5.0].map(|k| k * power).into_iter().find(|step| *step >= raw * (1.0 - 1e-9));
+    step.unwrap_or(10.0 * power)
+}
+
+fn marks(input: GridInput, parts: f64) -> Vec<GridMark> {
+    let (low, high) = input.bounds;
+    let step = round_step(high - low, parts);
+    // Counted, not summed up: a sum drifts, and never ends where the step is lost in the number.
+    let first = (low / step).ceil();
+    let count = ((high / step).floor() - first).clamp(0.0, 100.0) as u32;
+    (0..=count).map(|k| GridMark { value: (first + f64::from(k)) * step, step_size: step }).collect()
+}
+
+/// A number on an axis, with the decimals its step needs.
+fn tick(mark: GridMark) -> String {
+    let decimals = (-mark.step_size.log10().floor()).clamp(0.0, 12.0) as usize;
+    format!("{:.decimals$}", mark.value + 0.0).replace('-', "−")
+}
+
+/// What the colours mean, above the graph, where it hides nothing.
+fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Id {
+    let row = ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(5.0, 2.0);
+        let title = ui.label(RichText::new(graph.title).strong().small()).id;
+        for (line, colour) in lines.iter().zip(LINES) {
+            swatch(ui, colour, false);
+            ui.label(RichText::new(&line.name).small());
+        }
+        for (name, limit, colour) in named_limits(graph.limits) {
+            if limit.is_finite() {
+                swatch(ui, colour, true);
+                let value = match graph.quantity {
+                    Quantity::Tension => unit::force(limit),
+                    Quantity::Stress => unit::stress(limit),
+                    Quantity::Strain => unit::strain(limit),
+                };
+                ui.label(RichText::new(format!("{name} {value}")).small());
+            }
+        }
+        title
+    });
+    row.inner
+}
+
+fn swatch(ui: &mut Ui, colour: Color32, dashed: bool) {
+    let (rect, _) = ui.allocate_exact_size(vec2(16.0, 10.0), Sense::hover());
+    let parts: &[[f32; 2]] = if dashed { &[[0.0, 0.4], [0.6, 1.0]] } else { &[[0.0, 1.0]] };
+    for [from, to] in parts {
+        let x = |f: f32| rect.left() + f * rect.width();
+        ui.painter().hline(x(*from)..=x(*to), rect.center().y, Stroke::new(2.0, colour));
+    }
+}
+
+fn named_limits(limits: [f64; 2]) -> [(&'static str, f64, Color32); 2] {
+    [("Service", limits[0], SERVICE), ("Breaking", limits[1], BREAKING)]
+}
+
+fn draw_limits(plot: &mut PlotUi<'_>, limits: [f64; 2], si: f64, symbol: &str) {
+    for (name, limit, colour) in named_limits(limits) {
+        if limit.is_finite() {
+            let name = format!("{name} {} {symbol}", significant(limit / si, DIGITS));
+            let line = HLine::new(name, limit / si).color(colour).width(1.5).allow_hover(false);
+            plot.hline(line.style(LineStyle::dashed_dense()));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(values: &[f64]) -> Series {
+        Series { name: String::new(), points: values.iter().enumerate().map(|(i, &v)| [i as f64, v]).collect() }
+    }
+
+    #[test]
+    fn far_limits_do_not_press_the_data_flat() {
+        let far = vertical_range(&[line(&[10.0, 80.0])], [800.0, 10_000.0]);
+        assert_eq!(far[0], 0.0);
+        assert!(far[1] > 80.0 && far[1] < 100.0, "{far:?}");
+        let near = vertical_range(&[line(&[10.0, 500.0])], [800.0, 10_000.0]);
+        assert!(near[1] > 800.0 && near[1] < 1000.0, "{near:?}");
+    }
+
+    #[test]
+    fn steps_are_round_and_few() {
+        for (range, parts, step) in [(10.0, 5.0, 2.0), (780.0, 4.0, 200.0), (0.003, 3.0, 0.001), (1.0, 1.0, 1.0)] {
+            assert!((round_step(range, parts) / step - 1.0).abs() < 1e-9, "{range} in {parts}");
+        }
+        assert_eq!(round_step(f64::NAN, 3.0), 1.0);
+        assert_eq!(tick(GridMark { value: 0.25, step_size: 0.05 }), "0.25");
+        assert_eq!(tick(GridMark { value: -200.0, step_size: 100.0 }), "−200");
+    }
+
+    #[test]
+    fn nothing_and_nonsense_still_give_a_range() {
+        for lines in [vec![], vec![line(&[])], vec![line(&[f64::NAN, f64::INFINITY])], vec![line(&[0.0])]] {
+            let [low, high] = vertical_range(&lines, [800.0, 1e4]);
+            assert!(low.is_finite() && high > low);
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! Cable panel: the properties of the current cable.
+
+pub mod known;
+pub mod property;
+
+use cable_core::Cable;
+use cable_core::scene::preset;
+use egui::{ComboBox, Response, Ui};
+
+use super::property::{Known, row};
+use super::{fault, field};
+use crate::command::{Command, SceneCommand, ViewCommand};
+use crate::state::{AppState, Item};
+use property::{PROPERTIES, SEGMENTS};
+
+/// Height of the list of presets, points: all of them are seen at once.
+const POPUP_HEIGHT: f32 = 360.0;
+
+/// Draws it.
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let index = state.current_cable();
+    let Some(cable) = state.scene.cables.get(index) else {
+        ui.weak("No cable");
+        return;
+    };
+    ui.push_id(index, |ui| {
+        picker(ui, state, index, commands);
+        presets(ui, index, cable, commands);
+        // The loaded scene's cable of this name is what reset returns to without a preset.
+        let loaded = state.document.saved.cables.iter().find(|c| c.name == cable.name);
+        for property in &PROPERTIES {
+            let known = known::known(property, cable, loaded);
+            let change = row(ui, &property.quantity, &known);
+            if let Some(value) = change.value {
+                commands.push(changed(index, cable, |c| (property.set)(c, value)));
+            }
+            if change.done {
+                commands.push(Command::Scene(SceneCommand::EditDone));
+            }
+            fault::inline(ui, state, &format!("cables[{index}].{}", property.key), commands);
+        }
+        segments(ui, state, index, loaded, commands);
+        self_contact(ui, cable);
+    });
+}
+
+fn changed(index: usize, cable: &Cable, change: impl FnOnce(&mut Cable)) -> Command {
+    let mut value = cable.clone();
+    change(&mut value);
+    Command::Scene(SceneCommand::SetCable { cable: index, value: Box::new(value) })
+}
+
+/// Which cable, where there are several, and its name.
+fn picker(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Command>) {
+    let Some(cable) = state.scene.cables.get(index) else { return };
+    if state.scene.cables.len() > 1 {
+        labelled(ui, "Cable", "Cable", |ui| {
+            let combo = ComboBox::from_id_salt("cable").selected_text(&cable.name).width(ui.available_width() - 8.0);
+            let shown = combo.show_ui(ui, |ui| {
+                for (k, other) in state.scene.cables.iter().enumerate() {
+                    if ui.selectable_label(k == index, &other.name).clicked() {
+                        commands.push(Command::View(ViewCommand::Select(Some(Item::Cable(k)))));
+                    }
+                }
+            });
+            shown.response.on_hover_text("The cable whose properties are shown")
+        });
+    }
+    let mut wrong = None;
+    labelled(ui, "Name", "Cable name", |ui| {
+        let entry = field::text(ui, "Cable name", &cable.name, ui.available_width() - 8.0);
+        if let Some(name) = entry.value {
+            commands.push(renamed(state, index, name));
+        }
+        wrong = entry.fault;
+        entry.response.on_hover_text("Unique; loads find their cable by it")
+    });
+    if let Some(wrong) = wrong {
+        field::fault(ui, &wrong);
+    }
+    fault::inline(ui, state, &format!("cables[{index}].name"), commands);
+}
+
+/// The scene with a cable and everything that names it renamed.
+fn renamed(state: &AppState, index: usize, name: String) -> Command {
+    let mut scene = state.scene.clone();
+    if let Some(cable) = scene.cables.get_mut(index) {
+        let old = std::mem::replace(&mut cable.name, name.clone());
+        for load in scene.loads.iter_mut().filter(|l| l.cable == old) {
+            load.cable.clone_from(&name);
+        }
+    }
+    Command::Scene(SceneCommand::SetScene(Box::new(scene)))
+}
+
+fn presets(ui: &mut Ui, index: usize, cable: &Cable, commands: &mut Vec<Command>) {
+    let present = cable.preset.as_deref().and_then(preset::cable_preset);
+    labelled(ui, "Preset", "Cable preset", |ui| {
+        let text = present.map_or("None", |p| p.name.as_str());
+        let combo = ComboBox::from_id_salt("preset").selected_text(text).width(ui.available_width() - 8.0).truncate();
+        let shown = combo.height(POPUP_HEIGHT).show_ui(ui, |ui| {
+            for p in preset::cable_presets() {
+                let entry = ui.selectable_label(present.is_some_and(|q| q.id == p.id), &p.name);
+                if entry.on_hover_text(&p.note).clicked() {
+                    commands.push(changed(index, cable, |c| *c = known::with_preset(cable, p)));
+                    commands.push(Command::Scene(SceneCommand::EditDone));
+                }
+            }
+        });
+        shown.response.on_hover_text(
+            present.map_or("Fills in the properties of a known kind of cable; length and supports stay", |p| {
+                p.note.as_str()
+            }),
+        )
+    });
+}
+
+fn segments(ui: &mut Ui, state: &AppState, index: usize, loaded: Option<&Cable>, commands: &mut Vec<Command>) {
+    let Some(cable) = state.scene.cables.get(index) else { return };
+    let mut own = cable.segments.is_some();
+    let help = "Off: the model chooses by the accuracy asked for";
+    if ui.checkbox(&mut own, "Fixed number of segments").on_hover_text(help).changed() {
+        let chosen = own.then(|| solved_segments(state, index).unwrap_or(100));
+        commands.push(changed(index, cable, |c| c.segments = chosen));
+        commands.push(Command::Scene(SceneCommand::EditDone));
+    }
+    let Some(count) = cable.segments else { return };
+    let origin = loaded.and_then(|c| c.segments).map(|n| (n as f64, "as loaded".to_owned()));
+    let known = Known { value: count as f64, origin, source: None, estimated: false };
+    let change = row(ui, &SEGMENTS, &known);
+    if let Some(value) = change.value {
+        // Saturates; zero and too many are refused by the scene's own check, which is shown below.
+        commands.push(changed(index, cable, |c| c.segments = Some(value.round() as usize)));
+    }
+    if change.done {
+        commands.push(Command::Scene(SceneCommand::EditDone));
+    }
+    fault::inline(ui, state, &format!("cables[{index}].segments"), commands);
+}
+
+fn solved_segments(state: &AppState, index: usize) -> Option<usize> {
+    let answer = state.snapshot.solution.as_ref()?.cables.get(index)?;
+    answer.nodes.len().checked_sub(1).filter(|&n| n > 0)
+}
+
+fn self_contact(ui: &mut Ui, cable: &Cable) {
+    let mut on = cable.self_contact;
+    ui.add_enabled(false, egui::Checkbox::new(&mut on, "Self-contact (not yet)"))
+        .on_disabled_hover_text("No model stops a cable on itself yet: it passes in front of itself");
+}
+
+/// A text in the column of names, and the widget it names beside it; `name` is what tests and screen readers call it.
+pub fn labelled(ui: &mut Ui, text: &str, name: &str, contents: impl FnOnce(&mut Ui) -> Response) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let height = ui.spacing().interact_size.y;
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        let label = ui.allocate_ui_with_layout(egui::vec2(super::property::NAME_WIDTH, height), layout, |ui| {
+            ui.set_min_width(super::property::NAME_WIDTH);
+            ui.add(egui::Label::new(text).truncate().selectable(false))
+        });
+        let named = contents(ui).labelled_by(label.inner.id);
+        field::name(&named, name);
+    });
+}

@@ -1,0 +1,81 @@
+//! What the cable does to its supports: size, direction as an arrow, components.
+
+use cable_core::Cable;
+use cable_core::solution::{CableSolution, SupportReaction};
+use egui::{Align2, Grid, RichText, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2};
+
+use crate::command::{Command, ViewCommand};
+use crate::panels::{field, unit};
+
+/// Side of the square an arrow is drawn in, points.
+const ARROW: f32 = 18.0;
+/// Below this share of the largest reaction a direction is noise, and a dot is drawn.
+const NOTHING: f64 = 1e-9;
+
+/// Draws them.
+pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Vec<Command>) {
+    ui.label(RichText::new("Force of the cable on its supports").strong())
+        .on_hover_text("What each support must hold; the force on the cable is the opposite");
+    let largest = solved.supports.iter().map(size).fold(0.0, f64::max);
+    Grid::new(("reactions", &solved.name)).num_columns(5).spacing([8.0, 3.0]).show(ui, |ui| {
+        for text in ["", "Support", "Force", "Right", "Up"] {
+            ui.weak(text);
+        }
+        ui.end_row();
+        for (k, s) in solved.supports.iter().enumerate() {
+            arrow(ui, s, largest);
+            let name = if s.name.is_empty() { format!("support {}", k + 1) } else { s.name.clone() };
+            let link = ui.add(egui::Button::new(&name).frame(false).truncate());
+            field::name(&link, &format!("Show support {name}"));
+            if link.on_hover_text(explanation(cable, s)).clicked() {
+                commands.push(Command::View(ViewCommand::CentreOn([s.x_m, s.y_m])));
+            }
+            ui.label(unit::force(size(s)));
+            ui.label(unit::force(s.reaction_x_n));
+            ui.label(unit::force(s.reaction_y_n));
+            ui.end_row();
+        }
+    });
+}
+
+fn size(s: &SupportReaction) -> f64 {
+    s.reaction_x_n.hypot(s.reaction_y_n)
+}
+
+/// Direction of the force, ° anticlockwise from the right.
+fn direction_deg(s: &SupportReaction) -> f64 {
+    s.reaction_y_n.atan2(s.reaction_x_n).to_degrees()
+}
+
+fn explanation(cable: &Cable, s: &SupportReaction) -> String {
+    let mut text = format!(
+        "{} at {:.1}° (anticlockwise from the right)\nAt {}, {:.3} m of {:.3} m along the cable",
+        unit::force(size(s)),
+        direction_deg(s),
+        unit::position([s.x_m, s.y_m]),
+        s.arc_length_m,
+        cable.length_m
+    );
+    if let (Some(before), Some(after)) = (s.tension_before_n, s.tension_after_n) {
+        text += &format!("\nTension {} before and {} after it", unit::force(before), unit::force(after));
+    }
+    text + "\nClick to centre on it"
+}
+
+fn arrow(ui: &mut Ui, s: &SupportReaction, largest: f64) {
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(ARROW), Sense::hover());
+    let text = if size(s) > NOTHING * largest {
+        format!("{} at {:.0}°", unit::force(size(s)), direction_deg(s))
+    } else {
+        "no force".to_owned()
+    };
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("{}: {text}", s.name)));
+    let colour = ui.visuals().strong_text_color();
+    if size(s) > NOTHING * largest {
+        let angle = s.reaction_y_n.atan2(s.reaction_x_n) as f32;
+        let along = vec2(angle.cos(), -angle.sin()) * (ARROW - 4.0);
+        ui.painter().arrow(rect.center() - along / 2.0, along, Stroke::new(1.5, colour));
+    } else {
+        ui.painter().text(rect.center(), Align2::CENTER_CENTER, "·", egui::FontId::proportional(16.0), colour);
+    }
+}

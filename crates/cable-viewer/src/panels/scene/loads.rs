@@ -1,0 +1,86 @@
+//! The point loads: on which cable, where, how much.
+
+use cable_core::Load;
+use egui::{ComboBox, Ui};
+
+use super::{GAP, KIND_WIDTH, NAME_WIDTH, NUMBER_WIDTH, components, headings, remove, selectable_name, show_faults};
+use crate::command::{Command, SceneCommand};
+use crate::panels::unit::Unit;
+use crate::panels::{fault, field};
+use crate::state::{AppState, Item};
+
+/// Force of a new load, N.
+const FIRST_LOAD_N: [f64; 2] = [0.0, -100.0];
+
+/// Draws them.
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    if !state.scene.loads.is_empty() {
+        let columns =
+            [("Name", NAME_WIDTH), ("At, m", KIND_WIDTH), ("Right, N", NUMBER_WIDTH), ("Up, N", NUMBER_WIDTH)];
+        headings(ui, &columns);
+    }
+    for (k, load) in state.scene.loads.iter().enumerate() {
+        ui.push_id(k, |ui| line(ui, state, k, load, commands));
+        fault::inline(ui, state, &format!("loads[{k}]"), commands);
+    }
+    let Some(cable) = state.scene.cables.get(state.current_cable()) else { return };
+    if ui.button("Add load").on_hover_text("A force on the middle of the cable, 100 N down").clicked() {
+        let load = Load {
+            cable: cable.name.clone(),
+            arc_length_m: cable.length_m / 2.0,
+            force_n: Some(FIRST_LOAD_N),
+            times_s: Vec::new(),
+            forces_n: Vec::new(),
+        };
+        commands.push(Command::Scene(SceneCommand::AddLoad(load)));
+    }
+}
+
+fn line(ui: &mut Ui, state: &AppState, k: usize, load: &Load, commands: &mut Vec<Command>) {
+    let item = Item::Load(k);
+    let name = format!("load {}", k + 1);
+    let mut faults = Vec::new();
+    let set = |value: Load, commands: &mut Vec<Command>| {
+        commands.push(Command::Scene(SceneCommand::SetLoad { load: k, value }));
+        commands.push(Command::Scene(SceneCommand::EditDone));
+    };
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = GAP;
+        selectable_name(ui, state, item, &name, commands);
+        let entry =
+            field::number(ui, &format!("Place of {name}"), Unit::COORDINATE.bare(), load.arc_length_m, KIND_WIDTH);
+        if let Some(arc_length_m) = entry.value {
+            set(Load { arc_length_m, ..load.clone() }, commands);
+        }
+        faults.extend(entry.fault);
+        entry.response.on_hover_text("Where on the cable, m of unstretched length from its start");
+        match load.force_n {
+            Some(force_n) => {
+                let labels = [format!("Force to the right of {name}"), format!("Force upwards of {name}")];
+                if let Some(force_n) = components(ui, labels, Unit::N, force_n, &mut faults) {
+                    set(Load { force_n: Some(force_n), ..load.clone() }, commands);
+                }
+            }
+            None => {
+                ui.weak("changes with time").on_hover_text("Edit times_s and forces_n in the scene file");
+            }
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            remove(ui, item, &name, "Takes it off", commands);
+        });
+    });
+    if state.scene.cables.len() > 1 {
+        ui.horizontal(|ui| {
+            ui.label("    on");
+            let shown = ComboBox::from_id_salt("cable").selected_text(&load.cable).show_ui(ui, |ui| {
+                for cable in &state.scene.cables {
+                    if ui.selectable_label(cable.name == load.cable, &cable.name).clicked() {
+                        set(Load { cable: cable.name.clone(), ..load.clone() }, commands);
+                    }
+                }
+            });
+            field::name(&shown.response, &format!("Cable of {name}"));
+        });
+    }
+    show_faults(ui, &faults);
+}

@@ -1,0 +1,48 @@
+//! The map picker: puts the obstacles of a known tank into the scene.
+
+use cable_core::Scene;
+use cable_core::scene::preset::{self, MapPreset};
+use egui::{ComboBox, Ui};
+
+use crate::command::{Command, SceneCommand, ViewCommand};
+use crate::panels::cable::labelled;
+use crate::state::AppState;
+
+/// Draws it.
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    labelled(ui, "Map", "Map", |ui| {
+        let present = preset::map_presets().iter().find(|m| m.obstacles == state.scene.obstacles);
+        let text = match present {
+            Some(map) => map.name.as_str(),
+            None if state.scene.obstacles.is_empty() => "None",
+            None => "Own",
+        };
+        let combo = ComboBox::from_id_salt("map").selected_text(text).width(ui.available_width() - 8.0).truncate();
+        let shown = combo.show_ui(ui, |ui| {
+            if ui.selectable_label(state.scene.obstacles.is_empty(), "None").clicked() {
+                choose(&state.scene, &[], commands);
+            }
+            for map in preset::map_presets() {
+                let entry = ui.selectable_label(present.is_some_and(|m| m.id == map.id), &map.name);
+                if entry.on_hover_text(about(map)).clicked() {
+                    choose(&state.scene, &map.obstacles, commands);
+                }
+            }
+        });
+        shown.response.on_hover_text("Replaces all obstacles by those of a tank; cables stay where they are")
+    });
+}
+
+fn about(map: &MapPreset) -> String {
+    format!(
+        "{}\nInside width {:.2} m, waste up to {:.2} m deep, opening at ({:.2}, {:.2}) m",
+        map.note, map.inside_width_m.value, map.waste_depth_m.value, map.riser_at_m[0], map.riser_at_m[1]
+    )
+}
+
+fn choose(scene: &Scene, obstacles: &[cable_core::Obstacle], commands: &mut Vec<Command>) {
+    let mut scene = scene.clone();
+    scene.obstacles = obstacles.to_vec();
+    commands.push(Command::Scene(SceneCommand::SetScene(Box::new(scene))));
+    commands.push(Command::View(ViewCommand::Fit));
+}

@@ -1,0 +1,178 @@
+//! Scene panel: name, scene and map pickers, supports, obstacles and loads with exact coordinates.
+
+mod loads;
+mod map;
+mod obstacles;
+pub mod support_kind;
+mod supports;
+
+use cable_core::math::Point;
+use cable_core::scene::catalog;
+use egui::{Atom, Button, CollapsingHeader, ComboBox, Ui};
+
+use super::cable::labelled;
+use super::icon::{self, Icon};
+use super::unit::Unit;
+use super::{fault, field};
+use crate::command::{Command, FileCommand, SceneCommand, ViewCommand};
+use crate::state::{AppState, Item};
+
+/// Width of a number in a list, points: “−123.456” fits.
+const NUMBER_WIDTH: f32 = 60.0;
+/// Width of a number with its unit, points: “−123.456 m” fits.
+const VALUE_WIDTH: f32 = 84.0;
+/// Width of a name in a list, points.
+const NAME_WIDTH: f32 = 70.0;
+/// Width of the kind in a list, points.
+const KIND_WIDTH: f32 = 70.0;
+/// Gap between columns, points.
+const GAP: f32 = 3.0;
+
+/// Draws it.
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    name(ui, state, commands);
+    pickers(ui, state, commands);
+    fault::inline(ui, state, "version", commands);
+    let index = state.current_cable();
+    let supports = state.scene.cables.get(index).map_or(0, |c| c.supports.len());
+    let title = match state.scene.cables.get(index) {
+        Some(cable) if state.scene.cables.len() > 1 => format!("Supports of {} ({supports})", cable.name),
+        _ => format!("Supports ({supports})"),
+    };
+    list(ui, "supports", &title, |ui| supports::ui(ui, state, index, commands));
+    let title = format!("Obstacles ({})", state.scene.obstacles.len());
+    list(ui, "obstacles", &title, |ui| obstacles::ui(ui, state, commands));
+    let title = format!("Loads ({})", state.scene.loads.len());
+    list(ui, "loads", &title, |ui| loads::ui(ui, state, commands));
+}
+
+fn list(ui: &mut Ui, id: &str, title: &str, contents: impl FnOnce(&mut Ui)) {
+    CollapsingHeader::new(title).id_salt(id).default_open(true).show_unindented(ui, contents);
+}
+
+fn name(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let mut wrong = None;
+    labelled(ui, "Name", "Scene name", |ui| {
+        let entry = field::text(ui, "Scene name", &state.scene.name, ui.available_width() - 8.0);
+        wrong = entry.fault;
+        if let Some(name) = entry.value {
+            commands.push(Command::Scene(SceneCommand::SetName(name)));
+            commands.push(Command::Scene(SceneCommand::EditDone));
+        }
+        entry.response.on_hover_text("Shown in the title and in reports")
+    });
+    if let Some(wrong) = wrong {
+        field::fault(ui, &wrong);
+    }
+    fault::inline(ui, state, "name", commands);
+}
+
+fn pickers(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    labelled(ui, "Open", "Open scene", |ui| {
+        let combo = ComboBox::from_id_salt("scene").selected_text("Choose a scene…").width(ui.available_width() - 8.0);
+        let shown = combo.show_ui(ui, |ui| {
+            for (id, scene) in catalog::all() {
+                if ui.selectable_label(scene.name == state.scene.name, &scene.name).clicked() {
+                    commands.push(Command::File(FileCommand::OpenCatalogue(id.to_owned())));
+                }
+            }
+        });
+        shown.response.on_hover_text("Ready-made scenes; asks first if this one is not saved")
+    });
+    map::ui(ui, state, commands);
+}
+
+/// The name of a thing in a list: picks it.
+fn selectable_name(ui: &mut Ui, state: &AppState, item: Item, name: &str, commands: &mut Vec<Command>) -> bool {
+    let selected = state.selected == Some(item);
+    let button = Button::selectable(selected, (name, Atom::grow())).truncate();
+    let response = cell(ui, NAME_WIDTH, |ui| ui.add(button.min_size(egui::vec2(NAME_WIDTH, 0.0))));
+    field::name(&response, &format!("Select {name}"));
+    if response.on_hover_text(format!("{name}: click to see and edit everything about it")).clicked() {
+        let item = if selected { None } else { Some(item) };
+        commands.push(Command::View(ViewCommand::Select(item)));
+    }
+    selected
+}
+
+/// A cell of a list, so that columns stand under each other.
+fn cell<R>(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    let size = egui::vec2(width, ui.spacing().interact_size.y);
+    let layout = egui::Layout::left_to_right(egui::Align::Center);
+    let shown = ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.set_min_width(width);
+        ui.set_max_width(width);
+        contents(ui)
+    });
+    shown.inner
+}
+
+/// The headings of a list; the last two or three stand over numbers.
+fn headings(ui: &mut Ui, texts: &[(&str, f32)]) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = GAP;
+        for (k, (text, width)) in texts.iter().enumerate() {
+            cell(ui, *width, |ui| {
+                if k == 0 {
+                    ui.add_space(4.0);
+                }
+                ui.weak(*text);
+            });
+        }
+    });
+}
+
+/// The button that takes a thing out.
+fn remove(ui: &mut Ui, item: Item, name: &str, help: &str, commands: &mut Vec<Command>) {
+    let response = icon::plain_button(ui, Icon::Remove, true);
+    field::name(&response, &format!("Remove {name}"));
+    if response.on_hover_text(help).clicked() {
+        commands.push(Command::Scene(SceneCommand::Remove(item)));
+    }
+}
+
+/// Two typed coordinates; the point once one was entered.
+fn coordinates(ui: &mut Ui, of: &str, at_m: Point, faults: &mut Vec<String>) -> Option<Point> {
+    components(ui, ["x of ", "y of "].map(|c| format!("{c}{of}")), Unit::COORDINATE, at_m, faults)
+}
+
+/// Two typed components of a vector; the unit stands in the heading.
+fn components(ui: &mut Ui, labels: [String; 2], unit: Unit, value: Point, faults: &mut Vec<String>) -> Option<Point> {
+    let mut entered = None;
+    for (k, label) in labels.iter().enumerate() {
+        let entry = field::number(ui, label, unit.bare(), value[k], NUMBER_WIDTH);
+        if let Some(component) = entry.value {
+            let mut changed = value;
+            changed[k] = component;
+            entered = Some(changed);
+        }
+        faults.extend(entry.fault);
+        entry.response.on_hover_text(format!("{label}: {}", unit.exact(value[k])));
+    }
+    entered
+}
+
+/// A named number that may be left out; `Some` once it was entered.
+fn optional(
+    ui: &mut Ui,
+    [name, help]: [&str; 2],
+    unit: Unit,
+    value: Option<f64>,
+    faults: &mut Vec<String>,
+) -> Option<f64> {
+    let mut entered = None;
+    labelled(ui, name, name, |ui| {
+        let entry = field::number(ui, name, unit, value.unwrap_or(0.0), VALUE_WIDTH);
+        entered = entry.value;
+        faults.extend(entry.fault);
+        entry.response.on_hover_text(help)
+    });
+    entered
+}
+
+/// Faults below the row they belong to.
+fn show_faults(ui: &mut Ui, faults: &[String]) {
+    for text in faults {
+        field::fault(ui, text);
+    }
+}

@@ -1,0 +1,204 @@
+//! The obstacles: form, place, and everything else of the selected one.
+
+use cable_core::Obstacle;
+use cable_core::math::Point;
+use cable_core::scene::Shape;
+use egui::{Button, Frame, ScrollArea, Ui};
+
+use super::{
+    GAP, KIND_WIDTH, NAME_WIDTH, NUMBER_WIDTH, cell, coordinates, headings, optional, remove, selectable_name,
+    show_faults,
+};
+use crate::command::{Command, SceneCommand};
+use crate::panels::cable::labelled;
+use crate::panels::icon::{self, Icon};
+use crate::panels::unit::Unit;
+use crate::panels::{fault, field};
+use crate::state::{AppState, Item};
+
+/// Height of the list of corners, points: about ten.
+const CORNERS_HEIGHT: f32 = 240.0;
+
+/// Draws them.
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    if !state.scene.obstacles.is_empty() {
+        headings(ui, &[("Name", NAME_WIDTH), ("Form", KIND_WIDTH), ("x, m", NUMBER_WIDTH), ("y, m", NUMBER_WIDTH)]);
+    }
+    for (k, obstacle) in state.scene.obstacles.iter().enumerate() {
+        ui.push_id(k, |ui| line(ui, state, k, obstacle, commands));
+        fault::inline(ui, state, &format!("obstacles[{k}]"), commands);
+    }
+    ui.menu_button("Add obstacle", |ui| add(ui, state, commands));
+}
+
+/// New obstacles stand in the middle of the picture, where the user looks.
+fn add(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let [x, y] = state.camera.centre_m.map(|v| (v * 10.0).round() / 10.0);
+    let forms = [
+        ("Floor", "Ground, solid below", Shape::Terrain { points_m: vec![[x - 10.0, y], [x + 10.0, y]] }),
+        (
+            "Beam",
+            "A square beam of 0.3 m",
+            Shape::Polygon {
+                points_m: vec![[x - 0.15, y - 0.15], [x + 0.15, y - 0.15], [x + 0.15, y + 0.15], [x - 0.15, y + 0.15]],
+            },
+        ),
+        ("Post", "A round post or pipe of 0.2 m radius", Shape::Circle { center_m: [x, y], radius_m: 0.2 }),
+        (
+            "Sheet",
+            "A thin line, two-sided",
+            Shape::Polyline { points_m: vec![[x - 1.0, y], [x + 1.0, y]], thickness_m: 0.02 },
+        ),
+    ];
+    for (name, help, shape) in forms {
+        if ui.button(name).on_hover_text(help).clicked() {
+            let obstacle = Obstacle { name: name.to_lowercase(), shape, friction: None };
+            commands.push(Command::Scene(SceneCommand::AddObstacle(obstacle)));
+            ui.close();
+        }
+    }
+}
+
+fn form(shape: &Shape) -> (&'static str, &'static str) {
+    match shape {
+        Shape::Terrain { .. } => ("Terrain", "Ground from left to right, solid below"),
+        Shape::Polygon { .. } => ("Polygon", "Closed, solid inside"),
+        Shape::Circle { .. } => ("Circle", "A round post or pipe"),
+        Shape::Polyline { .. } => ("Line", "Thin, two-sided"),
+    }
+}
+
+/// Its centre or first corner.
+fn anchor(shape: &Shape) -> Option<Point> {
+    match shape {
+        Shape::Circle { center_m, .. } => Some(*center_m),
+        Shape::Terrain { points_m } | Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => {
+            points_m.first().copied()
+        }
+    }
+}
+
+fn line(ui: &mut Ui, state: &AppState, k: usize, obstacle: &Obstacle, commands: &mut Vec<Command>) {
+    let item = Item::Obstacle(k);
+    let mut faults = Vec::new();
+    let selected = ui
+        .horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = GAP;
+            let selected = selectable_name(ui, state, item, &obstacle.name, commands);
+            let (text, help) = form(&obstacle.shape);
+            cell(ui, KIND_WIDTH, |ui| ui.weak(text).on_hover_text(help));
+            if let Some(at_m) = anchor(&obstacle.shape)
+                && let Some(to_m) = coordinates(ui, &obstacle.name, at_m, &mut faults)
+            {
+                commands.push(Command::Scene(SceneCommand::Move { item, to_m }));
+                commands.push(Command::Scene(SceneCommand::EditDone));
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                remove(ui, item, &obstacle.name, "Takes it out", commands);
+            });
+            selected
+        })
+        .inner;
+    show_faults(ui, &faults);
+    let corner_selected = matches!(state.selected, Some(Item::Corner { obstacle, .. }) if obstacle == k);
+    if selected || corner_selected {
+        Frame::group(ui.style()).inner_margin(5).show(ui, |ui| details(ui, k, obstacle, commands));
+    }
+}
+
+fn details(ui: &mut Ui, k: usize, obstacle: &Obstacle, commands: &mut Vec<Command>) {
+    let mut faults = Vec::new();
+    let mut value = obstacle.clone();
+    labelled(ui, "Name", "Obstacle name", |ui| {
+        let entry = field::text(ui, "Obstacle name", &obstacle.name, ui.available_width() - 8.0);
+        if let Some(name) = entry.value {
+            value.name = name;
+        }
+        faults.extend(entry.fault);
+        entry.response
+    });
+    let mut own = obstacle.friction.is_some();
+    let help = "Off: the cable's own coefficient";
+    if ui.checkbox(&mut own, "Own friction").on_hover_text(help).changed() {
+        value.friction = own.then_some(0.5);
+    }
+    if let Some(mu) = obstacle.friction {
+        let text = ["Obstacle friction", "Coulomb coefficient with every cable"];
+        if let Some(mu) = optional(ui, text, Unit::NONE, Some(mu), &mut faults) {
+            value.friction = Some(mu);
+        }
+    }
+    match &mut value.shape {
+        Shape::Circle { radius_m, .. } => {
+            if let Some(v) = optional(ui, ["Radius", "Radius of the post"], Unit::M, Some(*radius_m), &mut faults) {
+                *radius_m = v;
+            }
+        }
+        Shape::Polyline { points_m, thickness_m } => {
+            let text = ["Thickness", "Full thickness of the line"];
+            if let Some(v) = optional(ui, text, Unit::MM, Some(*thickness_m), &mut faults) {
+                *thickness_m = v;
+            }
+            corners(ui, k, points_m, &mut faults);
+        }
+        Shape::Terrain { points_m } | Shape::Polygon { points_m } => corners(ui, k, points_m, &mut faults),
+    }
+    show_faults(ui, &faults);
+    if value != *obstacle {
+        commands.push(Command::Scene(SceneCommand::SetObstacle { obstacle: k, value }));
+        commands.push(Command::Scene(SceneCommand::EditDone));
+    }
+}
+
+/// The corners with exact coordinates; only those in view are drawn, terrain can have thousands.
+fn corners(ui: &mut Ui, k: usize, points_m: &mut Vec<Point>, faults: &mut Vec<String>) {
+    ui.weak(format!("{} corners, x and y in m", points_m.len()));
+    let mut gone = None;
+    let mut doubled = None;
+    let height = ui.spacing().interact_size.y;
+    let area = ScrollArea::vertical().id_salt(("corners", k)).max_height(CORNERS_HEIGHT).auto_shrink([false, true]);
+    area.show_rows(ui, height, points_m.len(), |ui, rows| {
+        for i in rows {
+            let Some(&at_m) = points_m.get(i) else { continue };
+            ui.push_id(i, |ui| {
+                ui.horizontal(|ui| {
+                    ui.spacing_mut().item_spacing.x = GAP;
+                    ui.add_sized([28.0, height], egui::Label::new(format!("{}", i + 1)).selectable(false));
+                    let name = format!("corner {}", i + 1);
+                    if let (Some(to_m), Some(slot)) = (coordinates(ui, &name, at_m, faults), points_m.get_mut(i)) {
+                        *slot = to_m;
+                    }
+                    let add = ui.add(Button::new("+").frame(false));
+                    field::name(&add, &format!("Add a corner after {name}"));
+                    if add.on_hover_text("Adds a corner halfway to the next").clicked() {
+                        doubled = Some(i);
+                    }
+                    let remove = icon::plain_button(ui, Icon::Remove, true);
+                    field::name(&remove, &format!("Remove {name}"));
+                    if remove.on_hover_text("Takes this corner out").clicked() {
+                        gone = Some(i);
+                    }
+                });
+            });
+        }
+    });
+    if let Some(i) = gone
+        && points_m.len() > 2
+    {
+        points_m.remove(i);
+    }
+    if let Some(i) = doubled {
+        insert_halfway(points_m, i);
+    }
+}
+
+/// A corner halfway from one to the next; after the last, one as far again.
+fn insert_halfway(points_m: &mut Vec<Point>, i: usize) {
+    let Some(&a) = points_m.get(i) else { return };
+    let new = match (points_m.get(i + 1), i.checked_sub(1).and_then(|h| points_m.get(h))) {
+        (Some(b), _) => [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0],
+        (None, Some(before)) => [2.0 * a[0] - before[0], 2.0 * a[1] - before[1]],
+        (None, None) => [a[0] + 1.0, a[1]],
+    };
+    points_m.insert(i + 1, new);
+}

@@ -1,0 +1,235 @@
+//! The supports of a cable in order: kind, place, and everything else of the selected one.
+
+use cable_core::math::Point;
+use cable_core::scene::{PulleySide, SupportKind};
+use cable_core::{Cable, Support};
+use egui::{ComboBox, Frame, Ui};
+
+use super::support_kind::{KINDS, of_kind, refusal};
+use super::{
+    GAP, KIND_WIDTH, NAME_WIDTH, NUMBER_WIDTH, cell, components, coordinates, headings, optional, remove,
+    selectable_name, show_faults,
+};
+use crate::command::{Command, SceneCommand};
+use crate::panels::cable::labelled;
+use crate::panels::unit::Unit;
+use crate::panels::{fault, field};
+use crate::state::{AppState, Item};
+
+/// One support with where it stands.
+struct Row<'a> {
+    cable: usize,
+    support: usize,
+    value: &'a Support,
+    /// It is the cable's start or end.
+    end: bool,
+    /// Where it is now, m, and where on the cable, m.
+    now: (Point, f64),
+}
+
+impl Row<'_> {
+    fn item(&self) -> Item {
+        Item::Support { cable: self.cable, support: self.support }
+    }
+
+    fn set(&self, value: Support, commands: &mut Vec<Command>) {
+        let command = SceneCommand::SetSupport { cable: self.cable, support: self.support, value: Box::new(value) };
+        commands.push(Command::Scene(command));
+        commands.push(Command::Scene(SceneCommand::EditDone));
+    }
+
+    fn changed(&self, commands: &mut Vec<Command>, change: impl FnOnce(&mut Support)) {
+        let mut value = self.value.clone();
+        change(&mut value);
+        self.set(value, commands);
+    }
+}
+
+/// Draws them.
+pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Command>) {
+    let Some(cable) = state.scene.cables.get(index) else { return };
+    let last = cable.supports.len().saturating_sub(1);
+    headings(ui, &[("Name", NAME_WIDTH), ("Kind", KIND_WIDTH), ("x, m", NUMBER_WIDTH), ("y, m", NUMBER_WIDTH)]);
+    for (support, value) in cable.supports.iter().enumerate() {
+        let end = support == 0 || support == last;
+        let row = Row { cable: index, support, value, end, now: place_now(state, index, support, cable) };
+        ui.push_id((index, support), |ui| line(ui, state, &row, commands));
+        if support < last {
+            let path = format!("cables[{index}].supports[{support}]");
+            fault::inline(ui, state, &path, commands);
+        }
+    }
+    fault::inline(ui, state, &format!("cables[{index}].supports[{last}]"), commands);
+    let help = "A frictionless point the cable slides through, in the middle of the cable; drag it, or change its kind";
+    if ui.button("Add waypoint").on_hover_text(help).clicked() {
+        let arc_length_m = cable.length_m / 2.0;
+        let at_m = position_at(state, index, arc_length_m).unwrap_or([0.0; 2]);
+        commands.push(Command::Scene(SceneCommand::AddWaypoint { cable: index, arc_length_m, at_m }));
+    }
+}
+
+/// Where a support is in the present answer, else where the scene says.
+fn place_now(state: &AppState, cable: usize, support: usize, of: &Cable) -> (Point, f64) {
+    // An answer with other supports is of an earlier scene: its places are those of the neighbours.
+    let solved = state.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable));
+    let solved = solved.filter(|c| c.supports.len() == of.supports.len()).and_then(|c| c.supports.get(support));
+    solved.map_or_else(
+        || {
+            let value = of.supports.get(support);
+            let share = support as f64 / of.supports.len().saturating_sub(1).max(1) as f64;
+            (value.and_then(|s| s.at_m).unwrap_or([0.0; 2]), share * of.length_m)
+        },
+        |r| ([r.x_m, r.y_m], r.arc_length_m),
+    )
+}
+
+/// The node of the present answer next to an arc length, m.
+pub(super) fn position_at(state: &AppState, cable: usize, arc_length_m: f64) -> Option<Point> {
+    let nodes = &state.snapshot.solution.as_ref()?.cables.get(cable)?.nodes;
+    let k = nodes.partition_point(|n| n.arc_length_m < arc_length_m).min(nodes.len().checked_sub(1)?);
+    nodes.get(k).map(|n| [n.x_m, n.y_m])
+}
+
+fn line(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command>) {
+    let mut faults = Vec::new();
+    let selected = ui
+        .horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = GAP;
+            let selected = selectable_name(ui, state, row.item(), &row.value.name, commands);
+            cell(ui, KIND_WIDTH, |ui| kind(ui, state, row, commands));
+            match row.value.at_m {
+                Some(at_m) => {
+                    if let Some(to_m) = coordinates(ui, &row.value.name, at_m, &mut faults) {
+                        commands.push(Command::Scene(SceneCommand::Move { item: row.item(), to_m }));
+                        commands.push(Command::Scene(SceneCommand::EditDone));
+                    }
+                }
+                None => {
+                    let (at_m, _) = row.now;
+                    for v in at_m {
+                        cell(ui, NUMBER_WIDTH, |ui| {
+                            ui.weak(format!("{v:.3}")).on_hover_text("Where it is now; not held there");
+                        });
+                    }
+                }
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let help = if row.end { "An end becomes free" } else { "Takes it out" };
+                if !(row.end && row.value.kind == SupportKind::Free) {
+                    remove(ui, row.item(), &row.value.name, help, commands);
+                }
+            });
+            selected
+        })
+        .inner;
+    show_faults(ui, &faults);
+    if selected {
+        Frame::group(ui.style()).inner_margin(5).show(ui, |ui| details(ui, row, commands));
+    }
+}
+
+fn kind(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command>) {
+    let text = KINDS.iter().find(|(k, ..)| *k == row.value.kind).map_or("", |(_, text, _)| text);
+    let shown = ComboBox::from_id_salt("kind").selected_text(text).width(KIND_WIDTH - 4.0).show_ui(ui, |ui| {
+        for (kind, text, help) in KINDS {
+            let refused = refusal(kind, row.end, state.scene.robot.is_some());
+            let entry = ui.add_enabled(refused.is_none(), egui::Button::selectable(kind == row.value.kind, text));
+            let entry = entry.on_hover_text(help).on_disabled_hover_text(refused.unwrap_or_default());
+            if entry.clicked() && kind != row.value.kind {
+                let (at_m, arc_length_m) = row.now;
+                row.set(of_kind(row.value, kind, at_m, arc_length_m, row.end), commands);
+            }
+        }
+    });
+    field::name(&shown.response, &format!("Kind of {}", row.value.name));
+    shown.response.on_hover_text("What it does to the cable");
+}
+
+/// Everything about the selected support.
+fn details(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>) {
+    let s = row.value;
+    let mut faults = Vec::new();
+    labelled(ui, "Name", "Support name", |ui| {
+        let entry = field::text(ui, "Support name", &s.name, ui.available_width() - 8.0);
+        if let Some(name) = entry.value {
+            row.changed(commands, |s| s.name = name);
+        }
+        faults.extend(entry.fault);
+        entry.response
+    });
+    if s.arc_length_m.is_some() || (!row.end && s.kind != SupportKind::Pulley) {
+        let text = ["Sits at", "Where on the cable it grips, m of unstretched length from the start"];
+        if let Some(v) = optional(ui, text, Unit::COORDINATE, s.arc_length_m, &mut faults) {
+            row.changed(commands, |s| s.arc_length_m = Some(v));
+        }
+    } else {
+        labelled(ui, "Sits at", "Place on the cable", |ui| ui.label(format!("{:.3} m along the cable", row.now.1)));
+    }
+    match s.kind {
+        SupportKind::Clamped => {
+            let text =
+                ["Direction", "Direction in which the cable leaves with growing length, anticlockwise from the right"];
+            if let Some(v) = optional(ui, text, Unit::DEGREE, s.angle_deg, &mut faults) {
+                row.changed(commands, |s| s.angle_deg = Some(v));
+            }
+        }
+        SupportKind::Pulley => pulley(ui, row, commands, &mut faults),
+        SupportKind::Load => load(ui, row, commands, &mut faults),
+        SupportKind::Fixed | SupportKind::Robot | SupportKind::Free => {}
+    }
+    if matches!(s.kind, SupportKind::Load | SupportKind::Free) {
+        let text = ["Mass", "Lumped mass on the point; its weight counts too"];
+        if let Some(v) = optional(ui, text, Unit::KG, s.mass_kg, &mut faults) {
+            row.changed(commands, |s| s.mass_kg = (v != 0.0).then_some(v));
+        }
+    }
+    if s.release_s.is_some() {
+        let text = ["Lets go at", "Time at which it lets go"];
+        if let Some(v) = optional(ui, text, Unit::S, s.release_s, &mut faults) {
+            row.changed(commands, |s| s.release_s = Some(v));
+        }
+    }
+    if let Some(motion) = &s.motion {
+        let text = format!("Moves through {} points, see the scene file", motion.points_m.len());
+        ui.weak(text).on_hover_text("Its first point moves along when the support is moved");
+    }
+    show_faults(ui, &faults);
+}
+
+fn pulley(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Vec<String>) {
+    let s = row.value;
+    let text = ["Wheel radius", "Radius of the wheel the cable runs on; 0 = a point"];
+    if let Some(v) = optional(ui, text, Unit::MM, s.radius_m, faults) {
+        row.changed(commands, |s| s.radius_m = Some(v));
+    }
+    if s.radius_m.is_some_and(|r| r > 0.0) {
+        labelled(ui, "Side", "Over", |ui| {
+            let mut side = s.side.unwrap_or_default();
+            let over = ui.selectable_value(&mut side, PulleySide::Over, "Over");
+            ui.selectable_value(&mut side, PulleySide::Under, "Under").on_hover_text("Under the bottom of the wheel");
+            if side != s.side.unwrap_or_default() {
+                row.changed(commands, |s| s.side = Some(side));
+            }
+            over.on_hover_text("Over the top of the wheel")
+        });
+    }
+    let text = ["Pulley friction", "Coulomb coefficient; 0 = turns freely"];
+    if let Some(v) = optional(ui, text, Unit::NONE, s.friction, faults) {
+        row.changed(commands, |s| s.friction = Some(v));
+    }
+}
+
+fn load(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Vec<String>) {
+    let Some(force_n) = row.value.force_n else {
+        ui.weak("Its force changes with time, see the scene file");
+        return;
+    };
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.label("Force right, up, N");
+        let labels = ["Force to the right", "Force upwards"].map(str::to_owned);
+        if let Some(force_n) = components(ui, labels, Unit::N, force_n, faults) {
+            row.changed(commands, |s| s.force_n = Some(force_n));
+        }
+    });
+}

@@ -1,0 +1,24 @@
+//! A quantity along the cable.
+
+use cable_core::Cable;
+use cable_core::solution::CableSolution;
+use egui::Ui;
+
+use super::series::Series;
+use super::{Graph, View, limits, show};
+
+/// Draws it.
+pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, view: View, height: f32) {
+    let View { quantity, follow, .. } = view;
+    let points = solved.nodes.iter().map(|n| [n.arc_length_m, quantity.of(n)]).collect();
+    let graph = Graph {
+        title: "Along the cable",
+        quantity,
+        across: ["Arc length", "m"],
+        range: [0.0, cable.length_m],
+        limits: limits(quantity, cable),
+        follow,
+        height,
+    };
+    show(ui, &graph, &[Series { name: quantity.name().to_owned(), points }]);
+}

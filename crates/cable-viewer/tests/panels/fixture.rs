@@ -1,0 +1,187 @@
+//! A fixed answer and a window with one panel in it. Nothing here is solved: figures never change.
+
+use std::sync::Arc;
+
+use cable_core::scene::{Obstacle, Shape, Support, catalog};
+use cable_core::solution::{
+    CableSolution, ContactReport, ContactState, Cost, Node, Solution, SupportReaction, Warning, WarningKind,
+};
+use cable_core::{Load, Model, Scene};
+use cable_viewer::command::{self, Command, Effects};
+use cable_viewer::history::Sample;
+use cable_viewer::state::{AppState, Snapshot};
+use egui_kittest::Harness;
+
+pub type PanelUi = fn(&mut egui::Ui, &AppState, &mut Vec<Command>);
+
+/// What a panel under test reads and what it asked for.
+pub struct Bench {
+    pub state: AppState,
+    pub commands: Vec<Command>,
+}
+
+/// Depth of the parabola over 10 m that is 12 m long, stretched, m.
+const DEPTH_M: f64 = 2.9652;
+
+/// The hanging span with a floor, a post and a load, as a parabola.
+pub fn state() -> AppState {
+    let mut state = AppState::new(scene(), None);
+    let solution = answer(&state.scene);
+    for k in 0..600 {
+        let time_s = f64::from(k) / 60.0;
+        let swing = (2.0 * time_s).sin() * (-0.2 * time_s).exp();
+        state.history.push(Sample {
+            time_s,
+            max_tension_n: 640.0 + 180.0 * swing,
+            reactions_n: vec![[560.0 + 150.0 * swing, -310.0], [-560.0 - 120.0 * swing, -290.0]],
+        });
+    }
+    state.snapshot = Snapshot {
+        scene: Some(Arc::new(state.scene.clone())),
+        solution: Some(Arc::new(solution)),
+        solve_wall_s: 1.234e-3,
+        real_speed: Some(0.98),
+        ..Snapshot::default()
+    };
+    state
+}
+
+pub fn scene() -> Scene {
+    let mut scene = catalog::hanging_span();
+    scene.cables[0].preset = Some("soow-6-4".to_owned());
+    scene.obstacles.push(Obstacle {
+        name: "floor".to_owned(),
+        shape: Shape::Terrain { points_m: vec![[-1.0, 0.0], [20.0, 0.0]] },
+        friction: Some(0.5),
+    });
+    scene.obstacles.push(Obstacle {
+        name: "post".to_owned(),
+        shape: Shape::Circle { center_m: [4.0, 2.5], radius_m: 0.2 },
+        friction: None,
+    });
+    scene.loads.push(Load {
+        cable: "cable".to_owned(),
+        arc_length_m: 6.0,
+        force_n: Some([0.0, -50.0]),
+        times_s: Vec::new(),
+        forces_n: Vec::new(),
+    });
+    scene
+}
+
+fn answer(scene: &Scene) -> Solution {
+    let cable = &scene.cables[0];
+    let nodes = (0..=48)
+        .map(|i| {
+            let u = f64::from(i) / 48.0;
+            let tension_n = 560.0 * (1.0 + 0.64 * (2.0 * u - 1.0).powi(2)).sqrt();
+            Node {
+                arc_length_m: cable.length_m * u,
+                x_m: 10.0 * u,
+                y_m: 5.0 - 4.0 * DEPTH_M * u * (1.0 - u),
+                tension_n,
+                strain: tension_n / cable.axial_stiffness_n,
+                stress_pa: tension_n / cable.area_m2(),
+                curvature_per_m: 0.08 / (1.0 + 0.16 * (2.0 * u - 1.0).powi(2)),
+                ..Node::default()
+            }
+        })
+        .collect();
+    let reaction = |name: &str, x_m: f64, x_n: f64, y_n: f64| SupportReaction {
+        name: name.to_owned(),
+        x_m,
+        y_m: 5.0,
+        reaction_x_n: x_n,
+        reaction_y_n: y_n,
+        arc_length_m: if x_m > 0.0 { cable.length_m } else { 0.0 },
+        ..SupportReaction::default()
+    };
+    let contact = ContactReport {
+        obstacle: "post".to_owned(),
+        arc_length_m: 4.8,
+        normal_n: 120.0,
+        friction_n: 30.0,
+        state: ContactState::Slip,
+        ..ContactReport::default()
+    };
+    Solution {
+        time_s: 9.983,
+        model: Model::Fem,
+        reason: "the scene has obstacles the cable can touch".to_owned(),
+        cables: vec![CableSolution {
+            name: cable.name.clone(),
+            nodes,
+            supports: vec![reaction("left", 0.0, 560.0, -448.0), reaction("right", 10.0, -560.0, -448.0)],
+            contacts: vec![contact],
+            error_estimate: Some(3.2e-4),
+        }],
+        warnings: Vec::new(),
+        cost: Cost { iterations: 7, halved_steps: 0, residual_n: 3.4e-7, inner_step_s: 1.0 / 240.0 },
+    }
+}
+
+/// Warnings of several kinds.
+pub fn warn(state: &mut AppState) {
+    let warning = |kind, arc_length_m, value, limit, message: &str| Warning {
+        kind,
+        cable: "cable".to_owned(),
+        arc_length_m,
+        value,
+        limit,
+        message: message.to_owned(),
+    };
+    let mut solution = (**state.snapshot.solution.as_ref().unwrap()).clone();
+    solution.warnings = vec![
+        warning(
+            WarningKind::NotUnique,
+            4.8,
+            0.0,
+            0.0,
+            "With friction there are many resting places; this is the one of a cable laid from its supports with the least sliding.",
+        ),
+        warning(
+            WarningKind::ServiceTension,
+            0.0,
+            912.0,
+            800.0,
+            "Tension is above the service tension. A longer cable or another waypoint lowers it.",
+        ),
+        warning(
+            WarningKind::Accuracy,
+            6.0,
+            4.1e-3,
+            1e-3,
+            "The mesh is too coarse at the load: the largest tension may be off by 0.41 %.",
+        ),
+    ];
+    state.snapshot.solution = Some(Arc::new(solution));
+}
+
+/// A support and its reaction in the middle.
+pub fn with_pulley(state: &mut AppState) {
+    let mut pulley = Support::pulley("stop 1", [5.0, 4.0]);
+    pulley.radius_m = Some(0.1);
+    pulley.friction = Some(0.1);
+    state.scene.cables[0].supports.insert(1, pulley);
+    state.scene_fault = state.scene.validate().err();
+}
+
+/// A window with one panel. Commands are applied as the window does.
+pub fn bench(state: AppState, panel: PanelUi, size: [f32; 2]) -> Harness<'static, Bench> {
+    Harness::builder().with_size(size).with_theme(egui::Theme::Light).with_render_cursor(false).build_ui_state(
+        move |ui, bench: &mut Bench| {
+            cable_viewer::theme::install(ui.ctx());
+            egui::Frame::central_panel(ui.style()).show(ui, |ui| {
+                ui.set_min_size(ui.available_size());
+                let mut commands = Vec::new();
+                panel(ui, &bench.state, &mut commands);
+                let mut effects = Effects::default();
+                for command in commands {
+                    command::apply(&mut bench.state, command.clone(), &mut effects);
+                    bench.commands.push(command);
+                }
+            });
+        },
+        Bench { state, commands: Vec::new() },
+    )
+}

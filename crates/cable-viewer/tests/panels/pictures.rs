@@ -1,0 +1,103 @@
+//! A picture of each panel at the width it has in the window. They need a graphics adapter (software will do):
+//! without one they are skipped with a notice, where CI=true they fail.
+
+use cable_viewer::panels;
+use cable_viewer::state::{AppState, Item};
+use egui_kittest::{SnapshotOptions, SnapshotResults};
+
+use crate::fixture::{PanelUi, bench, state, warn, with_pulley};
+
+/// Differences of a rounding here and there between drivers are let pass.
+const MOST_DIFFERENT_PIXELS: usize = 80;
+
+fn picture(name: &str, state: impl Fn() -> AppState, panel: PanelUi, size: [f32; 2]) {
+    let mut results = SnapshotResults::new();
+    for (theme, suffix) in [(egui::Theme::Light, "light"), (egui::Theme::Dark, "dark")] {
+        let mut harness = bench(state(), panel, size);
+        harness.ctx.set_theme(theme);
+        harness.run();
+        if let Err(reason) = harness.render() {
+            assert!(std::env::var("CI").as_deref() != Ok("true"), "no picture of {name}: {reason}");
+            eprintln!("skipped the picture of {name}: {reason}");
+            return;
+        }
+        let options = SnapshotOptions::new().max_failed_pixels(MOST_DIFFERENT_PIXELS);
+        results.add(harness.try_snapshot_options(format!("panel_{name}_{suffix}"), &options));
+    }
+}
+
+#[test]
+fn cable() {
+    picture("cable", state, panels::cable::ui, [320.0, 420.0]);
+}
+
+#[test]
+fn cable_too_short() {
+    let short = || {
+        let mut state = state();
+        state.scene.cables[0].length_m = 9.0;
+        state.scene.cables[0].segments = Some(64);
+        state.scene_fault = state.scene.validate().err();
+        state
+    };
+    picture("cable_too_short", short, panels::cable::ui, [320.0, 540.0]);
+}
+
+#[test]
+fn environment() {
+    picture("environment", state, panels::environment::ui, [320.0, 160.0]);
+}
+
+#[test]
+fn solver() {
+    picture("solver", state, panels::solver::ui, [320.0, 320.0]);
+}
+
+#[test]
+fn scene() {
+    let selected = || {
+        let mut state = state();
+        with_pulley(&mut state);
+        state.selected = Some(Item::Support { cable: 0, support: 1 });
+        state
+    };
+    picture("scene", selected, panels::scene::ui, [320.0, 640.0]);
+}
+
+#[test]
+fn scene_obstacle() {
+    let selected = || AppState { selected: Some(Item::Obstacle(0)), ..state() };
+    picture("scene_obstacle", selected, panels::scene::ui, [320.0, 640.0]);
+}
+
+#[test]
+fn playback() {
+    let running = || {
+        let mut state = state();
+        state.playback.paused = false;
+        state
+    };
+    picture("playback", running, panels::playback::ui, [900.0, 44.0]);
+}
+
+#[test]
+fn readouts() {
+    picture("readouts", state, panels::readouts::ui, [320.0, 460.0]);
+}
+
+#[test]
+fn warnings() {
+    let warned = || {
+        let mut state = state();
+        warn(&mut state);
+        state.scene.cables[0].length_m = 9.0;
+        state.scene_fault = state.scene.validate().err();
+        state
+    };
+    picture("warnings", warned, panels::warnings::ui, [320.0, 600.0]);
+}
+
+#[test]
+fn plots() {
+    picture("plots", state, panels::plots::ui, [960.0, 240.0]);
+}
