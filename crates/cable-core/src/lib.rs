@@ -27,7 +27,7 @@ pub mod contact;
 pub mod energy;
 pub mod error;
 pub mod files;
-
+mod limits;
 pub mod math;
 pub mod model;
 pub mod problem;

@@ -1,6 +1,7 @@
 //! A scene, a model and its state: the object users hold.
 
 use crate::error::{Error, SolveError};
+use crate::limits;
 use crate::math::Vec2;
 use crate::model::auto::{self, Question};
 use crate::model::{self, Inertia, Mechanics, Model, Settings};
@@ -8,6 +9,9 @@ use crate::problem::problems;
 use crate::scene::Scene;
 use crate::solution::{Cost, Solution, Warning};
 use crate::state::State;
+
+/// Longest step a display frame takes, s: longer makes one slow frame cause the next, shorter slows time at 10 Hz.
+pub const MAX_FRAME_S: f64 = 0.1;
 
 /// A scene being solved.
 pub struct Simulation {
@@ -127,6 +131,32 @@ impl Simulation {
         self.each(|c| c.advance(dt_s, Inertia::QuasiStatic))
     }
 
+    /// Advances by a display frame: at most [`MAX_FRAME_S`], so a stalled picture makes time run slower instead of
+    /// a step nobody sees. Returns the time advanced (s); its ratio to `dt_s` is the speed to show.
+    ///
+    /// # Errors
+    /// `TimeStep` for a frame that is zero, negative or not a number; otherwise as [`Self::step`].
+    pub fn advance_frame(&mut self, dt_s: f64) -> Result<f64, SolveError> {
+        if !(dt_s > 0.0) {
+            return Err(SolveError::TimeStep { dt_s, allowed: "above 0 s" });
+        }
+        let taken = if dt_s > MAX_FRAME_S { MAX_FRAME_S } else { dt_s };
+        self.step(taken)?;
+        Ok(taken)
+    }
+
+    /// The same run with an edited scene: cables keep their shape, speed and time; the start of [`Self::reset`] is that
+    /// of the new scene once it is settled.
+    ///
+    /// # Errors
+    /// What is wrong with the new scene; the old simulation is untouched.
+    pub fn with_scene(&self, scene: Scene, settings: Settings) -> Result<Self, Error> {
+        let mut next = Self::with_settings(scene, self.model, settings)?;
+        next.reason.clone_from(&self.reason);
+        next.adopt(&self.states())?;
+        Ok(next)
+    }
+
     fn each(
         &mut self,
         mut f: impl FnMut(&mut Box<dyn Mechanics>) -> Result<crate::model::StepReport, SolveError>,
@@ -147,15 +177,20 @@ impl Simulation {
         Ok(())
     }
 
-    /// The answer at this instant.
+    /// The answer at this instant, with what the cables cannot stand among its warnings.
     #[must_use]
     pub fn solution(&self) -> Solution {
+        let cables: Vec<_> = self.cables.iter().map(|c| c.solution()).collect();
+        let mut warnings = self.warnings.clone();
+        for (m, answer) in self.cables.iter().zip(&cables) {
+            limits::warn(&m.problem().cable, answer, &mut warnings);
+        }
         Solution {
             time_s: self.time_s(),
             model: self.model,
             reason: self.reason.clone(),
-            cables: self.cables.iter().map(|c| c.solution()).collect(),
-            warnings: self.warnings.clone(),
+            cables,
+            warnings,
             cost: self.cost,
         }
     }

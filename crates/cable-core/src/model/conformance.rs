@@ -1,1 +1,126 @@
-//! The suite every model must pass (placeholder).
+//! The suite every model must pass: identities that hold whatever the method, each with the figure reached.
+
+use super::Model;
+use crate::error::Error;
+use crate::scene::{Scene, Support, catalog};
+use crate::simulation::Simulation;
+use crate::solution::Solution;
+
+/// One property of a model, and how well it holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// What was tested.
+    pub name: &'static str,
+    /// How far from true, relative.
+    pub error: f64,
+    /// How far is allowed.
+    pub tolerance: f64,
+}
+
+impl Check {
+    /// Whether it holds; a number that is not one does not.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.error <= self.tolerance
+    }
+}
+
+/// Runs the suite on a model.
+///
+/// # Errors
+/// When the model has no answer to one of the scenes.
+pub fn run(model: Model) -> Result<Vec<Check>, Error> {
+    // Equilibrium is what the iteration is stopped by; the shape is what the mesh limits.
+    let (shape, equilibrium) = match model {
+        Model::Catenary => (1e-9, 1e-9),
+        Model::MassSpring => (1e-3, 2e-5),
+        Model::Fem | Model::Auto => (1e-5, 1e-6),
+    };
+    let base = span([0.0, 5.0], [10.0, 4.0]);
+    let settled = settle(&base, model)?;
+    let mut out = Vec::new();
+    let mut check = |name, error, tolerance| out.push(Check { name, error, tolerance });
+    check("finite", non_finite(&settled), 0.0);
+    check("bit-repeatable", f64::from(u8::from(settle(&base, model)? != settled)), 0.0);
+    check("rests on the closed form of the elastic catenary", closure(&base, &settled), shape);
+    let weight = 12.0 * base.cables[0].linear_density_kg_per_m * base.environment.gravity_m_per_s2;
+    check("reactions sum to the weight", (sum_y(&settled) + weight).abs() / weight, equilibrium);
+    check("reactions have no sum sideways", sum_x(&settled).abs() / weight, equilibrium);
+    let moved = settle(&span([100.0, -45.0], [110.0, -46.0]), model)?;
+    check("a scene moved gives the same tensions", tensions(&settled, &moved, false), 10.0 * equilibrium);
+    let mirrored = settle(&span([0.0, 5.0], [-10.0, 4.0]), model)?;
+    check("a scene mirrored gives the same tensions", tensions(&settled, &mirrored, false), 10.0 * equilibrium);
+    let level = settle(&span([0.0, 5.0], [10.0, 5.0]), model)?;
+    check("a level span is symmetric", tensions(&level, &level, true), 10.0 * equilibrium);
+    let mut heavy = base.clone();
+    heavy.cables[0].linear_density_kg_per_m *= 8.0;
+    heavy.cables[0].axial_stiffness_n *= 8.0;
+    let mut scaled = settle(&heavy, model)?;
+    for n in &mut scaled.cables[0].nodes {
+        n.tension_n /= 8.0;
+    }
+    check("forces scale with weight and stiffness", tensions(&settled, &scaled, false), 10.0 * equilibrium);
+    Ok(out)
+}
+
+/// A flexible span of 12 m between two points.
+fn span(left: [f64; 2], right: [f64; 2]) -> Scene {
+    let mut scene = catalog::hanging_span();
+    let c = &mut scene.cables[0];
+    c.axial_stiffness_n = 1e5;
+    c.bending_stiffness_n_m2 = 0.0;
+    c.length_m = 12.0;
+    c.supports = vec![Support::fixed("left", left), Support::fixed("right", right)];
+    scene
+}
+
+fn settle(scene: &Scene, model: Model) -> Result<Solution, Error> {
+    Ok(Simulation::new(scene.clone(), model)?.settle()?)
+}
+
+fn non_finite(s: &Solution) -> f64 {
+    let bad = s.cables[0].nodes.iter().filter(|n| {
+        ![n.x_m, n.y_m, n.tension_n, n.strain, n.stress_pa, n.curvature_per_m].iter().all(|v| v.is_finite())
+    });
+    bad.count() as f64
+}
+
+fn sum_x(s: &Solution) -> f64 {
+    s.cables[0].supports.iter().map(|r| r.reaction_x_n).sum()
+}
+
+fn sum_y(s: &Solution) -> f64 {
+    s.cables[0].supports.iter().map(|r| r.reaction_y_n).sum()
+}
+
+/// The elastic catenary (H. Irvine, Cable structures, MIT Press, 1981) that leaves the first support with the reaction
+/// the model reports, x(L) = H L/EA + H/w·[asinh((V+wL)/H) − asinh(V/H)], z(L) = L/EA·(V + wL/2) + [T_B − T_A]/w:
+/// how far its end misses the second support, relative to the length.
+fn closure(scene: &Scene, s: &Solution) -> f64 {
+    let (c, r) = (&scene.cables[0], &s.cables[0].supports[0]);
+    let (h, v, l, ea) = (r.reaction_x_n, r.reaction_y_n, c.length_m, c.axial_stiffness_n);
+    let w = c.linear_density_kg_per_m * scene.environment.gravity_m_per_s2;
+    let end = v + w * l;
+    let x = h * l / ea + h / w * ((end / h).asinh() - (v / h).asinh());
+    let z = l / ea * (v + 0.5 * w * l) + (h.hypot(end) - h.hypot(v)) / w;
+    let (a, b) = (c.supports[0].at_m.unwrap_or_default(), c.supports[1].at_m.unwrap_or_default());
+    (x - (b[0] - a[0])).hypot(z - (b[1] - a[1])) / l
+}
+
+/// Greatest difference of tension between two answers on the same mesh, relative to the greatest.
+fn tensions(a: &Solution, b: &Solution, reversed: bool) -> f64 {
+    let (m, n) = (&a.cables[0].nodes, &b.cables[0].nodes);
+    if m.len() != n.len() {
+        return f64::NAN;
+    }
+    let top = a.max_tension().tension_n;
+    let mut worst = 0.0;
+    for (i, p) in m.iter().enumerate() {
+        let q = &n[if reversed { n.len() - 1 - i } else { i }];
+        let d = (p.tension_n - q.tension_n).abs() / top;
+        if d > worst || d.is_nan() {
+            worst = d;
+        }
+    }
+    worst
+}

@@ -1,0 +1,114 @@
+//! Nodes, masses and the first shape.
+
+use std::sync::Arc;
+
+use super::MassSpringModel;
+use crate::math::Vec2;
+use crate::model::Settings;
+use crate::problem::Problem;
+use crate::solution::Cost;
+
+/// Elements where neither scene nor settings say: fewer is visibly angular, more makes sub-steps shorter and dearer.
+const DEFAULT_SEGMENTS: usize = 60;
+/// Greatest damping ratio of the fastest mode: more shortens the stable step without changing what is seen.
+const MAX_MODE_DAMPING: f64 = 1.0;
+
+impl MassSpringModel {
+    /// Puts a node at each support and load, the others evenly between them.
+    pub(super) fn mesh(problem: Arc<Problem>, settings: Settings) -> Self {
+        let wanted = settings.segments.or(problem.cable.segments).unwrap_or(DEFAULT_SEGMENTS).max(1);
+        let mut marks: Vec<f64> = problem.supports.iter().filter_map(|s| s.arc_length).collect();
+        marks.extend(problem.loads.iter().map(|l| l.arc_length));
+        marks.extend([0.0, problem.length]);
+        marks.sort_by(f64::total_cmp);
+        marks.dedup_by(|b, a| (*b - *a).abs() <= 1e-9 * problem.length);
+        let mut s = vec![0.0];
+        for w in marks.windows(2) {
+            let count = ((w[1] - w[0]) / problem.length * wanted as f64).round().max(1.0);
+            s.extend((1..=count as usize).map(|k| w[0] + (w[1] - w[0]) * k as f64 / count));
+        }
+        let span: Vec<f64> = s.windows(2).map(|w| w[1] - w[0]).collect();
+        let rest: Vec<f64> = span.iter().map(|d| d * problem.thermal_stretch).collect();
+        let mut mass = vec![0.0; s.len()];
+        for (e, d) in span.iter().enumerate() {
+            mass[e] += 0.5 * d * problem.linear_density;
+            mass[e + 1] += 0.5 * d * problem.linear_density;
+        }
+        let nearest = |at: f64| {
+            let k = s.partition_point(|&v| v < at).min(s.len() - 1);
+            if k > 0 && at - s[k - 1] < s[k] - at { k - 1 } else { k }
+        };
+        let node_of: Vec<usize> = problem.supports.iter().map(|p| nearest(p.arc_length.unwrap_or(0.0))).collect();
+        for (p, &k) in problem.supports.iter().zip(&node_of) {
+            mass[k] += p.mass;
+        }
+        let load_node = problem.loads.iter().map(|l| nearest(l.arc_length)).collect();
+        let x = first_shape(&problem, &s, &node_of);
+        let (n, ne, ns) = (s.len(), span.len(), node_of.len());
+        let damping_time_s = damping_time(&problem, &rest);
+        let mut model = Self {
+            time_s: 0.0,
+            v: vec![Vec2::zeros(); n],
+            f: vec![Vec2::zeros(); n],
+            tension: vec![0.0; ne],
+            held: vec![false; n],
+            held_acceleration: vec![Vec2::zeros(); n],
+            drag: vec![None; ns],
+            clearance: vec![0.0; ne],
+            touches: Vec::with_capacity(2 * ne),
+            gaps: Vec::with_capacity(16),
+            cost: Cost::default(),
+            laid: false,
+            followers: vec![None; ns],
+            problem,
+            s,
+            rest,
+            span,
+            mass,
+            node_of,
+            load_node,
+            x,
+            damping_time_s,
+        };
+        model.forces();
+        model
+    }
+}
+
+/// Damping ζ of the first axial mode, ω₁ = π/L·√(EA/ρ): strain-rate force EA·τ·ε̇ with τ = 2ζ/ω₁. Mode k then has
+/// ζ_k = ζ·ω_k/ω₁, which is held at [`MAX_MODE_DAMPING`] for the fastest one.
+fn damping_time(p: &Problem, rest: &[f64]) -> f64 {
+    let c = (p.axial_stiffness / p.linear_density).sqrt();
+    let first = std::f64::consts::PI / p.length * c;
+    let shortest = rest.iter().copied().fold(f64::INFINITY, f64::min);
+    let fastest = 2.0 * c / shortest;
+    (2.0 * p.cable.damping_ratio / first).min(2.0 * MAX_MODE_DAMPING / fastest)
+}
+
+/// Along the route, material spread evenly; without one, straight from support to support. A free end goes on in the
+/// direction of gravity.
+fn first_shape(p: &Problem, s: &[f64], node_of: &[usize]) -> Vec<Vec2> {
+    if p.route.len() >= 2 {
+        let mut along = vec![0.0];
+        for w in p.route.windows(2) {
+            along.push(along[along.len() - 1] + (w[1] - w[0]).norm());
+        }
+        let scale = along[along.len() - 1] / p.length;
+        let route = crate::State { arc_length_m: along, position_m: p.route.clone(), ..crate::State::default() };
+        return s.iter().map(|v| route.position_at(v * scale).unwrap_or_default()).collect();
+    }
+    let held: Vec<(f64, Vec2)> =
+        p.supports.iter().zip(node_of).filter_map(|(u, &k)| u.at.map(|at| (s[k], at))).collect();
+    let down = p.body_force(0.0).try_normalize(0.0).unwrap_or(Vec2::new(0.0, -1.0));
+    s.iter()
+        .map(|&v| {
+            let k = held.partition_point(|h| h.0 < v);
+            match (k.checked_sub(1).and_then(|i| held.get(i)), held.get(k)) {
+                (Some(a), Some(b)) => a.1 + (b.1 - a.1) * ((v - a.0) / (b.0 - a.0)),
+                (Some(a), None) => a.1 + down * (v - a.0),
+                (None, Some(b)) => b.1 + down * (b.0 - v),
+                (None, None) => down * v,
+            }
+        })
+        .collect()
+}

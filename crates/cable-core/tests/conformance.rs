@@ -1,0 +1,26 @@
+//! Every model passes the one suite.
+
+use cable_core::Model;
+use cable_core::model::conformance;
+
+fn passes(model: Model) {
+    for check in conformance::run(model).unwrap() {
+        println!("{model}: {}: {:.1e} of {:.0e}", check.name, check.error, check.tolerance);
+        assert!(check.holds(), "{model}: {check:?}");
+    }
+}
+
+#[test]
+fn catenary() {
+    passes(Model::Catenary);
+}
+
+#[test]
+fn fem() {
+    passes(Model::Fem);
+}
+
+#[test]
+fn mass_spring() {
+    passes(Model::MassSpring);
+}
