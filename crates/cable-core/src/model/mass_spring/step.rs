@@ -1,6 +1,6 @@
 //! Forces, contacts and one sub-step; nothing here allocates once the buffers have grown.
 
-use super::{MassSpringModel, Touch};
+use super::{Follower, MassSpringModel, Touch};
 use crate::error::SolveError;
 use crate::math::Vec2;
 

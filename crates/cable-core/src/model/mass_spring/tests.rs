@@ -71,7 +71,10 @@ fn drag() -> Scene {
     c.axial_stiffness_n = 2e4;
     c.route_m = vec![[0.0, 0.0145], [5.0, 0.0145]];
     let mut hitch = Support::fixed("hitch", [5.0, 0.0145]);
-    hitch.motion = Some(crate::scene::Motion { times_s: vec![0.0, 1.0, 2.0, 3.0, 4.0], points_m: (0..5).map(|k| [5.0 + f64::from(k), 0.0145]).collect() });
+    hitch.motion = Some(crate::scene::Motion {
+        times_s: vec![0.0, 1.0, 2.0, 3.0, 4.0],
+        points_m: (0..5).map(|k| [5.0 + f64::from(k), 0.0145]).collect(),
+    });
     c.supports = vec![Support::free("tail"), hitch];
     scene.obstacles = vec![Obstacle {
         name: "floor".to_owned(),
