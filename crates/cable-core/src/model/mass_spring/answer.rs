@@ -1,8 +1,12 @@
 //! The answer of the model.
 
+use super::step::SKIN;
 use super::{MassSpringModel, Touch};
 use crate::math::{Vec2, cross};
 use crate::solution::{CableSolution, ContactReport, ContactState, Node, SupportReaction};
+
+/// Below this speed (m/s) a held node does not rub.
+const RESTING_SPEED: f64 = 1e-9;
 
 impl MassSpringModel {
     /// Reads the present state.
@@ -26,7 +30,7 @@ impl MassSpringModel {
     fn node(&self, i: usize) -> Node {
         let tension_n = match (i.checked_sub(1), i < self.rest.len()) {
             (Some(e), true) => ((self.element_force(e) + self.element_force(i)) * 0.5).norm(),
-            _ if self.held[i] => (self.f[i] - self.held_acceleration[i] * self.mass[i]).norm(),
+            _ if self.held[i] => self.on_support(i).norm(),
             (Some(e), false) => self.tension[e],
             (None, _) => self.tension.first().copied().unwrap_or(0.0),
         };
@@ -50,10 +54,25 @@ impl MassSpringModel {
         }
     }
 
+    /// Force of the cable on the support that holds node `i`, N. Ground under the node carries its share of the weight
+    /// and rubs on it: without that a drag comes out half an element's friction short.
+    fn on_support(&self, i: usize) -> Vec2 {
+        let force = self.f[i] - self.held_acceleration[i] * self.mass[i];
+        let Some(ground) = self.problem.world.signed_gap(self.x[i], SKIN) else { return force };
+        let pressed = -force.dot(&ground.normal);
+        if !(pressed > 0.0) {
+            return force;
+        }
+        let along = self.v[i] - ground.normal * self.v[i].dot(&ground.normal);
+        let rubbing = along.try_normalize(RESTING_SPEED).unwrap_or_default() * (ground.friction * pressed);
+        // At rest the ground can hold what the cable pulls along it, but the support is there for that.
+        force + ground.normal * pressed - rubbing
+    }
+
     fn reaction(&self, k: usize) -> SupportReaction {
         let i = self.node_of[k];
         let force = if self.held[i] {
-            self.f[i] - self.held_acceleration[i] * self.mass[i]
+            self.on_support(i)
         } else {
             // A dead load is what hangs there: the cable pulls it the other way.
             -self.problem.supports[k].force.at(self.time_s)

@@ -83,14 +83,16 @@ struct Touch {
 /// The longest step, s: longer is a mistake in the caller's clock.
 const MAX_STEP_S: f64 = 60.0;
 
+fn unsupported(feature: &str) -> SolveError {
+    SolveError::Unsupported { model: Model::MassSpring, feature: feature.to_owned() }
+}
+
 impl MassSpringModel {
     /// Builds it at the route.
     ///
     /// # Errors
     /// `Unsupported` when the scene needs what the model lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
-        let unsupported =
-            |feature: &str| SolveError::Unsupported { model: Model::MassSpring, feature: feature.to_owned() };
         if problem.supports.iter().any(|s| s.kind == SupportKind::Pulley) {
             return Err(unsupported("a pulley"));
         }
@@ -119,9 +121,13 @@ impl MassSpringModel {
         }
     }
 
+    fn touches_something(&self) -> bool {
+        !self.problem.world.is_empty() || self.problem.floor_friction.is_some()
+    }
+
     /// Finds the resting place from here.
     fn rest_here(&mut self) -> Result<(), SolveError> {
-        if self.problem.world.is_empty() && self.problem.floor_friction.is_none() {
+        if !self.touches_something() {
             self.equilibrium()?;
             self.v.fill(Vec2::zeros());
             self.cost.inner_step_s = 0.0;
@@ -181,6 +187,10 @@ impl Mechanics for MassSpringModel {
         let end_s = self.time_s + dt_s;
         let done = match inertia {
             Inertia::Dynamic => self.integrate(dt_s),
+            // Relaxation overshoots and sticks there: a drag came out at a third of its pull.
+            Inertia::QuasiStatic if self.touches_something() => {
+                Err(unsupported("slow motion without inertia where friction can hold"))
+            }
             Inertia::QuasiStatic => {
                 self.time_s = end_s;
                 self.rest_here()

@@ -11,7 +11,7 @@ const TRAVEL: f64 = 0.25;
 /// Shortest sub-step, of the stable one: below, motion has run away.
 const SHORTEST: f64 = 1e-6;
 /// Distance kept ready for contact beside what is travelled, m.
-const SKIN: f64 = 1e-4;
+pub(super) const SKIN: f64 = 1e-4;
 /// Speed at which a penetration is pushed out, m/s: more throws the cable off, less lets it sink for longer.
 const PUSH_OUT_SPEED: f64 = 1.0;
 /// Passes over the contacts of a sub-step: one leaves neighbours in each other's way, more changes nothing visible.

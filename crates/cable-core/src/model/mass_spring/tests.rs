@@ -69,11 +69,11 @@ fn drag() -> Scene {
     c.length_m = 5.0;
     c.segments = Some(20);
     c.axial_stiffness_n = 2e4;
-    c.route_m = vec![[0.0, 0.0145], [5.0, 0.0145]];
-    let mut hitch = Support::fixed("hitch", [5.0, 0.0145]);
+    c.route_m = vec![[0.0, 0.014], [5.0, 0.014]];
+    let mut hitch = Support::fixed("hitch", [5.0, 0.014]);
     hitch.motion = Some(crate::scene::Motion {
         times_s: vec![0.0, 1.0, 2.0, 3.0, 4.0],
-        points_m: (0..5).map(|k| [5.0 + f64::from(k), 0.0145]).collect(),
+        points_m: (0..5).map(|k| [5.0 + f64::from(k), 0.014]).collect(),
     });
     c.supports = vec![Support::free("tail"), hitch];
     scene.obstacles = vec![Obstacle {
@@ -105,15 +105,10 @@ fn dragging_along_a_floor_takes_mu_w_l() {
 }
 
 #[test]
-fn quasi_static_drag_takes_mu_w_l() {
+fn slow_motion_over_rough_ground_is_refused() {
     let mut sim = Simulation::new(drag(), Model::MassSpring).unwrap();
     sim.settle().unwrap();
-    for _ in 0..20 {
-        sim.step_quasi_static(0.1).unwrap();
-    }
-    let exact = 0.5 * 1.246 * 9.80665 * 5.0;
-    let pull = -sim.solution().cables[0].supports[1].reaction_x_n;
-    assert!((pull / exact - 1.0).abs() < 0.01, "{pull} against {exact}");
+    assert!(matches!(sim.step_quasi_static(0.1), Err(SolveError::Unsupported { .. })));
 }
 
 #[test]
@@ -154,10 +149,7 @@ fn a_cable_below_its_slip_threshold_stays_where_it_lies() {
         friction: Some(0.5),
     }];
     let mut sim = Simulation::new(scene, Model::MassSpring).unwrap();
-    for _ in 0..120 {
-        sim.step(1.0 / 60.0).unwrap();
-    }
-    let start = sim.solution();
+    let start = sim.settle().unwrap();
     for _ in 0..3600 {
         sim.step(1.0 / 60.0).unwrap();
     }
