@@ -3,9 +3,9 @@
 //!
 //! Sub-steps keep below the stability limit of a chain of springs, with ω_max = 2√(EA/(ρ l₀²)) and the damping ratio ζ
 //! of that mode: `dt < 2/ω_max · (√(1+ζ²) − ζ)` (D. Baraff, A. Witkin, Physically based modeling, SIGGRAPH course notes,
-//! 1997, derive the undamped part). Resting places are found by dynamic relaxation with kinetic damping (P. Cundall,
-//! Explicit finite difference methods in geomechanics, 1976): fictitious masses, velocities set to zero at each peak of
-//! the kinetic energy. Where nothing can be touched Newton's method on the springs' energy finds them (`rest`). Both start
+//! 1997, derive the undamped part). Resting places on obstacles are found by dynamic relaxation with adaptive damping
+//! (P. Underwood, Dynamic relaxation, in Computational Methods for Transient Analysis, 1983): fictitious masses, critical
+//! damping of the motion that is going on. Where nothing can be touched Newton's method on the springs' energy finds them (`rest`). Both start
 //! from the shape of [`super::fem`] where there is one: which of many resting places a rough floor allows is then the
 //! same for both models, what holds there is this model's own balance of forces.
 

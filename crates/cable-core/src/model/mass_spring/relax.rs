@@ -1,4 +1,4 @@
-//! Where it rests: dynamic relaxation with kinetic damping.
+//! Where it rests: dynamic relaxation with adaptive damping.
 
 use super::MassSpringModel;
 use crate::error::SolveError;
@@ -39,31 +39,30 @@ impl MassSpringModel {
     fn sweeps(&mut self) -> Result<(), SolveError> {
         let tolerance = RESIDUAL * self.problem.force_scale();
         let mut old = self.v.clone();
-        let mut energy = 0.0;
+        let mut last = self.f.clone();
         for sweep in 1..=MAX_SWEEPS {
             old.copy_from_slice(&self.v);
+            last.copy_from_slice(&self.f);
             self.forces();
+            let drag = self.critical(&last);
             for i in 0..self.x.len() {
                 if !self.held[i] {
-                    self.v[i] += self.f[i] / self.mass[i];
+                    self.v[i] = (self.v[i] * (1.0 - drag) + self.f[i] / self.mass[i]) / (1.0 + drag);
                 }
             }
             self.floor_friction(1.0);
             self.contacts(1.0);
-            let (mut worst, mut node, mut now, mut fastest) = (0.0, 0, 0.0, 0.0);
+            let (mut worst, mut node) = (0.0, 0);
             for i in 0..self.x.len() {
-                // The unbalanced force is what changed the momentum, contact impulses included.
-                let force = (self.v[i] - old[i]).norm() * self.mass[i];
+                self.x[i] += self.v[i];
+                // With a step of 1 momentum is the force that would stop it in a sweep, and its change the force that
+                // is not balanced, contacts included.
+                let change = (self.v[i] - old[i]).norm();
+                let speed = self.v[i].norm();
+                let force = self.mass[i] * if speed > change { speed } else { change };
                 if !self.held[i] && (force > worst || force.is_nan()) {
                     (worst, node) = (force, i);
                 }
-                now += 0.5 * self.mass[i] * self.v[i].norm_squared();
-                // With a step of 1 momentum is the force that would stop it in a sweep.
-                let momentum = self.mass[i] * self.v[i].norm();
-                if !self.held[i] && (momentum > fastest || momentum.is_nan()) {
-                    fastest = momentum;
-                }
-                self.x[i] += self.v[i];
             }
             self.cost.iterations = sweep;
             self.cost.residual_n = worst;
@@ -72,7 +71,7 @@ impl MassSpringModel {
             {
                 return Err(e);
             }
-            if worst <= tolerance && fastest <= tolerance {
+            if worst <= tolerance {
                 self.cost.inner_step_s = 0.0;
                 return self.non_finite().map_or(Ok(()), Err);
             }
@@ -85,13 +84,21 @@ impl MassSpringModel {
                     at_m: self.x[node],
                 });
             }
-            // Past a peak of the kinetic energy the motion goes uphill: stop it there.
-            if now < energy {
-                self.v.fill(Vec2::zeros());
-                now = 0.0;
-            }
-            energy = now;
         }
         Ok(())
+    }
+
+    /// Half the critical damping of the motion that is going on, a sweep: ω² = −Σ v·Δf / Σ m v² (Rayleigh's quotient with
+    /// the forces' change Δf = −K v).
+    fn critical(&self, last: &[Vec2]) -> f64 {
+        let (mut stiff, mut inertia) = (0.0, 0.0);
+        for i in 0..self.x.len() {
+            if !self.held[i] {
+                stiff -= self.v[i].dot(&(self.f[i] - last[i]));
+                inertia += self.mass[i] * self.v[i].norm_squared();
+            }
+        }
+        let squared = stiff / inertia;
+        if squared > 0.0 { squared.min(1.0).sqrt() } else { 0.0 }
     }
 }
