@@ -1,0 +1,177 @@
+//! Speed against accuracy: the error of the largest tension and of the shape against what an answer costs, for a
+//! slack and a nearly taut span. Writes `docs/charts/speed_accuracy.csv` and `.svg`.
+//!
+//! Run from the root of the repository: `cargo run --release -p cable-benches --bin charts`. The exact answer is
+//! the elastic catenary's, tested to 1e-9 against 40-digit references; the catenary's own points show the
+//! round-off between two ways to it.
+
+use std::error::Error;
+use std::time::Instant;
+
+use cable_benches::chart::{Panel, Series, svg};
+use cable_benches::fresh;
+use cable_core::catenary::{Catenary, Span};
+use cable_core::math::vec2;
+use cable_core::scene::catalog;
+use cable_core::{Model, Scene, Solution, Vec2};
+
+const FOLDER: &str = "docs/charts";
+const MESHES: [usize; 7] = [10, 20, 40, 80, 160, 320, 640];
+/// Errors below round-off are drawn at round-off, for a logarithm's sake.
+const ROUND_OFF: f64 = 1e-16;
+/// A cost is the median of this many solves, or of as many as fit the time below, at least three.
+const REPEATS: usize = 31;
+const LONGEST_S: f64 = 4.0;
+/// A mesh is not tried where the one half as fine took longer than this.
+const TOO_LONG_S: f64 = 3.0;
+
+/// One measured answer.
+struct Row {
+    scene: &'static str,
+    model: Model,
+    segments: Option<usize>,
+    cost_s: f64,
+    tension_error: f64,
+    shape_error: f64,
+}
+
+/// What an axis shows of a row.
+type Read = fn(&Row) -> f64;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let scenes = [("hanging-span", catalog::hanging_span()), ("near-taut", catalog::near_taut())];
+    let mut rows = Vec::new();
+    for (id, scene) in &scenes {
+        let exact = exact(scene)?;
+        rows.extend(measure(id, scene, &exact, Model::Catenary, None));
+        for model in [Model::Fem, Model::MassSpring] {
+            for n in MESHES {
+                let Some(row) = measure(id, scene, &exact, model, Some(n)) else { break };
+                let slow = row.cost_s > TOO_LONG_S;
+                rows.push(row);
+                if slow {
+                    eprintln!("skipped: {model} on \"{id}\" beyond {n} elements: too slow");
+                    break;
+                }
+            }
+        }
+    }
+    std::fs::create_dir_all(FOLDER)?;
+    write_csv(&rows)?;
+    std::fs::write(format!("{FOLDER}/speed_accuracy.svg"), svg(&panels(&rows), scenes.len()))?;
+    println!("{} points written to {FOLDER}/speed_accuracy.csv and .svg", rows.len());
+    Ok(())
+}
+
+/// The catenary of a scene of two fixed supports.
+fn exact(scene: &Scene) -> Result<Catenary, Box<dyn Error>> {
+    let cable = scene.cables.first().ok_or("the scene has no cable")?;
+    let ends: Vec<Vec2> = cable.supports.iter().filter_map(|s| s.at_m.map(vec2)).collect();
+    let [a, b] = ends[..] else { return Err("the scene is no single span".into()) };
+    let weight = cable.linear_density_kg_per_m * scene.environment.gravity_m_per_s2;
+    let span = Span {
+        chord: b - a,
+        length: cable.length_m,
+        weight: vec2(scene.environment.wind_n_per_m) - Vec2::y() * weight,
+        axial_stiffness: cable.axial_stiffness_n,
+        thermal_stretch: 1.0 + cable.thermal_expansion_per_k * scene.environment.temperature_change_k,
+    };
+    Ok(Catenary::solve(&span)?)
+}
+
+/// Cost and errors of one model and mesh; None, with a note, where it does not answer.
+fn measure(id: &'static str, scene: &Scene, exact: &Catenary, model: Model, segments: Option<usize>) -> Option<Row> {
+    let start = fresh(scene, model, segments)?;
+    let (mut costs, all) = (Vec::new(), Instant::now());
+    let mut answer = None;
+    while costs.len() < REPEATS && (costs.len() < 3 || all.elapsed().as_secs_f64() < LONGEST_S) {
+        let mut simulation = start.clone();
+        let clock = Instant::now();
+        let result = simulation.settle();
+        costs.push(clock.elapsed().as_secs_f64());
+        match result {
+            Ok(a) => answer = Some(a),
+            Err(e) => {
+                eprintln!("skipped: {model} on \"{id}\" with {segments:?} elements: {e}");
+                return None;
+            }
+        }
+        if costs[0] > LONGEST_S {
+            break;
+        }
+    }
+    costs.sort_by(f64::total_cmp);
+    let (tension_error, shape_error) = errors(&answer?, exact);
+    let cost_s = costs[costs.len() / 2];
+    println!("{id} {model} {segments:?}: {cost_s:.2e} s, tension {tension_error:.2e}, shape {shape_error:.2e}");
+    Some(Row { scene: id, model, segments, cost_s, tension_error, shape_error })
+}
+
+/// Relative error of the largest tension, and the largest distance of a node from where that material point is,
+/// over the length.
+fn errors(answer: &Solution, exact: &Catenary) -> (f64, f64) {
+    let tension = (answer.max_tension().tension_n / exact.max_tension() - 1.0).abs();
+    let Some(cable) = answer.cables.first() else { return (f64::NAN, f64::NAN) };
+    let origin = cable.nodes.first().map_or_else(Vec2::zeros, |n| Vec2::new(n.x_m, n.y_m));
+    let off = cable
+        .nodes
+        .iter()
+        .map(|n| (Vec2::new(n.x_m, n.y_m) - origin - exact.position_at(n.arc_length_m)).norm() / exact.span().length);
+    // NaN is kept: it stands in the table, and has no place on the chart.
+    (tension, off.fold(0.0, |worst: f64, d| if worst.is_nan() || d <= worst { worst } else { d }))
+}
+
+fn write_csv(rows: &[Row]) -> Result<(), Box<dyn Error>> {
+    let mut csv = csv::Writer::from_path(format!("{FOLDER}/speed_accuracy.csv"))?;
+    csv.write_record(["scene", "model", "segments", "cost_s", "max_tension_error", "shape_error_per_length"])?;
+    for r in rows {
+        csv.write_record([
+            r.scene.to_owned(),
+            r.model.to_string(),
+            r.segments.map(|n| n.to_string()).unwrap_or_default(),
+            format!("{:.4e}", r.cost_s),
+            format!("{:.4e}", r.tension_error),
+            format!("{:.4e}", r.shape_error),
+        ])?;
+    }
+    csv.flush()?;
+    Ok(())
+}
+
+fn panels(rows: &[Row]) -> Vec<Panel> {
+    let read: [(&str, Read); 2] = [
+        ("error of the largest tension (relative)", |r| r.tension_error),
+        ("error of the shape (distance / length)", |r| r.shape_error),
+    ];
+    let mut out = Vec::new();
+    for (y_label, error) in read {
+        for (scene, title) in [("hanging-span", "Hanging span"), ("near-taut", "Nearly taut span")] {
+            let series =
+                [(Model::Catenary, "#000000", 4), (Model::Fem, "#0072B2", 0), (Model::MassSpring, "#D55E00", 3)].map(
+                    |(model, colour, corners)| Series {
+                        name: match model {
+                            Model::Catenary => model.to_string(),
+                            _ => format!("{model}, 10 to 640 elements"),
+                        },
+                        colour,
+                        corners,
+                        points: rows
+                            .iter()
+                            .filter(|r| r.scene == scene && r.model == model)
+                            .map(|r| (r.cost_s, if error(r) < ROUND_OFF { ROUND_OFF } else { error(r) }))
+                            .filter(|(_, error)| error.is_finite())
+                            .collect(),
+                    },
+                );
+            out.push(Panel {
+                title: title.to_owned(),
+                x_label: "cost of an answer, wall time (s)",
+                y_label,
+                x_decades: (-6, 1),
+                y_decades: (-16, 0),
+                series: series.into(),
+            });
+        }
+    }
+    out
+}
