@@ -1,5 +1,6 @@
 //! The elastic catenary over its whole range of shapes, stiffness and slack.
 
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 #![allow(missing_docs)] // criterion's macros
 
 use std::hint::black_box;

@@ -1,5 +1,6 @@
 //! Contact queries against terrain of 1000 edges.
 
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 #![allow(missing_docs)] // criterion's macros
 
 use std::hint::black_box;

@@ -1,6 +1,8 @@
 //! Whole scenes of `data/composite.json` that the catenary model answers: pulleys with and without friction,
 //! loads, wind, temperature. The same checks as the program's acceptance run, through the library.
 
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
 use cable_core::solution::{CableSolution, Node, Solution};
 use cable_core::{Model, Scene, Simulation};
 use serde_json::Value;

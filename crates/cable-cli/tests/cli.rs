@@ -1,5 +1,7 @@
 //! The program from outside: arguments, exit codes, what it prints and writes.
 
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 

@@ -1,6 +1,7 @@
 //! Whole scenes without obstacles against reference answers (`tests/data/composite.json`): pulleys, point loads, wind,
 //! temperature, clamps.
 
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use cable_core::scene::Scene;

@@ -1,5 +1,7 @@
 //! Scenes: files in and out, what is refused and how, presets, the catalogue, motion.
 
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
 // clippy.toml's permission for tests does not reach the helpers beside them.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 

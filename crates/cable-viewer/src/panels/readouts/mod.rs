@@ -166,7 +166,7 @@ fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut V
 
 fn accuracy(ui: &mut Ui, solved: &CableSolution) {
     let text = match solved.error_estimate {
-        Some(e) if e == 0.0 => "exact for this model".to_owned(),
+        Some(0.0) => "exact for this model".to_owned(),
         Some(e) => format!("± {}", unit::percent(e)),
         None => "not estimated".to_owned(),
     };
