@@ -2,7 +2,6 @@
 //! wheels, friction, loads, wind and temperature.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use cable_core::scene::{PulleySide, Scene, Support, catalog};
 use cable_core::{Load, Model, Settings, Simulation, SolveError};

@@ -2,7 +2,6 @@
 //! equilibrium, symmetry.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use cable_core::scene::{Scene, Support, SupportKind, catalog};
 use cable_core::solution::CableSolution;

@@ -112,10 +112,11 @@ fn first_scene(path: Option<PathBuf>) -> Result<(Scene, Option<PathBuf>), String
 /// One sentence with the remedy for what keeps a window from opening.
 fn explain(error: &eframe::Error) -> String {
     match error {
-        eframe::Error::WinitEventLoop(_) | eframe::Error::Winit(_) => format!(
+        eframe::Error::WinitEventLoop(_) | eframe::Error::Winit(_) => {
             "no window can be opened here: no display answers; run it in a desktop session or set DISPLAY, \
              or draw a picture with --screenshot FILE"
-        ),
+                .to_owned()
+        }
         eframe::Error::Wgpu(_) => format!(
             "no graphics adapter was found ({error}); install a Vulkan driver \
              (Debian: mesa-vulkan-drivers) or try WGPU_BACKEND=gl"

@@ -1,7 +1,6 @@
 //! The panels: each is driven by the names of its widgets, and has a picture.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod edits;
 mod fixture;
