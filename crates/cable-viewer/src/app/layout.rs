@@ -29,7 +29,9 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
             section(ui, "Readouts", panels::readouts::ui, state, commands);
         });
     });
-    Panel::bottom("plots").resizable(true).default_size(210.0).size_range(60.0..=500.0).show(ui, |ui| {
+    Panel::bottom("plots").resizable(true).default_size(240.0).size_range(120.0..=500.0).show(ui, |ui| {
+        // A panel takes the height of what is in it: without this it shrinks by a margin a frame.
+        ui.set_min_height(ui.available_height());
         panels::plots::ui(ui, state, commands);
     });
     CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));

@@ -214,7 +214,7 @@ fn reset_after_steps_is_the_start_bit_for_bit() {
     }
     let stepped = state.snapshot.solution.clone().unwrap();
     assert!((stepped.time_s - 1.0 / 60.0).abs() < 1e-12, "{}", stepped.time_s);
-    assert!(state.history.samples.len() >= 2);
+    assert!(!state.history.samples.is_empty());
     harness.key_press(Key::R);
     harness.run_steps(2);
     assert_eq!(harness.state().state.snapshot.solution.as_ref().unwrap().cables, start.cables);
@@ -265,4 +265,12 @@ fn a_saved_scene_is_no_longer_marked_unsaved_and_opens_again() {
     apply(&mut harness, Command::File(cable_viewer::command::FileCommand::SaveAs(path.clone())));
     assert!(!harness.state().state.unsaved());
     assert_eq!(cable_viewer::scene_file::load(&path).unwrap(), harness.state().state.scene);
+}
+
+#[test]
+fn the_canvas_keeps_its_size() {
+    let mut harness = open(catalog::hanging_span());
+    let before = harness.get_by_label("Canvas").rect();
+    harness.run_steps(20);
+    assert_eq!(harness.get_by_label("Canvas").rect(), before);
 }
