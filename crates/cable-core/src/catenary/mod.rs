@@ -4,7 +4,7 @@
 //! M. Ahmadi-Kashani and A. J. Bell, "The analysis of cables subject to uniformly distributed loads",
 //! *Engineering Structures* 10 (1988) 174–184, discuss its solution. Here the end force is the minimum of the
 //! convex complementary energy ∫ |F| + |F|²/2EA ds − F·d, so that one Newton with a line search finds it from any
-//! start: slack, taut, folded, vertical. See [`kernel`] for the formulas.
+//! start: slack, taut, folded, vertical. See `kernel` for the formulas.
 //!
 //! Material is measured by its unstretched length s at rest temperature. Warmth lengthens it by 1 + αΔT and
 //! keeps total load and EA, so the span is solved with length (1 + αΔT)L and the same total load.
