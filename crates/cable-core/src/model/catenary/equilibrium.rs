@@ -1,6 +1,6 @@
 //! The solve: which pulleys slip, where the material lies, where wheels are touched.
 
-use super::layout::{Layout, angle_near, angle_of, unsupported};
+use super::layout::{Anchor, Layout, angle_near, angle_of, unsupported};
 use super::slide::{Arc, Mode, Slide, Stretches};
 use crate::error::SolveError;
 use crate::math::Vec2;
@@ -50,36 +50,44 @@ const RUN_OFF: f64 = 1e-6;
 const ENERGY_NOISE: f64 = 1e-9;
 /// A pulley slips when friction is exceeded by this much (in ln T). Smaller: chatter of round-off.
 const CONE: f64 = 1e-10;
+/// Rises of friction from none to what it is, failed ones included: as many halve the rise to 1e-6. One has done for
+/// every scene tried (400 random dead loads over a rubbing wheel, EA 3e4 to 1e9).
+const MAX_RISES: usize = 20;
 /// Sets of modes changed together; after that one pulley at a time, which cannot cycle so easily.
 const TOGETHER: usize = 12;
 
+/// Direction of the straight line that touches two anchors one after the other, rad. With t along it, n = perp t and
+/// the touch points c + f R n: (c₂ − c₁)·n = f₁R₁ − f₂R₂. None where they are in one place.
+fn tangent(from: &Anchor, to: &Anchor) -> Option<f64> {
+    let d = to.at - from.at;
+    let apart = d.norm();
+    let aside = (to.facing * to.radius - from.facing * from.radius) / apart;
+    // Wheels that overlap have no such line.
+    (apart > 0.0).then(|| angle_of(d) + aside.clamp(-1.0, 1.0).asin())
+}
+
 /// The arcs of straight ways from wheel to wheel.
 pub(super) fn first_arcs(layout: &Layout) -> Vec<Arc> {
-    let n = layout.anchors.len();
-    let towards = |k: usize, from: Vec2| -> Option<f64> {
-        let d = layout.anchors.get(k)?.at - from;
-        (d.norm() > 0.0).then(|| angle_of(d))
+    let all = &layout.anchors;
+    let hang = |force: Vec2| angle_of(if force.norm() > 0.0 { force } else { layout.weight });
+    let arc = |k: usize, a: &Anchor| {
+        let before = k.checked_sub(1).and_then(|j| all.get(j));
+        let arrive = match before {
+            Some(b) => tangent(b, a),
+            None => Some(angle_of(-super::layout::direction(hang(layout.end_force[0] + layout.weight)))),
+        };
+        let leave = match all.get(k + 1) {
+            Some(b) => tangent(a, b),
+            None => Some(hang(layout.end_force[1] + layout.weight)),
+        };
+        let arrive = arrive.unwrap_or(0.0);
+        let leave = leave.unwrap_or(arrive);
+        // Between a quarter turn back and three quarters round.
+        let turn = angle_near(a.facing * (arrive - leave), std::f64::consts::FRAC_PI_2);
+        let turn = if turn > 0.0 { turn } else { 0.0 };
+        Arc { arrive, turn, mark: arrive - 0.5 * a.facing * turn, material: a.radius * turn }
     };
-    (0..n)
-        .map(|k| {
-            let a = &layout.anchors[k];
-            if a.radius == 0.0 {
-                return Arc::default();
-            }
-            let hang = |force: Vec2| if force.norm() > 0.0 { angle_of(force) } else { angle_of(layout.weight) };
-            let arrive = match k.checked_sub(1) {
-                Some(j) => towards(j, a.at).map(|t| angle_of(-super::layout::direction(t))),
-                None => Some(hang(layout.end_force[0] + layout.weight)).map(|t| angle_of(-super::layout::direction(t))),
-            };
-            let leave = if k + 1 < n { towards(k + 1, a.at) } else { Some(hang(layout.end_force[1] + layout.weight)) };
-            let arrive = arrive.unwrap_or(0.0);
-            let leave = leave.unwrap_or(arrive);
-            // Between a quarter turn back and three quarters round.
-            let turn = angle_near(a.facing * (arrive - leave), std::f64::consts::FRAC_PI_2);
-            let turn = if turn > 0.0 { turn } else { 0.0 };
-            Arc { arrive, turn, mark: arrive - 0.5 * a.facing * turn, material: a.radius * turn }
-        })
-        .collect()
+    all.iter().enumerate().map(|(k, a)| if a.radius == 0.0 { Arc::default() } else { arc(k, a) }).collect()
 }
 
 /// Finds the balance.
@@ -131,7 +139,11 @@ fn contact(slide: &Slide<'_>, held: &[f64], sigma: Vec<f64>, modes: Vec<Mode>) -
     let (mut sigma, mut modes) = (sigma, modes);
     let mut iterations = 0;
     for round in 0..4 * TOGETHER + 4 * layout.anchors.len() {
-        let found = newton(slide, sigma, &modes)?;
+        let found = match newton(slide, sigma.clone(), &modes) {
+            Ok(e) => e,
+            // Another branch of the slip law drew it away: come from the smooth pulley's rest, the first error if not.
+            Err(e) => from_smooth(slide, sigma, &modes).map_err(|_| e)?,
+        };
         iterations += found.iterations;
         sigma = found.sigma;
         let mut changed = false;
@@ -158,6 +170,30 @@ fn contact(slide: &Slide<'_>, held: &[f64], sigma: Vec<f64>, modes: Vec<Mode>) -
         }
     }
     Err(not_converged(layout, 0, iterations, f64::NAN))
+}
+
+/// Balance with the modes given, by way of slipping pulleys without friction (an energy to go down in, so any start
+/// will do) and friction growing from there to what it is.
+fn from_smooth(slide: &Slide<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equilibrium, SolveError> {
+    let with = |part: f64| -> Vec<Mode> {
+        modes.iter().map(|m| if let Mode::Slip(m) = m { Mode::Slip(part * m) } else { *m }).collect()
+    };
+    let mut found = newton(slide, sigma, &with(0.0))?;
+    let (mut reached, mut rise, mut iterations) = (0.0f64, 1.0f64, found.iterations);
+    for _ in 0..MAX_RISES {
+        let next = if reached + rise < 1.0 { reached + rise } else { 1.0 };
+        match newton(slide, found.sigma.clone(), &with(next)) {
+            Ok(e) => {
+                iterations += e.iterations;
+                (found, reached, rise) = (Equilibrium { iterations, ..e }, next, 2.0 * rise);
+                if next >= 1.0 {
+                    return Ok(found);
+                }
+            }
+            Err(_) => rise *= 0.5,
+        }
+    }
+    Err(not_converged(slide.layout, 0, iterations, f64::NAN))
 }
 
 /// One row of the three-diagonal system.
@@ -220,6 +256,17 @@ fn step(r: &[f64], j: &[Row], descend: bool) -> Option<Vec<f64>> {
     None
 }
 
+/// Whether the balance is stable: σ pushed one way is drawn back (all pivots of J positive). With more slack than any
+/// tension asks for a fold pulls the harder the longer it is: a balance too, but one that runs away.
+fn stable(j: &[Row]) -> bool {
+    let mut pivot = 1.0;
+    (0..j.len()).all(|k| {
+        let taken = if k > 0 { j[k][0] * j[k - 1][2] / pivot } else { 0.0 };
+        pivot = j[k][1] - taken;
+        pivot > 0.0
+    })
+}
+
 /// Largest part of a step that keeps some of every stretch.
 fn room(slide: &Slide<'_>, s: &Stretches, p: &[f64]) -> f64 {
     let mut alpha = 1.0f64;
@@ -254,7 +301,7 @@ fn newton(slide: &Slide<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equilibr
             residual,
         };
         if worst <= BALANCE {
-            return Ok(end(sigma, s, newtons));
+            return if smooth || stable(&j) { Ok(end(sigma, s, newtons)) } else { Err(lost(iterations)) };
         }
         run_off(slide, &s)?;
         let p = step(&r, &j, smooth).ok_or_else(|| lost(iterations))?;
@@ -280,7 +327,7 @@ fn newton(slide: &Slide<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equilibr
         }
         match next {
             Some((trial, t)) => (sigma, s) = (trial, t),
-            None if worst <= BALANCE_ACCEPTED => return Ok(end(sigma, s, newtons)),
+            None if worst <= BALANCE_ACCEPTED && (smooth || stable(&j)) => return Ok(end(sigma, s, newtons)),
             None => return Err(not_converged(layout, 0, iterations, newtons)),
         }
     }

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use super::equilibrium::first_arcs;
 use crate::catenary::PointForce;
 use crate::error::SolveError;
 use crate::math::{Vec2, perp};
@@ -182,10 +183,17 @@ impl Layout {
             }
             return (out, total);
         }
+        // From tangent point to tangent point, and round the wheels to their marks.
+        let arcs = first_arcs(self);
+        let touches = |k: usize| {
+            let (a, arc) = (&self.anchors[k], &arcs[k]);
+            (a.touch(arc.arrive), a.touch(arc.arrive - a.facing * arc.turn), 0.5 * a.radius * arc.turn)
+        };
         let mut sum = 0.0;
-        for (k, a) in self.anchors.iter().enumerate() {
+        for k in 0..self.anchors.len() {
             if k > 0 {
-                sum += (a.at - self.anchors[k - 1].at).norm();
+                let (before, here) = (touches(k - 1), touches(k));
+                sum += before.2 + (here.0 - before.1).norm() + here.2;
             }
             out.push(sum);
         }

@@ -131,7 +131,7 @@ impl CatenaryModel {
         {
             return Err(SolveError::NonFinite { quantity: "position or tension", node, time_s });
         }
-        self.refuse_contact(&nodes)?;
+        self.refuse_contact(layout, &nodes)?;
         let cost = Cost { iterations: e.iterations, residual_n: e.residual, ..Cost::default() };
         self.nodes = nodes;
         self.reactions = reactions;
@@ -142,21 +142,32 @@ impl CatenaryModel {
         Ok(StepReport { cost, warnings: Vec::new() })
     }
 
-    /// Obstacles are for other models, unless the cable hangs clear of them.
-    fn refuse_contact(&self, nodes: &[Node]) -> Result<(), SolveError> {
+    /// Obstacles are for other models, unless the cable hangs clear of them and comes there from the way it is
+    /// laid without meeting any.
+    fn refuse_contact(&self, layout: &Layout, nodes: &[Node]) -> Result<(), SolveError> {
         let world = &self.problem.world;
         if world.is_empty() {
             return Ok(());
         }
         let at = |n: &Node| Vec2::new(n.x_m, n.y_m);
+        let laid = laid(&self.problem, layout);
+        let reached = |s: f64| unsupported(format!("the cable reaches an obstacle {s:.3} m along it"));
+        for w in nodes.windows(2) {
+            let (s0, s1) = (w[0].arc_length_m, w[1].arc_length_m);
+            if let (Some(a), Some(b)) = (laid.position_at(s0), laid.position_at(s1)) {
+                let inside = world.signed_gap(a, self.problem.length).is_some_and(|g| g.gap_m < 0.0);
+                if inside || world.free_fraction([a, b], [at(&w[0]), at(&w[1])], 0.0) < 1.0 {
+                    return Err(reached(s0));
+                }
+            }
+        }
         let mut gaps = Vec::new();
         for w in nodes.windows(2) {
             gaps.clear();
             world.segment_gaps(at(&w[0]), at(&w[1]), self.problem.radius, &mut gaps);
             let inside = world.signed_gap(at(&w[0]), self.problem.length).is_some_and(|g| g.gap_m < 0.0);
             if inside || gaps.iter().any(|g| g.gap_m < 0.0) {
-                let s = w[0].arc_length_m;
-                return Err(unsupported(format!("the cable reaches an obstacle {s:.3} m along it")));
+                return Err(reached(w[0].arc_length_m));
             }
         }
         Ok(())
@@ -186,6 +197,28 @@ impl CatenaryModel {
     fn has_friction(&self) -> bool {
         self.problem.supports.iter().any(|s| s.friction > 0.0)
     }
+}
+
+/// The way the cable is laid, its material spread evenly along it.
+fn laid(p: &Problem, layout: &Layout) -> State {
+    let mut state = State::default();
+    if p.route.len() > 1 {
+        let total: f64 = p.route.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+        let mut sum = 0.0;
+        for (k, at) in p.route.iter().enumerate() {
+            if k > 0 {
+                sum += (at - p.route[k - 1]).norm();
+            }
+            state.arc_length_m.push(p.length * sum / total);
+            state.position_m.push(*at);
+        }
+    } else {
+        for n in straight(p, layout, &layout.spread(p)) {
+            state.arc_length_m.push(n.arc_length_m);
+            state.position_m.push(Vec2::new(n.x_m, n.y_m));
+        }
+    }
+    state
 }
 
 impl Mechanics for CatenaryModel {
@@ -318,3 +351,6 @@ impl Mechanics for CatenaryModel {
         Box::new(self.clone())
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -17,6 +17,9 @@ const FLATNESS: f64 = 1e-5;
 const TENSION_FLATNESS: f64 = 5e-5;
 /// Tensions below this part of the greatest are not resolved further (a fold, where T → 0 in a point).
 const TENSION_FLOOR: f64 = 0.02;
+/// Tensions either side of a point that differ by no more than this part are one: ten times the balance accepted at a
+/// pulley. Smaller: two nodes where the balance was found badly. Larger: a light load on a taut cable shows no jump.
+const SAME_TENSION: f64 = 1e-8;
 /// Nodes a catenary has at least: 2 to this power + 1.
 const LEAST_DEPTH: u32 = 2;
 /// Halvings of a catenary at most.
@@ -44,8 +47,10 @@ struct Nodes<'a> {
 impl Nodes<'_> {
     fn push(&mut self, p: Point) {
         let strain = p.tension / self.problem.axial_stiffness;
+        // Where a span meets a wheel each has its own rounding of the same point.
+        let before = self.out.last().map_or(p.s, |n| n.arc_length_m);
         let node = Node {
-            arc_length_m: p.s,
+            arc_length_m: if p.s < before { before } else { p.s },
             x_m: p.at.x,
             y_m: p.at.y,
             tension_n: p.tension,
@@ -57,7 +62,7 @@ impl Nodes<'_> {
         // A node twice at the same material point only where the tension jumps (a load, a rubbing pulley).
         if let Some(last) = self.out.last_mut()
             && node.arc_length_m - last.arc_length_m <= 1e-12 * self.problem.length
-            && (node.tension_n - last.tension_n).abs() <= 1e-9 * node.tension_n
+            && (node.tension_n - last.tension_n).abs() <= SAME_TENSION * node.tension_n
         {
             last.curvature_per_m = node.curvature_per_m;
             return;
