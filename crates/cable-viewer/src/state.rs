@@ -150,6 +150,8 @@ pub struct Snapshot {
     pub error: Option<String>,
     /// `solution` is not of the present scene (it failed, or is still being solved).
     pub stale: bool,
+    /// `solution` has few segments, to follow the hand; the answer comes once the hand rests.
+    pub draft: bool,
     /// Simulated seconds per second actually reached; None while paused.
     pub real_speed: Option<f64>,
     /// Number of the last edit it includes.

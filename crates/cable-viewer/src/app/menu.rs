@@ -136,7 +136,13 @@ pub fn status(ui: &mut Ui, state: &AppState) {
         ui.label(format!("solved in {:.2} ms", state.snapshot.solve_wall_s * 1e3));
         if let Some(latency) = state.edit_latency_s {
             ui.separator();
-            ui.label(format!("edit to picture {:.0} ms", latency * 1e3));
+            ui.label(format!("edit to picture {:.0} ms", latency * 1e3))
+                .on_hover_text("From the last edit to the first picture that shows it");
+        }
+        if state.snapshot.draft {
+            ui.separator();
+            ui.label("draft, refining…")
+                .on_hover_text("Few segments while the scene is being moved; the answer follows");
         }
     });
 }

@@ -59,7 +59,7 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut View) {
     });
     field::name(&shown.response, "Time window");
     shown.response.on_hover_text("How much of the past the time graph follows");
-    if state.history.samples.is_empty() {
+    if state.history.samples.len() < 2 {
         ui.weak("Press play to record over time");
     } else if state.scene.cables.len() > 1 && view.quantity != Quantity::Tension {
         ui.weak("Over time: tension, as there are several cables");

@@ -4,7 +4,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use cable_core::math::vec2;
-use cable_core::{Error, Scene, Simulation};
+use cable_core::model::Inertia;
+use cable_core::model::auto::Question;
+use cable_core::{Error, Model, Scene, Settings, Simulation, SolveError};
 
 use super::request::{Drag, Edit, Request};
 use crate::history::Sample;
@@ -13,19 +15,40 @@ use crate::state::{Playback, Snapshot};
 /// One frame of simulated time at normal speed, s.
 pub const FRAME_S: f64 = 1.0 / 60.0;
 
+/// What `auto` is asked once time runs.
+const MOTION: Question = Question::History(Inertia::Dynamic);
+
+/// A solve that took longer (s) has a draft go before the next one. Longer: the picture lags behind the hand; shorter:
+/// drafts where the answer itself would be in the next frame. Tuned on the tank at 200 segments.
+const DRAFT_AFTER_S: f64 = 0.012;
+/// Segments of a draft. More: as slow as the answer; fewer: corners show, and the greatest tension is 3 % off.
+const DRAFT_SEGMENTS: usize = 60;
+/// Time without a further edit (s) after which a draft is replaced by the answer. Longer: figures of the draft stay on
+/// screen; shorter: an answer is begun between two steps of a drag, and the next draft waits for it.
+pub const QUIET_S: f64 = 0.06;
+
 /// Owns the simulation.
 #[derive(Debug)]
 pub struct Engine {
     simulation: Option<Simulation>,
     /// The last edit, for rebuilding.
     edit: Option<Edit>,
-    /// `simulation` was settled from the present scene at t = 0: its `reset` is the start.
+    /// The simulation, or `before_motion` if there is one, was settled from the present scene at t = 0: its `reset` is
+    /// the start.
     start_kept: bool,
+    /// The simulation that `auto` chose for rest, kept while one that can move has taken its place.
+    before_motion: Option<Simulation>,
     playback: Playback,
     snapshot: Snapshot,
     samples: Vec<Sample>,
     /// The history starts again before the first of `samples`.
     history_restarts: bool,
+    /// Drafts may be shown: there is a thread to replace them by the answer.
+    drafts: bool,
+    /// `simulation` is a draft of the last edit.
+    draft: bool,
+    /// Wall time of the last answer to an edit, s.
+    solve_s: f64,
 }
 
 /// What goes to the window.
@@ -47,15 +70,31 @@ impl Default for Engine {
             simulation: None,
             edit: None,
             start_kept: false,
+            before_motion: None,
             playback: Playback { paused: true, speed: 1.0 },
             snapshot: Snapshot::default(),
             samples: Vec::new(),
             history_restarts: false,
+            drafts: false,
+            draft: false,
+            solve_s: 0.0,
         }
     }
 }
 
 impl Engine {
+    /// One that answers an edit of a slow scene with a draft first; [`Self::refine`] is to follow.
+    #[must_use]
+    pub fn with_drafts() -> Self {
+        Self { drafts: true, ..Self::default() }
+    }
+
+    /// What is shown is a draft.
+    #[must_use]
+    pub fn draft(&self) -> bool {
+        self.draft
+    }
+
     /// Time runs.
     #[must_use]
     pub fn playing(&self) -> bool {
@@ -71,14 +110,19 @@ impl Engine {
         let mut solved = request.edit.is_some() || request.reset || request.steps > 0;
         let mut result = Ok(());
         if let Some(edit) = request.edit {
-            result = self.take_edit(edit);
+            let stays = self.playback.paused && !request.reset && request.steps == 0;
+            result = if stays && self.show_draft(&edit) { Ok(()) } else { self.take_edit(edit) };
+        } else if self.draft && (request.reset || request.steps > 0 || !self.playback.paused) {
+            // Time goes on from the answer, never from a draft of it.
+            result = self.solve_draft();
+            solved = true;
         }
         if let Some(drag) = request.drag {
             solved = true;
             result = result.and_then(|()| self.drag(drag));
         }
         if request.reset {
-            result = self.reset();
+            result = result.and_then(|()| self.reset());
         }
         for _ in 0..request.steps {
             result = result.and_then(|()| self.step(FRAME_S));
@@ -88,6 +132,15 @@ impl Engine {
             self.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
             self.show(result);
         }
+        self.report(false)
+    }
+
+    /// Replaces a draft by the answer.
+    pub fn refine(&mut self) -> Report {
+        let began = Instant::now();
+        let result = self.solve_draft();
+        self.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
+        self.show(result);
         self.report(false)
     }
 
@@ -116,7 +169,9 @@ impl Engine {
     /// The solver panicked: what it held cannot be trusted any more.
     pub fn abandon(&mut self, message: &str) -> Report {
         self.simulation = None;
+        self.before_motion = None;
         self.start_kept = false;
+        self.draft = false;
         self.playback.paused = true;
         self.snapshot.error = Some(format!(
             "the solver stopped by a fault of its own ({message}): the picture is the last good one; \
@@ -126,7 +181,35 @@ impl Engine {
         self.report(true)
     }
 
+    /// Shows an edit with few segments, if answering it in full would take long; whether it did.
+    fn show_draft(&mut self, edit: &Edit) -> bool {
+        let Some(last) = &self.edit else { return false };
+        let same = !edit.fresh && last.model == edit.model && last.settings == edit.settings;
+        let (true, Some(old)) = (self.drafts && same && self.solve_s > DRAFT_AFTER_S, &self.simulation) else {
+            return false;
+        };
+        let mut coarse = edit.clone();
+        coarse.settings.segments = Some(DRAFT_SEGMENTS);
+        // An explicit model: what `auto` chose for the full mesh.
+        coarse.model = old.model();
+        let Ok((simulation, _)) = self.rebuild(&coarse, Some(old)) else { return false };
+        self.simulation = Some(simulation);
+        self.before_motion = None;
+        self.start_kept = false;
+        self.draft = true;
+        self.edit = Some(edit.clone());
+        true
+    }
+
+    fn solve_draft(&mut self) -> Result<(), Error> {
+        match (self.draft, self.edit.clone()) {
+            (true, Some(edit)) => self.take_edit(edit),
+            _ => Ok(()),
+        }
+    }
+
     fn take_edit(&mut self, edit: Edit) -> Result<(), Error> {
+        let began = Instant::now();
         let old = if edit.fresh { None } else { self.simulation.take() };
         if edit.fresh {
             self.simulation = None;
@@ -134,15 +217,19 @@ impl Engine {
             self.history_restarts = true;
             self.samples.clear();
         }
+        self.draft = false;
         // Models are compared by what they answer for the scene as laid, not for where another model left the cable.
         let same_model = self.edit.as_ref().is_some_and(|e| e.model == edit.model && e.settings == edit.settings);
         let from = old.as_ref().filter(|o| same_model || o.time_s() > 0.0);
         let rebuilt = self.rebuild(&edit, from);
         self.edit = Some(edit);
+        self.solve_s = began.elapsed().as_secs_f64();
         match rebuilt {
             Ok((simulation, kept)) => {
                 self.simulation = Some(simulation);
+                self.before_motion = None;
                 self.start_kept = kept;
+                self.sample();
                 Ok(())
             }
             Err(e) => {
@@ -157,8 +244,10 @@ impl Engine {
 
     /// The simulation of an edited scene, carrying over where the cables are, and whether it is at its start.
     fn rebuild(&self, edit: &Edit, old: Option<&Simulation>) -> Result<(Simulation, bool), Error> {
-        let mut fresh = Simulation::with_settings(edit.scene.clone(), edit.model, edit.settings)?;
         let time_s = old.map_or(0.0, Simulation::time_s);
+        let moves = old.is_some() && (time_s > 0.0 || !self.playback.paused);
+        let question = if moves { MOTION } else { Question::Rest };
+        let mut fresh = Simulation::for_question(edit.scene.clone(), edit.model, edit.settings, question)?;
         let same_cables = old.is_some_and(|o| {
             let (a, b) = (&o.scene().cables, &edit.scene.cables);
             a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.name == b.name)
@@ -199,13 +288,16 @@ impl Engine {
             && let Some(simulation) = &mut self.simulation
             && simulation.time_s() > 0.0
         {
+            if let Some(start) = self.before_motion.take() {
+                *simulation = start;
+            }
             simulation.reset();
-            return Ok(());
-        }
-        if let Some(edit) = self.edit.clone() {
+        } else if let Some(edit) = self.edit.clone() {
             self.simulation = Some(self.rebuild(&edit, None)?.0);
+            self.before_motion = None;
             self.start_kept = true;
         }
+        self.sample();
         Ok(())
     }
 
@@ -213,11 +305,25 @@ impl Engine {
         let Some(simulation) = &mut self.simulation else {
             return Ok(());
         };
-        simulation.step(dt_s)?;
-        if self.samples.len() < crate::history::History::CAPACITY {
+        match simulation.step(dt_s) {
+            Err(SolveError::Unsupported { .. }) if self.edit.as_ref().is_some_and(|e| e.model == Model::Auto) => {
+                let moving =
+                    take_over(simulation, dt_s, self.edit.as_ref().map_or_else(Settings::default, |e| e.settings))?;
+                self.before_motion = self.simulation.replace(moving);
+            }
+            other => other?,
+        }
+        self.sample();
+        Ok(())
+    }
+
+    /// Adds the present instant to the history: the start as well as every step.
+    fn sample(&mut self) {
+        if let Some(simulation) = &self.simulation
+            && self.samples.len() < crate::history::History::CAPACITY
+        {
             self.samples.push(Sample::of(&simulation.solution()));
         }
-        Ok(())
     }
 
     fn show(&mut self, result: Result<(), Error>) {
@@ -228,6 +334,7 @@ impl Engine {
                 self.snapshot.scene = scene;
                 self.snapshot.error = None;
                 self.snapshot.stale = false;
+                self.snapshot.draft = self.draft;
             }
             (Ok(()), None) => {}
             (Err(e), _) => {
@@ -248,4 +355,12 @@ impl Engine {
             paused_itself,
         }
     }
+}
+
+/// A simulation that moves takes over from the one that `auto` chose for rest, and takes its first step.
+fn take_over(rest: &Simulation, dt_s: f64, settings: Settings) -> Result<Simulation, Error> {
+    let mut moving = Simulation::for_question(rest.scene().clone(), Model::Auto, settings, MOTION)?;
+    moving.adopt(&rest.states())?;
+    moving.step(dt_s)?;
+    Ok(moving)
 }

@@ -11,7 +11,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use engine::{Engine, FRAME_S, Report};
+use engine::{Engine, FRAME_S, QUIET_S, Report};
 use request::Request;
 
 use crate::state::WorkerStatus;
@@ -143,33 +143,42 @@ fn keep(slot: &mut Option<Report>, report: Report) {
 }
 
 fn work(shared: &Shared, shown: &impl Fn()) {
-    let mut engine = Engine::default();
+    let mut engine = Engine::with_drafts();
     let frame = Duration::from_secs_f64(FRAME_S);
     let mut next_tick = Instant::now();
+    // When a draft has stood long enough to be replaced by the answer.
+    let mut refine_at = next_tick;
     loop {
         let request = {
             let mut slots = shared.lock();
-            slots.busy = false;
+            slots.busy = engine.draft();
             loop {
                 if slots.stop {
                     return;
                 }
                 let now = Instant::now();
-                if slots.request.is_some() || (engine.playing() && now >= next_tick) {
+                let due = if engine.playing() { Some(next_tick) } else { engine.draft().then_some(refine_at) };
+                if slots.request.is_some() || due.is_some_and(|at| now >= at) {
                     break;
                 }
-                slots = if engine.playing() {
-                    let wait = shared.wake.wait_timeout(slots, next_tick.saturating_duration_since(now));
-                    wait.unwrap_or_else(PoisonError::into_inner).0
-                } else {
-                    shared.wake.wait(slots).unwrap_or_else(PoisonError::into_inner)
+                slots = match due {
+                    Some(at) => {
+                        let wait = shared.wake.wait_timeout(slots, at.saturating_duration_since(now));
+                        wait.unwrap_or_else(PoisonError::into_inner).0
+                    }
+                    None => shared.wake.wait(slots).unwrap_or_else(PoisonError::into_inner),
                 };
             }
-            slots.busy = slots.request.is_some();
+            slots.busy = slots.request.is_some() || engine.draft();
             slots.request.take()
         };
         let report = match request {
-            Some(request) => guarded(&mut engine, |e| e.handle(request)),
+            Some(request) => {
+                let report = guarded(&mut engine, |e| e.handle(request));
+                refine_at = Instant::now() + Duration::from_secs_f64(QUIET_S);
+                report
+            }
+            None if !engine.playing() => guarded(&mut engine, Engine::refine),
             None => {
                 // A late frame is not made up for: time runs slower instead of falling behind for ever.
                 next_tick = Instant::now().max(next_tick + frame);

@@ -3,6 +3,7 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 mod pictures;
+mod playing;
 mod timing;
 
 use cable_core::scene::{Shape, catalog};
@@ -195,29 +196,6 @@ fn a_scene_without_an_answer_keeps_the_last_picture_and_says_why() {
     assert!(snapshot.stale && snapshot.error.is_some(), "{:?}", snapshot.error);
     assert_eq!(snapshot.solution.as_ref(), Some(&good));
     assert!(harness.state().state.scene_fault.is_some());
-}
-
-#[test]
-fn reset_after_steps_is_the_start_bit_for_bit() {
-    let mut harness = open(catalog::hanging_span());
-    apply(&mut harness, Command::SetModel(cable_core::Model::MassSpring));
-    if harness.state().state.snapshot.error.is_some() {
-        apply(&mut harness, Command::SetModel(cable_core::Model::Fem));
-    }
-    let start = harness.state().state.snapshot.solution.clone().expect("an answer");
-    harness.key_press(Key::ArrowRight);
-    harness.run_steps(2);
-    let state = &harness.state().state;
-    if let Some(error) = &state.snapshot.error {
-        eprintln!("no model steps in time yet: {error}");
-        return;
-    }
-    let stepped = state.snapshot.solution.clone().unwrap();
-    assert!((stepped.time_s - 1.0 / 60.0).abs() < 1e-12, "{}", stepped.time_s);
-    assert!(!state.history.samples.is_empty());
-    harness.key_press(Key::R);
-    harness.run_steps(2);
-    assert_eq!(harness.state().state.snapshot.solution.as_ref().unwrap().cables, start.cables);
 }
 
 #[test]

@@ -132,3 +132,25 @@ fn a_flood_of_edits_ends_at_the_last() {
     let length = state.snapshot.solution.as_ref().unwrap().cables[0].nodes.last().unwrap().arc_length_m;
     assert!((length - 12.599).abs() < 1e-9, "{length}");
 }
+
+#[test]
+fn a_drag_of_a_slow_scene_ends_at_the_answer_and_not_at_a_draft() {
+    let mut harness = threaded(catalog::tank(), 200);
+    let item = Item::Support { cable: 0, support: 1 };
+    let at: Point = harness.state().state.scene.cables[0].supports[1].at_m.expect("held");
+    for k in 1..=10 {
+        let to_m = [at[0] - 0.02 * f64::from(k), at[1]];
+        submit(&mut harness, Command::Scene(SceneCommand::Move { item, to_m }));
+        wait(&mut harness);
+    }
+    let began = Instant::now();
+    while harness.state().state.snapshot.draft {
+        assert!(began.elapsed() < PATIENCE, "the draft stays");
+        harness.step();
+    }
+    let state = &harness.state().state;
+    assert_eq!(state.snapshot.error, None);
+    let nodes = &state.snapshot.solution.as_ref().unwrap().cables[0].nodes;
+    assert!(nodes.len() > 150, "{}", nodes.len());
+    assert_eq!(state.snapshot.scene.as_deref(), Some(&state.scene));
+}

@@ -1,0 +1,218 @@
+//! Time: play, pause, step, reset, and dragging a support while time runs.
+
+use cable_core::scene::catalog;
+use cable_core::{Model, Scene, Solution};
+use cable_viewer::ViewerApp;
+use cable_viewer::command::{Command, PlaybackCommand, SceneCommand};
+use cable_viewer::state::{Item, WorkerStatus};
+use egui::Key;
+use egui_kittest::Harness;
+
+use crate::{apply, open, open_span, support};
+
+/// One frame at normal speed, s.
+const FRAME_S: f64 = 1.0 / 60.0;
+/// Fastest a dragged support moves, m/s (the core's cap), and a margin for rounding.
+const MOST_SPEED: f64 = 20.0 * 1.000_001;
+
+fn solution(harness: &Harness<'_, ViewerApp>) -> Solution {
+    harness.state().state.snapshot.solution.as_deref().expect("an answer").clone()
+}
+
+/// Every bit of every number: two answers print alike only if they are the same.
+fn bits(solution: &Solution) -> String {
+    format!("{:?} {:?}", solution.time_s, solution.cables)
+}
+
+fn times(harness: &Harness<'_, ViewerApp>) -> Vec<f64> {
+    harness.state().state.history.samples.iter().map(|s| s.time_s).collect()
+}
+
+#[test]
+fn the_history_holds_the_start_and_every_step() {
+    let mut harness = open_span();
+    assert_eq!(times(&harness), [0.0]);
+    harness.key_press(Key::ArrowRight);
+    harness.run_steps(2);
+    let times = times(&harness);
+    assert_eq!(times.len(), 2, "{times:?}");
+    assert!((times[1] - FRAME_S).abs() < 1e-12, "{times:?}");
+    assert!(harness.state().state.playback.paused);
+}
+
+#[test]
+fn an_edit_at_rest_starts_the_history_again() {
+    let mut harness = open_span();
+    let before = harness.state().state.history.samples[0].clone();
+    let mut cable = harness.state().state.scene.cables[0].clone();
+    cable.linear_density_kg_per_m *= 2.0;
+    apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
+    let samples = &harness.state().state.history.samples;
+    assert_eq!(samples.len(), 1);
+    assert!(samples[0].max_tension_n > 1.5 * before.max_tension_n);
+}
+
+#[test]
+fn reset_after_steps_is_the_start_bit_for_bit() {
+    for (scene, model) in [
+        (catalog::hanging_span(), Model::Auto),
+        (catalog::hanging_span(), Model::Fem),
+        (catalog::hanging_span(), Model::MassSpring),
+        (catalog::over_beam(), Model::Fem),
+    ] {
+        let name = format!("{} with {model}", scene.name);
+        let mut harness = open(scene);
+        apply(&mut harness, Command::SetModel(model));
+        assert_eq!(harness.state().state.snapshot.error, None, "{name}");
+        let start = solution(&harness);
+        for _ in 0..3 {
+            harness.key_press(Key::ArrowRight);
+            harness.run_steps(2);
+        }
+        let state = &harness.state().state;
+        assert_eq!(state.snapshot.error, None, "{name}");
+        assert!((solution(&harness).time_s - 3.0 * FRAME_S).abs() < 1e-12, "{name}");
+        harness.key_press(Key::R);
+        harness.run_steps(2);
+        assert_eq!(bits(&solution(&harness)), bits(&start), "{name}");
+        assert_eq!(times(&harness), [0.0], "{name}");
+    }
+}
+
+#[test]
+fn space_runs_and_pauses() {
+    let mut harness = open_span();
+    harness.key_press(Key::Space);
+    harness.run_steps(5);
+    assert!(!harness.state().state.playback.paused);
+    let running = solution(&harness).time_s;
+    assert!(running > 3.0 * FRAME_S, "{running}");
+    harness.key_press(Key::Space);
+    harness.run_steps(2);
+    let paused = solution(&harness).time_s;
+    harness.run_steps(5);
+    assert!(harness.state().state.playback.paused);
+    assert_eq!(solution(&harness).time_s, paused);
+}
+
+#[test]
+fn slow_motion_and_fast_motion_keep_their_speed() {
+    for speed in [0.01, 0.5, 4.0] {
+        let mut harness = open_span();
+        apply(&mut harness, Command::Playback(PlaybackCommand::SetSpeed(speed)));
+        apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+        let before = solution(&harness).time_s;
+        harness.run_steps(6);
+        let passed = solution(&harness).time_s - before;
+        assert!((passed - 6.0 * FRAME_S * speed).abs() < 1e-9, "{speed}: {passed} s");
+    }
+}
+
+#[test]
+fn a_support_dragged_while_time_runs_is_followed_and_never_jumps() {
+    for scene in [catalog::hanging_span(), catalog::over_beam()] {
+        let name = scene.name.clone();
+        let last = scene.cables[0].supports.len() - 1;
+        let at = scene.cables[0].supports[last].at_m.expect("held");
+        let label = scene.cables[0].supports[last].name.clone();
+        let mut harness = open(scene);
+        apply(&mut harness, Command::SetModel(Model::Fem));
+        apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+        let started = times(&harness).len();
+        let item = Item::Support { cable: 0, support: last };
+        // The hand jumps by half a metre, then rests.
+        let target = [at[0] - 0.5, at[1] + 0.3];
+        let ctx = harness.ctx.clone();
+        let (mut before, mut seen) = (solution(&harness), 0);
+        for frame in 0..40 {
+            if frame < 5 {
+                let f = f64::from(frame + 1) / 5.0;
+                let to_m = [at[0] + f * (target[0] - at[0]), at[1] + f * (target[1] - at[1])];
+                harness.state_mut().apply(&ctx, vec![Command::Scene(SceneCommand::Move { item, to_m })]);
+            }
+            harness.step();
+            let state = &harness.state().state;
+            assert_eq!(state.snapshot.error, None, "{name}, frame {frame}");
+            assert!(!matches!(state.worker, WorkerStatus::Dead(_)), "{name}");
+            let now = solution(&harness);
+            let end = |s: &Solution| {
+                let r = &s.cables[0].supports[last];
+                [r.x_m, r.y_m]
+            };
+            let (p, q) = (end(&before), end(&now));
+            let moved = (p[0] - q[0]).hypot(p[1] - q[1]);
+            let passed = now.time_s - before.time_s;
+            assert!(moved <= MOST_SPEED * passed + 1e-9, "{name}: {moved} m in {passed} s");
+            seen += usize::from(moved > 0.0);
+            before = now;
+        }
+        assert!(seen > 4, "{name}: it moved in {seen} frames");
+        let end = &before.cables[0].supports[last];
+        assert!((end.x_m - target[0]).hypot(end.y_m - target[1]) < 1e-3, "{name}: ({}, {})", end.x_m, end.y_m);
+        let drawn = harness.state().state.camera.to_world(
+            egui_kittest::kittest::Queryable::get_by_label(&harness, "Canvas").rect(),
+            support(&harness, &label),
+        );
+        assert!((drawn[0] - target[0]).hypot(drawn[1] - target[1]) < 0.05, "{name}: drawn at {drawn:?}");
+        let times = times(&harness);
+        assert!(times.len() >= started + 39, "{name}: {} samples", times.len());
+        assert!(times.windows(2).all(|w| w[0] < w[1]), "{name}: {times:?}");
+    }
+}
+
+/// A model on a scene it can do, and one it cannot: the refusal is shown beside the greyed last good picture.
+#[test]
+fn every_model_answers_what_it_can_and_refuses_the_rest_in_words() {
+    let ends_only = |mut scene: Scene| {
+        scene.cables[0].bending_stiffness_n_m2 = 0.0;
+        scene
+    };
+    let cases = [
+        (Model::Auto, ends_only(catalog::hanging_span()), true),
+        (Model::Catenary, ends_only(catalog::hanging_span()), true),
+        (Model::Catenary, catalog::tank(), false),
+        (Model::Fem, catalog::over_beam(), true),
+        (Model::MassSpring, catalog::hanging_span(), true),
+        (Model::MassSpring, catalog::clamped_stiff(), false),
+    ];
+    for (model, scene, can) in cases {
+        let name = format!("{} with {model}", scene.name);
+        let mut harness = open(scene);
+        let good = solution(&harness);
+        apply(&mut harness, Command::SetModel(model));
+        let snapshot = &harness.state().state.snapshot;
+        if can {
+            assert_eq!(snapshot.error, None, "{name}");
+            assert!(!snapshot.stale, "{name}");
+            let answered = solution(&harness).model;
+            assert!(model == Model::Auto || answered == model, "{name}: {answered}");
+        } else {
+            let error = snapshot.error.clone().unwrap_or_default();
+            assert!(error.contains(model.name()), "{name}: {error:?}");
+            assert!(snapshot.stale, "{name}");
+            assert_eq!(bits(&solution(&harness)), bits(&good), "{name}");
+        }
+    }
+}
+
+/// Every scene of the catalogue runs, or says why it does not; none hangs or breaks the solver.
+#[test]
+fn every_catalogue_scene_plays_five_frames_or_says_why_not() {
+    let mut refused = Vec::new();
+    for (id, scene) in catalog::all() {
+        let mut harness = open(scene);
+        apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+        harness.run_steps(5);
+        let state = &harness.state().state;
+        assert!(!matches!(state.worker, WorkerStatus::Dead(_)), "{id}");
+        match &state.snapshot.error {
+            Some(error) => {
+                assert!(state.snapshot.stale && state.playback.paused, "{id}: {error}");
+                assert!(state.snapshot.solution.is_some(), "{id} keeps its picture");
+                refused.push((id, error.clone()));
+            }
+            None => assert!(solution(&harness).time_s > 4.0 * FRAME_S, "{id}"),
+        }
+    }
+    println!("{refused:#?}");
+}
