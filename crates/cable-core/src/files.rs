@@ -137,6 +137,18 @@ pub fn write_atomic_with(
     write().map_err(|e| FileError::write(path, &e))
 }
 
+/// Removes a file. One that is not there is removed already.
+///
+/// # Errors
+/// Why it cannot be removed.
+pub fn remove(path: impl AsRef<Path>) -> Result<(), FileError> {
+    let path = path.as_ref();
+    match fs::remove_file(path) {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(FileError::write(path, &e)),
+        _ => Ok(()),
+    }
+}
+
 /// Makes a folder and those above it, for a run.
 ///
 /// # Errors

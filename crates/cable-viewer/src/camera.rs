@@ -73,7 +73,10 @@ impl Camera {
         if !(low.iter().chain(&high).all(|v| v.is_finite()) && canvas.is_positive()) {
             return;
         }
-        let [left, right, top, bottom] = BORDER;
+        // In a small canvas the border gives way, the scene does not.
+        let share = |k: usize, points: f32| BORDER[k] * (0.5 * points / (BORDER[k & 2] + BORDER[(k & 2) + 1])).min(1.0);
+        let (width, height) = (canvas.width(), canvas.height());
+        let [left, right, top, bottom] = [share(0, width), share(1, width), share(2, height), share(3, height)];
         let room =
             |k: usize, points: f32, border: f32| f64::from((points - border).max(40.0)) / (high[k] - low[k]).max(1e-3);
         let scale = room(0, canvas.width(), left + right).min(room(1, canvas.height(), top + bottom));

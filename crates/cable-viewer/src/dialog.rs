@@ -20,6 +20,11 @@ pub enum Dialog {
         /// The path as typed so far.
         path: String,
     },
+    /// A window that did not close has left unsaved changes.
+    Recover {
+        /// The scene as it was last kept.
+        scene: Box<cable_core::Scene>,
+    },
     /// The scene has unsaved changes and something is about to replace it.
     Unsaved {
         /// What goes on once the user agrees.

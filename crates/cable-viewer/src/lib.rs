@@ -4,11 +4,13 @@
 //! [`command::apply`] is the one place that changes it. The [`worker`] owns the simulation.
 
 pub mod app;
+pub mod autosave;
 pub mod camera;
 pub mod canvas;
 pub mod colour;
 pub mod command;
 pub mod dialog;
+pub mod ground;
 pub mod history;
 pub mod panels;
 pub mod plot;

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use cable_core::scene::catalog;
 use cable_core::{Model, Scene};
 use cable_viewer::command::Command;
-use cable_viewer::{ViewerApp, scene_file, screenshot};
+use cable_viewer::{ViewerApp, autosave, scene_file, screenshot};
 use clap::Parser;
 
 /// The cable simulator's window.
@@ -90,6 +90,9 @@ fn run(arguments: Arguments) -> Result<(), String> {
     let create = Box::new(|cc: &eframe::CreationContext<'_>| {
         let mut app = ViewerApp::new(&cc.egui_ctx, scene, path);
         app.state.theme = theme;
+        if let Some(path) = autosave::default_path() {
+            app.keep_changes_in(path);
+        }
         app.apply(&cc.egui_ctx, vec![Command::SetModel(arguments.model)]);
         Ok(Box::new(app) as Box<dyn eframe::App>)
     });

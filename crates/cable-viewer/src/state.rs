@@ -53,6 +53,8 @@ pub struct AppState {
     pub edits_sent: u64,
     /// Time from the last edit to the first picture that shows it, s.
     pub edit_latency_s: Option<f64>,
+    /// Why unsaved changes could not be kept for recovery.
+    pub autosave_fault: Option<String>,
     /// The user agreed to close the window without saving.
     pub closing: bool,
     /// The dialog that is open.
@@ -68,6 +70,8 @@ pub struct Document {
     pub path: Option<PathBuf>,
     /// As it was when last saved or loaded.
     pub saved: Scene,
+    /// It comes from what a window that died had kept: it is in no file of the user's.
+    pub recovered: bool,
 }
 
 /// A thing on the canvas that can be picked.
@@ -93,6 +97,8 @@ pub enum Item {
     },
     /// A point load.
     Load(usize),
+    /// The robot.
+    Robot,
 }
 
 /// A thing being dragged.
@@ -176,7 +182,7 @@ impl AppState {
     pub fn new(scene: Scene, path: Option<PathBuf>) -> Self {
         Self {
             scene_fault: scene.validate().err(),
-            document: Document { path, saved: scene.clone() },
+            document: Document { path, saved: scene.clone(), recovered: false },
             scene,
             undo: Undo::default(),
             selected: None,
@@ -194,6 +200,7 @@ impl AppState {
             history: History::default(),
             edits_sent: 0,
             edit_latency_s: None,
+            autosave_fault: None,
             closing: false,
             dialog: None,
             theme: egui::ThemePreference::System,
@@ -203,7 +210,7 @@ impl AppState {
     /// The scene differs from its file.
     #[must_use]
     pub fn unsaved(&self) -> bool {
-        self.scene != self.document.saved
+        self.document.recovered || self.scene != self.document.saved
     }
 
     /// The cable that panels edit: the selected one, else that of the selected support, else the first.

@@ -27,6 +27,8 @@ pub struct Palette {
     pub hatch: Color32,
     /// Surfaces.
     pub surface: Color32,
+    /// The robot's body.
+    pub robot: Color32,
     /// Round the cable, so that every colour of the map stands off the background.
     pub casing: Color32,
     /// Round the cable where it is above its service tension.
@@ -57,6 +59,7 @@ const DARK: Palette = Palette {
     solid: Color32::from_rgb(47, 50, 55),
     hatch: Color32::from_rgb(70, 74, 80),
     surface: Color32::from_rgb(150, 155, 163),
+    robot: Color32::from_rgb(122, 96, 34),
     casing: Color32::from_rgb(205, 212, 220),
     risk: Color32::from_rgb(255, 77, 77),
     normal: Color32::from_rgb(96, 174, 255),
@@ -79,6 +82,7 @@ const LIGHT: Palette = Palette {
     solid: Color32::from_rgb(226, 224, 219),
     hatch: Color32::from_rgb(190, 187, 180),
     surface: Color32::from_rgb(92, 88, 80),
+    robot: Color32::from_rgb(244, 205, 110),
     casing: Color32::from_rgb(52, 58, 66),
     risk: Color32::from_rgb(214, 24, 36),
     normal: Color32::from_rgb(20, 103, 196),

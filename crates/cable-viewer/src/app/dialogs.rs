@@ -19,6 +19,7 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
             Dialog::Open { path } => ask_path(ui, "Open a scene", path, false, commands),
             Dialog::SaveAs { path } => ask_path(ui, "Save the scene as", path, true, commands),
             Dialog::Unsaved { then } => unsaved(ui, &name, then, commands),
+            Dialog::Recover { scene } => recover(ui, scene, commands),
             Dialog::Help => help(ui, commands),
         }
     });
@@ -85,6 +86,27 @@ fn unsaved(ui: &mut Ui, name: &str, then: &Command, commands: &mut Vec<Command>)
             commands.push(Command::File(FileCommand::Discard(Box::new(then.clone()))));
         }
         if ui.button("Cancel").clicked() {
+            commands.push(close());
+        }
+    });
+}
+
+fn recover(ui: &mut Ui, scene: &cable_core::Scene, commands: &mut Vec<Command>) {
+    ui.heading("Recover unsaved changes");
+    ui.add_space(6.0);
+    let name = if scene.name.is_empty() { "Untitled scene" } else { &scene.name };
+    ui.label(format!(
+        "The last window did not close properly. Changes to “{name}” that were not saved have been kept."
+    ));
+    ui.add_space(10.0);
+    ui.horizontal(|ui| {
+        if ui.button("Recover").on_hover_text("Opens them; nothing is overwritten").clicked() {
+            commands.push(Command::File(FileCommand::Recover(Box::new(scene.clone()))));
+        }
+        if ui.button("Delete them").on_hover_text("They cannot be brought back").clicked() {
+            commands.push(Command::File(FileCommand::ForgetRecovery));
+        }
+        if ui.button("Decide later").clicked() {
             commands.push(close());
         }
     });

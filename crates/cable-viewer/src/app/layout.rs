@@ -1,6 +1,6 @@
 //! Where panels and canvas are.
 
-use egui::{CentralPanel, CollapsingHeader, Frame, Panel, ScrollArea, Ui};
+use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, ScrollArea, Ui};
 
 use super::menu;
 use crate::canvas;
@@ -9,27 +9,37 @@ use crate::panels;
 use crate::state::AppState;
 
 type PanelUi = fn(&mut Ui, &AppState, &mut Vec<Command>);
+type Section = (&'static str, PanelUi);
+
+/// What is edited.
+const EDIT: &[Section] = &[
+    ("Scene", panels::scene::ui),
+    ("Cable", panels::cable::ui),
+    ("Environment", panels::environment::ui),
+    ("Solver", panels::solver::ui),
+];
+/// What is read off.
+const READ: &[Section] = &[("Warnings", panels::warnings::ui), ("Readouts", panels::readouts::ui)];
+
+/// Narrower windows (points) have one side panel instead of two: the canvas would be smaller than its labels.
+const WIDE: f32 = 1100.0;
+/// Lowest panel of graphs, points.
+const LEAST_GRAPHS: f32 = 130.0;
 
 /// Draws everything but dialogs. Only the canvas needs the state mutable: it fits the camera to its own size.
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     Panel::top("menu").show(ui, |ui| menu::ui(ui, state, commands));
     Panel::bottom("status").show(ui, |ui| menu::status(ui, state));
     Panel::bottom("playback").show(ui, |ui| panels::playback::ui(ui, state, commands));
-    Panel::left("edit").default_size(336.0).size_range(220.0..=420.0).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            section(ui, "Scene", panels::scene::ui, state, commands);
-            section(ui, "Cable", panels::cable::ui, state, commands);
-            section(ui, "Environment", panels::environment::ui, state, commands);
-            section(ui, "Solver", panels::solver::ui, state, commands);
-        });
-    });
-    Panel::right("read").default_size(320.0).size_range(200.0..=420.0).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            section(ui, "Warnings", panels::warnings::ui, state, commands);
-            section(ui, "Readouts", panels::readouts::ui, state, commands);
-        });
-    });
-    Panel::bottom("plots").resizable(true).default_size(240.0).size_range(120.0..=500.0).show(ui, |ui| {
+    let [width, height] = ui.ctx().content_rect().size().into();
+    if width >= WIDE {
+        side(ui, "edit", (EDIT, state, commands));
+        side(ui, "read", (READ, state, commands));
+    } else {
+        tabs(ui, state, commands);
+    }
+    let graphs = (0.3 * height).clamp(LEAST_GRAPHS, 240.0);
+    Panel::bottom("plots").resizable(true).default_size(graphs).size_range(LEAST_GRAPHS..=500.0).show(ui, |ui| {
         // A panel takes the height of what is in it: without this it shrinks by a margin a frame.
         ui.set_min_height(ui.available_height());
         panels::plots::ui(ui, state, commands);
@@ -37,6 +47,34 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
 }
 
-fn section(ui: &mut Ui, title: &str, panel: PanelUi, state: &AppState, commands: &mut Vec<Command>) {
-    CollapsingHeader::new(title).default_open(true).show_unindented(ui, |ui| panel(ui, state, commands));
+fn side(ui: &mut Ui, id: &'static str, (sections, state, commands): (&[Section], &AppState, &mut Vec<Command>)) {
+    let panel = if id == "edit" { Panel::left(id).default_size(336.0) } else { Panel::right(id).default_size(320.0) };
+    panel.size_range(220.0..=420.0).show(ui, |ui| scroll(ui, id, (sections, state, commands)));
+}
+
+/// One panel for both in a window that has no room for two.
+fn tabs(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    Panel::left("narrow").default_size(320.0).size_range(220.0..=420.0).show(ui, |ui| {
+        let id = Id::unique("narrow tab");
+        let mut read: bool = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+        ui.horizontal(|ui| {
+            ui.selectable_value(&mut read, false, "Edit").on_hover_text("Scene, cable, environment, solver");
+            ui.selectable_value(&mut read, true, "Read").on_hover_text("Warnings and readouts");
+            let warnings = state.snapshot.solution.as_ref().map_or(0, |s| s.warnings.len());
+            if state.scene_fault.is_some() || state.snapshot.error.is_some() || warnings > 0 {
+                ui.colored_label(ui.visuals().warn_fg_color, "Warnings: see Read");
+            }
+        });
+        ui.data_mut(|d| d.insert_temp(id, read));
+        let (id, sections) = if read { ("read", READ) } else { ("edit", EDIT) };
+        scroll(ui, id, (sections, state, commands));
+    });
+}
+
+fn scroll(ui: &mut Ui, id: &str, (sections, state, commands): (&[Section], &AppState, &mut Vec<Command>)) {
+    ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| {
+        for (title, panel) in sections {
+            CollapsingHeader::new(*title).default_open(true).show_unindented(ui, |ui| panel(ui, state, commands));
+        }
+    });
 }

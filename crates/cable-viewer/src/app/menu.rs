@@ -139,6 +139,10 @@ pub fn status(ui: &mut Ui, state: &AppState) {
             ui.label(format!("edit to picture {:.0} ms", latency * 1e3))
                 .on_hover_text("From the last edit to the first picture that shows it");
         }
+        if let Some(fault) = &state.autosave_fault {
+            ui.separator();
+            ui.colored_label(ui.visuals().warn_fg_color, "changes are not kept for recovery").on_hover_text(fault);
+        }
         if state.snapshot.draft {
             ui.separator();
             ui.label("draft, refining…")

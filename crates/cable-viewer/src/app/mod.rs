@@ -10,7 +10,9 @@ use std::time::Instant;
 
 use cable_core::Scene;
 
+use crate::autosave::Autosave;
 use crate::command::{self, Command, Effects};
+use crate::dialog::Dialog;
 use crate::state::{AppState, WorkerStatus};
 use crate::theme;
 use crate::worker::Worker;
@@ -24,6 +26,8 @@ pub struct ViewerApp {
     threaded: bool,
     /// As last sent to the window.
     title: String,
+    /// Keeps unsaved changes on disk, in a window.
+    autosave: Option<Autosave>,
     /// When the edit not yet answered was sent, with its number.
     asked: Option<(u64, Instant)>,
 }
@@ -44,11 +48,43 @@ impl ViewerApp {
     fn start(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>, threaded: bool) -> Self {
         theme::install(ctx);
         let worker = new_worker(ctx, threaded);
-        let mut app = Self { state: AppState::new(scene, path), worker, threaded, title: String::new(), asked: None };
+        let mut app = Self {
+            state: AppState::new(scene, path),
+            worker,
+            threaded,
+            title: String::new(),
+            autosave: None,
+            asked: None,
+        };
         let mut effects = Effects::default();
         command::submit_scene(&mut app.state, true, &mut effects);
         app.carry_out(ctx, effects);
         app
+    }
+
+    /// From now on unsaved changes are kept in a file; if there are some from a window that died, they are offered.
+    pub fn keep_changes_in(&mut self, path: PathBuf) {
+        let autosave = Autosave::new(path);
+        self.state.dialog = match autosave.found() {
+            None => None,
+            Some(Ok(scene)) => Some(Dialog::Recover { scene: Box::new(scene) }),
+            Some(Err(text)) => Some(Dialog::Message {
+                title: "Unsaved changes could not be recovered".to_owned(),
+                text: format!("The last window did not close properly, and what it had kept cannot be read: {text}"),
+            }),
+        };
+        self.autosave = Some(autosave);
+    }
+
+    /// Keeps unsaved changes on disk; asks for a frame when the next copy is due.
+    fn look_after_changes(&mut self, ctx: &egui::Context) {
+        let Some(autosave) = &mut self.autosave else { return };
+        let state = &mut self.state;
+        let wait = autosave.look(&state.scene, [state.unsaved(), state.scene_fault.is_none()], Instant::now());
+        if let Some(wait) = wait {
+            ctx.request_repaint_after(wait);
+        }
+        state.autosave_fault = autosave.fault().map(str::to_owned);
     }
 
     /// Applies commands as if panels had pushed them.
@@ -67,6 +103,9 @@ impl ViewerApp {
     }
 
     fn carry_out(&mut self, ctx: &egui::Context, effects: Effects) {
+        if let (true, Some(autosave)) = (effects.forget_recovery, &mut self.autosave) {
+            autosave.forget();
+        }
         if effects.restart_worker {
             self.worker = new_worker(ctx, self.threaded);
         }
@@ -144,10 +183,18 @@ impl eframe::App for ViewerApp {
             commands.push(Command::File(command::FileCommand::Quit));
         }
         self.apply(&ctx, commands);
+        self.look_after_changes(&ctx);
         let title = format!("{} – Cable simulator", menu::title(&self.state));
         if title != self.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;
+        }
+    }
+
+    fn on_exit(&mut self) {
+        // Closed on purpose: what is not saved is not wanted. What another window left stays until it is decided on.
+        if let Some(autosave) = &mut self.autosave {
+            autosave.look(&self.state.document.saved, [false, true], Instant::now());
         }
     }
 

@@ -66,5 +66,6 @@ pub fn scene(state: &AppState) -> [Point; 2] {
             }
         }
     }
+    super::robot::outline(state).into_iter().for_each(|p| bounds.add(p));
     bounds.or_unit()
 }

@@ -8,6 +8,7 @@ mod legend;
 mod obstacles;
 pub mod pick;
 mod pointer;
+mod robot;
 mod supports;
 mod triangulate;
 mod view;
@@ -53,6 +54,7 @@ fn draw(view: &mut View<'_>, state: &AppState) {
         grid::lines(view);
     }
     obstacles::draw(view, state);
+    robot::draw(view, state);
     cable::draw(view, state);
     let mut figures = Vec::new();
     forces::draw(view, state, &mut figures);

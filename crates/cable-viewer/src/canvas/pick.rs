@@ -4,7 +4,7 @@ use cable_core::math::Point;
 use cable_core::scene::Shape;
 use egui::{Pos2, Rect};
 
-use super::{forces, supports};
+use super::{forces, robot, supports};
 use crate::state::{AppState, Item};
 
 /// How near counts as on it, points.
@@ -51,6 +51,9 @@ pub fn item_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
     }
     if let Some((cable, _, _)) = cable_at(state, canvas, p, LINE) {
         return Some(Item::Cable(cable));
+    }
+    if inside(&robot::outline(state), state.camera.to_world(canvas, p)) {
+        return Some(Item::Robot);
     }
     obstacle_at(state, canvas, p)
 }

@@ -146,6 +146,7 @@ fn place(state: &AppState, item: Item) -> Option<Point> {
             Shape::Circle { center_m, .. } => Some(*center_m),
         },
         Item::Load(k) => super::forces::load_at(state, k).map(|(at, _)| at),
+        Item::Robot => state.scene.robot.as_ref().map(|r| r.at_m),
         Item::Cable(_) => None,
     }
 }

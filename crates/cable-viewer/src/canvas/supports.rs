@@ -4,6 +4,7 @@ use cable_core::math::Point;
 use cable_core::scene::{Support, SupportKind};
 use egui::{Color32, Pos2, Stroke, vec2};
 
+use super::robot;
 use super::view::{Place, View};
 use crate::state::{AppState, Item};
 use crate::units;
@@ -84,6 +85,9 @@ pub fn labels(view: &mut View<'_>, state: &AppState, figures: Vec<(Pos2, String,
                 spots.push((p, format!("{}  ({x}, {y}) m", s.name)));
             }
         }
+    }
+    if let Some((at, name)) = robot::title(state) {
+        spots.push((view.at(at), name));
     }
     for (p, text) in &spots {
         view.label(*p, text, text_colour, Place::Must);

@@ -27,6 +27,10 @@ pub enum FileCommand {
     SaveAs(PathBuf),
     /// Shows a dialog, or closes it.
     SetDialog(Option<Dialog>),
+    /// Takes over what a window that died had kept.
+    Recover(Box<Scene>),
+    /// Removes it.
+    ForgetRecovery,
     /// Goes on without saving.
     Discard(Box<Command>),
     /// Starts the solver thread anew after it died.
@@ -63,6 +67,14 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
         },
         FileCommand::SaveAs(path) => save(state, &path),
         FileCommand::SetDialog(dialog) => state.dialog = dialog,
+        FileCommand::Recover(scene) => {
+            open(state, *scene, None, effects);
+            state.document.recovered = true;
+        }
+        FileCommand::ForgetRecovery => {
+            state.dialog = None;
+            effects.forget_recovery = true;
+        }
         FileCommand::Discard(then) => {
             state.dialog = None;
             match *then {
@@ -104,6 +116,7 @@ fn save(state: &mut AppState, path: &Path) {
         Ok(()) => {
             state.document.path = Some(path.to_owned());
             state.document.saved = state.scene.clone();
+            state.document.recovered = false;
             state.dialog = None;
         }
         Err(text) => complain(state, &format!("“{}” was not saved", path.display()), text),

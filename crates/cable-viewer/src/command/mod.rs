@@ -53,6 +53,8 @@ pub struct Effects {
     pub request: Request,
     /// Close the window.
     pub quit: bool,
+    /// Remove what was kept for recovery.
+    pub forget_recovery: bool,
     /// Start the solver thread anew.
     pub restart_worker: bool,
 }

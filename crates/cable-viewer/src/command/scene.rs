@@ -1,10 +1,11 @@
 //! Commands that change the scene.
 
 use cable_core::math::Point;
-use cable_core::scene::{Environment, Shape, Support};
-use cable_core::{Cable, Load, Obstacle, Scene};
+use cable_core::scene::{Environment, Shape, Support, SupportKind};
+use cable_core::{Cable, Load, Obstacle, Robot, Scene};
 
 use super::{Effects, next_number, submit_scene};
+use crate::ground;
 use crate::state::{AppState, Item};
 use crate::undo::EditKind;
 use crate::worker::request::{Drag, Request};
@@ -64,6 +65,8 @@ pub enum SceneCommand {
         /// Where it holds the cable, m.
         at_m: Point,
     },
+    /// Another robot, or none: what hung on it is then fixed where it hung.
+    SetRobot(Option<Robot>),
     /// A new obstacle; its name is made unique.
     AddObstacle(Obstacle),
     /// A new load.
@@ -88,6 +91,7 @@ impl SceneCommand {
             Self::SetSupport { cable, support, .. } => format!("support {cable} {support}"),
             Self::SetObstacle { obstacle, .. } => format!("obstacle {obstacle}"),
             Self::SetLoad { load, .. } => format!("load {load}"),
+            Self::SetRobot(_) => "robot".to_owned(),
             Self::Move { item, .. } => format!("move {item:?}"),
             _ => "once".to_owned(),
         })
@@ -117,7 +121,9 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
         SceneCommand::Move { item: Item::Support { cable, support }, to_m } => Some((cable, support, to_m)),
         _ => None,
     };
+    let robot_moves = matches!(command, SceneCommand::Move { item: Item::Robot, .. });
     change(state, command);
+    let dragged = if robot_moves { hitched(&state.scene) } else { dragged };
     if state.scene == before {
         return;
     }
@@ -161,6 +167,7 @@ fn change(state: &mut AppState, command: SceneCommand) {
         SceneCommand::SetLoad { load, value } => set(&mut scene.loads, load, value),
         SceneCommand::Move { item, to_m } => move_item(state, item, to_m),
         SceneCommand::AddWaypoint { cable, arc_length_m, at_m } => add_waypoint(state, cable, arc_length_m, at_m),
+        SceneCommand::SetRobot(robot) => set_robot(scene, robot),
         SceneCommand::AddObstacle(mut obstacle) => {
             obstacle.name = unique(&obstacle.name, |n| scene.obstacles.iter().any(|o| o.name == n));
             scene.obstacles.push(obstacle);
@@ -227,8 +234,33 @@ fn move_item(state: &mut AppState, item: Item, to_m: Point) {
                 set(points_m, corner, to_m);
             }
         }
+        Item::Robot => {
+            let y = ground::height_at(scene, to_m[0]).unwrap_or(to_m[1]);
+            if let Some(robot) = &mut scene.robot {
+                robot.at_m = [to_m[0], y];
+            }
+        }
         Item::Cable(_) | Item::Load(_) => {}
     }
+}
+
+/// The support that hangs on the robot, and where.
+fn hitched(scene: &Scene) -> Option<(usize, usize, Point)> {
+    let hitch = scene.robot.as_ref()?.hitch_m()?;
+    scene.cables.iter().enumerate().find_map(|(cable, c)| {
+        let support = c.supports.iter().position(|s| s.kind == SupportKind::Robot)?;
+        Some((cable, support, hitch))
+    })
+}
+
+fn set_robot(scene: &mut Scene, robot: Option<Robot>) {
+    if robot.is_none()
+        && let Some((cable, support, hitch)) = hitched(scene)
+        && let Some(s) = scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support))
+    {
+        *s = Support::fixed(s.name.clone(), hitch);
+    }
+    scene.robot = robot;
 }
 
 fn shifted(p: Point, from: Point, to: Point) -> Point {
@@ -269,6 +301,7 @@ fn remove(state: &mut AppState, item: Item) {
             scene.loads.retain(|l| l.cable != gone.name);
         }
         Item::Cable(_) => {}
+        Item::Robot => set_robot(scene, None),
         Item::Support { cable, support } => {
             let Some(c) = scene.cables.get_mut(cable) else { return };
             let last = c.supports.len().saturating_sub(1);
@@ -325,5 +358,6 @@ fn exists(state: &AppState, item: Item) -> bool {
             Shape::Circle { .. } => false,
         }),
         Item::Load(k) => k < scene.loads.len(),
+        Item::Robot => scene.robot.is_some(),
     }
 }

@@ -9,7 +9,7 @@ use crate::plot::{View, along, time};
 use crate::state::AppState;
 
 /// Below this width the graphs stand one under the other, points.
-const SIDE_BY_SIDE: f32 = 560.0;
+const SIDE_BY_SIDE: f32 = 480.0;
 /// Lowest graph that can still be read, points.
 const LEAST_HEIGHT: f32 = 90.0;
 
@@ -25,8 +25,11 @@ pub fn ui(ui: &mut Ui, state: &AppState, _commands: &mut Vec<Command>) {
     ui.data_mut(|d| d.insert_temp(id, view));
     let wide = ui.available_width() >= SIDE_BY_SIDE;
     let room = ui.available_height() - ui.spacing().item_spacing.y;
-    let height = if wide { room } else { room / 2.0 }.max(LEAST_HEIGHT);
-    if wide {
+    let height = if wide { room } else { room / 2.0 };
+    if !wide && height < LEAST_HEIGHT {
+        // No room for both: the one that is always full.
+        along_cable(ui, state, view, room);
+    } else if wide {
         ui.columns_const(|[left, right]| {
             time::ui(left, state, view, height);
             along_cable(right, state, view, height);

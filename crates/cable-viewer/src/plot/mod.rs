@@ -5,7 +5,7 @@ pub mod series;
 pub mod time;
 
 use cable_core::Cable;
-use egui::{Color32, Id, RichText, Sense, Stroke, Ui, vec2};
+use egui::{Color32, Id, RichText, Sense, Stroke, TextStyle, Ui, vec2};
 use egui_plot::{GridInput, GridMark, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
 
 use crate::colour::Quantity;
@@ -29,9 +29,12 @@ const HEADROOM: f64 = 0.12;
 /// Lowest graph that can still be read, points.
 const LEAST_HEIGHT: f32 = 70.0;
 /// Distance of numbers on the horizontal axis, points: close enough to read between, far enough not to touch.
-const COLUMN: f32 = 80.0;
+const COLUMN: f32 = 66.0;
 /// Distance of numbers on the vertical axis, points.
 const ROW: f32 = 24.0;
+
+/// Length of a line in the legend, points.
+const SWATCH: f32 = 16.0;
 
 /// What the user asked of the graphs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -111,7 +114,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) {
     };
     let follow = graph.follow;
     let top = ui.cursor().top();
-    let title = legend(ui, graph, lines);
+    let title = legend(ui, graph, lines, high);
     let height = (graph.height - (ui.cursor().top() - top)).max(LEAST_HEIGHT);
     let columns = f64::from(ui.available_width() / COLUMN).max(1.0);
     let rows = f64::from((height - 40.0) / ROW).max(1.0);
@@ -180,25 +183,37 @@ fn tick(mark: GridMark) -> String {
     format!("{:.decimals$}", mark.value + 0.0).replace('-', "−")
 }
 
-/// What the colours mean, above the graph, where it hides nothing.
-fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Id {
-    let row = ui.horizontal_wrapped(|ui| {
+/// What the colours mean, on one line above the graph, where it hides nothing. Limits out of view are not drawn and so
+/// not named; what finds no room is told on hover.
+fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series], high: f64) -> Id {
+    let mut entries: Vec<(String, Color32, bool)> =
+        lines.iter().zip(LINES).map(|(line, colour)| (line.name.clone(), colour, false)).collect();
+    for (name, limit, colour) in named_limits(graph.limits) {
+        if limit <= high {
+            let value = match graph.quantity {
+                Quantity::Tension => unit::force(limit),
+                Quantity::Stress => unit::stress(limit),
+                Quantity::Strain => unit::strain(limit),
+            };
+            entries.push((format!("{name} {value}"), colour, true));
+        }
+    }
+    let row = ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing = vec2(5.0, 2.0);
         let title = ui.label(RichText::new(graph.title).strong().small()).id;
-        for (line, colour) in lines.iter().zip(LINES) {
-            swatch(ui, colour, false);
-            ui.label(RichText::new(&line.name).small());
-        }
-        for (name, limit, colour) in named_limits(graph.limits) {
-            if limit.is_finite() {
-                swatch(ui, colour, true);
-                let value = match graph.quantity {
-                    Quantity::Tension => unit::force(limit),
-                    Quantity::Stress => unit::stress(limit),
-                    Quantity::Strain => unit::strain(limit),
-                };
-                ui.label(RichText::new(format!("{name} {value}")).small());
+        let small = TextStyle::Small.resolve(ui.style());
+        let mut left_out = Vec::new();
+        for (name, colour, dashed) in entries {
+            let galley = ui.painter().layout_no_wrap(name.clone(), small.clone(), colour);
+            if !left_out.is_empty() || galley.size().x + 2.0 * SWATCH + 10.0 > ui.available_width() {
+                left_out.push(name);
+                continue;
             }
+            swatch(ui, colour, dashed);
+            ui.label(RichText::new(&name).small());
+        }
+        if !left_out.is_empty() {
+            ui.label(RichText::new("…").small()).on_hover_text(left_out.join("\n"));
         }
         title
     });
@@ -206,7 +221,7 @@ fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Id {
 }
 
 fn swatch(ui: &mut Ui, colour: Color32, dashed: bool) {
-    let (rect, _) = ui.allocate_exact_size(vec2(16.0, 10.0), Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(vec2(SWATCH, 10.0), Sense::hover());
     let parts: &[[f32; 2]] = if dashed { &[[0.0, 0.4], [0.6, 1.0]] } else { &[[0.0, 1.0]] };
     for [from, to] in parts {
         let x = |f: f32| rect.left() + f * rect.width();

@@ -29,15 +29,14 @@ pub fn ui(ui: &mut Ui, state: &AppState, view: View, height: f32) {
         name,
         points: thin(state.history.samples.range(start..).map(|s| [s.time_s, of(s) * scale]), columns),
     };
-    let what = if scene.cables.len() == 1 { "Maximum" } else { "Maximum of all cables" };
+    let what = if scene.cables.len() == 1 { "Maximum" } else { "Maximum of all" };
     let mut lines = vec![line(what.to_owned(), &|s| s.max_tension_n)];
     // Reactions of all cables stand one after the other.
     let before: usize = scene.cables.iter().take(index).map(|c| c.supports.len()).sum();
-    let ends = [("Start", 0), ("End", cable.supports.len().saturating_sub(1))];
-    for (which, k) in ends {
+    for k in [0, cable.supports.len().saturating_sub(1)] {
         let Some(support) = cable.supports.get(k) else { continue };
         let pull = move |s: &Sample| s.reactions_n.get(before + k).map_or(f64::NAN, |r| r[0].hypot(r[1]));
-        lines.push(line(format!("{which}: {}", support.name), &pull));
+        lines.push(line(format!("At {}", support.name), &pull));
     }
     let graph = Graph {
         title: "Over time",

@@ -4,6 +4,7 @@
 
 mod pictures;
 mod playing;
+mod recovery;
 mod timing;
 
 use cable_core::scene::{Shape, catalog};

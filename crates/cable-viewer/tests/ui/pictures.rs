@@ -116,3 +116,17 @@ fn obstacles_light() {
     state.selected = Some(Item::Obstacle(0));
     compare("obstacles_light", state, Theme::Light);
 }
+
+#[test]
+fn robot_light() {
+    let mut scene = catalog::over_beam();
+    scene.robot = Some(cable_core::Robot {
+        preset: "brokk-170".to_owned(),
+        at_m: [10.0, 0.0],
+        heading: cable_core::scene::Heading::Right,
+        path: Vec::new(),
+    });
+    let end = scene.cables[0].supports.last_mut().expect("an end");
+    (end.kind, end.at_m) = (cable_core::scene::SupportKind::Robot, None);
+    compare("robot_light", solved(scene), Theme::Light);
+}

@@ -3,6 +3,7 @@
 mod loads;
 mod map;
 mod obstacles;
+mod robot;
 pub mod support_kind;
 mod supports;
 
@@ -80,6 +81,7 @@ fn pickers(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         shown.response.on_hover_text("Ready-made scenes; asks first if this one is not saved")
     });
     map::ui(ui, state, commands);
+    robot::ui(ui, state, commands);
 }
 
 /// The name of a thing in a list: picks it.
