@@ -11,6 +11,11 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 fn solve(c: &mut Criterion) {
     let grid = span_grid();
+    // A time of refusals would be a lie.
+    assert_eq!(grid.len(), 150);
+    for span in &grid {
+        assert!(Catenary::solve(span).is_ok(), "not answered: {span:?}");
+    }
     let mut group = c.benchmark_group("catenary");
     // Time per element is time per solve.
     group.throughput(Throughput::Elements(grid.len() as u64));

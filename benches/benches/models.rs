@@ -52,6 +52,24 @@ fn settle(c: &mut Criterion) {
     group.finish();
 }
 
+/// A free span on bars, the copy of the simulation left out of the time.
+fn free_span(c: &mut Criterion) {
+    let mut group = c.benchmark_group("fem free span");
+    group.sample_size(20).measurement_time(Duration::from_secs(2)).warm_up_time(Duration::from_millis(500));
+    for n in MESHES {
+        let start = fresh(&catalog::hanging_span(), Model::Fem, Some(n)).expect("a free span");
+        assert!(start.clone().settle().is_ok());
+        group.bench_function(format!("N = {n} settle"), |b| {
+            b.iter_batched_ref(|| start.clone(), |s| black_box(s.settle()), criterion::BatchSize::SmallInput);
+        });
+    }
+    let start = fresh(&catalog::hanging_span(), Model::Catenary, None).expect("a free span");
+    group.bench_function("catenary settle", |b| {
+        b.iter_batched_ref(|| start.clone(), |s| black_box(s.settle()), criterion::BatchSize::SmallInput);
+    });
+    group.finish();
+}
+
 fn step(c: &mut Criterion) {
     let mut group = c.benchmark_group("step");
     group.sample_size(10).measurement_time(Duration::from_secs(3)).warm_up_time(Duration::from_millis(500));
@@ -72,5 +90,5 @@ fn step(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, settle, step);
+criterion_group!(benches, settle, free_span, step);
 criterion_main!(benches);

@@ -100,7 +100,7 @@ impl Simulation {
     /// Time reached, s.
     #[must_use]
     pub fn time_s(&self) -> f64 {
-        self.cables.first().map_or(0.0, |c| c.state().time_s)
+        self.cables.first().map_or(0.0, |c| c.time_s())
     }
 
     /// Finds where everything rests. The first answer is kept as the start that [`Self::reset`] returns to.
@@ -157,13 +157,29 @@ impl Simulation {
         Ok(next)
     }
 
+    /// Asks every cable the same. Where one of several fails, all are as before: never some of them a step ahead. (A
+    /// cable alone stays where it came, see [`Mechanics::advance`].)
     fn each(
         &mut self,
         mut f: impl FnMut(&mut Box<dyn Mechanics>) -> Result<crate::model::StepReport, SolveError>,
     ) -> Result<(), SolveError> {
         let (mut cost, mut warnings) = (Cost::default(), Vec::new());
-        for c in &mut self.cables {
-            let report = f(c)?;
+        let several = self.cables.len() > 1;
+        let mut before = Vec::with_capacity(if several { self.cables.len() } else { 0 });
+        for k in 0..self.cables.len() {
+            let Some(cable) = self.cables.get_mut(k) else { break };
+            if several {
+                before.push(cable.boxed_clone());
+            }
+            let report = match f(cable) {
+                Ok(report) => report,
+                Err(error) => {
+                    for (cable, old) in self.cables.iter_mut().zip(before) {
+                        *cable = old;
+                    }
+                    return Err(error);
+                }
+            };
             cost.iterations += report.cost.iterations;
             cost.halved_steps += report.cost.halved_steps;
             if !(report.cost.residual_n <= cost.residual_n) {

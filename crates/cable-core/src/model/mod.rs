@@ -119,6 +119,11 @@ pub trait Mechanics: Send {
     /// Where the cable is.
     fn state(&self) -> State;
 
+    /// Time reached, s.
+    fn time_s(&self) -> f64 {
+        self.state().time_s
+    }
+
     /// Takes over a state of the same cable, resampled on this model's mesh (after an edit, or from another model).
     ///
     /// # Errors

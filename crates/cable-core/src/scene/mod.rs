@@ -5,6 +5,7 @@
 
 pub mod cable;
 pub mod catalog;
+mod crossing;
 pub mod file;
 pub mod load;
 pub mod motion;

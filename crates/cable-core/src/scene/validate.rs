@@ -2,6 +2,7 @@
 //!
 //! The ranges are wide: they keep out what is surely a slip or would hurt the program, not what is unusual.
 
+use super::crossing::{Crossing, first_crossing};
 use super::path::Path;
 use super::range::{self, Range};
 use super::{Cable, Load, Motion, Obstacle, Robot, RobotTask, Scene, Shape, VERSION, preset, support_rules, way};
@@ -12,8 +13,8 @@ use crate::math::Point;
 const MAX_CABLES: usize = 1000;
 /// Most supports of a cable, and most loads of a scene.
 pub(super) const MAX_POINTS_ON_CABLE: usize = 10_000;
-/// Most corner points of all obstacles together: twice what the longest text can hold.
-const MAX_OBSTACLE_POINTS: usize = 500_000;
+/// Most corner points of all obstacles together: more than the longest text can hold.
+const MAX_OBSTACLE_POINTS: usize = 1_000_000;
 /// Most knots of a route, motion, series or robot path.
 const MAX_KNOTS: usize = 100_000;
 /// Longest name, bytes.
@@ -224,7 +225,28 @@ fn check_obstacle(obstacle: &Obstacle, at: &Path<'_>) -> Result<usize, SceneErro
         (Shape::Polygon { .. }, _, _) if !(area(corners).abs() > 0.0) => {
             Err(line.shape("a polygon needs an area: these points lie on a line or cross it back"))
         }
-        _ => Ok(corners.len()),
+        (Shape::Terrain { .. }, _, _) => not_crossing(&line, corners, false),
+        (Shape::Polygon { .. }, _, _) => not_crossing(&line, corners, true),
+        _ => Ok(()),
+    }?;
+    Ok(corners.len())
+}
+
+/// A line with an inside must not cross or touch itself.
+fn not_crossing(at: &Path<'_>, line: &[Point], closed: bool) -> Checked {
+    match first_crossing(line, closed) {
+        None => Ok(()),
+        Some(Crossing::Edges(i, j)) => {
+            let end = |k: usize| line.get(k + 1).or(line.first()).copied().unwrap_or_default();
+            let (a, b, c, d) = (line[i], end(i), line[j], end(j));
+            Err(at.index(j).shape(format!(
+                "the edge from here, [{}, {}] to [{}, {}], crosses or touches the edge from point {i}, [{}, {}] to [{}, {}]: move a point of one, or leave it out",
+                c[0], c[1], d[0], d[1], a[0], a[1], b[0], b[1]
+            )))
+        }
+        Some(Crossing::Tangled) => Err(at.shape(
+            "so many edges lie side by side that crossings cannot be ruled out in a second: give it fewer or shorter ones",
+        )),
     }
 }
 

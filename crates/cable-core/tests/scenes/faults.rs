@@ -1,8 +1,8 @@
 //! What is refused: every field with every fault, broken texts, impossible geometry.
 
 use cable_core::error::SceneFault;
-use cable_core::scene::catalog;
-use cable_core::{Scene, SceneError};
+use cable_core::scene::{Obstacle, Shape, catalog};
+use cable_core::{Model, Scene, SceneError, Simulation};
 use toml::{Table, Value};
 
 use super::{FULL, full};
@@ -199,7 +199,7 @@ fn byte_order_mark_and_crlf_are_accepted_and_other_encodings_named() {
 }
 
 #[test]
-fn truncated_and_flipped_texts_are_read_or_refused_never_worse() {
+fn truncated_texts_are_read_or_refused_never_worse() {
     let mut texts: Vec<&str> =
         catalog::TEXTS.iter().map(|(_, text)| *text).filter(|t| t.len() < 1500).take(5).collect();
     texts.push(FULL);
@@ -208,9 +208,12 @@ fn truncated_and_flipped_texts_are_read_or_refused_never_worse() {
             let _ = Scene::from_toml_bytes(&text.as_bytes()[..end]);
         }
     }
-    // A linear congruential sequence (Knuth's MMIX): the same flips on every run.
+}
+
+/// Texts with one bit flipped, the same on every run (a linear congruential sequence, Knuth's MMIX).
+fn flips(count: usize) {
     let mut seed: u64 = 1;
-    for _ in 0..3_000 {
+    for _ in 0..count {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let mut bytes = FULL.as_bytes().to_vec();
         let place = (seed >> 33) as usize % bytes.len();
@@ -219,6 +222,17 @@ fn truncated_and_flipped_texts_are_read_or_refused_never_worse() {
             scene.validate().unwrap();
         }
     }
+}
+
+#[test]
+fn flipped_bits_are_read_or_refused_never_worse() {
+    flips(3_000);
+}
+
+#[test]
+#[ignore = "two minutes (a millisecond each): cargo test -p cable-core --test scenes hundred_thousand -- --ignored"]
+fn a_hundred_thousand_flipped_bits_are_read_or_refused_never_worse() {
+    flips(100_000);
 }
 
 #[test]
@@ -284,4 +298,51 @@ fn what_does_not_fit_together_is_refused_where_it_is() {
         assert_eq!(error.path, path, "{error}");
         assert!(error.at.is_some());
     }
+}
+
+fn with_obstacle(shape: Shape) -> Scene {
+    let mut scene = catalog::slack_to_floor();
+    scene.obstacles = vec![Obstacle { name: "ground".to_owned(), friction: None, shape }];
+    scene
+}
+
+#[test]
+fn terrain_and_polygons_that_cross_themselves_are_refused_with_both_edges() {
+    let loops = vec![[-5.0, 0.0], [4.0, 0.0], [4.0, -2.0], [2.0, 1.0], [30.0, 0.0]];
+    let error = with_obstacle(Shape::Terrain { points_m: loops }).validate().unwrap_err();
+    assert_eq!(error.path, "obstacles[0].points_m[2]");
+    let said = error.to_string();
+    assert!(said.contains("[4, -2] to [2, 1]") && said.contains("[-5, 0] to [4, 0]"), "{said}");
+    let bow = vec![[0.0, -4.0], [2.0, -2.0], [2.0, -4.0], [0.5, -1.5]];
+    let error = with_obstacle(Shape::Polygon { points_m: bow }).validate().unwrap_err();
+    assert_eq!(error.path, "obstacles[0].points_m[2]");
+    // A thin plate has no inside to lose.
+    let folded = vec![[0.0, -4.0], [2.0, -2.0], [2.0, -4.0], [0.5, -2.0]];
+    with_obstacle(Shape::Polyline { points_m: folded, thickness_m: 0.01 }).validate().unwrap();
+    // Overhangs are ground like any other.
+    let overhang = vec![[-5.0, -3.0], [4.0, -3.0], [3.0, -2.0], [6.0, -2.0], [5.0, -3.0], [30.0, -3.0]];
+    with_obstacle(Shape::Terrain { points_m: overhang }).validate().unwrap();
+}
+
+/// Rough ground of a million points with an overhang every tenth: no quick way out of the search for crossings. (About a
+/// second; that it ends is the test.)
+#[test]
+fn a_million_points_of_ground_are_taken() {
+    let points_m = (0..1_000_000)
+        .map(|k| {
+            let x = f64::from(k) * 1e-3;
+            let rough = 0.01 * (0.7 * f64::from(k)).sin();
+            if k % 10 == 3 { [x - 0.0014, rough - 4.0 + 0.05] } else { [x, rough - 4.0] }
+        })
+        .collect();
+    let mut scene = with_obstacle(Shape::Terrain { points_m });
+    scene.obstacles[0].name = "scan".to_owned();
+    match Simulation::new(scene.clone(), Model::Fem) {
+        Ok(_) => {}
+        Err(e) => panic!("{}", e.to_string().chars().take(300).collect::<String>()),
+    }
+    let Shape::Terrain { points_m } = &mut scene.obstacles[0].shape else { unreachable!() };
+    points_m.push([2000.0, 0.0]);
+    let error = scene.validate().unwrap_err().to_string();
+    assert!(error.contains("1000001"), "{error}");
 }

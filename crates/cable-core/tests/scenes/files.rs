@@ -1,7 +1,7 @@
 //! Files: limits before reading, saves that leave the old file or the new one.
 
 use std::fs;
-use std::io;
+use std::io::{self, BufRead};
 
 use cable_core::FileError;
 use cable_core::files::{load_scene, read_limited, save_scene, write_atomic, write_atomic_with};
@@ -84,4 +84,71 @@ fn a_folder_that_may_not_be_written_keeps_its_file() {
         assert_eq!(fs::read(&path).unwrap(), b"old");
     }
     fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o755)).unwrap();
+}
+
+/// Where [`a_child_saves_for_ever`] saves to.
+const SAVE_TO: &str = "CABLE_TEST_SAVE_TO";
+
+/// Two scenes of very different length, so that a file half of each could not be read.
+fn two_scenes() -> [cable_core::Scene; 2] {
+    let mut long = catalog::tank();
+    long.cables[0].route_m = (0..5000).map(|k| [f64::from(k) * 1e-3, 5.0]).collect();
+    [catalog::hanging_span(), long]
+}
+
+/// Not a test by itself: the child that [`kills`] kills.
+#[test]
+fn a_child_saves_for_ever() {
+    let Ok(path) = std::env::var(SAVE_TO) else { return };
+    let scenes = two_scenes();
+    println!("saving");
+    loop {
+        for scene in scenes.iter().rev() {
+            save_scene(&path, scene).unwrap();
+        }
+    }
+}
+
+/// Kills a saving process `count` times with SIGKILL at changing moments: the file is always one of the two scenes.
+fn kills(count: u64) {
+    use std::process::{Command, Stdio};
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.toml");
+    let scenes = two_scenes();
+    save_scene(&path, &scenes[0]).unwrap();
+    let mut found = [0; 2];
+    for k in 0..count {
+        let mut child = Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", "files::a_child_saves_for_ever", "--nocapture"])
+            .env(SAVE_TO, &path)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let said = io::BufReader::new(child.stdout.take().unwrap())
+            .lines()
+            .find(|l| l.as_ref().is_ok_and(|l| l.ends_with("saving")));
+        assert!(said.is_some(), "the child did not start");
+        // From its first save to some saves later, in steps that never repeat (the golden ratio's).
+        let part = (k as f64 * 0.618_033_988_749_895).fract();
+        std::thread::sleep(std::time::Duration::from_secs_f64(0.02 * part));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let read = load_scene(&path).unwrap_or_else(|e| panic!("after {k} kills: {e}"));
+        let which = scenes.iter().position(|s| *s == read).unwrap_or_else(|| panic!("after {k} kills: another scene"));
+        found[which] += 1;
+    }
+    println!("{count} kills: old and new found {found:?} times");
+    assert!(found.iter().all(|n| *n > 0), "a child never came to save: {found:?}");
+}
+
+#[test]
+fn fifty_kills_during_saves_leave_a_whole_file() {
+    kills(50);
+}
+
+#[test]
+#[ignore = "a minute: cargo test -p cable-core --test scenes thousand_kills -- --ignored --nocapture"]
+fn a_thousand_kills_during_saves_leave_a_whole_file() {
+    kills(1000);
 }

@@ -72,10 +72,18 @@ fn points(least: usize) -> impl Strategy<Value = Vec<[f64; 2]>> {
     })
 }
 
+/// A line that goes from left to right, closed below itself: a polygon that does not cross itself.
+fn closed_below(mut line: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let below = line.iter().fold(0.0_f64, |low, p| low.min(p[1])) - 1.0;
+    let (first, last) = (line[0][0], line[line.len() - 1][0]);
+    line.extend([[last, below], [first, below]]);
+    line
+}
+
 fn obstacles() -> impl Strategy<Value = Vec<Obstacle>> {
     let shape = prop_oneof![
         points(2).prop_map(|points_m| Shape::Terrain { points_m }),
-        points(3).prop_map(|points_m| Shape::Polygon { points_m }),
+        points(3).prop_map(|points_m| Shape::Polygon { points_m: closed_below(points_m) }),
         (points(2), positive()).prop_map(|(points_m, thickness_m)| Shape::Polyline { points_m, thickness_m }),
         (point(), positive()).prop_map(|(center_m, radius_m)| Shape::Circle { center_m, radius_m }),
     ];

@@ -123,18 +123,21 @@ impl CatenaryModel {
         solve(&self.problem, layout, Start { held: &held, sigma: held.clone(), modes, arcs })
     }
 
-    /// Takes a balance as the state at a time.
-    fn accept(&mut self, layout: &Layout, e: Equilibrium, time_s: f64) -> Result<StepReport, SolveError> {
-        let (nodes, reactions) = report(&self.problem, layout, &e);
-        if let Some(node) =
-            nodes.iter().position(|n| !(n.x_m.is_finite() && n.y_m.is_finite() && n.tension_n.is_finite()))
-        {
-            return Err(SolveError::NonFinite { quantity: "position or tension", node, time_s });
+    /// Takes a balance as the state at a time; on an error nothing has changed. Nodes cost more than the balance, so
+    /// those of an instant nobody sees (`shown` false) are made only where they may meet an obstacle.
+    fn accept(&mut self, layout: &Layout, e: Equilibrium, time_s: f64, shown: bool) -> Result<StepReport, SolveError> {
+        if shown || !self.problem.world.is_empty() {
+            let (nodes, reactions) = report(&self.problem, layout, &e);
+            if let Some(node) =
+                nodes.iter().position(|n| !(n.x_m.is_finite() && n.y_m.is_finite() && n.tension_n.is_finite()))
+            {
+                return Err(SolveError::NonFinite { quantity: "position or tension", node, time_s });
+            }
+            self.refuse_contact(layout, &nodes)?;
+            self.nodes = nodes;
+            self.reactions = reactions;
         }
-        self.refuse_contact(layout, &nodes)?;
         let cost = Cost { iterations: e.iterations, residual_n: e.residual, ..Cost::default() };
-        self.nodes = nodes;
-        self.reactions = reactions;
         self.anchored = layout.anchors.iter().map(|a| a.support).collect();
         self.balance = Some(e);
         self.adopted.iter_mut().for_each(|a| *a = None);
@@ -173,11 +176,18 @@ impl CatenaryModel {
         Ok(())
     }
 
-    /// One slow step to a time, at once.
-    fn slow_step(&mut self, time_s: f64) -> Result<StepReport, SolveError> {
+    /// One slow step to a time, at once; on an error nothing has changed.
+    fn slow_step(&mut self, time_s: f64, shown: bool) -> Result<StepReport, SolveError> {
         let layout = Layout::new(&self.problem, &self.dragged, time_s)?;
         let e = self.balance(&layout, false)?;
-        self.accept(&layout, e, time_s)
+        self.accept(&layout, e, time_s, shown)
+    }
+
+    /// Nodes of the present balance, after steps that did not make them.
+    fn show(&mut self) {
+        if let (Ok(layout), Some(e)) = (Layout::new(&self.problem, &self.dragged, self.time_s), &self.balance) {
+            (self.nodes, self.reactions) = report(&self.problem, &layout, e);
+        }
     }
 
     /// How far any support moves between two times, m.
@@ -232,7 +242,7 @@ impl Mechanics for CatenaryModel {
             Ok(e) => e,
             Err(_) => self.balance(&layout, true)?,
         };
-        let mut report = self.accept(&layout, e, self.time_s)?;
+        let mut report = self.accept(&layout, e, self.time_s, true)?;
         if self.has_friction() {
             report.warnings.push(Warning {
                 kind: WarningKind::NotUnique,
@@ -258,18 +268,19 @@ impl Mechanics for CatenaryModel {
         let (mut step, mut total, mut halvings) = (dt_s / pieces, StepReport::default(), 0);
         while self.time_s < end {
             let next = if self.time_s + 1.000_001 * step >= end { end } else { self.time_s + step };
-            let before = self.clone();
-            match self.slow_step(next) {
+            match self.slow_step(next, next >= end) {
                 Ok(r) => {
                     total.cost.iterations += r.cost.iterations;
                     total.cost.residual_n = r.cost.residual_n;
                 }
                 Err(SolveError::NotConverged { node, residual_n, iterations, .. }) => {
-                    *self = before;
                     halvings += 1;
                     step *= 0.5;
                     total.cost.halved_steps += 1;
                     if halvings > MAX_HALVINGS {
+                        if self.time_s > start {
+                            self.show();
+                        }
                         return Err(SolveError::StepFailed {
                             model: Model::Catenary,
                             time_s: self.time_s,
@@ -281,12 +292,18 @@ impl Mechanics for CatenaryModel {
                     }
                 }
                 Err(e) => {
-                    *self = before;
+                    if self.time_s > start {
+                        self.show();
+                    }
                     return Err(e);
                 }
             }
         }
         Ok(total)
+    }
+
+    fn time_s(&self) -> f64 {
+        self.time_s
     }
 
     fn state(&self) -> State {

@@ -5,7 +5,7 @@ use super::layout::Layout;
 use super::slide::Slide;
 use super::wheel::pass;
 use crate::catenary::Catenary;
-use crate::math::{Vec2, perp};
+use crate::math::{Vec2, cross, perp};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{Node, SupportReaction};
@@ -73,10 +73,11 @@ impl Nodes<'_> {
     /// One catenary, from material point `s0` at position `at`.
     fn catenary(&mut self, s0: f64, at: Vec2, c: &Catenary) {
         let point = |s: f64| {
-            let curvature = c.curvature_at(s);
+            let force = c.force_at(s);
+            let square = force.norm_squared();
             // A fold is a point without tension: its direction turns at once, and no number says how sharply.
-            let curvature = if c.tension_at(s) > 0.0 { curvature } else { 0.0 };
-            Point { s: s0 + s, at: at + c.position_at(s), tension: c.tension_at(s), curvature }
+            let curvature = if square > 0.0 { -cross(force, c.span().weight) / square } else { 0.0 };
+            Point { s: s0 + s, at: at + c.position_at(s), tension: square.sqrt(), curvature }
         };
         let (a, b) = (point(0.0), point(c.span().length));
         self.push(a);
@@ -90,10 +91,14 @@ impl Nodes<'_> {
         let off = ((ends.0.at + ends.1.at) * 0.5 - middle.at).norm();
         let tension = (0.5 * (ends.0.tension + ends.1.tension) - middle.tension).abs();
         let scale = if middle.tension > self.least_tension { middle.tension } else { self.least_tension };
-        let rough = off > self.flat || tension > TENSION_FLATNESS * scale;
-        if depth < LEAST_DEPTH || rough && depth < MOST_DEPTH {
+        // What is off falls to a quarter with the node in the middle, which is known already.
+        let rough = off > 4.0 * self.flat || tension > 4.0 * TENSION_FLATNESS * scale;
+        let deeper = depth + 1 < LEAST_DEPTH || rough && depth + 1 < MOST_DEPTH;
+        if deeper {
             self.refine(point, (ends.0, middle), (s0, s), depth + 1);
-            self.push(middle);
+        }
+        self.push(middle);
+        if deeper {
             self.refine(point, (middle, ends.1), (s, s1), depth + 1);
         }
     }

@@ -31,10 +31,6 @@ const BALANCED_AT_LEAST: f64 = 1e-8;
 const ROOM: f64 = 0.4;
 /// Least cable between a pulley and the next stop, in parts of the cable.
 const LEAST: f64 = 1e-7;
-/// Rounds to find where a cable meets and leaves its wheels; each gains the ratio of radius to span.
-const WHEEL_ROUNDS: usize = 80;
-/// Rounds of wheels end when no contact point moves by more than this angle, rad.
-const WHEEL_STILL: f64 = 1e-12;
 
 /// Why there is no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,11 +110,10 @@ impl Network {
     pub fn solve(&mut self) -> Result<(), Failure> {
         self.steps = 0;
         let wheels = self.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.radius > 0.0));
-        for _ in 0..WHEEL_ROUNDS {
-            self.balance()?;
-            if !wheels || self.meet_wheels()? <= WHEEL_STILL {
-                break;
-            }
+        if wheels {
+            self.balance_on_wheels()?
+        } else {
+            self.balance()?
         }
         self.warm = true;
         Ok(())
@@ -238,7 +233,7 @@ impl Network {
     }
 
     /// Finds the arc length at every pulley.
-    fn balance(&mut self) -> Result<(), Failure> {
+    pub(super) fn balance(&mut self) -> Result<(), Failure> {
         self.solve_spans()?;
         let pulleys = self.pulleys();
         if pulleys.is_empty() {

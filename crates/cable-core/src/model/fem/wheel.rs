@@ -12,6 +12,12 @@ use crate::scene::PulleySide;
 
 /// Steps of the integration round a wheel.
 const WHEEL_STEPS: usize = 16;
+/// Rounds to find where a cable meets and leaves its wheels; each gains the ratio of radius to span.
+const WHEEL_ROUNDS: usize = 80;
+/// Rounds of wheels end when no contact point moves by more than this angle, rad.
+const WHEEL_STILL: f64 = 1e-12;
+/// As above where round-off allows no better.
+const WHEEL_STILL_AT_LEAST: f64 = 1e-8;
 
 impl Network {
     /// ln(T_after/T_before) round a wheel with friction pulling along (`sign` +1) or against.
@@ -77,17 +83,38 @@ impl Network {
         }
     }
 
-    /// Moves the contact points to where the forces say; returns the largest move, rad.
-    pub(super) fn meet_wheels(&mut self) -> Result<f64, Failure> {
-        let mut largest = 0.0;
+    /// Balances with contact points and forces in agreement.
+    pub(super) fn balance_on_wheels(&mut self) -> Result<(), Failure> {
+        for round in 1..=WHEEL_ROUNDS {
+            self.balance()?;
+            let (moved, lifted) = self.meet_wheels();
+            match lifted {
+                Some(k) if moved <= WHEEL_STILL || round == WHEEL_ROUNDS => return Err(Failure::LeavesWheel(k)),
+                None if moved <= WHEEL_STILL => break,
+                None if round == WHEEL_ROUNDS && !(moved <= WHEEL_STILL_AT_LEAST) => {
+                    return Err(Failure::Unbalanced(self.pulleys().first().copied().unwrap_or(0), self.residual));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves the contact points to where the forces say; returns the largest move, rad, and a wheel the cable would
+    /// leave at these forces. On the way to an answer that may pass (a span too slack yet hangs clear of the wheel's
+    /// side): it is left touching in one point between the two directions.
+    fn meet_wheels(&mut self) -> (f64, Option<usize>) {
+        let (mut largest, mut lifted) = (0.0, None);
         for k in self.pulleys() {
             let Some(mut wheel) = self.wheel(k).filter(|w| w.radius > 0.0) else { continue };
             let [before, after] = self.forces[k];
             let clockwise = self.clockwise(&wheel, self.passing(k));
-            let contact = [perp(before) * (clockwise / before.norm()), perp(after) * (clockwise / after.norm())];
-            let turn = arc(contact[0], contact[1], clockwise);
+            let mut contact = [perp(before) * (clockwise / before.norm()), perp(after) * (clockwise / after.norm())];
+            let mut turn = arc(contact[0], contact[1], clockwise);
             if turn > 1.5 * std::f64::consts::PI {
-                return Err(Failure::LeavesWheel(k));
+                let between = contact[0] + contact[1];
+                contact = [between / between.norm(); 2];
+                (turn, lifted) = (0.0, Some(k));
             }
             let moved = (0..2).map(|i| (contact[i] - wheel.contact[i]).norm()).sum::<f64>();
             if !(moved <= largest) {
@@ -104,7 +131,7 @@ impl Network {
             stop.lap = lap;
             stop.hold = Hold::Pulley(wheel);
         }
-        Ok(largest)
+        (largest, lifted)
     }
 }
 

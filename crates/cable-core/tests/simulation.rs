@@ -1,0 +1,88 @@
+//! The object users hold, over several cables; and what Newton needs on the scenes everybody uses.
+
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
+use cable_core::scene::{Motion, Scene, catalog};
+use cable_core::{Model, Simulation, SolveError};
+
+/// Two spans: the first moves, the second is let go at both ends at 0.05 s.
+fn one_moves_one_is_let_go() -> Scene {
+    let mut scene = catalog::hanging_span();
+    let mut second = scene.cables[0].clone();
+    let at = scene.cables[0].supports[1].at_m.unwrap();
+    scene.cables[0].supports[1].motion =
+        Some(Motion { times_s: vec![0.0, 1.0], points_m: vec![at, [at[0] - 1.0, at[1]]] });
+    second.name = "second".to_owned();
+    for support in &mut second.supports {
+        support.release_s = Some(0.05);
+    }
+    scene.cables.push(second);
+    scene
+}
+
+#[test]
+fn where_one_cable_fails_none_has_moved() {
+    let mut simulation = Simulation::new(one_moves_one_is_let_go(), Model::Catenary).unwrap();
+    simulation.settle().unwrap();
+    simulation.step_quasi_static(0.04).unwrap();
+    let (before, answer) = (simulation.states(), simulation.solution());
+    let error = simulation.step_quasi_static(0.2).unwrap_err();
+    assert!(matches!(error, SolveError::NoRestingPlace { .. }), "{error}");
+    assert_eq!(simulation.states(), before);
+    assert_eq!(simulation.solution(), answer);
+    // And it goes on from there.
+    simulation.step_quasi_static(0.005).unwrap();
+    assert!(simulation.states().iter().all(|s| (s.time_s - 0.045).abs() < 1e-12));
+    assert_ne!(simulation.states()[0], before[0]);
+}
+
+#[test]
+fn slow_steps_that_nobody_sees_change_nothing() {
+    let answer = |pieces: usize| {
+        let mut scene = one_moves_one_is_let_go();
+        scene.cables.pop();
+        let mut simulation = Simulation::new(scene, Model::Catenary).unwrap();
+        simulation.settle().unwrap();
+        for _ in 0..pieces {
+            simulation.step_quasi_static(1.0 / pieces as f64).unwrap();
+        }
+        simulation.solution()
+    };
+    let (one, many) = (answer(1), answer(64));
+    let (a, b) = (one.max_tension().tension_n, many.max_tension().tension_n);
+    assert!((a - b).abs() < 1e-9 * a, "{a} {b}");
+}
+
+/// Newton iterations of `settle` on the catalogue scenes without obstacles. Fewer is better: change the number then. More
+/// means a worse start, line search or Jacobian: find out which before changing it.
+const ITERATIONS: [(&str, Model, usize); 11] = [
+    ("hanging-span", Model::Catenary, 4),
+    ("hanging-span", Model::Fem, 4),
+    ("steep-span", Model::Catenary, 4),
+    ("steep-span", Model::Fem, 4),
+    ("near-taut", Model::Catenary, 2),
+    ("near-taut", Model::Fem, 2),
+    // A wheel: its touch points are found in rounds, each a balance of its own.
+    ("pulley-waypoints", Model::Catenary, 321),
+    ("pulley-waypoints", Model::Fem, 375),
+    ("clamped-stiff", Model::Fem, 10),
+    ("loads-wind-heat", Model::Catenary, 5),
+    ("loads-wind-heat", Model::Fem, 5),
+];
+
+#[test]
+fn iterations_of_the_catalogue_stay_as_they_are() {
+    let mut found = Vec::new();
+    for (id, scene) in catalog::all() {
+        if !scene.obstacles.is_empty() {
+            continue;
+        }
+        for model in [Model::Catenary, Model::Fem] {
+            let Ok(mut simulation) = Simulation::new(scene.clone(), model) else { continue };
+            if let Ok(answer) = simulation.settle() {
+                found.push((id, model, answer.cost.iterations));
+            }
+        }
+    }
+    assert_eq!(found, ITERATIONS, "{found:#?}");
+}
