@@ -1,9 +1,16 @@
 //! The answer of the model.
 
-use super::step::SKIN;
+use super::collide::SKIN;
+use super::pulley::Pulley;
 use super::{MassSpringModel, Touch};
-use crate::math::{Vec2, cross};
+use crate::math::{Vec2, cross, perp};
 use crate::solution::{CableSolution, ContactReport, ContactState, Node, SupportReaction};
+use crate::state::State;
+
+/// Tensions of both sides of a point that are the same to this part make one node.
+const NO_JUMP: f64 = 1e-9;
+/// Nodes on a wheel, less one.
+const WHEEL_NODES: usize = 8;
 
 /// Below this speed (m/s) a held node does not rub.
 const RESTING_SPEED: f64 = 1e-9;
@@ -13,7 +20,7 @@ impl MassSpringModel {
     pub(super) fn answer(&self) -> CableSolution {
         CableSolution {
             name: self.problem.cable.name.clone(),
-            nodes: (0..self.x.len()).map(|i| self.node(i)).collect(),
+            nodes: self.nodes(),
             supports: (0..self.node_of.len()).map(|k| self.reaction(k)).collect(),
             contacts: self.contact_reports(),
             error_estimate: None,
@@ -21,8 +28,94 @@ impl MassSpringModel {
     }
 
     fn element_force(&self, e: usize) -> Vec2 {
-        let d = self.x[e + 1] - self.x[e];
-        d.try_normalize(0.0).unwrap_or_default() * self.tension[e]
+        self.reach(e).direction * self.tension[e]
+    }
+
+    /// The nodes; a pulley is two, where the cable arrives and leaves, and a wheel some more in between.
+    fn nodes(&self) -> Vec<Node> {
+        let mut out = Vec::with_capacity(self.x.len() + 2 * self.pulleys.len());
+        for i in 0..self.x.len() {
+            match self.pulley_of(i) {
+                None => out.push(self.node(i)),
+                Some(p) => self.wheel_nodes(*p, &mut out),
+            }
+        }
+        out
+    }
+
+    /// Tension along the arc grows exponentially from one end to the other.
+    fn wheel_nodes(&self, p: Pulley, out: &mut Vec<Node>) {
+        let [s0, s1] = self.on_wheel_from_to(&p);
+        let (b, a) = (self.reach(p.node - 1), self.reach(p.node));
+        let jump = (p.tension[1] - p.tension[0]).abs() > NO_JUMP * p.tension[0];
+        let count = if p.radius > 0.0 { WHEEL_NODES } else { 1 };
+        for k in usize::from(p.radius == 0.0 && !jump)..=count {
+            let f = k as f64 / count as f64;
+            let (along, tension_n) = (p.radius * p.turn * f, self.tension_round(&p, f));
+            let angle = p.mark + p.facing * (b.arc[0] - along) / p.radius;
+            let (sin, cos) = angle.sin_cos();
+            let t = if p.radius > 0.0 { Vec2::new(cos, sin) } else { b.direction };
+            let at = if p.radius > 0.0 { self.x[p.node] + perp(t) * (p.facing * p.radius) } else { self.x[p.node] };
+            let v = self.v[p.node] - if k == 0 { b.direction } else if k == count { a.direction } else { t } * p.rate;
+            out.push(Node {
+                arc_length_m: s0 + (s1 - s0) * f,
+                x_m: at.x,
+                y_m: at.y,
+                vx_m_per_s: v.x,
+                vy_m_per_s: v.y,
+                tension_n,
+                strain: tension_n / self.problem.axial_stiffness,
+                stress_pa: tension_n / self.problem.cable.area_m2(),
+                curvature_per_m: if p.radius > 0.0 { -p.facing / p.radius } else { 0.0 },
+            });
+        }
+    }
+
+    fn tension_round(&self, p: &Pulley, f: f64) -> f64 {
+        let [before, after] = p.tension;
+        if before > 0.0 && after > 0.0 { before * (after / before).powf(f) } else { before + (after - before) * f }
+    }
+
+    /// Material where the cable arrives at a pulley and leaves it, m.
+    pub(super) fn on_wheel_from_to(&self, p: &Pulley) -> [f64; 2] {
+        let i = p.node;
+        let s = self.s[i];
+        [s - (self.span[i - 1] - self.share[i - 1]), s + (self.span[i] - self.share[i])]
+    }
+
+    /// Positions and velocities as every model reads them.
+    pub(super) fn present(&self) -> State {
+        let nodes = self.nodes();
+        State {
+            time_s: self.time_s,
+            arc_length_m: nodes.iter().map(|n| n.arc_length_m).collect(),
+            position_m: nodes.iter().map(|n| Vec2::new(n.x_m, n.y_m)).collect(),
+            velocity_m_per_s: nodes.iter().map(|n| Vec2::new(n.vx_m_per_s, n.vy_m_per_s)).collect(),
+        }
+    }
+
+    /// Where the supports sit on a shape, m: a pulley at the material nearest to it, in order.
+    pub(super) fn slid_in(&self, shape: &State) -> Vec<f64> {
+        let scale = self.problem.length / shape.arc_length_m.last().copied().unwrap_or(1.0);
+        let mut least = 0.0;
+        let mut out = vec![0.0; self.problem.supports.len()];
+        for (k, s) in self.problem.supports.iter().enumerate() {
+            out[k] = match (s.arc_length, s.position_at(shape.time_s)) {
+                (Some(known), _) => known,
+                (None, Some((at, _))) => {
+                    let at = self.drag[k].unwrap_or(at);
+                    let off = |j: &usize| (shape.position_m[*j] - at).norm();
+                    let later = (0..shape.position_m.len()).filter(|&j| shape.arc_length_m[j] * scale > least);
+                    // Of several nodes as near the middle one counts: they are those on the wheel.
+                    let nearest = later.clone().map(|j| off(&j)).fold(f64::INFINITY, f64::min);
+                    let near: Vec<usize> = later.filter(|j| off(j) <= nearest + 1e-6 * self.even).collect();
+                    near.get(near.len() / 2).map_or(least, |&j| shape.arc_length_m[j] * scale)
+                }
+                (None, None) => least,
+            };
+            least = out[k];
+        }
+        out
     }
 
     /// Tension at a node: inside, the mean of its elements' force vectors; at an end, the force there, half an
@@ -58,6 +151,11 @@ impl MassSpringModel {
     /// and rubs on it: without that a drag comes out half an element's friction short.
     fn on_support(&self, i: usize) -> Vec2 {
         let force = self.f[i] - self.held_acceleration[i] * self.mass[i];
+        if let Some(p) = self.pulley_of(i) {
+            // Material that turns round it pulls less by its momentum.
+            let turned = self.reach(i).direction - self.reach(i - 1).direction;
+            return force - turned * (self.problem.linear_density * p.rate * p.rate);
+        }
         let Some(ground) = self.problem.world.signed_gap(self.x[i], SKIN) else { return force };
         let pressed = -force.dot(&ground.normal);
         if !(pressed > 0.0) {
@@ -71,6 +169,7 @@ impl MassSpringModel {
 
     fn reaction(&self, k: usize) -> SupportReaction {
         let i = self.node_of[k];
+        let pulley = self.pulley_of(i);
         let force = if self.held[i] {
             self.on_support(i)
         } else {
@@ -83,9 +182,9 @@ impl MassSpringModel {
             y_m: self.x[i].y,
             reaction_x_n: force.x,
             reaction_y_n: force.y,
-            arc_length_m: self.s[i],
-            tension_before_n: None,
-            tension_after_n: None,
+            arc_length_m: pulley.map_or(self.s[i], |p| self.on_wheel_from_to(p).iter().sum::<f64>() * 0.5),
+            tension_before_n: pulley.map(|p| p.tension[0]),
+            tension_after_n: pulley.map(|p| p.tension[1]),
         }
     }
 

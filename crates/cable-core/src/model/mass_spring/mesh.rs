@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::MassSpringModel;
+use super::{MassSpringModel, Stepping};
+use super::pulley::{NONE, Pulley};
 use crate::math::Vec2;
 use crate::model::Settings;
 use crate::problem::Problem;
@@ -10,21 +11,29 @@ use crate::solution::Cost;
 
 /// Elements where neither scene nor settings say: fewer is visibly angular, more makes sub-steps shorter and dearer.
 const DEFAULT_SEGMENTS: usize = 60;
+/// Most of the cable that the way to the last support gets when it is longer: the rest hangs, the first balance decides.
+const LONGEST_WAY: f64 = 0.95;
 /// Greatest damping ratio of the fastest mode: more shortens the stable step without changing what is seen.
 const MAX_MODE_DAMPING: f64 = 1.0;
 
 impl MassSpringModel {
-    /// Puts a node at each support and load, the others evenly between them.
-    pub(super) fn mesh(problem: Arc<Problem>, settings: Settings) -> Self {
+    /// Puts a node at each support and load, the others evenly between them. `slid` is where each support sits, m.
+    pub(super) fn mesh(problem: Arc<Problem>, settings: Settings, slid: &[f64]) -> Self {
         let wanted = settings.segments.or(problem.cable.segments).unwrap_or(DEFAULT_SEGMENTS).max(1);
+        let mut pulleys = Pulley::all(&problem);
+        let sits = |k: usize| problem.supports[k].arc_length.or(slid.get(k).copied()).unwrap_or(0.0);
         let mut marks: Vec<f64> = problem.supports.iter().filter_map(|s| s.arc_length).collect();
+        marks.extend(pulleys.iter().map(|p| sits(p.support)));
         marks.extend(problem.loads.iter().map(|l| l.arc_length));
         marks.extend([0.0, problem.length]);
         marks.sort_by(f64::total_cmp);
         marks.dedup_by(|b, a| (*b - *a).abs() <= 1e-9 * problem.length);
         let mut s = vec![0.0];
         for w in marks.windows(2) {
-            let count = ((w[1] - w[0]) / problem.length * wanted as f64).round().max(1.0);
+            let is_pulley = |m: f64| pulleys.iter().any(|p| (sits(p.support) - m).abs() <= 1e-9 * problem.length);
+            // Beside a pulley there is always a node that moves.
+            let least = if is_pulley(w[0]) || is_pulley(w[1]) { 2.0 } else { 1.0 };
+            let count = ((w[1] - w[0]) / problem.length * wanted as f64).round().max(least);
             s.extend((1..=count as usize).map(|k| w[0] + (w[1] - w[0]) * k as f64 / count));
         }
         let span: Vec<f64> = s.windows(2).map(|w| w[1] - w[0]).collect();
@@ -38,9 +47,17 @@ impl MassSpringModel {
             let k = s.partition_point(|&v| v < at).min(s.len() - 1);
             if k > 0 && at - s[k - 1] < s[k] - at { k - 1 } else { k }
         };
-        let node_of: Vec<usize> = problem.supports.iter().map(|p| nearest(p.arc_length.unwrap_or(0.0))).collect();
+        let node_of: Vec<usize> = (0..problem.supports.len()).map(|k| nearest(sits(k))).collect();
+        let mut lump = vec![0.0; s.len()];
         for (p, &k) in problem.supports.iter().zip(&node_of) {
             mass[k] += p.mass;
+            lump[k] += p.mass;
+        }
+        let mut pulley_at = vec![NONE; s.len()];
+        for (k, p) in pulleys.iter_mut().enumerate() {
+            p.node = node_of[p.support];
+            p.anchor = s[p.node];
+            pulley_at[p.node] = k;
         }
         let load_node = problem.loads.iter().map(|l| nearest(l.arc_length)).collect();
         let x = first_shape(&problem, &s, &node_of);
@@ -60,6 +77,15 @@ impl MassSpringModel {
             cost: Cost::default(),
             laid: false,
             followers: vec![None; ns],
+            even: problem.length / wanted as f64,
+            share: span.clone(),
+            lump,
+            pulleys,
+            pulley_at,
+            anchors: Vec::new(),
+            warnings: Vec::new(),
+            settings,
+            stepping: Stepping::Auto,
             problem,
             s,
             rest,
@@ -70,8 +96,20 @@ impl MassSpringModel {
             x,
             damping_time_s,
         };
+        model.place_supports();
+        model.tidy();
         model.forces();
         model
+    }
+
+    /// Brings the elements beside pulleys near the even length.
+    pub(super) fn tidy(&mut self) {
+        self.measure();
+        for _ in 0..self.x.len() {
+            if !self.remesh() {
+                break;
+            }
+        }
     }
 }
 
@@ -83,6 +121,42 @@ fn damping_time(p: &Problem, rest: &[f64]) -> f64 {
     let shortest = rest.iter().copied().fold(f64::INFINITY, f64::min);
     let fastest = 2.0 * c / shortest;
     (2.0 * p.cable.damping_ratio / first).min(2.0 * MAX_MODE_DAMPING / fastest)
+}
+
+/// Where each support sits on the cable before anything is known, m: material even along the straight way between those
+/// whose place is given; a hanging end gets what the way leaves.
+pub(super) fn lay_supports(p: &Problem) -> Vec<f64> {
+    let count = p.supports.len();
+    let mut way = vec![0.0; count];
+    let mut last: Option<Vec2> = None;
+    for k in 0..count {
+        way[k] = if k > 0 { way[k - 1] } else { 0.0 };
+        if let Some((at, _)) = p.supports[k].position_at(0.0) {
+            way[k] += last.map_or(0.0, |l| (at - l).norm());
+            last = Some(at);
+        }
+    }
+    let known = |k: usize| p.supports[k].arc_length.filter(|_| p.supports[k].at.is_some());
+    let whole = way.last().copied().unwrap_or(0.0);
+    let fits = |room: f64, way: f64| if way < LONGEST_WAY * room { 1.0 } else { LONGEST_WAY * room / way };
+    (0..count)
+        .map(|k| {
+            if let Some(s) = p.supports[k].arc_length {
+                return s;
+            }
+            let before = (0..k).rev().find_map(|j| known(j).map(|s| (way[j], s)));
+            let after = (k + 1..count).find_map(|j| known(j).map(|s| (way[j], s)));
+            match (before, after) {
+                (Some((wa, sa)), Some((wb, sb))) => sa + (sb - sa) * (way[k] - wa) / (wb - wa),
+                (Some((wa, sa)), None) => sa + (way[k] - wa) * fits(p.length - sa, whole - wa),
+                (None, Some((wb, sb))) => sb - (wb - way[k]) * fits(sb, wb),
+                (None, None) => {
+                    let scale = fits(p.length, whole);
+                    0.5 * (p.length - whole * scale) + way[k] * scale
+                }
+            }
+        })
+        .collect()
 }
 
 /// Along the route, material spread evenly; without one, straight from support to support. A free end goes on in the

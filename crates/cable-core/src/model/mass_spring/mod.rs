@@ -3,16 +3,21 @@
 //!
 //! Sub-steps keep below the stability limit of a chain of springs, with ω_max = 2√(EA/(ρ l₀²)) and the damping ratio ζ
 //! of that mode: `dt < 2/ω_max · (√(1+ζ²) − ζ)` (D. Baraff, A. Witkin, Physically based modeling, SIGGRAPH course notes,
-//! 1997, derive the undamped part). Resting places on obstacles are found by dynamic relaxation with adaptive damping
-//! (P. Underwood, Dynamic relaxation, in Computational Methods for Transient Analysis, 1983): fictitious masses, critical
-//! damping of the motion that is going on. Where nothing can be touched Newton's method on the springs' energy finds them (`rest`). Both start
-//! from the shape of [`super::fem`] where there is one: which of many resting places a rough floor allows is then the
-//! same for both models, what holds there is this model's own balance of forces.
+//! 1997, derive the undamped part). Pulleys are nodes through which material slides (`pulley`). Resting places, and steps
+//! without inertia, are found by Newton's method on the energy of springs, contacts and friction (`rest`). They start from
+//! the shape of [`super::fem`] where there is one: which of many resting places a rough floor allows is then the same for
+//! both models, what holds there is this model's own balance of forces.
 
 mod answer;
+mod bending;
+mod collide;
+mod creep;
 mod mesh;
-mod relax;
+mod preview;
+mod pulley;
+mod remesh;
 mod rest;
+mod rest_contact;
 mod step;
 
 use std::sync::Arc;
@@ -20,12 +25,14 @@ use std::sync::Arc;
 use super::drive::Follower;
 use super::fem::FemModel;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
+pub use preview::Stepping;
+use pulley::Pulley;
 use crate::contact::Gap;
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-use crate::solution::{CableSolution, Cost};
+use crate::solution::{CableSolution, Cost, Warning};
 use crate::state::State;
 
 /// The model's mechanics of one cable.
@@ -67,6 +74,28 @@ pub struct MassSpringModel {
     laid: bool,
     /// Followers of dragged supports.
     followers: Vec<Option<Follower>>,
+    /// Length of an element where they are even, m.
+    even: f64,
+    /// Arc length of the straight part of each element (all of it but what lies on a wheel), m.
+    share: Vec<f64>,
+    /// Lumped mass at each node, kg.
+    lump: Vec<f64>,
+    pulleys: Vec<Pulley>,
+    /// Index of the pulley at each node, or `pulley::NONE`.
+    pulley_at: Vec<usize>,
+    /// Where friction holds, between steps without inertia.
+    anchors: Vec<Anchor>,
+    warnings: Vec<Warning>,
+    settings: Settings,
+    stepping: Stepping,
+}
+
+/// Where friction holds the cable: the material point, m, and where it lies.
+#[derive(Clone, Copy, Debug)]
+struct Anchor {
+    obstacle: usize,
+    s: f64,
+    at: Vec2,
 }
 
 /// A contact in the last sub-step.
@@ -87,54 +116,108 @@ fn unsupported(feature: &str) -> SolveError {
     SolveError::Unsupported { model: Model::MassSpring, feature: feature.to_owned() }
 }
 
+/// The resting shape of the corrected bars and where the supports sit on it.
+fn shape_of(problem: Arc<Problem>, settings: Settings) -> Option<Shape> {
+    let mut fem = FemModel::new(problem, settings).ok()?;
+    fem.settle().ok()?;
+    let (state, answer) = (fem.state(), fem.solution());
+    let slid = answer.supports.iter().map(|s| s.arc_length_m).collect();
+    Some(Shape { state, slid, tension: answer.nodes.iter().map(|n| (n.arc_length_m, n.tension_n)).collect() })
+}
+
+/// A resting shape of another model.
+struct Shape {
+    state: State,
+    /// Where the supports sit, m.
+    slid: Vec<f64>,
+    /// Arc length, m, and tension there, N.
+    tension: Vec<(f64, f64)>,
+}
+
 impl MassSpringModel {
     /// Builds it at the route.
     ///
     /// # Errors
     /// `Unsupported` when the scene needs what the model lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
-        if problem.supports.iter().any(|s| s.kind == SupportKind::Pulley) {
-            return Err(unsupported("a pulley"));
-        }
-        if problem.bending_stiffness > 0.0 {
-            return Err(unsupported("bending stiffness"));
-        }
         if problem.cable.self_contact {
             return Err(unsupported("self-contact"));
         }
-        Ok(Self::mesh(problem, settings))
+        let slid = mesh::lay_supports(&problem);
+        Ok(Self::mesh(problem, settings, &slid))
+    }
+
+    /// The same with dynamic steps taken in a given way.
+    #[must_use]
+    pub fn stepping(mut self, stepping: Stepping) -> Self {
+        self.stepping = stepping;
+        self
     }
 
     /// Takes the first shape from the corrected bars, if they find one.
     fn lay(&mut self) {
-        self.laid = true;
-        let settings = Settings { segments: Some(self.rest.len()), ..Settings::default() };
-        let shape = FemModel::new(self.problem.clone(), settings).and_then(|mut fem| {
-            fem.settle()?;
-            Ok(fem.state())
-        });
-        if let Ok(shape) = shape {
-            let time_s = self.time_s;
-            // A shape that does not fit leaves the route as it was.
-            let _ = self.adopt(&shape);
-            self.time_s = time_s;
+        let settings = Settings { segments: Some(self.rest.len()), ..self.settings };
+        let found = shape_of(self.problem.clone(), settings).or_else(|| shape_of(Arc::new(self.pinned()), settings));
+        if let Some(shape) = found
+            && let Some(mut next) = self.shaped(&shape.state, &shape.slid)
+        {
+            next.time_s = self.time_s;
+            for e in 0..next.tension.len() {
+                let middle = 0.5 * (next.s[e] + next.s[e + 1]);
+                let k = shape.tension.partition_point(|n| n.0 < middle).min(shape.tension.len().saturating_sub(1));
+                next.tension[e] = shape.tension.get(k).map_or(0.0, |n| n.1);
+            }
+            *self = next;
         }
+        self.laid = true;
+    }
+
+    /// The problem with its pulleys gripping the cable where it was laid: for models that have none beside obstacles.
+    fn pinned(&self) -> Problem {
+        let mut problem = (*self.problem).clone();
+        for p in &self.pulleys {
+            let support = &mut problem.supports[p.support];
+            let out = Vec2::new(-p.mark.sin(), p.mark.cos()) * (p.facing * p.radius);
+            support.kind = SupportKind::Fixed;
+            support.arc_length = Some(self.s[p.node]);
+            support.at = support.at.map(|a| a + out);
+            if let Some(m) = &mut support.motion {
+                m.shift(out);
+            }
+        }
+        problem
+    }
+
+    /// A chain of the same cable along a shape, its supports where `slid` says; None if the shape has no place for it.
+    fn shaped(&self, shape: &State, slid: &[f64]) -> Option<Self> {
+        let mut next = Self::mesh(self.problem.clone(), self.settings, slid);
+        let speeds = State { position_m: shape.velocity_m_per_s.clone(), ..shape.clone() };
+        // A cable whose length was edited keeps its shape: material is spread over it evenly.
+        let scale = shape.arc_length_m.last().copied().unwrap_or(0.0) / self.problem.length;
+        for n in 0..next.x.len() {
+            next.x[n] = shape.position_at(next.s[n] * scale)?;
+            next.v[n] = speeds.position_at(next.s[n] * scale)?;
+        }
+        next.time_s = shape.time_s;
+        next.stepping = self.stepping;
+        next.drag.clone_from(&self.drag);
+        next.followers.clone_from(&self.followers);
+        next.place_pulleys();
+        for k in 0..next.pulleys.len() {
+            // What `slid` says is the middle of the arc, σ is where the mark is.
+            let i = next.pulleys[k].node;
+            let ahead = next.reach(i - 1).arc[0] - next.reach(i).arc[1];
+            next.s[i] += 0.5 * ahead / self.problem.thermal_stretch;
+            next.pulleys[k].anchor = next.s[i];
+        }
+        next.tidy();
+        next.laid = true;
+        next.forces();
+        Some(next)
     }
 
     fn touches_something(&self) -> bool {
         !self.problem.world.is_empty() || self.problem.floor_friction.is_some()
-    }
-
-    /// Finds the resting place from here.
-    fn rest_here(&mut self) -> Result<(), SolveError> {
-        if !self.touches_something() {
-            self.equilibrium()?;
-            self.v.fill(Vec2::zeros());
-            self.cost.inner_step_s = 0.0;
-            self.forces();
-            return self.compressed().or_else(|| self.non_finite()).map_or(Ok(()), Err);
-        }
-        self.relax()
     }
 
     /// What a sub-step cannot go beyond.
@@ -143,19 +226,8 @@ impl MassSpringModel {
         Some(SolveError::NonFinite { quantity: "position or velocity", node: bad, time_s: self.time_s })
     }
 
-    fn report(&self) -> StepReport {
-        StepReport { cost: self.cost, warnings: Vec::new() }
-    }
-
-    /// A copy of what a failed step must not change.
-    fn keep(&self) -> (f64, Vec<Vec2>, Vec<Vec2>) {
-        (self.time_s, self.x.clone(), self.v.clone())
-    }
-
-    fn restore(&mut self, kept: (f64, Vec<Vec2>, Vec<Vec2>)) {
-        (self.time_s, self.x, self.v) = kept;
-        self.clearance.fill(0.0);
-        self.forces();
+    fn report(&mut self) -> StepReport {
+        StepReport { cost: self.cost, warnings: std::mem::take(&mut self.warnings) }
     }
 }
 
@@ -165,14 +237,14 @@ impl Mechanics for MassSpringModel {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        let kept = self.keep();
+        let kept = self.clone();
         if !self.laid {
             self.lay();
         }
-        match self.rest_here() {
+        match self.equilibrium(true) {
             Ok(()) => Ok(self.report()),
             Err(e) => {
-                self.restore(kept);
+                *self = kept;
                 Err(e)
             }
         }
@@ -183,21 +255,15 @@ impl Mechanics for MassSpringModel {
             return Err(SolveError::TimeStep { dt_s, allowed: "above 0 s, at most 60 s" });
         }
         self.laid = true;
-        let kept = self.keep();
+        let kept = self.clone();
         let end_s = self.time_s + dt_s;
         let done = match inertia {
+            Inertia::Dynamic if self.previews() => self.preview(dt_s),
             Inertia::Dynamic => self.integrate(dt_s),
-            // Relaxation overshoots and sticks there: a drag came out at a third of its pull.
-            Inertia::QuasiStatic if self.touches_something() => {
-                Err(unsupported("slow motion without inertia where friction can hold"))
-            }
-            Inertia::QuasiStatic => {
-                self.time_s = end_s;
-                self.rest_here()
-            }
+            Inertia::QuasiStatic => self.creep(dt_s),
         };
         if let Err(e) = done {
-            self.restore(kept);
+            *self = kept;
             return Err(e);
         }
         self.time_s = end_s;
@@ -205,12 +271,7 @@ impl Mechanics for MassSpringModel {
     }
 
     fn state(&self) -> State {
-        State {
-            time_s: self.time_s,
-            arc_length_m: self.s.clone(),
-            position_m: self.x.clone(),
-            velocity_m_per_s: self.v.clone(),
-        }
+        self.present()
     }
 
     fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
@@ -218,16 +279,9 @@ impl Mechanics for MassSpringModel {
         if let Some(node) = state.first_non_finite() {
             return Err(misfit(node));
         }
-        let speeds = State { position_m: state.velocity_m_per_s.clone(), ..state.clone() };
-        let old_length = state.arc_length_m.last().copied().unwrap_or(0.0);
-        // A cable whose length was edited keeps its shape: material is spread over it evenly.
-        let scale = old_length / self.problem.length;
-        let place =
-            |from: &State| -> Option<Vec<Vec2>> { self.s.iter().map(|s| from.position_at(s * scale)).collect() };
-        let (x, v) = place(state).zip(place(&speeds)).ok_or_else(|| misfit(0))?;
-        (self.x, self.v, self.time_s, self.laid) = (x, v, state.time_s, true);
-        self.clearance.fill(0.0);
-        self.forces();
+        let slid = self.slid_in(state);
+        let next = self.shaped(state, &slid).ok_or_else(|| misfit(0))?;
+        *self = next;
         Ok(())
     }
 

@@ -1,6 +1,7 @@
 //! Forces, contacts and one sub-step; nothing here allocates once the buffers have grown.
 
-use super::{Follower, MassSpringModel, Touch};
+use super::pulley::NONE;
+use super::{Follower, MassSpringModel};
 use crate::error::SolveError;
 use crate::math::Vec2;
 
@@ -10,32 +11,67 @@ const STEP_SAFETY: f64 = 0.8;
 const TRAVEL: f64 = 0.25;
 /// Shortest sub-step, of the stable one: below, motion has run away.
 const SHORTEST: f64 = 1e-6;
-/// Distance kept ready for contact beside what is travelled, m.
-pub(super) const SKIN: f64 = 1e-4;
-/// Speed at which a penetration is pushed out, m/s: more throws the cable off, less lets it sink for longer.
-const PUSH_OUT_SPEED: f64 = 1.0;
-/// Passes over the contacts of a sub-step: one leaves neighbours in each other's way, more changes nothing visible.
-const CONTACT_PASSES: usize = 2;
 
 impl MassSpringModel {
     /// Every force but those of supports and contacts, and the tensions.
     pub(super) fn forces(&mut self) {
+        let (ea, thermal) = (self.problem.axial_stiffness, self.problem.thermal_stretch);
+        self.pull_of_loads();
+        for e in 0..self.rest.len() {
+            let l0 = self.rest[e];
+            let (length, t, shortening) = if self.at_pulley(e) {
+                let r = self.reach(e);
+                let rate = |n: usize| self.pulley_of(n).map_or(0.0, |k| k.rate);
+                (r.length, r.direction, (rate(e + 1) - rate(e)) * thermal)
+            } else {
+                let d = self.x[e + 1] - self.x[e];
+                let l = d.norm();
+                (l, if l > 0.0 { d / l } else { Vec2::zeros() }, 0.0)
+            };
+            let strain = length / l0 - 1.0;
+            let rate = (t.dot(&(self.v[e + 1] - self.v[e])) - shortening * (1.0 + strain)) / l0;
+            // A cable cannot push: neither its elasticity nor its damping. (NaN falls through to the result.)
+            let pull = ea * (strain + self.damping_time_s * rate);
+            let tension = if strain < 0.0 || pull < 0.0 { 0.0 } else { pull };
+            self.tension[e] = tension;
+            self.f[e] += t * tension;
+            self.f[e + 1] -= t * tension;
+        }
+        self.bend();
+        self.load_pulleys();
+    }
+
+    /// Forces and what pulleys feel, of the tensions as they are.
+    pub(super) fn read_forces(&mut self) {
+        self.pull_of_loads();
+        for e in 0..self.rest.len() {
+            let pull = self.reach(e).direction * self.tension[e];
+            self.f[e] += pull;
+            self.f[e + 1] -= pull;
+        }
+        self.load_pulleys();
+    }
+
+    pub(super) fn load_pulleys(&mut self) {
+        let body = self.problem.body_force(self.time_s);
+        for k in 0..self.pulleys.len() {
+            self.load_pulley(k, body);
+        }
+    }
+
+    /// Sets the forces to those of weight, wind and loads.
+    pub(super) fn pull_of_loads(&mut self) {
         let p = &self.problem;
         let body = p.body_force(self.time_s);
         self.f.fill(Vec2::zeros());
-        for e in 0..self.rest.len() {
-            let d = self.x[e + 1] - self.x[e];
-            let (l, l0) = (d.norm(), self.rest[e]);
-            let t = if l > 0.0 { d / l } else { Vec2::zeros() };
-            let rate = t.dot(&(self.v[e + 1] - self.v[e])) / l0;
-            let strain = l / l0 - 1.0;
-            // A cable cannot push: neither its elasticity nor its damping. (NaN falls through to the result.)
-            let pull = p.axial_stiffness * (strain + self.damping_time_s * rate);
-            let tension = if strain < 0.0 || pull < 0.0 { 0.0 } else { pull };
-            self.tension[e] = tension;
-            let half = body * (0.5 * self.span[e]);
-            self.f[e] += t * tension + half;
-            self.f[e + 1] += half - t * tension;
+        for (e, share) in self.share.iter().enumerate() {
+            let half = body * (0.5 * share);
+            self.f[e] += half;
+            self.f[e + 1] += half;
+        }
+        for k in &self.pulleys {
+            let i = k.node;
+            self.f[i] += body * (self.span[i - 1] - self.share[i - 1] + self.span[i] - self.share[i]);
         }
         let g = if p.linear_density > 0.0 { p.weight / p.linear_density } else { Vec2::zeros() };
         for (u, &k) in p.supports.iter().zip(&self.node_of) {
@@ -46,10 +82,23 @@ impl MassSpringModel {
         }
     }
 
-    /// The longest stable sub-step, s.
+    /// The longest stable sub-step, s. By Gershgorin's circles a node of mass m between springs k₁, k₂ swings no faster
+    /// than ω² = 2(k₁ + k₂)/m, and bending adds 16 EI/(m l³) (its row is 1, −4, 6, −4, 1).
     pub(super) fn stable_step(&self) -> f64 {
-        let l0 = self.rest.iter().copied().fold(f64::INFINITY, f64::min);
-        let omega = 2.0 / l0 * (self.problem.axial_stiffness / self.problem.linear_density).sqrt();
+        let p = &self.problem;
+        let mut fastest = 0.0;
+        for n in 0..self.x.len() {
+            let spring = |e: Option<usize>| e.and_then(|e| self.rest.get(e)).map_or(0.0, |l| 1.0 / l);
+            let (before, after) = (spring(n.checked_sub(1)), spring(Some(n)));
+            let tighter = if before > after { before } else { after };
+            let stiffness = 2.0 * p.axial_stiffness * (before + after) + 16.0 * p.bending_stiffness * tighter.powi(3);
+            let mass = self.pulley_of(n).map_or(self.mass[n], |k| k.mass);
+            let square = stiffness / mass;
+            if square > fastest {
+                fastest = square;
+            }
+        }
+        let omega = f64::sqrt(fastest);
         // τ = 2ζ/ω for this mode.
         let zeta = 0.5 * self.damping_time_s * omega;
         STEP_SAFETY * 2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta)
@@ -58,7 +107,9 @@ impl MassSpringModel {
     /// Advances by `dt_s` in equal sub-steps below the stability limit, shorter where motion is fast.
     pub(super) fn integrate(&mut self, dt_s: f64) -> Result<(), SolveError> {
         let (begin, end) = (self.time_s, self.time_s + dt_s);
-        let stable = self.stable_step();
+        self.release_pulleys();
+        self.remesh();
+        let mut stable = self.stable_step();
         let mut count = 0;
         let mut left = dt_s;
         let mut shortest = f64::INFINITY;
@@ -83,8 +134,10 @@ impl MassSpringModel {
             }
             left -= h;
             self.time_s = end - left;
+            self.release_pulleys();
             self.supports(h);
             self.forces();
+            self.slide(h);
             for i in 0..self.x.len() {
                 if !self.held[i] {
                     self.v[i] += self.f[i] * (h / self.mass[i]);
@@ -94,6 +147,11 @@ impl MassSpringModel {
             self.contacts(h);
             for i in 0..self.x.len() {
                 self.x[i] += self.v[i] * h;
+            }
+            if !self.pulleys.is_empty() {
+                self.weigh();
+                self.remesh();
+                stable = self.stable_step();
             }
             count += 1;
             shortest = if h < shortest { h } else { shortest };
@@ -105,8 +163,30 @@ impl MassSpringModel {
         self.non_finite().map_or(Ok(()), Err)
     }
 
+    /// Pulleys that have let go become nodes of the chain: the material goes on as it slid.
+    pub(super) fn release_pulleys(&mut self) {
+        let mut k = 0;
+        while k < self.pulleys.len() {
+            let p = self.pulleys[k];
+            if self.problem.supports[p.support].position_at(self.time_s).is_some() {
+                k += 1;
+                continue;
+            }
+            let (b, a) = (self.reach(p.node - 1), self.reach(p.node));
+            let along = (b.direction + a.direction).try_normalize(0.0).unwrap_or_default();
+            self.x[p.node] = (b.end + a.start) * 0.5;
+            self.v[p.node] -= along * p.rate;
+            self.pulleys.remove(k);
+            self.pulley_at.fill(NONE);
+            for (j, q) in self.pulleys.iter().enumerate() {
+                self.pulley_at[q.node] = j;
+            }
+            self.measure();
+        }
+    }
+
     /// Velocities that bring held nodes to where their supports are at the end of the sub-step.
-    fn supports(&mut self, h: f64) {
+    pub(super) fn supports(&mut self, h: f64) {
         self.held.fill(false);
         for (k, support) in self.problem.supports.iter().enumerate() {
             let Some((at, _)) = support.position_at(self.time_s) else { continue };
@@ -126,8 +206,20 @@ impl MassSpringModel {
         }
     }
 
+    /// Puts the centres of pulleys where they are now.
+    pub(super) fn place_pulleys(&mut self) {
+        for k in 0..self.pulleys.len() {
+            let p = self.pulleys[k];
+            if let Some((at, _)) = self.problem.supports[p.support].position_at(self.time_s) {
+                self.x[p.node] = self.drag[p.support].unwrap_or(at);
+                self.v[p.node] = Vec2::zeros();
+            }
+        }
+    }
+
     /// Puts held nodes where their supports are now.
     pub(super) fn place_supports(&mut self) {
+        self.release_pulleys();
         self.held.fill(false);
         for (k, support) in self.problem.supports.iter().enumerate() {
             let Some((at, _)) = support.position_at(self.time_s) else { continue };
@@ -152,69 +244,5 @@ impl MassSpringModel {
                 self.v[i] = if speed <= loss { Vec2::zeros() } else { self.v[i] * (1.0 - loss / speed) };
             }
         }
-    }
-
-    /// Makes velocities such that nothing is entered in this sub-step: at each contact an inelastic normal impulse and
-    /// a friction impulse within the Coulomb cone. Inside the cone the tangential velocity becomes exactly zero, so a
-    /// held cable does not creep.
-    pub(super) fn contacts(&mut self, h: f64) {
-        self.touches.clear();
-        if self.problem.world.is_empty() {
-            return;
-        }
-        for e in 0..self.rest.len() {
-            let (va, vb) = (self.v[e].norm(), self.v[e + 1].norm());
-            let travel = if va > vb { va } else { vb } * h;
-            self.clearance[e] -= travel;
-            if self.clearance[e] > 0.0 {
-                continue;
-            }
-            let near = SKIN + 2.0 * travel;
-            let reach = near + self.rest[e];
-            self.gaps.clear();
-            self.problem.world.segment_gaps(self.x[e], self.x[e + 1], reach, &mut self.gaps);
-            let nearest = self.gaps.iter().map(|g| g.gap_m).fold(reach, f64::min);
-            self.clearance[e] = nearest - near;
-            for gap in self.gaps.iter().filter(|g| g.gap_m < near) {
-                self.touches.push(Touch { element: e, gap: *gap, normal: 0.0, friction: 0.0, slips: false });
-            }
-        }
-        for _ in 0..CONTACT_PASSES {
-            for k in 0..self.touches.len() {
-                let mut touch = self.touches[k];
-                self.impulse(&mut touch, h);
-                self.touches[k] = touch;
-            }
-        }
-    }
-
-    fn impulse(&mut self, touch: &mut Touch, h: f64) {
-        let (a, b, c) = (touch.element, touch.element + 1, touch.gap.fraction);
-        let inverse = |i: usize| if self.held[i] { 0.0 } else { 1.0 / self.mass[i] };
-        let (ia, ib) = (inverse(a), inverse(b));
-        // Inverse mass of the point at fraction c of the element.
-        let w = (1.0 - c) * (1.0 - c) * ia + c * c * ib;
-        if !(w > 0.0) {
-            return;
-        }
-        let n = touch.gap.normal;
-        let v = self.v[a] * (1.0 - c) + self.v[b] * c;
-        // The gap after the sub-step is gap + v·n·h ≥ 0; a penetration leaves at a bounded speed.
-        let allowed = -touch.gap.gap_m / h;
-        let target = if allowed > PUSH_OUT_SPEED { PUSH_OUT_SPEED } else { allowed };
-        let wanted = touch.normal + (target - v.dot(&n)) / w;
-        let normal = if wanted > 0.0 { wanted } else { 0.0 };
-        let change = normal - touch.normal;
-        let mut along = self.x[b] - self.x[a];
-        along -= n * along.dot(&n);
-        let t = along.try_normalize(0.0).unwrap_or(Vec2::new(n.y, -n.x));
-        let wanted = touch.friction - v.dot(&t) / w;
-        let cone = touch.gap.friction * normal;
-        let friction = wanted.clamp(-cone, cone);
-        touch.slips = wanted.abs() > cone;
-        let j = n * change + t * (friction - touch.friction);
-        (touch.normal, touch.friction) = (normal, friction);
-        self.v[a] += j * ((1.0 - c) * ia);
-        self.v[b] += j * (c * ib);
     }
 }

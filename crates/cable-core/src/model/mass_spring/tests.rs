@@ -1,4 +1,5 @@
-use crate::model::Model;
+use super::{MassSpringModel, Stepping};
+use crate::model::{Inertia, Mechanics, Model, Settings};
 use crate::scene::{Obstacle, Scene, Shape, Support, catalog};
 use crate::solution::Solution;
 use crate::{Simulation, SolveError};
@@ -104,11 +105,176 @@ fn dragging_along_a_floor_takes_mu_w_l() {
     assert!((mean / exact - 1.0).abs() < 0.01, "{mean} against {exact}");
 }
 
+/// Pulled slowly one way and back: μwL either way once everything slides, and the same place again gives it too.
 #[test]
-fn slow_motion_over_rough_ground_is_refused() {
-    let mut sim = Simulation::new(drag(), Model::MassSpring).unwrap();
+fn slow_motion_takes_mu_w_l_and_turns_round() {
+    let mut scene = drag();
+    let hitch = &mut scene.cables[0].supports[1];
+    hitch.motion = Some(crate::scene::Motion {
+        times_s: vec![0.0, 1.0, 2.0],
+        points_m: vec![[5.0, 0.014], [5.5, 0.014], [5.2, 0.014]],
+    });
+    let exact = 0.5 * 1.246 * 9.80665 * 5.0;
+    let mut sim = Simulation::new(scene, Model::MassSpring).unwrap();
     sim.settle().unwrap();
-    assert!(matches!(sim.step_quasi_static(0.1), Err(SolveError::Unsupported { .. })));
+    let pull = |sim: &Simulation| -sim.solution().cables[0].supports[1].reaction_x_n;
+    for _ in 0..20 {
+        sim.step_quasi_static(0.05).unwrap();
+    }
+    let there = pull(&sim);
+    assert!((there / exact - 1.0).abs() < 0.01, "{there} against {exact}");
+    for _ in 0..20 {
+        sim.step_quasi_static(0.05).unwrap();
+    }
+    // A cable cannot push its tail back.
+    let back = pull(&sim);
+    assert!(back.abs() < 1e-3 * exact, "{back}");
+}
+
+/// With a weight on the tail that keeps it taut the pull is P + μwL one way and P − μwL the other.
+#[test]
+fn slow_motion_turns_round_by_twice_mu_w_l() {
+    let mut scene = drag();
+    let c = &mut scene.cables[0];
+    c.supports[0] = Support { force_n: Some([-100.0, 0.0]), ..Support::new("tail", crate::scene::SupportKind::Load) };
+    c.supports[1].motion = Some(crate::scene::Motion {
+        times_s: vec![0.0, 1.0, 2.0],
+        points_m: vec![[5.0, 0.014], [5.5, 0.014], [5.2, 0.014]],
+    });
+    let friction = 0.5 * 1.246 * 9.80665 * 5.0;
+    let mut sim = Simulation::new(scene, Model::MassSpring).unwrap();
+    sim.settle().unwrap();
+    for exact in [100.0 + friction, 100.0 - friction] {
+        for _ in 0..20 {
+            sim.step_quasi_static(0.05).unwrap();
+        }
+        let pull = -sim.solution().cables[0].supports[1].reaction_x_n;
+        println!("{pull} of {exact}");
+        assert!((pull / exact - 1.0).abs() < 0.01, "{pull} against {exact}");
+    }
+}
+
+/// A smooth pulley between two points, off its balance, without damping.
+fn swinging(radius_m: f64, axial_stiffness_n: f64) -> Scene {
+    let mut scene = span();
+    let c = &mut scene.cables[0];
+    c.axial_stiffness_n = axial_stiffness_n;
+    c.damping_ratio = 0.0;
+    c.length_m = 11.0;
+    c.segments = Some(44);
+    let mut wheel = Support::pulley("wheel", [4.0, 6.0]);
+    wheel.radius_m = Some(radius_m);
+    c.supports = vec![Support::fixed("left", [0.0, 5.0]), wheel, Support::fixed("right", [9.0, 4.0])];
+    scene
+}
+
+fn mechanics(scene: &Scene) -> MassSpringModel {
+    let problem = crate::problem::problems(scene).unwrap().remove(0);
+    MassSpringModel::new(problem, Settings::default()).unwrap()
+}
+
+/// Kinetic energy, stretch and height, J.
+fn energy(m: &MassSpringModel) -> f64 {
+    let p = &m.problem;
+    let body = p.body_force(m.time_s);
+    let mut out = 0.0;
+    for e in 0..m.rest.len() {
+        let r = m.reach(e);
+        let stretch = (r.length - m.rest[e]).max(0.0);
+        out += 0.5 * p.axial_stiffness * stretch * stretch / m.rest[e] - body.dot(&r.middle) * m.span[e];
+    }
+    for i in 0..m.x.len() {
+        if !m.held[i] {
+            out += 0.5 * m.mass[i] * m.v[i].norm_squared();
+        }
+    }
+    out + m.pulleys.iter().map(|p| 0.5 * p.mass * p.rate * p.rate).sum::<f64>()
+}
+
+#[test]
+fn a_smooth_pulley_makes_no_energy_and_loses_no_material() {
+    for radius in [0.0, 0.2] {
+        let mut m = mechanics(&swinging(radius, 2e4));
+        let start = energy(&m);
+        let mut slid = [f64::INFINITY, f64::NEG_INFINITY];
+        let (mut most, mut last, mut counts) = (0.0f64, start, std::collections::BTreeSet::new());
+        for _ in 0..200 {
+            m.advance(0.02, Inertia::Dynamic).unwrap();
+            let node = m.pulleys[0].node;
+            counts.insert(node);
+            slid = [slid[0].min(m.s[node]), slid[1].max(m.s[node])];
+            last = energy(&m);
+            most = most.max(last - start);
+            assert_eq!(m.span.iter().sum::<f64>().to_bits() & !0xff, 11.0f64.to_bits() & !0xff);
+            let mass = m.mass.iter().sum::<f64>() / (11.0 * 1.246) - 1.0;
+            assert!(mass.abs() < 1e-12, "mass {mass:e}");
+            assert!(m.s.windows(2).all(|w| w[1] > w[0]));
+        }
+        // The height the cable could fall is some metres: 100 J.
+        println!("R {radius}: made {most:.2e} J, end {:.2e} J, slid {slid:?}, nodes {counts:?}", last - start);
+        assert!(slid[1] - slid[0] > 0.3 && counts.len() > 1, "it slides, nodes come and go");
+        assert!(most < 0.5, "energy made: {most} J");
+        assert!(last - start > -30.0, "energy lost: {} J", start - last);
+    }
+}
+
+/// A stiff cable on a wheel, its end swung to and fro: display frames of any length give the same end.
+#[test]
+fn a_preview_does_not_depend_on_the_frames() {
+    let mut scene = swinging(0.0, 1e8);
+    scene.cables[0].damping_ratio = 0.02;
+    scene.cables[0].supports[2].motion =
+        Some(crate::scene::Motion { times_s: vec![0.0, 1.0], points_m: vec![[9.0, 4.0], [9.5, 4.2]] });
+    let run = |frames: &[f64]| {
+        let mut m = mechanics(&scene);
+        m.settle().unwrap();
+        for &dt in frames.iter().cycle() {
+            let report = m.advance(dt, Inertia::Dynamic).unwrap();
+            assert_eq!(report.warnings.len(), 1, "{:?}", report.warnings);
+            assert!(report.warnings[0].message.contains("preview"));
+            if m.time_s > 2.04 - 1e-9 {
+                return m.solution();
+            }
+        }
+        unreachable!()
+    };
+    let (fixed, alternating) = (run(&[1.0 / 60.0, 1.0 / 60.0, 1.0 / 60.0, 0.01]), run(&[0.01, 0.5]));
+    let mut worst = 0.0f64;
+    for (a, b) in fixed.nodes.iter().zip(&alternating.nodes) {
+        worst = worst.max((a.x_m - b.x_m).hypot(a.y_m - b.y_m));
+    }
+    let off = fixed.supports[2].reaction_x_n / alternating.supports[2].reaction_x_n - 1.0;
+    println!("frames: {worst:.2e} m, {off:.2e}");
+    assert!(worst < 0.01 * 11.0 && off.abs() < 0.01, "{worst} m, {off}");
+}
+
+/// A preview of a cable that explicit steps can do follows them, and comes to rest where it rests.
+#[test]
+fn a_preview_rests_where_the_springs_rest() {
+    let scene = swinging(0.1, 1e8);
+    let mut settled = mechanics(&scene);
+    settled.settle().unwrap();
+    let rest = settled.solution();
+    let mut m = settled.clone().stepping(Stepping::Preview);
+    for _ in 0..120 {
+        assert!(m.advance(1.0 / 60.0, Inertia::Dynamic).unwrap().warnings.is_empty());
+    }
+    let now = m.solution();
+    for (a, b) in rest.supports.iter().zip(&now.supports) {
+        let off = (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n);
+        println!("{}: {off:.2e} N of {:.1}", a.name, a.reaction_x_n.hypot(a.reaction_y_n));
+        assert!(off < 0.01 * a.reaction_x_n.hypot(a.reaction_y_n), "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn a_preview_that_runs_away_is_cut_and_said() {
+    let mut m = mechanics(&swinging(0.0, 1e8)).stepping(Stepping::Preview);
+    m.v.fill(crate::math::Vec2::new(0.0, 1e4));
+    let report = m.advance(0.02, Inertia::Dynamic).unwrap();
+    let said: Vec<_> = report.warnings.iter().map(|w| w.message.as_str()).collect();
+    assert!(said.iter().any(|s| s.contains("velocity was cut")), "{said:?}");
+    assert!(said.iter().any(|s| s.contains("kinetic energy")), "{said:?}");
 }
 
 #[test]
