@@ -19,10 +19,9 @@ const MOST_STEPS: usize = 700;
 #[test]
 fn the_catalogue_settles() {
     for (id, scene) in catalog::all() {
-        let begin = std::time::Instant::now();
         let mut sim = Simulation::new(scene, Model::MassSpring).unwrap();
         let s = sim.settle().unwrap_or_else(|e| panic!("{id}: {e}"));
-        println!("{id}: {} steps, {:.1e} N, {:?}", s.cost.iterations, s.cost.residual_n, begin.elapsed());
+        println!("{id}: {} steps, {:.1e} N", s.cost.iterations, s.cost.residual_n);
         assert!(s.cost.iterations < MOST_STEPS, "{id}: {} steps", s.cost.iterations);
     }
 }
@@ -92,7 +91,7 @@ fn capstan(radius_m: f64) -> Scene {
     let c = &mut scene.cables[0];
     c.length_m = 8.0;
     c.segments = Some(80);
-    c.linear_density_kg_per_m = 0.05;
+    (c.linear_density_kg_per_m, c.axial_stiffness_n) = (0.05, 5e4);
     let mut wheel = Support { friction: Some(0.3), ..Support::pulley("wheel", [0.0, 5.0]) };
     wheel.radius_m = Some(radius_m);
     let hand = Support {
@@ -115,9 +114,10 @@ fn a_rubbing_pulley_takes_the_capstans_ratio() {
             }
             let wheel = sim.solution().cables[0].supports[1].clone();
             let (before, after) = (wheel.tension_before_n.unwrap(), wheel.tension_after_n.unwrap());
-            // The way down is (2, −4) from the middle of a small wheel.
-            let turn = std::f64::consts::FRAC_PI_2 + 4.0f64.atan2(2.0);
-            let turn = turn + if radius > 0.0 { (radius / 20f64.sqrt()).asin() } else { 0.0 };
+            // The way down is (2, −4.8) or (2, −4) from the middle of a small wheel.
+            let down: f64 = if sign > 0.0 { 4.8 } else { 4.0 };
+            let out = radius + if radius > 0.0 { 0.5 * sim.scene().cables[0].diameter_m } else { 0.0 };
+            let turn = std::f64::consts::FRAC_PI_2 + down.atan2(2.0) + (out / down.hypot(2.0)).asin();
             let ratio = (after / before).ln() / (0.3 * turn * sign);
             println!("R {radius}: {ratio}");
             assert!((ratio - 1.0).abs() < 0.01, "R {radius}: {ratio}");
@@ -127,20 +127,23 @@ fn a_rubbing_pulley_takes_the_capstans_ratio() {
 
 #[test]
 fn sliding_in_time_keeps_the_capstans_ratio() {
-    let mut sim = Simulation::new(capstan(0.0), Model::MassSpring).unwrap();
+    let mut scene = capstan(0.0);
+    scene.cables[0].supports[0].mass_kg = None;
+    let mut sim = Simulation::new(scene, Model::MassSpring).unwrap();
     sim.settle().unwrap();
     let (mut sum, mut count) = (0.0, 0.0);
-    for k in 0..30 {
+    for k in 0..40 {
         sim.step(1.0 / 60.0).unwrap();
         let s = sim.solution();
         let wheel = &s.cables[0].supports[1];
-        if k >= 15 {
-            sum += (wheel.tension_after_n.unwrap() / wheel.tension_before_n.unwrap()).ln();
+        if k >= 20 {
+            let hand = &s.cables[0].supports[2];
+            let turn = std::f64::consts::FRAC_PI_2 + (5.0 - hand.y_m).atan2(2.0);
+            sum += (wheel.tension_after_n.unwrap() / wheel.tension_before_n.unwrap()).ln() / (0.3 * turn);
             count += 1.0;
         }
     }
-    let turn = std::f64::consts::FRAC_PI_2 + 4.0f64.atan2(2.0);
-    let ratio = sum / count / (0.3 * turn);
+    let ratio = sum / count;
     println!("in time {ratio}");
     assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
 }
@@ -153,7 +156,11 @@ fn two_weights_on_a_pulley_move_as_atwood_says() {
     let c = &mut scene.cables[0];
     (c.length_m, c.linear_density_kg_per_m, c.axial_stiffness_n) = (10.0, 0.4, 1e5);
     c.damping_ratio = 0.05;
-    let load = |name: &str, mass| Support { mass_kg: Some(mass), force_n: Some([0.0, 0.0]), ..Support::new(name, SupportKind::Load) };
+    let load = |name: &str, mass| Support {
+        mass_kg: Some(mass),
+        force_n: Some([0.0, 0.0]),
+        ..Support::new(name, SupportKind::Load)
+    };
     c.supports = vec![load("lighter", 5.0), Support::pulley("pulley", [0.0, 0.0]), load("heavier", 5.5)];
     c.route_m = vec![[0.0, -5.0], [0.0, 0.0], [0.0, -5.0]];
     let mut errors = Vec::new();
@@ -165,9 +172,9 @@ fn two_weights_on_a_pulley_move_as_atwood_says() {
         }
         let s = sim.solution();
         let g = 9.80665;
-        let (rho, mass) = (0.4, 5.0 + 5.5 + 4.0);
+        let (rho, mass): (f64, f64) = (0.4, 5.0 + 5.5 + 4.0);
         let c: f64 = 0.5 * (0.5 / rho);
-        let x = c * ((2.0 * rho * g / mass as f64).sqrt().cosh() - 1.0);
+        let x = c * ((2.0 * rho * g / mass).sqrt().cosh() - 1.0);
         let found = 5.0 - s.cables[0].supports[1].arc_length_m;
         println!("{segments}: slid {found} of {x}");
         errors.push((found / x - 1.0).abs());
@@ -195,11 +202,8 @@ fn clamped(length: f64, end: Option<[f64; 2]>, w: f64, ea: f64, ei: f64) -> Scen
     (c.length_m, c.linear_density_kg_per_m, c.axial_stiffness_n) = (length, w / 10.0, ea);
     (c.bending_stiffness_n_m2, c.thermal_expansion_per_k) = (ei, 0.0);
     (c.breaking_tension_n, c.service_tension_n) = (1e15, 1e15);
-    let clamp = |name: &str, at| Support {
-        at_m: Some(at),
-        angle_deg: Some(0.0),
-        ..Support::new(name, SupportKind::Clamped)
-    };
+    let clamp =
+        |name: &str, at| Support { at_m: Some(at), angle_deg: Some(0.0), ..Support::new(name, SupportKind::Clamped) };
     c.supports = vec![clamp("A", [0.0, 0.0]), end.map_or(Support::free("B"), |p| clamp("B", p))];
     scene
 }
@@ -213,7 +217,8 @@ fn stiff_catenaries_converge() {
         }
         let ea = case["in"]["EA"].as_f64().unwrap_or(1e10);
         let scene = clamped(input("L"), Some([input("X"), input("Z")]), input("w"), ea, input("EI"));
-        let error = |n| (solve(&scene, Model::MassSpring, n).supports[0].reaction_x_n / number(case, "out", "H") - 1.0).abs();
+        let error =
+            |n| (solve(&scene, Model::MassSpring, n).supports[0].reaction_x_n / number(case, "out", "H") - 1.0).abs();
         second_order(name, &[50, 100, 200].map(error), 3e-3);
     }
 }
@@ -241,6 +246,7 @@ fn a_cantilever_swings_at_its_frequency() {
     scene.cables[0].linear_density_kg_per_m = rho;
     scene.cables[0].damping_ratio = 0.0;
     scene.cables[0].segments = Some(40);
+    scene.cables[0].route_m = vec![[0.0, 0.0], [length, 0.0]];
     let still = solve(&scene, Model::MassSpring, 40).nodes.last().unwrap().y_m;
     let mut sim = Simulation::new(scene, Model::MassSpring).unwrap();
     let period = std::f64::consts::TAU / (3.51602 * (ei / rho / length.powi(4)).sqrt());
@@ -268,7 +274,7 @@ fn forces_in_time_move_the_middle_of_mass() {
     scene.environment.winds_n_per_m = vec![[0.0, 0.0], [0.0, 0.0], [8.0, 2.0]];
     scene.environment.wind_n_per_m = [0.0, 0.0];
     let c = &mut scene.cables[0];
-    (c.length_m, c.linear_density_kg_per_m, c.axial_stiffness_n) = (4.0, 0.5, 2e4);
+    (c.length_m, c.linear_density_kg_per_m, c.axial_stiffness_n) = (4.0, 0.5, 2e6);
     c.bending_stiffness_n_m2 = 0.0;
     c.segments = Some(20);
     let top = Support { release_s: Some(0.1), ..Support::fixed("top", [0.0, 0.0]) };

@@ -60,6 +60,12 @@ pub fn run(model: Model) -> Result<Vec<Check>, Error> {
         n.tension_n /= 8.0;
     }
     check("forces scale with weight and stiffness", tensions(&settled, &scaled, false), 10.0 * equilibrium);
+    let mut over = base.clone();
+    over.cables[0].supports.insert(1, Support::pulley("eye", [5.0, 7.0]));
+    let slid = settle(&over, model)?;
+    check("a smooth pulley passes tension on", passed_on(&slid), shape);
+    let pulled = (sum_y(&slid) + weight).abs() / weight;
+    check("reactions with a pulley sum to the weight", pulled, 10.0 * equilibrium);
     Ok(out)
 }
 
@@ -72,6 +78,14 @@ fn span(left: [f64; 2], right: [f64; 2]) -> Scene {
     c.length_m = 12.0;
     c.supports = vec![Support::fixed("left", left), Support::fixed("right", right)];
     scene
+}
+
+/// Difference of tension at the pulley, relative.
+fn passed_on(s: &Solution) -> f64 {
+    match s.cables[0].supports.get(1).map(|p| (p.tension_before_n, p.tension_after_n)) {
+        Some((Some(before), Some(after))) => (after - before).abs() / before,
+        _ => f64::NAN,
+    }
 }
 
 fn settle(scene: &Scene, model: Model) -> Result<Solution, Error> {

@@ -52,11 +52,18 @@ impl MassSpringModel {
         for k in usize::from(p.radius == 0.0 && !jump)..=count {
             let f = k as f64 / count as f64;
             let (along, tension_n) = (p.radius * p.turn * f, self.tension_round(&p, f));
-            let angle = p.mark + p.facing * (b.arc[0] - along) / p.radius;
+            let angle = p.mark + p.facing * (p.arc[0] - along) / p.radius;
             let (sin, cos) = angle.sin_cos();
             let t = if p.radius > 0.0 { Vec2::new(cos, sin) } else { b.direction };
             let at = if p.radius > 0.0 { self.x[p.node] + perp(t) * (p.facing * p.radius) } else { self.x[p.node] };
-            let v = self.v[p.node] - if k == 0 { b.direction } else if k == count { a.direction } else { t } * p.rate;
+            let v = self.v[p.node]
+                - if k == 0 {
+                    b.direction
+                } else if k == count {
+                    a.direction
+                } else {
+                    t
+                } * p.rate;
             out.push(Node {
                 arc_length_m: s0 + (s1 - s0) * f,
                 x_m: at.x,
@@ -78,9 +85,8 @@ impl MassSpringModel {
 
     /// Material where the cable arrives at a pulley and leaves it, m.
     pub(super) fn on_wheel_from_to(&self, p: &Pulley) -> [f64; 2] {
-        let i = p.node;
-        let s = self.s[i];
-        [s - (self.span[i - 1] - self.share[i - 1]), s + (self.span[i] - self.share[i])]
+        let (s, thermal) = (self.s[p.node], self.problem.thermal_stretch);
+        [s - p.arc[0] / thermal, s + p.arc[1] / thermal]
     }
 
     /// Positions and velocities as every model reads them.

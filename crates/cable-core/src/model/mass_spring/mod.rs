@@ -25,8 +25,6 @@ use std::sync::Arc;
 use super::drive::Follower;
 use super::fem::FemModel;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
-pub use preview::Stepping;
-use pulley::Pulley;
 use crate::contact::Gap;
 use crate::error::SolveError;
 use crate::math::Vec2;
@@ -34,6 +32,8 @@ use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost, Warning};
 use crate::state::State;
+pub use preview::Stepping;
+use pulley::Pulley;
 
 /// The model's mechanics of one cable.
 #[derive(Clone, Debug)]

@@ -28,7 +28,7 @@ const MOST_ENERGY: f64 = 10.0;
 /// What is left of velocities in such a sub-step.
 const BRAKE: f64 = 0.7;
 /// Rounds of letting go of elements that would push.
-const ROUNDS: usize = 2;
+const ROUNDS: usize = 3;
 /// Explicit sub-steps in a display frame of 1/60 s beyond which a step is a preview, unless asked otherwise. At 100
 /// elements they take some 100 ms a simulated second.
 pub(super) const MOST_SUB_STEPS: f64 = 1000.0;
@@ -55,6 +55,7 @@ struct Buffers {
     diagonal: Vec<f64>,
     lambda: Vec<f64>,
     sigma: Vec<f64>,
+    stuck: Vec<bool>,
 }
 
 /// What went wrong in a step.
@@ -108,6 +109,7 @@ impl MassSpringModel {
         let n = self.x.len();
         b.x.clear();
         b.sigma.clear();
+        b.stuck.clear();
         b.sigma.extend(self.pulleys.iter().map(|p| self.s[p.node]));
         for i in 0..n {
             if !self.held[i] {
@@ -121,7 +123,11 @@ impl MassSpringModel {
             let weight = body.dot(&(self.reach(i - 1).middle - self.reach(i).middle));
             let p = &mut self.pulleys[k];
             p.rate += weight * h / p.mass;
-            self.s[i] += p.rate * h;
+            // What rubs holds until the tensions say otherwise.
+            b.stuck.push(p.friction > 0.0);
+            if p.friction == 0.0 {
+                self.s[i] += p.rate * h;
+            }
         }
         self.weigh_at(&b.x);
         self.project(h, b);
@@ -132,10 +138,7 @@ impl MassSpringModel {
         }
         for k in 0..self.pulleys.len() {
             let p = &mut self.pulleys[k];
-            let rate = (self.s[p.node] - b.sigma[k]) / h;
-            let most = p.grip() * (p.tension[0] + p.tension[1]) * h / p.mass;
-            p.rate = if rate.abs() <= most { 0.0 } else { rate - most * rate.signum() };
-            self.s[p.node] = b.sigma[k] + p.rate * h;
+            p.rate = (self.s[p.node] - b.sigma[k]) / h;
         }
         self.calm(trouble);
         self.floor_friction(h);
@@ -169,7 +172,7 @@ impl MassSpringModel {
                     (b.active[e], b.lambda[e], pushing) = (false, 0.0, true);
                 }
             }
-            if !pushing {
+            if !(pushing | self.let_slip(h, b)) {
                 break;
             }
         }
@@ -178,6 +181,9 @@ impl MassSpringModel {
             let lambda = if b.lambda[e] < 0.0 || b.lambda[e].is_nan() { b.lambda[e] } else { 0.0 };
             self.tension[e] = -lambda / (h * h);
             for (i, sign) in [(e, -1.0), (e + 1, 1.0)] {
+                if self.pulley_at[i] != NONE && b.stuck[self.pulley_at[i]] {
+                    continue;
+                }
                 if self.pulley_at[i] != NONE {
                     self.s[i] -= sign * thermal * lambda / self.pulleys[self.pulley_at[i]].mass;
                 } else if !self.held[i] {
@@ -187,11 +193,33 @@ impl MassSpringModel {
         }
     }
 
+    /// Pulleys whose tensions leave the capstan's cone slide, with its force against them; whether there are any.
+    fn let_slip(&mut self, h: f64, b: &mut Buffers) -> bool {
+        let mut any = false;
+        for k in 0..self.pulleys.len() {
+            let (p, i) = (self.pulleys[k], self.pulleys[k].node);
+            let (before, after) = (-b.lambda[i - 1] / (h * h), -b.lambda[i] / (h * h));
+            let most = p.grip() * (before + after);
+            let pull = before - after + p.rate * p.mass / h;
+            if !b.stuck[k] || pull.abs() <= most {
+                continue;
+            }
+            (b.stuck[k], any) = (false, true);
+            self.s[i] += p.rate * h - most * pull.signum() * h * h / p.mass;
+            let thermal = self.problem.thermal_stretch;
+            for (e, sign) in [(i - 1, 1.0), (i, -1.0)] {
+                b.gap[e] -= sign * thermal * (self.s[i] - b.sigma[k]);
+            }
+        }
+        any
+    }
+
     /// The tridiagonal system of the active elements (L. H. Thomas' elimination).
     fn solve_chain(&self, h: f64, b: &mut Buffers) {
         let (ea, elements) = (self.problem.axial_stiffness, self.rest.len());
         let thermal = self.problem.thermal_stretch * self.problem.thermal_stretch;
         let weight = |i: usize| match self.pulley_of(i) {
+            Some(_) if b.stuck[self.pulley_at[i]] => 0.0,
             Some(p) => thermal / p.mass,
             None if self.held[i] => 0.0,
             None => 1.0 / self.mass[i],

@@ -11,7 +11,7 @@
 //!
 //! so an element is a spring of that length with rest length λ(s₂ − s₁), whatever it winds round, and the energy is exact.
 //! The material obeys ṡ = u with the mass of the half elements beside it and of the arc,
-//! m u̇ = λ(Θ_b − Θ_a) + q·(c_b − c_a) + friction, Θ = T + T²/2EA, c the middle of an element with its arc; friction holds within the capstan's
+//! m u̇ = λ(Θ_b − Θ_a) + q·(c_b − c_a) + friction, Θ = T + T²/2EA, c the middle of the straight part; friction holds within the capstan's
 //! cone |T_b − T_a| ≤ tanh(μφ/2)(T_b + T_a), taken where the cable touches the wheel. Material sliding through a fixed
 //! point in space is after S. Sueda, G. L. Jones, D. I. W. Levin, D. K. Pai, "Large-scale dynamic simulation of highly
 //! constrained strands", ACM Transactions on Graphics 30 (2011); they share masses consistently, here they are lumped.
@@ -23,6 +23,9 @@ use crate::scene::{PulleySide, SupportKind};
 
 /// No pulley at a node.
 pub(super) const NONE: usize = usize::MAX;
+
+/// Tension over the weight of half an element below which the direction of the force there says nothing.
+const SLACK: f64 = 4.0;
 
 /// One pulley.
 #[derive(Clone, Copy, Debug)]
@@ -49,6 +52,8 @@ pub(super) struct Pulley {
     pub tension: [f64; 2],
     /// How far the cable turns, rad.
     pub turn: f64,
+    /// Arc before and after the mark, m.
+    pub arc: [f64; 2],
     /// σ from which friction is measured at rest, m, and the most it holds there, N.
     pub anchor: f64,
     pub hold: f64,
@@ -68,8 +73,10 @@ pub(super) struct Reach {
     pub length: f64,
     /// Arc at the end and at the start, m.
     pub arc: [f64; 2],
-    /// Middle of all its length, m.
+    /// Middle of the straight part, m.
     pub middle: Vec2,
+    /// Moment of the arcs, their length times their centroid, m².
+    pub hung: Vec2,
 }
 
 /// An angle in (−π, π].
@@ -96,7 +103,11 @@ impl Pulley {
                 let right = if (before + after).x < 0.0 { -1.0 } else { 1.0 };
                 let facing = if s.side == PulleySide::Over { right } else { -right };
                 let bend = wrap(angle_of(before) - angle_of(after));
-                let bend = if facing * bend < -0.5 * std::f64::consts::PI { bend + facing * std::f64::consts::TAU } else { bend };
+                let bend = if facing * bend < -0.5 * std::f64::consts::PI {
+                    bend + facing * std::f64::consts::TAU
+                } else {
+                    bend
+                };
                 Some(Self {
                     support: k,
                     node: NONE,
@@ -109,6 +120,7 @@ impl Pulley {
                     mass: 0.0,
                     tension: [0.0; 2],
                     turn: 0.0,
+                    arc: [0.0; 2],
                     anchor: 0.0,
                     hold: 0.0,
                 })
@@ -144,7 +156,8 @@ impl MassSpringModel {
         if first.is_none() && second.is_none() {
             let length = d.norm();
             let direction = if length > 0.0 { d / length } else { Vec2::zeros() };
-            return Reach { start: a, end: b, direction, free: length, length, arc: [0.0; 2], middle: (a + b) * 0.5 };
+            let middle = (a + b) * 0.5;
+            return Reach { start: a, end: b, direction, free: length, length, middle, ..Reach::default() };
         }
         let bent = |p: Option<&Pulley>| p.map_or(0.0, |p| p.radius * p.facing);
         let (r1, r2) = (bent(first), bent(second));
@@ -153,16 +166,13 @@ impl MassSpringModel {
         let free = if left > 0.0 { left.sqrt() } else { 0.0 };
         let direction = ((d * free + perp(d) * rho) / square).try_normalize(0.0).unwrap_or_default();
         let angle = angle_of(direction);
-        let arcs = [
-            second.map_or(0.0, |p| r2 * wrap(angle - p.mark)),
-            first.map_or(0.0, |p| r1 * wrap(p.mark - angle)),
-        ];
+        let arcs =
+            [second.map_or(0.0, |p| r2 * wrap(angle - p.mark)), first.map_or(0.0, |p| r1 * wrap(p.mark - angle))];
         let n = perp(direction);
         let (start, end, length) = (a + n * r1, b + n * r2, free + arcs[0] + arcs[1]);
-        let middle = (start + end) * (0.5 * free)
-            + second.map_or_else(Vec2::zeros, |p| p.middle_of_arc(b, angle) * arcs[0])
+        let hung = second.map_or_else(Vec2::zeros, |p| p.middle_of_arc(b, angle) * arcs[0])
             + first.map_or_else(Vec2::zeros, |p| p.middle_of_arc(a, angle) * arcs[1]);
-        Reach { start, end, direction, free, length, arc: arcs, middle: middle / length }
+        Reach { start, end, direction, free, length, arc: arcs, middle: (start + end) * 0.5, hung }
     }
 
     /// How element `e` lies now.
@@ -200,7 +210,8 @@ impl MassSpringModel {
             let i = self.pulleys[k].node;
             for e in [i - 1, i] {
                 let r = self.reach_at(e, x);
-                self.share[e] = if r.length > 0.0 { self.span[e] * r.free / r.length } else { 0.0 };
+                // What lies on a wheel is taken as if unstretched: σ then moves the straight part alone.
+                self.share[e] = self.span[e] - (r.arc[0] + r.arc[1]) / self.problem.thermal_stretch;
             }
         }
         let density = self.problem.linear_density;
@@ -227,16 +238,26 @@ impl MassSpringModel {
         let i = self.pulleys[k].node;
         let (b, a) = (self.reach(i - 1), self.reach(i));
         let (tb, ta) = (self.tension[i - 1], self.tension[i]);
-        // Half a free part's weight lies between the middle of an element and the wheel.
-        let before = tb - 0.5 * self.share[i - 1] * body.dot(&b.direction);
-        let after = ta + 0.5 * self.share[i] * body.dot(&a.direction);
-        let p = &mut self.pulleys[k];
-        p.tension = [before, after].map(|t| if t < 0.0 { 0.0 } else { t });
-        p.turn = if p.radius > 0.0 {
-            (b.arc[0] + a.arc[1]) / p.radius
-        } else {
-            cross(b.direction, a.direction).atan2(b.direction.dot(&a.direction))
+        // Half a free part's weight lies between the middle of an element and the wheel: that also turns the cable a
+        // little, and moves where it touches.
+        let touch = |r: &Reach, tension: f64, half: Vec2| {
+            let force = r.direction * tension + half;
+            let size = force.norm();
+            (size, if size > SLACK * half.norm() { force / size } else { r.direction })
         };
+        let (before, from) = touch(&b, tb, body * (-0.5 * self.share[i - 1]));
+        let (after, to) = touch(&a, ta, body * (0.5 * self.share[i]));
+        let center = self.x[i];
+        let p = &mut self.pulleys[k];
+        if p.radius > 0.0 {
+            p.arc = [wrap(angle_of(from) - p.mark), wrap(p.mark - angle_of(to))].map(|a| a * p.facing * p.radius);
+            let at = |t: Vec2| center + perp(t) * (p.facing * p.radius);
+            p.tension = [before - body.dot(&(at(from) - b.end)), after - body.dot(&(at(to) - a.start))];
+            p.turn = (p.arc[0] + p.arc[1]) / p.radius;
+        } else {
+            p.tension = [before, after];
+            p.turn = cross(from, to).atan2(from.dot(&to));
+        }
         let ea = self.problem.axial_stiffness;
         let theta = |t: f64| t * (1.0 + 0.5 * t / ea);
         p.drive = self.problem.thermal_stretch * (theta(tb) - theta(ta)) + body.dot(&(b.middle - a.middle));

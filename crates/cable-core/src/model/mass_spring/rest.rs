@@ -145,9 +145,6 @@ impl MassSpringModel {
         for k in 1..=MAX_STEPS {
             self.cost.iterations = k;
             self.cost.residual_n = worst;
-            if std::env::var("MSDBG").is_ok() {
-                eprintln!("{k} E {energy:.12e} worst {worst:.3e} node {node}/{} shift {:.1e} {curvature:?} tol {tolerance:.1e}", self.x.len(), shift / unit);
-            }
             if worst <= tolerance {
                 return Ok(());
             }
@@ -281,7 +278,7 @@ impl MassSpringModel {
         let body = p.body_force(self.time_s);
         let mut value = 0.0;
         for e in 0..self.rest.len() {
-            let middle = if self.at_pulley(e) {
+            let moment = if self.at_pulley(e) {
                 let r = self.reach(e);
                 // σ moves half of the weight to the other end's side.
                 for (node, other, sign) in [(e, e + 1, 1.0), (e + 1, e, -1.0)] {
@@ -290,12 +287,12 @@ impl MassSpringModel {
                         system.hessian.add(2 * other + 1, 2 * node, 0.5 * sign * body.y);
                     }
                 }
-                r.middle
+                r.middle * self.share[e] + r.hung / p.thermal_stretch
             } else {
-                (self.x[e] + self.x[e + 1]) * 0.5
+                (self.x[e] + self.x[e + 1]) * (0.5 * self.share[e])
             };
             let half = body * (0.5 * self.share[e]);
-            value -= body.dot(&middle) * self.span[e];
+            value -= body.dot(&moment);
             system.add_gradient(e, -half);
             system.add_gradient(e + 1, -half);
         }

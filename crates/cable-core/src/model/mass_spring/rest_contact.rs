@@ -102,7 +102,14 @@ impl Contacts {
             for n in 0..self.anchors.len() {
                 let limit = mu * normal * model.half_share(n);
                 let (element, fraction) = model.material(model.s[n]);
-                self.rubs.push(Rub { anchor: self.anchors[n], element, fraction, along: Vec2::zeros(), limit, pair: n });
+                self.rubs.push(Rub {
+                    anchor: self.anchors[n],
+                    element,
+                    fraction,
+                    along: Vec2::zeros(),
+                    limit,
+                    pair: n,
+                });
             }
         }
         let known = self.anchors.len();
@@ -234,9 +241,8 @@ impl Contacts {
         model.touches.clear();
         for (k, push) in self.pushes.iter().enumerate().filter(|(_, p)| p.pair.weight > 0.0) {
             let rub = self.rubs.iter().find(|r| r.pair == k && r.along != Vec2::zeros());
-            let (friction, limit) = rub.map_or((0.0, 0.0), |r| {
-                (-friction::at(r.shift(model).dot(&r.along), r.limit, SLIP).1, r.limit)
-            });
+            let (friction, limit) =
+                rub.map_or((0.0, 0.0), |r| (-friction::at(r.shift(model).dot(&r.along), r.limit, SLIP).1, r.limit));
             model.touches.push(Touch {
                 element: push.element,
                 gap: crate::contact::Gap { fraction: push.fraction, ..push.pair.gap },

@@ -128,7 +128,8 @@ fn slow_motion_takes_mu_w_l_and_turns_round() {
     }
     // A cable cannot push its tail back.
     let back = pull(&sim);
-    assert!(back.abs() < 1e-3 * exact, "{back}");
+    // What is left is the half element at the hitch itself.
+    assert!((back / exact * 40.0 + 1.0).abs() < 0.01, "{back}");
 }
 
 /// With a weight on the tail that keeps it taut the pull is P + μwL one way and P − μwL the other.
@@ -181,7 +182,7 @@ fn energy(m: &MassSpringModel) -> f64 {
     for e in 0..m.rest.len() {
         let r = m.reach(e);
         let stretch = (r.length - m.rest[e]).max(0.0);
-        out += 0.5 * p.axial_stiffness * stretch * stretch / m.rest[e] - body.dot(&r.middle) * m.span[e];
+        out += 0.5 * p.axial_stiffness * stretch * stretch / m.rest[e] - body.dot(&(r.middle * m.share[e] + r.hung));
     }
     for i in 0..m.x.len() {
         if !m.held[i] {
@@ -194,7 +195,11 @@ fn energy(m: &MassSpringModel) -> f64 {
 #[test]
 fn a_smooth_pulley_makes_no_energy_and_loses_no_material() {
     for radius in [0.0, 0.2] {
-        let mut m = mechanics(&swinging(radius, 2e4));
+        let mut scene = swinging(radius, 2e4);
+        scene.cables[0].supports[1].friction = Some(2.0);
+        let mut m = mechanics(&scene);
+        m.settle().unwrap();
+        m.pulleys[0].friction = 0.0;
         let start = energy(&m);
         let mut slid = [f64::INFINITY, f64::NEG_INFINITY];
         let (mut most, mut last, mut counts) = (0.0f64, start, std::collections::BTreeSet::new());
@@ -210,11 +215,24 @@ fn a_smooth_pulley_makes_no_energy_and_loses_no_material() {
             assert!(mass.abs() < 1e-12, "mass {mass:e}");
             assert!(m.s.windows(2).all(|w| w[1] > w[0]));
         }
-        // The height the cable could fall is some metres: 100 J.
         println!("R {radius}: made {most:.2e} J, end {:.2e} J, slid {slid:?}, nodes {counts:?}", last - start);
         assert!(slid[1] - slid[0] > 0.3 && counts.len() > 1, "it slides, nodes come and go");
-        assert!(most < 0.5, "energy made: {most} J");
-        assert!(last - start > -30.0, "energy lost: {} J", start - last);
+        assert!(most < 0.02, "energy made: {most} J");
+        assert!(last - start > -2.0, "energy lost: {} J", start - last);
+    }
+}
+
+/// Dropped slack into its supports, without damping of its own: springs go slack and taut, energy only falls.
+#[test]
+fn a_cable_that_snaps_taut_gains_no_energy() {
+    let mut scene = swinging(0.0, 2e4);
+    scene.cables[0].supports[1] = Support { arc_length_m: Some(4.77), ..Support::fixed("middle", [4.0, 6.0]) };
+    let mut m = mechanics(&scene);
+    let start = energy(&m);
+    for _ in 0..100 {
+        m.advance(0.02, Inertia::Dynamic).unwrap();
+        let made = energy(&m) - start;
+        assert!(made < 0.1, "{made} J at {} s", m.time_s);
     }
 }
 
