@@ -23,10 +23,10 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
-/// The scene's name, with a dot while unsaved.
+/// The scene's name, and whether it is saved.
 pub fn title(state: &AppState) -> String {
     let name = if state.scene.name.is_empty() { "Untitled scene" } else { &state.scene.name };
-    let mark = if state.unsaved() { " ●" } else { "" };
+    let mark = if state.unsaved() { " (not saved)" } else { "" };
     format!("{name}{mark}")
 }
 

@@ -5,6 +5,7 @@ mod keys;
 mod layout;
 mod menu;
 
+use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -18,6 +19,9 @@ use crate::theme;
 use crate::worker::Worker;
 use crate::worker::engine::Report;
 
+/// Most unanswered edits whose delay is measured; of more, those in between are not.
+const MOST_ASKED: usize = 64;
+
 /// The eframe application.
 pub struct ViewerApp {
     /// What is on screen.
@@ -28,8 +32,8 @@ pub struct ViewerApp {
     title: String,
     /// Keeps unsaved changes on disk, in a window.
     autosave: Option<Autosave>,
-    /// When the edit not yet answered was sent, with its number.
-    asked: Option<(u64, Instant)>,
+    /// Numbers of the edits not yet answered and when they were sent, oldest first; at most [`MOST_ASKED`].
+    asked: VecDeque<(u64, Instant)>,
 }
 
 impl ViewerApp {
@@ -54,7 +58,7 @@ impl ViewerApp {
             threaded,
             title: String::new(),
             autosave: None,
-            asked: None,
+            asked: VecDeque::new(),
         };
         let mut effects = Effects::default();
         command::submit_scene(&mut app.state, true, &mut effects);
@@ -99,7 +103,7 @@ impl ViewerApp {
     /// The worker has answered every edit.
     #[must_use]
     pub fn settled(&self) -> bool {
-        self.asked.is_none()
+        self.asked.is_empty()
     }
 
     fn carry_out(&mut self, ctx: &egui::Context, effects: Effects) {
@@ -111,9 +115,10 @@ impl ViewerApp {
         }
         if !effects.request.is_empty() {
             if effects.request.number > 0 {
-                // An edit that joins one still unanswered keeps the earlier clock: the delay shown is the longest.
-                let began = self.asked.map_or_else(Instant::now, |(_, began)| began);
-                self.asked = Some((effects.request.number, began));
+                if self.asked.len() == MOST_ASKED {
+                    self.asked.pop_back();
+                }
+                self.asked.push_back((effects.request.number, Instant::now()));
             }
             self.worker.submit(effects.request);
             ctx.request_repaint();
@@ -134,7 +139,7 @@ impl ViewerApp {
         }
         if matches!(self.state.worker, WorkerStatus::Dead(_)) {
             self.state.snapshot.stale = true;
-            self.asked = None;
+            self.asked.clear();
         }
     }
 
@@ -150,12 +155,11 @@ impl ViewerApp {
             state.playback.paused = true;
         }
         state.snapshot = report.snapshot;
-        if let Some((number, began)) = self.asked
-            && state.snapshot.edit >= number
-        {
+        // Several edits may be answered at once: the delay shown is that of the one that waited longest.
+        let answered = self.asked.iter().take_while(|(number, _)| *number <= state.snapshot.edit).count();
+        if let Some((_, began)) = self.asked.drain(..answered).next() {
             // Without a thread a frame waits for its answer: that time says nothing of the window's.
             state.edit_latency_s = self.threaded.then(|| began.elapsed().as_secs_f64());
-            self.asked = None;
         }
     }
 }
