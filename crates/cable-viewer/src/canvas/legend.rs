@@ -42,7 +42,8 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
     }
     view.painter.add(mesh);
     view.painter.rect_stroke(bar, 0.0, line, StrokeKind::Outside);
-    let decimals = units::decimals_of((high - low) / si / (TICKS - 1) as f64).min(4);
+    // A quarter of a step: 2.5 must not be read as 3.
+    let decimals = units::decimals_of((high - low) / si / (4 * (TICKS - 1)) as f64).min(4);
     for k in 0..TICKS {
         let f = k as f64 / (TICKS - 1) as f64;
         let y = bar.max.y - bar.height() * f as f32;

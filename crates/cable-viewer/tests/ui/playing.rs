@@ -173,7 +173,7 @@ fn every_model_answers_what_it_can_and_refuses_the_rest_in_words() {
         (Model::Catenary, catalog::tank(), false),
         (Model::Fem, catalog::over_beam(), true),
         (Model::MassSpring, catalog::hanging_span(), true),
-        (Model::MassSpring, catalog::clamped_stiff(), false),
+        (Model::MassSpring, catalog::pulley_waypoints(), true),
     ];
     for (model, scene, can) in cases {
         let name = format!("{} with {model}", scene.name);
@@ -193,6 +193,20 @@ fn every_model_answers_what_it_can_and_refuses_the_rest_in_words() {
             assert_eq!(bits(&solution(&harness)), bits(&good), "{name}");
         }
     }
+}
+
+#[test]
+fn a_property_the_model_lacks_is_refused_beside_the_last_picture() {
+    let mut harness = open(catalog::hanging_span());
+    apply(&mut harness, Command::SetModel(Model::MassSpring));
+    let good = solution(&harness);
+    let mut cable = harness.state().state.scene.cables[0].clone();
+    cable.self_contact = true;
+    apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
+    let snapshot = &harness.state().state.snapshot;
+    let error = snapshot.error.clone().unwrap_or_default();
+    assert!(error.contains("mass-spring") && snapshot.stale, "{error:?}");
+    assert_eq!(bits(&solution(&harness)), bits(&good));
 }
 
 /// Every scene of the catalogue runs, or says why it does not; none hangs or breaks the solver.
