@@ -95,17 +95,17 @@ pub(super) fn solve(p: &Problem, layout: &Layout, start: Start<'_>) -> Result<Eq
     let Start { held, mut sigma, mut modes, mut arcs } = start;
     let wheels = layout.anchors.iter().any(|a| a.radius > 0.0);
     let mut iterations = 0;
-    let mut lifted = None;
+    let (mut lifted, mut near) = (None, None);
     for _ in 0..MAX_ROUNDS {
         let slide = Slide { problem: p, layout, arcs: &arcs };
-        let found = contact(&slide, held, sigma, modes)?;
+        let found = contact(&slide, held, (sigma, near), modes)?;
         iterations += found.iterations;
         let m = |k: usize| called_upon(&slide, &found.stretches, k, found.modes[k]);
         let (turned, off, lift) = slide.turned(&found.stretches, m);
         if !wheels || (off <= ANGLE && lift.is_none()) {
             return Ok(Equilibrium { iterations, ..found });
         }
-        (sigma, modes, arcs, lifted) = (found.sigma, found.modes, turned, lift);
+        (sigma, modes, arcs, lifted, near) = (found.sigma, found.modes, turned, lift, Some(found.stretches));
     }
     match lifted {
         Some(k) => {
@@ -134,12 +134,16 @@ fn not_converged(layout: &Layout, node: usize, iterations: usize, residual_n: f6
 }
 
 /// Balance with friction: pulleys hold or slip, each as its cone and its direction demand.
-fn contact(slide: &Slide<'_>, held: &[f64], sigma: Vec<f64>, modes: Vec<Mode>) -> Result<Equilibrium, SolveError> {
+fn contact(
+    slide: &Slide<'_>,
+    held: &[f64],
+    (mut sigma, mut near): (Vec<f64>, Option<Stretches>),
+    mut modes: Vec<Mode>,
+) -> Result<Equilibrium, SolveError> {
     let layout = slide.layout;
-    let (mut sigma, mut modes) = (sigma, modes);
     let mut iterations = 0;
     for round in 0..4 * TOGETHER + 4 * layout.anchors.len() {
-        let found = match newton(slide, sigma.clone(), &modes) {
+        let found = match newton(slide, (sigma.clone(), near.as_ref()), &modes) {
             Ok(e) => e,
             // Another branch of the slip law drew it away: come from the smooth pulley's rest, the first error if not.
             Err(e) => from_smooth(slide, sigma, &modes).map_err(|_| e)?,
@@ -168,6 +172,7 @@ fn contact(slide: &Slide<'_>, held: &[f64], sigma: Vec<f64>, modes: Vec<Mode>) -
         if !changed {
             return Ok(Equilibrium { sigma, modes, arcs: slide.arcs.to_vec(), iterations, ..found });
         }
+        near = Some(found.stretches);
     }
     Err(not_converged(layout, 0, iterations, f64::NAN))
 }
@@ -178,11 +183,11 @@ fn from_smooth(slide: &Slide<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equ
     let with = |part: f64| -> Vec<Mode> {
         modes.iter().map(|m| if let Mode::Slip(m) = m { Mode::Slip(part * m) } else { *m }).collect()
     };
-    let mut found = newton(slide, sigma, &with(0.0))?;
+    let mut found = newton(slide, (sigma, None), &with(0.0))?;
     let (mut reached, mut rise, mut iterations) = (0.0f64, 1.0f64, found.iterations);
     for _ in 0..MAX_RISES {
         let next = if reached + rise < 1.0 { reached + rise } else { 1.0 };
-        match newton(slide, found.sigma.clone(), &with(next)) {
+        match newton(slide, (found.sigma.clone(), Some(&found.stretches)), &with(next)) {
             Ok(e) => {
                 iterations += e.iterations;
                 (found, reached, rise) = (Equilibrium { iterations, ..e }, next, 2.0 * rise);
@@ -282,13 +287,17 @@ fn room(slide: &Slide<'_>, s: &Stretches, p: &[f64]) -> f64 {
     alpha
 }
 
-/// Newton for σ with the modes given.
-fn newton(slide: &Slide<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equilibrium, SolveError> {
+/// Newton for σ with the modes given, from a σ and the stretches near it where they are known.
+fn newton(
+    slide: &Slide<'_>,
+    (sigma, near): (Vec<f64>, Option<&Stretches>),
+    modes: &[Mode],
+) -> Result<Equilibrium, SolveError> {
     let layout = slide.layout;
     let smooth = modes.iter().all(|m| matches!(m, Mode::Stick | Mode::Slip(0.0)));
     let mut sigma = sigma;
     let lost = |iterations| not_converged(layout, 0, iterations, f64::NAN);
-    let mut s = slide.stretches(&sigma, None).ok_or_else(|| lost(0))?;
+    let mut s = slide.stretches(&sigma, near).ok_or_else(|| lost(0))?;
     let mut iterations = s.iterations;
     for _ in 0..MAX_ITERATIONS {
         let (r, j, worst, newtons) = rows(slide, &s, modes, smooth).ok_or_else(|| lost(iterations))?;
