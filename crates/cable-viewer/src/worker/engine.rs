@@ -24,8 +24,9 @@ const DRAFT_AFTER_S: f64 = 0.012;
 /// Segments of a draft. More: as slow as the answer; fewer: corners show, and the greatest tension is 3 % off.
 const DRAFT_SEGMENTS: usize = 60;
 /// Time without a further edit (s) after which a draft is replaced by the answer. Longer: figures of the draft stay on
-/// screen; shorter: an answer is begun between two steps of a drag, and the next draft waits for it.
-pub const QUIET_S: f64 = 0.06;
+/// screen; shorter: an answer is begun between two steps of a drag where frames are slow (a tenth of a second without a
+/// GPU), and the next draft waits for it.
+pub const QUIET_S: f64 = 0.2;
 
 /// Owns the simulation.
 #[derive(Debug)]
