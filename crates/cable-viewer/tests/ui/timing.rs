@@ -68,7 +68,7 @@ fn print(what: &str, mut ms: Vec<f64>) {
 
 /// Drags the last support of a scene's first cable round a small circle: from each edit to the end of the first frame
 /// that shows it, frames being a 60th of a second apart as on a screen.
-fn timed_drag(name: &str, scene: Scene, playing: bool) {
+fn timed_drag(name: &str, scene: Scene, (playing, radius_m): (bool, f64)) {
     let mut harness = threaded(scene, 200);
     let last = harness.state().state.scene.cables[0].supports.len() - 1;
     let item = Item::Support { cable: 0, support: last };
@@ -79,7 +79,7 @@ fn timed_drag(name: &str, scene: Scene, playing: bool) {
     let (mut delays, mut solves, mut frames) = (Vec::new(), Vec::new(), Vec::new());
     for k in 1..=EDITS {
         let angle = k as f64 / EDITS as f64 * std::f64::consts::TAU;
-        let to_m = [at[0] - 0.4 * (1.0 - angle.cos()), at[1] + 0.25 * angle.sin().abs()];
+        let to_m = [at[0] - radius_m * (1.0 - angle.cos()), at[1] + radius_m * (0.5 * angle).sin()];
         let began = Instant::now();
         submit(&mut harness, Command::Scene(SceneCommand::Move { item, to_m }));
         loop {
@@ -105,14 +105,20 @@ fn timed_drag(name: &str, scene: Scene, playing: bool) {
 #[test]
 fn timed_edits_at_200_segments() {
     for (name, scene) in [("tank", catalog::tank()), ("hanging span", catalog::hanging_span())] {
-        timed_drag(name, scene, false);
+        timed_drag(name, scene, (false, 0.4));
     }
+}
+
+/// Eight centimetres an edit: what a quick hand does in a frame.
+#[test]
+fn timed_edits_by_a_quick_hand() {
+    timed_drag("tank, quick", catalog::tank(), (false, 1.2));
 }
 
 #[test]
 fn timed_edits_at_200_segments_while_time_runs() {
     for (name, scene) in [("tank, playing", catalog::tank()), ("hanging span, playing", catalog::hanging_span())] {
-        timed_drag(name, scene, true);
+        timed_drag(name, scene, (true, 0.4));
     }
 }
 
