@@ -31,7 +31,11 @@ const MODELS: [(Model, &str, &str); 4] = [
         "Closed form between supports: no discretisation error. No contact, no bending stiffness, no motion",
     ),
     (Model::Fem, "FEM", "Finite elements with contact, friction, bending and dynamics"),
-    (Model::MassSpring, "Mass-spring", "Lumped masses and springs, explicit in time: shows motion, settles slowly"),
+    (
+        Model::MassSpring,
+        "Mass-spring",
+        "Lumped masses and springs, explicit in time: a quick look at motion, a second opinion at rest",
+    ),
 ];
 
 /// What is set when the user first fixes the number and nothing was solved yet.

@@ -4,8 +4,9 @@ use super::MassSpringModel;
 use crate::error::SolveError;
 use crate::math::Vec2;
 
-/// Longest way of a support between two resting places, of the even length: friction is measured from where the
-/// material was, and a longer way leaves that element.
+/// Longest way of a support between two resting places, of the even length (friction is measured from where the material
+/// was, and a longer way leaves that element) and of the cable's radius where there is something to hit (a longer one
+/// stretches the end so far that Newton's first steps draw a node in under a corner, where it locks).
 const MOST_WAY: f64 = 0.5;
 /// Most resting places in a step, and the shortest part of one that is tried after a failure.
 const MOST_PARTS: f64 = 1e4;
@@ -29,8 +30,9 @@ impl MassSpringModel {
                 last = at;
             }
         }
+        let within = if self.problem.world.is_empty() { self.even } else { self.even.min(self.problem.radius) };
         let parts = if self.touches_something() || !self.pulleys.is_empty() {
-            (way / (MOST_WAY * self.even)).ceil().clamp(1.0, MOST_PARTS)
+            (way / (MOST_WAY * within)).ceil().clamp(1.0, MOST_PARTS)
         } else {
             1.0
         };

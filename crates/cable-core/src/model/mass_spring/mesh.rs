@@ -8,9 +8,12 @@ use crate::math::Vec2;
 use crate::model::Settings;
 use crate::problem::Problem;
 use crate::solution::Cost;
+use crate::state::State;
 
 /// Elements where neither scene nor settings say: fewer is visibly angular, more makes sub-steps shorter and dearer.
 const DEFAULT_SEGMENTS: usize = 60;
+/// Nodes of another model are taken if they are nowhere nearer than this, of the even length: less makes sub-steps short.
+const LEAST_SPACING: f64 = 0.2;
 /// Least damping ratio of the fastest axial mode. Without any, springs that go slack and taut near the stability limit
 /// pump energy into violent motion (a cable dropped into its supports gained 11 kJ in 4 s); the first mode of N elements
 /// gets π/2N of it, and motion across the cable nothing. More damps what is seen.
@@ -23,6 +26,11 @@ const MAX_MODE_DAMPING: f64 = 1.0;
 impl MassSpringModel {
     /// Puts a node at each support and load, the others evenly between them. `slid` is where each support sits, m.
     pub(super) fn mesh(problem: Arc<Problem>, settings: Settings, slid: &[f64]) -> Self {
+        Self::mesh_on(problem, settings, slid, None)
+    }
+
+    /// The same with nodes at given arc lengths (m), if there are any.
+    pub(super) fn mesh_on(problem: Arc<Problem>, settings: Settings, slid: &[f64], own: Option<Vec<f64>>) -> Self {
         let wanted = settings.segments.or(problem.cable.segments).unwrap_or(DEFAULT_SEGMENTS).max(1);
         let mut pulleys = Pulley::all(&problem);
         let sits = |k: usize| problem.supports[k].arc_length.or(slid.get(k).copied()).unwrap_or(0.0);
@@ -40,6 +48,7 @@ impl MassSpringModel {
             let count = ((w[1] - w[0]) / problem.length * wanted as f64).round().max(least);
             s.extend((1..=count as usize).map(|k| w[0] + (w[1] - w[0]) * k as f64 / count));
         }
+        let s = own.unwrap_or(s);
         let span: Vec<f64> = s.windows(2).map(|w| w[1] - w[0]).collect();
         let rest: Vec<f64> = span.iter().map(|d| d * problem.thermal_stretch).collect();
         let mut mass = vec![0.0; s.len()];
@@ -104,6 +113,19 @@ impl MassSpringModel {
         model.tidy();
         model.forces();
         model
+    }
+
+    /// The nodes of a shape, if they will do: resampled, its elements would cut the corners that they lie round.
+    pub(super) fn nodes_of(&self, shape: &State) -> Option<Vec<f64>> {
+        let s = &shape.arc_length_m;
+        let fits = |wanted: f64| s.iter().any(|v| (v - wanted).abs() <= 1e-9 * self.problem.length);
+        let supports = self.problem.supports.iter().filter_map(|p| p.arc_length);
+        let marks = supports.chain(self.problem.loads.iter().map(|l| l.arc_length)).chain([0.0, self.problem.length]);
+        let apart = s.windows(2).all(|w| w[1] - w[0] >= LEAST_SPACING * self.even);
+        let wanted = self.problem.length / self.even;
+        let many = (0.5 * wanted..=2.0 * wanted).contains(&(s.len() as f64));
+        let plain = self.pulleys.is_empty() && !self.problem.world.is_empty();
+        (plain && apart && many && marks.into_iter().all(fits)).then(|| s.clone())
     }
 
     /// Brings the elements beside pulleys near the even length.

@@ -190,7 +190,8 @@ impl MassSpringModel {
 
     /// A chain of the same cable along a shape, its supports where `slid` says; None if the shape has no place for it.
     fn shaped(&self, shape: &State, slid: &[f64]) -> Option<Self> {
-        let mut next = Self::mesh(self.problem.clone(), self.settings, slid);
+        let own = self.nodes_of(shape);
+        let mut next = Self::mesh_on(self.problem.clone(), self.settings, slid, own);
         let speeds = State { position_m: shape.velocity_m_per_s.clone(), ..shape.clone() };
         // A cable whose length was edited keeps its shape: material is spread over it evenly.
         let scale = shape.arc_length_m.last().copied().unwrap_or(0.0) / self.problem.length;

@@ -43,6 +43,10 @@ const SHIFT_UP: f64 = 8.0;
 /// Shift beyond which no step helps, of the same; and below which it is left alone.
 const LAST_SHIFT: f64 = 1e3;
 const LEAST_SHIFT: f64 = 1e-14;
+/// Up to this step friction follows the normal forces at every step, which is fastest; where that runs in circles, later
+/// ones first solve with them frozen, for so many steps at most.
+const EAGER: usize = 150;
+const MOST_FROZEN: usize = 25;
 /// Greatest move in a step where there is something to run into, of the cable's radius: more steps over an edge.
 const MOST_MOVE: f64 = 0.5;
 /// Greatest slide through a pulley in a step, of the even length: more turns an element inside out.
@@ -142,10 +146,12 @@ impl MassSpringModel {
         contacts.refresh(self);
         let mut energy = self.assemble(&mut system, contacts, curvature);
         let (mut worst, mut node) = self.unbalanced(&system);
+        // Steps since normal forces were taken over into friction.
+        let mut frozen = 0;
         for k in 1..=MAX_STEPS {
             self.cost.iterations = k;
             self.cost.residual_n = worst;
-            if worst <= tolerance {
+            if worst <= tolerance && frozen == 0 {
                 return Ok(());
             }
             let solved = self.try_step(&mut system, shift);
@@ -162,7 +168,9 @@ impl MassSpringModel {
                     let fade = system.fade;
                     system = System { fade, ..System::new(self)? };
                 }
-                if contacts.refresh(self) || remeshed {
+                let due = k < EAGER || left <= tolerance || frozen >= MOST_FROZEN || remeshed;
+                frozen = if due { 0 } else { frozen + 1 };
+                if due && (contacts.refresh(self) || remeshed) {
                     energy = self.assemble(&mut system, contacts, curvature);
                     (worst, node) = self.unbalanced(&system);
                 }

@@ -15,8 +15,12 @@ use crate::math::{Mat2, Vec2, perp};
 /// Gap at which a contact begins to push, m; the whole load on one contact closes it. Less is stiffer and takes more
 /// steps, more lifts the cable.
 const OFFSET: f64 = 2e-5;
-/// Sliding at which friction is called up whole, m: less takes more steps, more creeps.
-const SLIP: f64 = 1e-5;
+/// What lies nearer than this to an obstacle at the start was laid there, m: the bars' barrier keeps a millimetre. Less
+/// lets the cable slide while it falls that far, more anchors what hangs beside.
+const LAID: f64 = 2e-3;
+/// Sliding at which friction is called up whole, m: less takes more steps, more creeps, and near a held end, where a
+/// stiff cable moves by less, friction is called up in part only.
+const SLIP: f64 = 5e-6;
 /// A contact takes the anchor of material this near, in even lengths.
 const NEAR: f64 = 0.75;
 /// The obstacle of an anchor on the floor of a plan view.
@@ -46,6 +50,15 @@ struct Push {
     inside: bool,
 }
 
+impl Push {
+    /// The material here, as it lies.
+    fn anchor(&self, model: &MassSpringModel) -> Anchor {
+        let (e, c) = (self.element, self.fraction);
+        let at = model.x[e] + (model.x[e + 1] - model.x[e]) * c;
+        Anchor { obstacle: self.pair.gap.obstacle, s: model.s[e] + model.span[e] * c, at }
+    }
+}
+
 /// What the chain touches while it comes to rest.
 pub(super) struct Contacts {
     stiffness: f64,
@@ -60,11 +73,18 @@ impl Contacts {
         if model.problem.floor_friction.is_some() && anchors.len() != model.x.len() {
             anchors = model.s.iter().zip(&model.x).map(|(&s, &at)| Anchor { obstacle: FLOOR, s, at }).collect();
         }
-        Self { stiffness: model.problem.force_scale() / OFFSET, anchors, rubs: Vec::new(), pushes: Vec::new() }
+        let stiffness = model.problem.force_scale() / OFFSET;
+        let mut this = Self { stiffness, anchors, rubs: Vec::new(), pushes: Vec::new() };
+        if anew {
+            this.find(model, LAID);
+            let laid = this.pushes.iter().filter(|p| p.pair.weight > 0.0).map(|p| p.anchor(model));
+            this.anchors.extend(laid);
+        }
+        this
     }
 
-    /// Every pair that pushes here.
-    fn find(&mut self, model: &MassSpringModel) {
+    /// Every pair nearer than `reach`, m.
+    fn find(&mut self, model: &MassSpringModel, reach: f64) {
         self.pushes.clear();
         if model.problem.world.is_empty() {
             return;
@@ -75,12 +95,12 @@ impl Contacts {
             if !model.held[n] {
                 let before = n.checked_sub(1).map(|k| x[k]);
                 let (element, fraction) = if n < last { (n, 0.0) } else { (n - 1, 1.0) };
-                geometry.node_pairs(before, x[n], x.get(n + 1).copied(), OFFSET, &mut |pair| {
+                geometry.node_pairs(before, x[n], x.get(n + 1).copied(), reach, &mut |pair| {
                     self.pushes.push(Push { element, fraction, pair, inside: false });
                 });
             }
             if n < last && !model.on_wheel(n) {
-                geometry.segment_pairs(x[n], x[n + 1], OFFSET, &mut |pair| {
+                geometry.segment_pairs(x[n], x[n + 1], reach, &mut |pair| {
                     self.pushes.push(Push { element: n, fraction: pair.gap.fraction, pair, inside: true });
                 });
             }
@@ -96,7 +116,7 @@ impl Contacts {
             p.hold = model.problem.thermal_stretch * (high - low) * (1.0 + 0.5 * sum / ea);
         }
         let model = &*model;
-        self.find(model);
+        self.find(model, OFFSET);
         self.rubs.clear();
         if let Some((mu, normal)) = model.problem.floor_friction {
             for n in 0..self.anchors.len() {
@@ -131,8 +151,7 @@ impl Contacts {
                     self.anchors[a]
                 }
                 None => {
-                    let at = model.x[e] + (model.x[e + 1] - model.x[e]) * push.fraction;
-                    let new = Anchor { obstacle: gap.obstacle, s, at };
+                    let new = push.anchor(model);
                     self.anchors.push(new);
                     new
                 }
@@ -148,7 +167,7 @@ impl Contacts {
 
     /// Adds energy, gradient and Hessian of contacts (as they are here) and friction (as it was frozen).
     pub(super) fn assemble(&mut self, model: &MassSpringModel, system: &mut System) -> f64 {
-        self.find(model);
+        self.find(model, OFFSET);
         let mut value = 0.0;
         for push in &self.pushes {
             let (gap, e, c) = (push.pair.gap, push.element, push.fraction);
@@ -227,11 +246,9 @@ impl Contacts {
                     return Anchor { at, ..rub.anchor };
                 }
                 let push = &self.pushes[rub.pair.min(self.pushes.len() - 1)];
-                let e = push.element;
-                let s = model.s[e] + model.span[e] * push.fraction;
-                let at = model.x[e] + (model.x[e + 1] - model.x[e]) * push.fraction;
                 let kept = friction::return_map(shift.dot(&rub.along), SLIP);
-                Anchor { obstacle: rub.anchor.obstacle, s, at: at - rub.along * kept }
+                let here = push.anchor(model);
+                Anchor { at: here.at - rub.along * kept, ..here }
             })
             .collect()
     }
