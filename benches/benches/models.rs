@@ -37,8 +37,7 @@ fn settle(c: &mut Criterion) {
             group.bench_function(BenchmarkId::new("catenary", id), |b| b.iter(|| black_box(start.clone().settle())));
         }
         for model in [Model::Fem, Model::MassSpring] {
-            // Explicit settling takes N² sub-steps: 1000 masses is minutes, and says nothing new.
-            for n in MESHES.into_iter().filter(|n| model != Model::MassSpring || *n <= 100) {
+            for n in MESHES {
                 let Some(start) = fresh(&scene, model, Some(n)) else { continue };
                 if settled(&scene, model, Some(n)).is_none() {
                     continue;
@@ -90,5 +89,16 @@ fn step(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, settle, free_span, step);
+/// A span so stiff that mass-spring previews it.
+fn preview(c: &mut Criterion) {
+    let mut scene = catalog::hanging_span();
+    scene.cables[0].axial_stiffness_n = 1e9;
+    scene.cables[0].bending_stiffness_n_m2 = 0.0;
+    let start = settled(&scene, Model::MassSpring, Some(100)).expect("a free span");
+    c.bench_function("preview of a stiff span, N = 100, a frame", |b| {
+        b.iter_batched_ref(|| start.clone(), |s| black_box(s.step(FRAME_S)), criterion::BatchSize::LargeInput);
+    });
+}
+
+criterion_group!(benches, settle, free_span, step, preview);
 criterion_main!(benches);

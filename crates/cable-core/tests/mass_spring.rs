@@ -220,6 +220,11 @@ fn stiff_catenaries_converge() {
         let error =
             |n| (solve(&scene, Model::MassSpring, n).supports[0].reaction_x_n / number(case, "out", "H") - 1.0).abs();
         second_order(name, &[50, 100, 200].map(error), 3e-3);
+        let moment = |n| {
+            let curvature = solve(&scene, Model::MassSpring, n).nodes[0].curvature_per_m;
+            (input("EI") * curvature / number(case, "out", "M_A") - 1.0).abs()
+        };
+        second_order(&format!("{name}, moment"), &[200, 400, 800].map(moment), 1e-2);
     }
 }
 

@@ -3,6 +3,7 @@
 use super::collide::SKIN;
 use super::pulley::Pulley;
 use super::{MassSpringModel, Touch};
+use crate::energy::bending::turn;
 use crate::math::{Vec2, cross, perp};
 use crate::solution::{CableSolution, ContactReport, ContactState, Node, SupportReaction};
 use crate::state::State;
@@ -138,7 +139,9 @@ impl MassSpringModel {
                 let (a, b) = (self.x[i] - self.x[e], next - self.x[i]);
                 cross(a, b).atan2(a.dot(&b)) / (0.5 * (self.span[e] + self.span[i]))
             }
-            _ => 0.0,
+            (None, Some(next)) => self.clamp_curvature(i, 0, *next - self.x[i]),
+            (Some(e), None) => -self.clamp_curvature(i, e, self.x[i] - self.x[e]),
+            (None, None) => 0.0,
         };
         Node {
             arc_length_m: self.s[i],
@@ -151,6 +154,12 @@ impl MassSpringModel {
             stress_pa: tension_n / self.problem.cable.area_m2(),
             curvature_per_m,
         }
+    }
+
+    /// From a clamp at an end to the middle of its element `e`, which lies along `d`; 0 where nothing is clamped.
+    fn clamp_curvature(&self, i: usize, e: usize, d: Vec2) -> f64 {
+        let clamp = self.clamp_at(i).filter(|_| self.problem.bending_stiffness > 0.0);
+        clamp.map_or(0.0, |c| turn(c, d) / (0.5 * self.span[e]))
     }
 
     /// Force of the cable on the support that holds node `i`, N. Ground under the node carries its share of the weight

@@ -19,7 +19,7 @@ use crate::math::Vec2;
 use crate::solution::{Warning, WarningKind};
 
 /// Sub-step, s. Longer damps motion and softens contacts visibly, shorter costs in proportion.
-const SUB_STEP: f64 = 1.0 / 1200.0;
+const SUB_STEP: f64 = 1.0 / 600.0;
 /// Fastest a node may move, m/s: no cable scene is faster, a blown-up one is.
 const FASTEST: f64 = 300.0;
 /// Kinetic energy over what supports and loads can have given beyond which the motion is not believed. Less damps real
@@ -52,6 +52,7 @@ struct Buffers {
     direction: Vec<Vec2>,
     gap: Vec<f64>,
     active: Vec<bool>,
+    inverse: Vec<f64>,
     diagonal: Vec<f64>,
     lambda: Vec<f64>,
     sigma: Vec<f64>,
@@ -74,7 +75,11 @@ impl MassSpringModel {
             && match self.stepping {
                 Stepping::Explicit => false,
                 Stepping::Preview => true,
-                Stepping::Auto => self.stable_step() * MOST_SUB_STEPS < 1.0 / 60.0,
+                // Of even elements: a short one beside a pulley comes and goes, and a run must not change its ways.
+                Stepping::Auto => {
+                    let swing = (self.problem.axial_stiffness / self.problem.linear_density).sqrt();
+                    self.even / swing * MOST_SUB_STEPS < 1.0 / 60.0
+                }
             }
     }
 
@@ -218,12 +223,15 @@ impl MassSpringModel {
     fn solve_chain(&self, h: f64, b: &mut Buffers) {
         let (ea, elements) = (self.problem.axial_stiffness, self.rest.len());
         let thermal = self.problem.thermal_stretch * self.problem.thermal_stretch;
-        let weight = |i: usize| match self.pulley_of(i) {
-            Some(_) if b.stuck[self.pulley_at[i]] => 0.0,
-            Some(p) => thermal / p.mass,
-            None if self.held[i] => 0.0,
-            None => 1.0 / self.mass[i],
-        };
+        b.inverse.clear();
+        for i in 0..=elements {
+            b.inverse.push(match self.pulley_of(i) {
+                Some(_) if b.stuck[self.pulley_at[i]] => 0.0,
+                Some(p) => thermal / p.mass,
+                None if self.held[i] => 0.0,
+                None => 1.0 / self.mass[i],
+            });
+        }
         b.diagonal.clear();
         b.lambda.clear();
         for e in 0..elements {
@@ -232,9 +240,9 @@ impl MassSpringModel {
                 b.lambda.push(0.0);
                 continue;
             }
-            let (mut d, mut r) = (weight(e) + weight(e + 1) + self.rest[e] / (ea * h * h), -b.gap[e]);
+            let (mut d, mut r) = (b.inverse[e] + b.inverse[e + 1] + self.rest[e] / (ea * h * h), -b.gap[e]);
             if e > 0 && b.active[e - 1] {
-                let c = self.coupling(e, b, weight(e));
+                let c = self.coupling(e, b);
                 let factor = c / b.diagonal[e - 1];
                 d -= factor * c;
                 r -= factor * b.lambda[e - 1];
@@ -247,17 +255,17 @@ impl MassSpringModel {
                 continue;
             }
             if e + 1 < elements && b.active[e + 1] {
-                let c = self.coupling(e + 1, b, weight(e + 1));
+                let c = self.coupling(e + 1, b);
                 b.lambda[e] -= c * b.lambda[e + 1];
             }
             b.lambda[e] /= b.diagonal[e];
         }
     }
 
-    /// A between elements `e − 1` and `e`, whose node has the inverse mass `weight`.
-    fn coupling(&self, e: usize, b: &Buffers, weight: f64) -> f64 {
+    /// A between elements `e − 1` and `e`.
+    fn coupling(&self, e: usize, b: &Buffers) -> f64 {
         let turn = if self.pulley_at[e] == NONE { b.direction[e - 1].dot(&b.direction[e]) } else { 1.0 };
-        -weight * turn
+        -b.inverse[e] * turn
     }
 
     /// Holds back what runs away.
