@@ -14,17 +14,12 @@ pub(crate) fn warn(cable: &Cable, answer: &CableSolution, out: &mut Vec<Warning>
         && sharp.curvature_per_m.abs() * radius_limit > 1.0
     {
         let radius = 1.0 / sharp.curvature_per_m.abs();
-        out.push(Warning {
-            kind: WarningKind::BendRadius,
-            cable: cable.name.clone(),
-            arc_length_m: sharp.arc_length_m,
-            value: radius,
-            limit: radius_limit,
-            message: format!(
-                "`{}` is bent to a radius of {radius:.4} m at {:.3} m ({:.3} m, {:.3} m), below the {radius_limit} m it allows: lead it round something wider there",
-                cable.name, sharp.arc_length_m, sharp.x_m, sharp.y_m
-            ),
-        });
+        let message = format!(
+            "`{}` is bent to a radius of {radius:.4} m at {:.3} m ({:.3} m, {:.3} m), below the {radius_limit} m it allows: lead it round something wider there",
+            cable.name, sharp.arc_length_m, sharp.x_m, sharp.y_m
+        );
+        let limits = [radius, radius_limit];
+        out.push(Warning::new(WarningKind::BendRadius, &cable.name, sharp.arc_length_m, limits, message));
     }
 }
 
@@ -45,17 +40,11 @@ fn tension(cable: &Cable, top: &Node, out: &mut Vec<Warning>) {
         return;
     };
     let name = if kind == WarningKind::BreakingTension { "breaking" } else { "service" };
-    out.push(Warning {
-        kind,
-        cable: cable.name.clone(),
-        arc_length_m: top.arc_length_m,
-        value: top.tension_n,
-        limit,
-        message: format!(
-            "`{}` is pulled with {:.1} N at {:.3} m ({:.3} m, {:.3} m), above its {name} tension of {limit} N: {what}",
-            cable.name, top.tension_n, top.arc_length_m, top.x_m, top.y_m
-        ),
-    });
+    let message = format!(
+        "`{}` is pulled with {:.1} N at {:.3} m ({:.3} m, {:.3} m), above its {name} tension of {limit} N: {what}",
+        cable.name, top.tension_n, top.arc_length_m, top.x_m, top.y_m
+    );
+    out.push(Warning::new(kind, &cable.name, top.arc_length_m, [top.tension_n, limit], message));
 }
 
 /// The node with the greatest value (none that is not a number).

@@ -34,6 +34,19 @@ pub struct CableSolution {
     pub contacts: Vec<ContactReport>,
     /// Estimated relative error of the largest tension; None = not estimated.
     pub error_estimate: Option<f64>,
+    /// Index of the first node of each further piece, where the cable has broken; empty while it is whole. The last
+    /// node of one piece and the first of the next are the same point of the cable, at two places.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub breaks: Vec<usize>,
+}
+
+impl CableSolution {
+    /// The nodes of each piece, in order of arc length: one piece while the cable is whole.
+    pub fn pieces(&self) -> impl Iterator<Item = &[Node]> {
+        let starts = std::iter::once(0).chain(self.breaks.iter().copied());
+        let ends = self.breaks.iter().copied().chain(std::iter::once(self.nodes.len()));
+        starts.zip(ends).filter_map(|(a, b)| self.nodes.get(a..b))
+    }
 }
 
 /// One point of the cable.
@@ -142,12 +155,26 @@ pub struct Warning {
     pub cable: String,
     /// Where on the cable, m.
     pub arc_length_m: f64,
+    /// Where in the plane, m; None = at the cable's point of that arc length.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_m: Option<[f64; 2]>,
+    /// Since when, s; None = it is about the last step alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub since_s: Option<f64>,
     /// The quantity's value, in its own unit (N, 1/m, m …).
     pub value: f64,
     /// Its limit, same unit.
     pub limit: f64,
     /// What, where, why and what it does to the result, with figures and units.
     pub message: String,
+}
+
+impl Warning {
+    /// A warning about the last step, or about an answer at rest.
+    #[must_use]
+    pub fn new(kind: WarningKind, cable: &str, arc_length_m: f64, [value, limit]: [f64; 2], message: String) -> Self {
+        Self { kind, cable: cable.to_owned(), arc_length_m, at_m: None, since_s: None, value, limit, message }
+    }
 }
 
 /// The kinds of warning.
@@ -158,8 +185,24 @@ pub enum WarningKind {
     ServiceTension,
     /// Tension above the breaking tension.
     BreakingTension,
-    /// Bend radius below the smallest allowed.
+    /// It broke here; value and limit are the breaking tension.
+    Broken,
+    /// Led round something narrower than the smallest bend radius allowed.
     BendRadius,
+    /// Bent too sharply where nothing leads it.
+    Kink,
+    /// Pressed too hard sideways by what it is led round.
+    SidewallPressure,
+    /// A long part without tension.
+    Slack,
+    /// It crosses itself, or another part of itself lies across it.
+    Loop,
+    /// It curls up: a free part turns most of the way round.
+    Curl,
+    /// It goes round an obstacle once or more.
+    Wrapped,
+    /// An obstacle holds it fast while it is pulled harder and harder.
+    Snag,
     /// With friction a resting place is not unique.
     NotUnique,
     /// A support was stopped by an obstacle, or its speed was capped.
@@ -172,10 +215,18 @@ pub enum WarningKind {
 
 impl WarningKind {
     /// Every kind.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 15] = [
         Self::ServiceTension,
         Self::BreakingTension,
+        Self::Broken,
         Self::BendRadius,
+        Self::Kink,
+        Self::SidewallPressure,
+        Self::Slack,
+        Self::Loop,
+        Self::Curl,
+        Self::Wrapped,
+        Self::Snag,
         Self::NotUnique,
         Self::SupportHeld,
         Self::Stabilised,
@@ -188,7 +239,15 @@ impl WarningKind {
         match self {
             Self::ServiceTension => "service-tension",
             Self::BreakingTension => "breaking-tension",
+            Self::Broken => "broken",
             Self::BendRadius => "bend-radius",
+            Self::Kink => "kink",
+            Self::SidewallPressure => "sidewall-pressure",
+            Self::Slack => "slack",
+            Self::Loop => "loop",
+            Self::Curl => "curl",
+            Self::Wrapped => "wrapped",
+            Self::Snag => "snag",
             Self::NotUnique => "not-unique",
             Self::SupportHeld => "support-held",
             Self::Stabilised => "stabilised",

@@ -11,6 +11,8 @@ fn solution(time_s: f64, values: [f64; 9], name: &str) -> Solution {
         kind: WarningKind::BendRadius,
         cable: name.to_owned(),
         arc_length_m,
+        at_m: None,
+        since_s: None,
         value: x_m,
         limit: y_m,
         message: format!("bent, \"{name}\"\nsays who"),

@@ -23,22 +23,24 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
     let fade = |c: Color32| if state.snapshot.stale { grey(c) } else { c };
     for (k, answer) in solution.cables.iter().enumerate() {
         let Some(cable) = solved.cables.get(k) else { continue };
-        let line = Ribbon::new(view, &answer.nodes);
         let width = view.points(cable.diameter_m).max(LEAST_WIDTH);
         let picked = |item: Option<Item>| item == Some(Item::Cable(k));
-        if picked(state.selected) || picked(state.hovered) {
-            line.add(&mut mesh, width + 7.0, |_| Some(view.palette.accent.gamma_multiply(0.55)));
-        }
         let service = cable.service_tension_n;
-        line.add(&mut mesh, width + 6.0, |i| (answer.nodes[i].tension_n > service).then_some(fade(view.palette.risk)));
-        line.add(&mut mesh, width + 1.6, |_| Some(fade(view.palette.casing)));
-        line.add(&mut mesh, width, |i| {
-            let fraction = ColourScale::fraction(state.colour.quantity.of(&answer.nodes[i]), range);
-            Some(fade(state.colour.map.at(fraction)))
-        });
+        for nodes in answer.pieces() {
+            let line = Ribbon::new(view, nodes);
+            if picked(state.selected) || picked(state.hovered) {
+                line.add(&mut mesh, width + 7.0, |_| Some(view.palette.accent.gamma_multiply(0.55)));
+            }
+            line.add(&mut mesh, width + 6.0, |i| (nodes[i].tension_n > service).then_some(fade(view.palette.risk)));
+            line.add(&mut mesh, width + 1.6, |_| Some(fade(view.palette.casing)));
+            line.add(&mut mesh, width, |i| {
+                let fraction = ColourScale::fraction(state.colour.quantity.of(&nodes[i]), range);
+                Some(fade(state.colour.map.at(fraction)))
+            });
+        }
     }
     view.painter.add(mesh);
-    for pair in solution.cables.iter().flat_map(|c| c.nodes.windows(2)) {
+    for pair in solution.cables.iter().flat_map(|c| c.pieces()).flat_map(|p| p.windows(2)) {
         view.avoid_line(view.at([pair[0].x_m, pair[0].y_m]), view.at([pair[1].x_m, pair[1].y_m]));
     }
     if state.layers.nodes {

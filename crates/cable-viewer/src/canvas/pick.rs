@@ -90,7 +90,7 @@ pub fn cable_at(state: &AppState, canvas: Rect, p: Pos2, reach: f32) -> Option<(
     let world = state.camera.to_world(canvas, p);
     let mut best: Option<(f64, usize, f64, Point)> = None;
     for (k, cable) in solution.cables.iter().enumerate() {
-        for pair in cable.nodes.windows(2) {
+        for pair in cable.pieces().flat_map(|p| p.windows(2)) {
             let (a, b) = ([pair[0].x_m, pair[0].y_m], [pair[1].x_m, pair[1].y_m]);
             let f = along(a, b, world);
             let q = [a[0] + (b[0] - a[0]) * f, a[1] + (b[1] - a[1]) * f];

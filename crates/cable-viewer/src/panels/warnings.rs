@@ -102,6 +102,14 @@ fn scene_fault(state: &AppState) -> Option<Entry> {
 fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
     let (severity, title) = match warning.kind {
         WarningKind::BreakingTension => (Severity::Stop, "Breaks here"),
+        WarningKind::Broken => (Severity::Stop, "Broken"),
+        WarningKind::Kink => (Severity::Caution, "Kinked"),
+        WarningKind::SidewallPressure => (Severity::Caution, "Pressed too hard sideways"),
+        WarningKind::Loop => (Severity::Caution, "Crosses itself"),
+        WarningKind::Curl => (Severity::Caution, "Curls up"),
+        WarningKind::Wrapped => (Severity::Caution, "Wrapped round an obstacle"),
+        WarningKind::Snag => (Severity::Caution, "Snagged"),
+        WarningKind::Slack => (Severity::Note, "Slack"),
         WarningKind::ServiceTension => (Severity::Caution, "Above the service tension"),
         WarningKind::BendRadius => (Severity::Caution, "Bent too tightly"),
         WarningKind::Accuracy => (Severity::Caution, "Less accurate than asked"),
@@ -110,7 +118,8 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
         WarningKind::NotUnique => (Severity::Note, "One of several resting places"),
     };
     let index = state.scene.cables.iter().position(|c| c.name == warning.cable);
-    let place = format!("{} at {:.2}\u{a0}m", warning.cable, warning.arc_length_m);
+    let since = warning.since_s.map_or_else(String::new, |t| format!(" since {t:.2}\u{a0}s"));
+    let place = format!("{} at {:.2}\u{a0}m{since}", warning.cable, warning.arc_length_m);
     let figures = figures(warning).map_or_else(String::new, |f| format!(" – {f}"));
     Entry {
         severity,
@@ -129,13 +138,24 @@ fn figures(warning: &Warning) -> Option<String> {
         WarningKind::ServiceTension | WarningKind::BreakingTension => {
             Some(format!("{} of {}", unit::force(value), unit::force(limit)))
         }
-        WarningKind::BendRadius => Some(format!("{} of {}", unit::length(value), unit::length(limit))),
+        WarningKind::Broken => Some(unit::force(limit)),
+        WarningKind::BendRadius | WarningKind::Kink | WarningKind::Slack => {
+            Some(format!("{} of {}", unit::length(value), unit::length(limit)))
+        }
+        WarningKind::SidewallPressure => Some(format!("{value:.0}\u{a0}N/m of {limit:.0}\u{a0}N/m")),
+        WarningKind::Wrapped => Some(format!("{value:.2} turns")),
+        WarningKind::Curl => Some(format!("{value:.0}° of {limit:.0}°")),
+        WarningKind::Snag => Some(format!("tension ratio {value:.2}")),
+        WarningKind::Loop => None,
         WarningKind::Accuracy => Some(format!("{} of {}", unit::percent(value), unit::percent(limit))),
         WarningKind::NotUnique | WarningKind::SupportHeld | WarningKind::Stabilised => None,
     }
 }
 
 fn position(answer: &Solution, warning: &Warning) -> Option<[f64; 2]> {
+    if warning.at_m.is_some() {
+        return warning.at_m;
+    }
     let cable = answer.cables.iter().find(|c| c.name == warning.cable)?;
     let distance = |s: f64| (s - warning.arc_length_m).abs();
     let nearest = cable.nodes.iter().min_by(|a, b| distance(a.arc_length_m).total_cmp(&distance(b.arc_length_m)))?;

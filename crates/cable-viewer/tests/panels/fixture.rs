@@ -114,6 +114,7 @@ fn answer(scene: &Scene) -> Solution {
             supports: vec![reaction("left", 0.0, 560.0, -448.0), reaction("right", 10.0, -560.0, -448.0)],
             contacts: vec![contact],
             error_estimate: Some(3.2e-4),
+            ..CableSolution::default()
         }],
         warnings: Vec::new(),
         cost: Cost { iterations: 7, halved_steps: 0, residual_n: 3.4e-7, inner_step_s: 1.0 / 240.0 },
@@ -122,13 +123,8 @@ fn answer(scene: &Scene) -> Solution {
 
 /// Warnings of several kinds.
 pub fn warn(state: &mut AppState) {
-    let warning = |kind, arc_length_m, value, limit, message: &str| Warning {
-        kind,
-        cable: "cable".to_owned(),
-        arc_length_m,
-        value,
-        limit,
-        message: message.to_owned(),
+    let warning = |kind, arc_length_m, value: f64, limit: f64, message: &str| {
+        Warning::new(kind, "cable", arc_length_m, [value, limit], message.to_owned())
     };
     let mut solution = (**state.snapshot.solution.as_ref().unwrap()).clone();
     solution.warnings = vec![

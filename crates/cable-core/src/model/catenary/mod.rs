@@ -244,14 +244,9 @@ impl Mechanics for CatenaryModel {
         };
         let mut report = self.accept(&layout, e, self.time_s, true)?;
         if self.has_friction() {
-            report.warnings.push(Warning {
-                kind: WarningKind::NotUnique,
-                cable: self.problem.cable.name.clone(),
-                arc_length_m: 0.0,
-                value: 0.0,
-                limit: 0.0,
-                message: "With friction the resting place depends on how the cable was laid: this is the one laid evenly along its way with the least sliding".to_owned(),
-            });
+            let message = "With friction the resting place depends on how the cable was laid: this is the one laid evenly along its way with the least sliding";
+            let name = &self.problem.cable.name;
+            report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
         }
         Ok(report)
     }
@@ -357,6 +352,7 @@ impl Mechanics for CatenaryModel {
             supports: self.reactions.clone(),
             contacts: Vec::new(),
             error_estimate: Some(0.0),
+            ..CableSolution::default()
         }
     }
 

@@ -19,7 +19,7 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
         nodes: nodes(d, (x, v), &tension, &ends),
         supports: supports(d, x, &ends),
         contacts: contacts(d, x, &tension),
-        error_estimate: None,
+        ..CableSolution::default()
     }
 }
 

@@ -563,18 +563,13 @@ impl Dynamics {
             .iter()
             .filter_map(|&k| {
                 let (s, node) = (self.problem.supports.get(k)?, self.support_node.get(k).copied().flatten()?);
-                Some(Warning {
-                    kind: WarningKind::SupportHeld,
-                    cable: self.problem.cable.name.clone(),
-                    arc_length_m: self.mesh.arc_length[node],
-                    value: self.motion.v[node].norm(),
-                    limit: crate::model::drive::MAX_SPEED,
-                    message: format!(
-                        "support `{}` lags behind where it is sent: an obstacle is in its way, or it would be faster than {} m/s",
-                        s.name,
-                        crate::model::drive::MAX_SPEED
-                    ),
-                })
+                let (most, reached) = (crate::model::drive::MAX_SPEED, self.motion.v[node].norm());
+                let message = format!(
+                    "support `{}` lags behind where it is sent: an obstacle is in its way, or it would be faster than {most} m/s",
+                    s.name
+                );
+                let (name, arc_length) = (&self.problem.cable.name, self.mesh.arc_length[node]);
+                Some(Warning::new(WarningKind::SupportHeld, name, arc_length, [reached, most], message))
             })
             .collect();
         StepReport { cost, warnings }

@@ -290,7 +290,7 @@ impl Statics {
         let problem = &self.problem;
         let mut out = Vec::new();
         let mut warn = |kind, value: f64, limit: f64, message: String| {
-            out.push(Warning { kind, cable: problem.cable.name.clone(), arc_length_m: 0.0, value, limit, message });
+            out.push(Warning::new(kind, &problem.cable.name, 0.0, [value, limit], message));
         };
         if let Some(rubbing) = problem.supports.iter().find(|s| s.friction > 0.0) {
             let message = format!(
@@ -400,6 +400,7 @@ impl Statics {
             supports,
             contacts: Vec::new(),
             error_estimate: self.estimate,
+            ..CableSolution::default()
         }
     }
 }

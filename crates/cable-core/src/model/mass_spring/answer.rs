@@ -24,7 +24,7 @@ impl MassSpringModel {
             nodes: self.nodes(),
             supports: (0..self.node_of.len()).map(|k| self.reaction(k)).collect(),
             contacts: self.contact_reports(),
-            error_estimate: None,
+            ..CableSolution::default()
         }
     }
 

@@ -305,8 +305,7 @@ impl MassSpringModel {
         let name = &self.problem.cable.name;
         let arc_length_m = self.s.get(trouble.node).copied().unwrap_or(0.0);
         let mut say = |value: f64, limit: f64, message: String| {
-            let cable = name.clone();
-            self.warnings.push(Warning { kind: WarningKind::Stabilised, cable, arc_length_m, value, limit, message });
+            self.warnings.push(Warning::new(WarningKind::Stabilised, name, arc_length_m, [value, limit], message));
         };
         let stable = 1.0 / 60.0 / MOST_SUB_STEPS;
         if self.stepping == Stepping::Auto {
