@@ -25,6 +25,20 @@ impl State {
         })
     }
 
+    /// Arc length where the cable is nearest to a point, m.
+    #[must_use]
+    pub fn nearest(&self, to: Vec2) -> Option<f64> {
+        let mut best: Option<(f64, f64)> = None;
+        for (p, s) in self.position_m.windows(2).zip(self.arc_length_m.windows(2)) {
+            let f = crate::contact::distance::nearest_fraction(to, p[0], p[1]);
+            let d = (p[0] + (p[1] - p[0]) * f - to).norm();
+            if best.is_none_or(|b| d < b.0) {
+                best = Some((d, s[0] + f * (s[1] - s[0])));
+            }
+        }
+        best.map(|b| b.1)
+    }
+
     /// Position at a material coordinate, linear between nodes, m.
     #[must_use]
     pub fn position_at(&self, arc_length_m: f64) -> Option<Vec2> {

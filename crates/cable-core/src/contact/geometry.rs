@@ -153,6 +153,14 @@ impl Body {
         std::iter::once(k).chain(last).filter_map(|k| self.corner(k))
     }
 
+    /// Whether an edge ends at the corner or circle `feature`.
+    #[must_use]
+    pub fn is_beside(&self, edge: usize, feature: usize) -> bool {
+        let n = self.edges.len();
+        let Some(local) = feature.checked_sub(self.first).map(|f| f / 2).filter(|&k| k <= n) else { return false };
+        local == edge || local == edge + 1 || (self.closed && local == 0 && edge + 1 == n)
+    }
+
     /// Whether contact at a corner can be felt by a straight segment: not where a solid recedes from it.
     #[must_use]
     pub fn juts_out(&self, corner: &Corner) -> bool {
@@ -271,10 +279,16 @@ impl Geometry {
         &self.bodies
     }
 
+    /// The body that a feature belongs to.
+    #[must_use]
+    pub fn body_of(&self, feature: usize) -> Option<&Body> {
+        self.bodies.iter().find(|b| b.features().contains(&feature))
+    }
+
     /// Direction outwards of the corner that a gap is to; None if it is not to a corner of a solid.
     #[must_use]
     pub fn outward_of(&self, gap: &Gap) -> Option<Vec2> {
-        let body = self.bodies.iter().find(|b| b.features().contains(&gap.feature)).filter(|b| b.solid)?;
+        let body = self.body_of(gap.feature).filter(|b| b.solid)?;
         let local = gap.feature - body.first;
         (local % 2 == 1).then(|| body.corner(local / 2)).flatten().map(|c| c.outward())
     }

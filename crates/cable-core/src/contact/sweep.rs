@@ -31,6 +31,13 @@ impl Geometry {
     /// See [`super::World::free_fraction`].
     #[must_use]
     pub fn free_fraction(&self, from: [Vec2; 2], to: [Vec2; 2], keep: f64) -> f64 {
+        self.free_fraction_round(from, to, keep, [None, None])
+    }
+
+    /// As [`Self::free_fraction`] for a segment that ends tangent to the rounds of the corners or circles `round`,
+    /// at one or both ends: near these only its other end can come too close.
+    #[must_use]
+    pub fn free_fraction_round(&self, from: [Vec2; 2], to: [Vec2; 2], keep: f64, round: [Option<usize>; 2]) -> f64 {
         let [a, b] = from;
         let (da, db) = (to[0] - a, to[1] - b);
         let speed = if da.norm_squared() > db.norm_squared() { da.norm() } else { db.norm() };
@@ -49,16 +56,58 @@ impl Geometry {
         for body in self.bodies() {
             let r = Vec2::repeat(body.offset + margin);
             if let Some(c) = body.center {
-                let distance = |t: f64| point_segment(c, a + da * t, b + db * t);
-                free = advance(distance, body.offset, [speed, keep, noise], free);
+                let way = [speed, keep, noise];
+                free = match round.map(|f| f == Some(body.first + 1)) {
+                    [false, false] => advance(|t| point_segment(c, a + da * t, b + db * t), body.offset, way, free),
+                    [true, false] => advance(|t| (b + db * t - c).norm(), body.offset, way, free),
+                    [false, true] => advance(|t| (a + da * t - c).norm(), body.offset, way, free),
+                    [true, true] => free,
+                };
             }
             for k in body.candidates(low - r, high + r) {
                 let e = &body.edges[k];
-                let distance = |t: f64| segment_segment(a + da * t, b + db * t, e.p, e.q);
-                free = advance(distance, body.offset, [speed, keep, noise], free);
+                let beside = round.map(|f| f.is_some_and(|f| body.is_beside(k, f)));
+                let way = [speed, keep, noise];
+                free = match beside {
+                    [false, false] => {
+                        advance(|t| segment_segment(a + da * t, b + db * t, e.p, e.q), body.offset, way, free)
+                    }
+                    [true, false] => advance(|t| point_segment(b + db * t, e.p, e.q), body.offset, way, free),
+                    [false, true] => advance(|t| point_segment(a + da * t, e.p, e.q), body.offset, way, free),
+                    [true, true] => free,
+                };
             }
         }
         free
+    }
+}
+
+impl Geometry {
+    /// Whether every gap of a segment is above `least` (m); `round` as in [`Self::free_fraction_round`].
+    #[must_use]
+    pub fn is_clear(&self, [a, b]: [Vec2; 2], least: f64, round: [Option<usize>; 2]) -> bool {
+        let (low, high) = (a.inf(&b), a.sup(&b));
+        self.bodies().iter().all(|body| {
+            let reach = body.offset + least;
+            let r = Vec2::repeat(reach);
+            let from = |beside: [bool; 2], whole: f64, points: [f64; 2]| match beside {
+                [false, false] => whole > reach,
+                [true, false] => points[1] > reach,
+                [false, true] => points[0] > reach,
+                [true, true] => true,
+            };
+            let circle = body.center.is_none_or(|c| {
+                let beside = round.map(|f| f == Some(body.first + 1));
+                from(beside, point_segment(c, a, b), [(a - c).norm(), (b - c).norm()])
+            });
+            circle
+                && body.candidates(low - r, high + r).all(|k| {
+                    let e = &body.edges[k];
+                    let beside = round.map(|f| f.is_some_and(|f| body.is_beside(k, f)));
+                    let points = [point_segment(a, e.p, e.q), point_segment(b, e.p, e.q)];
+                    from(beside, segment_segment(a, b, e.p, e.q), points)
+                })
+        })
     }
 }
 

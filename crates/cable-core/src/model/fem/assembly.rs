@@ -5,6 +5,8 @@
 //! and the numbering never change. Before pinning, minus the gradient at a held node is the force of the cable
 //! on its support.
 
+use super::path::{End, Path};
+use super::sliding::Sliding;
 use crate::energy::axial::Bar;
 use crate::energy::bending::{Bend, ClampBend};
 use crate::energy::{Curvature, Energy};
@@ -32,6 +34,10 @@ pub struct Mesh {
     pub held: Vec<bool>,
     /// Directions prescribed.
     pub clamps: Vec<Clamp>,
+    /// What each node slides over; None: it moves with the material.
+    pub sliding: Vec<Option<Sliding>>,
+    /// 1 + αΔT: unstretched length of a metre of arc length.
+    pub thermal_stretch: f64,
     /// EA, N.
     pub axial_stiffness: f64,
     /// EI, N·m²; 0 = no bending.
@@ -53,6 +59,8 @@ impl Mesh {
         let rest_length = arc_length.windows(2).map(|p| problem.thermal_stretch * (p[1] - p[0])).collect();
         Self {
             held: vec![false; arc_length.len()],
+            sliding: vec![None; arc_length.len()],
+            thermal_stretch: problem.thermal_stretch,
             rest_length,
             arc_length,
             clamps: Vec::new(),
@@ -71,6 +79,36 @@ impl Mesh {
     #[must_use]
     pub fn half_bandwidth(&self) -> usize {
         if self.bending_stiffness > 0.0 { BENDING_HALF_BANDWIDTH } else { BARS_HALF_BANDWIDTH }
+    }
+
+    /// The end that node `k` makes for the bars beside it.
+    #[must_use]
+    pub fn end(&self, k: usize, x: &[Vec2]) -> End {
+        self.sliding[k].as_ref().map_or_else(|| End::point(x[k]), |s| s.end)
+    }
+
+    /// The way of bar `e`.
+    #[must_use]
+    pub fn path(&self, e: usize, x: &[Vec2]) -> Path {
+        Path::between(&self.end(e, x), &self.end(e + 1, x))
+    }
+
+    /// Ends of the straight part of bar `e`, m.
+    #[must_use]
+    pub fn straight(&self, e: usize, x: &[Vec2]) -> [Vec2; 2] {
+        if self.sliding[e].is_none() && self.sliding[e + 1].is_none() { [x[e], x[e + 1]] } else { self.path(e, x).ends }
+    }
+
+    /// Features that the ends of bar `e` run round.
+    #[must_use]
+    pub fn rounds(&self, e: usize) -> [Option<usize>; 2] {
+        [e, e + 1].map(|k| self.sliding[k].as_ref().and_then(Sliding::feature))
+    }
+
+    /// Whether a node moves with the material and nothing prescribes where it is.
+    #[must_use]
+    pub fn is_free(&self, k: usize) -> bool {
+        !self.held[k] && self.sliding[k].is_none()
     }
 
     /// The bar from node `e` to node `e + 1`.
@@ -108,6 +146,11 @@ impl Mesh {
         let half = body * (0.5 * (self.arc_length[e + 1] - self.arc_length[e]));
         [middle + half, middle - half]
     }
+}
+
+/// Whether the turn at an inner node bends the cable: not where it or a neighbour slides over something.
+fn bends(mesh: &Mesh, node: usize) -> bool {
+    mesh.sliding[node - 1..=node + 1].iter().all(Option::is_none)
 }
 
 /// Even bars for a stretch of `length` out of `whole` when the whole is to have about `segments`.
@@ -210,7 +253,7 @@ impl System {
                     let bend = ClampBend { stiffness, length: 0.5 * rest, direction: clamp.direction };
                     value += self.add_energy(&bend, [e, e + 1], x, curvature);
                 }
-            } else if node > 0 && node < rest.len() {
+            } else if node > 0 && node < rest.len() && bends(mesh, node) {
                 let bend = Bend { stiffness, length: 0.5 * (rest[node - 1] + rest[node]) };
                 value += self.add_energy(&bend, [node - 1, node, node + 1], x, curvature);
             }
@@ -245,6 +288,8 @@ mod tests {
             ],
             axial_stiffness: 1e4,
             bending_stiffness,
+            sliding: vec![None; 9],
+            thermal_stretch: 1.0,
         }
     }
 

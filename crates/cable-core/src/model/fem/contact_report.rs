@@ -2,6 +2,7 @@
 
 use super::contact_set::{Rub, SLIDE, Touch};
 use super::dynamics::Dynamics;
+use super::sliding::Seat;
 use crate::contact::friction;
 use crate::energy::bending::turn;
 use crate::math::Vec2;
@@ -17,7 +18,7 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
     CableSolution {
         name: problem.cable.name.clone(),
         nodes: nodes(d, (x, v), &tension, &ends),
-        supports: supports(d, x, &ends),
+        supports: supports(d, x, &ends, &tension),
         contacts: contacts(d, x, &tension),
         ..CableSolution::default()
     }
@@ -28,7 +29,7 @@ fn bar_tensions(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
     let mesh = &d.mesh;
     (0..mesh.rest_length.len())
         .map(|e| {
-            let t = mesh.bar(e).tension((x[e + 1] - x[e]).norm());
+            let t = mesh.bar(e).tension(mesh.path(e, x).length);
             if t < 0.0 { 0.0 } else { t }
         })
         .collect()
@@ -39,11 +40,10 @@ fn bar_tensions(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
 fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> [Vec2; 2] {
     let n = x.len();
     let end = |node: usize, next: usize, e: usize, sign: f64| {
-        let way = x[e + 1] - x[e];
-        let middle = if way.norm() > 0.0 { way * (tension[e] / way.norm()) } else { way };
+        let middle = d.mesh.path(e, x).direction * tension[e];
         let half = d.mesh.share(node);
         let body = d.problem.body_force(d.time()) * half;
-        let lies = d.problem.world.signed_gap(x[node], 3.0 * super::dynamics::REACH).is_some();
+        let lies = d.problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach).is_some();
         let ground = if lies { ground_force(d, next, x) * (half / d.mesh.share(next)) } else { Vec2::zeros() };
         middle + (body + ground) * sign
     };
@@ -73,50 +73,95 @@ fn rub_force(rub: &Rub, x: &[Vec2]) -> Vec2 {
 fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2; 2]) -> Vec<Node> {
     let (mesh, n) = (&d.mesh, x.len());
     let area = d.problem.cable.area_m2();
-    (0..n)
-        .map(|k| {
-            let t = match k {
-                0 if mesh.held[0] => ends[0].norm(),
-                k if k + 1 == n && mesh.held[k] => ends[1].norm(),
-                0 => d.task.force[0].norm().min(tension[0]),
-                k if k + 1 == n => d.task.force[k].norm().min(tension[k - 1]),
-                k => 0.5 * (tension[k - 1] + tension[k]),
-            };
-            let mut curvature = 0.0;
-            if k > 0 && k + 1 < n {
-                let rest = 0.5 * (mesh.arc_length[k + 1] - mesh.arc_length[k - 1]);
-                curvature = turn(x[k] - x[k - 1], x[k + 1] - x[k]) / rest;
-            } else if let Some(clamp) = mesh.clamps.iter().find(|c| c.node == k) {
-                let e = if k == 0 { 0 } else { k - 1 };
-                let bend = turn(clamp.direction, x[e + 1] - x[e]);
-                let sign = if k == 0 { 1.0 } else { -1.0 };
-                curvature = sign * bend / (0.5 * (mesh.arc_length[e + 1] - mesh.arc_length[e]));
+    let node = |s: f64, (x, v): (Vec2, Vec2), t: f64, curvature_per_m: f64| Node {
+        arc_length_m: s,
+        x_m: x.x,
+        y_m: x.y,
+        vx_m_per_s: v.x,
+        vy_m_per_s: v.y,
+        tension_n: t,
+        strain: t / d.problem.axial_stiffness,
+        stress_pa: t / area,
+        curvature_per_m,
+    };
+    let mut out = Vec::with_capacity(n + 2);
+    for k in 0..n {
+        if let (Some(sliding), Some(load)) = (&mesh.sliding[k], d.load(k)) {
+            let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
+            let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(sliding)));
+            for j in 0..2 {
+                // Where the cable meets the round and leaves it; one node where that is one place.
+                let arc = if same[j] { 0.0 } else { sliding.end.radius * paths[j].arcs[1 - j] };
+                let stretch = mesh.thermal_stretch * (1.0 + load.tension[j] / d.problem.axial_stiffness);
+                let s = mesh.arc_length[k] + [-1.0, 1.0][j] * arc / stretch;
+                if out.last().is_none_or(|l: &Node| s > l.arc_length_m + 1e-9) {
+                    let at = if same[j] { sliding.position() } else { paths[j].ends[1 - j] };
+                    let velocity = paths[j].direction * (-d.motion.w[k] * stretch);
+                    let curvature =
+                        if sliding.end.radius > 0.0 { stretch * sliding.end.sense / sliding.end.radius } else { 0.0 };
+                    let t =
+                        if load.tension[1] > load.tension[0] && arc == 0.0 { load.tension[1] } else { load.tension[j] };
+                    out.push(node(s, (at, velocity), t, curvature));
+                }
             }
-            Node {
-                arc_length_m: mesh.arc_length[k],
-                x_m: x[k].x,
-                y_m: x[k].y,
-                vx_m_per_s: v[k].x,
-                vy_m_per_s: v[k].y,
-                tension_n: t,
-                strain: t / d.problem.axial_stiffness,
-                stress_pa: t / area,
-                curvature_per_m: curvature,
-            }
-        })
-        .collect()
+            continue;
+        }
+        let t = match k {
+            0 if mesh.held[0] => ends[0].norm(),
+            k if k + 1 == n && mesh.held[k] => ends[1].norm(),
+            0 => d.task.force[0].norm().min(tension[0]),
+            k if k + 1 == n => d.task.force[k].norm().min(tension[k - 1]),
+            k => 0.5 * (tension[k - 1] + tension[k]),
+        };
+        let mut curvature = 0.0;
+        if k > 0 && k + 1 < n {
+            let rest = 0.5 * (mesh.arc_length[k + 1] - mesh.arc_length[k - 1]);
+            curvature = turn(mesh.path(k - 1, x).direction, mesh.path(k, x).direction) / rest;
+        } else if let Some(clamp) = mesh.clamps.iter().find(|c| c.node == k) {
+            let e = if k == 0 { 0 } else { k - 1 };
+            let bend = turn(clamp.direction, x[e + 1] - x[e]);
+            let sign = if k == 0 { 1.0 } else { -1.0 };
+            curvature = sign * bend / (0.5 * (mesh.arc_length[e + 1] - mesh.arc_length[e]));
+        }
+        out.push(node(mesh.arc_length[k], (x[k], v[k]), t, curvature));
+    }
+    out
 }
 
-fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2]) -> Vec<SupportReaction> {
+/// The force of the cable on a pulley with its tensions and arc length.
+fn pulley(d: &Dynamics, support: usize, x: &[Vec2], tension: &[f64]) -> Option<SupportReaction> {
+    let seat = Seat::Pulley(support);
+    let on = |k: &usize| d.mesh.sliding[*k].is_some_and(|s| s.seat == seat);
+    let first = (1..x.len() - 1).find(on)?;
+    let last = (1..x.len() - 1).rev().find(on)?;
+    let (before, after) = (d.load(first)?, d.load(last)?);
+    let share: f64 = (first..=last).map(|k| d.mesh.share(k)).sum();
+    let directions = [d.mesh.path(first - 1, x).direction, d.mesh.path(last, x).direction];
+    let force = directions[1] * tension[last] - directions[0] * tension[first - 1] + d.task.body * share;
+    let center = d.mesh.sliding[first]?.end.center;
+    Some(SupportReaction {
+        name: d.problem.supports.get(support)?.name.clone(),
+        x_m: center.x,
+        y_m: center.y,
+        reaction_x_n: force.x,
+        reaction_y_n: force.y,
+        arc_length_m: 0.5 * (d.mesh.arc_length[first] + d.mesh.arc_length[last]),
+        tension_before_n: Some(before.tension[0]),
+        tension_after_n: Some(after.tension[1]),
+    })
+}
+
+fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<SupportReaction> {
     let problem: &Problem = &d.problem;
     problem
         .supports
         .iter()
         .zip(&d.support_node)
-        .map(|(s, node)| {
-            let node = node.unwrap_or(0);
+        .enumerate()
+        .filter_map(|(k, (s, node))| {
+            let Some(node) = *node else { return pulley(d, k, x, tension) };
             let last = x.len() - 1;
-            let lies = problem.world.signed_gap(x[node], 3.0 * super::dynamics::REACH).is_some();
+            let lies = problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach).is_some();
             let reaction = match node {
                 _ if !d.mesh.held[node] => Vec2::zeros(),
                 // On the ground the end's own share of weight and friction is the ground's, not the support's.
@@ -124,7 +169,7 @@ fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2]) -> Vec<SupportReaction> 
                 k if k == last && lies => -ends[1],
                 _ => d.reaction[node],
             };
-            SupportReaction {
+            Some(SupportReaction {
                 name: s.name.clone(),
                 x_m: x[node].x,
                 y_m: x[node].y,
@@ -133,7 +178,7 @@ fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2]) -> Vec<SupportReaction> 
                 arc_length_m: d.mesh.arc_length[node],
                 tension_before_n: None,
                 tension_after_n: None,
-            }
+            })
         })
         .collect()
 }
@@ -157,9 +202,54 @@ fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> Vec<ContactReport> {
         }
         out.push(report(d, x, tension, &stretch));
     }
+    rounds(d, x, &mut out);
     out.retain(|c| c.normal_n > 0.0);
     out.sort_by(|a, b| a.arc_length_m.total_cmp(&b.arc_length_m));
     out
+}
+
+/// One report for each corner, post or circle with sliding nodes.
+fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
+    let n = x.len();
+    let mut k = 1;
+    while k + 1 < n {
+        let first = k;
+        k += 1;
+        let Some(node) = d.mesh.sliding[first] else { continue };
+        let Seat::Obstacle { obstacle, .. } = node.seat else { continue };
+        while k + 1 < n && d.mesh.sliding[k].is_some_and(|s| s.shares_round(&node)) {
+            k += 1;
+        }
+        let mut r = ContactReport {
+            obstacle: d.problem.world.obstacle_name(obstacle).to_owned(),
+            arc_length_m: 0.5 * (d.mesh.arc_length[first] + d.mesh.arc_length[k - 1]),
+            ..ContactReport::default()
+        };
+        // A wrap slips when all of it does: one place that holds is enough for the cable to stay.
+        let (mut push, mut turn, mut slips) = (Vec2::zeros(), 0.0, true);
+        for j in first..k {
+            let (Some(load), Some(node)) = (d.load(j), &d.mesh.sliding[j]) else { continue };
+            let [a, b] = load.tension;
+            // ∫T dφ of a tension that grows evenly in its logarithm.
+            let ratio = if a > 0.0 && b > 0.0 { (b / a).ln() } else { 0.0 };
+            let mean = if ratio.abs() > 1e-6 { (b - a) / ratio } else { 0.5 * (a + b) };
+            r.normal_n += mean * load.turn;
+            push += node.end.mark * (mean * load.turn);
+            turn += load.turn;
+            r.friction_n += a - b;
+            slips &= !node.sticks();
+            if j == first {
+                r.tension_before_n = a;
+            }
+            r.tension_after_n = b;
+        }
+        let normal = if push.norm() > 0.0 { push.normalize() } else { node.end.mark };
+        let at = node.end.center + normal * node.end.radius;
+        (r.x_m, r.y_m, r.normal) = (at.x, at.y, [normal.x, normal.y]);
+        r.turn_deg = node.end.sense * turn.to_degrees();
+        r.state = if slips { ContactState::Slip } else { ContactState::Stick };
+        out.push(r);
+    }
 }
 
 fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> ContactReport {
@@ -180,7 +270,7 @@ fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> Conta
         r.touch.pair.gap.obstacle == first.pair.gap.obstacle && (first.node..=last.node).contains(&r.touch.node)
     }) {
         let e = rub.touch.node.min(bars - 1);
-        let along = (x[e + 1] - x[e]).normalize();
+        let along = d.mesh.path(e, x).direction;
         friction_n += rub_force(rub, x).dot(&along);
         if rub.sliding(x).abs() > 0.999 * SLIDE {
             slips += rub.limit;
@@ -195,7 +285,10 @@ fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> Conta
     let unit = if normal.norm() > 0.0 { normal.normalize() } else { first.pair.gap.normal };
     let middle = (a + b) * 0.5;
     // Summed bar by bar: a wrap may go round more than once.
-    let turned: f64 = (before..after).map(|e| turn(x[e + 1] - x[e], x[e + 2] - x[e + 1])).sum();
+    let turned: f64 = (before..after)
+        .filter(|&e| d.mesh.sliding[e + 1].is_none())
+        .map(|e| turn(d.mesh.path(e, x).direction, d.mesh.path(e + 1, x).direction))
+        .sum();
     let frictionless = first.pair.gap.friction == 0.0;
     ContactReport {
         obstacle: d.problem.world.obstacle_name(first.pair.gap.obstacle).to_owned(),

@@ -48,6 +48,15 @@ impl Touch {
     }
 }
 
+impl ContactSet {
+    /// Renumbers what friction remembers: `change` gives the new number of a node, None if it is gone.
+    pub fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {
+        self.rubs.clear();
+        let old = std::mem::take(&mut self.memory);
+        self.memory.extend(old.into_iter().filter_map(|m| Some(Memory { node: change(m.node)?, ..m })));
+    }
+}
+
 /// What friction remembers of a contact after an accepted step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Memory {
@@ -122,16 +131,19 @@ impl ContactSet {
         }
         let (geometry, reach, last) = (problem.world.geometry(), self.barrier.reach, x.len().saturating_sub(1));
         for node in 0..x.len() {
-            if !mesh.held[node] {
-                let before = node.checked_sub(1).map(|k| x[k]);
-                let after = x.get(node + 1).copied();
+            if mesh.is_free(node) {
+                let before = node.checked_sub(1).map(|e| mesh.straight(e, x)[0]);
+                let after = (node < last).then(|| mesh.straight(node, x)[1]);
                 geometry.node_pairs(before, x[node], after, reach, &mut |pair| {
                     out.push(Touch { node, on_segment: false, pair });
                 });
             }
-            if node < last && !(mesh.held[node] && mesh.held[node + 1]) {
-                geometry.segment_pairs(x[node], x[node + 1], reach, &mut |pair| {
-                    out.push(Touch { node, on_segment: true, pair });
+            if node < last && (mesh.is_free(node) || mesh.is_free(node + 1)) {
+                let ([a, b], rounds) = (mesh.straight(node, x), mesh.rounds(node));
+                geometry.segment_pairs(a, b, reach, &mut |pair| {
+                    if !rounds.contains(&Some(pair.gap.feature)) {
+                        out.push(Touch { node, on_segment: true, pair });
+                    }
                 });
             }
         }
@@ -175,8 +187,8 @@ impl ContactSet {
         best.1
     }
 
-    /// Accepts the step from `start` to `end` (m): anchors follow what slid.
-    pub fn commit(&mut self, problem: &Problem, mesh: &Mesh, end: &[Vec2], start: &[Vec2]) {
+    /// Accepts the step from `start` to `end` (m): anchors follow what slid; `slide` is that of sliding nodes (m).
+    pub fn commit(&mut self, problem: &Problem, mesh: &Mesh, end: &[Vec2], start: &[Vec2], slide: &[f64]) {
         self.prepare(problem, mesh, end, start);
         self.memory.clear();
         for rub in &self.rubs {
@@ -190,8 +202,9 @@ impl ContactSet {
             });
         }
         if problem.floor_friction.is_some() {
-            for (slid, (e, s)) in self.floor_slid.iter_mut().zip(end.iter().zip(start)) {
-                *slid = friction::return_map_plane(*slid + (e - s), SLIDE);
+            for (k, (slid, (e, s))) in self.floor_slid.iter_mut().zip(end.iter().zip(start)).enumerate() {
+                let by = if mesh.sliding[k].is_some() { Vec2::new(slide[k], 0.0) } else { e - s };
+                *slid = friction::return_map_plane(*slid + by, SLIDE);
             }
         }
         // What is left in `rubs` now tells of the state reached: nothing slides further from here.

@@ -7,16 +7,14 @@
 //! of a bar with time constant τ is a second bar of stiffness EA τ a whose rest length is the one predicted.
 
 use super::assembly::{Mesh, System};
+use super::bar;
 use super::contact_set::{ContactSet, SLIDE, Touch};
+use super::path::{End, Path};
 use crate::contact::friction;
 use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError};
 use crate::math::{Mat2, Vec2};
 use crate::problem::Problem;
-
-/// Part of EA that resists shortening. A flexible cable gives way sideways between the nodes instead of
-/// pushing; with none, slack nodes are free to wander, with all of it a slack cable on the ground stays straight and pushes.
-pub const PUSH: f64 = 0.01;
 
 /// Part of each gap that a Newton step leaves. Smaller: gaps shrink too fast for Newton; larger: more steps.
 const KEEP: f64 = 0.2;
@@ -30,9 +28,27 @@ const MAX_HALVINGS: usize = 30;
 /// Energies are trusted to this part of the sum of their magnitudes.
 const ENERGY_NOISE: f64 = 1e-13;
 
+/// Least part of the cable between a sliding node and its neighbour that one iteration leaves.
+const LEAVE: f64 = 0.3;
+
+/// The unknowns of a step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pose {
+    /// Position of each node, m; of a sliding one its mark.
+    pub x: Vec<Vec2>,
+    /// How far the arc length at each sliding node has moved in this step, m.
+    pub slide: Vec<f64>,
+}
+
 /// What a step is about.
 #[derive(Clone, Debug, Default)]
 pub struct Task {
+    /// Factor of each bar's energy (see `sliding`); 1 without friction at sliding nodes.
+    pub scale: Vec<f64>,
+    /// Distributed force, N/m.
+    pub body: Vec2,
+    /// Predicted slide of each sliding node, m.
+    pub predicted_slide: Vec<f64>,
     /// mᵢ a², N/m.
     pub inertia: Vec<f64>,
     /// x̃, m.
@@ -87,7 +103,7 @@ pub struct Workspace {
     system: System,
     factor: BandFactor,
     direction: Vec<f64>,
-    trial: Vec<Vec2>,
+    trial: Pose,
     touches: Vec<Touch>,
     magnitude: f64,
 }
@@ -102,7 +118,7 @@ impl Workspace {
         let factor = BandFactor::new(2 * mesh.nodes(), mesh.half_bandwidth())?;
         Ok(Self {
             direction: vec![0.0; 2 * mesh.nodes()],
-            trial: vec![Vec2::zeros(); mesh.nodes()],
+            trial: Pose { x: vec![Vec2::zeros(); mesh.nodes()], slide: vec![0.0; mesh.nodes()] },
             touches: Vec::new(),
             magnitude: 0.0,
             system,
@@ -116,15 +132,22 @@ impl Workspace {
         self.system.gradient_at(node)
     }
 
-    /// Φ with gradient and Hessian at `x`.
+    /// Number of nodes it has room for.
+    #[must_use]
+    pub fn nodes(&self) -> usize {
+        self.trial.x.len()
+    }
+
+    /// Φ with gradient and Hessian at a pose.
     pub fn assemble(
         &mut self,
         problem: &Problem,
         mesh: &Mesh,
         contacts: &ContactSet,
-        (task, x): (&Task, &[Vec2]),
+        (task, pose): (&Task, &Pose),
         curvature: Curvature,
     ) -> f64 {
+        let x = &pose.x;
         let mut touches = std::mem::take(&mut self.touches);
         contacts.find(problem, mesh, x, &mut touches);
         let s = &mut self.system;
@@ -133,47 +156,70 @@ impl Workspace {
         let mut value = 0.0;
         self.magnitude = 0.0;
         for e in 0..mesh.rest_length.len() {
-            value += add_bar(s, mesh, task, (e, x), curvature);
+            let (energy, size) = bar::add(s, mesh, task, (e, pose), curvature);
+            value += energy;
+            self.magnitude += size;
         }
         if mesh.bending_stiffness > 0.0 {
             value += s.add_bending(mesh, x, curvature);
         }
-        self.magnitude += value;
+        self.magnitude += value.abs();
         for i in 0..x.len() {
-            let (away, k) = (x[i] - task.predicted[i], task.inertia[i]);
-            let kinetic = 0.5 * k * away.norm_squared();
-            // Work is measured from the start of the step, so that its size is that of the change.
-            let work = task.force[i].dot(&(x[i] - task.start[i]));
-            value += kinetic - work;
-            self.magnitude += kinetic + work.abs();
-            s.add_gradient(i, away * k - task.force[i]);
-            s.add_block(i, i, &(Mat2::identity() * k));
+            let (k, scale) = (task.inertia[i], node_scale(task, i));
+            let (kinetic, work) = if mesh.sliding[i].is_some() {
+                let away = pose.slide[i] - task.predicted_slide[i];
+                s.gradient[2 * i] += scale * k * away;
+                s.hessian.add(2 * i, 2 * i, scale * k);
+                (0.5 * k * away * away, 0.0)
+            } else {
+                let away = x[i] - task.predicted[i];
+                s.add_gradient(i, (away * k - task.force[i]) * scale);
+                s.add_block(i, i, &(Mat2::identity() * (k * scale)));
+                // Work is measured from the start of the step, so that its size is that of the change.
+                (0.5 * k * away.norm_squared(), task.force[i].dot(&(x[i] - task.start[i])))
+            };
+            value += scale * (kinetic - work);
+            self.magnitude += scale * (kinetic + work.abs());
         }
         for touch in &touches {
-            value += add_touch(s, touch, contacts, x, curvature);
+            let scale = task.scale.get(touch.node).copied().unwrap_or(node_scale(task, touch.node));
+            value += add_touch(s, mesh, (touch, scale), contacts, x, curvature);
         }
         for rub in &contacts.rubs {
+            let scale = task.scale.get(rub.touch.node).copied().unwrap_or(node_scale(task, rub.touch.node));
             let (d, slope, bend) = friction::at(rub.sliding(x), rub.limit, SLIDE);
-            value += d;
-            let [a, b] = rub.touch.shares();
-            add_pair(s, rub.touch.node, [a, b], rub.tangent * slope, &(rub.tangent * rub.tangent.transpose() * bend));
+            value += d * scale;
+            let block = rub.tangent * rub.tangent.transpose() * (bend * scale);
+            add_pair(s, mesh, &rub.touch, rub.tangent * (slope * scale), &block);
         }
         for (i, &limit) in task.floor_limit.iter().enumerate() {
-            let slid = contacts.floor_slid[i] + (x[i] - task.start[i]);
-            let (d, slope, bend) = friction::at_plane(slid, limit, SLIDE);
-            value += d;
-            s.add_gradient(i, slope);
-            s.add_block(i, i, &bend);
+            let scale = node_scale(task, i);
+            if mesh.sliding[i].is_some() {
+                let (d, slope, bend) = friction::at(contacts.floor_slid[i].x + pose.slide[i], limit, SLIDE);
+                value += d * scale;
+                s.gradient[2 * i] += slope * scale;
+                s.hessian.add(2 * i, 2 * i, bend * scale);
+            } else {
+                let slid = contacts.floor_slid[i] + (x[i] - task.start[i]);
+                let (d, slope, bend) = friction::at_plane(slid, limit, SLIDE);
+                value += d * scale;
+                s.add_gradient(i, slope * scale);
+                s.add_block(i, i, &(bend * scale));
+            }
         }
         self.touches = touches;
         value
     }
 
     /// Largest unbalanced force on a free node, and which.
-    fn residual(&self, mesh: &Mesh) -> (f64, usize) {
+    fn residual(&self, mesh: &Mesh, task: &Task) -> (f64, usize) {
         let mut worst = (0.0, 0);
         for node in (0..mesh.nodes()).filter(|&k| !mesh.held[k]) {
-            let r = self.system.gradient_at(node).norm();
+            let r = match &mesh.sliding[node] {
+                Some(s) if s.sticks() => continue,
+                Some(_) => self.system.gradient[2 * node].abs(),
+                None => self.system.gradient_at(node).norm(),
+            } / node_scale(task, node);
             if !(r <= worst.0) {
                 worst = (r, node);
             }
@@ -197,14 +243,22 @@ impl Workspace {
                     }
                 }
             } else if shift > 0.0 {
-                s.add_block(node, node, &(Mat2::identity() * shift));
+                s.add_block(node, node, &(Mat2::identity() * (shift * node_scale(task, node))));
             }
         }
-        for node in (0..mesh.nodes()).filter(|&k| mesh.held[k]) {
-            let go = task.target[node] - x[node];
-            for (k, go) in [(2 * node, go.x), (2 * node + 1, go.y)] {
-                s.hessian.pin(k);
-                self.direction[k] = go;
+        for node in 0..mesh.nodes() {
+            if mesh.held[node] {
+                let go = task.target[node] - x[node];
+                for (k, go) in [(2 * node, go.x), (2 * node + 1, go.y)] {
+                    s.hessian.pin(k);
+                    self.direction[k] = go;
+                }
+            } else if let Some(sliding) = &mesh.sliding[node] {
+                let first = if sliding.sticks() { 0 } else { 1 };
+                for k in 2 * node + first..2 * node + 2 {
+                    s.hessian.pin(k);
+                    self.direction[k] = 0.0;
+                }
             }
         }
         if self.factor.factor(&s.hessian).is_err() {
@@ -214,7 +268,7 @@ impl Workspace {
         self.direction.iter().all(|d| d.is_finite())
     }
 
-    /// Minimises Φ from `x` (m), which becomes the answer; on failure it is where it got to.
+    /// Minimises Φ from `pose`, which becomes the answer; on failure it is where it got to.
     ///
     /// # Errors
     /// With the worst node and its unbalanced force.
@@ -223,19 +277,19 @@ impl Workspace {
         (problem, mesh): (&Problem, &Mesh),
         contacts: &ContactSet,
         task: &Task,
-        x: &mut [Vec2],
+        pose: &mut Pose,
     ) -> Result<Done, Failure> {
         let mut shift = task.shift;
         let mut pushes = 0;
         let mut done = Done::default();
-        let mut value = self.assemble(problem, mesh, contacts, (task, x), Curvature::Exact);
+        let mut value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Exact);
         loop {
-            let (residual, node) = self.residual(mesh);
+            let (residual, node) = self.residual(mesh, task);
             let failed = |cause| Err(Failure { node, residual, cause });
             if !value.is_finite() || !residual.is_finite() {
                 return failed("the energy is not finite");
             }
-            let left = (0..mesh.nodes()).any(|k| mesh.held[k] && task.target[k] != x[k]);
+            let left = (0..mesh.nodes()).any(|k| mesh.held[k] && task.target[k] != pose.x[k]);
             done.residual = residual;
             done.held_back = left;
             if residual <= task.tolerance && !left {
@@ -246,11 +300,11 @@ impl Workspace {
             }
             done.iterations += 1;
             // The gradient is needed after pinning overwrote the Hessian only, so it stays valid.
-            if !self.solve(mesh, task, (x, shift)) {
+            if !self.solve(mesh, task, (&pose.x, shift)) {
                 let mut tries = 0;
                 loop {
-                    self.assemble(problem, mesh, contacts, (task, x), Curvature::Clipped);
-                    if self.solve(mesh, task, (x, shift)) {
+                    self.assemble(problem, mesh, contacts, (task, pose), Curvature::Clipped);
+                    if self.solve(mesh, task, (&pose.x, shift)) {
                         break;
                     }
                     shift = grow(shift, task);
@@ -264,7 +318,7 @@ impl Workspace {
             if !(slope < 0.0) && !left {
                 slope = 0.0;
             }
-            match self.search((problem, mesh), contacts, (task, left), (x, value, slope)) {
+            match self.search((problem, mesh), contacts, (task, left), (pose, value, slope)) {
                 Some((new_value, fraction)) => {
                     value = new_value;
                     if fraction > 0.5 {
@@ -291,55 +345,86 @@ impl Workspace {
                         return failed("no descent");
                     }
                     shift = grow(shift, task);
-                    value = self.assemble(problem, mesh, contacts, (task, x), Curvature::Clipped);
+                    value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Clipped);
                 }
             }
         }
     }
 
-    /// Moves `x` along the direction as far as is free and lowers Φ; None if nothing does. Returns Φ and the part of
+    /// The largest part (at most `fraction`) of the direction that crosses nothing and leaves some cable between sliding
+    /// nodes and their neighbours.
+    fn free_way(&self, problem: &Problem, mesh: &Mesh, pose: &Pose, fraction: f64) -> f64 {
+        let step = |k: usize| Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]);
+        let mut free = fraction;
+        for e in 0..mesh.rest_length.len() {
+            let slides = [e, e + 1].map(|k| mesh.sliding[k].is_some());
+            if slides != [false, false] {
+                let go = [e, e + 1].map(|k| if mesh.sliding[k].is_some() { self.direction[2 * k] } else { 0.0 });
+                let change = go[1] - go[0];
+                let whole = mesh.rest_length[e] / mesh.thermal_stretch + pose.slide[e + 1] - pose.slide[e];
+                let straight = mesh.path(e, &pose.x).straight;
+                let length = if straight > 0.0 && straight < whole { straight } else { whole };
+                if change < 0.0 && -change * free > (1.0 - LEAVE) * length {
+                    free = (1.0 - LEAVE) * length / -change;
+                }
+            }
+            if problem.world.is_empty() || slides == [true, true] {
+                continue;
+            }
+            let x = &pose.x;
+            let from = mesh.straight(e, x);
+            let to = if slides == [false, false] {
+                [from[0] + step(e) * free, from[1] + step(e + 1) * free]
+            } else {
+                let end = |k: usize| mesh.sliding[k].as_ref().map_or(End::point(x[k] + step(k) * free), |s| s.end);
+                Path::between(&end(e), &end(e + 1)).ends
+            };
+            free *= problem.world.geometry().free_fraction_round(from, to, KEEP, mesh.rounds(e));
+        }
+        free
+    }
+
+    /// Moves `pose` along the direction as far as is free and lowers Φ; None if nothing does. Returns Φ and the part of
     /// the step taken; the system is assembled there.
     fn search(
         &mut self,
         (problem, mesh): (&Problem, &Mesh),
         contacts: &ContactSet,
         (task, moving): (&Task, bool),
-        (x, value, slope): (&mut [Vec2], f64, f64),
+        (pose, value, slope): (&mut Pose, f64, f64),
     ) -> Option<(f64, f64)> {
-        let n = x.len();
-        let step = |k: usize, d: &[f64]| Vec2::new(d[2 * k], d[2 * k + 1]);
+        let n = mesh.nodes();
         let mut largest = 0.0;
-        for k in 0..n {
-            let m = step(k, &self.direction).norm();
+        for d in self.direction.chunks_exact(2) {
+            let m = d[0].hypot(d[1]);
             if !(m <= largest) {
                 largest = m;
             }
         }
-        let mut fraction = if largest > task.max_move { task.max_move / largest } else { 1.0 };
-        if !problem.world.is_empty() {
-            let mut free = fraction;
-            for e in 0..n.saturating_sub(1) {
-                let from = [x[e], x[e + 1]];
-                let to = [from[0] + step(e, &self.direction) * free, from[1] + step(e + 1, &self.direction) * free];
-                free *= problem.world.free_fraction(from, to, KEEP);
-            }
-            fraction = free;
-        }
+        let whole = if largest > task.max_move { task.max_move / largest } else { 1.0 };
+        let mut fraction = self.free_way(problem, mesh, pose, whole);
         let noise = ENERGY_NOISE * (self.magnitude.abs() + value.abs());
         for _ in 0..MAX_HALVINGS {
+            let mut trial = std::mem::take(&mut self.trial);
             for k in 0..n {
-                self.trial[k] = x[k] + step(k, &self.direction) * fraction;
+                let step = Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]) * fraction;
+                if mesh.sliding[k].is_some() {
+                    trial.slide[k] = pose.slide[k] + step.x;
+                    trial.x[k] = pose.x[k];
+                    continue;
+                }
+                trial.slide[k] = 0.0;
+                trial.x[k] = pose.x[k] + step;
                 // A full step ends exactly on target.
                 if mesh.held[k] && fraction == 1.0 {
-                    self.trial[k] = task.target[k];
+                    trial.x[k] = task.target[k];
                 }
             }
-            let trial = std::mem::take(&mut self.trial);
             let new_value = self.assemble(problem, mesh, contacts, (task, &trial), Curvature::Exact);
             self.trial = trial;
             let lower = new_value <= value + DECREASE * fraction * slope + noise;
             if new_value.is_finite() && (moving || lower) {
-                x.copy_from_slice(&self.trial);
+                pose.clone_from(&self.trial);
                 return Some((new_value, fraction));
             }
             fraction *= 0.5;
@@ -348,41 +433,30 @@ impl Workspace {
     }
 }
 
+/// Factor of the equations of a node.
+fn node_scale(task: &Task, node: usize) -> f64 {
+    task.scale.get(node.saturating_sub(1)).copied().unwrap_or(1.0)
+}
+
 fn grow(shift: f64, task: &Task) -> f64 {
     let least = if task.shift > 0.0 { task.shift } else { 1.0 };
     if shift > 0.0 { 4.0 * shift } else { least }
 }
 
-fn add_bar(s: &mut System, mesh: &Mesh, task: &Task, (e, x): (usize, &[Vec2]), curvature: Curvature) -> f64 {
-    let d = x[e + 1] - x[e];
-    let (length, rest) = (d.norm(), mesh.rest_length[e]);
-    let stretch = length - rest;
-    let stiffness = mesh.axial_stiffness / rest * if stretch < 0.0 { PUSH } else { 1.0 };
-    let (late, viscous) = (length - task.predicted_length[e], task.damping / rest);
-    let tension = stiffness * stretch + viscous * late;
-    let t = if length > 0.0 { d / length } else { Vec2::x() };
-    let mut geometric = if length > 0.0 { tension / length } else { 0.0 };
-    if curvature == Curvature::Clipped && geometric < 0.0 {
-        geometric = 0.0;
+/// Adds a force gradient and a block shared by the nodes of a touch; those that slide feel neither.
+fn add_pair(s: &mut System, mesh: &Mesh, touch: &Touch, gradient: Vec2, block: &Mat2) {
+    let (node, [a, b]) = (touch.node, touch.shares());
+    let moves = |k: usize| mesh.sliding[k].is_none();
+    if moves(node) {
+        s.add_gradient(node, gradient * a);
+        s.add_block(node, node, &(block * (a * a)));
     }
-    let along = t * t.transpose();
-    let block = along * (stiffness + viscous) + (Mat2::identity() - along) * geometric;
-    s.add_gradient(e, -t * tension);
-    s.add_gradient(e + 1, t * tension);
-    s.add_block(e, e, &block);
-    s.add_block(e + 1, e + 1, &block);
-    s.add_block(e, e + 1, &-block);
-    0.5 * (stiffness * stretch * stretch + viscous * late * late)
-}
-
-/// Adds a force gradient and a block shared by the nodes of a touch.
-fn add_pair(s: &mut System, node: usize, [a, b]: [f64; 2], gradient: Vec2, block: &Mat2) {
-    s.add_gradient(node, gradient * a);
-    s.add_block(node, node, &(block * (a * a)));
-    if b != 0.0 {
+    if b != 0.0 && moves(node + 1) {
         s.add_gradient(node + 1, gradient * b);
         s.add_block(node + 1, node + 1, &(block * (b * b)));
-        s.add_block(node, node + 1, &(block * (a * b)));
+        if moves(node) {
+            s.add_block(node, node + 1, &(block * (a * b)));
+        }
     }
 }
 
@@ -392,27 +466,35 @@ fn add_pair(s: &mut System, node: usize, [a, b]: [f64; 2], gradient: Vec2, block
 /// node:     ∇²d = (I − n nᵀ)/d  at a corner, 0 at an edge
 /// segment:  ∇²d = −(θ qᵀ + q θᵀ) − d θ θᵀ,   q = u·δc,   θ = n·(δb − δa)/l
 /// ```
-fn add_touch(s: &mut System, touch: &Touch, contacts: &ContactSet, x: &[Vec2], curvature: Curvature) -> f64 {
-    let (gap, weight) = (&touch.pair.gap, touch.pair.weight);
+fn add_touch(
+    s: &mut System,
+    mesh: &Mesh,
+    (touch, scale): (&Touch, f64),
+    contacts: &ContactSet,
+    x: &[Vec2],
+    curvature: Curvature,
+) -> f64 {
+    let (gap, weight) = (&touch.pair.gap, touch.pair.weight * scale);
     let b = contacts.barrier.at(gap.gap_m);
     let (slope, bend) = (b.slope * weight, b.curvature * weight);
     let n = gap.normal;
-    let shares = touch.shares();
     let definite = curvature == Curvature::Clipped;
     let bend = if definite && bend < 0.0 { 0.0 } else { bend };
-    add_pair(s, touch.node, shares, n * slope, &(n * n.transpose() * bend));
+    add_pair(s, mesh, touch, n * slope, &(n * n.transpose() * bend));
     if definite {
         return b.value * weight;
     }
-    let distance = (touch.interpolate(x) - gap.point).norm();
     if !touch.on_segment {
+        let distance = (x[touch.node] - gap.point).norm();
         // Edges have even feature numbers: their distance is linear.
         if gap.feature % 2 == 1 && distance > 0.0 {
             s.add_block(touch.node, touch.node, &((Mat2::identity() - n * n.transpose()) * (slope / distance)));
         }
         return b.value * weight;
     }
-    let (i, d) = (touch.node, x[touch.node + 1] - x[touch.node]);
+    let (i, shares) = (touch.node, touch.shares());
+    let [from, to] = mesh.straight(i, x);
+    let (d, distance) = (to - from, (from * shares[0] + to * shares[1] - gap.point).norm());
     let length = d.norm();
     let u = d / length;
     let theta = [n * (-1.0 / length), n * (1.0 / length)];
@@ -421,8 +503,12 @@ fn add_touch(s: &mut System, touch: &Touch, contacts: &ContactSet, x: &[Vec2], c
         (-(theta[a] * q[b].transpose() + q[a] * theta[b].transpose()) - theta[a] * theta[b].transpose() * distance)
             * slope
     };
-    s.add_block(i, i, &block(0, 0));
-    s.add_block(i + 1, i + 1, &block(1, 1));
-    s.add_block(i, i + 1, &block(0, 1));
+    let moves = [0, 1].map(|j| mesh.sliding[i + j].is_none());
+    for j in (0..2).filter(|&j| moves[j]) {
+        s.add_block(i + j, i + j, &block(j, j));
+    }
+    if moves == [true, true] {
+        s.add_block(i, i + 1, &block(0, 1));
+    }
     b.value * weight
 }

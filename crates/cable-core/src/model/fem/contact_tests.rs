@@ -29,7 +29,7 @@ fn build(scene: &Scene) -> Dynamics {
 /// A cable of 12 m on a floor, its end pulled along it at the height at which the barrier carries its weight
 /// (an end held at the surface itself pulls its neighbour down: +0.3 % at this mesh).
 fn drag(segments: usize) -> Scene {
-    let height = RADIUS + 0.87e-3;
+    let height = RADIUS + 0.87 * super::dynamics::REACH;
     let pull = Motion { times_s: vec![0.0, 6.0], points_m: vec![[12.0, height], [13.5, height]] };
     scene(
         |c| {

@@ -13,32 +13,40 @@ use std::sync::Arc;
 use super::assembly::Mesh;
 use super::contact_set::ContactSet;
 use super::contact_start::{lay, push_out, way};
-use super::contact_step::{Done, Failure, Task, Workspace};
+use super::contact_step::{Done, Failure, Pose, Task, Workspace};
+use super::layout::{Hold, Layout};
+use super::path::End;
+use super::prepare::{damping_time, load_scale, tolerance};
+use super::sliding::{Grip, Seat, Sliding};
 use crate::contact::barrier::Barrier;
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::drive::Follower;
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::{Problem, Series};
-use crate::scene::SupportKind;
+use crate::scene::PulleySide;
 use crate::solution::{CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
 
 /// Inner time step, s. METHODS' comparison at 1/240: tip of a falling chain within 5e-4 of its length.
-const INNER_STEP: f64 = 1.0 / 240.0;
+pub(super) const INNER_STEP: f64 = 1.0 / 240.0;
 
-/// Gap at which contact begins (d̂), m. 1e-4 halves many dynamic steps; larger lifts the cable visibly.
-pub const REACH: f64 = 1e-3;
+/// Gap at which contact begins (d̂), m. Where the cable is taut a corner lifts it by this: 1e-3 adds 2 % to the tension of a
+/// soft cable of 12 m over two beams, 1e-4 nothing that shows.
+pub const REACH: f64 = 1e-4;
+
+/// The same where the cable moves fast: at 5 m/s, 1e-4 m is passed in a hundredth of a step, and every hundredth step
+/// of a cable falling on rubble had to be halved.
+const FAST_REACH: f64 = 1e-3;
+
+/// Speed (m/s) that counts as fast. Slower, and a cable dragged at 1 m/s loses 9 % of its friction to the changing reach.
+const FAST: f64 = 2.0;
+
+/// Change of the reach from one step to the next. Faster shakes a stiff cable that bends round a corner.
+const REACH_CHANGE: f64 = 1.25;
 
 /// Barrier stiffness in units of the weight of one element: 20 times smaller rebounds and costs 30 % more.
-const STIFFNESS: f64 = 20.0;
-
-/// Unbalanced force accepted, part of the whole load.
-const TOLERANCE: f64 = 1e-6;
-
-/// Time constant of material damping, s, where the cable's own damping ratio does not ask for more. Without it a
-/// soft cable (EA 1e5 N) shows 11 % of axial noise in a drag.
-const MATERIAL_DAMPING: f64 = 1e-3;
+pub(super) const STIFFNESS: f64 = 20.0;
 
 /// A step is halved at most this often.
 const MAX_DEPTH: usize = 10;
@@ -46,24 +54,12 @@ const MAX_DEPTH: usize = 10;
 /// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
 const QUIET: f64 = 1e-3;
 
-/// Newton iterations of a dynamic step.
-const STEP_ITERATIONS: usize = 60;
-
-/// Newton iterations of a step without inertia.
-const REST_ITERATIONS: usize = 150;
-
-/// Rounds of refreshing the normal forces that friction uses, in a step without inertia.
-const LAG_ROUNDS: usize = 25;
-
-/// The same in a step of relaxation.
-const RELAX_LAG_ROUNDS: usize = 8;
-
-/// Steps of relaxation before it is given up.
-const MAX_RELAX: usize = 600;
+/// Rounds of finding out which sliding nodes hold and which slip, in a step with inertia.
+const GRIP_ROUNDS: usize = 6;
 
 /// The minimiser's memory; a copy of the model makes its own.
 #[derive(Debug, Default)]
-struct Memory(Option<Box<Workspace>>);
+pub(super) struct Memory(pub(super) Option<Box<Workspace>>);
 
 impl Clone for Memory {
     fn clone(&self) -> Self {
@@ -73,15 +69,31 @@ impl Clone for Memory {
 
 /// What a step may change, kept to go back to.
 #[derive(Clone, Debug, Default)]
-struct Motion {
-    x: Vec<Vec2>,
-    v: Vec<Vec2>,
-    x_before: Vec<Vec2>,
-    v_before: Vec<Vec2>,
+pub(super) struct Motion {
+    pub(super) x: Vec<Vec2>,
+    pub(super) v: Vec<Vec2>,
+    pub(super) x_before: Vec<Vec2>,
+    pub(super) v_before: Vec<Vec2>,
+    /// Arc length at sliding nodes one step ago, m.
+    pub(super) s_before: Vec<f64>,
+    /// Rate of the arc length at sliding nodes, m/s.
+    pub(super) w: Vec<f64>,
+    pub(super) w_before: Vec<f64>,
     /// Last step, s; 0 = no history, the next step is implicit Euler.
-    step_before: f64,
-    followers: Vec<Option<Follower>>,
-    time: f64,
+    pub(super) step_before: f64,
+    pub(super) followers: Vec<Option<Follower>>,
+    pub(super) time: f64,
+}
+
+/// A state to go back to.
+#[derive(Clone, Debug)]
+struct Saved {
+    motion: Motion,
+    mesh: Mesh,
+    contacts: ContactSet,
+    support_node: Vec<Option<usize>>,
+    loads: Vec<(usize, Series)>,
+    reaction: Vec<Vec2>,
 }
 
 /// The moving cable, or the resting one where it can touch something.
@@ -93,16 +105,18 @@ pub struct Dynamics {
     pub(super) task: Task,
     /// Force of the cable on each node that is held, N.
     pub(super) reaction: Vec<Vec2>,
-    motion: Motion,
-    saved: Motion,
-    saved_contacts: Option<ContactSet>,
-    mass: Vec<f64>,
+    pub(super) motion: Motion,
+    saved: Option<Box<Saved>>,
+    /// Whether corners and posts get sliding nodes.
+    pub(super) slides: bool,
+    /// Number of bars of the even mesh.
+    pub(super) even_bars: usize,
     /// Node of each support; None for one that slides.
     pub(super) support_node: Vec<Option<usize>>,
-    loads: Vec<(usize, Series)>,
-    memory: Memory,
-    rested: bool,
-    held_back: Vec<usize>,
+    pub(super) loads: Vec<(usize, Series)>,
+    pub(super) memory: Memory,
+    pub(super) rested: bool,
+    pub(super) held_back: Vec<usize>,
 }
 
 impl Dynamics {
@@ -129,14 +143,8 @@ impl Dynamics {
         }
         let mesh = Mesh::new(&problem, &breaks, segments);
         let n = mesh.nodes();
-        let mut mass: Vec<f64> = (0..n).map(|k| problem.linear_density * mesh.share(k)).collect();
         let support_node: Vec<Option<usize>> =
             problem.supports.iter().map(|s| s.arc_length.and_then(|a| mesh.node_at(a))).collect();
-        for (s, node) in problem.supports.iter().zip(&support_node) {
-            if let Some(k) = node {
-                mass[*k] += s.mass;
-            }
-        }
         let loads = problem.loads.iter().filter_map(|l| Some((mesh.node_at(l.arc_length)?, l.force.clone()))).collect();
         let (normal_per_m, whole) = load_scale(&problem);
         let barrier = Barrier { reach: REACH, stiffness: STIFFNESS * normal_per_m * even };
@@ -147,15 +155,20 @@ impl Dynamics {
             motion: Motion {
                 x: lay(&mesh, &way),
                 v: vec![Vec2::zeros(); n],
+                x_before: vec![Vec2::zeros(); n],
+                v_before: vec![Vec2::zeros(); n],
+                s_before: mesh.arc_length.clone(),
+                w: vec![0.0; n],
+                w_before: vec![0.0; n],
                 followers: vec![None; problem.supports.len()],
                 ..Motion::default()
             },
-            saved: Motion::default(),
-            saved_contacts: None,
+            saved: None,
+            slides: true,
+            even_bars: segments,
             memory: Memory(None),
             rested: false,
             held_back: Vec::new(),
-            mass,
             support_node,
             loads,
             mesh,
@@ -169,6 +182,7 @@ impl Dynamics {
                 this.motion.x[k] = this.task.target[k];
             }
         }
+        this.thread_pulleys(None);
         let mut x = std::mem::take(&mut this.motion.x);
         push_out(&this.problem, &this.mesh, &mut x, 0.9 * REACH);
         this.motion.x = x;
@@ -176,90 +190,68 @@ impl Dynamics {
         Ok(this)
     }
 
-    fn forget_history(&mut self) {
+    /// Puts a sliding node at every pulley: where `state` has the cable nearest to it, else where the layout lays it.
+    fn thread_pulleys(&mut self, state: Option<&State>) {
+        let problem = Arc::clone(&self.problem);
+        let layout = Layout::new(&problem, self.motion.time, &[], &[]);
+        for stop in &layout.stops {
+            let (Hold::Pulley(wheel), Some(support)) = (stop.hold, stop.support) else { continue };
+            let s = state.and_then(|s| s.nearest(wheel.center)).unwrap_or(stop.arc_length);
+            let k = self.mesh.arc_length.partition_point(|&a| a <= s).clamp(1, self.mesh.nodes() - 1);
+            let room = 0.05 * problem.length / self.even_bars as f64;
+            let (low, high) = (self.mesh.arc_length[k - 1] + room, self.mesh.arc_length[k] - room);
+            let at = if low < high { s.clamp(low, high) } else { 0.5 * (low + high) };
+            let passing = self.motion.x[k] - self.motion.x[k - 1];
+            let up = if wheel.side == PulleySide::Over { 1.0 } else { -1.0 };
+            let right = if passing.x < 0.0 { -1.0 } else { 1.0 };
+            let end = End { center: wheel.center, radius: wheel.radius, mark: Vec2::new(0.0, up), sense: -up * right };
+            let sliding = Sliding {
+                end,
+                friction: wheel.friction,
+                seat: Seat::Pulley(support),
+                grip: Grip::Stick,
+                factor: 1.0,
+                exponent: 0.0,
+            };
+            self.insert(k, at, Some(sliding));
+        }
+        self.even_out();
+        self.renew_task();
+    }
+
+    /// Sets the task anew after a change of the mesh, for what is read off it between steps.
+    pub(super) fn renew_task(&mut self) {
+        self.prepare_task(self.motion.time, None);
+    }
+
+    /// Where a pulley's centre is, m; None for other supports and pulleys that have let go.
+    fn pulley_center(&self, support: usize) -> Option<Vec2> {
+        self.mesh.sliding.iter().flatten().find(|s| s.seat == Seat::Pulley(support)).map(|s| s.end.center)
+    }
+
+    /// Where a support is, m.
+    pub(super) fn support_position(&self, support: usize) -> Option<Vec2> {
+        match self.support_node.get(support).copied().flatten() {
+            Some(node) => self.motion.x.get(node).copied(),
+            None => self.pulley_center(support),
+        }
+    }
+
+    pub(super) fn forget_history(&mut self) {
         let m = &mut self.motion;
         m.x_before.clone_from(&m.x);
         m.v_before.clone_from(&m.v);
+        m.w_before.clone_from(&m.w);
+        m.s_before.clone_from(&self.mesh.arc_length);
         m.step_before = 0.0;
     }
 
-    fn refuse(&self) -> Result<(), SolveError> {
+    pub(super) fn refuse(&self) -> Result<(), SolveError> {
         let feature = |s: &str| SolveError::Unsupported { model: Model::Fem, feature: s.to_owned() };
-        if self.problem.supports.iter().any(|s| s.kind == SupportKind::Pulley) {
-            return Err(feature("a pulley together with obstacles, a rubbing floor or inertia"));
-        }
         if self.problem.cable.self_contact {
             return Err(feature("contact of the cable with itself"));
         }
         Ok(())
-    }
-
-    /// Sets held nodes, their targets and all forces for the time `to` (s); dragged supports go where `dragged` says.
-    fn prepare_task(&mut self, to: f64, dragged: Option<&[Option<Vec2>]>) {
-        let (problem, mesh, task) = (&self.problem, &mut self.mesh, &mut self.task);
-        let n = mesh.nodes();
-        let body = problem.body_force(to);
-        task.force.clear();
-        task.force.extend((0..n).map(|k| body * mesh.share(k)));
-        for (node, force) in &self.loads {
-            task.force[*node] += force.at(to);
-        }
-        task.start.clone_from(&self.motion.x);
-        task.target.clone_from(&self.motion.x);
-        mesh.held.fill(false);
-        mesh.clamps.clear();
-        for (k, (s, node)) in problem.supports.iter().zip(&self.support_node).enumerate() {
-            let Some(node) = *node else { continue };
-            if s.kind == SupportKind::Load {
-                task.force[node] += s.force.at(to);
-            }
-            if let Some((at, _)) = s.position_at(to) {
-                let hand = dragged.and_then(|d| d.get(k).copied().flatten());
-                let at = self.motion.followers[k].map_or(hand.unwrap_or(at), |f| f.position());
-                mesh.held[node] = true;
-                task.target[node] = clear_way(problem, self.motion.x[node], at);
-                if task.target[node] != at && !self.held_back.contains(&k) {
-                    self.held_back.push(k);
-                }
-                if let Some(angle) = s.angle
-                    && s.kind == SupportKind::Clamped
-                    && mesh.bending_stiffness > 0.0
-                {
-                    let direction = Vec2::new(angle.cos(), angle.sin());
-                    mesh.clamps.push(super::assembly::Clamp { node, direction });
-                }
-            }
-        }
-        task.floor_limit.clear();
-        if let Some((friction, normal)) = problem.floor_friction {
-            task.floor_limit.extend((0..n).map(|k| friction * normal * mesh.share(k)));
-        }
-        task.max_iterations = STEP_ITERATIONS;
-        task.max_move = 2.0 * INNER_STEP * 100.0;
-        task.shift = 0.0;
-        task.damping = 0.0;
-        task.inertia.clear();
-        task.inertia.resize(n, 0.0);
-        task.predicted.clone_from(&self.motion.x);
-        task.predicted_length.clear();
-        task.predicted_length.extend_from_slice(&mesh.rest_length);
-    }
-
-    fn minimise(&mut self, x: &mut [Vec2]) -> Result<Done, Failure> {
-        let mut memory = match self.memory.0.take() {
-            Some(m) => m,
-            None => Box::new(Workspace::new(&self.mesh).map_err(|_| Failure {
-                node: 0,
-                residual: f64::NAN,
-                cause: "there is no memory for it",
-            })?),
-        };
-        let done = memory.minimise((&self.problem, &self.mesh), &self.contacts, &self.task, x);
-        for k in 0..self.mesh.nodes() {
-            self.reaction[k] = -memory.gradient_at(k);
-        }
-        self.memory.0 = Some(memory);
-        done
     }
 
     /// Takes the normal velocity out of what touches; the history of nodes it changes starts anew.
@@ -273,7 +265,7 @@ impl Dynamics {
             }
             let shares = touch.shares();
             let nodes = [touch.node, touch.node + usize::from(touch.on_segment)];
-            let free = [0, 1].map(|j| if self.mesh.held[nodes[j]] { 0.0 } else { shares[j] });
+            let free = [0, 1].map(|j| if self.mesh.is_free(nodes[j]) { shares[j] } else { 0.0 });
             let sum = free[0] * shares[0] + free[1] * shares[1];
             if sum < 1e-3 {
                 continue;
@@ -290,8 +282,8 @@ impl Dynamics {
 
     fn dynamic_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Result<Done, Failure> {
         for (k, target) in dragged.iter().enumerate() {
-            if let (Some(target), Some(node)) = (target, self.support_node.get(k).copied().flatten()) {
-                let mut f = self.motion.followers[k].unwrap_or_else(|| Follower::at_rest(self.motion.x[node]));
+            if let (Some(target), Some(at)) = (target, self.support_position(k)) {
+                let mut f = self.motion.followers[k].unwrap_or_else(|| Follower::at_rest(at));
                 if f.follow(*target, h) && !self.held_back.contains(&k) {
                     self.held_back.push(k);
                 }
@@ -299,150 +291,116 @@ impl Dynamics {
             }
         }
         self.prepare_task(self.motion.time + h, Some(dragged));
+        self.adapt_reach();
         let omega = if self.motion.step_before > 0.0 { h / self.motion.step_before } else { 0.0 };
         let alpha = (1.0 + 2.0 * omega) / (1.0 + omega);
         let (now, past) = ((1.0 + omega) / alpha, omega * omega / (1.0 + omega) / alpha);
         let a = alpha / h;
-        let (m, task) = (&self.motion, &mut self.task);
-        for k in 0..m.x.len() {
-            let x_hat = m.x[k] * now - m.x_before[k] * past;
-            let v_hat = m.v[k] * now - m.v_before[k] * past;
-            task.predicted[k] = x_hat + v_hat / a;
-            task.inertia[k] = self.mass[k] * a * a;
+        self.set_inertia([now, past, a]);
+        let mut pose = self.still_pose();
+        self.contacts.prepare(&self.problem, &self.mesh, &pose.x, &self.motion.x);
+        let mut done = self.minimise(&mut pose)?;
+        for _ in 1..GRIP_ROUNDS {
+            if !self.update_grips(&pose).0 {
+                break;
+            }
+            let more = self.minimise(&mut pose)?;
+            done = Done { iterations: done.iterations + more.iterations, ..more };
         }
-        task.damping = self.problem.axial_stiffness * damping_time(&self.problem) * a;
-        for e in 0..self.mesh.rest_length.len() {
-            let length = |x: &[Vec2]| (x[e + 1] - x[e]).norm();
-            task.predicted_length[e] = length(&m.x) * now - length(&m.x_before) * past;
-        }
-        let mut x = m.x.clone();
-        self.contacts.prepare(&self.problem, &self.mesh, &x, &m.x);
-        let done = self.minimise(&mut x)?;
-        self.contacts.commit(&self.problem, &self.mesh, &x, &self.motion.x);
-        let m = &mut self.motion;
-        for k in 0..x.len() {
+        self.contacts.commit(&self.problem, &self.mesh, &pose.x, &self.motion.x, &pose.slide);
+        let (m, mesh) = (&mut self.motion, &self.mesh);
+        for k in 0..pose.x.len() {
             let x_hat = m.x[k] * now - m.x_before[k] * past;
-            let v = (x[k] - x_hat) * a;
+            let v = (pose.x[k] - x_hat) * a;
+            let s = mesh.arc_length[k];
+            let w = (s + pose.slide[k] - s * now + m.s_before[k] * past) * a;
             m.x_before[k] = m.x[k];
             m.v_before[k] = m.v[k];
-            m.x[k] = x[k];
+            m.s_before[k] = s;
+            m.w_before[k] = m.w[k];
+            m.x[k] = pose.x[k];
             m.v[k] = v;
+            m.w[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
         }
-        m.step_before = h;
-        m.time += h;
+        self.slide(&pose.slide);
+        self.motion.step_before = h;
+        self.motion.time += h;
         self.land(h);
+        self.remesh();
         Ok(done)
     }
 
-    /// A step without inertia to the time `to`; friction remembers.
-    fn rest_step(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Done, Failure> {
-        self.prepare_task(to, Some(dragged));
-        self.task.max_iterations = REST_ITERATIONS;
-        let mut x = self.motion.x.clone();
-        let mut total = Done::default();
-        for _ in 0..LAG_ROUNDS {
-            self.contacts.prepare(&self.problem, &self.mesh, &x, &self.motion.x);
-            self.task.shift = self.soft_shift();
-            let done = self.minimise(&mut x)?;
-            total = Done { iterations: total.iterations + done.iterations, ..done };
-            // A round that needed no iteration found the normal forces it had used.
-            if done.iterations == 0 || self.contacts.rubs.is_empty() {
-                break;
+    /// The gap at which contact begins follows the speed of the cable.
+    fn adapt_reach(&mut self) {
+        if self.problem.world.is_empty() {
+            return;
+        }
+        let fastest = self.motion.v.iter().map(Vec2::norm).fold(0.0, |a: f64, b| if b <= a { a } else { b });
+        let (wanted, now) = (if fastest > FAST { FAST_REACH } else { REACH }, self.contacts.barrier.reach);
+        self.set_reach(wanted.clamp(now / REACH_CHANGE, now * REACH_CHANGE));
+    }
+
+    /// Sets the gap at which contact begins, m, and with it how far out rounds of obstacles are.
+    pub(super) fn set_reach(&mut self, reach: f64) {
+        let change = reach - self.contacts.barrier.reach;
+        if change == 0.0 || !change.is_finite() {
+            return;
+        }
+        self.contacts.barrier.reach = reach;
+        for (node, (x, start)) in self.mesh.sliding.iter_mut().zip(self.motion.x.iter_mut().zip(&mut self.task.start)) {
+            if let Some(node) = node
+                && node.feature().is_some()
+            {
+                node.end.radius += change;
+                *x = node.position();
+                *start = *x;
             }
         }
-        self.accept_rest(x, to);
-        Ok(total)
     }
 
-    fn accept_rest(&mut self, x: Vec<Vec2>, to: f64) {
-        self.contacts.commit(&self.problem, &self.mesh, &x, &self.motion.x);
-        self.motion.x = x;
-        self.motion.v.fill(Vec2::zeros());
-        self.motion.time = to;
-        self.forget_history();
-    }
-
-    /// Weight of an element over a tenth of a metre: enough to keep slack nodes from wandering.
-    fn soft_shift(&self) -> f64 {
-        self.contacts.barrier.stiffness / STIFFNESS / 0.1
-    }
-
-    /// Follows the way down with ever weaker viscous resistance, then finds the resting place itself.
-    fn relax(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Done, Failure> {
-        let mut resistance = self.soft_shift();
-        let (full, floor) = (resistance, 1e-5 * resistance);
-        let mut total = 0;
-        let mut last = Failure { node: 0, residual: f64::NAN, cause: "it never came to rest" };
-        for round in 0..MAX_RELAX {
-            self.prepare_task(to, Some(dragged));
-            let even = self.problem.length / self.mesh.rest_length.len() as f64;
-            self.task.inertia.fill(resistance);
-            for k in 0..self.mesh.nodes() {
-                self.task.inertia[k] *= self.mesh.share(k) / even;
-            }
-            let exact = self.task.tolerance;
-            self.task.tolerance = 1e2 * exact;
-            let mut x = self.motion.x.clone();
-            // A first lay carries no normal force yet: without refreshing, it would slide as if on ice.
-            let mut done = Ok(Done::default());
-            for _ in 0..RELAX_LAG_ROUNDS {
-                self.contacts.prepare(&self.problem, &self.mesh, &x, &self.motion.x);
-                done = self.minimise(&mut x);
-                if self.contacts.rubs.is_empty() || !matches!(done, Ok(Done { iterations: 1.., .. })) {
-                    break;
-                }
-            }
-            self.task.tolerance = exact;
-            match done {
-                Ok(done) => {
-                    total += done.iterations;
-                    let mut moved: f64 = 0.0;
-                    for (a, b) in x.iter().zip(&self.motion.x) {
-                        moved = moved.max((a - b).norm());
-                    }
-                    self.accept_rest(x, self.motion.time);
-                    resistance *= if moved < 0.3 { 0.6 } else { 1.0 };
-                    if resistance < floor || (moved < 1e-4 && round % 8 == 7) || moved < 1e-7 {
-                        match self.rest_step(to, dragged) {
-                            Ok(done) => return Ok(Done { iterations: total + done.iterations, ..done }),
-                            Err(failure) => {
-                                last = failure;
-                                resistance = resistance.max(floor) * 30.0;
-                            }
-                        }
-                    }
-                }
-                Err(failure) => {
-                    last = failure;
-                    resistance *= 8.0;
-                    if resistance > 1e9 * full {
-                        return Err(failure);
-                    }
-                }
+    /// Inertia and damping of a step; `now` and `past` weigh the history, `a` turns lengths into speeds (1/s).
+    fn set_inertia(&mut self, [now, past, a]: [f64; 3]) {
+        let (m, task, mesh) = (&self.motion, &mut self.task, &self.mesh);
+        for k in 0..m.x.len() {
+            let v_hat = m.v[k] * now - m.v_before[k] * past;
+            task.predicted[k] = m.x[k] * now - m.x_before[k] * past + v_hat / a;
+            task.inertia[k] = self.problem.linear_density * mesh.share(k) * a * a;
+            if mesh.sliding[k].is_some() {
+                let w_hat = m.w[k] * now - m.w_before[k] * past;
+                let s = mesh.arc_length[k];
+                task.predicted_slide[k] = s * now - m.s_before[k] * past + w_hat / a - s;
             }
         }
-        Err(last)
+        for (s, node) in self.problem.supports.iter().zip(&self.support_node) {
+            if let Some(k) = node {
+                task.inertia[*k] += s.mass * a * a;
+            }
+        }
+        task.damping = self.problem.axial_stiffness * damping_time(&self.problem) * a;
+        for e in 0..mesh.rest_length.len() {
+            task.predicted_length[e] = if mesh.sliding[e].is_none() && mesh.sliding[e + 1].is_none() {
+                let length = |x: &[Vec2]| (x[e + 1] - x[e]).norm();
+                length(&m.x) * now - length(&m.x_before) * past
+            } else {
+                mesh.path(e, &m.x).length
+            };
+        }
     }
 
-    /// Finds the resting place with contact at the present time; `dragged` are the hand-set support positions, m.
-    ///
-    /// # Errors
-    /// A typed reason when there is none, or none was found.
-    pub fn settle(&mut self, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
-        self.refuse()?;
-        self.held_back.clear();
-        self.save();
-        self.motion.followers.fill(None);
-        match self.relax(self.motion.time, dragged) {
-            Ok(done) => {
-                self.rested = true;
-                Ok(self.report(done, 0, 0.0))
-            }
-            Err(f) => {
-                let at_m = self.motion.x.get(f.node).copied().unwrap_or_default();
-                self.restore();
-                let (residual_n, node) = (f.residual, f.node);
-                Err(SolveError::NotConverged { model: Model::Fem, iterations: MAX_RELAX, residual_n, node, at_m })
+    /// The present pose.
+    pub(super) fn still_pose(&self) -> Pose {
+        Pose { x: self.task.start.clone(), slide: vec![0.0; self.mesh.nodes()] }
+    }
+
+    /// Lets the material slide through the sliding nodes, m of arc length each.
+    pub(super) fn slide(&mut self, slide: &[f64]) {
+        let mesh = &mut self.mesh;
+        for (s, by) in mesh.arc_length.iter_mut().zip(slide) {
+            *s += by;
+        }
+        for e in 0..mesh.rest_length.len() {
+            if slide[e] != 0.0 || slide[e + 1] != 0.0 {
+                mesh.rest_length[e] = mesh.thermal_stretch * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
             }
         }
     }
@@ -475,28 +433,26 @@ impl Dynamics {
         Ok(self.report(total, halved, h))
     }
 
-    /// Steps without inertia that keep every support's move below half an element.
-    fn pieces(&self, end: f64, dragged: &[Option<Vec2>]) -> f64 {
-        let even = self.problem.length / self.mesh.rest_length.len() as f64;
-        let mut most: f64 = 0.0;
-        for (k, (s, node)) in self.problem.supports.iter().zip(&self.support_node).enumerate() {
-            if let (Some((at, _)), Some(node)) = (s.position_at(end), node) {
-                let at = dragged.get(k).copied().flatten().unwrap_or(at);
-                most = most.max((at - self.motion.x[*node]).norm());
-            }
-        }
-        (most / (0.5 * even)).ceil().clamp(1.0, 1e4)
+    pub(super) fn save(&mut self) {
+        self.saved = Some(Box::new(Saved {
+            motion: self.motion.clone(),
+            mesh: self.mesh.clone(),
+            contacts: self.contacts.clone(),
+            support_node: self.support_node.clone(),
+            loads: self.loads.clone(),
+            reaction: self.reaction.clone(),
+        }));
     }
 
-    fn save(&mut self) {
-        self.saved.clone_from(&self.motion);
-        self.saved_contacts = Some(self.contacts.clone());
-    }
-
-    fn restore(&mut self) {
-        self.motion.clone_from(&self.saved);
-        if let Some(c) = self.saved_contacts.take() {
-            self.contacts = c;
+    pub(super) fn restore(&mut self) {
+        if let Some(s) = self.saved.take() {
+            self.motion = s.motion;
+            self.mesh = s.mesh;
+            self.contacts = s.contacts;
+            self.support_node = s.support_node;
+            self.loads = s.loads;
+            self.reaction = s.reaction;
+            self.renew_task();
         }
     }
 
@@ -519,6 +475,7 @@ impl Dynamics {
                     let start = self.motion.time;
                     self.rest_step(to, dragged).or_else(|_| {
                         self.restore();
+                        self.save();
                         self.motion.time = start;
                         self.relax(to, dragged)
                     })
@@ -536,6 +493,7 @@ impl Dynamics {
                 }
                 other => {
                     let f = other.err().unwrap_or(Failure { node: 0, residual: f64::NAN, cause: "not finite" });
+
                     self.restore();
                     *halved += 1;
                     depth += 1;
@@ -556,13 +514,16 @@ impl Dynamics {
         }
     }
 
-    fn report(&self, done: Done, halved_steps: usize, inner_step_s: f64) -> StepReport {
+    pub(super) fn report(&self, done: Done, halved_steps: usize, inner_step_s: f64) -> StepReport {
         let cost = Cost { iterations: done.iterations, halved_steps, residual_n: done.residual, inner_step_s };
         let warnings = self
             .held_back
             .iter()
             .filter_map(|&k| {
-                let (s, node) = (self.problem.supports.get(k)?, self.support_node.get(k).copied().flatten()?);
+                let seat = Seat::Pulley(k);
+                let sliding = self.mesh.sliding.iter().position(|s| s.is_some_and(|s| s.seat == seat));
+                let node = self.support_node.get(k).copied().flatten().or(sliding)?;
+                let s = self.problem.supports.get(k)?;
                 let (most, reached) = (crate::model::drive::MAX_SPEED, self.motion.v[node].norm());
                 let message = format!(
                     "support `{}` lags behind where it is sent: an obstacle is in its way, or it would be faster than {most} m/s",
@@ -587,7 +548,13 @@ impl Dynamics {
             return Ok(());
         }
         let same = state.arc_length_m == self.mesh.arc_length;
+        if !same {
+            self.unthread();
+        }
         for (k, &s) in self.mesh.arc_length.iter().enumerate() {
+            if self.mesh.sliding[k].is_some() {
+                continue;
+            }
             if let Some(p) = state.position_at(s) {
                 self.motion.x[k] = p;
             }
@@ -598,6 +565,7 @@ impl Dynamics {
         self.motion.followers.fill(None);
         self.contacts.forget();
         if !same {
+            self.thread_pulleys(Some(state));
             let mut x = std::mem::take(&mut self.motion.x);
             push_out(&self.problem, &self.mesh, &mut x, 0.9 * REACH);
             self.motion.x = x;
@@ -606,8 +574,21 @@ impl Dynamics {
         // A state at rest on another mesh is brought to rest on this one before it moves.
         let still = self.motion.v.iter().all(|v| v.norm() == 0.0);
         self.rested = same || !still;
-        self.prepare_task(state.time_s, None);
+        self.renew_task();
         Ok(())
+    }
+
+    /// Takes all sliding nodes out.
+    fn unthread(&mut self) {
+        let mut k = 1;
+        while k + 1 < self.mesh.nodes() {
+            if self.mesh.sliding[k].is_some() {
+                self.remove(k);
+            } else {
+                k += 1;
+            }
+        }
+        self.even_out();
     }
 
     /// Time reached, s.
@@ -640,40 +621,6 @@ impl Dynamics {
         self.contacts.find(&self.problem, &self.mesh, &self.motion.x, &mut touches);
         touches.iter().map(|t| t.pair.gap.gap_m).fold(f64::INFINITY, |a, b| if b < a { b } else { a })
     }
-}
-
-/// The target of a held node, stopped where an obstacle is in its way (m).
-fn clear_way(problem: &Problem, from: Vec2, to: Vec2) -> Vec2 {
-    if problem.world.is_empty() || from == to {
-        return to;
-    }
-    let free = problem.world.free_fraction([from, from], [to, to], 0.2);
-    if free >= 1.0 {
-        return to;
-    }
-    // Near the surface already: it stays, so that its gap never shrinks away.
-    let near = problem.world.signed_gap(from, 0.2 * REACH).is_some_and(|g| g.gap_m.abs() < 0.2 * REACH);
-    if near { from } else { from + (to - from) * free }
-}
-
-/// Load per metre that presses on the ground and the whole load, N/m and N; never 0.
-fn load_scale(problem: &Problem) -> (f64, f64) {
-    let floor = problem.floor_friction.map_or(0.0, |(_, n)| n);
-    let whole = problem.force_scale().max(floor * problem.length);
-    let per_m = problem.body_force(0.0).norm().max(floor).max(1e-3 * whole / problem.length);
-    (per_m, whole)
-}
-
-/// Unbalanced force to reach, N: not below the rounding of the axial forces.
-fn tolerance(problem: &Problem, whole: f64) -> f64 {
-    let rounding = 64.0 * f64::EPSILON * problem.axial_stiffness * 100.0;
-    (TOLERANCE * whole).max(rounding)
-}
-
-fn damping_time(problem: &Problem) -> f64 {
-    let wave = (problem.axial_stiffness / problem.linear_density).sqrt();
-    let first_mode = std::f64::consts::PI * wave / problem.length;
-    MATERIAL_DAMPING.max(2.0 * problem.cable.damping_ratio / first_mode)
 }
 
 /// Elements of a cable where neither the scene nor the settings say: finer where it can touch something.

@@ -7,6 +7,7 @@
 
 mod answer;
 pub mod assembly;
+mod bar;
 mod beam;
 pub mod contact_report;
 pub mod contact_set;
@@ -19,6 +20,13 @@ pub mod element;
 mod estimate;
 mod layout;
 mod network;
+mod path;
+mod prepare;
+mod remesh;
+mod rest;
+mod sliding;
+#[cfg(test)]
+mod sliding_tests;
 mod span;
 pub mod statics;
 mod wheel;
@@ -60,6 +68,14 @@ impl FemModel {
         let dynamics = dynamics::Dynamics::new(problem.clone(), settings)?;
         let present = if touches_nothing(&problem) { Part::Statics } else { Part::Dynamics };
         Ok(Self { dragged: vec![None; problem.supports.len()], problem, statics, dynamics, present })
+    }
+
+    /// The same without sliding nodes at corners and posts: every node stays with its material. For models that take
+    /// over its nodes.
+    #[must_use]
+    pub fn with_material_nodes(mut self) -> Self {
+        self.dynamics.slides = false;
+        self
     }
 
     /// Makes `part` the one that holds the present state.

@@ -118,7 +118,7 @@ fn unsupported(feature: &str) -> SolveError {
 
 /// The resting shape of the corrected bars and where the supports sit on it.
 fn shape_of(problem: Arc<Problem>, settings: Settings) -> Option<Shape> {
-    let mut fem = FemModel::new(problem, settings).ok()?;
+    let mut fem = FemModel::new(problem, settings).ok()?.with_material_nodes();
     fem.settle().ok()?;
     let (state, answer) = (fem.state(), fem.solution());
     let slid = answer.supports.iter().map(|s| s.arc_length_m).collect();

@@ -1,0 +1,93 @@
+//! The energy of one bar in a step: stretching, damping, and the weight that its material carries along.
+//!
+//! With P the length of its way and L its unstretched length, ε = P/L − 1:
+//! ```text
+//! E = ½ EA L ε²,     ∂E/∂P = T = EA ε,      ∂E/∂L = −Θ = −(T + ½ T ε),
+//! ∂²E/∂P² = EA/L,    ∂²E/∂P∂L = −EA P/L²,   ∂²E/∂L² = EA P²/L³
+//! ```
+//! At a node that moves with the material P depends on where the node is; at a sliding node L depends on its slide.
+//! The weight of half the bar acts at each end, so a change δL of the material adds −b·((x₁ + x₂)/2 − x₀) δL, with x₀
+//! the sliding node it came through.
+//! Damping with time constant τ is a second bar of stiffness EA τ a whose strain is measured from the one predicted.
+
+use super::assembly::{Mesh, System};
+use super::contact_step::{Pose, Task};
+use crate::energy::Curvature;
+use crate::math::{Mat2, Vec2};
+
+/// Part of EA that resists shortening. A flexible cable gives way sideways between the nodes instead of
+/// pushing; with none, slack nodes are free to wander, with all of it a slack cable on the ground stays straight and pushes.
+pub const PUSH: f64 = 0.01;
+
+/// Unstretched length of a bar at a pose, m.
+#[must_use]
+pub fn rest_length(mesh: &Mesh, e: usize, slide: &[f64]) -> f64 {
+    mesh.rest_length[e] + mesh.thermal_stretch * (slide[e + 1] - slide[e])
+}
+
+/// Adds the bar `e`; returns its energy and the size of what was summed, J.
+pub fn add(s: &mut System, mesh: &Mesh, task: &Task, (e, pose): (usize, &Pose), curvature: Curvature) -> (f64, f64) {
+    let path = mesh.path(e, &pose.x);
+    let (p, l, scale) = (path.length, rest_length(mesh, e, &pose.slide), task.scale[e]);
+    let strain = p / l - 1.0;
+    let stiffness = mesh.axial_stiffness * if strain < 0.0 { PUSH } else { 1.0 };
+    let tension = stiffness * strain;
+    // Damping: ½ c (P − p̂ L)², c = EA τ a/L₀, p̂ the predicted ratio P/L.
+    let c = task.damping / mesh.rest_length[e];
+    let ratio = task.predicted_length[e] / mesh.rest_length[e];
+    let late = p - ratio * l;
+    let pull = tension + c * late;
+    let push = -tension * (1.0 + 0.5 * strain) - c * late * ratio;
+    let h = [
+        scale * (stiffness / l + c),
+        scale * (-stiffness * p / (l * l) - c * ratio),
+        scale * (stiffness * p * p / (l * l * l) + c * ratio * ratio),
+    ];
+    let t = path.direction;
+    let slides = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
+    let mut geometric = if path.straight > 0.0 { scale * pull / path.straight } else { 0.0 };
+    if curvature == Curvature::Clipped && geometric < 0.0 {
+        geometric = 0.0;
+    }
+    let elastic = 0.5 * stiffness * l * strain * strain;
+    let viscous = 0.5 * c * late * late;
+    if slides == [false, false] {
+        let along = t * t.transpose();
+        let block = along * h[0] + (Mat2::identity() - along) * geometric;
+        s.add_gradient(e, -t * (pull * scale));
+        s.add_gradient(e + 1, t * (pull * scale));
+        s.add_block(e, e, &block);
+        s.add_block(e + 1, e + 1, &block);
+        s.add_block(e, e + 1, &-block);
+        return (scale * (elastic + viscous), scale * (elastic.abs() + viscous));
+    }
+    let carried = mesh.thermal_stretch;
+    let middle = (pose.x[e] + pose.x[e + 1]) * 0.5;
+    let sign = [-1.0, 1.0];
+    // Work is measured from the sliding node itself: with friction the two sides of it count differently.
+    let weight = [0, 1].map(|j| if slides[j] { task.body.dot(&(middle - pose.x[e + j])) } else { 0.0 });
+    // Generalised directions of P and of L, and of the weight's lever, at both ends.
+    let along = [0, 1].map(|j| if slides[j] { Vec2::zeros() } else { t * sign[j] });
+    let length = [0, 1].map(|j| if slides[j] { Vec2::new(carried * sign[j], 0.0) } else { Vec2::zeros() });
+    let lever = [0, 1].map(|j| if slides[j] { Vec2::new(sign[j], 0.0) } else { Vec2::zeros() });
+    let hang = [0, 1].map(|j| if slides[j] { Vec2::zeros() } else { task.body * 0.5 });
+    let change = pose.slide[e + 1] - pose.slide[e];
+    let across = Mat2::identity() - t * t.transpose();
+    for j in 0..2 {
+        s.add_gradient(e + j, (along[j] * pull + length[j] * push - lever[j] * weight[j] - hang[j] * change) * scale);
+        for k in j..2 {
+            let mixed = along[j] * length[k].transpose() + length[j] * along[k].transpose();
+            let mut block =
+                along[j] * along[k].transpose() * h[0] + mixed * h[1] + length[j] * length[k].transpose() * h[2];
+            if !slides[j] && !slides[k] {
+                block += across * (geometric * sign[j] * sign[k]);
+            }
+            if curvature == Curvature::Exact {
+                block -= (lever[j] * hang[k].transpose() + hang[j] * lever[k].transpose()) * scale;
+            }
+            s.add_block(e + j, e + k, &block);
+        }
+    }
+    let hung = weight[1] * pose.slide[e + 1] - weight[0] * pose.slide[e];
+    (scale * (elastic + viscous - hung), scale * (elastic + viscous + hung.abs()))
+}

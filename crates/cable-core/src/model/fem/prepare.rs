@@ -1,0 +1,188 @@
+//! What one step is about: forces, targets, inertia, damping and grip at an instant.
+
+use super::contact_step::{Done, Failure, Pose, Workspace};
+use super::dynamics::{Dynamics, INNER_STEP, REACH};
+use super::sliding::Seat;
+use crate::math::Vec2;
+use crate::problem::Problem;
+use crate::scene::SupportKind;
+
+/// Unbalanced force accepted, part of the whole load.
+const TOLERANCE: f64 = 1e-6;
+
+/// Time constant of material damping, s, where the cable's own damping ratio does not ask for more. Without it a
+/// soft cable (EA 1e5 N) shows 11 % of axial noise in a drag.
+const MATERIAL_DAMPING: f64 = 1e-3;
+
+/// Newton iterations of a dynamic step.
+const STEP_ITERATIONS: usize = 60;
+
+/// Factors of sliding nodes count as found when they change by less than this.
+const SAME_FACTOR: f64 = 1e-9;
+
+/// Forces at a sliding node within this part of each other are equal: the law is read off bars, whose tension is
+/// known to the residual only.
+const EVEN_FORCE: f64 = 1e-7;
+
+impl Dynamics {
+    /// Sets held nodes, their targets and all forces for the time `to` (s); dragged supports go where `dragged` says.
+    pub(super) fn prepare_task(&mut self, to: f64, dragged: Option<&[Option<Vec2>]>) {
+        let (problem, mesh, task) = (&self.problem, &mut self.mesh, &mut self.task);
+        let n = mesh.nodes();
+        let body = problem.body_force(to);
+        let gravity =
+            if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
+        task.body = body;
+        task.force.clear();
+        task.force.extend((0..n).map(|k| body * mesh.share(k)));
+        for (node, force) in &self.loads {
+            task.force[*node] += force.at(to);
+        }
+        task.start.clone_from(&self.motion.x);
+        task.target.clone_from(&self.motion.x);
+        mesh.held.fill(false);
+        mesh.clamps.clear();
+        for (k, (s, node)) in problem.supports.iter().zip(&self.support_node).enumerate() {
+            let Some(node) = *node else { continue };
+            if s.kind == SupportKind::Pulley {
+                continue;
+            }
+            if s.kind == SupportKind::Load {
+                task.force[node] += s.force.at(to);
+            }
+            task.force[node] += gravity * s.mass;
+            if let Some((at, _)) = s.position_at(to) {
+                let hand = dragged.and_then(|d| d.get(k).copied().flatten());
+                let at = self.motion.followers[k].map_or(hand.unwrap_or(at), |f| f.position());
+                mesh.held[node] = true;
+                task.target[node] = clear_way(problem, self.motion.x[node], at);
+                if task.target[node] != at && !self.held_back.contains(&k) {
+                    self.held_back.push(k);
+                }
+                if let Some(angle) = s.angle
+                    && s.kind == SupportKind::Clamped
+                    && mesh.bending_stiffness > 0.0
+                {
+                    let direction = Vec2::new(angle.cos(), angle.sin());
+                    mesh.clamps.push(super::assembly::Clamp { node, direction });
+                }
+            }
+        }
+        for (k, node) in mesh.sliding.iter_mut().enumerate() {
+            let Some(node) = node else { continue };
+            if let Seat::Pulley(support) = node.seat
+                && let Some((at, _)) = problem.supports.get(support).and_then(|s| s.position_at(to))
+            {
+                let hand = dragged.and_then(|d| d.get(support).copied().flatten());
+                let follower = self.motion.followers.get(support).copied().flatten();
+                node.end.center = follower.map_or(hand.unwrap_or(at), |f| f.position());
+                self.motion.x[k] = node.position();
+                task.start[k] = self.motion.x[k];
+            }
+        }
+        task.floor_limit.clear();
+        if let Some((friction, normal)) = problem.floor_friction {
+            task.floor_limit.extend((0..n).map(|k| friction * normal * mesh.share(k)));
+        }
+        task.max_iterations = STEP_ITERATIONS;
+        task.max_move = 2.0 * INNER_STEP * 100.0;
+        task.shift = 0.0;
+        task.damping = 0.0;
+        task.inertia.clear();
+        task.inertia.resize(n, 0.0);
+        task.predicted.clone_from(&self.motion.x);
+        task.predicted_length.clear();
+        task.predicted_length.extend_from_slice(&mesh.rest_length);
+        task.predicted_slide.clear();
+        task.predicted_slide.resize(n, 0.0);
+        self.set_scale();
+    }
+
+    /// The factor of each bar's energy from the grips of the sliding nodes before it.
+    pub(super) fn set_scale(&mut self) {
+        let mut scale = 1.0;
+        self.task.scale.clear();
+        for e in 0..self.mesh.rest_length.len() {
+            if let Some(s) = &self.mesh.sliding[e] {
+                scale *= s.factor;
+            }
+            self.task.scale.push(scale);
+        }
+    }
+
+    /// Reads turn and grip of every sliding node off a pose; returns whether a grip changed, and whether a factor did.
+    pub(super) fn update_grips(&mut self, pose: &Pose) -> (bool, bool) {
+        let (mut gripped, mut changed) = (false, false);
+        for k in 0..self.mesh.nodes() {
+            let (Some(node), Some(load)) = (self.mesh.sliding[k], self.load_at(k, &pose.x, Some(&pose.slide))) else {
+                continue;
+            };
+            if !(node.friction > 0.0) {
+                continue;
+            }
+            let mut next = node;
+            next.exponent = node.friction * if load.turn > 0.0 { load.turn } else { 0.0 };
+            let inertia = self.task.inertia[k] * (pose.slide[k] - self.task.predicted_slide[k]);
+            let slack = self.task.tolerance + EVEN_FORCE * (load.pull[0] + load.pull[1]);
+            next.grip = load.grip(&next, pose.slide[k], inertia, slack);
+            next.factor = load.factor(next.grip, next.exponent, self.mesh.axial_stiffness);
+            gripped |= next.grip != node.grip;
+            changed |= !((next.factor / node.factor - 1.0).abs() <= SAME_FACTOR);
+            self.mesh.sliding[k] = Some(next);
+        }
+        self.set_scale();
+        (gripped, changed)
+    }
+
+    pub(super) fn minimise(&mut self, pose: &mut Pose) -> Result<Done, Failure> {
+        let mut memory = match self.memory.0.take() {
+            Some(m) if m.nodes() == self.mesh.nodes() => m,
+            _ => Box::new(Workspace::new(&self.mesh).map_err(|_| Failure {
+                node: 0,
+                residual: f64::NAN,
+                cause: "there is no memory for it",
+            })?),
+        };
+        let done = memory.minimise((&self.problem, &self.mesh), &self.contacts, &self.task, pose);
+        for k in 0..self.mesh.nodes() {
+            let scale = self.task.scale.get(k.saturating_sub(1)).copied().unwrap_or(1.0);
+            self.reaction[k] = -memory.gradient_at(k) / scale;
+        }
+        self.memory.0 = Some(memory);
+        done
+    }
+}
+
+/// The target of a held node, stopped where an obstacle is in its way (m).
+fn clear_way(problem: &Problem, from: Vec2, to: Vec2) -> Vec2 {
+    if problem.world.is_empty() || from == to {
+        return to;
+    }
+    let free = problem.world.free_fraction([from, from], [to, to], 0.2);
+    if free >= 1.0 {
+        return to;
+    }
+    // Near the surface already: it stays, so that its gap never shrinks away.
+    let near = problem.world.signed_gap(from, 0.2 * REACH).is_some_and(|g| g.gap_m.abs() < 0.2 * REACH);
+    if near { from } else { from + (to - from) * free }
+}
+
+/// Load per metre that presses on the ground and the whole load, N/m and N; never 0.
+pub(super) fn load_scale(problem: &Problem) -> (f64, f64) {
+    let floor = problem.floor_friction.map_or(0.0, |(_, n)| n);
+    let whole = problem.force_scale().max(floor * problem.length);
+    let per_m = problem.body_force(0.0).norm().max(floor).max(1e-3 * whole / problem.length);
+    (per_m, whole)
+}
+
+/// Unbalanced force to reach, N: not below the rounding of the axial forces.
+pub(super) fn tolerance(problem: &Problem, whole: f64) -> f64 {
+    let rounding = 64.0 * f64::EPSILON * problem.axial_stiffness * 100.0;
+    (TOLERANCE * whole).max(rounding)
+}
+
+pub(super) fn damping_time(problem: &Problem) -> f64 {
+    let wave = (problem.axial_stiffness / problem.linear_density).sqrt();
+    let first_mode = std::f64::consts::PI * wave / problem.length;
+    MATERIAL_DAMPING.max(2.0 * problem.cable.damping_ratio / first_mode)
+}

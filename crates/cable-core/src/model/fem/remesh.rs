@@ -1,0 +1,444 @@
+//! Changing the mesh between steps: sliding nodes come and go, and nodes beside them make room.
+//!
+//! After every accepted step
+//! - a sliding node that no longer presses on its corner is let go (the round is as far out as the barrier reaches,
+//!   so nothing jumps);
+//! - a corner or circle that presses on a bar or a node gets a sliding node;
+//! - marks are moved to the middle of the arc, long arcs get more nodes (friction acts at them), passed ones lose theirs;
+//! - bars that grew too long are cut, nodes that came too near a sliding one are taken out.
+//!
+//! Material, place and momentum of what stays are left as they are.
+
+use super::dynamics::Dynamics;
+use super::path::{End, Path};
+use super::sliding::{Grip, Load, Seat, Sliding, round_of};
+use crate::math::{Vec2, perp};
+
+/// Corners that turn by less (rad) are left to the barrier: there a chain jerks by less than 1e-3 of its tension.
+const LEAST_TURN: f64 = 0.05;
+
+/// Bars beside sliding nodes are kept between these parts of an even bar. Tighter: nodes come and go all the time;
+/// wider: the bars beside a corner are coarse.
+const SHORT: f64 = 0.35;
+/// See `SHORT`.
+const LONG: f64 = 1.6;
+
+/// A node this near (in even bars) to a new sliding node is in its way.
+const NEAR: f64 = 0.1;
+
+/// An arc of more than this (rad) from the tangent to the first mark gets another mark.
+const WIDE: f64 = 0.8;
+
+/// Angle (rad) between marks of one round.
+const SPACING: f64 = 0.4;
+
+/// Rounds with less than this part of an even bar on them keep one mark.
+const SMALL: f64 = 0.3;
+
+/// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
+const STILL: f64 = 1e-9;
+
+/// Gap (parts of the barrier's reach) that a bar must have when a node is taken out: less, and the barrier throws it.
+const LEAST_GAP: f64 = 0.05;
+
+/// Most changes of one kind after one step.
+const MAX_CHANGES: usize = 400;
+
+impl Dynamics {
+    /// Adapts the mesh to what the cable runs over; returns whether that changed (new bars alone do not count).
+    pub(super) fn remesh(&mut self) -> bool {
+        let nodes = self.mesh.nodes();
+        let mut changed = self.let_go();
+        changed |= self.take_hold();
+        let moved = self.move_marks();
+        let wound = self.wind();
+        self.even_out();
+        if changed || moved || wound || self.mesh.nodes() != nodes {
+            let x = std::mem::take(&mut self.motion.x);
+            self.contacts.prepare(&self.problem, &self.mesh, &x, &x);
+            self.motion.x = x;
+            self.renew_task();
+        }
+        changed
+    }
+
+    /// Length of an even bar, m of arc length.
+    fn even(&self) -> f64 {
+        self.problem.length / self.even_bars as f64
+    }
+
+    /// The load of a sliding node as the cable lies now.
+    pub(super) fn load(&self, k: usize) -> Option<Load> {
+        self.load_at(k, &self.motion.x, None)
+    }
+
+    /// The load of a sliding node at positions `x` (m) and slides (m), if there are such.
+    pub(super) fn load_at(&self, k: usize, x: &[Vec2], slide: Option<&[f64]>) -> Option<Load> {
+        let (mesh, node) = (&self.mesh, self.mesh.sliding.get(k)?.as_ref()?);
+        if k == 0 || k + 1 >= mesh.nodes() {
+            return None;
+        }
+        let path = [mesh.path(k - 1, x), mesh.path(k, x)];
+        let rest = [k - 1, k].map(|e| slide.map_or(mesh.rest_length[e], |s| super::bar::rest_length(mesh, e, s)));
+        let tension = [0, 1].map(|j| {
+            let t = mesh.axial_stiffness * (path[j].length / rest[j] - 1.0);
+            if t < 0.0 { 0.0 } else { t }
+        });
+        let share = rest.map(|l| 0.5 * l / mesh.thermal_stretch);
+        Some(Load::new(node, tension, [&path[0], &path[1]], (self.task.body, share)))
+    }
+
+    fn let_go(&mut self) -> bool {
+        let mut changed = false;
+        let mut k = 1;
+        while k + 1 < self.mesh.nodes() {
+            let leaves = match self.mesh.sliding[k].map(|s| s.seat) {
+                None => false,
+                Some(Seat::Pulley(support)) => {
+                    self.problem.supports.get(support).is_none_or(|s| s.position_at(self.motion.time).is_none())
+                }
+                Some(Seat::Obstacle { .. }) => self.lifts_off(k),
+            };
+            if leaves {
+                self.remove(k);
+                changed = true;
+            } else {
+                k += 1;
+            }
+        }
+        changed
+    }
+
+    /// Whether a sliding node on an obstacle is pulled away from it, and the bar that takes its place is clear of it.
+    fn lifts_off(&self, k: usize) -> bool {
+        let Some(node) = self.mesh.sliding[k] else { return false };
+        let beside = |j: usize| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
+        let fixed = |j: usize| self.mesh.sliding[j].is_none() && !self.removable(j);
+        let blocked = [k - 1, k + 1].into_iter().any(|j| fixed(j) && self.bar_between(j, k) < NEAR * self.even());
+        if blocked {
+            return self.clear_without(k);
+        }
+        if beside(k - 1) || beside(k + 1) {
+            return false;
+        }
+        let Some(load) = self.load(k) else { return false };
+        if !(load.normal < 0.0) {
+            return false;
+        }
+        self.clear_without(k)
+    }
+
+    /// Arc length between two nodes, m.
+    fn bar_between(&self, a: usize, b: usize) -> f64 {
+        (self.mesh.arc_length[a] - self.mesh.arc_length[b]).abs()
+    }
+
+    fn take_hold(&mut self) -> bool {
+        if self.problem.world.is_empty() || !self.slides {
+            return false;
+        }
+        let mut touches = Vec::new();
+        let mut changed = false;
+        for _ in 0..MAX_CHANGES {
+            self.contacts.find(&self.problem, &self.mesh, &self.motion.x, &mut touches);
+            let found = touches.iter().find_map(|t| {
+                let pressed =
+                    t.pair.weight > 0.0 && t.load(&self.contacts.barrier) > 0.0 && t.pair.gap.feature % 2 == 1;
+                if pressed { self.seat_for(t.node, t.on_segment, &t.pair.gap) } else { None }
+            });
+            let Some((bar, arc_length, sliding)) = found else { break };
+            self.insert(bar + 1, arc_length, Some(sliding));
+            self.clear_around(bar + 1);
+            changed = true;
+        }
+        changed
+    }
+
+    /// The sliding node that a corner or circle pressing on a bar or node asks for: its bar, arc length and itself.
+    fn seat_for(&self, node: usize, on_segment: bool, gap: &crate::contact::Gap) -> Option<(usize, f64, Sliding)> {
+        let (mesh, x, last) = (&self.mesh, &self.motion.x, self.mesh.nodes() - 1);
+        let (center, radius) =
+            round_of(self.problem.world.geometry(), gap.feature, self.contacts.barrier.reach, LEAST_TURN)?;
+        let (bar, fraction) = match (on_segment, node) {
+            (true, e) => (e, gap.fraction),
+            (false, 0) => (0, 0.0),
+            (false, k) => (k - 1, 1.0),
+        };
+        let path = mesh.path(bar, x);
+        let along = if on_segment {
+            path.direction
+        } else {
+            let after = if node < last { mesh.path(node, x).direction } else { path.direction };
+            path.direction + after
+        };
+        let sense = if gap.normal.dot(&perp(along)) > 0.0 { -1.0 } else { 1.0 };
+        let s = [mesh.arc_length[bar], mesh.arc_length[bar + 1]];
+        let near = NEAR * self.even();
+        // The ends of a cable and what hangs on it stay clear of corners.
+        let from_start = fraction * (s[1] - s[0]);
+        let from_end = (1.0 - fraction) * (s[1] - s[0]);
+        if (from_start < near && !self.removable(bar)) || (from_end < near && !self.removable(bar + 1)) {
+            return None;
+        }
+        if mesh.bending_stiffness > 0.0 {
+            let tension = mesh.bar(bar).tension(path.length);
+            let rounding = (mesh.bending_stiffness / if tension > 0.0 { tension } else { 1.0 }).sqrt();
+            if rounding > 0.5 * self.even() {
+                return None;
+            }
+        }
+        let before = path.arcs[0] * mesh.end(bar, x).radius;
+        let part = if path.length > 0.0 { (before + fraction * path.straight) / path.length } else { fraction };
+        let least = 1e-3;
+        let arc_length = s[0] + part.clamp(least, 1.0 - least) * (s[1] - s[0]);
+        let sliding = Sliding {
+            end: End { center, radius, mark: gap.normal, sense },
+            friction: gap.friction,
+            seat: Seat::Obstacle { obstacle: gap.obstacle, feature: gap.feature },
+            grip: Grip::Stick,
+            factor: 1.0,
+            exponent: 0.0,
+        };
+        Some((bar, arc_length, sliding))
+    }
+
+    /// Takes out plain nodes in the way of a new sliding node.
+    fn clear_around(&mut self, k: usize) {
+        let near = SHORT * self.even();
+        let straight = |d: &Self, e: usize| d.mesh.path(e, &d.motion.x).straight;
+        if k + 2 < self.mesh.nodes() && self.removable(k + 1) && straight(self, k) < near && self.clear_without(k + 1) {
+            self.remove(k + 1);
+        }
+        if k > 1 && self.removable(k - 1) && straight(self, k - 1) < near && self.clear_without(k - 1) {
+            self.remove(k - 1);
+        }
+    }
+
+    /// Moves the mark of a round with one node to the middle of its arc.
+    fn move_marks(&mut self) -> bool {
+        let mut moved = false;
+        for k in 1..self.mesh.nodes().saturating_sub(1) {
+            let Some(node) = self.mesh.sliding[k] else { continue };
+            let shared = |j: usize| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
+            if !(node.end.radius > 0.0) || shared(k - 1) || shared(k + 1) {
+                continue;
+            }
+            let x = &self.motion.x;
+            let paths = [self.mesh.path(k - 1, x), self.mesh.path(k, x)];
+            let shift = 0.5 * (paths[1].arcs[0] - paths[0].arcs[1]);
+            if !(shift.abs() * node.end.radius > STILL) {
+                continue;
+            }
+            let stretch =
+                (paths[0].length + paths[1].length) / (self.mesh.rest_length[k - 1] + self.mesh.rest_length[k]);
+            let material = shift * node.end.radius / (stretch * self.mesh.thermal_stretch);
+            let room = NEAR * NEAR * self.even();
+            let s = &self.mesh.arc_length;
+            if s[k] + material < s[k - 1] + room || s[k] + material > s[k + 1] - room {
+                continue;
+            }
+            let turned =
+                Sliding { end: End { mark: rotate(node.end.mark, node.end.sense * shift), ..node.end }, ..node };
+            self.mesh.sliding[k] = Some(turned);
+            self.mesh.arc_length[k] += material;
+            self.motion.s_before[k] += material;
+            self.mesh.rest_length[k - 1] += self.mesh.thermal_stretch * material;
+            self.mesh.rest_length[k] -= self.mesh.thermal_stretch * material;
+            self.motion.x[k] = turned.position();
+            self.motion.x_before[k] = self.motion.x[k];
+            moved = true;
+        }
+        moved
+    }
+
+    /// Gives long arcs more marks and takes away those that the tangent has passed.
+    fn wind(&mut self) -> bool {
+        let mut changed = false;
+        let mut k = 1;
+        let mut changes = 0;
+        while k + 1 < self.mesh.nodes() && changes < MAX_CHANGES {
+            let Some(node) = self.mesh.sliding[k].filter(|s| s.end.radius > 0.0) else {
+                k += 1;
+                continue;
+            };
+            let shared = [k - 1, k + 1].map(|j| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node)));
+            let x = &self.motion.x;
+            let arcs = [self.mesh.path(k - 1, x).arcs[1], self.mesh.path(k, x).arcs[0]];
+            let big = |arc: f64| arc > WIDE && arc * node.end.radius > SMALL * self.even();
+            changes += 1;
+            if (!shared[0] && shared[1] && arcs[0] < 0.0) || (!shared[1] && shared[0] && arcs[1] < 0.0) {
+                self.remove(k);
+                changed = true;
+            } else if !shared[0] && big(arcs[0]) {
+                self.add_mark(k, 0, arcs[0] - SPACING);
+                changed = true;
+            } else if !shared[1] && big(arcs[1]) {
+                self.add_mark(k, 1, arcs[1] - SPACING);
+                changed = true;
+                k += 1;
+            } else {
+                k += 1;
+                changes = 0;
+            }
+        }
+        changed
+    }
+
+    /// Adds a mark on the round of node `k`, `angle` (rad) before it (`side` 0) or after it (1).
+    fn add_mark(&mut self, k: usize, side: usize, angle: f64) {
+        let Some(node) = self.mesh.sliding[k] else { return };
+        let bar = k - 1 + side;
+        let sign = if side == 0 { -1.0 } else { 1.0 };
+        let mark = rotate(node.end.mark, node.end.sense * sign * angle);
+        let length = self.mesh.path(bar, &self.motion.x).length;
+        let s = [self.mesh.arc_length[bar], self.mesh.arc_length[bar + 1]];
+        let part = angle * node.end.radius / length * (s[1] - s[0]);
+        let arc_length = if side == 0 { s[1] - part } else { s[0] + part };
+        self.insert(bar + 1, arc_length, Some(Sliding { end: End { mark, ..node.end }, ..node }));
+    }
+
+    /// Cuts long bars beside sliding nodes and takes out nodes that came too near to one.
+    pub(super) fn even_out(&mut self) {
+        let even = self.even();
+        let mut k = 1;
+        while k + 1 < self.mesh.nodes() {
+            if !self.removable(k) {
+                k += 1;
+                continue;
+            }
+            let (before, after) = (self.mesh.sliding[k - 1], self.mesh.sliding[k + 1]);
+            let straight = |e: usize| self.mesh.path(e, &self.motion.x).straight;
+            let crowded =
+                (before.is_some() && straight(k - 1) < SHORT * even) || (after.is_some() && straight(k) < SHORT * even);
+            let enclosed = matches!((before, after), (Some(a), Some(b)) if a.shares_round(&b));
+            if (crowded || enclosed) && self.clear_without(k) {
+                self.remove(k);
+            } else {
+                k += 1;
+            }
+        }
+        let mut e = 0;
+        while e + 1 < self.mesh.nodes() {
+            let length = self.bar_between(e, e + 1);
+            let x = &self.motion.x;
+            let path = self.mesh.path(e, x);
+            if length > LONG * even && path.straight > 0.8 * LONG * even {
+                // Even pieces, the straight part permitting; beside a sliding node the odd piece is its.
+                let slides = [e, e + 1].map(|k| self.mesh.sliding[k].is_some());
+                let part = match slides {
+                    [false, true] => even,
+                    [true, false] => length - even,
+                    _ => 0.5 * length,
+                };
+                let lead = path.arcs[0] * self.mesh.end(e, x).radius / path.length;
+                let straight = path.straight / path.length;
+                let fraction = (part / length).clamp(lead + 0.1 * straight, lead + 0.9 * straight);
+                let arc_length = self.mesh.arc_length[e] + fraction * length;
+                self.insert(e + 1, arc_length, None);
+                if slides[1] && !slides[0] {
+                    e += 1;
+                }
+                continue;
+            }
+            e += 1;
+        }
+    }
+
+    /// Whether the straight way past node `k` meets nothing.
+    fn clear_without(&self, k: usize) -> bool {
+        if self.problem.world.is_empty() {
+            return true;
+        }
+        let x = &self.motion.x;
+        let way = Path::between(&self.mesh.end(k - 1, x), &self.mesh.end(k + 1, x));
+        let rounds = [self.mesh.rounds(k - 1)[0], self.mesh.rounds(k)[1]];
+        self.problem.world.geometry().is_clear(way.ends, LEAST_GAP * self.contacts.barrier.reach, rounds)
+    }
+
+    /// Whether a node is there for nothing but the mesh.
+    pub(super) fn removable(&self, k: usize) -> bool {
+        k > 0
+            && k + 1 < self.mesh.nodes()
+            && self.mesh.is_free(k)
+            && !self.support_node.contains(&Some(k))
+            && self.loads.iter().all(|l| l.0 != k)
+    }
+
+    /// Puts a node at an arc length (m) between nodes `k` − 1 and `k`.
+    pub(super) fn insert(&mut self, k: usize, arc_length: f64, sliding: Option<Sliding>) {
+        let mesh = &mut self.mesh;
+        let path = mesh.path(k - 1, &self.motion.x);
+        let (a, b) = (mesh.arc_length[k - 1], mesh.arc_length[k]);
+        let part = (arc_length - a) / (b - a);
+        let lead = path.arcs[0] * mesh.end(k - 1, &self.motion.x).radius;
+        let fraction =
+            if path.straight > 0.0 { ((part * path.length - lead) / path.straight).clamp(0.0, 1.0) } else { 0.5 };
+        let at = path.ends[0] + (path.ends[1] - path.ends[0]) * fraction;
+        let m = &mut self.motion;
+        let t = path.direction;
+        let speed = |j: usize| if mesh.sliding[j].is_some() { t * -m.w[j] } else { m.v[j] };
+        let v = speed(k - 1) * (1.0 - part) + speed(k) * part;
+        let h = m.step_before;
+        mesh.arc_length.insert(k, arc_length);
+        mesh.rest_length[k - 1] = mesh.thermal_stretch * (arc_length - a);
+        mesh.rest_length.insert(k, mesh.thermal_stretch * (b - arc_length));
+        mesh.held.insert(k, false);
+        mesh.sliding.insert(k, sliding);
+        let w = if sliding.is_some() { -v.dot(&t) } else { 0.0 };
+        let (x, v) = sliding.map_or((at, v), |s| (s.position(), Vec2::zeros()));
+        m.x.insert(k, x);
+        m.v.insert(k, v);
+        m.x_before.insert(k, x - v * h);
+        m.v_before.insert(k, v);
+        m.w.insert(k, w);
+        m.w_before.insert(k, w);
+        m.s_before.insert(k, arc_length - w * h);
+        self.reaction.insert(k, Vec2::zeros());
+        self.contacts.floor_slid.insert(k, Vec2::zeros());
+        self.renumber(|node| Some(if node >= k { node + 1 } else { node }));
+    }
+
+    /// Takes node `k` out.
+    pub(super) fn remove(&mut self, k: usize) {
+        let mesh = &mut self.mesh;
+        mesh.arc_length.remove(k);
+        mesh.rest_length.remove(k);
+        mesh.rest_length[k - 1] = mesh.thermal_stretch * (mesh.arc_length[k] - mesh.arc_length[k - 1]);
+        mesh.held.remove(k);
+        mesh.sliding.remove(k);
+        let m = &mut self.motion;
+        m.x.remove(k);
+        m.v.remove(k);
+        m.x_before.remove(k);
+        m.v_before.remove(k);
+        m.w.remove(k);
+        m.w_before.remove(k);
+        m.s_before.remove(k);
+        self.reaction.remove(k);
+        self.contacts.floor_slid.remove(k);
+        self.renumber(|node| match node.cmp(&k) {
+            std::cmp::Ordering::Less => Some(node),
+            std::cmp::Ordering::Equal => None,
+            std::cmp::Ordering::Greater => Some(node - 1),
+        });
+    }
+
+    fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {
+        for node in &mut self.support_node {
+            *node = node.and_then(&change);
+        }
+        for (node, _) in &mut self.loads {
+            *node = change(*node).unwrap_or(*node);
+        }
+        for clamp in &mut self.mesh.clamps {
+            clamp.node = change(clamp.node).unwrap_or(clamp.node);
+        }
+        self.contacts.renumber(change);
+    }
+}
+
+/// A vector turned by an angle (rad), counter-clockwise.
+fn rotate(v: Vec2, angle: f64) -> Vec2 {
+    let (sin, cos) = angle.sin_cos();
+    Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
+}

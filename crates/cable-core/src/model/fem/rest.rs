@@ -1,0 +1,166 @@
+//! Resting places and slow motion in contact.
+
+use super::contact_step::{Done, Failure, Pose};
+use super::dynamics::{Dynamics, REACH, STIFFNESS};
+use crate::error::SolveError;
+use crate::math::Vec2;
+use crate::model::{Model, StepReport};
+
+/// Newton iterations of a step without inertia.
+const REST_ITERATIONS: usize = 150;
+
+/// Rounds of refreshing the normal forces that friction uses, in a step without inertia.
+const LAG_ROUNDS: usize = 25;
+
+/// The same in a step of relaxation.
+const RELAX_LAG_ROUNDS: usize = 8;
+
+/// Steps of relaxation before it is given up.
+const MAX_RELAX: usize = 600;
+
+/// Times a resting place is sought again because corners were met or left on the way to it.
+const CORNER_ROUNDS: usize = 8;
+
+impl Dynamics {
+    /// A step without inertia to the time `to`; friction remembers.
+    pub(super) fn rest_step(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Done, Failure> {
+        let mut total = Done::default();
+        for _ in 0..CORNER_ROUNDS {
+            self.prepare_task(to, Some(dragged));
+            self.set_reach(REACH);
+            self.task.max_iterations = REST_ITERATIONS;
+            let mut pose = self.still_pose();
+            let done = self.lag(&mut pose, LAG_ROUNDS)?;
+            total = Done { iterations: total.iterations + done.iterations, ..done };
+            if !self.accept_rest(&pose, to) {
+                break;
+            }
+        }
+        Ok(total)
+    }
+
+    /// Minimises again and again with refreshed normal forces, grips and factors until nothing changes.
+    fn lag(&mut self, pose: &mut Pose, rounds: usize) -> Result<Done, Failure> {
+        let mut total = Done::default();
+        for _ in 0..rounds {
+            self.contacts.prepare(&self.problem, &self.mesh, &pose.x, &self.motion.x);
+            self.task.shift = self.soft_shift();
+            let done = self.minimise(pose)?;
+            total = Done { iterations: total.iterations + done.iterations, ..done };
+            let (gripped, factors) = self.update_grips(pose);
+            // A round that needed no iteration found the normal forces it had used.
+            if (done.iterations == 0 || self.contacts.rubs.is_empty()) && !gripped && !factors {
+                break;
+            }
+        }
+        Ok(total)
+    }
+
+    /// Takes a pose as the state at rest at the time `to`; returns whether what the cable runs over changed.
+    fn accept_rest(&mut self, pose: &Pose, to: f64) -> bool {
+        self.contacts.commit(&self.problem, &self.mesh, &pose.x, &self.motion.x, &pose.slide);
+        self.motion.x.clone_from(&pose.x);
+        self.motion.v.fill(Vec2::zeros());
+        self.motion.w.fill(0.0);
+        self.motion.time = to;
+        self.slide(&pose.slide);
+        self.forget_history();
+        self.remesh()
+    }
+
+    /// Weight of an element over a tenth of a metre: enough to keep slack nodes from wandering.
+    fn soft_shift(&self) -> f64 {
+        self.contacts.barrier.stiffness / STIFFNESS / 0.1
+    }
+
+    /// Follows the way down with ever weaker viscous resistance, then finds the resting place itself.
+    pub(super) fn relax(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Done, Failure> {
+        let mut resistance = self.soft_shift();
+        let (full, floor) = (resistance, 1e-5 * resistance);
+        let mut total = 0;
+        let mut last = Failure { node: 0, residual: f64::NAN, cause: "it never came to rest" };
+        for round in 0..MAX_RELAX {
+            self.prepare_task(to, Some(dragged));
+            let even = self.problem.length / self.even_bars as f64;
+            self.task.inertia.fill(resistance);
+            for k in 0..self.mesh.nodes() {
+                self.task.inertia[k] *= self.mesh.share(k) / even;
+            }
+            let exact = self.task.tolerance;
+            self.task.tolerance = 1e2 * exact;
+            // A first lay carries no normal force yet: without refreshing, it would slide as if on ice.
+            let mut pose = self.still_pose();
+            let done = self.lag(&mut pose, RELAX_LAG_ROUNDS);
+            self.task.tolerance = exact;
+            match done {
+                Ok(done) => {
+                    total += done.iterations;
+                    let mut moved: f64 = 0.0;
+                    for (a, b) in pose.x.iter().zip(&self.motion.x) {
+                        moved = moved.max((a - b).norm());
+                    }
+                    for slid in &pose.slide {
+                        moved = moved.max(slid.abs());
+                    }
+                    if self.accept_rest(&pose, self.motion.time) {
+                        moved = moved.max(0.1);
+                    }
+                    resistance *= if moved < 0.3 { 0.6 } else { 1.0 };
+                    if resistance < floor || (moved < 1e-4 && round % 8 == 7) || moved < 1e-7 {
+                        match self.rest_step(to, dragged) {
+                            Ok(done) => return Ok(Done { iterations: total + done.iterations, ..done }),
+                            Err(failure) => {
+                                last = failure;
+                                resistance = resistance.max(floor) * 30.0;
+                            }
+                        }
+                    }
+                }
+                Err(failure) => {
+                    last = failure;
+                    resistance *= 8.0;
+                    if resistance > 1e9 * full {
+                        return Err(failure);
+                    }
+                }
+            }
+        }
+        Err(last)
+    }
+
+    /// Finds the resting place with contact at the present time; `dragged` are the hand-set support positions, m.
+    ///
+    /// # Errors
+    /// A typed reason when there is none, or none was found.
+    pub fn settle(&mut self, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
+        self.refuse()?;
+        self.held_back.clear();
+        self.save();
+        self.motion.followers.fill(None);
+        match self.relax(self.motion.time, dragged) {
+            Ok(done) => {
+                self.rested = true;
+                Ok(self.report(done, 0, 0.0))
+            }
+            Err(f) => {
+                let at_m = self.motion.x.get(f.node).copied().unwrap_or_default();
+                self.restore();
+                let (residual_n, node) = (f.residual, f.node);
+                Err(SolveError::NotConverged { model: Model::Fem, iterations: MAX_RELAX, residual_n, node, at_m })
+            }
+        }
+    }
+
+    /// Steps without inertia that keep every support's move below half an element.
+    pub(super) fn pieces(&self, end: f64, dragged: &[Option<Vec2>]) -> f64 {
+        let even = self.problem.length / self.even_bars as f64;
+        let mut most: f64 = 0.0;
+        for (k, s) in self.problem.supports.iter().enumerate() {
+            if let (Some((at, _)), Some(now)) = (s.position_at(end), self.support_position(k)) {
+                let at = dragged.get(k).copied().flatten().unwrap_or(at);
+                most = most.max((at - now).norm());
+            }
+        }
+        (most / (0.5 * even)).ceil().clamp(1.0, 1e4)
+    }
+}

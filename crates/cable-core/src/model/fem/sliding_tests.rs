@@ -1,0 +1,165 @@
+//! Cables drawn over corners, posts and pulleys against the capstan, and against their own ripple.
+
+use std::sync::Arc;
+
+use super::dynamics::Dynamics;
+use crate::model::{Inertia, Settings};
+use crate::problem::problems;
+use crate::scene::{Cable, Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
+
+const RADIUS: f64 = 0.002;
+const LOAD: f64 = 50.0;
+
+fn scene(cable: impl FnOnce(&mut Cable), obstacles: Vec<Obstacle>) -> Scene {
+    let mut scene = catalog::hanging_span();
+    let c = &mut scene.cables[0];
+    c.linear_density_kg_per_m = 1e-5;
+    c.axial_stiffness_n = 4e4;
+    c.diameter_m = 2.0 * RADIUS;
+    cable(c);
+    scene.obstacles = obstacles;
+    scene
+}
+
+fn build(scene: &Scene) -> Dynamics {
+    Dynamics::new(Arc::clone(&problems(scene).unwrap()[0]), Settings::default()).unwrap()
+}
+
+fn beam(friction: f64) -> Obstacle {
+    let shape = Shape::Polygon { points_m: vec![[0.0, -0.2], [0.2, -0.2], [0.2, 0.0], [0.0, 0.0]] };
+    Obstacle { name: "beam".to_owned(), shape, friction: Some(friction) }
+}
+
+/// A load hangs down the left side of a beam; the cable is pulled away over its top, which it leaves at `slope`.
+fn over_a_beam(friction: f64, segments: usize, pull: f64) -> Scene {
+    let end = |by: f64| [2.0 + by, RADIUS + 0.8];
+    scene(
+        |c| {
+            c.length_m = 4.2;
+            c.segments = Some(segments);
+            let way = 0.2 + 1.8f64.hypot(0.8);
+            c.route_m = vec![[-0.003, 0.003 - (4.2 - way)], [-0.003, 0.003], [0.2, 0.003], end(0.0)];
+            let hang = Support { force_n: Some([0.0, -LOAD]), ..Support::new("load", SupportKind::Load) };
+            let motion = Motion { times_s: vec![0.0, 2.0], points_m: vec![end(0.0), end(pull)] };
+            c.supports = vec![hang, Support { motion: Some(motion), ..Support::fixed("end", end(0.0)) }];
+        },
+        vec![beam(friction)],
+    )
+}
+
+/// Pull over load, at times in `from`..2 s of a slow pull.
+fn ratios(scene: &Scene, from: f64) -> Vec<f64> {
+    let mut d = build(scene);
+    d.settle(&[]).unwrap();
+    let mut out = Vec::new();
+    for k in 1..=120 {
+        d.advance(1.0 / 60.0, Inertia::QuasiStatic, &[]).unwrap();
+        assert!(d.smallest_gap() > 0.0);
+        if f64::from(k) / 60.0 > from {
+            let r = &d.solution().supports[1];
+            out.push(r.reaction_x_n.hypot(r.reaction_y_n) / LOAD);
+        }
+    }
+    out
+}
+
+#[test]
+fn a_load_drawn_over_a_corner_follows_the_capstan_without_ripple() {
+    for friction in [0.0, 0.1, 0.3, 0.8] {
+        let ratios = ratios(&over_a_beam(friction, 42, 0.6), 0.5);
+        let round = RADIUS + super::dynamics::REACH;
+        let motion = Motion { times_s: vec![0.0, 2.0], points_m: vec![[0.0, 0.0], [0.6, 0.0]] };
+        for (k, ratio) in ratios.iter().enumerate() {
+            let by = motion.at(0.5 + (k as f64 + 1.0) / 60.0).0.x;
+            // From straight up to the tangent that ends at the support: the cable leaves the top at once.
+            let (x, y) = (2.0 + by, RADIUS + 0.8);
+            let turn = std::f64::consts::FRAC_PI_2 - (y.atan2(x) - (round / x.hypot(y)).asin());
+            let expected = (friction * turn).exp();
+            assert!((ratio / expected - 1.0).abs() < 2e-5, "μ {friction}: {ratio}, expected {expected}");
+        }
+    }
+}
+
+#[test]
+fn refining_changes_nothing_at_a_corner() {
+    let coarse = ratios(&over_a_beam(0.3, 21, 0.3), 1.9);
+    let fine = ratios(&over_a_beam(0.3, 84, 0.3), 1.9);
+    for (a, b) in coarse.iter().zip(&fine) {
+        assert!((a / b - 1.0).abs() < 1e-5, "{a} {b}");
+    }
+}
+
+fn round_a_post(friction: f64, turn: f64, pull: f64) -> Scene {
+    // Plan view: from (−2, R) along +x, clockwise round a post at the origin, and away after `turn` (rad).
+    let r = 0.2 + RADIUS;
+    let steps = (turn / 0.3).ceil();
+    let on = |a: f64| [1.05 * r * a.sin(), 1.05 * r * a.cos()];
+    let out = [turn.cos(), -turn.sin()];
+    let leave = [r * turn.sin(), r * turn.cos()];
+    let end = |by: f64| [leave[0] + (1.0 + by) * out[0], leave[1] + (1.0 + by) * out[1]];
+    let post = Shape::Circle { center_m: [0.0, 0.0], radius_m: 0.2 };
+    let mut scene = scene(
+        |c| {
+            let mut route = vec![[-2.0, r]];
+            route.extend((0..=steps as usize).map(|k| on(turn * k as f64 / steps)));
+            route.push(end(0.0));
+            c.length_m = 3.0 + r * turn;
+            c.segments = Some(60);
+            c.friction = 0.0;
+            c.route_m = route;
+            let hang = Support { force_n: Some([-LOAD, 0.0]), ..Support::new("load", SupportKind::Load) };
+            let motion = Motion { times_s: vec![0.0, 2.0], points_m: vec![end(0.0), end(pull)] };
+            c.supports = vec![hang, Support { motion: Some(motion), ..Support::fixed("end", end(0.0)) }];
+        },
+        vec![Obstacle { name: "post".to_owned(), shape: post, friction: Some(friction) }],
+    );
+    scene.view = crate::scene::View::Plan;
+    scene
+}
+
+#[test]
+fn the_capstan_holds_from_a_twelfth_turn_to_one_and_a_half() {
+    for (degrees, friction) in [(30.0f64, 0.8), (90.0, 0.3), (180.0, 0.3), (360.0, 0.2), (540.0, 0.1)] {
+        let turn = degrees.to_radians();
+        let ratios = ratios(&round_a_post(friction, turn, 0.5), 1.0);
+        let expected = (friction * turn).exp();
+        let (mut low, mut high) = (f64::INFINITY, 0.0);
+        for r in &ratios {
+            (low, high) = (r.min(low), r.max(high));
+            assert!((r / expected - 1.0).abs() < 1e-3, "{degrees}°, μ {friction}: {r}, expected {expected}");
+        }
+        assert!((high - low) / expected < 1e-3, "{degrees}°, μ {friction}: {low} to {high}");
+    }
+}
+
+#[test]
+fn a_load_held_over_a_corner_for_a_minute_loses_nothing() {
+    let scene = over_a_beam(0.3, 42, 0.3);
+    let mut d = build(&scene);
+    d.settle(&[]).unwrap();
+    for _ in 0..120 {
+        d.advance(1.0 / 60.0, Inertia::QuasiStatic, &[]).unwrap();
+    }
+    let (start, pull) = (d.state(), d.solution().supports[1].clone());
+    for _ in 0..3600 {
+        d.advance(1.0 / 60.0, Inertia::Dynamic, &[]).unwrap();
+    }
+    let (end, after) = (d.state(), &d.solution().supports[1]);
+    let change = (after.reaction_x_n - pull.reaction_x_n).hypot(after.reaction_y_n - pull.reaction_y_n);
+    assert!(change / pull.reaction_x_n.hypot(pull.reaction_y_n) < 1e-5, "{change} N");
+    assert!((end.position_m[0] - start.position_m[0]).norm() < 1e-6);
+}
+
+#[test]
+fn material_is_neither_made_nor_lost_at_corners() {
+    let mut d = build(&over_a_beam(0.3, 42, 0.6));
+    d.settle(&[]).unwrap();
+    for _ in 0..60 {
+        d.advance(1.0 / 60.0, Inertia::QuasiStatic, &[]).unwrap();
+        let s = d.state().arc_length_m;
+        assert!(s.first() == Some(&0.0) && (s.last().unwrap() - 4.2).abs() < 1e-12);
+        assert!(s.windows(2).all(|p| p[1] > p[0]));
+        let rest: f64 = d.mesh.rest_length.iter().sum();
+        assert!((rest - 4.2).abs() < 1e-12, "{rest}");
+    }
+}
