@@ -228,11 +228,13 @@ impl Problem {
         self.weight + self.wind.at(time_s)
     }
 
-    /// A force that says how large forces are here, N: the whole distributed load, or EA·1e-6 without one.
+    /// A force that says how large forces are here, N: the whole distributed load, point loads and the weight of lumps, or EA·1e-6 without one.
     #[must_use]
     pub fn force_scale(&self) -> f64 {
         let loads: f64 = self.loads.iter().map(|l| l.force.at(0.0).norm()).sum::<f64>()
             + self.supports.iter().map(|s| s.force.at(0.0).norm()).sum::<f64>();
-        (self.body_force(0.0).norm() * self.length + loads).max(1e-6 * self.axial_stiffness)
+        let gravity = if self.linear_density > 0.0 { self.weight.norm() / self.linear_density } else { 0.0 };
+        let lumps: f64 = self.supports.iter().map(|s| s.mass * gravity).sum();
+        (self.body_force(0.0).norm() * self.length + loads + lumps).max(1e-6 * self.axial_stiffness)
     }
 }

@@ -11,7 +11,7 @@
 //! Damping with time constant τ is a second bar of stiffness EA τ a whose strain is measured from the one predicted.
 
 use super::assembly::{Mesh, System};
-use super::contact_step::{Pose, Task};
+use super::contact_step::{Pose, ROUNDED, Task};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 
@@ -25,7 +25,7 @@ pub fn rest_length(mesh: &Mesh, e: usize, slide: &[f64]) -> f64 {
     mesh.rest_length[e] + mesh.thermal_stretch * (slide[e + 1] - slide[e])
 }
 
-/// Adds the bar `e`; returns its energy and the size of what was summed, J.
+/// Adds the bar `e`; returns its energy and the size of what was summed (its rounding counted in), J.
 pub fn add(s: &mut System, mesh: &Mesh, task: &Task, (e, pose): (usize, &Pose), curvature: Curvature) -> (f64, f64) {
     let path = mesh.path(e, &pose.x);
     let (p, l, scale) = (path.length, rest_length(mesh, e, &pose.slide), task.scale[e]);
@@ -51,6 +51,7 @@ pub fn add(s: &mut System, mesh: &Mesh, task: &Task, (e, pose): (usize, &Pose), 
     }
     let elastic = 0.5 * stiffness * l * strain * strain;
     let viscous = 0.5 * c * late * late;
+    let rounding = ROUNDED * pull.abs() * pose.x[e].norm();
     if slides == [false, false] {
         let along = t * t.transpose();
         let block = along * h[0] + (Mat2::identity() - along) * geometric;
@@ -59,7 +60,7 @@ pub fn add(s: &mut System, mesh: &Mesh, task: &Task, (e, pose): (usize, &Pose), 
         s.add_block(e, e, &block);
         s.add_block(e + 1, e + 1, &block);
         s.add_block(e, e + 1, &-block);
-        return (scale * (elastic + viscous), scale * (elastic.abs() + viscous));
+        return (scale * (elastic + viscous), scale * (elastic.abs() + viscous + rounding));
     }
     let carried = mesh.thermal_stretch;
     let middle = (pose.x[e] + pose.x[e + 1]) * 0.5;
@@ -89,5 +90,5 @@ pub fn add(s: &mut System, mesh: &Mesh, task: &Task, (e, pose): (usize, &Pose), 
         }
     }
     let hung = weight[1] * pose.slide[e + 1] - weight[0] * pose.slide[e];
-    (scale * (elastic + viscous - hung), scale * (elastic + viscous + hung.abs()))
+    (scale * (elastic + viscous - hung), scale * (elastic + viscous + hung.abs() + rounding))
 }

@@ -1,0 +1,100 @@
+//! A folded chain, one end held and the other let go beside it, falls faster than a stone (M. G. Calkin and R. H. March,
+//! "The dynamics of a falling chain: I", Am. J. Phys. 57, 1989). The energy is kept, all of it in the falling part of
+//! length (L − x)/2 once the end has fallen by x:
+//! ```text
+//! v² = g x (2L − x)/(L − x)
+//! ```
+
+use cable_core::Vec2;
+use cable_core::scene::{Support, SupportKind};
+
+use super::linked_rods::Rods;
+use super::measure::{G, cable, energy, ladder, started};
+
+const LENGTH: f64 = 10.0;
+/// How far the end falls, m.
+const FALLEN: f64 = 6.0;
+
+/// Time to fall by `x` (m) as Calkin and March say: ∫dx/v with x = u², so that the root is gone.
+fn fall_time(x: f64) -> f64 {
+    let n = 2000;
+    let h = x.sqrt() / f64::from(n);
+    let slope = |u: f64| 2.0 * ((LENGTH - u * u) / (G * (2.0 * LENGTH - u * u))).sqrt();
+    (0..n).map(|k| h * slope((f64::from(k) + 0.5) * h)).sum()
+}
+
+/// Angles of `n` links (odd): half of them down, one across, half of them up.
+fn folded(n: usize) -> Vec<f64> {
+    let down = (n - 1) / 2;
+    let angle = |j: usize| match j.cmp(&down) {
+        std::cmp::Ordering::Less => -std::f64::consts::FRAC_PI_2,
+        std::cmp::Ordering::Equal => 0.0,
+        std::cmp::Ordering::Greater => std::f64::consts::FRAC_PI_2,
+    };
+    (0..n).map(angle).collect()
+}
+
+/// When a depth of `FALLEN` is passed, s: `step` advances by `h` (s) and returns the depth (m).
+fn passed(h: f64, mut step: impl FnMut() -> f64) -> f64 {
+    let (mut t, mut last) = (0.0, 0.0);
+    loop {
+        let now = step();
+        t += h;
+        if now >= FALLEN {
+            return t - h * (now - FALLEN) / (now - last);
+        }
+        last = now;
+    }
+}
+
+fn by_links(n: usize) -> f64 {
+    let mut rods = Rods::new(LENGTH / n as f64, folded(n));
+    let (h, start) = (2.5e-4, rods.energy());
+    let time = passed(h, || {
+        rods.step(h);
+        -rods.tip().y
+    });
+    let drift = (rods.energy() - start).abs() / (G * LENGTH * LENGTH);
+    assert!(drift < 1e-5, "{n} links drift by {drift}");
+    time
+}
+
+/// Time and energy lost (in mgL) by bars at step `h` (s).
+fn by_bars(n: usize, h: f64) -> [f64; 2] {
+    let supports = vec![Support::fixed("hook", [0.0, 0.0]), Support::new("end", SupportKind::Free)];
+    let scene = cable([LENGTH, 1.0, 1e7], n, supports);
+    let angles = folded(n);
+    let mut sim = started(&scene, |state| {
+        let mut at = Vec2::zeros();
+        for (p, q) in state.position_m[1..].iter_mut().zip(&angles) {
+            at += Vec2::new(q.cos(), q.sin()) * (LENGTH / n as f64);
+            *p = at;
+        }
+    });
+    let start = energy(&scene, &sim.states()[0]);
+    let time = passed(h, || {
+        sim.step(h).unwrap();
+        -sim.states()[0].position_m[n].y
+    });
+    [time, (start - energy(&scene, &sim.states()[0])) / (G * LENGTH * LENGTH)]
+}
+
+#[test]
+fn it_falls_faster_than_a_stone() {
+    let (exact, stone) = (fall_time(FALLEN), (2.0 * FALLEN / G).sqrt());
+    let errors = [11, 21, 41].map(|n| {
+        let [time, lost] = by_bars(n, 1.0 / 960.0);
+        println!("{n} bars: {time:.4} s of {exact:.4}, a stone {stone:.4}; lost {lost:.1e} of mgL");
+        assert!(time < stone && lost > 0.0 && lost < 1e-3, "{n}: {time} {lost}");
+        time / exact - 1.0
+    });
+    // A fold as wide as a link is what is left out: less than first order (L/N · log N).
+    ladder("folded chain", &errors, 0.85, 6.5e-2);
+}
+
+#[test]
+fn bars_fall_as_rigid_links_do() {
+    let links = by_links(21);
+    let errors = [1.0 / 240.0, 1.0 / 480.0, 1.0 / 960.0].map(|h| by_bars(21, h)[0] / links - 1.0);
+    ladder("folded chain of 21, bars against links", &errors, 2.0, 1.3e-3);
+}

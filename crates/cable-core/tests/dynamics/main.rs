@@ -1,0 +1,19 @@
+//! Motion against closed forms: every reference is a ladder in the number of bars or in the time step, with the error
+//! at each rung, the observed order, and an identity that does not use the reference.
+//!
+//! What an error in time must be is known: BDF2 at step h turns λ into λ(1 + (λh)²/3 − (λh)³/4 + …), so it swings
+//! (ωh)²/3 too slowly and damps by ω⁴h³/4 (see [`measure::bdf2_slows`], [`measure::bdf2_damps`]).
+
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
+mod axial_wave;
+mod dropped_mass;
+mod falling_chain;
+mod folded_chain;
+mod hanging_chain;
+mod irvine;
+mod linked_rods;
+mod measure;
+mod pendulum;
+mod swing_energy;
+mod taut_string;

@@ -1,0 +1,160 @@
+//! Scenes of one cable, starts away from rest, and what is read off a motion.
+
+use cable_core::scene::{Scene, Support, SupportKind, catalog};
+use cable_core::state::State;
+use cable_core::{Model, Simulation, Vec2};
+
+/// Gravity of these scenes, m/s².
+pub const G: f64 = 9.80665;
+
+/// A cable alone: its length (m), density (kg/m) and EA (N).
+pub fn cable([length, density, ea]: [f64; 3], segments: usize, supports: Vec<Support>) -> Scene {
+    let mut scene = catalog::hanging_span();
+    scene.loads.clear();
+    scene.environment.gravity_m_per_s2 = G;
+    scene.environment.temperature_change_k = 0.0;
+    let c = &mut scene.cables[0];
+    (c.length_m, c.linear_density_kg_per_m, c.axial_stiffness_n) = (length, density, ea);
+    (c.bending_stiffness_n_m2, c.thermal_expansion_per_k, c.damping_ratio) = (0.0, 0.0, 0.0);
+    (c.service_tension_n, c.breaking_tension_n) = (1e15, 1e15);
+    c.route_m.clear();
+    c.segments = Some(segments);
+    c.supports = supports;
+    scene
+}
+
+/// A lump of mass (kg) on an end.
+pub fn lump(name: &str, mass_kg: f64) -> Support {
+    Support { mass_kg: Some(mass_kg), force_n: Some([0.0, 0.0]), ..Support::new(name, SupportKind::Load) }
+}
+
+/// The scene settled.
+pub fn settled(scene: &Scene, model: Model) -> Simulation {
+    let mut sim = Simulation::new(scene.clone(), model).unwrap();
+    sim.settle().unwrap();
+    sim
+}
+
+/// A motion that begins at t = 0 from the resting place as `change` changes it.
+pub fn started(scene: &Scene, change: impl FnOnce(&mut State)) -> Simulation {
+    let mut sim = settled(scene, Model::Fem);
+    // A first step hands the shape from statics to dynamics, which keeps velocities.
+    sim.step(1e-4).unwrap();
+    let mut states = sim.states();
+    states[0].time_s = 0.0;
+    states[0].velocity_m_per_s.fill(Vec2::zeros());
+    change(&mut states[0]);
+    sim.adopt(&states).unwrap();
+    sim
+}
+
+/// `probe` before the first and after every `every`-th of the inner steps `h` (s), `count` + 1 values.
+pub fn sampled(
+    sim: &mut Simulation,
+    (h, every): (f64, usize),
+    count: usize,
+    probe: impl Fn(&State) -> f64,
+) -> Vec<f64> {
+    let mut out = vec![probe(&sim.states()[0])];
+    for _ in 0..count {
+        for _ in 0..every {
+            sim.step(h).unwrap();
+        }
+        out.push(probe(&sim.states()[0]));
+    }
+    out
+}
+
+/// Mass of each node, kg: half of the bars beside it.
+pub fn masses(scene: &Scene, state: &State) -> Vec<f64> {
+    let (s, n) = (&state.arc_length_m, state.arc_length_m.len());
+    let cable = &scene.cables[0];
+    let mut mass = vec![0.0; n];
+    for e in 0..n - 1 {
+        for k in [e, e + 1] {
+            mass[k] += 0.5 * cable.linear_density_kg_per_m * (s[e + 1] - s[e]);
+        }
+    }
+    let last = cable.supports.len() - 1;
+    mass[0] += cable.supports[0].mass_kg.unwrap_or(0.0);
+    mass[n - 1] += cable.supports[last].mass_kg.unwrap_or(0.0);
+    mass
+}
+
+/// Motion, height and stretching together, J.
+pub fn energy(scene: &Scene, state: &State) -> f64 {
+    let mass = masses(scene, state);
+    let g = scene.environment.gravity_m_per_s2;
+    let ea = scene.cables[0].axial_stiffness_n;
+    let (x, v, s) = (&state.position_m, &state.velocity_m_per_s, &state.arc_length_m);
+    let lumps: f64 = (0..mass.len()).map(|k| mass[k] * (0.5 * v[k].norm_squared() + g * x[k].y)).sum();
+    let bars: f64 = (1..s.len())
+        .map(|k| {
+            let rest = s[k] - s[k - 1];
+            let strain = (x[k] - x[k - 1]).norm() / rest - 1.0;
+            if strain > 0.0 { 0.5 * ea * rest * strain * strain } else { 0.0 }
+        })
+        .sum();
+    lumps + bars
+}
+
+/// A decaying swing.
+#[derive(Clone, Copy, Debug)]
+pub struct Ring {
+    /// Circular frequency, 1/s.
+    pub omega: f64,
+    /// Decay rate of the amplitude, 1/s.
+    pub decay: f64,
+}
+
+/// Frequency and decay of e^{−σt} cos(ωt + φ) + c sampled every `dt` (s), the first sample left out (the first step is
+/// implicit Euler's): differences d of the samples obey
+/// d₊ = a d − b d₋ with a = 2e^{−σdt} cos ωdt, b = e^{−2σdt}, fitted by least squares.
+pub fn ring(samples: &[f64], dt: f64) -> Ring {
+    let d: Vec<f64> = samples[1..].windows(2).map(|w| w[1] - w[0]).collect();
+    let mut m = nalgebra::Matrix2::zeros();
+    let mut r = nalgebra::Vector2::zeros();
+    for w in d.windows(3) {
+        let row = nalgebra::Vector2::new(w[1], -w[0]);
+        m += row * row.transpose();
+        r += row * w[2];
+    }
+    let ab = m.lu().solve(&r).unwrap();
+    let decay = -0.5 * ab[1].ln() / dt;
+    Ring { omega: (0.5 * ab[0] / ab[1].sqrt()).acos() / dt, decay }
+}
+
+/// Part by which BDF2 at step `h` (s) swings too slowly: (ωh)²/3.
+pub fn bdf2_slows(omega: f64, h: f64) -> f64 {
+    (omega * h).powi(2) / 3.0
+}
+
+/// Frequency and decay that BDF2 at step `h` (s) makes of λ = −σ + iω: λ(1 + (λh)²/3 − (λh)³/4).
+pub fn bdf2_ring(Ring { omega, decay }: Ring, h: f64) -> Ring {
+    let times = |a: [f64; 2], b: [f64; 2]| [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]];
+    let l = [-decay * h, omega * h];
+    let square = times(l, l);
+    let cube = times(square, l);
+    let factor = [1.0 + square[0] / 3.0 - cube[0] / 4.0, square[1] / 3.0 - cube[1] / 4.0];
+    let found = times(l, factor);
+    Ring { omega: found[1] / h, decay: -found[0] / h }
+}
+
+/// Decay rate that BDF2 at step `h` (s) adds: ω⁴h³/4, 1/s.
+pub fn bdf2_damps(omega: f64, h: f64) -> f64 {
+    omega.powi(4) * h.powi(3) / 4.0
+}
+
+/// Errors of ever finer rungs: each below `bound` divided by its refinement, each step of order `order` ± 0.25.
+pub fn ladder(name: &str, errors: &[f64], order: f64, bound: f64) {
+    let orders: Vec<f64> = errors.windows(2).map(|e| (e[0] / e[1]).abs().log2()).collect();
+    let shown: Vec<String> = errors.iter().map(|e| format!("{e:.2e}")).collect();
+    println!("{name}: {} order {:.2?}", shown.join(" "), orders);
+    for (k, e) in errors.iter().enumerate() {
+        let most = bound / 2f64.powf(order * k as f64);
+        assert!(e.abs() <= 1.3 * most, "{name}: rung {k} is {e:.3e}, not {most:.3e}");
+    }
+    for o in orders {
+        assert!((o - order).abs() <= 0.25, "{name}: order {o:.2} instead of {order}");
+    }
+}

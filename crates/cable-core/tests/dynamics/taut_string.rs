@@ -1,0 +1,71 @@
+//! A weightless taut string of N bars swings at ω = (2N/L) √(T/(λρ)) sin(kπ/2N), λ its stretch: L, ρ unstretched
+//! (J. L. Lagrange's loaded string). As N grows that is kπ/L √(T/(λρ)).
+
+use cable_core::scene::Support;
+
+use super::measure::{Ring, bdf2_damps, bdf2_slows, cable, ladder, masses, ring, sampled, started};
+
+const LENGTH: f64 = 10.0;
+const STRETCH: f64 = 1.05;
+const EA: f64 = 1e5;
+const DENSITY: f64 = 10.0;
+
+/// Frequency and decay of mode `k` at step `h` (s).
+fn swing(k: usize, segments: usize, h: f64) -> Ring {
+    let supports = vec![Support::fixed("A", [0.0, 0.0]), Support::fixed("B", [STRETCH * LENGTH, 0.0])];
+    let mut scene = cable([LENGTH, DENSITY, EA], segments, supports);
+    scene.environment.gravity_m_per_s2 = 0.0;
+    let shape = |s: f64| (k as f64 * std::f64::consts::PI * s / LENGTH).sin();
+    let mut sim = started(&scene, |state| {
+        for (p, s) in state.position_m.iter_mut().zip(&state.arc_length_m) {
+            p.y = 1e-3 * shape(*s);
+        }
+    });
+    let mass = masses(&scene, &sim.states()[0]);
+    let every = (std::f64::consts::TAU / continuous(k) / h / 5.0).round() as usize;
+    let samples = sampled(&mut sim, (h, every), 60, |state| {
+        (0..mass.len()).map(|i| mass[i] * shape(state.arc_length_m[i]) * state.position_m[i].y).sum()
+    });
+    ring(&samples, h * every as f64)
+}
+
+fn continuous(k: usize) -> f64 {
+    k as f64 * std::f64::consts::PI / LENGTH * (EA * (STRETCH - 1.0) / (STRETCH * DENSITY)).sqrt()
+}
+
+fn discrete(k: usize, segments: usize) -> f64 {
+    let part = k as f64 * std::f64::consts::PI / (2.0 * segments as f64);
+    continuous(k) * part.sin() / part
+}
+
+#[test]
+fn bars_swing_at_lagranges_frequencies() {
+    for k in [1, 2, 3] {
+        let h = 1.0 / 960.0;
+        let errors = [8, 16, 32].map(|n| {
+            let found = swing(k, n, h).omega * (1.0 + bdf2_slows(discrete(k, n), h));
+            let off = found / discrete(k, n) - 1.0;
+            assert!(off.abs() < 2e-5, "mode {k}, {n} bars: {off:.2e} from Lagrange's string");
+            found / continuous(k) - 1.0
+        });
+        ladder(&format!("taut string, mode {k}"), &errors, 2.0, (k as f64 * std::f64::consts::PI / 8.0).powi(2) / 24.0);
+    }
+}
+
+#[test]
+fn the_error_in_time_is_that_of_bdf2() {
+    let omega = discrete(2, 16);
+    let (mut slow, mut damped) = (Vec::new(), Vec::new());
+    for h in [1.0 / 240.0, 1.0 / 480.0, 1.0 / 960.0] {
+        let found = swing(2, 16, h);
+        slow.push(1.0 - found.omega / omega);
+        damped.push(found.decay);
+        let off = slow.last().unwrap() / bdf2_slows(omega, h) - 1.0;
+        println!("h {h:.5}: slower by {:.3e} ({off:+.1e} of theory), decay {:.3e}", slow.last().unwrap(), found.decay);
+        assert!(off.abs() < 0.05, "slower by {} instead of {}", slow.last().unwrap(), bdf2_slows(omega, h));
+        let off = found.decay / bdf2_damps(omega, h) - 1.0;
+        assert!(off.abs() < 0.2, "decay {} instead of {}", found.decay, bdf2_damps(omega, h));
+    }
+    ladder("taut string in time", &slow, 2.0, bdf2_slows(omega, 1.0 / 240.0));
+    ladder("taut string, decay by the scheme", &damped, 3.0, bdf2_damps(omega, 1.0 / 240.0));
+}
