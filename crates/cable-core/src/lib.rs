@@ -36,6 +36,7 @@ pub mod scene;
 pub mod simulation;
 pub mod solution;
 pub mod state;
+mod strand;
 
 pub use cable_linalg as linalg;
 pub use error::{Error, SceneError, SolveError};

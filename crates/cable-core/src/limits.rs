@@ -2,6 +2,7 @@
 
 use crate::scene::Cable;
 use crate::solution::{CableSolution, Node, Warning, WarningKind};
+use crate::strand::Break;
 
 /// Appends what a cable's answer exceeds, each kind once, at its worst place.
 pub(crate) fn warn(cable: &Cable, answer: &CableSolution, out: &mut Vec<Warning>) {
@@ -20,6 +21,23 @@ pub(crate) fn warn(cable: &Cable, answer: &CableSolution, out: &mut Vec<Warning>
         );
         let limits = [radius, radius_limit];
         out.push(Warning::new(WarningKind::BendRadius, &cable.name, sharp.arc_length_m, limits, message));
+    }
+}
+
+/// Appends where it has broken.
+pub(crate) fn broken(cable: &Cable, breaks: &[Break], out: &mut Vec<Warning>) {
+    for b in breaks {
+        let (s, t, x, y, limit) = (b.arc_length_m, b.time_s, b.at.x, b.at.y, cable.breaking_tension_n);
+        let (how, rest) = match &b.torn_off {
+            Some(support) => (format!("tore off `{support}`"), "the rest goes on without it"),
+            None => ("broke".to_owned(), "the pieces go on apart"),
+        };
+        let message = format!(
+            "`{}` {how} at {s:.3} m ({x:.3} m, {y:.3} m) at {t:.4} s, where its tension reached its breaking tension of {limit} N: {rest}; pull less, or take a stronger cable",
+            cable.name
+        );
+        let warning = Warning::new(WarningKind::Broken, &cable.name, s, [limit, limit], message);
+        out.push(Warning { at_m: Some([x, y]), since_s: Some(t), ..warning });
     }
 }
 

@@ -4,22 +4,24 @@ use crate::error::{Error, SolveError};
 use crate::limits;
 use crate::math::Vec2;
 use crate::model::auto::{self, Question};
-use crate::model::{self, Inertia, Mechanics, Model, Settings};
+use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::problems;
 use crate::scene::Scene;
 use crate::solution::{Cost, Solution, Warning};
 use crate::state::State;
+use crate::strand::Strand;
 
 /// Longest step a display frame takes, s: longer makes one slow frame cause the next, shorter slows time at 10 Hz.
 pub const MAX_FRAME_S: f64 = 0.1;
 
 /// A scene being solved.
+#[derive(Clone)]
 pub struct Simulation {
     scene: Scene,
     model: Model,
     reason: String,
-    cables: Vec<Box<dyn Mechanics>>,
-    start: Option<Vec<Box<dyn Mechanics>>>,
+    cables: Vec<Strand>,
+    start: Option<Vec<Strand>>,
     cost: Cost,
     warnings: Vec<Warning>,
 }
@@ -49,7 +51,7 @@ impl Simulation {
     pub fn for_question(scene: Scene, model: Model, settings: Settings, question: Question) -> Result<Self, Error> {
         let problems = problems(&scene)?;
         let build_all = |m: Model| {
-            problems.iter().map(|p| model::build(m, p.clone(), settings)).collect::<Result<Vec<_>, SolveError>>()
+            problems.iter().map(|p| Strand::new(m, p.clone(), settings)).collect::<Result<Vec<_>, SolveError>>()
         };
         let (mut chosen, mut reason) = (model, "asked for".to_owned());
         if model == Model::Auto {
@@ -79,6 +81,16 @@ impl Simulation {
         })
     }
 
+    #[cfg(test)]
+    pub(crate) fn cables(&self) -> &[Strand] {
+        &self.cables
+    }
+
+    #[cfg(test)]
+    pub(crate) fn cables_mut(&mut self) -> &mut [Strand] {
+        &mut self.cables
+    }
+
     /// The scene being solved.
     #[must_use]
     pub fn scene(&self) -> &Scene {
@@ -100,7 +112,7 @@ impl Simulation {
     /// Time reached, s.
     #[must_use]
     pub fn time_s(&self) -> f64 {
-        self.cables.first().map_or(0.0, |c| c.time_s())
+        self.cables.first().map_or(0.0, Strand::time_s)
     }
 
     /// Finds where everything rests. The first answer is kept as the start that [`Self::reset`] returns to.
@@ -108,9 +120,9 @@ impl Simulation {
     /// # Errors
     /// A typed reason when there is no resting place, or none was found; the state is then as before.
     pub fn settle(&mut self) -> Result<Solution, SolveError> {
-        self.each(|c| c.settle())?;
+        self.each(Strand::settle)?;
         if self.start.is_none() {
-            self.start = Some(self.cables.iter().map(|c| c.boxed_clone()).collect());
+            self.start = Some(self.cables.clone());
         }
         Ok(self.solution())
     }
@@ -153,23 +165,20 @@ impl Simulation {
     pub fn with_scene(&self, scene: Scene, settings: Settings) -> Result<Self, Error> {
         let mut next = Self::with_settings(scene, self.model, settings)?;
         next.reason.clone_from(&self.reason);
-        next.adopt(&self.states())?;
+        next.carry(self)?;
         Ok(next)
     }
 
     /// Asks every cable the same. Where one of several fails, all are as before: never some of them a step ahead. (A
     /// cable alone stays where it came, see [`Mechanics::advance`].)
-    fn each(
-        &mut self,
-        mut f: impl FnMut(&mut Box<dyn Mechanics>) -> Result<crate::model::StepReport, SolveError>,
-    ) -> Result<(), SolveError> {
+    fn each(&mut self, mut f: impl FnMut(&mut Strand) -> Result<StepReport, SolveError>) -> Result<(), SolveError> {
         let (mut cost, mut warnings) = (Cost::default(), Vec::new());
         let several = self.cables.len() > 1;
         let mut before = Vec::with_capacity(if several { self.cables.len() } else { 0 });
         for k in 0..self.cables.len() {
             let Some(cable) = self.cables.get_mut(k) else { break };
             if several {
-                before.push(cable.boxed_clone());
+                before.push(cable.clone());
             }
             let report = match f(cable) {
                 Ok(report) => report,
@@ -196,10 +205,11 @@ impl Simulation {
     /// The answer at this instant, with what the cables cannot stand among its warnings.
     #[must_use]
     pub fn solution(&self) -> Solution {
-        let cables: Vec<_> = self.cables.iter().map(|c| c.solution()).collect();
+        let cables: Vec<_> = self.cables.iter().map(Strand::answer).collect();
         let mut warnings = self.warnings.clone();
         for (m, answer) in self.cables.iter().zip(&cables) {
             limits::warn(&m.problem().cable, answer, &mut warnings);
+            limits::broken(&m.problem().cable, m.breaks(), &mut warnings);
         }
         Solution {
             time_s: self.time_s(),
@@ -221,42 +231,38 @@ impl Simulation {
     /// Back to the first settled state, bit for bit.
     pub fn reset(&mut self) {
         if let Some(start) = &self.start {
-            self.cables = start.iter().map(|c| c.boxed_clone()).collect();
+            self.cables.clone_from(start);
             self.cost = Cost::default();
             self.warnings.clear();
         }
     }
 
-    /// Where each cable is, to hand over to a simulation of an edited scene.
+    /// Where each cable is. Where one broke, its state has two nodes of the same arc length.
     #[must_use]
     pub fn states(&self) -> Vec<State> {
-        self.cables.iter().map(|c| c.state()).collect()
+        self.cables.iter().map(Strand::state).collect()
     }
 
-    /// Takes over states of the same cables (after an edit).
+    /// Goes on where `old`, a simulation of the same cables, is: broken where that one broke.
     ///
     /// # Errors
     /// When a state does not fit its cable.
+    pub fn carry(&mut self, old: &Self) -> Result<(), SolveError> {
+        for (new, old) in self.cables.iter_mut().zip(&old.cables) {
+            new.carry(old)?;
+        }
+        Ok(())
+    }
+
+    /// Takes over states of the same cables, all whole.
+    ///
+    /// # Errors
+    /// When a state does not fit its cable, or the cable broke.
     pub fn adopt(&mut self, states: &[State]) -> Result<(), SolveError> {
         for (c, s) in self.cables.iter_mut().zip(states) {
             c.adopt(s)?;
         }
         Ok(())
-    }
-}
-
-impl Clone for Simulation {
-    fn clone(&self) -> Self {
-        let copy = |v: &Vec<Box<dyn Mechanics>>| v.iter().map(|c| c.boxed_clone()).collect();
-        Self {
-            scene: self.scene.clone(),
-            model: self.model,
-            reason: self.reason.clone(),
-            cables: copy(&self.cables),
-            start: self.start.as_ref().map(copy),
-            cost: self.cost,
-            warnings: self.warnings.clone(),
-        }
     }
 }
 

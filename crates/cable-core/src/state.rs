@@ -42,10 +42,20 @@ impl State {
     /// Position at a material coordinate, linear between nodes, m.
     #[must_use]
     pub fn position_at(&self, arc_length_m: f64) -> Option<Vec2> {
+        self.between(&self.position_m, arc_length_m)
+    }
+
+    /// Velocity at a material coordinate, linear between nodes, m/s.
+    #[must_use]
+    pub fn velocity_at(&self, arc_length_m: f64) -> Option<Vec2> {
+        self.between(&self.velocity_m_per_s, arc_length_m)
+    }
+
+    fn between(&self, values: &[Vec2], arc_length_m: f64) -> Option<Vec2> {
         let n = self.arc_length_m.len();
         let k = self.arc_length_m.partition_point(|&s| s <= arc_length_m).clamp(1, n.max(2) - 1);
         let (s0, s1) = (*self.arc_length_m.get(k - 1)?, *self.arc_length_m.get(k)?);
-        let (a, b) = (*self.position_m.get(k - 1)?, *self.position_m.get(k)?);
+        let (a, b) = (*values.get(k - 1)?, *values.get(k)?);
         let f = if s1 > s0 { ((arc_length_m - s0) / (s1 - s0)).clamp(0.0, 1.0) } else { 0.0 };
         Some(a + (b - a) * f)
     }

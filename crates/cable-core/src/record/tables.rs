@@ -121,7 +121,7 @@ pub struct RunWriter<W: Write> {
     nodes: csv::Writer<W>,
     events: csv::Writer<W>,
     header_done: bool,
-    active: Vec<(WarningKind, String)>,
+    active: Vec<(WarningKind, String, Option<u64>)>,
     number: String,
 }
 
@@ -138,7 +138,7 @@ impl<W: Write> RunWriter<W> {
         }
     }
 
-    /// Appends one time. A warning becomes an event when it begins, not again while it lasts.
+    /// Appends one time. A warning becomes an event when it begins, with the time it began at, not again while it lasts.
     ///
     /// # Errors
     /// When a number is not finite (nothing is written) or the place refuses.
@@ -204,11 +204,13 @@ impl<W: Write> RunWriter<W> {
 
     fn event_rows(&mut self, solution: &Solution) -> Result<(), WriteError> {
         for w in &solution.warnings {
-            if !self.active.iter().any(|(kind, cable)| *kind == w.kind && *cable == w.cable) {
-                self.event(solution.time_s, w)?;
+            let since = w.since_s.map(f64::to_bits);
+            if !self.active.iter().any(|(kind, cable, began)| (*kind, began) == (w.kind, &since) && *cable == w.cable) {
+                self.event(w.since_s.unwrap_or(solution.time_s), w)?;
             }
         }
-        self.active = solution.warnings.iter().map(|w| (w.kind, w.cable.clone())).collect();
+        self.active =
+            solution.warnings.iter().map(|w| (w.kind, w.cable.clone(), w.since_s.map(f64::to_bits))).collect();
         Ok(())
     }
 

@@ -93,6 +93,19 @@ fn a_lasting_warning_is_one_event() {
 }
 
 #[test]
+fn two_breaks_of_a_cable_are_two_events_with_their_own_times() {
+    let at = |time_s: f64, breaks: &[f64]| {
+        let mut s = solution(time_s, [1.0; 9], "a");
+        let broke = |t: &f64| Warning { kind: WarningKind::Broken, since_s: Some(*t), ..s.warnings[0].clone() };
+        s.warnings = breaks.iter().map(broke).collect();
+        s
+    };
+    let [_, _, e] = write(&[at(0.0, &[]), at(0.1, &[0.07]), at(0.2, &[0.07, 0.13]), at(0.3, &[0.07, 0.13])]);
+    let times: Vec<f64> = read_events(e.as_slice()).unwrap().iter().map(|e| e.time_s).collect();
+    assert_eq!(times, [0.07, 0.13]);
+}
+
+#[test]
 fn a_table_cut_short_is_refused_with_its_line() {
     let [_, n, _] = write(&[solution(0.0, [1.5; 9], "a"), solution(1.0, [2.5; 9], "a")]);
     let error = read_nodes(&n[..n.len() - 12]).unwrap_err().to_string();

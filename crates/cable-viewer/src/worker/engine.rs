@@ -257,7 +257,7 @@ impl Engine {
             && same_cables
         {
             let mut carried = fresh.clone();
-            if carried.adopt(&old.states()).is_ok() {
+            if carried.carry(old).is_ok() {
                 if !self.playback.paused {
                     return Ok((carried, false));
                 }
@@ -361,7 +361,7 @@ impl Engine {
 /// A simulation that moves takes over from the one that `auto` chose for rest, and takes its first step.
 fn take_over(rest: &Simulation, dt_s: f64, settings: Settings) -> Result<Simulation, Error> {
     let mut moving = Simulation::for_question(rest.scene().clone(), Model::Auto, settings, MOTION)?;
-    moving.adopt(&rest.states())?;
+    moving.carry(rest)?;
     moving.step(dt_s)?;
     Ok(moving)
 }

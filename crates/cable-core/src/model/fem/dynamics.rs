@@ -597,8 +597,7 @@ impl Dynamics {
             if let Some(p) = state.position_at(s) {
                 self.motion.x[k] = p;
             }
-            let near = state.arc_length_m.partition_point(|&a| a < s).min(state.position_m.len() - 1);
-            self.motion.v[k] = state.velocity_m_per_s.get(near).copied().unwrap_or_default();
+            self.motion.v[k] = state.velocity_at(s).unwrap_or_default();
         }
         self.motion.time = state.time_s;
         self.motion.followers.fill(None);

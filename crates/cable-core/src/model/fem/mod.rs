@@ -131,6 +131,12 @@ impl Mechanics for FemModel {
     }
 
     fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+        // Statics has no velocities: what moves is taken over by the part that can move.
+        if self.present == Part::Statics && state.velocity_m_per_s.iter().any(|v| v.norm() > 0.0) {
+            self.dynamics.adopt(state)?;
+            self.present = Part::Dynamics;
+            return Ok(());
+        }
         match self.present {
             Part::Statics => self.statics.adopt(state),
             Part::Dynamics => self.dynamics.adopt(state),

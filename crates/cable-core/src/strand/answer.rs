@@ -1,0 +1,75 @@
+//! The pieces of a cable read as one cable again: arc lengths from its start, supports in the scene's order.
+
+use super::Strand;
+use crate::problem::SupportPoint;
+use crate::solution::{CableSolution, SupportReaction};
+use crate::state::State;
+
+impl Strand {
+    /// The answer at this instant.
+    pub fn answer(&self) -> CableSolution {
+        if let ([whole], true) = (self.pieces.as_slice(), self.breaks.is_empty()) {
+            return whole.answer.clone();
+        }
+        let mut out = CableSolution { name: self.problem.cable.name.clone(), ..CableSolution::default() };
+        for piece in &self.pieces {
+            let from = piece.deal.from;
+            if !out.nodes.is_empty() {
+                out.breaks.push(out.nodes.len());
+            }
+            out.nodes.extend(piece.answer.nodes.iter().map(|n| {
+                let mut n = *n;
+                n.arc_length_m += from;
+                n
+            }));
+            out.contacts.extend(piece.answer.contacts.iter().map(|c| {
+                let mut c = c.clone();
+                c.arc_length_m += from;
+                c
+            }));
+        }
+        out.supports = (0..self.problem.supports.len()).map(|k| self.reaction(k)).collect();
+        out
+    }
+
+    /// Where the cable is; the end of one piece and the start of the next have the same arc length.
+    pub fn state(&self) -> State {
+        let mut out = State { time_s: self.time_s(), ..State::default() };
+        for piece in &self.pieces {
+            let state = piece.mechanics.state();
+            out.arc_length_m.extend(state.arc_length_m.iter().map(|s| s + piece.deal.from));
+            out.position_m.extend(state.position_m);
+            out.velocity_m_per_s.extend(state.velocity_m_per_s);
+        }
+        out
+    }
+
+    /// Where each support sits, m on the whole cable.
+    pub(super) fn sits(&self) -> Vec<f64> {
+        (0..self.problem.supports.len()).map(|k| self.reaction(k).arc_length_m).collect()
+    }
+
+    /// What the cable does to a support of the scene: nothing, if it is off it.
+    fn reaction(&self, k: usize) -> SupportReaction {
+        let held = self.pieces.iter().find_map(|p| {
+            let own = p.deal.supports.iter().position(|s| *s == Some(k))?;
+            let mut r = p.answer.supports.get(own)?.clone();
+            r.arc_length_m += p.deal.from;
+            Some(r)
+        });
+        held.unwrap_or_else(|| {
+            self.problem.supports.get(k).map_or_else(SupportReaction::default, |s| self.left_alone(s))
+        })
+    }
+
+    fn left_alone(&self, support: &SupportPoint) -> SupportReaction {
+        let at = support.position_at(self.time_s()).map(|p| p.0).or(support.at).unwrap_or_default();
+        SupportReaction {
+            name: support.name.clone(),
+            x_m: at.x,
+            y_m: at.y,
+            arc_length_m: support.arc_length.unwrap_or(0.0),
+            ..SupportReaction::default()
+        }
+    }
+}

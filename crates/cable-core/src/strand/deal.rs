@@ -1,0 +1,161 @@
+//! What of a cable belongs to which piece, once it has broken.
+
+use crate::math::Vec2;
+use crate::problem::{Problem, Series, SupportPoint};
+use crate::scene::{PulleySide, SupportKind};
+use crate::state::State;
+
+/// The stretch of the whole cable that a piece is, and what hangs on it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Deal {
+    /// Arc length of the whole cable at its start, m.
+    pub from: f64,
+    /// Arc length of the whole cable at its end, m.
+    pub to: f64,
+    /// Supports in order along it, as indices in the scene; the first and last are its ends, None where it broke.
+    pub supports: Vec<Option<usize>>,
+    /// Indices of the point loads on it.
+    pub loads: Vec<usize>,
+}
+
+/// A place to cut at, and what is known of the cable there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cut<'a> {
+    /// Where, m on the whole cable.
+    pub at: f64,
+    /// Supports and loads as near as this (m) sit at the cut.
+    pub near: f64,
+    /// The cable gives way on the side of greater arc length of what sits at the cut.
+    pub after: bool,
+    /// Where each support of the scene sits now, m on the whole cable.
+    pub sits: &'a [f64],
+}
+
+impl Deal {
+    /// The whole cable.
+    pub fn whole(problem: &Problem) -> Self {
+        Self {
+            from: 0.0,
+            to: problem.length,
+            supports: (0..problem.supports.len()).map(Some).collect(),
+            loads: (0..problem.loads.len()).collect(),
+        }
+    }
+
+    /// Length, m.
+    pub fn length(&self) -> f64 {
+        self.to - self.from
+    }
+
+    /// The pieces this one breaks into: two, or itself torn off what held its end.
+    pub fn cut(&self, problem: &Problem, cut: &Cut<'_>) -> Vec<Self> {
+        if cut.at - self.from <= cut.near {
+            return vec![self.torn(0, problem, cut)];
+        }
+        if self.to - cut.at <= cut.near {
+            return vec![self.torn(self.supports.len() - 1, problem, cut)];
+        }
+        // What sits at the cut stays with the side that does not give way.
+        let before = |s: f64| s < cut.at - cut.near || (s <= cut.at + cut.near && cut.after);
+        let last = self.supports.len() - 1;
+        let (mut left, mut right) = (Vec::new(), Vec::new());
+        for (i, &k) in self.supports.iter().enumerate() {
+            let Some(k) = k else { continue };
+            let s = cut.sits.get(k).copied().unwrap_or(self.from);
+            let pulley = problem.supports.get(k).is_some_and(|p| p.kind == SupportKind::Pulley);
+            if pulley && (s - cut.at).abs() <= cut.near {
+                continue; // it would slip off at once
+            }
+            if i == 0 || (i < last && before(s)) { left.push(Some(k)) } else { right.push(Some(k)) }
+        }
+        if self.supports.first() == Some(&None) {
+            left.insert(0, None);
+        }
+        if self.supports.last() == Some(&None) {
+            right.push(None);
+        }
+        // A support that stays at the new end is that end.
+        let at_cut = |k: Option<usize>| k.and_then(|k| cut.sits.get(k)).is_some_and(|s| (s - cut.at).abs() <= cut.near);
+        if !(left.len() > 1 && at_cut(left[left.len() - 1])) {
+            left.push(None);
+        }
+        if !(right.len() > 1 && at_cut(right[0])) {
+            right.insert(0, None);
+        }
+        let (first, second) =
+            self.loads.iter().partition(|&&l| before(problem.loads.get(l).map_or(0.0, |l| l.arc_length)));
+        vec![
+            Self { from: self.from, to: cut.at, supports: left, loads: first },
+            Self { from: cut.at, to: self.to, supports: right, loads: second },
+        ]
+    }
+
+    fn torn(&self, end: usize, problem: &Problem, cut: &Cut<'_>) -> Self {
+        let mut deal = self.clone();
+        if let Some(s) = deal.supports.get_mut(end) {
+            *s = None;
+        }
+        let at = if end == 0 { self.from } else { self.to };
+        deal.loads.retain(|&l| problem.loads.get(l).is_some_and(|l| (l.arc_length - at).abs() > cut.near));
+        deal
+    }
+
+    /// The same without a support that the cable has slipped off.
+    pub fn without(&self, support: usize) -> Self {
+        let mut deal = self.clone();
+        deal.supports.retain(|s| *s != Some(support));
+        deal
+    }
+
+    /// The piece as a problem of its own: arc lengths from its start, its first route where it lies in `state` (whose arc
+    /// lengths are the piece's own), as many elements as it had.
+    pub fn problem(&self, whole: &Problem, state: &State) -> Problem {
+        let length = self.length();
+        let elements = state.arc_length_m.len().saturating_sub(1).max(LEAST_ELEMENTS);
+        let last = self.supports.len().saturating_sub(1);
+        let mut supports = Vec::with_capacity(self.supports.len());
+        for (i, &k) in self.supports.iter().enumerate() {
+            let end = if i == 0 { Some(0.0) } else { (i == last).then_some(length) };
+            let mut s = k.and_then(|k| whole.supports.get(k)).cloned().unwrap_or_else(free_end);
+            s.arc_length = end.or(s.arc_length.map(|a| a - self.from));
+            supports.push(s);
+        }
+        let mut loads: Vec<_> = self.loads.iter().filter_map(|&l| whole.loads.get(l)).cloned().collect();
+        for l in &mut loads {
+            l.arc_length = (l.arc_length - self.from).clamp(0.0, length);
+        }
+        let mut cable = whole.cable.clone();
+        cable.length_m = length;
+        cable.segments = Some(elements);
+        // The ratio is that of the first axial mode, whose period goes with the length: the material stays the same.
+        cable.damping_ratio *= whole.length / length;
+        Problem { length, supports, loads, route: route(state), cable, ..whole.clone() }
+    }
+}
+
+/// A piece has at least so many elements: the tension of its ends is read from the next node.
+const LEAST_ELEMENTS: usize = 2;
+
+/// The way it lies, without points on each other.
+fn route(state: &State) -> Vec<Vec2> {
+    let mut points = state.position_m.clone();
+    points.dedup_by(|a, b| a == b);
+    points
+}
+
+fn free_end() -> SupportPoint {
+    SupportPoint {
+        name: String::new(),
+        kind: SupportKind::Free,
+        arc_length: None,
+        at: None,
+        motion: None,
+        angle: None,
+        wheel_radius: 0.0,
+        side: PulleySide::Over,
+        friction: 0.0,
+        force: Series::default(),
+        mass: 0.0,
+        release: None,
+    }
+}

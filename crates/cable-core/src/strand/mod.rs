@@ -1,0 +1,427 @@
+//! One cable of a scene over time: whole, or the pieces it broke into.
+//!
+//! A model knows one unbroken cable. Where tension reaches the breaking tension, [`Strand`] stops the model there, deals
+//! what hangs on the cable out to two shorter [`Problem`]s with free ends, and goes on with a model for each, from the
+//! positions and velocities of the moment. Every model breaks, and none knows that it can.
+
+mod answer;
+mod deal;
+mod rupture;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use deal::{Cut, Deal};
+
+use crate::error::SolveError;
+use crate::math::Vec2;
+use crate::model::{self, Inertia, Mechanics, Model, Settings, StepReport};
+use crate::problem::Problem;
+use crate::scene::SupportKind;
+use crate::solution::{CableSolution, Cost};
+use crate::state::State;
+
+/// Longest step between two looks at the tension of a moving cable that may break, s. Longer: a peak between two looks is
+/// missed; shorter: more looks for the same break. It is the inner step of `fem`.
+const WATCH_STEP_S: f64 = 1.0 / 240.0;
+
+/// A moving cable pulled with more than this part of its breaking tension is looked at every [`WATCH_STEP_S`]. Larger: a
+/// jerk from below it within one step of the caller is seen only if it lasts; smaller: looks that find nothing. A cable
+/// that snaps taut in the tests goes from a tenth to the whole in two inner steps, so half leaves none unseen.
+const NEAR: f64 = 0.5;
+
+/// Looks in a step without inertia that ends beyond the breaking tension. The moment of the break is interpolated between
+/// two of them: with 16 the end of a cable pulled from slack to taut in one step is found to 1e-2 of the step.
+const SLOW_LOOKS: f64 = 16.0;
+
+/// Steps after a break in which a piece is not watched: the models start with a first-order step, and the free end is met
+/// by a wave of its own. Fewer: false breaks beside the first; more: true ones are late. In motion it is also not watched
+/// until that wave, at c = √(EA/ρ), has crossed it there and back (once is too short: a mesh blurs its front): where the break is not felt yet, a cable of exactly even strength that
+/// was pulled evenly would break everywhere at once, which no cable does.
+const QUIET_STEPS: u32 = 2;
+
+/// A rest of a step shorter than this part of it is left out: at a millionth of a step the forces of inertia are rounding.
+const LEAST_REST: f64 = 0.1;
+
+/// Most pieces of one cable. More are no longer a cable that breaks but a step that fails.
+const MOST_PIECES: usize = 32;
+
+/// A pulley is off the cable when a new end is this near, in elements. Smaller: the end runs into the pulley, where there is
+/// no element left on one side; larger: it drops off visibly early. 2 leaves a moving node beside the pulley.
+const OFF_PULLEY: f64 = 2.0;
+
+/// A velocity that changes nothing, m/s, and tells a model that a piece which broke at rest is not at rest any more.
+const WAKE: f64 = 1e-100;
+
+/// A break.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Break {
+    /// When, s.
+    pub time_s: f64,
+    /// Where on the cable, m.
+    pub arc_length_m: f64,
+    /// Where in the plane, m.
+    pub at: Vec2,
+    /// The support it tore off, if it did.
+    pub torn_off: Option<String>,
+}
+
+/// One cable of a scene.
+pub(crate) struct Strand {
+    problem: Arc<Problem>,
+    settings: Settings,
+    pieces: Vec<Piece>,
+    breaks: Vec<Break>,
+    dragged: Vec<Option<Vec2>>,
+}
+
+/// A part of the cable that holds together.
+struct Piece {
+    mechanics: Box<dyn Mechanics>,
+    deal: Deal,
+    /// The answer at its present instant, in its own arc lengths.
+    answer: CableSolution,
+    quiet: u32,
+    /// Not watched before, s.
+    quiet_until_s: f64,
+}
+
+/// What became of a piece in a step.
+enum Outcome {
+    Held,
+    /// When (s), and where it then is.
+    Broke(Box<(f64, State, rupture::Rupture)>),
+}
+
+impl Strand {
+    /// Builds the model of a whole cable.
+    pub fn new(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
+        let mechanics = model::build(model, problem.clone(), settings)?;
+        let piece = Piece::new(mechanics, Deal::whole(&problem));
+        let dragged = vec![None; problem.supports.len()];
+        Ok(Self { problem, settings, pieces: vec![piece], breaks: Vec::new(), dragged })
+    }
+
+    /// The whole cable's problem.
+    pub fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
+    /// Where and when it broke, oldest first.
+    pub fn breaks(&self) -> &[Break] {
+        &self.breaks
+    }
+
+    /// Time reached, s: that of the piece that is least far.
+    pub fn time_s(&self) -> f64 {
+        self.pieces.iter().map(|p| p.mechanics.time_s()).fold(f64::INFINITY, |a, b| if b < a { b } else { a })
+    }
+
+    /// Finds where it rests: nothing breaks at rest, see `crate::watch`.
+    pub fn settle(&mut self) -> Result<StepReport, SolveError> {
+        let mut sum = StepReport::default();
+        for piece in &mut self.pieces {
+            add(&mut sum, piece.mechanics.settle()?);
+            piece.look();
+        }
+        Ok(sum)
+    }
+
+    /// Advances time by exactly `dt_s`, breaking on the way where it must.
+    pub fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+        let mut sum = StepReport::default();
+        self.slip_off_pulleys(inertia)?;
+        let Some(end_s) = self.pieces.first().map(|p| p.mechanics.time_s() + dt_s) else { return Ok(sum) };
+        let breaking_n = self.problem.cable.breaking_tension_n;
+        let mut k = 0;
+        while k < self.pieces.len() {
+            let may_break = self.pieces.len() < MOST_PIECES;
+            let Some(piece) = self.pieces.get_mut(k) else { break };
+            // A whole cable takes the very step it was asked for.
+            let rest_s = if self.breaks.is_empty() { dt_s } else { end_s - piece.mechanics.time_s() };
+            if !self.breaks.is_empty() && rest_s <= 1e-9 * dt_s {
+                k += 1;
+                continue;
+            }
+            match piece.advance(rest_s, inertia, may_break.then_some(breaking_n), &mut sum)? {
+                Outcome::Held => k += 1,
+                Outcome::Broke(at) => self.split(k, &at, inertia)?,
+            }
+        }
+        Ok(sum)
+    }
+
+    /// Replaces a piece by those it breaks into.
+    fn split(
+        &mut self,
+        k: usize,
+        (time_s, state, at): &(f64, State, rupture::Rupture),
+        inertia: Inertia,
+    ) -> Result<(), SolveError> {
+        let sits = self.sits();
+        let Some(piece) = self.pieces.get(k) else { return Ok(()) };
+        let nodes = &piece.answer.nodes;
+        let Some(node) = nodes.get(at.node) else { return Ok(()) };
+        let tension = |i: Option<usize>| i.and_then(|i| nodes.get(i)).map_or(0.0, |n| n.tension_n);
+        let cut = Cut {
+            at: piece.deal.from + node.arc_length_m,
+            near: 0.5 * piece.element(),
+            after: tension(Some(at.node + 1)) > tension(at.node.checked_sub(1)),
+            sits: &sits,
+        };
+        let deals = piece.deal.cut(&self.problem, &cut);
+        let end =
+            if cut.at - piece.deal.from <= cut.near { piece.deal.supports.first() } else { piece.deal.supports.last() };
+        let torn = (deals.len() == 1).then(|| end.copied().flatten()).flatten();
+        let event = Break {
+            time_s: *time_s,
+            arc_length_m: cut.at,
+            at: state.position_at(node.arc_length_m).unwrap_or_default(),
+            torn_off: torn.and_then(|k| self.problem.supports.get(k)).map(|s| s.name.clone()),
+        };
+        let (from, model) = (piece.deal.from, piece.mechanics.model());
+        let mut parts = Vec::with_capacity(2);
+        for deal in deals {
+            let mut own = rupture::part(state, deal.from - from, deal.to - from);
+            if inertia == Inertia::Dynamic {
+                wake(&mut own);
+            }
+            let there_and_back_s =
+                2.0 * deal.length() * (self.problem.linear_density / self.problem.axial_stiffness).sqrt();
+            let mut part = self.build(model, deal, &own)?;
+            part.quiet = QUIET_STEPS;
+            part.quiet_until_s = time_s + there_and_back_s;
+            parts.push(part);
+        }
+        self.pieces.splice(k..=k, parts);
+        self.breaks.push(event);
+        Ok(())
+    }
+
+    /// A piece from where it is; `state` in its own arc lengths.
+    fn build(&self, model: Model, deal: Deal, state: &State) -> Result<Piece, SolveError> {
+        let problem = Arc::new(deal.problem(&self.problem, state));
+        let mut mechanics = model::build(model, problem, Settings { segments: None, ..self.settings })?;
+        for (own, k) in deal.supports.iter().enumerate() {
+            if let Some(target) = k.and_then(|k| self.dragged.get(k).copied().flatten()) {
+                mechanics.drag_support(own, target);
+            }
+        }
+        mechanics.adopt(state)?;
+        Ok(Piece::new(mechanics, deal))
+    }
+
+    /// A piece whose new end has come to a pulley is off it.
+    fn slip_off_pulleys(&mut self, inertia: Inertia) -> Result<(), SolveError> {
+        if self.breaks.is_empty() {
+            return Ok(());
+        }
+        for k in 0..self.pieces.len() {
+            while let Some(piece) = self.pieces.get(k)
+                && let Some(support) = piece.pulley_at_new_end(&self.problem)
+            {
+                let mut state = piece.mechanics.state();
+                if inertia == Inertia::Dynamic {
+                    wake(&mut state);
+                }
+                let next = self.build(piece.mechanics.model(), piece.deal.without(support), &state)?;
+                if let Some(piece) = self.pieces.get_mut(k) {
+                    *piece = next;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// From now on a support follows the hand.
+    pub fn drag_support(&mut self, support: usize, target_m: Vec2) {
+        if let Some(d) = self.dragged.get_mut(support)
+            && target_m.iter().all(|c| c.is_finite())
+        {
+            *d = Some(target_m);
+        }
+        for piece in &mut self.pieces {
+            if let Some(own) = piece.deal.supports.iter().position(|k| *k == Some(support)) {
+                piece.mechanics.drag_support(own, target_m);
+            }
+        }
+    }
+
+    /// Takes over a state of the whole cable.
+    pub fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+        match self.pieces.as_mut_slice() {
+            [whole] if self.breaks.is_empty() => {
+                whole.mechanics.adopt(state)?;
+                whole.look();
+                Ok(())
+            }
+            pieces => {
+                let model = pieces.first().map_or(Model::Auto, |p| p.mechanics.model());
+                let feature = "the state of a whole cable for one that broke (reset first)".to_owned();
+                Err(SolveError::Unsupported { model, feature })
+            }
+        }
+    }
+
+    /// Goes on where `old`, the same cable before an edit, is: broken where that one broke.
+    pub fn carry(&mut self, old: &Self) -> Result<(), SolveError> {
+        let (Some(own), Some(first)) = (self.pieces.first(), old.pieces.first()) else { return Ok(()) };
+        if old.breaks.is_empty() {
+            return self.adopt(&first.mechanics.state());
+        }
+        let model = own.mechanics.model();
+        let names = |s: &Self| s.problem.supports.iter().map(|s| s.name.clone()).collect::<Vec<_>>();
+        if names(self) != names(old)
+            || self.problem.length != old.problem.length
+            || self.problem.loads.len() != old.problem.loads.len()
+        {
+            let feature = "another length, other supports or loads for a cable that broke (reset first)".to_owned();
+            return Err(SolveError::Unsupported { model, feature });
+        }
+        self.dragged.clone_from(&old.dragged);
+        let mut pieces = Vec::with_capacity(old.pieces.len());
+        for p in &old.pieces {
+            pieces.push(self.build(model, p.deal.clone(), &p.mechanics.state())?);
+        }
+        self.pieces = pieces;
+        self.breaks.clone_from(&old.breaks);
+        Ok(())
+    }
+}
+
+impl Piece {
+    fn new(mechanics: Box<dyn Mechanics>, deal: Deal) -> Self {
+        Self { answer: mechanics.solution(), mechanics, deal, quiet: 0, quiet_until_s: f64::NEG_INFINITY }
+    }
+
+    fn look(&mut self) {
+        self.answer = self.mechanics.solution();
+    }
+
+    /// Mean length of an element, m.
+    fn element(&self) -> f64 {
+        self.deal.length() / self.answer.nodes.len().saturating_sub(1).max(1) as f64
+    }
+
+    /// Advances until it breaks, at most by `dt_s`.
+    fn advance(
+        &mut self,
+        dt_s: f64,
+        inertia: Inertia,
+        breaking_n: Option<f64>,
+        sum: &mut StepReport,
+    ) -> Result<Outcome, SolveError> {
+        let Some(breaking_n) = breaking_n else {
+            add(sum, self.mechanics.advance(dt_s, inertia)?);
+            self.look();
+            return Ok(Outcome::Held);
+        };
+        let (near_n, looks) = match inertia {
+            Inertia::Dynamic => (NEAR * breaking_n, (dt_s / WATCH_STEP_S - 1e-9).ceil().max(1.0)),
+            Inertia::QuasiStatic => (breaking_n, SLOW_LOOKS),
+        };
+        if looks > 1.0 && rupture::greatest(&self.answer.nodes) < near_n {
+            let before = (self.mechanics.boxed_clone(), self.answer.clone());
+            let report = self.mechanics.advance(dt_s, inertia)?;
+            self.look();
+            if rupture::greatest(&self.answer.nodes) < near_n {
+                self.quiet = self.quiet.saturating_sub(looks as u32);
+                add(sum, report);
+                return Ok(Outcome::Held);
+            }
+            (self.mechanics, self.answer) = before;
+        }
+        let (mut left_s, h) = (dt_s, dt_s / looks);
+        for _ in 0..looks as usize {
+            let (state, nodes) = (self.mechanics.state(), std::mem::take(&mut self.answer.nodes));
+            let step_s = if left_s < 1.5 * h { left_s } else { h };
+            let done = self.mechanics.advance(step_s, inertia);
+            self.look();
+            add(sum, done?);
+            left_s -= step_s;
+            let now = self.mechanics.state();
+            let awake = self.quiet == 0 && (inertia == Inertia::QuasiStatic || now.time_s >= self.quiet_until_s);
+            self.quiet = self.quiet.saturating_sub(1);
+            if awake && let Some(at) = rupture::first(&nodes, &self.answer.nodes, breaking_n, |s| self.may_break_at(s))
+            {
+                let time_s = state.time_s + (now.time_s - state.time_s) * at.fraction;
+                let rest = 1.0 - at.fraction;
+                let state = if rest < LEAST_REST { now } else { rupture::between(&state, &now, at.fraction) };
+                return Ok(Outcome::Broke(Box::new((time_s, state, at))));
+            }
+        }
+        Ok(Outcome::Held)
+    }
+
+    /// Whether it may break at an arc length (its own, m): not at an end that is free since a break.
+    fn may_break_at(&self, s: f64) -> bool {
+        let least = 0.5 * self.element();
+        let new = |end: Option<&Option<usize>>| end == Some(&None);
+        !(new(self.deal.supports.first()) && s <= least
+            || new(self.deal.supports.last()) && self.deal.length() - s <= least)
+    }
+
+    /// A pulley that a new end has come to.
+    fn pulley_at_new_end(&self, whole: &Problem) -> Option<usize> {
+        let supports = &self.deal.supports;
+        let [start, end] = [supports.first(), supports.last()].map(|s| s == Some(&None));
+        let near = OFF_PULLEY * self.element();
+        supports.iter().zip(&self.answer.supports).find_map(|(k, r)| {
+            let k = (*k)?;
+            let pulley = whole.supports.get(k)?.kind == SupportKind::Pulley;
+            let off = (start && r.arc_length_m <= near) || (end && self.deal.length() - r.arc_length_m <= near);
+            (pulley && off).then_some(k)
+        })
+    }
+}
+
+fn wake(state: &mut State) {
+    if state.velocity_m_per_s.iter().all(|v| v.norm() == 0.0)
+        && let Some(v) = state.velocity_m_per_s.first_mut()
+    {
+        v.x = WAKE;
+    }
+}
+
+fn add(sum: &mut StepReport, more: StepReport) {
+    let Cost { iterations, halved_steps, residual_n, inner_step_s } = more.cost;
+    sum.cost.iterations += iterations;
+    sum.cost.halved_steps += halved_steps;
+    // Not `max`: what is not a number must show.
+    if !(residual_n <= sum.cost.residual_n) {
+        sum.cost.residual_n = residual_n;
+    }
+    if inner_step_s > sum.cost.inner_step_s {
+        sum.cost.inner_step_s = inner_step_s;
+    }
+    for warning in more.warnings {
+        // Of the parts of a step each says the same again.
+        sum.warnings.retain(|w| w.kind != warning.kind || w.message != warning.message);
+        sum.warnings.push(warning);
+    }
+}
+
+impl Clone for Piece {
+    fn clone(&self) -> Self {
+        Self {
+            mechanics: self.mechanics.boxed_clone(),
+            deal: self.deal.clone(),
+            answer: self.answer.clone(),
+            quiet: self.quiet,
+            quiet_until_s: self.quiet_until_s,
+        }
+    }
+}
+
+impl Clone for Strand {
+    fn clone(&self) -> Self {
+        Self {
+            problem: self.problem.clone(),
+            settings: self.settings,
+            pieces: self.pieces.clone(),
+            breaks: self.breaks.clone(),
+            dragged: self.dragged.clone(),
+        }
+    }
+}
