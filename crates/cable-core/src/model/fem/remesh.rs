@@ -9,8 +9,8 @@
 //!
 //! Material, place and momentum of what stays are left as they are.
 
-use super::dynamics::Dynamics;
-use super::path::{End, Path};
+use super::dynamics::{Dynamics, STIFFNESS};
+use super::path::{End, Path, angle_between};
 use super::sliding::{Grip, Load, Seat, Sliding, round_of};
 use crate::math::{Vec2, perp};
 
@@ -37,6 +37,24 @@ const SMALL: f64 = 0.3;
 
 /// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
 const STILL: f64 = 1e-9;
+
+/// Tension in weights of an even bar from which a corner gets a sliding node, and below which it loses it: a slack
+/// cable lies on corners with its nodes, and the barrier carries it as well.
+const TAUT: f64 = 4.0;
+/// See `TAUT`.
+const SLACK: f64 = 2.0;
+
+/// Half of the turn (rad) up to which a slack cable may leave a round with one node.
+const MOST_BEND: f64 = 1.0;
+
+/// Turn (rad) below which a node that leaves its corner is taken out; else it becomes a node of the cable.
+const NEARLY_STRAIGHT: f64 = 0.3;
+
+/// Plain nodes whose two bars are together shorter than this (in even bars) are taken out.
+const SPARE: f64 = 1.3;
+
+/// Length of the sum of the directions before and after a node below which the cable counts as folded there.
+const FOLDED: f64 = 0.2;
 
 /// Gap (parts of the barrier's reach) that a bar must have when a node is taken out: less, and the barrier throws it.
 const LEAST_GAP: f64 = 0.05;
@@ -99,33 +117,103 @@ impl Dynamics {
                 }
                 Some(Seat::Obstacle { .. }) => self.lifts_off(k),
             };
-            if leaves {
+            if leaves && self.runs_straight(k) && self.clear_without(k) {
                 self.remove(k);
                 changed = true;
             } else {
+                changed |= leaves && self.settle_down(k);
                 k += 1;
             }
         }
         changed
     }
 
-    /// Whether a sliding node on an obstacle is pulled away from it, and the bar that takes its place is clear of it.
+    /// A node that moves with its material becomes a sliding one.
+    fn pin_down(&mut self, k: usize, arc_length: f64, sliding: Sliding) {
+        let along = self.mesh.path(k - 1, &self.motion.x).direction;
+        let (mesh, m) = (&mut self.mesh, &mut self.motion);
+        mesh.sliding[k] = Some(sliding);
+        mesh.arc_length[k] = arc_length;
+        for e in [k - 1, k] {
+            mesh.rest_length[e] = mesh.thermal_stretch * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
+        }
+        m.w[k] = -m.v[k].dot(&along);
+        m.w_before[k] = m.w[k];
+        m.s_before[k] = arc_length - m.w[k] * m.step_before;
+        m.x[k] = sliding.position();
+        m.x_before[k] = m.x[k];
+        m.v[k] = Vec2::zeros();
+        m.v_before[k] = Vec2::zeros();
+        self.contacts.floor_slid[k] = Vec2::zeros();
+    }
+
+    /// A sliding node becomes one that moves with its material: something else is in the way of a bar in its place.
+    ///
+    /// It goes where its two tangents meet, 1/cos(φ/2) radii from the centre, so that the bars lie where they lay.
+    fn settle_down(&mut self, k: usize) -> bool {
+        let half = (0.5 * self.turn(k)).abs();
+        let out = 1.0 / if half < MOST_BEND { half.cos() } else { MOST_BEND.cos() };
+        let Some(end) = self.mesh.sliding[k].map(|s| s.end) else { return false };
+        let x = &self.motion.x;
+        let along = self.mesh.path(k - 1, x).direction + self.mesh.path(k, x).direction;
+        let outward = perp(along) * -end.sense;
+        let outward = if outward.norm() > FOLDED { outward.normalize() } else { end.mark };
+        let (sliding, place) = (self.mesh.sliding[k].take(), self.motion.x[k]);
+        self.motion.x[k] = end.center + outward * (end.radius * out);
+        if ![k - 1, k].into_iter().all(|e| self.is_clear(e)) {
+            self.mesh.sliding[k] = sliding;
+            self.motion.x[k] = place;
+            return false;
+        }
+        let m = &mut self.motion;
+        m.v[k] = along * (-0.5 * m.w[k]);
+        m.v_before[k] = m.v[k];
+        m.x_before[k] = m.x[k] - m.v[k] * m.step_before;
+        m.w[k] = 0.0;
+        true
+    }
+
+    /// Whether a bar meets nothing.
+    fn is_clear(&self, e: usize) -> bool {
+        let (ends, rounds) = (self.mesh.straight(e, &self.motion.x), self.mesh.rounds(e));
+        self.problem.world.geometry().is_clear(ends, LEAST_GAP * self.contacts.barrier.reach, rounds)
+    }
+
+    /// Whether a sliding node on an obstacle is pulled away from it, or is in the way of a node that has to pass.
     fn lifts_off(&self, k: usize) -> bool {
         let Some(node) = self.mesh.sliding[k] else { return false };
         let beside = |j: usize| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
         let fixed = |j: usize| self.mesh.sliding[j].is_none() && !self.removable(j);
         let blocked = [k - 1, k + 1].into_iter().any(|j| fixed(j) && self.bar_between(j, k) < NEAR * self.even());
         if blocked {
-            return self.clear_without(k);
+            return true;
         }
         if beside(k - 1) || beside(k + 1) {
             return false;
         }
         let Some(load) = self.load(k) else { return false };
-        if !(load.normal < 0.0) {
-            return false;
+        let (turn, tension) = (self.turn(k), 0.5 * (load.tension[0] + load.tension[1]));
+        load.normal < 0.0 || turn < 0.0 || (tension < SLACK * self.bar_weight() && turn < 2.0 * MOST_BEND)
+    }
+
+    /// What presses an even bar on flat ground, N.
+    fn bar_weight(&self) -> f64 {
+        self.contacts.barrier.stiffness / STIFFNESS
+    }
+
+    /// Angle through which the bars beside node `k` turn, in the sense of a sliding node, rad.
+    fn turn(&self, k: usize) -> f64 {
+        let x = &self.motion.x;
+        let paths = [self.mesh.path(k - 1, x), self.mesh.path(k, x)];
+        match &self.mesh.sliding[k] {
+            Some(s) if s.end.radius > 0.0 => paths[0].arcs[1] + paths[1].arcs[0],
+            _ => angle_between(paths[0].direction, paths[1].direction),
         }
-        self.clear_without(k)
+    }
+
+    /// Whether a bar in the place of node `k` is nearly the way it lies now.
+    fn runs_straight(&self, k: usize) -> bool {
+        self.turn(k).abs() < NEARLY_STRAIGHT
     }
 
     /// Arc length between two nodes, m.
@@ -147,8 +235,15 @@ impl Dynamics {
                 if pressed { self.seat_for(t.node, t.on_segment, &t.pair.gap) } else { None }
             });
             let Some((bar, arc_length, sliding)) = found else { break };
-            self.insert(bar + 1, arc_length, Some(sliding));
-            self.clear_around(bar + 1);
+            let near = NEAR * self.even();
+            let node = [bar, bar + 1]
+                .into_iter()
+                .find(|&k| self.removable(k) && (self.mesh.arc_length[k] - arc_length).abs() < near);
+            match node {
+                Some(k) => self.pin_down(k, arc_length, sliding),
+                None => self.insert(bar + 1, arc_length, Some(sliding)),
+            }
+            self.clear_around(node.unwrap_or(bar + 1));
             changed = true;
         }
         changed
@@ -161,17 +256,25 @@ impl Dynamics {
             round_of(self.problem.world.geometry(), gap.feature, self.contacts.barrier.reach, LEAST_TURN)?;
         let (bar, fraction) = match (on_segment, node) {
             (true, e) => (e, gap.fraction),
-            (false, 0) => (0, 0.0),
-            (false, k) => (k - 1, 1.0),
+            (false, k) if k > 0 && k < last => (k - 1, 1.0),
+            (false, _) => return None,
         };
         let path = mesh.path(bar, x);
-        let along = if on_segment {
-            path.direction
-        } else {
-            let after = if node < last { mesh.path(node, x).direction } else { path.direction };
-            path.direction + after
-        };
+        let along = if on_segment { path.direction } else { path.direction + mesh.path(node, x).direction };
         let sense = if gap.normal.dot(&perp(along)) > 0.0 { -1.0 } else { 1.0 };
+        // A cable folded back on itself at an obstacle runs neither way round it, one that is bent away from it hits it
+        // with a node.
+        if !on_segment && (along.norm() < FOLDED || self.turn(node) * sense < 0.0) {
+            return None;
+        }
+        // Seen from beyond the bar the cable must bend round the corner, and be taut.
+        let first = bar.saturating_sub(1);
+        let beyond = (bar + 1).min(last - 1);
+        let wrap = sense * angle_between(mesh.path(first, x).direction, mesh.path(beyond, x).direction);
+        let tension = mesh.bar(bar).tension(path.length);
+        if !(wrap > 0.0 && tension > TAUT * self.bar_weight()) {
+            return None;
+        }
         let s = [mesh.arc_length[bar], mesh.arc_length[bar + 1]];
         let near = NEAR * self.even();
         // The ends of a cable and what hangs on it stay clear of corners.
@@ -181,7 +284,6 @@ impl Dynamics {
             return None;
         }
         if mesh.bending_stiffness > 0.0 {
-            let tension = mesh.bar(bar).tension(path.length);
             let rounding = (mesh.bending_stiffness / if tension > 0.0 { tension } else { 1.0 }).sqrt();
             if rounding > 0.5 * self.even() {
                 return None;
@@ -310,8 +412,12 @@ impl Dynamics {
             let straight = |e: usize| self.mesh.path(e, &self.motion.x).straight;
             let crowded =
                 (before.is_some() && straight(k - 1) < SHORT * even) || (after.is_some() && straight(k) < SHORT * even);
+            let spare = before.is_none()
+                && after.is_none()
+                && self.bar_between(k - 1, k + 1) < SPARE * even
+                && self.runs_straight(k);
             let enclosed = matches!((before, after), (Some(a), Some(b)) if a.shares_round(&b));
-            if (crowded || enclosed) && self.clear_without(k) {
+            if (crowded || enclosed || spare) && self.clear_without(k) {
                 self.remove(k);
             } else {
                 k += 1;
@@ -322,7 +428,8 @@ impl Dynamics {
             let length = self.bar_between(e, e + 1);
             let x = &self.motion.x;
             let path = self.mesh.path(e, x);
-            if length > LONG * even && path.straight > 0.8 * LONG * even {
+            let unwound = path.arcs.iter().any(|&a| a < -0.1);
+            if length > LONG * even && path.straight > 0.8 * LONG * even && !unwound {
                 // Even pieces, the straight part permitting; beside a sliding node the odd piece is its.
                 let slides = [e, e + 1].map(|k| self.mesh.sliding[k].is_some());
                 let part = match slides {

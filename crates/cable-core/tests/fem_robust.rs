@@ -1,0 +1,136 @@
+//! Whatever a hand does: ends thrown about over rough ground, beams and posts. Nothing may cross, nothing may be
+//! anything but a number, and hardly a step may have to be halved.
+
+#![allow(clippy::unwrap_used)]
+
+use cable_core::contact::World;
+use cable_core::math::Vec2;
+use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};
+use cable_core::{Model, Simulation};
+use proptest::prelude::{Strategy, any};
+use proptest::strategy::ValueTree;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+
+/// Counts of what went wrong.
+#[derive(Debug, Default)]
+struct Count {
+    steps: usize,
+    halved: usize,
+    failed: Vec<String>,
+}
+
+struct Dice(TestRunner);
+
+impl Dice {
+    fn new() -> Self {
+        Self(TestRunner::new_with_rng(Config::default(), TestRng::deterministic_rng(RngAlgorithm::ChaCha)))
+    }
+
+    fn unit(&mut self) -> f64 {
+        let n = any::<u32>().new_tree(&mut self.0).unwrap().current();
+        f64::from(n) / f64::from(u32::MAX)
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+}
+
+/// Rubble with a beam and a post above it; a cable between two ends over them.
+fn random_scene(dice: &mut Dice) -> Scene {
+    let mut scene = catalog::hanging_span();
+    let rough = dice.between(0.0, 0.5);
+    let points_m = (0..=60).map(|k| [-15.0 + 0.5 * f64::from(k), dice.between(-rough, rough)]).collect();
+    let friction = Some(dice.between(0.0, 1.0));
+    let ground = Obstacle { name: "rubble".to_owned(), shape: Shape::Terrain { points_m }, friction };
+    let (x, y, b, h) =
+        (dice.between(-2.0, 0.0), dice.between(0.9, 1.5), dice.between(0.05, 0.6), dice.between(0.05, 0.4));
+    let beam = Shape::Polygon { points_m: vec![[x, y - h], [x + b, y - h], [x + b, y], [x, y]] };
+    let post =
+        Shape::Circle { center_m: [dice.between(1.5, 3.0), dice.between(1.2, 1.8)], radius_m: dice.between(0.05, 0.4) };
+    scene.obstacles = vec![
+        ground,
+        Obstacle { name: "beam".to_owned(), shape: beam, friction },
+        Obstacle { name: "post".to_owned(), shape: post, friction },
+    ];
+    let c = &mut scene.cables[0];
+    c.length_m = dice.between(9.0, 14.0);
+    c.axial_stiffness_n = 10f64.powf(dice.between(4.0, 7.0));
+    c.segments = Some(60);
+    c.supports = vec![Support::fixed("left", [-4.0, 3.0]), Support::fixed("right", [4.0, 3.0])];
+    scene
+}
+
+/// Smallest gap of the nodes of an answer, m.
+fn smallest_gap(world: &World, sim: &Simulation) -> f64 {
+    let mut least = f64::INFINITY;
+    for n in &sim.solution().cables[0].nodes {
+        let gap = world.signed_gap(Vec2::new(n.x_m, n.y_m), 0.05).map_or(f64::INFINITY, |g| g.gap_m);
+        assert!(n.x_m.is_finite() && n.y_m.is_finite() && n.tension_n.is_finite());
+        least = if gap < least { gap } else { least };
+    }
+    least
+}
+
+fn throw_about(scenes: usize, frames: usize, dt: f64) -> Count {
+    let mut dice = Dice::new();
+    let mut count = Count::default();
+    for s in 0..scenes {
+        let scene = random_scene(&mut dice);
+        let c = &scene.cables[0];
+        let world = World::new(&scene.obstacles, c.friction, c.diameter_m / 2.0);
+        let mut sim = Simulation::new(scene.clone(), Model::Fem).unwrap();
+        if let Err(e) = sim.settle() {
+            count.failed.push(format!("scene {s} settle: {e}"));
+            continue;
+        }
+        let mut hand = Vec2::new(4.0, 3.0);
+        for f in 0..frames {
+            // A hand that mostly wanders and sometimes jumps.
+            let reach = if dice.unit() < 0.1 { 10.0 } else { 0.2 };
+            let to = hand + Vec2::new(dice.between(-reach, reach), dice.between(-reach, reach));
+            if to.x.abs() < 10.0 && to.y > 0.6 && to.y < 6.0 {
+                hand = to;
+            }
+            sim.drag_support(0, 1, hand);
+            count.steps += (dt * 240.0).ceil() as usize;
+            match sim.step(dt) {
+                Ok(()) => count.halved += sim.solution().cost.halved_steps,
+                Err(e) => {
+                    count.failed.push(format!("scene {s} frame {f}: {e}"));
+                    break;
+                }
+            }
+            let gap = smallest_gap(&world, &sim);
+            if !(gap > -1e-9) {
+                count.failed.push(format!("scene {s} frame {f}: gap {gap}"));
+                break;
+            }
+        }
+    }
+    count
+}
+
+#[test]
+fn ends_thrown_about_cross_nothing() {
+    let count = throw_about(12, 60, 1.0 / 60.0);
+    println!("{} steps, {} halved", count.steps, count.halved);
+    assert!(count.failed.is_empty(), "{:#?}", count.failed);
+}
+
+#[test]
+#[ignore = "takes minutes: cargo test -p cable-core --test fem_robust -- --ignored --nocapture"]
+fn ends_thrown_about_ten_thousand_times_cross_nothing() {
+    let count = throw_about(100, 100, 1.0 / 60.0);
+    println!(
+        "{} steps, {} halved, {} scenes failed: {:#?}",
+        count.steps,
+        count.halved,
+        count.failed.len(),
+        count.failed
+    );
+    // Measured: 3 of 100 scenes end in a typed failure, 1.2 % of steps are halved. Crossing is never allowed.
+    assert!(count.failed.iter().all(|f| !f.contains("gap")), "{:#?}", count.failed);
+    assert!(count.failed.len() <= 5, "{:#?}", count.failed);
+    assert!(count.halved * 50 <= count.steps, "{} of {} steps halved", count.halved, count.steps);
+}
