@@ -45,6 +45,9 @@ pub struct Problem {
     pub route: Vec<Vec2>,
 }
 
+/// Times nearer than this are the same, s: sums of steps come as near to a time as rounding lets them.
+const SAME_TIME: f64 = 1e-9;
+
 /// A support, resolved.
 #[derive(Clone, Debug)]
 pub struct SupportPoint {
@@ -81,6 +84,24 @@ impl SupportPoint {
         if self.release.is_some_and(|r| time_s >= r) {
             return None;
         }
+        self.place_at(time_s)
+    }
+
+    /// Whether it holds the cable in a step that begins at a time, s.
+    #[must_use]
+    pub fn holds_from(&self, time_s: f64) -> bool {
+        self.release.is_none_or(|r| time_s < r - SAME_TIME)
+    }
+
+    /// Whether it lets go after `from` and before `to` (s), and when.
+    #[must_use]
+    pub fn release_between(&self, from: f64, to: f64) -> Option<f64> {
+        self.release.filter(|&r| r > from + SAME_TIME && r < to - SAME_TIME)
+    }
+
+    /// Position and velocity at a time, m and m/s, whether it holds the cable then or not.
+    #[must_use]
+    pub fn place_at(&self, time_s: f64) -> Option<(Vec2, Vec2)> {
         match (&self.motion, self.at) {
             (Some(m), Some(_)) => Some(m.at(time_s)),
             (None, Some(p)) => Some((p, Vec2::zeros())),

@@ -6,14 +6,20 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+mod atwood;
 mod axial_wave;
+mod capstan;
 mod dropped_mass;
 mod falling_chain;
 mod folded_chain;
+mod forces_in_time;
 mod hanging_chain;
 mod irvine;
 mod linked_rods;
+mod lumped_mass;
 mod measure;
 mod pendulum;
+mod release;
+mod rest_stretch;
 mod swing_energy;
 mod taut_string;

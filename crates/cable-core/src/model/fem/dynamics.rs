@@ -293,7 +293,7 @@ impl Dynamics {
                 self.motion.followers[k] = Some(f);
             }
         }
-        self.prepare_task(self.motion.time + h, Some(dragged));
+        self.prepare_step([self.motion.time, self.motion.time + h], Some(dragged));
         self.adapt_reach();
         let omega = if self.motion.step_before > 0.0 { h / self.motion.step_before } else { 0.0 };
         let alpha = (1.0 + 2.0 * omega) / (1.0 + omega);
@@ -495,6 +495,13 @@ impl Dynamics {
         }
     }
 
+    /// `h` (s), or less where a support lets go on the way.
+    fn until_release(&self, h: f64) -> f64 {
+        let now = self.motion.time;
+        let releases = self.problem.supports.iter().filter_map(|s| s.release_between(now, now + h));
+        releases.fold(h, |least, r| if r - now < least { r - now } else { least })
+    }
+
     /// One step of `h`; on failure back to its start and two of half the size, again and again.
     fn halving(
         &mut self,
@@ -507,24 +514,30 @@ impl Dynamics {
         let mut total = Done::default();
         loop {
             self.save();
-            let to = self.motion.time + size;
+            let start = self.motion.time;
+            let piece = match inertia {
+                Inertia::Dynamic => self.until_release(size),
+                Inertia::QuasiStatic => size,
+            };
+            let to = start + piece;
             let tried = match inertia {
-                Inertia::Dynamic => self.dynamic_step(size, dragged),
-                Inertia::QuasiStatic => {
-                    let start = self.motion.time;
-                    self.rest_step(to, dragged).or_else(|_| {
-                        self.restore();
-                        self.save();
-                        self.motion.time = start;
-                        self.relax(to, dragged)
-                    })
-                }
+                Inertia::Dynamic => self.dynamic_step(piece, dragged),
+                Inertia::QuasiStatic => self.rest_step(to, dragged).or_else(|_| {
+                    self.restore();
+                    self.save();
+                    self.motion.time = start;
+                    self.relax(to, dragged)
+                }),
             };
             let finite = self.motion.x.iter().chain(&self.motion.v).all(|p| p.iter().all(|c| c.is_finite()));
             match tried {
                 Ok(done) if finite => {
                     total = Done { iterations: total.iterations + done.iterations, ..done };
-                    left -= size;
+                    left -= piece;
+                    // Forces jump where a support lets go: with the history from before, BDF2 would feel them half a step late.
+                    if self.problem.supports.iter().any(|s| s.holds_from(start) != s.holds_from(to)) {
+                        self.motion.step_before = 0.0;
+                    }
                     if left <= 1e-9 * h {
                         return Ok(total);
                     }

@@ -27,6 +27,11 @@ const EVEN_FORCE: f64 = 1e-7;
 impl Dynamics {
     /// Sets held nodes, their targets and all forces for the time `to` (s); dragged supports go where `dragged` says.
     pub(super) fn prepare_task(&mut self, to: f64, dragged: Option<&[Option<Vec2>]>) {
+        self.prepare_step([to, to], dragged);
+    }
+
+    /// The same for a step from one time to another (s): what holds at its start holds to its end.
+    pub(super) fn prepare_step(&mut self, [from, to]: [f64; 2], dragged: Option<&[Option<Vec2>]>) {
         let (problem, mesh, task) = (&self.problem, &mut self.mesh, &mut self.task);
         let n = mesh.nodes();
         let body = problem.body_force(to);
@@ -51,7 +56,9 @@ impl Dynamics {
                 task.force[node] += s.force.at(to);
             }
             task.force[node] += gravity * s.mass;
-            if let Some((at, _)) = s.position_at(to) {
+            if s.holds_from(from)
+                && let Some((at, _)) = s.place_at(to)
+            {
                 let hand = dragged.and_then(|d| d.get(k).copied().flatten());
                 let at = self.motion.followers[k].map_or(hand.unwrap_or(at), |f| f.position());
                 mesh.held[node] = true;
@@ -71,7 +78,8 @@ impl Dynamics {
         for (k, node) in mesh.sliding.iter_mut().enumerate() {
             let Some(node) = node else { continue };
             if let Seat::Pulley(support) = node.seat
-                && let Some((at, _)) = problem.supports.get(support).and_then(|s| s.position_at(to))
+                && let Some((at, _)) =
+                    problem.supports.get(support).filter(|s| s.holds_from(from)).and_then(|s| s.place_at(to))
             {
                 let hand = dragged.and_then(|d| d.get(support).copied().flatten());
                 let follower = self.motion.followers.get(support).copied().flatten();

@@ -113,7 +113,7 @@ impl Dynamics {
             let leaves = match self.mesh.sliding[k].map(|s| s.seat) {
                 None => false,
                 Some(Seat::Pulley(support)) => {
-                    self.problem.supports.get(support).is_none_or(|s| s.position_at(self.motion.time).is_none())
+                    self.problem.supports.get(support).is_none_or(|s| !s.holds_from(self.motion.time))
                 }
                 Some(Seat::Obstacle { .. }) => self.lifts_off(k),
             };
