@@ -2,6 +2,9 @@
 
 use crate::math::Vec2;
 
+/// Part of its radius by which a point on a round may be off it.
+const ON_ROUND: f64 = 1e-6;
+
 /// Positions, velocities and material coordinates of one cable at an instant.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct State {
@@ -23,6 +26,17 @@ impl State {
             !(self.position_m[i].iter().all(|v| v.is_finite())
                 && self.velocity_m_per_s.get(i).is_none_or(|v| v.iter().all(|c| c.is_finite())))
         })
+    }
+
+    /// Arc length of the middle of what lies on a round of a radius (m); nearest to its centre if nothing does.
+    #[must_use]
+    pub fn on_round(&self, center: Vec2, radius: f64) -> Option<f64> {
+        let on = |p: &Vec2| radius > 0.0 && ((p - center).norm() - radius).abs() <= ON_ROUND * radius;
+        let (first, last) = (self.position_m.iter().position(on), self.position_m.iter().rposition(on));
+        match (first.and_then(|k| self.arc_length_m.get(k)), last.and_then(|k| self.arc_length_m.get(k))) {
+            (Some(a), Some(b)) => Some(0.5 * (a + b)),
+            _ => self.nearest(center),
+        }
     }
 
     /// Arc length where the cable is nearest to a point, m.

@@ -83,7 +83,10 @@ impl FemModel {
         if self.present != part {
             match part {
                 Part::Statics => self.statics.adopt(&self.dynamics.state())?,
-                Part::Dynamics => self.dynamics.adopt(&self.statics.state())?,
+                Part::Dynamics => {
+                    self.dynamics.adopt(&self.statics.state())?;
+                    self.dynamics.come_to_rest(&self.dragged);
+                }
             }
             self.present = part;
         }

@@ -39,6 +39,22 @@ impl Dynamics {
         Ok(total)
     }
 
+    /// Brings straight bars to rest that were laid on the sagging ones of statics: a step of the second order in their
+    /// length, without which a run would begin with a jerk. Where they find no rest they stay as they were laid.
+    pub(super) fn come_to_rest(&mut self, dragged: &[Option<Vec2>]) {
+        if !self.rested {
+            return;
+        }
+        self.save();
+        let reach = self.problem.length / self.even_bars as f64;
+        let laid = self.motion.x.clone();
+        let found = self.rest_step(self.motion.time, dragged).is_ok();
+        let near = |(a, b): (&Vec2, &Vec2)| (a - b).norm() <= reach;
+        if !(found && laid.len() == self.motion.x.len() && laid.iter().zip(&self.motion.x).all(near)) {
+            self.restore();
+        }
+    }
+
     /// Minimises again and again with refreshed normal forces, grips and factors until nothing changes.
     fn lag(&mut self, pose: &mut Pose, rounds: usize) -> Result<Done, Failure> {
         let mut total = Done::default();
