@@ -69,6 +69,8 @@ fn the_end_of_a_soft_cable_learns_of_it_late() {
     let moved = sim.states()[0].position_m[100].y - rest;
     let fallen = middle(&sim).0.y - start + 0.5 * G * (t - RELEASE).powi(2);
     println!("after 0.85 L/c the end has moved by {moved:.1e} m; the middle of mass is {fallen:.1e} m from a stone");
-    assert!(moved.abs() < 1e-4, "the end moved by {moved} m");
+    // The model's least damping (τ = 1 ms) blurs the front to √(τt) = 0.017 s; 2.7 of these ahead of it, where the end
+    // jumps to 2gL/c, it is due to have moved by 1.3e-4 m.
+    assert!(moved.abs() < 3e-4, "the end moved by {moved} m");
     assert!(fallen.abs() < 1e-4, "the middle is off by {fallen} m");
 }
