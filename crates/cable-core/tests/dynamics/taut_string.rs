@@ -12,9 +12,16 @@ const DENSITY: f64 = 10.0;
 
 /// Frequency and decay of mode `k` at step `h` (s).
 fn swing(k: usize, segments: usize, h: f64) -> Ring {
+    heated_swing(0.0, k, segments, h)
+}
+
+/// The same of a string heated so that it is longer by `growth` at rest.
+fn heated_swing(growth: f64, k: usize, segments: usize, h: f64) -> Ring {
     let supports = vec![Support::fixed("A", [0.0, 0.0]), Support::fixed("B", [STRETCH * LENGTH, 0.0])];
     let mut scene = cable([LENGTH, DENSITY, EA], segments, supports);
     scene.environment.gravity_m_per_s2 = 0.0;
+    scene.environment.temperature_change_k = 100.0;
+    scene.cables[0].thermal_expansion_per_k = growth / 100.0;
     let shape = |s: f64| (k as f64 * std::f64::consts::PI * s / LENGTH).sin();
     let mut sim = started(&scene, |state| {
         for (p, s) in state.position_m.iter_mut().zip(&state.arc_length_m) {
@@ -68,4 +75,17 @@ fn the_error_in_time_is_that_of_bdf2() {
     }
     ladder("taut string in time", &slow, 2.0, bdf2_slows(omega, 1.0 / 240.0));
     ladder("taut string, decay by the scheme", &damped, 3.0, bdf2_damps(omega, 1.0 / 240.0));
+}
+
+/// Heat takes tension: T = EA (λ/(1 + αΔT) − 1), with λ and ρ still per metre of the cold cable.
+#[test]
+fn a_heated_string_swings_more_slowly() {
+    let (h, n) = (1.0 / 960.0, 16);
+    for growth in [-0.005, 0.01, 0.03] {
+        let slower = ((STRETCH / (1.0 + growth) - 1.0) / (STRETCH - 1.0)).sqrt();
+        let exact = discrete(1, n) * slower;
+        let off = heated_swing(growth, 1, n, h).omega * (1.0 + bdf2_slows(exact, h)) / exact - 1.0;
+        println!("longer by {growth} in the heat: frequency off by {off:.1e}");
+        assert!(off.abs() < 2e-5, "{growth}: {off}");
+    }
 }
