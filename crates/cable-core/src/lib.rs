@@ -27,7 +27,6 @@ pub mod contact;
 pub mod energy;
 pub mod error;
 pub mod files;
-mod limits;
 pub mod math;
 pub mod model;
 pub mod problem;
@@ -37,6 +36,7 @@ pub mod simulation;
 pub mod solution;
 pub mod state;
 mod strand;
+mod watch;
 
 pub use cable_linalg as linalg;
 pub use error::{Error, SceneError, SolveError};

@@ -1,15 +1,15 @@
 //! A scene, a model and its state: the object users hold.
 
 use crate::error::{Error, SolveError};
-use crate::limits;
 use crate::math::Vec2;
 use crate::model::auto::{self, Question};
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::problems;
 use crate::scene::Scene;
-use crate::solution::{Cost, Solution, Warning};
+use crate::solution::{CableSolution, Cost, Solution, Warning};
 use crate::state::State;
 use crate::strand::Strand;
+use crate::watch::{Bends, Subject, Watch};
 
 /// Longest step a display frame takes, s: longer makes one slow frame cause the next, shorter slows time at 10 Hz.
 pub const MAX_FRAME_S: f64 = 0.1;
@@ -22,6 +22,9 @@ pub struct Simulation {
     reason: String,
     cables: Vec<Strand>,
     start: Option<Vec<Strand>>,
+    /// The answers of the cables at the present instant.
+    answers: Vec<CableSolution>,
+    watch: Watch,
     cost: Cost,
     warnings: Vec<Warning>,
 }
@@ -70,15 +73,33 @@ impl Simulation {
             chosen = Model::Fem;
             cables = build_all(chosen);
         }
+        let cables = cables?;
+        let answers = cables.iter().map(Strand::answer).collect();
         Ok(Self {
             scene,
             model: chosen,
             reason,
-            cables: cables?,
+            cables,
             start: None,
+            answers,
+            watch: Watch::default(),
             cost: Cost::default(),
             warnings: Vec::new(),
         })
+    }
+
+    /// Reads the present instant: answers, and what is to be said of them.
+    fn look(&mut self, moving: bool) {
+        self.answers = self.cables.iter().map(Strand::answer).collect();
+        for (strand, answer) in self.cables.iter().zip(&mut self.answers) {
+            let bends = Bends::of(strand.problem(), answer);
+            (answer.tightest_bend, answer.sidewall_pressure) = (bends.tightest(), bends.pressure);
+        }
+        let time_s = self.time_s();
+        let subjects: Vec<Subject<'_>> = (self.cables.iter().zip(&self.answers))
+            .map(|(c, answer)| Subject { problem: c.problem(), answer, breaks: c.breaks() })
+            .collect();
+        if moving { self.watch.moving(&subjects, time_s) } else { self.watch.at_rest(&subjects, time_s) }
     }
 
     #[cfg(test)]
@@ -121,6 +142,7 @@ impl Simulation {
     /// A typed reason when there is no resting place, or none was found; the state is then as before.
     pub fn settle(&mut self) -> Result<Solution, SolveError> {
         self.each(Strand::settle)?;
+        self.look(false);
         if self.start.is_none() {
             self.start = Some(self.cables.clone());
         }
@@ -132,7 +154,7 @@ impl Simulation {
     /// # Errors
     /// See [`Mechanics::advance`].
     pub fn step(&mut self, dt_s: f64) -> Result<(), SolveError> {
-        self.each(|c| c.advance(dt_s, Inertia::Dynamic))
+        self.advance(dt_s, Inertia::Dynamic)
     }
 
     /// Advances time without inertia by `dt_s` (s).
@@ -140,7 +162,14 @@ impl Simulation {
     /// # Errors
     /// See [`Mechanics::advance`].
     pub fn step_quasi_static(&mut self, dt_s: f64) -> Result<(), SolveError> {
-        self.each(|c| c.advance(dt_s, Inertia::QuasiStatic))
+        self.advance(dt_s, Inertia::QuasiStatic)
+    }
+
+    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
+        let done = self.each(|c| c.advance(dt_s, inertia));
+        // A cable alone that fails stays where it came: that is what there is to see then.
+        self.look(true);
+        done
     }
 
     /// Advances by a display frame: at most [`MAX_FRAME_S`], so a stalled picture makes time run slower instead of
@@ -205,17 +234,13 @@ impl Simulation {
     /// The answer at this instant, with what the cables cannot stand among its warnings.
     #[must_use]
     pub fn solution(&self) -> Solution {
-        let cables: Vec<_> = self.cables.iter().map(Strand::answer).collect();
         let mut warnings = self.warnings.clone();
-        for (m, answer) in self.cables.iter().zip(&cables) {
-            limits::warn(&m.problem().cable, answer, &mut warnings);
-            limits::broken(&m.problem().cable, m.breaks(), &mut warnings);
-        }
+        warnings.extend(self.watch.warnings().cloned());
         Solution {
             time_s: self.time_s(),
             model: self.model,
             reason: self.reason.clone(),
-            cables,
+            cables: self.answers.clone(),
             warnings,
             cost: self.cost,
         }
@@ -234,6 +259,7 @@ impl Simulation {
             self.cables.clone_from(start);
             self.cost = Cost::default();
             self.warnings.clear();
+            self.look(false);
         }
     }
 
@@ -251,6 +277,7 @@ impl Simulation {
         for (new, old) in self.cables.iter_mut().zip(&old.cables) {
             new.carry(old)?;
         }
+        self.look(false);
         Ok(())
     }
 
@@ -262,6 +289,7 @@ impl Simulation {
         for (c, s) in self.cables.iter_mut().zip(states) {
             c.adopt(s)?;
         }
+        self.look(false);
         Ok(())
     }
 }

@@ -34,6 +34,12 @@ pub struct CableSolution {
     pub contacts: Vec<ContactReport>,
     /// Estimated relative error of the largest tension; None = not estimated.
     pub error_estimate: Option<f64>,
+    /// Its sharpest bend: the cable's own curve where it is free, the round it is led by elsewhere; None = nearly straight.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tightest_bend: Option<Bend>,
+    /// Where it is pressed hardest against what leads it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sidewall_pressure: Option<Pressure>,
     /// Index of the first node of each further piece, where the cable has broken; empty while it is whole. The last
     /// node of one piece and the first of the next are the same point of the cable, at two places.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -47,6 +53,32 @@ impl CableSolution {
         let ends = self.breaks.iter().copied().chain(std::iter::once(self.nodes.len()));
         starts.zip(ends).filter_map(|(a, b)| self.nodes.get(a..b))
     }
+}
+
+/// A bend.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Bend {
+    /// Radius of the centre line, m.
+    pub radius_m: f64,
+    /// Where on the cable, m.
+    pub arc_length_m: f64,
+    /// Where it is, m.
+    pub x_m: f64,
+    /// Where it is, m.
+    pub y_m: f64,
+}
+
+/// Normal force per metre on what leads the cable.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Pressure {
+    /// Tension over radius, N/m.
+    pub pressure_n_per_m: f64,
+    /// Where on the cable, m.
+    pub arc_length_m: f64,
+    /// Where it is, m.
+    pub x_m: f64,
+    /// Where it is, m.
+    pub y_m: f64,
 }
 
 /// One point of the cable.

@@ -161,6 +161,12 @@ impl Body {
         local == edge || local == edge + 1 || (self.closed && local == 0 && edge + 1 == n)
     }
 
+    /// Whether it is ground: solid below an open line, so that nothing can go round it.
+    #[must_use]
+    pub fn is_ground(&self) -> bool {
+        self.solid && !self.closed && self.center.is_none()
+    }
+
     /// Whether contact at a corner can be felt by a straight segment: not where a solid recedes from it.
     #[must_use]
     pub fn juts_out(&self, corner: &Corner) -> bool {

@@ -39,6 +39,9 @@ pub struct Cable {
     /// Smallest allowed bend radius, m; 0 = none stated.
     #[serde(default)]
     pub min_bend_radius_m: f64,
+    /// Greatest normal force per metre it stands where it is led round something, N/m; left out, none is stated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sidewall_limit_n_per_m: Option<f64>,
     /// Coulomb friction with what does not say otherwise.
     #[serde(default)]
     pub friction: f64,

@@ -98,6 +98,9 @@ impl Scene {
         for (key, value, range) in numbers {
             number(&at.key(key), value, range)?;
         }
+        if let Some(limit) = cable.sidewall_limit_n_per_m {
+            number(&at.key("sidewall_limit_n_per_m"), limit, range::SIDEWALL)?;
+        }
         if let Some(id) = &cable.preset
             && preset::cable_preset(id).is_none()
         {

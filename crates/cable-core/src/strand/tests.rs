@@ -164,7 +164,7 @@ fn two_pieces_have_the_mass_and_the_momentum_of_the_whole() {
             strand.split(0, &(whole.time_s, whole.clone(), at), Inertia::Dynamic).unwrap();
             let now: Vec<State> = strand.pieces.iter().map(|p| p.mechanics.state()).collect();
             assert_eq!(now.len(), 2);
-            let (m0, p0) = mass_and_momentum(&[whole.clone()], 1.0);
+            let (m0, p0) = mass_and_momentum(std::slice::from_ref(&whole), 1.0);
             let (m1, p1) = mass_and_momentum(&now, 1.0);
             assert!((m1 - m0).abs() < 1e-12 * m0, "{model} {node}: {m0} {m1}");
             assert!(p0.norm() > 1.0 && (p1 - p0).norm() < 1e-9 * p0.norm(), "{model} {node}: {p0} {p1}");

@@ -173,6 +173,7 @@ fn cable() -> impl Strategy<Value = Cable> {
                 service_tension_n: value(6, 1.0),
                 breaking_tension_n: value(7, 1.0) + value(6, 1.0),
                 min_bend_radius_m: value(8, 0.0),
+                sidewall_limit_n_per_m: None,
                 friction: value(9, 0.0) / 1000.0,
                 segments,
                 self_contact,

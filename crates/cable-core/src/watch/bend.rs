@@ -1,0 +1,181 @@
+//! Bends: how sharp, where, and what leads the cable there.
+//!
+//! Where the cable is free, its curvature is what the model answers. Where it is led round something, a flexible cable takes
+//! on the radius of that: of the centre line round a wheel or post, of the cable itself round a sharp corner (the corner's
+//! turn per element says only how fine the mesh is). Pressure on the round is q = T/R per metre.
+
+use super::tangle::turns;
+use crate::math::Vec2;
+use crate::problem::Problem;
+use crate::scene::SupportKind;
+use crate::solution::{Bend, CableSolution, Node, Pressure, Warning, WarningKind};
+
+/// Gap (m) within which an obstacle leads the cable. Smaller: a contact that a model holds a barrier's width off is missed;
+/// larger: what passes close by leads it. The models keep up to 1 mm.
+const TOUCH: f64 = 3e-3;
+
+/// Least turn at a sharp corner that bends the cable to the corner's radius, rad: 15°. Less is spread by the stiffness that
+/// every cable has; more lets sharp bends pass. Over 15° a cable of diameter d leaves the corner within d/4 of its line.
+const CORNER_TURN: f64 = 0.26;
+
+/// Least turn between two elements that is a bend, rad. Less is a radius of a hundred elements.
+const LEAST_TURN: f64 = 0.01;
+
+/// Radius of a free bend that is a kink where the cable states no smallest radius, in diameters: a round cable bent to less
+/// than its own width flattens.
+const KINK_DIAMETERS: f64 = 1.0;
+
+/// What leads the cable at a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Lead {
+    /// Nothing.
+    Free,
+    /// Something round, or a corner: radius of the centre line (m), and least turn that counts (rad).
+    Round(f64, f64),
+    /// A point that holds it, or pulls at it: a flexible cable has a corner there by its nature.
+    Held,
+}
+
+/// The sharpest bends of an answer, and the greatest pressure.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Bends {
+    free: Option<Bend>,
+    led: Option<Bend>,
+    /// The greatest pressure.
+    pub pressure: Option<Pressure>,
+}
+
+impl Bends {
+    /// Looks for them.
+    pub fn of(problem: &Problem, answer: &CableSolution) -> Self {
+        let mut this = Self::default();
+        let mut start = 0;
+        for piece in answer.pieces() {
+            let turns = turns(piece);
+            for (k, n) in piece.iter().enumerate() {
+                let turn = |k: Option<usize>| k.and_then(|k| turns.get(k)).copied().unwrap_or(0.0);
+                let own = turn(Some(k));
+                if own.abs() < LEAST_TURN && !(n.curvature_per_m.abs() * problem.cable.min_bend_radius_m > 1.0) {
+                    continue;
+                }
+                // A corner between two nodes is shared by them.
+                let shared = (own + turn(k.checked_sub(1))).abs().max((own + turn(Some(k + 1))).abs());
+                this.add(problem, n, lead(problem, answer, start + k), shared);
+            }
+            start += piece.len();
+        }
+        this
+    }
+
+    /// The sharpest of all.
+    pub fn tightest(&self) -> Option<Bend> {
+        match (self.free, self.led) {
+            (Some(a), Some(b)) => Some(if b.radius_m < a.radius_m { b } else { a }),
+            (a, b) => a.or(b),
+        }
+    }
+
+    fn add(&mut self, problem: &Problem, n: &Node, lead: Lead, turn: f64) {
+        let stiff = problem.bending_stiffness > 0.0;
+        let own = 1.0 / n.curvature_per_m.abs();
+        let radius_m = match lead {
+            Lead::Free => own,
+            Lead::Held if !stiff => return,
+            Lead::Round(_, least) if !stiff && turn < least => return,
+            Lead::Round(radius, _) if !stiff => radius,
+            _ => own,
+        };
+        if !radius_m.is_finite() || !(radius_m > 0.0) {
+            return;
+        }
+        let bend = Bend { radius_m, arc_length_m: n.arc_length_m, x_m: n.x_m, y_m: n.y_m };
+        let sharpest = if lead == Lead::Free { &mut self.free } else { &mut self.led };
+        if sharpest.is_none_or(|b| radius_m < b.radius_m) {
+            *sharpest = Some(bend);
+        }
+        let newtons_per_m = n.tension_n / radius_m;
+        if matches!(lead, Lead::Round(..)) && self.pressure.is_none_or(|p| newtons_per_m > p.pressure_n_per_m) {
+            self.pressure = Some(Pressure {
+                pressure_n_per_m: newtons_per_m,
+                arc_length_m: n.arc_length_m,
+                x_m: n.x_m,
+                y_m: n.y_m,
+            });
+        }
+    }
+}
+
+/// What leads the cable at a node of its answer.
+pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Lead {
+    let Some(n) = answer.nodes.get(node) else { return Lead::Free };
+    let at = |k: usize| answer.nodes.get(k).map(|n| Vec2::new(n.x_m, n.y_m));
+    let here = Vec2::new(n.x_m, n.y_m);
+    for (s, r) in problem.supports.iter().zip(&answer.supports) {
+        let off = (here - Vec2::new(r.x_m, r.y_m)).norm();
+        // On a wheel, give or take its chords.
+        if off <= 1.05 * s.wheel_radius + 1e-6
+            && (s.wheel_radius > 0.0 || (r.arc_length_m - n.arc_length_m).abs() < 1e-3)
+        {
+            return match s.kind {
+                SupportKind::Pulley if s.wheel_radius > 0.0 => Lead::Round(s.wheel_radius, LEAST_TURN),
+                SupportKind::Pulley => Lead::Round(problem.radius, CORNER_TURN),
+                _ => Lead::Held,
+            };
+        }
+    }
+    if problem.loads.iter().any(|l| (l.arc_length - n.arc_length_m).abs() < 1e-6 * problem.length) {
+        return Lead::Held;
+    }
+    if problem.world.is_empty() {
+        return Lead::Free;
+    }
+    let mut gaps = Vec::new();
+    for (a, b) in [(node.checked_sub(1), Some(node)), (Some(node), Some(node + 1))] {
+        if let (Some(a), Some(b)) = (a.and_then(at), b.and_then(at)) {
+            problem.world.segment_gaps(a, b, TOUCH, &mut gaps);
+        }
+    }
+    // A flat edge leads nobody round: only corners and circles do. Features of a body count edge, corner, edge, corner.
+    let bodies = problem.world.geometry().bodies();
+    let rounds = gaps.iter().filter(|g| g.gap_m < TOUCH).filter_map(|g| {
+        let body = bodies.iter().find(|b| b.obstacle == g.obstacle)?;
+        (body.center.is_some() || g.feature.abs_diff(body.first) % 2 == 1).then_some((g.gap_m, body))
+    });
+    rounds
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .map_or(Lead::Free, |(_, b)| Lead::Round(b.offset, if b.center.is_some() { LEAST_TURN } else { CORNER_TURN }))
+}
+
+/// Appends bends sharper than the cable stands, free and led, and pressure beyond its limit.
+pub(super) fn warn(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
+    let cable = &problem.cable;
+    let bends = Bends::of(problem, answer);
+    let stated = cable.min_bend_radius_m;
+    let kink = if stated > 0.0 { stated } else { KINK_DIAMETERS * cable.diameter_m };
+    let mut say = |kind, b: Bend, limit: f64, what: &str| {
+        let message = format!(
+            "`{}` is bent to a radius of {:.4} m at {:.3} m ({:.3} m, {:.3} m), below {limit} m: {what}",
+            cable.name, b.radius_m, b.arc_length_m, b.x_m, b.y_m
+        );
+        let warning = Warning::new(kind, &cable.name, b.arc_length_m, [b.radius_m, limit], message);
+        out.push(Warning { at_m: Some([b.x_m, b.y_m]), ..warning });
+    };
+    if let Some(b) = bends.led.filter(|b| b.radius_m < stated) {
+        say(WarningKind::BendRadius, b, stated, "its strands are overstretched there; lead it round something wider");
+    }
+    if let Some(b) = bends.free.filter(|b| b.radius_m < kink) {
+        say(WarningKind::Kink, b, kink, "it kinks there and stays bent; give it more way to turn, or a guide");
+    }
+    let limit = cable.sidewall_limit_n_per_m;
+    if let (Some(p), Some(limit)) = (bends.pressure, limit)
+        && p.pressure_n_per_m > limit
+    {
+        let message = format!(
+            "`{}` is pressed with {:.0} N/m against what leads it at {:.3} m ({:.3} m, {:.3} m), above the {limit} N/m it stands: its insulation is crushed; pull less, or lead it round something wider",
+            cable.name, p.pressure_n_per_m, p.arc_length_m, p.x_m, p.y_m
+        );
+        let values = [p.pressure_n_per_m, limit];
+        let warning = Warning::new(WarningKind::SidewallPressure, &cable.name, p.arc_length_m, values, message);
+        out.push(Warning { at_m: Some([p.x_m, p.y_m]), ..warning });
+    }
+}

@@ -1,0 +1,98 @@
+//! Tension: above what the cable stands, broken, or none.
+
+use crate::problem::Problem;
+use crate::scene::Cable;
+use crate::solution::{CableSolution, Node, Warning, WarningKind};
+use crate::strand::Break;
+
+/// Below this part of the whole load a point has no tension to speak of. Larger: the low point of a slack span counts;
+/// smaller: friction on the ground leaves enough that nothing is ever slack.
+const SLACK_TENSION: f64 = 0.01;
+
+/// Shortest slack part, of the cable's length, that is named. Shorter: every end that lies on the ground is; longer: bights
+/// that a robot can run over are not. The low point of a hanging span, however deep, is slack over 2 % of it at most.
+const SLACK_PART: f64 = 0.05;
+
+/// Appends the tension limit that is exceeded, at the worst place.
+pub(super) fn limits(cable: &Cable, answer: &CableSolution, out: &mut Vec<Warning>) {
+    if let Some(top) = worst(&answer.nodes, |n| n.tension_n) {
+        tension(cable, top, out);
+    }
+}
+
+/// Appends the longest part without tension.
+pub(super) fn slack(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
+    let limit_n = SLACK_TENSION * problem.force_scale();
+    let mut longest: Option<(f64, &[Node])> = None;
+    for piece in answer.pieces() {
+        for run in piece.chunk_by(|a, b| a.tension_n < limit_n && b.tension_n < limit_n) {
+            if let [first, .., last] = run {
+                let length = last.arc_length_m - first.arc_length_m;
+                if longest.is_none_or(|(l, _)| length > l) {
+                    longest = Some((length, run));
+                }
+            }
+        }
+    }
+    let least = SLACK_PART * problem.length;
+    // Nothing has been solved yet where no node has tension.
+    let solved = answer.nodes.iter().any(|n| n.tension_n > limit_n);
+    if let Some((length, run)) = longest.filter(|(l, _)| *l >= least && solved)
+        && let Some(middle) = run.get(run.len() / 2)
+    {
+        let message = format!(
+            "{length:.2} m of `{}` round {:.3} m ({:.3} m, {:.3} m) have less than {limit_n:.3} N of tension: they lie or hang in a bight that can be run over, hook or loop; shorten the cable or pull it in",
+            problem.cable.name, middle.arc_length_m, middle.x_m, middle.y_m
+        );
+        let name = &problem.cable.name;
+        let warning = Warning::new(WarningKind::Slack, name, middle.arc_length_m, [length, least], message);
+        out.push(Warning { at_m: Some([middle.x_m, middle.y_m]), ..warning });
+    }
+}
+
+/// Appends where it has broken.
+pub(super) fn broken(cable: &Cable, breaks: &[Break], out: &mut Vec<Warning>) {
+    for b in breaks {
+        let (s, t, x, y, limit) = (b.arc_length_m, b.time_s, b.at.x, b.at.y, cable.breaking_tension_n);
+        let (how, rest) = match &b.torn_off {
+            Some(support) => (format!("tore off `{support}`"), "the rest goes on without it"),
+            None => ("broke".to_owned(), "the pieces go on apart"),
+        };
+        let message = format!(
+            "`{}` {how} at {s:.3} m ({x:.3} m, {y:.3} m) at {t:.4} s, where its tension reached its breaking tension of {limit} N: {rest}; pull less, or take a stronger cable",
+            cable.name
+        );
+        let warning = Warning::new(WarningKind::Broken, &cable.name, s, [limit, limit], message);
+        out.push(Warning { at_m: Some([x, y]), since_s: Some(t), ..warning });
+    }
+}
+
+fn tension(cable: &Cable, top: &Node, out: &mut Vec<Warning>) {
+    let (kind, limit, what) = if top.tension_n > cable.breaking_tension_n {
+        (
+            WarningKind::BreakingTension,
+            cable.breaking_tension_n,
+            "it would break; the answer is that of a cable that does not",
+        )
+    } else if top.tension_n > cable.service_tension_n {
+        (
+            WarningKind::ServiceTension,
+            cable.service_tension_n,
+            "it wears out early; lengthen the cable or lighten the load",
+        )
+    } else {
+        return;
+    };
+    let name = if kind == WarningKind::BreakingTension { "breaking" } else { "service" };
+    let message = format!(
+        "`{}` is pulled with {:.1} N at {:.3} m ({:.3} m, {:.3} m), above its {name} tension of {limit} N: {what}",
+        cable.name, top.tension_n, top.arc_length_m, top.x_m, top.y_m
+    );
+    let warning = Warning::new(kind, &cable.name, top.arc_length_m, [top.tension_n, limit], message);
+    out.push(Warning { at_m: Some([top.x_m, top.y_m]), ..warning });
+}
+
+/// The node with the greatest value (none that is not a number).
+fn worst(nodes: &[Node], value: impl Fn(&Node) -> f64) -> Option<&Node> {
+    nodes.iter().filter(|n| !value(n).is_nan()).max_by(|a, b| value(a).total_cmp(&value(b)))
+}

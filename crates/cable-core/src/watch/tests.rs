@@ -1,0 +1,339 @@
+use super::crossing::{crossings, meet};
+use super::{HOLD_S, Subject, Watch};
+use crate::math::{Point, Vec2};
+use crate::problem::{Problem, problems};
+use crate::scene::{Obstacle, Scene, Shape, Support, catalog};
+use crate::solution::{CableSolution, ContactReport, ContactState, Node, SupportReaction, Warning, WarningKind};
+use proptest::prelude::*;
+use std::f64::consts::PI;
+
+/// A cable of 10 m, 28 mm thick, smallest bend 0.14 m, service 800 N, breaking 10 kN.
+fn scene() -> Scene {
+    let mut scene = catalog::hanging_span();
+    scene.obstacles.clear();
+    let c = &mut scene.cables[0];
+    (c.length_m, c.diameter_m, c.min_bend_radius_m) = (10.0, 0.028, 0.14);
+    (c.service_tension_n, c.breaking_tension_n) = (800.0, 1e4);
+    c.bending_stiffness_n_m2 = 0.0;
+    c.supports = vec![Support::fixed("left", [0.0, 5.0]), Support::fixed("right", [6.0, 5.0])];
+    scene
+}
+
+fn problem(scene: &Scene) -> Problem {
+    (*problems(scene).unwrap()[0]).clone()
+}
+
+/// An answer along points, pulled with `tension_n`, arc length by its own length, curvature from its turns.
+fn along(points: &[Point], tension_n: f64) -> CableSolution {
+    let mut s = 0.0;
+    let mut nodes: Vec<Node> = Vec::new();
+    for p in points {
+        if let Some(last) = nodes.last() {
+            s += (p[0] - last.x_m).hypot(p[1] - last.y_m);
+        }
+        nodes.push(Node { arc_length_m: s, x_m: p[0], y_m: p[1], tension_n, ..Node::default() });
+    }
+    let turns = super::tangle::turns(&nodes);
+    for k in 1..nodes.len().saturating_sub(1) {
+        nodes[k].curvature_per_m = turns[k] / (0.5 * (nodes[k + 1].arc_length_m - nodes[k - 1].arc_length_m));
+    }
+    CableSolution { nodes, ..CableSolution::default() }
+}
+
+/// Points on a circle from angle `from` to `to` (rad).
+fn arc(center: Point, radius: f64, from: f64, to: f64, count: usize) -> Vec<Point> {
+    let at = |k: usize| from + (to - from) * k as f64 / (count - 1) as f64;
+    (0..count).map(|k| [center[0] + radius * at(k).cos(), center[1] + radius * at(k).sin()]).collect()
+}
+
+fn found(problem: &Problem, answer: &CableSolution) -> Vec<Warning> {
+    super::look(&Subject { problem, answer, breaks: &[] })
+}
+
+fn kinds(problem: &Problem, answer: &CableSolution) -> Vec<WarningKind> {
+    found(problem, answer).iter().map(|w| w.kind).collect()
+}
+
+#[test]
+fn a_loop_is_named_where_it_crosses() {
+    let p = problem(&scene());
+    // Out and back along itself: strands that cross at a slight angle are no loop.
+    let back = along(&[[0.0, 0.0], [3.0, 0.0], [3.2, 0.1], [3.0, 0.02], [0.0, -0.02]], 100.0);
+    assert!(!kinds(&p, &back).contains(&WarningKind::Loop));
+    let crossing: Vec<Point> = vec![[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]];
+    let w = found(&p, &along(&crossing, 100.0));
+    let w = w.iter().find(|w| w.kind == WarningKind::Loop).unwrap();
+    assert_eq!(w.at_m, Some([1.0, 1.0]));
+    assert!((w.arc_length_m - 2f64.sqrt()).abs() < 1e-12 && (w.value - (2.0 * 2f64.sqrt() + 2.0)).abs() < 1e-12);
+    // Pieces of a broken cable are apart where the break is.
+    let mut broken = along(&[[0.0, 0.0], [2.0, 0.0], [1.0, -1.0], [1.0, 1.0]], 1.0);
+    assert!(kinds(&p, &broken).contains(&WarningKind::Loop));
+    broken = along(&[[0.0, 0.0], [2.0, 1.0], [1.0, -1.0], [1.0, 0.4]], 1.0);
+    broken.breaks = vec![3];
+    assert!(!kinds(&p, &broken).contains(&WarningKind::Loop));
+}
+
+#[test]
+fn a_curl_is_a_free_turn_of_270_degrees_in_a_tight_space() {
+    let p = problem(&scene());
+    let turned = |radius: f64, turn: f64| along(&arc([0.0, 0.0], radius, 0.0, turn, 60), 100.0);
+    assert!(kinds(&p, &turned(0.5, 1.7 * PI)).contains(&WarningKind::Curl));
+    assert!(!kinds(&p, &turned(0.5, 1.4 * PI)).contains(&WarningKind::Curl), "not far enough");
+    assert!(!kinds(&p, &turned(3.0, 1.7 * PI)).contains(&WarningKind::Curl), "a wide bow");
+    // The same turn round a post is the post's.
+    let mut with_post = scene();
+    let shape = Shape::Circle { center_m: [0.0, 0.0], radius_m: 0.486 };
+    with_post.obstacles.push(Obstacle { name: "post".into(), shape, friction: None });
+    assert!(!kinds(&problem(&with_post), &turned(0.5, 1.7 * PI)).contains(&WarningKind::Curl));
+}
+
+#[test]
+fn wraps_are_counted_over_all_contacts_of_an_obstacle() {
+    let mut s = scene();
+    let post = Shape::Circle { center_m: [3.0, 1.0], radius_m: 0.2 };
+    let ground = Shape::Terrain { points_m: vec![[-9.0, -9.0], [19.0, -9.0]] };
+    s.obstacles = vec![
+        Obstacle { name: "post".into(), shape: post, friction: None },
+        Obstacle { name: "ground".into(), shape: ground, friction: None },
+    ];
+    let p = problem(&s);
+    let contact = |obstacle: &str, turn_deg: f64| ContactReport {
+        obstacle: obstacle.into(),
+        turn_deg,
+        normal_n: turn_deg.abs(),
+        ..ContactReport::default()
+    };
+    let mut answer = along(&[[0.0, 5.0], [6.0, 5.0]], 100.0);
+    for (turns, wrapped) in
+        [(vec![200.0, 150.0], false), (vec![-200.0, -170.0], true), (vec![300.0, -200.0, 100.0], false)]
+    {
+        answer.contacts = turns.iter().map(|t| contact("post", *t)).collect();
+        let w: Vec<_> = found(&p, &answer).into_iter().filter(|w| w.kind == WarningKind::Wrapped).collect();
+        assert_eq!(w.len(), usize::from(wrapped), "{turns:?}");
+        if let [w] = w.as_slice() {
+            assert!((w.value - 370.0 / 360.0).abs() < 1e-12);
+        }
+    }
+    answer.contacts = vec![contact("ground", 400.0)];
+    assert!(!kinds(&p, &answer).contains(&WarningKind::Wrapped), "nothing goes round the ground");
+}
+
+#[test]
+fn free_bends_are_kinks_and_led_ones_are_too_tight_rounds() {
+    let mut s = scene();
+    s.cables[0].sidewall_limit_n_per_m = Some(4380.0);
+    let bow = |radius: f64| along(&arc([3.0, 2.0], radius, 0.0, PI, 40), 700.0);
+    assert_eq!(kinds(&problem(&s), &bow(0.16)), []);
+    assert_eq!(kinds(&problem(&s), &bow(0.12)), [WarningKind::Kink]);
+    // The same bow round a post: led. 700 N on a radius of 0.12 m press with 5.8 kN/m.
+    let post = |s: &Scene, radius_m: f64| {
+        let mut s = s.clone();
+        let shape = Shape::Circle { center_m: [3.0, 2.0], radius_m };
+        s.obstacles.push(Obstacle { name: "post".into(), shape, friction: None });
+        problem(&s)
+    };
+    let p = post(&s, 0.106);
+    assert_eq!(kinds(&p, &bow(0.12)), [WarningKind::BendRadius, WarningKind::SidewallPressure]);
+    let w = found(&p, &bow(0.12));
+    assert!((w[0].value - 0.12).abs() < 1e-9 && (w[1].value - 700.0 / 0.12).abs() < 1e-6);
+    assert_eq!(kinds(&post(&s, 0.146), &bow(0.16)), []);
+    // A sharp corner is an arc of the cable's own radius; a slight one is spread by its stiffness.
+    let roof = |rise: f64| {
+        let mut s = s.clone();
+        let points_m = vec![[0.0, 0.0], [3.0, rise], [6.0, 0.0]];
+        s.obstacles.push(Obstacle { name: "roof".into(), shape: Shape::Terrain { points_m }, friction: None });
+        let top = [3.0, rise + 0.014];
+        (
+            problem(&s),
+            along(&[[0.0, 0.015], [1.5, 0.5 * rise + 0.016], top, [4.5, 0.5 * rise + 0.016], [6.0, 0.015]], 100.0),
+        )
+    };
+    let (p, answer) = roof(1.0);
+    let w: Vec<_> = found(&p, &answer).into_iter().filter(|w| w.kind == WarningKind::BendRadius).collect();
+    assert!(w.len() == 1 && (w[0].value - 0.014).abs() < 1e-12, "{w:?}");
+    let (p, answer) = roof(0.2);
+    assert!(!kinds(&p, &answer).contains(&WarningKind::BendRadius));
+    // A wheel, and the point where a support holds a flexible cable.
+    let mut wheel = Support::pulley("eye", [3.0, 2.0]);
+    wheel.radius_m = Some(0.106);
+    s.cables[0].supports.insert(1, wheel);
+    let mut answer = bow(0.12);
+    let at = |x_m: f64, y_m: f64| SupportReaction { x_m, y_m, ..SupportReaction::default() };
+    answer.supports = vec![at(0.0, 5.0), at(3.0, 2.0), at(6.0, 5.0)];
+    assert!(kinds(&problem(&s), &answer).contains(&WarningKind::BendRadius));
+    assert!(!kinds(&problem(&s), &answer).contains(&WarningKind::Kink));
+}
+
+#[test]
+fn a_long_part_without_tension_is_slack() {
+    let p = problem(&scene());
+    let part = |share: f64| {
+        let mut answer = along(&[[0.0, 5.0], [2.0, 4.0], [2.0 + 10.0 * share, 4.0], [9.0, 5.0]], 50.0);
+        answer.nodes[1].tension_n = 0.1;
+        answer.nodes[2].tension_n = 0.1;
+        answer
+    };
+    assert!(kinds(&p, &part(0.1)).contains(&WarningKind::Slack));
+    assert!(!kinds(&p, &part(0.03)).contains(&WarningKind::Slack));
+}
+
+fn toggles(watch: &mut Watch, p: &Problem, tension: impl Fn(f64) -> f64, kind: WarningKind, for_s: f64) -> Vec<f64> {
+    let (mut on, mut out) = (false, Vec::new());
+    for k in 0..(for_s * 240.0) as usize {
+        let t = k as f64 / 240.0;
+        let answer = along(&[[0.0, 5.0], [6.0, 5.0]], tension(t));
+        watch.moving(&[Subject { problem: p, answer: &answer, breaks: &[] }], t);
+        let now = watch.warnings().any(|w| w.kind == kind);
+        if now != on {
+            out.push(t);
+            on = now;
+        }
+    }
+    out
+}
+
+/// Tension that swings about a level at any rate: the warning begins at once, and comes and goes at most once a second.
+#[test]
+fn tension_warnings_do_not_flicker() {
+    let p = problem(&scene());
+    for (kind, level) in [(WarningKind::ServiceTension, 800.0), (WarningKind::BreakingTension, 1e4)] {
+        for hertz in [0.3, 0.7, 1.3, 5.0, 30.0, 60.0] {
+            for swing in [0.01, 0.2, 0.9] {
+                let tension = |t: f64| level * (1.0 + swing * (2.0 * PI * hertz * t).sin());
+                let times = toggles(&mut Watch::default(), &p, tension, kind, 8.0);
+                assert!(times[0] < 1.0 / hertz, "{times:?}");
+                // From one beginning to the next.
+                for w in times.windows(3).step_by(2) {
+                    assert!(w[2] - w[0] >= 1.0, "{kind:?} {hertz} Hz {swing}: {times:?}");
+                }
+            }
+        }
+        // A single peak is said for a second.
+        let times = toggles(&mut Watch::default(), &p, |t| if t < 0.1 { 1.1 * level } else { 10.0 }, kind, 3.0);
+        assert!(times.len() == 2 && (times[1] - times[0] - HOLD_S - 0.1).abs() < 0.02, "{times:?}");
+    }
+}
+
+#[test]
+fn at_rest_the_past_does_not_count_and_times_are_kept_in_motion() {
+    let p = problem(&scene());
+    let mut watch = Watch::default();
+    let see = |watch: &mut Watch, tension: f64, t: f64| {
+        let answer = along(&[[0.0, 5.0], [6.0, 5.0]], tension);
+        watch.moving(&[Subject { problem: &p, answer: &answer, breaks: &[] }], t);
+    };
+    for k in 0..10 {
+        see(&mut watch, 900.0 + f64::from(k), 0.1 * f64::from(k + 1));
+    }
+    let w: Vec<_> = watch.warnings().cloned().collect();
+    assert_eq!((w.len(), w[0].since_s, w[0].value), (1, Some(0.1), 909.0));
+    let calm = along(&[[0.0, 5.0], [6.0, 5.0]], 100.0);
+    watch.at_rest(&[Subject { problem: &p, answer: &calm, breaks: &[] }], 1.1);
+    assert_eq!(watch.warnings().count(), 0);
+}
+
+/// Held by a post and pulled from 100 N to 400 N while the other side keeps 80 N: a snag; slipping, or evenly pulled, not.
+#[test]
+fn a_contact_that_holds_against_a_growing_pull_is_a_snag() {
+    let p = problem(&scene());
+    let run = |state: ContactState, before: fn(f64) -> f64, after: fn(f64) -> f64| {
+        let mut watch = Watch::default();
+        for k in 0..60 {
+            let t = f64::from(k) / 30.0;
+            let mut answer = along(&[[0.0, 5.0], [6.0, 5.0]], 100.0);
+            answer.contacts = vec![ContactReport {
+                obstacle: "post".into(),
+                arc_length_m: 4.0,
+                x_m: 1.0,
+                state,
+                tension_before_n: before(t),
+                tension_after_n: after(t),
+                ..ContactReport::default()
+            }];
+            watch.moving(&[Subject { problem: &p, answer: &answer, breaks: &[] }], t);
+        }
+        watch.warnings().find(|w| w.kind == WarningKind::Snag).cloned()
+    };
+    let w = run(ContactState::Stick, |_| 80.0, |t| 100.0 + 150.0 * t).unwrap();
+    // The ratio reaches 1.5 · 100/80 at 150 N, t = 1/3 s.
+    assert!((w.since_s.unwrap() - 1.0 / 3.0).abs() < 0.07 && w.at_m == Some([1.0, 0.0]), "{w:?}");
+    assert!(run(ContactState::Slip, |_| 80.0, |t| 100.0 + 150.0 * t).is_none());
+    assert!(run(ContactState::Stick, |t| 80.0 + 120.0 * t, |t| 100.0 + 150.0 * t).is_none());
+    assert!(run(ContactState::Stick, |t| 80.0 - 39.0 * t, |_| 100.0).is_none(), "the slack side empties");
+}
+
+proptest! {
+    /// The tree finds what looking at all pairs finds.
+    #[test]
+    fn crossings_are_those_of_brute_force(
+        steps in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64), 2..120), drift in 0.0..1.0f64, gap in 0usize..120,
+    ) {
+        let mut at = Vec2::zeros();
+        let mut points = vec![at];
+        for (x, y) in steps {
+            at += Vec2::new(x + drift, y);
+            points.push(at);
+        }
+        let joined = |k: usize| k != gap;
+        let mut brute = Vec::new();
+        for i in 0..points.len() - 1 {
+            for j in i + 2..points.len() - 1 {
+                if joined(i) && joined(j) {
+                    brute.extend(meet(&points, i, j));
+                }
+            }
+        }
+        let found = crossings(&points, joined);
+        prop_assert_eq!(&found, &brute);
+        // Each lies on both strands.
+        for c in &found {
+            let on = |k: usize, f: f64| points[k] + (points[k + 1] - points[k]) * f;
+            prop_assert!((on(c.first, c.fractions[0]) - on(c.second, c.fractions[1])).norm() < 1e-9);
+        }
+        prop_assert_eq!(crossings(&points, joined), found);
+    }
+}
+
+#[test]
+fn degenerate_lines_have_no_crossings() {
+    assert!(crossings(&[], |_| true).is_empty());
+    assert!(crossings(&[Vec2::zeros()], |_| true).is_empty());
+    assert!(crossings(&[Vec2::zeros(); 9], |_| true).is_empty());
+    assert!(crossings(&[Vec2::repeat(f64::NAN); 9], |_| true).is_empty());
+    // 1e5 segments of a spiral that never crosses: looked at in a moment, where all pairs would be 5e9.
+    let spiral: Vec<Vec2> = (0..100_000)
+        .map(|k| {
+            let a = 0.01 * f64::from(k);
+            Vec2::new(a.cos(), a.sin()) * (1.0 + 0.01 * a)
+        })
+        .collect();
+    assert!(crossings(&spiral, |_| true).is_empty());
+}
+
+/// What is named in the catalogue at rest: sharp corners of beams and an eye, slack on floors, the bight of the draped cable,
+/// the corner in which the cable between the posts was laid, and nothing else.
+const NAMED: [(&str, &[WarningKind]); 8] = [
+    ("tank", &[WarningKind::BendRadius]),
+    ("slack-to-floor", &[WarningKind::Slack]),
+    ("pulley-waypoints", &[WarningKind::BendRadius]),
+    ("over-beam", &[WarningKind::BendRadius]),
+    ("draped-slipping", &[WarningKind::Kink]),
+    ("floor-drag", &[WarningKind::Slack]),
+    ("plan-posts", &[WarningKind::Kink]),
+    ("near-taut", &[]),
+];
+
+#[test]
+fn the_catalogue_is_named_for_what_it_shows() {
+    for (id, scene) in catalog::all() {
+        let Some(mut answer) = crate::Simulation::new(scene, crate::Model::Auto).ok().and_then(|mut s| s.settle().ok())
+        else {
+            continue;
+        };
+        answer.warnings.retain(|w| !matches!(w.kind, WarningKind::NotUnique | WarningKind::Accuracy));
+        let kinds: Vec<_> = answer.warnings.iter().map(|w| w.kind).collect();
+        let expected = NAMED.iter().find(|n| n.0 == id).map_or(&[][..], |n| n.1);
+        assert_eq!(kinds, expected, "{id}: {:#?}", answer.warnings);
+        assert!(answer.warnings.iter().all(|w| w.at_m.is_some() && w.since_s.is_none()));
+    }
+}
