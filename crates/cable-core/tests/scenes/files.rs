@@ -101,10 +101,10 @@ fn two_scenes() -> [cable_core::Scene; 2] {
 fn a_child_saves_for_ever() {
     let Ok(path) = std::env::var(SAVE_TO) else { return };
     let scenes = two_scenes();
-    println!("saving");
     loop {
         for scene in scenes.iter().rev() {
             save_scene(&path, scene).unwrap();
+            println!("\nsaved");
         }
     }
 }
@@ -125,11 +125,14 @@ fn kills(count: u64) {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        let said = io::BufReader::new(child.stdout.take().unwrap())
+        // From its first save to some saves later, however slow the disk, and then a time in steps that never repeat
+        // (the golden ratio's).
+        let saves = io::BufReader::new(child.stdout.take().unwrap())
             .lines()
-            .find(|l| l.as_ref().is_ok_and(|l| l.ends_with("saving")));
-        assert!(said.is_some(), "the child did not start");
-        // From its first save to some saves later, in steps that never repeat (the golden ratio's).
+            .filter(|l| l.as_ref().is_ok_and(|l| l == "saved"))
+            .take(1 + k as usize % 4)
+            .count();
+        assert_eq!(saves, 1 + k as usize % 4, "the child ended by itself");
         let part = (k as f64 * 0.618_033_988_749_895).fract();
         std::thread::sleep(std::time::Duration::from_secs_f64(0.02 * part));
         child.kill().unwrap();

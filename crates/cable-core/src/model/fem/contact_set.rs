@@ -10,6 +10,10 @@ use crate::problem::Problem;
 /// Sliding at which friction is fully mobilised (ε), m. 1e-6 costs half as many iterations again, 1e-4 creeps.
 pub const SLIDE: f64 = 1e-5;
 
+/// Steps for which a contact without load is remembered: fewer and trembling contacts creep; many more and a cable
+/// that was lifted and put back is held as if it had stayed.
+const REMEMBERED: usize = 8;
+
 /// One contact pair of the mesh: a node, or the inside of a segment (from `node` to `node + 1`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
@@ -65,6 +69,8 @@ struct Memory {
     feature: usize,
     obstacle: usize,
     slid: f64,
+    /// Steps since it carried load.
+    age: usize,
 }
 
 /// Friction of one contact during a step: the normal force and direction are frozen, the sliding is not.
@@ -190,7 +196,8 @@ impl ContactSet {
     /// Accepts the step from `start` to `end` (m): anchors follow what slid; `slide` is that of sliding nodes (m).
     pub fn commit(&mut self, problem: &Problem, mesh: &Mesh, end: &[Vec2], start: &[Vec2], slide: &[f64]) {
         self.prepare(problem, mesh, end, start);
-        self.memory.clear();
+        // A contact that trembles loses its load now and then: forgetting it each time would let it creep by ε a step.
+        let old = std::mem::take(&mut self.memory);
         for rub in &self.rubs {
             let gap = &rub.touch.pair.gap;
             self.memory.push(Memory {
@@ -199,7 +206,16 @@ impl ContactSet {
                 feature: gap.feature,
                 obstacle: gap.obstacle,
                 slid: friction::return_map(rub.sliding(end), SLIDE),
+                age: 0,
             });
+        }
+        let now = self.memory.len();
+        for m in old.iter().filter(|m| m.age < REMEMBERED) {
+            let same = |n: &Memory| (n.node, n.on_segment, n.feature) == (m.node, m.on_segment, m.feature);
+            let low = self.memory[..now].partition_point(|n| n.node < m.node);
+            if !self.memory[low..now].iter().take_while(|n| n.node == m.node).any(same) {
+                self.memory.push(Memory { age: m.age + 1, ..*m });
+            }
         }
         if problem.floor_friction.is_some() {
             for (k, (slid, (e, s))) in self.floor_slid.iter_mut().zip(end.iter().zip(start)).enumerate() {
@@ -212,5 +228,7 @@ impl ContactSet {
             rub.slid = memory.slid;
             rub.origin = rub.touch.interpolate(end);
         }
+        // Stable: of equals the newest stays first.
+        self.memory.sort_by_key(|m| m.node);
     }
 }

@@ -25,6 +25,9 @@ const DECREASE: f64 = 1e-4;
 /// Line search halvings before the step is given up.
 const MAX_HALVINGS: usize = 30;
 
+/// Unbalanced force, in tolerances, that is accepted where iterating gains nothing more: 3e-5 of the whole load.
+const ENOUGH: f64 = 30.0;
+
 /// Energies are trusted to this part of the sum of their magnitudes.
 const ENERGY_NOISE: f64 = 1e-13;
 
@@ -300,6 +303,9 @@ impl Workspace {
             if residual <= task.tolerance && !left {
                 return Ok(done);
             }
+            if done.iterations >= task.max_iterations && residual <= ENOUGH * task.tolerance && !left {
+                return Ok(done);
+            }
             if done.iterations >= task.max_iterations {
                 return failed("too many iterations");
             }
@@ -343,7 +349,7 @@ impl Workspace {
                 }
                 None => {
                     // At the noise of the energy there is nothing left to gain.
-                    if residual <= 30.0 * task.tolerance && !left {
+                    if residual <= ENOUGH * task.tolerance && !left {
                         return Ok(done);
                     }
                     if shift > 1e12 * task.shift.max(1e-6) {

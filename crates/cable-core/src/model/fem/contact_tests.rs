@@ -197,3 +197,38 @@ fn the_answer_lists_the_floor() {
     assert!((s.contacts[0].normal_n / expected - 1.0).abs() < 1e-3, "{:?}", s.contacts[0]);
     assert_eq!(s.contacts[0].obstacle, "floor");
 }
+
+#[test]
+fn a_cable_dropped_on_rubble_comes_to_rest() {
+    let mut d = build(&catalog::rubble_drop());
+    d.settle(&[]).unwrap();
+    // How long it takes is chance: where it lands is chaotic.
+    let mut quiet = 0;
+    for _ in 0..1200 {
+        let iterations = d.advance(1.0 / 60.0, Inertia::Dynamic, &[]).unwrap().cost.iterations;
+        quiet = if iterations == 0 { quiet + 1 } else { 0 };
+    }
+    assert!(quiet > 60, "it still moves after 20 s");
+    let start = d.state();
+    d.advance(1.0, Inertia::Dynamic, &[]).unwrap();
+    assert_eq!(start.position_m, d.state().position_m);
+}
+
+#[test]
+fn a_cable_that_sleeps_wakes_when_it_is_pulled() {
+    let mut d = build(&drag(40));
+    d.settle(&[]).unwrap();
+    let height = RADIUS + 0.87 * super::dynamics::REACH;
+    let mut hand = [None, Some(Vec2::new(12.0, height))];
+    let mut iterations = 0;
+    for _ in 0..120 {
+        iterations = d.advance(1.0 / 60.0, Inertia::Dynamic, &hand).unwrap().cost.iterations;
+    }
+    assert_eq!(iterations, 0, "it does not sleep");
+    hand[1] = Some(Vec2::new(12.3, height + 0.2));
+    for _ in 0..60 {
+        d.advance(1.0 / 60.0, Inertia::Dynamic, &hand).unwrap();
+    }
+    let end = *d.state().position_m.last().unwrap();
+    assert!((end - hand[1].unwrap()).norm() < 1e-3, "{end}");
+}

@@ -1,30 +1,20 @@
-//! Implicit dynamics (BDF2) and quasi-statics of a cable in contact.
-//!
-//! BDF2 with a step ratio ω = h/h₋ (Hairer, Wanner, "Solving ordinary differential equations II", 1996): with
-//! α₀ = (1 + 2ω)/(1 + ω) and the history x̂ = ((1 + ω) x₀ − ω²/(1 + ω) x₋)/α₀,
-//! ```text
-//! v = a (x − x̂),  a = α₀/h,   v̂ likewise,   m a² (x − x̃) + ∂E/∂x − f = 0,   x̃ = x̂ + v̂/a
-//! ```
-//! After each step contacts are made plastic: the barrier is a spring and would throw a landing cable back at
-//! 0.4 to 0.8 of its speed, so the velocity along the normal is taken out of everything that touches.
+//! A cable in contact: what its implicit dynamics, its slow motion and its resting places share.
 
 use std::sync::Arc;
 
 use super::assembly::Mesh;
 use super::contact_set::ContactSet;
 use super::contact_start::{lay, push_out, way};
-use super::contact_step::{Done, Failure, Pose, Task, Workspace};
-use super::layout::{Hold, Layout};
-use super::path::End;
-use super::prepare::{damping_time, load_scale, tolerance};
-use super::sliding::{Grip, Seat, Sliding};
+use super::contact_step::{Done, Failure, Task, Workspace};
+use super::prepare::{load_scale, tolerance};
+use super::sleep::Sleep;
+use super::sliding::Seat;
 use crate::contact::barrier::Barrier;
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::drive::Follower;
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::{Problem, Series};
-use crate::scene::PulleySide;
 use crate::solution::{CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
 
@@ -35,30 +25,11 @@ pub(super) const INNER_STEP: f64 = 1.0 / 240.0;
 /// soft cable of 12 m over two beams, 1e-4 nothing that shows.
 pub const REACH: f64 = 1e-4;
 
-/// The same where the cable moves fast: at 5 m/s, 1e-4 m is passed in a hundredth of a step, and every hundredth step
-/// of a cable falling on rubble had to be halved.
-const FAST_REACH: f64 = 1e-3;
-
-/// Speed (m/s) that counts as fast. Slower, and a cable dragged at 1 m/s loses 9 % of its friction to the changing reach.
-const FAST: f64 = 2.0;
-
-/// Change of the reach from one step to the next. Faster shakes a stiff cable that bends round a corner.
-const REACH_CHANGE: f64 = 1.25;
-
 /// Barrier stiffness in units of the weight of one element: 20 times smaller rebounds and costs 30 % more.
 pub(super) const STIFFNESS: f64 = 20.0;
 
 /// A step is halved at most this often.
 const MAX_DEPTH: usize = 10;
-
-/// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
-const QUIET: f64 = 1e-3;
-
-/// Roundings in the force of inertia of a node. Fewer: small steps of heavy lumps fail; more: they are coarse.
-const ROUNDING: f64 = 16.0;
-
-/// Rounds of finding out which sliding nodes hold and which slip, in a step with inertia.
-const GRIP_ROUNDS: usize = 6;
 
 /// The minimiser's memory; a copy of the model makes its own.
 #[derive(Debug, Default)]
@@ -118,6 +89,7 @@ pub struct Dynamics {
     pub(super) support_node: Vec<Option<usize>>,
     pub(super) loads: Vec<(usize, Series)>,
     pub(super) memory: Memory,
+    pub(super) sleep: Sleep,
     pub(super) rested: bool,
     pub(super) held_back: Vec<usize>,
 }
@@ -170,6 +142,7 @@ impl Dynamics {
             slides: true,
             even_bars: segments,
             memory: Memory(None),
+            sleep: Sleep::default(),
             rested: false,
             held_back: Vec::new(),
             support_node,
@@ -191,35 +164,6 @@ impl Dynamics {
         this.motion.x = x;
         this.forget_history();
         Ok(this)
-    }
-
-    /// Puts a sliding node at every pulley: where `state` has the cable nearest to it, else where the layout lays it.
-    fn thread_pulleys(&mut self, state: Option<&State>) {
-        let problem = Arc::clone(&self.problem);
-        let layout = Layout::new(&problem, self.motion.time, &[], &[]);
-        for stop in &layout.stops {
-            let (Hold::Pulley(wheel), Some(support)) = (stop.hold, stop.support) else { continue };
-            let s = state.and_then(|s| s.on_round(wheel.center, wheel.radius)).unwrap_or(stop.arc_length);
-            let k = self.mesh.arc_length.partition_point(|&a| a <= s).clamp(1, self.mesh.nodes() - 1);
-            let room = 0.05 * problem.length / self.even_bars as f64;
-            let (low, high) = (self.mesh.arc_length[k - 1] + room, self.mesh.arc_length[k] - room);
-            let at = if low < high { s.clamp(low, high) } else { 0.5 * (low + high) };
-            let passing = self.motion.x[k] - self.motion.x[k - 1];
-            let up = if wheel.side == PulleySide::Over { 1.0 } else { -1.0 };
-            let right = if passing.x < 0.0 { -1.0 } else { 1.0 };
-            let end = End { center: wheel.center, radius: wheel.radius, mark: Vec2::new(0.0, up), sense: -up * right };
-            let sliding = Sliding {
-                end,
-                friction: wheel.friction,
-                seat: Seat::Pulley(support),
-                grip: Grip::Stick,
-                factor: 1.0,
-                exponent: 0.0,
-            };
-            self.insert(k, at, Some(sliding));
-        }
-        self.even_out();
-        self.renew_task();
     }
 
     /// Sets the task anew after a change of the mesh, for what is read off it between steps.
@@ -257,193 +201,6 @@ impl Dynamics {
         Ok(())
     }
 
-    /// Takes the normal velocity out of what touches; the history of nodes it changes starts anew.
-    fn land(&mut self, h: f64) {
-        let m = &mut self.motion;
-        for rub in &self.contacts.rubs {
-            let (touch, n) = (&rub.touch, rub.touch.pair.gap.normal);
-            let speed = touch.interpolate(&m.v).dot(&n);
-            if speed.abs() < QUIET {
-                continue;
-            }
-            let shares = touch.shares();
-            let nodes = [touch.node, touch.node + usize::from(touch.on_segment)];
-            let free = [0, 1].map(|j| if self.mesh.is_free(nodes[j]) { shares[j] } else { 0.0 });
-            let sum = free[0] * shares[0] + free[1] * shares[1];
-            if sum < 1e-3 {
-                continue;
-            }
-            for j in 0..2 {
-                if free[j] > 0.0 {
-                    m.v[nodes[j]] -= n * (speed * free[j] / sum);
-                    m.v_before[nodes[j]] = m.v[nodes[j]];
-                    m.x_before[nodes[j]] = m.x[nodes[j]] - m.v[nodes[j]] * h;
-                }
-            }
-        }
-    }
-
-    fn dynamic_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Result<Done, Failure> {
-        for (k, target) in dragged.iter().enumerate() {
-            if let (Some(target), Some(at)) = (target, self.support_position(k)) {
-                let mut f = self.motion.followers[k].unwrap_or_else(|| Follower::at_rest(at));
-                if f.follow(*target, h) && !self.held_back.contains(&k) {
-                    self.held_back.push(k);
-                }
-                self.motion.followers[k] = Some(f);
-            }
-        }
-        self.prepare_step([self.motion.time, self.motion.time + h], Some(dragged));
-        self.adapt_reach();
-        let omega = if self.motion.step_before > 0.0 { h / self.motion.step_before } else { 0.0 };
-        let alpha = (1.0 + 2.0 * omega) / (1.0 + omega);
-        let (now, past) = ((1.0 + omega) / alpha, omega * omega / (1.0 + omega) / alpha);
-        let a = alpha / h;
-        self.set_inertia([now, past, a]);
-        let (mut pose, exact) = (self.moving_pose(h), self.task.tolerance);
-        self.contacts.prepare(&self.problem, &self.mesh, &pose.x, &self.motion.x);
-        self.task.tolerance = self.rounded_tolerance();
-        let done = self.grip_and_minimise(&mut pose);
-        self.task.tolerance = exact;
-        let done = done?;
-        self.contacts.commit(&self.problem, &self.mesh, &pose.x, &self.motion.x, &pose.slide);
-        let (m, mesh) = (&mut self.motion, &self.mesh);
-        for k in 0..pose.x.len() {
-            let x_hat = m.x[k] * now - m.x_before[k] * past;
-            let v = (pose.x[k] - x_hat) * a;
-            let s = mesh.arc_length[k];
-            let w = (s + pose.slide[k] - s * now + m.s_before[k] * past) * a;
-            m.x_before[k] = m.x[k];
-            m.v_before[k] = m.v[k];
-            m.s_before[k] = s;
-            m.w_before[k] = m.w[k];
-            m.x[k] = pose.x[k];
-            m.v[k] = v;
-            m.w[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
-        }
-        self.slide(&pose.slide);
-        self.motion.step_before = h;
-        self.motion.time += h;
-        self.land(h);
-        self.remesh();
-        Ok(done)
-    }
-
-    /// The present pose moved on at its velocities for `h` (s), where nothing can be in the way. Newton then starts nearer
-    /// by a factor of the step, and what it leaves is smaller and not always on the same side.
-    fn moving_pose(&self, h: f64) -> Pose {
-        let mut pose = self.still_pose();
-        if self.problem.world.is_empty() {
-            for (k, (x, v)) in pose.x.iter_mut().zip(&self.motion.v).enumerate() {
-                if self.mesh.is_free(k) {
-                    *x += v * h;
-                }
-            }
-        }
-        pose
-    }
-
-    /// Minimises until no sliding node changes its grip.
-    fn grip_and_minimise(&mut self, pose: &mut Pose) -> Result<Done, Failure> {
-        let mut done = self.minimise(pose)?;
-        for _ in 1..GRIP_ROUNDS {
-            if !self.update_grips(pose).0 {
-                break;
-            }
-            let more = self.minimise(pose)?;
-            done = Done { iterations: done.iterations + more.iterations, ..more };
-        }
-        Ok(done)
-    }
-
-    /// Unbalanced force to reach in a step with inertia, N: not below the rounding of m a² (x − x̃). That grows as the
-    /// step shrinks: 5 kg at 20 m and 1/4000 s know their force to 1e-6 N only.
-    fn rounded_tolerance(&self) -> f64 {
-        let mut tolerance = self.task.tolerance;
-        for (inertia, x) in self.task.inertia.iter().zip(&self.motion.x) {
-            let rounding = ROUNDING * f64::EPSILON * inertia * x.norm();
-            if rounding > tolerance {
-                tolerance = rounding;
-            }
-        }
-        tolerance
-    }
-
-    /// The gap at which contact begins follows the speed of the cable.
-    fn adapt_reach(&mut self) {
-        if self.problem.world.is_empty() {
-            return;
-        }
-        let fastest = self.motion.v.iter().map(Vec2::norm).fold(0.0, |a: f64, b| if b <= a { a } else { b });
-        let (wanted, now) = (if fastest > FAST { FAST_REACH } else { REACH }, self.contacts.barrier.reach);
-        self.set_reach(wanted.clamp(now / REACH_CHANGE, now * REACH_CHANGE));
-    }
-
-    /// Sets the gap at which contact begins, m, and with it how far out rounds of obstacles are.
-    pub(super) fn set_reach(&mut self, reach: f64) {
-        let change = reach - self.contacts.barrier.reach;
-        if change == 0.0 || !change.is_finite() {
-            return;
-        }
-        self.contacts.barrier.reach = reach;
-        for (node, (x, start)) in self.mesh.sliding.iter_mut().zip(self.motion.x.iter_mut().zip(&mut self.task.start)) {
-            if let Some(node) = node
-                && node.feature().is_some()
-            {
-                node.end.radius += change;
-                *x = node.position();
-                *start = *x;
-            }
-        }
-    }
-
-    /// Inertia and damping of a step; `now` and `past` weigh the history, `a` turns lengths into speeds (1/s).
-    fn set_inertia(&mut self, [now, past, a]: [f64; 3]) {
-        let (m, task, mesh) = (&self.motion, &mut self.task, &self.mesh);
-        for k in 0..m.x.len() {
-            let v_hat = m.v[k] * now - m.v_before[k] * past;
-            task.predicted[k] = m.x[k] * now - m.x_before[k] * past + v_hat / a;
-            task.inertia[k] = self.problem.linear_density * mesh.share(k) * a * a;
-            if mesh.sliding[k].is_some() {
-                let w_hat = m.w[k] * now - m.w_before[k] * past;
-                let s = mesh.arc_length[k];
-                task.predicted_slide[k] = s * now - m.s_before[k] * past + w_hat / a - s;
-            }
-        }
-        for (s, node) in self.problem.supports.iter().zip(&self.support_node) {
-            if let Some(k) = node {
-                task.inertia[*k] += s.mass * a * a;
-            }
-        }
-        task.damping = self.problem.axial_stiffness * damping_time(&self.problem) * a;
-        for e in 0..mesh.rest_length.len() {
-            task.predicted_length[e] = if mesh.sliding[e].is_none() && mesh.sliding[e + 1].is_none() {
-                let length = |x: &[Vec2]| (x[e + 1] - x[e]).norm();
-                length(&m.x) * now - length(&m.x_before) * past
-            } else {
-                mesh.path(e, &m.x).length
-            };
-        }
-    }
-
-    /// The present pose.
-    pub(super) fn still_pose(&self) -> Pose {
-        Pose { x: self.task.start.clone(), slide: vec![0.0; self.mesh.nodes()] }
-    }
-
-    /// Lets the material slide through the sliding nodes, m of arc length each.
-    pub(super) fn slide(&mut self, slide: &[f64]) {
-        let mesh = &mut self.mesh;
-        for (s, by) in mesh.arc_length.iter_mut().zip(slide) {
-            *s += by;
-        }
-        for e in 0..mesh.rest_length.len() {
-            if slide[e] != 0.0 || slide[e + 1] != 0.0 {
-                mesh.rest_length[e] = mesh.thermal_stretch * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
-            }
-        }
-    }
-
     /// Advances time.
     ///
     /// # Errors
@@ -458,6 +215,10 @@ impl Dynamics {
         }
         self.held_back.clear();
         let end = self.motion.time + dt_s;
+        if inertia == Inertia::Dynamic && self.sleeps_until(end, dragged) {
+            self.motion.time = end;
+            return Ok(self.report(Done::default(), 0, 0.0));
+        }
         let pieces = match inertia {
             Inertia::Dynamic => (dt_s / INNER_STEP - 1e-9).ceil().max(1.0),
             Inertia::QuasiStatic => self.pieces(end, dragged),
@@ -469,6 +230,11 @@ impl Dynamics {
             total = Done { iterations: total.iterations + done.iterations, ..done };
         }
         self.motion.time = end;
+        if inertia == Inertia::Dynamic {
+            self.watch();
+        } else {
+            self.wake();
+        }
         Ok(self.report(total, halved, h))
     }
 
@@ -586,60 +352,6 @@ impl Dynamics {
             })
             .collect();
         StepReport { cost, warnings }
-    }
-
-    /// Takes over a state (from statics: at rest).
-    ///
-    /// # Errors
-    /// When a number is not finite or the state does not fit the cable.
-    pub fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
-        if let Some(node) = state.first_non_finite() {
-            return Err(SolveError::NonFinite { quantity: "position", node, time_s: state.time_s });
-        }
-        if state.arc_length_m.len() < 2 || state.position_m.len() != state.arc_length_m.len() {
-            return Ok(());
-        }
-        let same = state.arc_length_m == self.mesh.arc_length;
-        if !same {
-            self.unthread();
-        }
-        for (k, &s) in self.mesh.arc_length.iter().enumerate() {
-            if self.mesh.sliding[k].is_some() {
-                continue;
-            }
-            if let Some(p) = state.position_at(s) {
-                self.motion.x[k] = p;
-            }
-            self.motion.v[k] = state.velocity_at(s).unwrap_or_default();
-        }
-        self.motion.time = state.time_s;
-        self.motion.followers.fill(None);
-        self.contacts.forget();
-        if !same {
-            self.thread_pulleys(Some(state));
-            let mut x = std::mem::take(&mut self.motion.x);
-            push_out(&self.problem, &self.mesh, &mut x, 0.9 * REACH);
-            self.motion.x = x;
-        }
-        self.forget_history();
-        // A state at rest on another mesh is brought to rest on this one before it moves.
-        let still = self.motion.v.iter().all(|v| v.norm() == 0.0);
-        self.rested = same || !still;
-        self.renew_task();
-        Ok(())
-    }
-
-    /// Takes all sliding nodes out.
-    fn unthread(&mut self) {
-        let mut k = 1;
-        while k + 1 < self.mesh.nodes() {
-            if self.mesh.sliding[k].is_some() {
-                self.remove(k);
-            } else {
-                k += 1;
-            }
-        }
-        self.even_out();
     }
 
     /// Time reached, s.

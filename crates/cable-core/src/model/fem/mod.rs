@@ -18,12 +18,15 @@ mod contact_tests;
 pub mod dynamics;
 pub mod element;
 mod estimate;
+mod handover;
+mod integrate;
 mod layout;
 mod network;
 mod path;
 mod prepare;
 mod remesh;
 mod rest;
+mod sleep;
 mod sliding;
 #[cfg(test)]
 mod sliding_tests;

@@ -150,6 +150,7 @@ impl Dynamics {
     /// A typed reason when there is none, or none was found.
     pub fn settle(&mut self, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
         self.refuse()?;
+        self.wake();
         self.held_back.clear();
         self.save();
         self.motion.followers.fill(None);

@@ -1,0 +1,99 @@
+//! Taking over a state of another mesh or model, and threading the cable through its pulleys.
+
+use std::sync::Arc;
+
+use super::contact_start::push_out;
+use super::dynamics::{Dynamics, REACH};
+use super::layout::{Hold, Layout};
+use super::path::End;
+use super::sliding::{Grip, Seat, Sliding};
+use crate::error::SolveError;
+use crate::math::Vec2;
+use crate::scene::PulleySide;
+use crate::state::State;
+
+impl Dynamics {
+    /// Puts a sliding node at every pulley: where `state` has the cable nearest to it, else where the layout lays it.
+    pub(super) fn thread_pulleys(&mut self, state: Option<&State>) {
+        let problem = Arc::clone(&self.problem);
+        let layout = Layout::new(&problem, self.motion.time, &[], &[]);
+        for stop in &layout.stops {
+            let (Hold::Pulley(wheel), Some(support)) = (stop.hold, stop.support) else { continue };
+            let s = state.and_then(|s| s.on_round(wheel.center, wheel.radius)).unwrap_or(stop.arc_length);
+            let k = self.mesh.arc_length.partition_point(|&a| a <= s).clamp(1, self.mesh.nodes() - 1);
+            let room = 0.05 * problem.length / self.even_bars as f64;
+            let (low, high) = (self.mesh.arc_length[k - 1] + room, self.mesh.arc_length[k] - room);
+            let at = if low < high { s.clamp(low, high) } else { 0.5 * (low + high) };
+            let passing = self.motion.x[k] - self.motion.x[k - 1];
+            let up = if wheel.side == PulleySide::Over { 1.0 } else { -1.0 };
+            let right = if passing.x < 0.0 { -1.0 } else { 1.0 };
+            let end = End { center: wheel.center, radius: wheel.radius, mark: Vec2::new(0.0, up), sense: -up * right };
+            let sliding = Sliding {
+                end,
+                friction: wheel.friction,
+                seat: Seat::Pulley(support),
+                grip: Grip::Stick,
+                factor: 1.0,
+                exponent: 0.0,
+            };
+            self.insert(k, at, Some(sliding));
+        }
+        self.even_out();
+        self.renew_task();
+    }
+
+    /// Takes over a state (from statics: at rest).
+    ///
+    /// # Errors
+    /// When a number is not finite or the state does not fit the cable.
+    pub fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+        if let Some(node) = state.first_non_finite() {
+            return Err(SolveError::NonFinite { quantity: "position", node, time_s: state.time_s });
+        }
+        if state.arc_length_m.len() < 2 || state.position_m.len() != state.arc_length_m.len() {
+            return Ok(());
+        }
+        self.wake();
+        let same = state.arc_length_m == self.mesh.arc_length;
+        if !same {
+            self.unthread();
+        }
+        for (k, &s) in self.mesh.arc_length.iter().enumerate() {
+            if self.mesh.sliding[k].is_some() {
+                continue;
+            }
+            if let Some(p) = state.position_at(s) {
+                self.motion.x[k] = p;
+            }
+            self.motion.v[k] = state.velocity_at(s).unwrap_or_default();
+        }
+        self.motion.time = state.time_s;
+        self.motion.followers.fill(None);
+        self.contacts.forget();
+        if !same {
+            self.thread_pulleys(Some(state));
+            let mut x = std::mem::take(&mut self.motion.x);
+            push_out(&self.problem, &self.mesh, &mut x, 0.9 * REACH);
+            self.motion.x = x;
+        }
+        self.forget_history();
+        // A state at rest on another mesh is brought to rest on this one before it moves.
+        let still = self.motion.v.iter().all(|v| v.norm() == 0.0);
+        self.rested = same || !still;
+        self.renew_task();
+        Ok(())
+    }
+
+    /// Takes all sliding nodes out.
+    fn unthread(&mut self) {
+        let mut k = 1;
+        while k + 1 < self.mesh.nodes() {
+            if self.mesh.sliding[k].is_some() {
+                self.remove(k);
+            } else {
+                k += 1;
+            }
+        }
+        self.even_out();
+    }
+}
