@@ -152,7 +152,7 @@ impl Simulation {
     /// Advances time with inertia by `dt_s` (s).
     ///
     /// # Errors
-    /// See [`Mechanics::advance`].
+    /// See [`Mechanics::advance`](crate::model::Mechanics::advance).
     pub fn step(&mut self, dt_s: f64) -> Result<(), SolveError> {
         self.advance(dt_s, Inertia::Dynamic)
     }
@@ -160,7 +160,7 @@ impl Simulation {
     /// Advances time without inertia by `dt_s` (s).
     ///
     /// # Errors
-    /// See [`Mechanics::advance`].
+    /// See [`Mechanics::advance`](crate::model::Mechanics::advance).
     pub fn step_quasi_static(&mut self, dt_s: f64) -> Result<(), SolveError> {
         self.advance(dt_s, Inertia::QuasiStatic)
     }
@@ -199,7 +199,7 @@ impl Simulation {
     }
 
     /// Asks every cable the same. Where one of several fails, all are as before: never some of them a step ahead. (A
-    /// cable alone stays where it came, see [`Mechanics::advance`].)
+    /// cable alone stays where it came, see [`Mechanics::advance`](crate::model::Mechanics::advance).)
     fn each(&mut self, mut f: impl FnMut(&mut Strand) -> Result<StepReport, SolveError>) -> Result<(), SolveError> {
         let (mut cost, mut warnings) = (Cost::default(), Vec::new());
         let several = self.cables.len() > 1;
@@ -246,7 +246,7 @@ impl Simulation {
         }
     }
 
-    /// Drags a support by hand: see [`Mechanics::drag_support`].
+    /// Drags a support by hand: see [`Mechanics::drag_support`](crate::model::Mechanics::drag_support).
     pub fn drag_support(&mut self, cable: usize, support: usize, target_m: Vec2) {
         if let Some(c) = self.cables.get_mut(cable) {
             c.drag_support(support, target_m);
