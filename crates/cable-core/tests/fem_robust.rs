@@ -129,7 +129,8 @@ fn ends_thrown_about_ten_thousand_times_cross_nothing() {
         count.failed.len(),
         count.failed
     );
-    // Measured: 3 of 100 scenes end in a typed failure, 1.2 % of steps are halved. Crossing is never allowed.
+    // Fails today: with cables that break 13 of 100 scenes fail, 5 of them with a gap; with cables that do not, 5 and 1, and
+    // 1.4 % of steps are halved. Before cables could break it was 3, none and 1.2 %.
     assert!(count.failed.iter().all(|f| !f.contains("gap")), "{:#?}", count.failed);
     assert!(count.failed.len() <= 5, "{:#?}", count.failed);
     assert!(count.halved * 50 <= count.steps, "{} of {} steps halved", count.halved, count.steps);
