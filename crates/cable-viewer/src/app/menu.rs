@@ -145,8 +145,8 @@ pub fn status(ui: &mut Ui, state: &AppState) {
         }
         if state.snapshot.draft {
             ui.separator();
-            ui.label("draft, refining…")
-                .on_hover_text("Few segments while the scene is being moved; the answer follows");
+            ui.label("draft, settling…")
+                .on_hover_text("Few segments, not yet at rest, while the scene is being moved; the answer follows");
         }
     });
 }

@@ -8,6 +8,7 @@ use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
 use cable_core::{Error, Model, Scene, Settings, Simulation, SolveError};
 
+use super::draft;
 use super::request::{Drag, Edit, Request};
 use crate::history::Sample;
 use crate::state::{Playback, Snapshot};
@@ -21,8 +22,6 @@ const MOTION: Question = Question::History(Inertia::Dynamic);
 /// A solve that took longer (s) has a draft go before the next one. Longer: the picture lags behind the hand; shorter:
 /// drafts where the answer itself would be in the next frame. Tuned on the tank at 200 segments.
 const DRAFT_AFTER_S: f64 = 0.012;
-/// Segments of a draft. More: as slow as the answer; fewer: corners show, and the greatest tension is 3 % off.
-const DRAFT_SEGMENTS: usize = 60;
 /// Time without a further edit (s) after which a draft is replaced by the answer. Longer: figures of the draft stay on
 /// screen; shorter: an answer is begun between two steps of a drag where frames are slow (a tenth of a second without a
 /// GPU), and the next draft waits for it.
@@ -48,6 +47,8 @@ pub struct Engine {
     drafts: bool,
     /// `simulation` is a draft of the last edit.
     draft: bool,
+    /// That draft has not come to rest: it goes on falling frame by frame.
+    falling: bool,
     /// Wall time of the last answer to an edit, s.
     solve_s: f64,
 }
@@ -78,6 +79,7 @@ impl Default for Engine {
             history_restarts: false,
             drafts: false,
             draft: false,
+            falling: false,
             solve_s: 0.0,
         }
     }
@@ -136,6 +138,24 @@ impl Engine {
         self.report(false)
     }
 
+    /// What is shown is a draft that still moves.
+    #[must_use]
+    pub fn falling(&self) -> bool {
+        self.draft && self.falling
+    }
+
+    /// Lets a frame of a draft pass.
+    pub fn fall(&mut self) -> Report {
+        let began = Instant::now();
+        if let Some(simulation) = &mut self.simulation {
+            // One that cannot go on stays as it is until the answer comes.
+            self.falling = draft::pass(simulation).is_ok();
+        }
+        self.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
+        self.show(Ok(()));
+        self.report(false)
+    }
+
     /// Replaces a draft by the answer.
     pub fn refine(&mut self) -> Report {
         let began = Instant::now();
@@ -189,12 +209,11 @@ impl Engine {
         let (true, Some(old)) = (self.drafts && same && self.solve_s > DRAFT_AFTER_S, &self.simulation) else {
             return false;
         };
-        let mut coarse = edit.clone();
-        coarse.settings.segments = Some(DRAFT_SEGMENTS);
-        // An explicit model: what `auto` chose for the full mesh.
-        coarse.model = old.model();
-        let Ok((simulation, _)) = self.rebuild(&coarse, Some(old)) else { return false };
-        self.simulation = Some(simulation);
+        let falls = draft::falling(edit, old);
+        self.falling = falls.is_some();
+        let draft = falls.or_else(|| Some(self.rebuild(&draft::coarse(edit, old), Some(old)).ok()?.0));
+        let Some(draft) = draft else { return false };
+        self.simulation = Some(draft);
         self.before_motion = None;
         self.start_kept = false;
         self.draft = true;
@@ -204,7 +223,12 @@ impl Engine {
 
     fn solve_draft(&mut self) -> Result<(), Error> {
         match (self.draft, self.edit.clone()) {
-            (true, Some(edit)) => self.take_edit(edit),
+            (true, Some(edit)) => {
+                if let (true, Some(simulation)) = (self.falling, &mut self.simulation) {
+                    draft::still(simulation)?;
+                }
+                self.take_edit(edit)
+            }
             _ => Ok(()),
         }
     }
@@ -249,12 +273,8 @@ impl Engine {
         let moves = old.is_some() && (time_s > 0.0 || !self.playback.paused);
         let question = if moves { MOTION } else { Question::Rest };
         let mut fresh = Simulation::for_question(edit.scene.clone(), edit.model, edit.settings, question)?;
-        let same_cables = old.is_some_and(|o| {
-            let (a, b) = (&o.scene().cables, &edit.scene.cables);
-            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.name == b.name)
-        });
         if let Some(old) = old
-            && same_cables
+            && draft::same_cables(edit, old)
         {
             let mut carried = fresh.clone();
             if carried.carry(old).is_ok() {

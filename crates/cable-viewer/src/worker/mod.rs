@@ -3,6 +3,7 @@
 //! Both ways hold one slot, not a queue: requests merge into the waiting one, the latest answer replaces
 //! the one not yet shown, so memory and delay are bounded whatever the pointer does.
 
+pub mod draft;
 pub mod engine;
 pub mod request;
 
@@ -157,7 +158,12 @@ fn work(shared: &Shared, shown: &impl Fn()) {
                     return;
                 }
                 let now = Instant::now();
-                let due = if engine.playing() { Some(next_tick) } else { engine.draft().then_some(refine_at) };
+                let due = match (engine.playing(), engine.draft(), engine.falling()) {
+                    (true, _, _) => Some(next_tick),
+                    (false, true, true) => Some(next_tick.min(refine_at)),
+                    (false, true, false) => Some(refine_at),
+                    (false, false, _) => None,
+                };
                 if slots.request.is_some() || due.is_some_and(|at| now >= at) {
                     break;
                 }
@@ -176,7 +182,14 @@ fn work(shared: &Shared, shown: &impl Fn()) {
             Some(request) => {
                 let report = guarded(&mut engine, |e| e.handle(request));
                 refine_at = Instant::now() + Duration::from_secs_f64(QUIET_S);
+                if engine.draft() {
+                    next_tick = Instant::now() + frame;
+                }
                 report
+            }
+            None if !engine.playing() && engine.falling() && Instant::now() < refine_at => {
+                next_tick = Instant::now() + frame;
+                guarded(&mut engine, Engine::fall)
             }
             None if !engine.playing() => guarded(&mut engine, Engine::refine),
             None => {

@@ -1,7 +1,7 @@
 //! The worker on its own thread: how long an edit takes to be on screen (printed, never asserted), and that a
 //! flood of edits ends at the last one.
 //!
-//! The figures: `cargo test --release --workspace --test ui timed -- --nocapture --test-threads 1`.
+//! The figures: `cargo test --workspace --test ui timed -- --nocapture --test-threads 1`.
 
 use std::time::{Duration, Instant};
 

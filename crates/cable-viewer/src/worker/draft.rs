@@ -1,0 +1,95 @@
+//! Drafts: what is shown of a slow scene while it is being moved, until the hand rests and the answer is due.
+//!
+//! A draft of `fem` is not sought at rest, it falls there: each edit puts few segments where the last draft was and lets
+//! a frame of time pass, so it costs the same however far the hand jumped. Relaxing it took 60 to 800 ms where the hand
+//! moved 8 cm an edit on the tank; a frame of motion takes 3 ms. The time shown stands still meanwhile.
+
+use cable_core::{Error, Model, Simulation, SolveError};
+
+use super::engine::FRAME_S;
+use super::request::Edit;
+
+/// Segments of a draft. More: as slow as the answer; fewer: corners show, and the greatest tension is 3 % off.
+const SEGMENTS: usize = 60;
+
+/// Part of its speed that a draft keeps from frame to frame. Larger: it swings on while the hand rests; smaller: it
+/// hangs in the air behind the hand. 0.85 leaves 1 % of it
+/// after half a second.
+const KEEP: f64 = 0.85;
+
+/// A speed that moves nothing, m/s, and tells `fem` that the state is one of motion: it would relax it first.
+const WAKE_M_PER_S: f64 = 1e-100;
+
+/// Breaking tension of a draft, N: it jerks where the hand jumps, and would break where the answer does not.
+const UNBREAKABLE_N: f64 = 1e15;
+
+/// A draft of `edit` that goes on where `old` is; None where this kind of draft does not apply or fails.
+pub fn falling(edit: &Edit, old: &Simulation) -> Option<Simulation> {
+    if old.model() != Model::Fem || !same_cables(edit, old) {
+        return None;
+    }
+    let mut settings = edit.settings;
+    settings.segments = Some(SEGMENTS);
+    let mut scene = edit.scene.clone();
+    for cable in &mut scene.cables {
+        cable.breaking_tension_n = UNBREAKABLE_N;
+    }
+    let mut draft = Simulation::with_settings(scene, Model::Fem, settings).ok()?;
+    carry(&mut draft, old).ok()?;
+    pass(&mut draft).ok()?;
+    Some(draft)
+}
+
+/// Lets a frame pass; the time shown by the draft stands still.
+///
+/// # Errors
+/// As a step.
+pub fn pass(draft: &mut Simulation) -> Result<(), SolveError> {
+    let time_s = draft.time_s();
+    draft.step(FRAME_S)?;
+    let mut states = draft.states();
+    for state in &mut states {
+        state.time_s = time_s;
+        for v in &mut state.velocity_m_per_s {
+            *v *= KEEP;
+        }
+    }
+    draft.adopt(&states)
+}
+
+/// A draft by rest: the scene of an edit with few segments and the model that answered it.
+#[must_use]
+pub fn coarse(edit: &Edit, old: &Simulation) -> Edit {
+    let mut coarse = edit.clone();
+    coarse.settings.segments = Some(SEGMENTS);
+    // An explicit model: what `auto` chose for the full mesh.
+    coarse.model = old.model();
+    coarse
+}
+
+/// The state of a draft as one at rest, for the answer to begin from.
+///
+/// # Errors
+/// As [`Simulation::adopt`].
+pub fn still(draft: &mut Simulation) -> Result<(), Error> {
+    let mut states = draft.states();
+    for v in states.iter_mut().flat_map(|s| &mut s.velocity_m_per_s) {
+        *v *= 0.0;
+    }
+    Ok(draft.adopt(&states)?)
+}
+
+fn carry(draft: &mut Simulation, old: &Simulation) -> Result<(), SolveError> {
+    let mut states = old.states();
+    for v in states.iter_mut().filter_map(|s| s.velocity_m_per_s.first_mut()) {
+        v.x += WAKE_M_PER_S;
+    }
+    draft.adopt(&states)
+}
+
+/// Whether the cables are the same ones, so that where they are can be carried over.
+#[must_use]
+pub fn same_cables(edit: &Edit, old: &Simulation) -> bool {
+    let (a, b) = (&old.scene().cables, &edit.scene.cables);
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.name == b.name)
+}
