@@ -18,7 +18,7 @@ const TOUCH: f64 = 3e-3;
 /// every cable has; more lets sharp bends pass. Over 15° a cable of diameter d leaves the corner within d/4 of its line.
 const CORNER_TURN: f64 = 0.26;
 
-/// Least turn between two elements that is a bend, rad. Less is a radius of a hundred elements.
+/// Least turn between two elements of a flexible cable that is a bend, rad. Less is a radius of a hundred elements.
 const LEAST_TURN: f64 = 0.01;
 
 /// Radius of a free bend that is a kink where the cable states no smallest radius, in diameters: a round cable bent to less
@@ -55,7 +55,10 @@ impl Bends {
             for (k, n) in piece.iter().enumerate() {
                 let turn = |k: Option<usize>| k.and_then(|k| turns.get(k)).copied().unwrap_or(0.0);
                 let own = turn(Some(k));
-                if own.abs() < LEAST_TURN && !(n.curvature_per_m.abs() * problem.cable.min_bend_radius_m > 1.0) {
+                if problem.bending_stiffness == 0.0
+                    && own.abs() < LEAST_TURN
+                    && !(n.curvature_per_m.abs() * problem.cable.min_bend_radius_m > 1.0)
+                {
                     continue;
                 }
                 // A corner between two nodes is shared by them.

@@ -1,21 +1,24 @@
-//! A cable with bending stiffness at rest, in the angles of its bars.
+//! A cable with bending stiffness at rest, in the angles of its tangent.
 //!
-//! Bar e of unstretched length l points along t(θₑ); its middle carries the force Fₑ, which follows from the force F₀ at
-//! the start of its span as in a flexible cable. Stretch is eliminated (τ = F·t/EA, chord = l(1 + τ)t), so neither a
-//! stiff nor an inextensible cable is hard, and a clamp is an angle prescribed exactly:
+//! The tangent t(θ) is followed by quadratic finite elements: an angle at each node and one at the middle of each bar
+//! (numbered 2e, 2e + 1, 2e + 2 in bar e). The force F(s) follows from the force F₀ at the start of its span as in a flexible
+//! cable. Stretch is eliminated (τ = F·t/EA, dx = (1 + τ)t ds), so neither a stiff nor an inextensible cable is hard, and
+//! a clamp is an angle prescribed exactly:
 //! ```text
-//! L(θ, F₀) = Σ EI ψ²/2l̄ − Σ l (F·t + (F·t)²/2EA) + Σ F₀·d        stationary: equilibrium and closed spans
-//! ∂L/∂θₑ   = bending − l (F·n)(1 + τ)
-//! −∂L/∂F₀  = Σ chord − d
+//! L(θ, F₀) = ∫ EI θ'²/2 − (F·t + (F·t)²/2EA) ds + Σ F₀·d        stationary: equilibrium and closed spans
+//! ∂L/∂θₐ   = ∫ EI θ' φₐ' − (F·n)(1 + τ) φₐ ds
+//! −∂L/∂F₀  = ∫ (1 + τ) t ds − d
+//! M(node)  = ± ∂Lₑ/∂θ(node) of the bar beside it                 the moment that balances this bar
 //! ```
-//! ψ is the turn at a node and l̄ the rest length that belongs to it; between a clamp and the first bar l̄ = l/2. Newton on
-//! the whole: θ tridiagonal, two force rows a span by their Schur complement S = BH⁻¹Bᵀ + C. The equilibrium is stable
-//! when H and S have the same number of negative directions (Haynsworth's inertia formula). The start is the flexible
-//! cable; where Newton fails from there, the bending stiffness is raised in steps. Second order in the bar length.
+//! Forces, node positions, node angles and the moments so recovered are of fourth order (G. Strang and G. Fix, *An Analysis
+//! of the Finite Element Method*, Prentice-Hall 1973: twice the degree), at three Gauss points a bar. Newton on the whole:
+//! θ banded, two force rows a span by their Schur complement S = BH⁻¹Bᵀ + C. The equilibrium is stable when H and S have
+//! the same number of negative directions (Haynsworth's inertia formula). The start is the flexible cable; where Newton
+//! fails from there, the bending stiffness is raised in steps.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::answer::Point;
+use super::beam_mesh::places;
 use super::element::Material;
 use super::layout::{Layout, Stop};
 use super::network::Network;
@@ -24,36 +27,39 @@ use crate::math::{Vec2, perp};
 
 /// Newton steps at one bending stiffness. Measured: 4 to 12.
 const MAX_STEPS: usize = 40;
-/// Longest turn of a bar in one step, rad. Larger steps jump to other windings, smaller ones cost steps.
+/// Longest turn of a node in one step, rad. Larger steps jump to other windings, smaller ones cost steps.
 const LONGEST_TURN: f64 = 0.5;
 /// Angles and forces are found when a step changes them by less than this.
 const STILL: f64 = 1e-11;
 /// Tries with other bending stiffnesses on the way to the real one.
 const MAX_TRIES: usize = 80;
-/// Bars along the boundary layer √(EI/T) at clamps, loads and supports: 8 give the clamp moment to 0.5 %.
-const BARS_PER_LAYER: f64 = 8.0;
-/// How fast bars may grow away from a boundary layer, m of bar length per m.
-const GROWTH: f64 = 0.15;
+/// Gauss points of a bar from 0 to 1 and their weights.
+const GAUSS: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+/// 3l ∫φₐ'φ_b' ds of a bar of length l.
+pub(super) const BEND: [[f64; 3]; 3] = [[7.0, -8.0, 1.0], [-8.0, 16.0, -8.0], [1.0, -8.0, 7.0]];
 
 /// One bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Bar {
+pub(super) struct Bar {
     /// Arc length of its first node and its own, m.
-    start: f64,
-    ds: f64,
+    pub(super) start: f64,
+    pub(super) ds: f64,
     /// The stretch between stops it lies in.
-    stretch: usize,
+    pub(super) stretch: usize,
 }
 
 /// A cable with bending stiffness.
 #[derive(Clone, Debug)]
 pub struct Beam {
-    layout: Layout,
-    material: Material,
-    bending: f64,
+    pub(super) layout: Layout,
+    pub(super) material: Material,
+    pub(super) bending: f64,
     ends: Vec<(usize, usize)>,
-    bars: Vec<Bar>,
-    angles: Vec<f64>,
+    pub(super) bars: Vec<Bar>,
+    pub(super) angles: Vec<f64>,
+    /// Prescribed angles: which, and its value, rad.
+    clamps: Vec<(usize, f64)>,
     forces: Vec<Vec2>,
     /// Newton steps taken.
     pub steps: usize,
@@ -72,47 +78,121 @@ pub enum Outcome {
     Failed,
 }
 
+/// The quadratic shape functions at `x` from 0 to 1.
+fn shapes(x: f64) -> [f64; 3] {
+    [(1.0 - x) * (1.0 - 2.0 * x), 4.0 * x * (1.0 - x), x * (2.0 * x - 1.0)]
+}
+
+/// What a bar has at a Gauss point.
+pub(super) struct Sample {
+    pub(super) shapes: [f64; 3],
+    /// Its part of the rest length, m.
+    pub(super) length: f64,
+    /// The tangent.
+    pub(super) t: Vec2,
+    /// Force along and across it, N.
+    pub(super) along: f64,
+    pub(super) across: f64,
+    /// Stretch τ.
+    pub(super) tau: f64,
+}
+
 impl Beam {
-    /// The bars and angles of a solved flexible cable. `even` bars in each stretch, or graded towards the stops.
+    /// The bars and angles of a solved flexible cable: `network.layout` says how many bars each stretch has. `body` is its
+    /// weight and wind, N/m.
     #[must_use]
-    pub fn new(network: &Network, bending: f64, even: bool) -> Self {
-        let (layout, material) = (network.layout.clone(), network.material);
+    pub fn new(network: &Network, bending: f64, body: Vec2) -> Self {
+        let layout = network.layout.clone();
         let mut beam = Self {
             bars: Vec::new(),
             angles: Vec::new(),
+            clamps: Vec::new(),
             forces: network.spans.iter().map(|s| s.force).collect(),
             ends: network.ends.clone(),
             layout,
-            material,
+            material: network.material,
             bending,
             steps: 0,
             residual: 0.0,
         };
+        let weight = network.material.body.norm();
         for k in 0..beam.layout.stops.len().saturating_sub(1) {
-            let (start, end) = (beam.layout.stops[k].arc_length, beam.layout.stops[k + 1].arc_length);
-            let tension = 0.5 * (network.forces[k][1].norm() + network.forces[k + 1][0].norm());
-            let layer = (bending / tension.max(bending / ((end - start) * (end - start)))).sqrt();
-            let largest = (end - start) / beam.layout.stops[k].cells as f64;
-            let nodes = if even {
-                fractions(1.0, 1.0, beam.layout.stops[k].cells)
-            } else {
-                graded((layer / BARS_PER_LAYER).min(largest), largest, end - start)
-            };
-            beam.layout.stops[k].cells = nodes.len() - 1;
-            for pair in nodes.windows(2) {
-                let s = start + (end - start) * pair[0];
-                beam.bars.push(Bar { start: s, ds: (end - start) * (pair[1] - pair[0]), stretch: k });
+            let (stop, next) = (&beam.layout.stops[k], &beam.layout.stops[k + 1]);
+            let (start, length) = (stop.arc_length, next.arc_length - stop.arc_length);
+            // λ = √(EI/T); where T goes to zero its own weight takes over, λ³ = EI/w; never longer than the stretch.
+            let least = (bending / (length * length)).max((bending * weight * weight).cbrt());
+            let layer = |force: Vec2| (bending / force.norm().max(least)).sqrt();
+            let layers = [layer(network.forces[k][1]), layer(network.forces[k + 1][0])];
+            let nodes = places(layers, length, stop.cells);
+            beam.bars.extend(nodes.windows(2).map(|p| Bar { start: start + p[0], ds: p[1] - p[0], stretch: k }));
+        }
+        beam.lie_as_flexible();
+        beam.material.body = body;
+        beam
+    }
+
+    /// The angles of the flexible cable, and those of the clamps.
+    fn lie_as_flexible(&mut self) {
+        let starts = self.stretch_starts();
+        let n = self.bars.len();
+        self.angles = vec![0.0; 2 * n + 1];
+        let mut last = 0.0;
+        for (e, bar) in self.bars.iter().enumerate() {
+            let f = self.force(bar, 0.5, &starts);
+            last = nearest_turn(f.y.atan2(f.x), last);
+            self.angles[2 * e + 1] = last;
+        }
+        for v in 0..=n {
+            let (a, b) = (2 * v.max(1) - 1, (2 * v + 1).min(2 * n - 1));
+            self.angles[2 * v] = 0.5 * (self.angles[a] + self.angles[b]);
+        }
+        self.turn_to_clamps();
+    }
+
+    /// Prescribes each clamp's angle, counted so that the bar beside it turns least.
+    fn turn_to_clamps(&mut self) {
+        let n = self.bars.len();
+        self.clamps.clear();
+        for (k, stop) in self.layout.stops.iter().enumerate() {
+            if let Some(angle) = stop.clamp {
+                let v = self.bars.iter().position(|b| b.stretch == k).unwrap_or(n);
+                let beside = (2 * v + 1).min(2 * n - 1);
+                let angle = nearest_turn(angle, self.angles[beside]);
+                self.clamps.push((2 * v, angle));
+                self.angles[2 * v] = angle;
             }
         }
-        beam.angles = vec![0.0; beam.bars.len()];
-        let middle = beam.middle_forces();
-        let mut last = 0.0;
-        for (angle, f) in beam.angles.iter_mut().zip(&middle) {
-            *angle = nearest_turn(f.y.atan2(f.x), last);
-            last = *angle;
+    }
+
+    /// How far the cable turns from its first clamp to its last, rad.
+    fn winding(&self) -> f64 {
+        self.clamps.last().map_or(0.0, |z| z.1) - self.clamps.first().map_or(0.0, |a| a.1)
+    }
+
+    /// Lies along a route (its points, m) where that winds otherwise between the clamps than the flexible cable does: a
+    /// stiff cable keeps its loops.
+    #[must_use]
+    pub fn wound_as(mut self, route: &[Vec2]) -> Self {
+        let flexible = (self.angles.clone(), self.clamps.clone(), self.winding());
+        let legs: Vec<Vec2> = route.windows(2).map(|p| p[1] - p[0]).filter(|d| d.norm() > 0.0).collect();
+        let whole: f64 = legs.iter().map(|d| d.norm()).sum();
+        let (mut leg, mut way, mut last) = (0, 0.0, 0.0);
+        for k in 0..self.angles.len() {
+            let bar = self.bars[(k / 2).min(self.bars.len() - 1)];
+            let s = bar.start + 0.5 * bar.ds * (k - 2 * (k / 2).min(self.bars.len() - 1)) as f64;
+            while leg + 1 < legs.len() && way + legs[leg].norm() < s / self.layout.length * whole {
+                way += legs[leg].norm();
+                leg += 1;
+            }
+            let Some(along) = legs.get(leg) else { return self };
+            last = nearest_turn(along.y.atan2(along.x), last);
+            self.angles[k] = last;
         }
-        beam.turn_to_clamps();
-        beam
+        self.turn_to_clamps();
+        if (self.winding() - flexible.2).abs() < std::f64::consts::PI {
+            (self.angles, self.clamps) = (flexible.0, flexible.1);
+        }
+        self
     }
 
     /// The same cable with every bar halved, from the present answer.
@@ -124,11 +204,23 @@ impl Beam {
             .iter()
             .flat_map(|b| [Bar { ds: 0.5 * b.ds, ..*b }, Bar { start: b.start + 0.5 * b.ds, ds: 0.5 * b.ds, ..*b }])
             .collect();
-        fine.angles = self.angles.iter().flat_map(|&a| [a, a]).collect();
+        fine.angles = vec![self.angles[0]];
+        for e in 0..self.bars.len() {
+            fine.angles.extend([0.25, 0.5, 0.75, 1.0].map(|x| self.angle(e, x)));
+        }
+        for (place, _) in &mut fine.clamps {
+            *place *= 2;
+        }
         for stop in &mut fine.layout.stops {
             stop.cells *= 2;
         }
         fine
+    }
+
+    /// EI/L²: the size of the forces that bending alone makes, N.
+    #[must_use]
+    pub fn bending_force(&self) -> f64 {
+        self.bending / (self.layout.length * self.layout.length)
     }
 
     /// Number of bars.
@@ -137,14 +229,9 @@ impl Beam {
         self.bars.len()
     }
 
-    /// Counts each clamp's angle so that the bar beside it turns least.
-    fn turn_to_clamps(&mut self) {
-        for k in 0..self.layout.stops.len() {
-            if let Some(angle) = self.layout.stops[k].clamp {
-                let beside = self.bars.iter().position(|b| b.stretch == k).unwrap_or(self.bars.len().saturating_sub(1));
-                self.layout.stops[k].clamp = Some(nearest_turn(angle, self.angles.get(beside).copied().unwrap_or(0.0)));
-            }
-        }
+    /// The angle in bar `e` at `x` from 0 to 1, rad.
+    fn angle(&self, e: usize, x: f64) -> f64 {
+        dot(&shapes(x), &self.angles[2 * e..2 * e + 3])
     }
 
     /// Tension forces just before and just after every stop, N.
@@ -161,7 +248,7 @@ impl Beam {
     }
 
     /// Tension force just after each stop, N: known in hanging ends, from F₀ in spans.
-    fn stretch_starts(&self) -> Vec<Vec2> {
+    pub(super) fn stretch_starts(&self) -> Vec<Vec2> {
         let stops = &self.layout.stops;
         let body = self.material.body;
         let last_anchor = stops.iter().rposition(Stop::anchors).unwrap_or(0);
@@ -184,21 +271,31 @@ impl Beam {
         out
     }
 
-    fn middle_forces(&self) -> Vec<Vec2> {
-        let starts = self.stretch_starts();
-        let at = |b: &Bar| b.start + 0.5 * b.ds - self.layout.stops[b.stretch].arc_length;
-        self.bars.iter().map(|b| starts[b.stretch] - self.material.body * at(b)).collect()
+    /// The force in a bar at `x` from 0 to 1, N.
+    pub(super) fn force(&self, bar: &Bar, x: f64, starts: &[Vec2]) -> Vec2 {
+        starts[bar.stretch] - self.material.body * (bar.start + x * bar.ds - self.layout.stops[bar.stretch].arc_length)
     }
 
-    fn rest(&self, e: usize) -> f64 {
+    pub(super) fn rest(&self, e: usize) -> f64 {
         self.material.thermal_stretch * self.bars[e].ds
     }
 
-    /// The clamp at the node before bar `e` (e = number of bars: at the end), if there is one.
-    fn clamp_before(&self, e: usize) -> Option<f64> {
-        let here = self.bars.get(e).map_or(self.layout.stops.len() - 1, |b| b.stretch);
-        let first = e == self.bars.len() || e == 0 || self.bars[e - 1].stretch != here;
-        if first { self.layout.stops[here].clamp } else { None }
+    /// Bar `e` at its Gauss points.
+    pub(super) fn samples(&self, e: usize, starts: &[Vec2]) -> [Sample; 3] {
+        GAUSS.map(|(x, weight)| {
+            let angle = self.angle(e, x);
+            let t = Vec2::new(angle.cos(), angle.sin());
+            let f = self.force(&self.bars[e], x, starts);
+            let along = f.dot(&t);
+            Sample {
+                shapes: shapes(x),
+                length: weight * self.rest(e),
+                t,
+                along,
+                across: f.dot(&perp(t)),
+                tau: along / self.material.axial_stiffness,
+            }
+        })
     }
 
     /// Solves it.
@@ -231,9 +328,9 @@ impl Beam {
 
     /// Newton at a bending stiffness.
     fn newton(&mut self, bending: f64) -> Outcome {
-        let n = self.bars.len();
-        let Ok(mut factor) = BandFactor::new(n, 1) else { return Outcome::Failed };
-        let mut h = BandMatrix::new(n, 1);
+        let n = self.angles.len();
+        let Ok(mut factor) = BandFactor::new(n, 2) else { return Outcome::Failed };
+        let mut h = BandMatrix::new(n, 2);
         let mut before = f64::INFINITY;
         for _ in 0..MAX_STEPS {
             let (g, b, c, gap) = self.assemble(bending, &mut h);
@@ -267,11 +364,16 @@ impl Beam {
             for (a, s) in self.angles.iter_mut().zip(&step) {
                 *a += scale * s;
             }
-            let mut change: f64 = 0.0;
+            // A cable that is only bent pulls nowhere: then EI/L² says how large a force is.
+            let least = self.material.smoothing + self.bending_force();
+            let mut change = 0.0;
             for (i, f) in self.forces.iter_mut().enumerate() {
                 let d = Vec2::new(force_step[2 * i], force_step[2 * i + 1]) * scale;
                 *f += d;
-                change = change.max(d.norm() / (f.norm() + self.material.smoothing));
+                let part = d.norm() / (f.norm() + least);
+                if !(part <= change) {
+                    change = part;
+                }
                 self.residual = d.norm();
             }
             self.steps += 1;
@@ -286,7 +388,7 @@ impl Beam {
 
     /// Gradient, force columns, C and gaps at the present angles and forces; H into `h`.
     fn assemble(&self, bending: f64, h: &mut BandMatrix) -> (Vec<f64>, Vec<Vec<f64>>, DMatrix<f64>, Vec<f64>) {
-        let (n, m) = (self.bars.len(), 2 * self.ends.len());
+        let (n, m) = (self.angles.len(), 2 * self.ends.len());
         let (mut g, mut b, mut c) = (vec![0.0; n], vec![vec![0.0; n]; m], DMatrix::zeros(m, m));
         let mut gap = vec![0.0; m];
         h.clear();
@@ -297,112 +399,46 @@ impl Beam {
                 gap[2 * i + 1] -= z.y - a.y;
             }
         }
-        let ea = self.material.axial_stiffness;
-        for (e, f) in self.middle_forces().iter().enumerate() {
-            let l = self.rest(e);
-            let t = Vec2::new(self.angles[e].cos(), self.angles[e].sin());
-            let (along, across) = (f.dot(&t), f.dot(&perp(t)));
-            let tau = along / ea;
-            g[e] -= l * across * (1.0 + tau);
-            h.add(e, e, l * (along * (1.0 + tau) - across * across / ea));
-            let stretch = self.bars[e].stretch;
-            if let Some(i) = self.ends.iter().position(|&(first, last)| first <= stretch && stretch < last) {
-                let chord = t * (l * (1.0 + tau));
-                let turned = -(perp(t) * (1.0 + tau) + t * (across / ea)) * l;
+        let (ea, starts) = (self.material.axial_stiffness, self.stretch_starts());
+        for (e, bar) in self.bars.iter().enumerate() {
+            let span = self.ends.iter().position(|&(first, last)| first <= bar.stretch && bar.stretch < last);
+            let stiff = bending / (3.0 * self.rest(e));
+            for r in 0..3 {
+                g[2 * e + r] += stiff * dot(&BEND[r], &self.angles[2 * e..2 * e + 3]);
+                for s in r..3 {
+                    h.add(2 * e + r, 2 * e + s, stiff * BEND[r][s]);
+                }
+            }
+            for p in self.samples(e, &starts) {
+                let (stretched, turning) = (1.0 + p.tau, p.along * (1.0 + p.tau) - p.across * p.across / ea);
+                for r in 0..3 {
+                    g[2 * e + r] -= p.length * p.across * stretched * p.shapes[r];
+                    for s in r..3 {
+                        h.add(2 * e + r, 2 * e + s, p.length * turning * p.shapes[r] * p.shapes[s]);
+                    }
+                }
+                let Some(i) = span else { continue };
+                let chord = p.t * (p.length * stretched);
+                let turned = -(perp(p.t) * stretched + p.t * (p.across / ea)) * p.length;
                 for r in 0..2 {
                     gap[2 * i + r] += chord[r];
-                    b[2 * i + r][e] = turned[r];
+                    for a in 0..3 {
+                        b[2 * i + r][2 * e + a] += turned[r] * p.shapes[a];
+                    }
                     for s in 0..2 {
-                        c[(2 * i + r, 2 * i + s)] += l / ea * t[r] * t[s];
+                        c[(2 * i + r, 2 * i + s)] += p.length / ea * p.t[r] * p.t[s];
                     }
                 }
             }
         }
-        for e in 0..=n {
-            self.assemble_bend(e, bending, &mut g, h);
+        for &(k, _) in &self.clamps {
+            h.pin(k);
+            g[k] = 0.0;
+            for column in &mut b {
+                column[k] = 0.0;
+            }
         }
         (g, b, c, gap)
-    }
-
-    /// Bending at the node before bar `e`.
-    fn assemble_bend(&self, e: usize, bending: f64, g: &mut [f64], h: &mut BandMatrix) {
-        let n = self.bars.len();
-        if let Some(clamp) = self.clamp_before(e) {
-            for (bar, g) in g.iter_mut().enumerate().take(e + 1).skip(e.saturating_sub(1)) {
-                let k = bending / (0.5 * self.rest(bar));
-                *g += k * (self.angles[bar] - nearest_turn(clamp, self.angles[bar]));
-                h.add(bar, bar, k);
-            }
-        } else if e > 0 && e < n {
-            let k = bending / (0.5 * (self.rest(e - 1) + self.rest(e)));
-            let moment = k * (self.angles[e] - self.angles[e - 1]);
-            g[e] += moment;
-            g[e - 1] -= moment;
-            h.add(e, e, k);
-            h.add(e - 1, e - 1, k);
-            h.add(e - 1, e, -k);
-        }
-    }
-
-    /// Curvature at the node before bar `e`, 1/m. At a clamp it is that of the clamp's own moment EI ψ/(l/2), which the
-    /// moment balance of the first bar makes second order.
-    fn curvature(&self, e: usize) -> f64 {
-        let n = self.bars.len();
-        if let Some(clamp) = self.clamp_before(e) {
-            let (bar, sign) = if e < n { (e, 1.0) } else { (n - 1, -1.0) };
-            let turn = sign * (self.angles[bar] - nearest_turn(clamp, self.angles[bar]));
-            return turn / (0.5 * self.bars[bar].ds);
-        }
-        if e == 0 || e == n {
-            return 0.0;
-        }
-        (self.angles[e] - self.angles[e - 1]) / (0.5 * (self.bars[e - 1].ds + self.bars[e].ds))
-    }
-
-    /// The direction at the node before bar `e`, rad.
-    fn node_angle(&self, e: usize) -> f64 {
-        match (self.clamp_before(e), e.checked_sub(1).and_then(|i| self.angles.get(i)), self.angles.get(e)) {
-            (Some(clamp), _, _) => clamp,
-            (None, Some(before), Some(after)) => {
-                let (a, b) = (self.bars[e - 1].ds, self.bars[e].ds);
-                (before * b + after * a) / (a + b)
-            }
-            (None, before, after) => before.or(after).copied().unwrap_or(0.0),
-        }
-    }
-
-    /// All nodes; `before` and `after` of each hold the tension along the cable there (the shear is left out).
-    #[must_use]
-    pub fn points(&self) -> Vec<Point> {
-        let n = self.bars.len();
-        let (middle, forces) = (self.middle_forces(), self.stop_forces());
-        let chord = |e: usize| {
-            let t = Vec2::new(self.angles[e].cos(), self.angles[e].sin());
-            t * (self.rest(e) * (1.0 + middle[e].dot(&t) / self.material.axial_stiffness))
-        };
-        let first = self.layout.stops.iter().position(Stop::anchors).unwrap_or(0);
-        let anchor = self.layout.stops[first].point(0).unwrap_or_default();
-        let mut at = (0..n).filter(|&e| self.bars[e].stretch < first).fold(anchor, |p, e| p - chord(e));
-        let mut out = Vec::with_capacity(n + 1);
-        for e in 0..=n {
-            let angle = self.node_angle(e);
-            let t = Vec2::new(angle.cos(), angle.sin());
-            let stretch = self.bars.get(e).map_or(self.layout.stops.len() - 1, |b| b.stretch);
-            let at_stop = e == n || e == 0 || self.bars[e - 1].stretch != stretch;
-            let half = self.bars.get(e).map_or(Vec2::zeros(), |b| self.material.body * (0.5 * b.ds));
-            let inside = middle.get(e).map_or(Vec2::zeros(), |f| f + half);
-            let [before, after] = if at_stop { forces[stretch] } else { [inside; 2] };
-            let arc_length = self.bars.get(e).map_or(self.layout.length, |b| b.start);
-            if at_stop && let Some(p) = self.layout.stops[stretch].point(0) {
-                at = p;
-            }
-            let curvature = self.curvature(e);
-            out.push(Point { arc_length, at, before: t * before.dot(&t), after: t * after.dot(&t), curvature });
-            if e < n {
-                at += chord(e);
-            }
-        }
-        out
     }
 
     /// The stops.
@@ -412,7 +448,7 @@ impl Beam {
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
@@ -421,26 +457,22 @@ fn nearest_turn(angle: f64, to: f64) -> f64 {
     angle + ((to - angle) / std::f64::consts::TAU).round() * std::f64::consts::TAU
 }
 
-/// Fractions 0 … 1 of `count` bars whose lengths run with the metric 1/h, h = least + GROWTH·(distance to the nearer
-/// end), at most `largest`; all in parts of the stretch.
-fn fractions(least: f64, largest: f64, count: usize) -> Vec<f64> {
-    let reach = ((largest - least) / GROWTH).clamp(0.0, 0.5);
-    let layer = (1.0 + GROWTH * reach / least).ln() / GROWTH;
-    let half = layer + (0.5 - reach) / largest;
-    let place =
-        |m: f64| if m <= layer { ((GROWTH * m).exp() - 1.0) * least / GROWTH } else { reach + (m - layer) * largest };
-    (0..=count)
-        .map(|k| {
-            let m = 2.0 * half * k as f64 / count as f64;
-            if m <= half { place(m) } else { 1.0 - place(2.0 * half - m) }
-        })
-        .collect()
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Bars graded from `least` at both ends of a stretch to at most `largest` (m) inside it.
-fn graded(least: f64, largest: f64, length: f64) -> Vec<f64> {
-    let (least, largest) = (least / length, largest / length);
-    let reach = ((largest - least) / GROWTH).clamp(0.0, 0.5);
-    let half = (1.0 + GROWTH * reach / least).ln() / GROWTH + (0.5 - reach) / largest;
-    fractions(least, largest, (2.0 * half).ceil() as usize)
+    #[test]
+    fn shapes_and_their_bending_are_those_of_the_same_parabolas() {
+        // 3l ∫φₐ'φ_b' by differences of the shapes at the Gauss points, exact for products of slopes.
+        let slope = |x: f64| {
+            let (a, b) = (shapes(x - 0.5), shapes(x + 0.5));
+            [0, 1, 2].map(|i| b[i] - a[i])
+        };
+        for a in 0..3 {
+            for b in 0..3 {
+                let sum: f64 = GAUSS.iter().map(|&(x, w)| 3.0 * w * slope(x)[a] * slope(x)[b]).sum();
+                assert!((sum - BEND[a][b]).abs() < 1e-12, "{a} {b}: {sum}");
+            }
+        }
+    }
 }

@@ -9,6 +9,8 @@ mod answer;
 pub mod assembly;
 mod bar;
 mod beam;
+mod beam_answer;
+mod beam_mesh;
 pub mod contact_report;
 pub mod contact_set;
 pub mod contact_start;
