@@ -8,7 +8,7 @@ use cable_core::{Load, Model, Settings, Simulation};
 use serde_json::Value;
 
 fn solve(scene: &Scene, model: Model, segments: usize) -> CableSolution {
-    let settings = Settings { segments: Some(segments), tolerance: 1e-9 };
+    let settings = Settings { segments: Some(segments), tolerance: 1e-9, ..Settings::default() };
     let mut sim = Simulation::with_settings(scene.clone(), model, settings).unwrap();
     sim.settle().unwrap_or_else(|e| panic!("{} with {segments}: {e}", scene.name)).cables.remove(0)
 }

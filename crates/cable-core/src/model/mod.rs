@@ -15,6 +15,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use self::mass_spring::Stepping;
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::problem::Problem;
@@ -71,11 +72,14 @@ pub struct Settings {
     pub tolerance: f64,
     /// Elements per cable; overrides the scene's `segments`.
     pub segments: Option<usize>,
+    /// How `mass-spring` takes dynamic steps.
+    #[serde(default)]
+    pub stepping: Stepping,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { tolerance: 1e-3, segments: None }
+        Self { tolerance: 1e-3, segments: None, stepping: Stepping::Auto }
     }
 }
 

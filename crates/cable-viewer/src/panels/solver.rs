@@ -61,7 +61,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 fn mesh(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let Settings { tolerance, segments } = state.settings;
+    let Settings { tolerance, segments, .. } = state.settings;
     let usual = Settings::default();
     let origin = Some((usual.tolerance, "the default".to_owned()));
     let known = Known { value: tolerance, origin, ..Known::default() };

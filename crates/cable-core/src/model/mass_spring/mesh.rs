@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::pulley::{NONE, Pulley};
-use super::{MassSpringModel, Stepping};
+use super::MassSpringModel;
 use crate::math::Vec2;
 use crate::model::Settings;
 use crate::problem::Problem;
@@ -98,7 +98,7 @@ impl MassSpringModel {
             anchors: Vec::new(),
             warnings: Vec::new(),
             settings,
-            stepping: Stepping::Auto,
+            driven: 0.0,
             problem,
             s,
             rest,

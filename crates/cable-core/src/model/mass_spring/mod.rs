@@ -10,6 +10,8 @@
 
 mod answer;
 mod bending;
+mod calm;
+mod chain;
 mod collide;
 mod creep;
 mod mesh;
@@ -19,6 +21,7 @@ mod remesh;
 mod rest;
 mod rest_contact;
 mod step;
+mod stepping;
 
 use std::sync::Arc;
 
@@ -32,8 +35,8 @@ use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost, Warning};
 use crate::state::State;
-pub use preview::Stepping;
 use pulley::Pulley;
+pub use stepping::Stepping;
 
 /// The model's mechanics of one cable.
 #[derive(Clone, Debug)]
@@ -87,7 +90,8 @@ pub struct MassSpringModel {
     anchors: Vec<Anchor>,
     warnings: Vec<Warning>,
     settings: Settings,
-    stepping: Stepping,
+    /// Fastest any support has moved, m/s.
+    driven: f64,
 }
 
 /// Where friction holds the cable: the material point, m, and where it lies.
@@ -147,13 +151,6 @@ impl MassSpringModel {
         Ok(Self::mesh(problem, settings, &slid))
     }
 
-    /// The same with dynamic steps taken in a given way.
-    #[must_use]
-    pub fn stepping(mut self, stepping: Stepping) -> Self {
-        self.stepping = stepping;
-        self
-    }
-
     /// Takes the first shape from the corrected bars, if they find one.
     fn lay(&mut self) {
         let settings = Settings { segments: Some(self.rest.len()), ..self.settings };
@@ -200,7 +197,7 @@ impl MassSpringModel {
             next.v[n] = speeds.position_at(next.s[n] * scale)?;
         }
         next.time_s = shape.time_s;
-        next.stepping = self.stepping;
+        next.driven = self.driven;
         next.drag.clone_from(&self.drag);
         next.followers.clone_from(&self.followers);
         next.place_pulleys();

@@ -265,11 +265,11 @@ impl MassSpringModel {
 
     /// The sliding of one sub-step: friction stops it within the capstan's cone.
     pub(super) fn slide(&mut self, h: f64) {
-        let least = self.least_span();
+        let (least, thermal) = (self.least_span(), self.problem.thermal_stretch);
         for k in 0..self.pulleys.len() {
             let p = &mut self.pulleys[k];
             let push = p.rate + p.drive * h / p.mass;
-            let most = p.grip() * (p.tension[0] + p.tension[1]) * h / p.mass;
+            let most = thermal * p.grip() * (p.tension[0] + p.tension[1]) * h / p.mass;
             p.rate = if push.abs() <= most { 0.0 } else { push - most * push.signum() };
             // What is joined to the cable does not run through.
             let (i, rate) = (p.node, p.rate);

@@ -53,9 +53,12 @@ impl MassSpringModel {
 
     fn take_out(&mut self, k: usize, n: usize) -> bool {
         let i = self.pulleys[k].node;
+        if !self.plain(n) {
+            return false;
+        }
         let far = 2 * n - i;
         // Two wheels keep a node between them.
-        if !self.plain(n) || self.pulley_at[far] != NONE {
+        if self.pulley_at[far] != NONE {
             return false;
         }
         let (inner, outer) = if n < i { (n, n - 1) } else { (i, n) };

@@ -113,8 +113,9 @@ impl MassSpringModel {
         let mut count = 0;
         let mut left = dt_s;
         let mut shortest = f64::INFINITY;
+        let mut trouble = self.no_trouble();
         while left > 0.0 {
-            let fastest = self.v.iter().map(Vec2::norm).fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a });
+            let fastest = self.calm(&mut trouble);
             let travel = TRAVEL * self.problem.radius / fastest;
             let limit = if !self.problem.world.is_empty() && travel < stable { travel } else { stable };
             let h = left / (left / limit).ceil();
@@ -156,6 +157,8 @@ impl MassSpringModel {
             count += 1;
             shortest = if h < shortest { h } else { shortest };
         }
+        self.calm(&mut trouble);
+        self.warn_of(&trouble);
         self.cost.iterations = count;
         self.cost.inner_step_s = shortest;
         self.cost.residual_n = 0.0;

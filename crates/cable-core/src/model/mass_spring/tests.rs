@@ -273,7 +273,8 @@ fn a_preview_rests_where_the_springs_rest() {
     let mut settled = mechanics(&scene);
     settled.settle().unwrap();
     let rest = settled.solution();
-    let mut m = settled.clone().stepping(Stepping::Preview);
+    let mut m = settled.clone();
+    m.settings.stepping = Stepping::Preview;
     for _ in 0..120 {
         assert!(m.advance(1.0 / 60.0, Inertia::Dynamic).unwrap().warnings.is_empty());
     }
@@ -287,7 +288,8 @@ fn a_preview_rests_where_the_springs_rest() {
 
 #[test]
 fn a_preview_that_runs_away_is_cut_and_said() {
-    let mut m = mechanics(&swinging(0.0, 1e8)).stepping(Stepping::Preview);
+    let mut m = mechanics(&swinging(0.0, 1e8));
+    m.settings.stepping = Stepping::Preview;
     m.v.fill(crate::math::Vec2::new(0.0, 1e4));
     let report = m.advance(0.02, Inertia::Dynamic).unwrap();
     let said: Vec<_> = report.warnings.iter().map(|w| w.message.as_str()).collect();
