@@ -94,7 +94,8 @@ fn step(c: &mut Criterion) {
 fn preview(c: &mut Criterion) {
     let mut group = c.benchmark_group("preview of a stiff cable, one simulated second");
     group.sample_size(10).measurement_time(Duration::from_secs(2)).warm_up_time(Duration::from_millis(500));
-    for (id, mut scene) in [("hanging-span", catalog::hanging_span()), ("pulley-waypoints", catalog::pulley_waypoints())]
+    for (id, mut scene) in
+        [("hanging-span", catalog::hanging_span()), ("pulley-waypoints", catalog::pulley_waypoints())]
     {
         scene.cables[0].axial_stiffness_n = 1e9;
         scene.cables[0].bending_stiffness_n_m2 = 0.0;

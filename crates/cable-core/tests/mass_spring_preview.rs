@@ -43,8 +43,11 @@ fn arc(sim: &Simulation) -> f64 {
 
 /// Two weights (kg) at equal height over a pulley, from rest. So stiff that nothing bounces when they are let go.
 fn weights([m1, m2]: [f64; 2], density: f64, (radius, friction): (f64, f64), segments: usize) -> Scene {
-    let mut scene =
-        cable([10.0, density, 1e10], segments, vec![lump("lighter", m1), pulley(radius, friction), lump("heavier", m2)]);
+    let mut scene = cable(
+        [10.0, density, 1e10],
+        segments,
+        vec![lump("lighter", m1), pulley(radius, friction), lump("heavier", m2)],
+    );
     let deep = 0.5 * std::f64::consts::PI * radius - 5.0;
     let round = (0..=2000).filter(|_| radius > 0.0).map(|k| f64::from(k) / 2000.0 * std::f64::consts::PI);
     let mut route = vec![[-radius, deep]];

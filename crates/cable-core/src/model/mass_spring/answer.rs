@@ -28,8 +28,13 @@ impl MassSpringModel {
         }
     }
 
-    fn element_force(&self, e: usize) -> Vec2 {
-        self.reach(e).direction * self.tension[e]
+    pub(super) fn element_force(&self, e: usize) -> Vec2 {
+        if self.at_pulley(e) {
+            return self.reach(e).direction * self.tension[e];
+        }
+        let d = self.x[e + 1] - self.x[e];
+        let length = d.norm();
+        if length > 0.0 { d * (self.tension[e] / length) } else { Vec2::zeros() }
     }
 
     /// The nodes; a pulley is two, where the cable arrives and leaves, and a wheel some more in between.

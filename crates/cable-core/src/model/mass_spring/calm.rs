@@ -77,13 +77,8 @@ impl MassSpringModel {
             // What flies freely may fall as fast as it likes; only its own motion counts.
             energy -= 0.5 * momentum.norm_squared() / mass;
         }
-        let found = |value, limit| Excess {
-            value,
-            limit,
-            time_s: self.time_s,
-            arc_length_m: self.s[node],
-            at: self.x[node],
-        };
+        let found =
+            |value, limit| Excess { value, limit, time_s: self.time_s, arc_length_m: self.s[node], at: self.x[node] };
         let mut speed = f64::sqrt(fastest);
         let brake = energy > limit;
         if brake && trouble.energy.is_none_or(|e| energy > e.value) {

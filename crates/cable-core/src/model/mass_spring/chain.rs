@@ -86,13 +86,19 @@ impl MassSpringModel {
             self.pulleys[k].rate = by / h;
         }
         let per_square = -1.0 / (h * h);
-        for e in 0..b.lambda.len() {
-            let lambda = if b.lambda[e] > 0.0 { 0.0 } else { b.lambda[e] };
-            b.lambda[e] = lambda;
-            self.tension[e] = lambda * per_square;
-            let push = b.direction[e] * lambda;
-            b.x[e] -= push * b.inverse[e];
-            b.x[e + 1] += push * b.inverse[e + 1];
+        let mut before = Vec2::zeros();
+        for ((((lambda, tension), direction), x), inverse) in
+            b.lambda.iter().zip(&mut self.tension).zip(&b.direction).zip(&mut b.x).zip(&b.inverse)
+        {
+            // NaN goes through to where it is found.
+            let lambda = if *lambda > 0.0 { 0.0 } else { *lambda };
+            *tension = lambda * per_square;
+            let push = direction * lambda;
+            *x += (before - push) * *inverse;
+            before = push;
+        }
+        if let (Some(x), Some(inverse)) = (b.x.last_mut(), b.inverse.last()) {
+            *x += before * *inverse;
         }
     }
 
@@ -100,26 +106,31 @@ impl MassSpringModel {
     fn chain_rows(&mut self, h: f64, b: &mut Chain) {
         let elements = self.rest.len();
         let compliance = 1.0 / (self.problem.axial_stiffness * h * h);
-        b.direction.clear();
-        b.gap.clear();
         b.active.clear();
         b.active.resize(elements, true);
-        b.diagonal.clear();
-        b.upper.clear();
-        for e in 0..elements {
-            let (direction, length) = if self.at_pulley(e) {
-                let r = self.reach_at(e, &b.x);
-                (r.direction, r.length)
-            } else {
-                let d = b.x[e + 1] - b.x[e];
-                let length = d.norm();
-                (if length > 0.0 { d / length } else { Vec2::zeros() }, length)
-            };
-            let before = b.direction.last().copied().unwrap_or_default();
-            b.upper.push(-b.inverse[e] * before.dot(&direction));
-            b.direction.push(direction);
-            b.gap.push(length - self.rest[e]);
-            b.diagonal.push(b.inverse[e] + b.inverse[e + 1] + self.rest[e] * compliance);
+        for list in [&mut b.gap, &mut b.diagonal, &mut b.upper] {
+            list.resize(elements, 0.0);
+        }
+        b.direction.resize(elements, Vec2::zeros());
+        let mut before = Vec2::zeros();
+        let rows = b.x.windows(2).zip(b.inverse.windows(2)).zip(&self.rest).zip(b.direction.iter_mut());
+        let rows = rows.zip(b.gap.iter_mut()).zip(b.diagonal.iter_mut()).zip(b.upper.iter_mut());
+        for ((((((x, inverse), rest), direction), gap), diagonal), upper) in rows {
+            let d = x[1] - x[0];
+            let length = d.norm();
+            *direction = if length > 0.0 { d * length.recip() } else { Vec2::zeros() };
+            *upper = -inverse[0] * before.dot(direction);
+            *gap = length - rest;
+            *diagonal = inverse[0] + inverse[1] + rest * compliance;
+            before = *direction;
+        }
+        for p in &self.pulleys {
+            for e in [p.node - 1, p.node] {
+                b.direction[e] = self.reach_at(e, &b.x).direction;
+            }
+            for i in [p.node - 1, p.node + 1].into_iter().filter(|&i| i > 0 && i < elements) {
+                b.upper[i] = -b.inverse[i] * b.direction[i - 1].dot(&b.direction[i]);
+            }
         }
         b.lower.clone_from(&b.upper);
         b.grip.clear();
@@ -215,34 +226,24 @@ impl Chain {
     /// columns sum to more than zero as g < 1).
     fn solve(&mut self) {
         let elements = self.diagonal.len();
-        self.pivot.clear();
-        self.lambda.clear();
-        let (mut pivot, mut right, mut joined) = (1.0, 0.0, false);
-        for e in 0..elements {
-            if !self.active[e] {
-                (pivot, right, joined) = (1.0, 0.0, false);
-            } else {
-                let (mut d, mut r) = (self.diagonal[e], -self.gap[e]);
-                if joined {
-                    let factor = self.lower[e] / pivot;
-                    d -= factor * self.upper[e];
-                    r -= factor * right;
-                }
-                (pivot, right, joined) = (d, r, true);
-            }
-            self.pivot.push(pivot);
-            self.lambda.push(right);
+        self.pivot.resize(elements, 0.0);
+        self.lambda.resize(elements, 0.0);
+        // Those let go are 0, and so is what they pass on: 1/pivot = 0.
+        let (mut inverse, mut right) = (0.0, 0.0);
+        let rows = self.diagonal.iter().zip(&self.lower).zip(&self.upper).zip(&self.gap).zip(&self.active);
+        for (((((diagonal, lower), upper), gap), active), (pivot, lambda)) in
+            rows.zip(self.pivot.iter_mut().zip(&mut self.lambda))
+        {
+            let factor = lower * inverse;
+            (inverse, right) =
+                if *active { ((diagonal - factor * upper).recip(), -gap - factor * right) } else { (0.0, 0.0) };
+            (*pivot, *lambda) = (inverse, right);
         }
-        let mut after = 0.0;
-        for e in (0..elements).rev() {
-            // Those let go are 0, and so is what they pass on.
-            after = if self.active[e] {
-                let upper = self.upper.get(e + 1).copied().unwrap_or(0.0);
-                (self.lambda[e] - upper * after) / self.pivot[e]
-            } else {
-                0.0
-            };
-            self.lambda[e] = after;
+        let (mut after, mut next) = (0.0, 0.0);
+        for ((lambda, inverse), upper) in self.lambda.iter_mut().zip(&self.pivot).zip(&self.upper).rev() {
+            after = (*lambda - next * after) * inverse;
+            next = *upper;
+            *lambda = after;
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::pulley::{NONE, Pulley};
 use super::MassSpringModel;
+use super::pulley::{NONE, Pulley};
 use crate::math::Vec2;
 use crate::model::Settings;
 use crate::problem::Problem;

@@ -14,6 +14,7 @@ use super::MassSpringModel;
 use super::chain::Chain;
 use super::stepping::{MOST_SUB_STEPS, Stepping};
 use crate::error::SolveError;
+use crate::math::Vec2;
 use crate::solution::{Warning, WarningKind};
 
 /// Longest sub-step, s. Longer damps motion and softens contacts visibly, shorter costs in proportion.
@@ -66,10 +67,11 @@ impl MassSpringModel {
     /// ω² of the fastest swing across the cable, 1/s², by Gershgorin's circles: 2(T_b/l_b + T_a/l_a)/m at a node.
     fn sway(&self) -> f64 {
         let (mut fastest, mut before) = (0.0, 0.0);
-        for i in 0..self.x.len() {
-            let after = if i < self.rest.len() { self.tension[i] / self.rest[i] } else { 0.0 };
-            let square = 2.0 * (before + after) / self.mass[i];
-            if square > fastest && !self.held[i] {
+        let held = self.held.iter().zip(&self.mass);
+        let after = self.tension.iter().zip(&self.rest).map(|(tension, rest)| tension / rest).chain([0.0]);
+        for ((held, mass), after) in held.zip(after) {
+            let square = 2.0 * (before + after) / mass;
+            if square > fastest && !held {
                 fastest = square;
             }
             before = after;
@@ -87,24 +89,26 @@ impl MassSpringModel {
         self.pull_of_loads();
         self.predict(h, chain);
         self.project(h, chain);
-        for i in 0..self.x.len() {
-            if !self.held[i] {
-                self.v[i] = (chain.x[i] - self.x[i]) / h;
+        let per_step = h.recip();
+        for (((v, x), to), held) in self.v.iter_mut().zip(&self.x).zip(&chain.x).zip(&self.held) {
+            if !held {
+                *v = (to - x) * per_step;
             }
         }
     }
 
     /// Where nodes and material go without springs.
     fn predict(&mut self, h: f64, chain: &mut Chain) {
-        chain.x.clear();
-        chain.inverse.clear();
-        for i in 0..self.x.len() {
-            let inverse = if self.held[i] { 0.0 } else { 1.0 / self.mass[i] };
-            if !self.held[i] {
-                self.v[i] += self.f[i] * (h * inverse);
+        let count = self.x.len();
+        chain.x.resize(count, Vec2::zeros());
+        chain.inverse.resize(count, 0.0);
+        let nodes = self.x.iter().zip(&mut self.v).zip(&self.f).zip(&self.mass).zip(&self.held);
+        for (((((x, v), f), mass), held), (to, inverse)) in nodes.zip(chain.x.iter_mut().zip(&mut chain.inverse)) {
+            *inverse = if *held { 0.0 } else { mass.recip() };
+            if !held {
+                *v += f * (h * *inverse);
             }
-            chain.inverse.push(inverse);
-            chain.x.push(self.x[i] + self.v[i] * h);
+            *to = x + *v * h;
         }
         let body = self.problem.body_force(self.time_s);
         for k in 0..self.pulleys.len() {

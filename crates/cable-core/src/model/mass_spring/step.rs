@@ -45,7 +45,7 @@ impl MassSpringModel {
     pub(super) fn read_forces(&mut self) {
         self.pull_of_loads();
         for e in 0..self.rest.len() {
-            let pull = self.reach(e).direction * self.tension[e];
+            let pull = self.element_force(e);
             self.f[e] += pull;
             self.f[e + 1] -= pull;
         }
@@ -63,11 +63,11 @@ impl MassSpringModel {
     pub(super) fn pull_of_loads(&mut self) {
         let p = &self.problem;
         let body = p.body_force(self.time_s);
-        self.f.fill(Vec2::zeros());
-        for (e, share) in self.share.iter().enumerate() {
+        let mut before = Vec2::zeros();
+        for (f, share) in self.f.iter_mut().zip(self.share.iter().copied().chain([0.0])) {
             let half = body * (0.5 * share);
-            self.f[e] += half;
-            self.f[e + 1] += half;
+            *f = before + half;
+            before = half;
         }
         for k in &self.pulleys {
             let i = k.node;
