@@ -1,6 +1,8 @@
 //! The JSON object of an answer: SI units in the key names, never a number that is not finite.
 
-use cable_core::solution::{ContactReport, ContactState, Node, Solution, SupportReaction, Warning};
+use cable_core::solution::{
+    Bend, CableSolution, ContactReport, ContactState, Node, Pressure, Solution, SupportReaction, Warning,
+};
 use serde::Serialize;
 
 /// What `solve --json` prints, and `run --json` for each time.
@@ -18,10 +20,23 @@ pub struct Answer<'a> {
     pub error_estimate: Option<f64>,
     pub max_tension_n: f64,
     pub max_tension_arc_length_m: f64,
+    /// The sharpest bend of all cables; null where all are nearly straight.
+    pub tightest_bend: Option<OfCable<'a, Bend>>,
+    /// Where a cable is pressed hardest against what leads it; null where nothing leads one round.
+    pub sidewall_pressure: Option<OfCable<'a, Pressure>>,
     pub supports: Vec<Support<'a>>,
     pub nodes: Vec<NodeEntry<'a>>,
     pub contacts: Vec<Contact<'a>>,
     pub warnings: &'a [Warning],
+}
+
+/// Something of one cable, which is named where there are several.
+#[derive(Debug, Serialize)]
+pub struct OfCable<'a, T> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cable: Option<&'a str>,
+    #[serde(flatten)]
+    pub of: T,
 }
 
 #[derive(Debug, Serialize)]
@@ -73,10 +88,13 @@ pub struct NoAnswer<'a> {
 }
 
 /// The answer of a solution, or the name of the number in it that is not finite.
-pub fn answer(s: &Solution, wall_time_s: f64, time_s: Option<f64>) -> Result<Answer<'_>, String> {
+pub fn answer<'a>(s: &'a Solution, wall_time_s: f64, time_s: Option<f64>) -> Result<Answer<'a>, String> {
     check_finite(s)?;
     let top = s.max_tension();
     let several = s.cables.len() > 1;
+    let name = |c: &'a CableSolution| several.then_some(c.name.as_str());
+    let bends = s.cables.iter().filter_map(|c| c.tightest_bend.map(|of| OfCable { cable: name(c), of }));
+    let pressures = s.cables.iter().filter_map(|c| c.sidewall_pressure.map(|of| OfCable { cable: name(c), of }));
     let mut out = Answer {
         time_s,
         model: s.model.name(),
@@ -88,13 +106,15 @@ pub fn answer(s: &Solution, wall_time_s: f64, time_s: Option<f64>) -> Result<Ans
         error_estimate: s.cables.iter().filter_map(|c| c.error_estimate).reduce(f64::max),
         max_tension_n: top.tension_n,
         max_tension_arc_length_m: top.arc_length_m,
+        tightest_bend: bends.reduce(|a, b| if b.of.radius_m < a.of.radius_m { b } else { a }),
+        sidewall_pressure: pressures.reduce(|a, b| if b.of.pressure_n_per_m > a.of.pressure_n_per_m { b } else { a }),
         supports: Vec::new(),
         nodes: Vec::with_capacity(s.cables.iter().map(|c| c.nodes.len()).sum()),
         contacts: Vec::new(),
         warnings: &s.warnings,
     };
     for c in &s.cables {
-        let cable = several.then_some(c.name.as_str());
+        let cable = name(c);
         out.supports.extend(c.supports.iter().map(|support| Support { cable, support }));
         out.nodes.extend(c.nodes.iter().map(|n| node(cable, n)));
         out.contacts.extend(c.contacts.iter().map(|k| contact(cable, k)));
@@ -151,6 +171,12 @@ fn check_finite(s: &Solution) -> Result<(), String> {
             if !all(&[k.x_m, k.y_m, k.arc_length_m]) || !all(&forces) {
                 return Err(format!("a contact of cable `{}` with `{}`", c.name, k.obstacle));
             }
+        }
+        let bend = c.tightest_bend.unwrap_or_default();
+        let pressure = c.sidewall_pressure.unwrap_or_default();
+        let values = [bend.radius_m, bend.arc_length_m, bend.x_m, bend.y_m];
+        if !all(&values) || !all(&[pressure.pressure_n_per_m, pressure.arc_length_m, pressure.x_m, pressure.y_m]) {
+            return Err(format!("a bend of cable `{}`", c.name));
         }
         if c.error_estimate.is_some_and(|e| !e.is_finite()) {
             return Err(format!("the error estimate of cable `{}`", c.name));

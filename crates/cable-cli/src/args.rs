@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use cable_core::Model;
+use cable_core::model::mass_spring::Stepping;
 use clap::{Args, Parser, Subcommand};
 
 #[derive(Debug, Parser)]
@@ -66,6 +67,9 @@ pub struct RunArguments {
     /// Without inertia: supports move infinitely slowly, friction remembers
     #[arg(long)]
     pub quasi_static: bool,
+    /// How mass-spring steps: auto, explicit or preview
+    #[arg(long, default_value = "auto", value_parser = stepping)]
+    pub stepping: Stepping,
     /// Folder for scene.toml, history.csv, nodes.csv and events.csv; those of an earlier run there are replaced
     #[arg(long)]
     pub out: PathBuf,
@@ -73,6 +77,10 @@ pub struct RunArguments {
 
 fn model(text: &str) -> Result<Model, String> {
     Model::from_name(text).ok_or_else(|| "the models are auto, catenary, fem and mass-spring".to_owned())
+}
+
+fn stepping(text: &str) -> Result<Stepping, String> {
+    Stepping::from_name(text).ok_or_else(|| "the ways are auto, explicit and preview".to_owned())
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

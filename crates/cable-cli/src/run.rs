@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
-use cable_core::solution::{MaxTension, Solution};
-use cable_core::{Simulation, SolveError, files};
+use cable_core::solution::{MaxTension, Solution, WarningKind};
+use cable_core::{Settings, Simulation, SolveError, files};
 
 use crate::Done;
 use crate::answer::answer;
@@ -25,6 +25,7 @@ struct Outputs<'a> {
     progress: Progress,
     peak: MaxTension,
     peak_time_s: f64,
+    begun: Begun,
 }
 
 impl Outputs<'_> {
@@ -35,6 +36,7 @@ impl Outputs<'_> {
             self.printer.json(&printable)?;
             self.printer.flush()?;
         }
+        self.begun.look(solution);
         let top = solution.max_tension();
         if solution.time_s == 0.0 || top.tension_n > self.peak.tension_n {
             (self.peak, self.peak_time_s) = (top, solution.time_s);
@@ -49,6 +51,45 @@ impl Outputs<'_> {
     }
 }
 
+/// Most warnings of a run that are printed: all of them are in its `events.csv`.
+const MOST_PRINTED: usize = 20;
+
+/// The warnings that began in a run.
+#[derive(Default)]
+struct Begun {
+    count: usize,
+    lines: Vec<String>,
+    standing: Vec<(WarningKind, String)>,
+}
+
+impl Begun {
+    fn look(&mut self, solution: &Solution) {
+        for w in &solution.warnings {
+            if self.standing.iter().any(|(kind, cable)| *kind == w.kind && *cable == w.cable) {
+                continue;
+            }
+            self.count += 1;
+            if self.lines.len() < MOST_PRINTED {
+                let time_s = w.since_s.unwrap_or(solution.time_s);
+                self.lines.push(format!("  {time_s:9.4} s  {:17}  {}", w.kind.name(), w.message));
+            }
+        }
+        self.standing = solution.warnings.iter().map(|w| (w.kind, w.cable.clone())).collect();
+    }
+
+    /// A title and a line a warning.
+    fn lines(&self) -> Vec<String> {
+        let mut out = self.lines.clone();
+        if !out.is_empty() {
+            out.insert(0, "\nWarnings that began".to_owned());
+        }
+        if self.count > out.len() {
+            out.push(format!("  and {} more, see events.csv", self.count - self.lines.len()));
+        }
+        out
+    }
+}
+
 /// Follows a scene over time.
 pub fn run(a: &RunArguments) -> Done {
     if a.duration_s / a.every > MAX_OUTPUTS {
@@ -60,9 +101,9 @@ pub fn run(a: &RunArguments) -> Done {
     let scene = read_scene(&a.common.scene)?;
     let inertia = if a.quasi_static { Inertia::QuasiStatic } else { Inertia::Dynamic };
     let began = Instant::now();
-    let mut simulation =
-        Simulation::for_question(scene.clone(), a.common.model, settings(&a.common), Question::History(inertia))
-            .map_err(|e| Failure::from_core(&a.common.scene, e))?;
+    let settings = Settings { stepping: a.stepping, ..settings(&a.common) };
+    let mut simulation = Simulation::for_question(scene.clone(), a.common.model, settings, Question::History(inertia))
+        .map_err(|e| Failure::from_core(&a.common.scene, e))?;
     let folder = files::create_run(&a.out, &scene).map_err(Failure::File)?;
     let mut outputs = Outputs {
         arguments: a,
@@ -71,6 +112,7 @@ pub fn run(a: &RunArguments) -> Done {
         progress: Progress::new(),
         peak: MaxTension::default(),
         peak_time_s: 0.0,
+        begun: Begun::default(),
     };
     let walked = walk(&mut simulation, inertia, &mut outputs, began);
     let closed = outputs.close();
@@ -84,6 +126,9 @@ pub fn run(a: &RunArguments) -> Done {
             "\nGreatest tension of the run  {:.6} N at {t:.4} s, at {:.4} m",
             peak.tension_n, peak.arc_length_m
         ))?;
+        for line in outputs.begun.lines() {
+            out.line(&line)?;
+        }
         out.line(&format!("Written to {}", a.out.display()))?;
         out.flush()?;
     }

@@ -13,6 +13,16 @@ pub fn table(s: &Solution) -> String {
     let name = s.cables.get(top.cable).map_or("", |c| &c.name);
     let _ = writeln!(t, "Greatest tension  {:.6} N, at {:.4} m of `{name}`", top.tension_n, top.arc_length_m);
     for c in &s.cables {
+        if let Some(b) = c.tightest_bend {
+            let place = at(b.arc_length_m, b.x_m, b.y_m, &c.name);
+            let _ = writeln!(t, "Tightest bend     radius {:.4} m, {place}", b.radius_m);
+        }
+        if let Some(p) = c.sidewall_pressure {
+            let place = at(p.arc_length_m, p.x_m, p.y_m, &c.name);
+            let _ = writeln!(t, "Sidewall pressure {:.3} N/m, {place}", p.pressure_n_per_m);
+        }
+    }
+    for c in &s.cables {
         if let Some(e) = c.error_estimate {
             let _ = writeln!(t, "Estimated error   {:.1e} of the greatest tension of `{}`", e, c.name);
         }
@@ -26,6 +36,11 @@ pub fn table(s: &Solution) -> String {
         let _ = writeln!(t, "\nWarning: {}", w.message);
     }
     t
+}
+
+/// A place on a cable and in the plane.
+fn at(arc_length_m: f64, x_m: f64, y_m: f64, cable: &str) -> String {
+    format!("at {arc_length_m:.4} m of `{cable}` ({x_m:.4} m, {y_m:.4} m)")
 }
 
 fn supports(t: &mut String, c: &cable_core::solution::CableSolution) {

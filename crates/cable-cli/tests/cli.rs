@@ -30,12 +30,13 @@ fn arguments_that_mean_nothing_exit_2() {
     let file = file.to_str().unwrap();
     let out = folder.path().join("out");
     let out = out.to_str().unwrap();
-    let bad: [&[&str]; 10] = [
+    let bad: [&[&str]; 11] = [
         &[],
         &["dance"],
         &["solve"],
         &["solve", file, "--model", "finite"],
         &["solve", file, "--tolerance", "NaN"],
+        &["run", file, "--for", "1s", "--stepping", "quickly", "--out", out],
         &["run", file, "--for", "-1s", "--out", out],
         &["run", file, "--for", "ten", "--out", out],
         &["run", file, "--for", "1s", "--every", "0s", "--out", out],
@@ -128,6 +129,8 @@ fn solve_prints_one_object_with_the_stated_keys() {
         "error_estimate",
         "max_tension_n",
         "max_tension_arc_length_m",
+        "tightest_bend",
+        "sidewall_pressure",
         "supports",
         "nodes",
         "contacts",
@@ -198,4 +201,80 @@ fn a_reader_that_leaves_is_no_error() {
     let o = child.wait_with_output().unwrap();
     assert_eq!(o.status.code(), Some(0), "{}", text(&o.stderr));
     assert!(o.stderr.is_empty());
+}
+
+/// A flexible cable drawn over a pipe of 0.2 m: bent to the pipe's and its own radius, pressed with tension over radius.
+#[test]
+fn solve_tells_the_tightest_bend_and_the_highest_pressure() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("post.toml");
+    let scene = catalog::round_post();
+    std::fs::write(&file, scene.to_toml()).unwrap();
+    let path = file.to_str().unwrap();
+    let o = cable(&["solve", path, "--json"]);
+    assert_eq!(o.status.code(), Some(0), "{}", text(&o.stderr));
+    let v: Value = serde_json::from_slice(&o.stdout).unwrap();
+    let cable_radius = 0.5 * scene.cables[0].diameter_m;
+    let cable_core::scene::Shape::Circle { radius_m, .. } = scene.obstacles[0].shape else { panic!("no pipe") };
+    let radius = radius_m + cable_radius;
+    let bend = v["tightest_bend"]["radius_m"].as_f64().unwrap();
+    assert!((bend / radius - 1.0).abs() < 0.02, "{bend} m for {radius} m");
+    // Tension over radius at the place it names, which is on the pipe.
+    let p = &v["sidewall_pressure"];
+    let number = |v: &Value, key: &str| v[key].as_f64().unwrap();
+    let tension = (v["nodes"].as_array().unwrap().iter())
+        .min_by(|a, b| {
+            let off = |n: &Value| (number(n, "arc_length_m") - number(p, "arc_length_m")).abs();
+            off(a).total_cmp(&off(b))
+        })
+        .map(|n| number(n, "tension_n"))
+        .unwrap();
+    let pressure = number(p, "pressure_n_per_m");
+    assert!((pressure * radius / tension - 1.0).abs() < 0.02, "{pressure} N/m for {tension} N on {radius} m");
+    assert!(pressure <= number(&v, "max_tension_n") / radius * (1.0 + 1e-9));
+    let o = cable(&["solve", path]);
+    let said = text(&o.stdout);
+    for line in
+        [format!("Tightest bend     radius {bend:.4} m, at"), format!("Sidewall pressure {pressure:.3} N/m, at")]
+    {
+        assert!(said.contains(&line), "{line}\n{said}");
+    }
+}
+
+/// A run that says a limit is exceeded says so once in its text, in its JSON with its place, and in its events.
+#[test]
+fn run_tells_the_warnings_that_begin() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut scene = catalog::hanging_span();
+    scene.cables[0].service_tension_n = 1.0;
+    // Too stiff for explicit steps: previewed, and said.
+    scene.cables[0].axial_stiffness_n = 1e9;
+    scene.cables[0].bending_stiffness_n_m2 = 0.0;
+    scene.cables[0].segments = Some(40);
+    let file = folder.path().join("span.toml");
+    std::fs::write(&file, scene.to_toml()).unwrap();
+    let run = |out: &str, more: &[&str]| {
+        let out = folder.path().join(out);
+        let mut arguments = vec!["run", file.to_str().unwrap(), "--for", "0.2s", "--model", "mass-spring", "--out"];
+        arguments.push(out.to_str().unwrap());
+        arguments.extend(more);
+        let o = cable(&arguments);
+        assert_eq!(o.status.code(), Some(0), "{}", text(&o.stderr));
+        let events = std::fs::File::open(out.join("events.csv")).unwrap();
+        (text(&o.stdout), cable_core::record::read_events(events).unwrap())
+    };
+    let (said, events) = run("text", &[]);
+    for kind in ["service-tension", "stabilised"] {
+        let lines = said.split_once("Warnings that began").unwrap().1.lines().filter(|l| l.contains(kind)).count();
+        assert_eq!(lines, 1, "{kind}: {said}");
+        assert_eq!(events.iter().filter(|e| e.kind.name() == kind).count(), 1, "{kind}");
+    }
+    let (said, _) = run("json", &["--json"]);
+    let last: Value = serde_json::from_str(said.lines().last().unwrap()).unwrap();
+    let warnings = last["warnings"].as_array().unwrap();
+    assert!(warnings.iter().any(|w| w["kind"] == "service-tension" && w["at_m"].is_array()), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w["kind"] == "stabilised"), "{warnings:?}");
+    // Asked for, a preview is no surprise.
+    let (_, events) = run("asked", &["--stepping", "preview"]);
+    assert!(events.iter().all(|e| e.kind.name() != "stabilised"), "{events:?}");
 }

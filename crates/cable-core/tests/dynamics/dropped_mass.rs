@@ -9,9 +9,12 @@ use cable_core::scene::Support;
 
 use super::measure::{G, cable, ladder, lump, started};
 
-const MASS: f64 = 100.0;
-const LENGTH: f64 = 10.0;
-const EA: f64 = 2e4;
+/// kg.
+pub const MASS: f64 = 100.0;
+/// m.
+pub const LENGTH: f64 = 10.0;
+/// N.
+pub const EA: f64 = 2e4;
 /// Least time constant of material damping in the model, s.
 const DAMPING_TIME: f64 = 1e-3;
 

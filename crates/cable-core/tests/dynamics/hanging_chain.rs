@@ -6,10 +6,10 @@ use cable_core::scene::{Support, SupportKind};
 use super::measure::{G, bdf2_slows, cable, ladder, masses, ring, sampled, started};
 
 /// Zeros of J₀ (M. Abramowitz, I. Stegun, "Handbook of mathematical functions", 1964, table 9.5).
-const ZEROS: [f64; 3] = [2.404825557695773, 5.520078110286311, 8.653727912911013];
+pub const ZEROS: [f64; 3] = [2.404825557695773, 5.520078110286311, 8.653727912911013];
 
 /// J₀ by its power series: to 1e-13 up to 9.
-fn j0(x: f64) -> f64 {
+pub fn j0(x: f64) -> f64 {
     let (mut term, mut sum) = (1.0, 1.0);
     for k in 1..60 {
         term *= -0.25 * x * x / f64::from(k * k);

@@ -17,6 +17,7 @@ mod hanging_chain;
 mod irvine;
 mod linked_rods;
 mod lumped_mass;
+mod mass_spring;
 mod measure;
 mod pendulum;
 mod release;

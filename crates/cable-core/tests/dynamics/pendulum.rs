@@ -6,7 +6,7 @@ use cable_core::scene::Support;
 use super::measure::{G, bdf2_slows, cable, energy, ladder, lump, masses, ring, sampled, started};
 
 /// Period of a mathematical pendulum, s: 4√(L/g) K(sin θ₀/2) = 2π√(L/g)/agm(1, cos θ₀/2) (C. F. Gauss).
-fn period(length: f64, amplitude: f64) -> f64 {
+pub fn period(length: f64, amplitude: f64) -> f64 {
     let (mut a, mut b) = (1.0, (0.5 * amplitude).cos());
     while a - b > 1e-15 {
         (a, b) = (0.5 * (a + b), (a * b).sqrt());
@@ -58,7 +58,7 @@ fn a_large_swing_takes_gausss_period() {
 
 /// Lowest frequency of a mass M below a heavy cable, 1/s, and its shape at 400 even steps, by shooting (T y')' + ρω²y = 0, T = g(M + ρ(L − s)), from
 /// y(0) = 0 to T y' = Mω²y at L with Runge–Kutta 4 in (y, F = T y').
-fn heavy_pendulum(length: f64, density: f64, mass: f64) -> (f64, Vec<f64>) {
+pub fn heavy_pendulum(length: f64, density: f64, mass: f64) -> (f64, Vec<f64>) {
     let miss = |omega: f64| {
         let n = 400;
         let h = length / f64::from(n);

@@ -1,11 +1,12 @@
 //! A weightless taut string of N bars swings at ω = (2N/L) √(T/(λρ)) sin(kπ/2N), λ its stretch: L, ρ unstretched
 //! (J. L. Lagrange's loaded string). As N grows that is kπ/L √(T/(λρ)).
 
-use cable_core::scene::Support;
+use cable_core::scene::{Scene, Support};
 
 use super::measure::{Ring, bdf2_damps, bdf2_slows, cable, ladder, masses, ring, sampled, started};
 
-const LENGTH: f64 = 10.0;
+/// m.
+pub const LENGTH: f64 = 10.0;
 const STRETCH: f64 = 1.05;
 const EA: f64 = 1e5;
 const DENSITY: f64 = 10.0;
@@ -15,13 +16,19 @@ fn swing(k: usize, segments: usize, h: f64) -> Ring {
     heated_swing(0.0, k, segments, h)
 }
 
-/// The same of a string heated so that it is longer by `growth` at rest.
-fn heated_swing(growth: f64, k: usize, segments: usize, h: f64) -> Ring {
+/// The string, heated so that it is longer by `growth` at rest.
+pub fn scene(growth: f64, segments: usize) -> Scene {
     let supports = vec![Support::fixed("A", [0.0, 0.0]), Support::fixed("B", [STRETCH * LENGTH, 0.0])];
     let mut scene = cable([LENGTH, DENSITY, EA], segments, supports);
     scene.environment.gravity_m_per_s2 = 0.0;
     scene.environment.temperature_change_k = 100.0;
     scene.cables[0].thermal_expansion_per_k = growth / 100.0;
+    scene
+}
+
+/// The same of a string heated so that it is longer by `growth` at rest.
+fn heated_swing(growth: f64, k: usize, segments: usize, h: f64) -> Ring {
+    let scene = scene(growth, segments);
     let shape = |s: f64| (k as f64 * std::f64::consts::PI * s / LENGTH).sin();
     let mut sim = started(&scene, |state| {
         for (p, s) in state.position_m.iter_mut().zip(&state.arc_length_m) {
@@ -36,11 +43,13 @@ fn heated_swing(growth: f64, k: usize, segments: usize, h: f64) -> Ring {
     ring(&samples, h * every as f64)
 }
 
-fn continuous(k: usize) -> f64 {
+/// Of a continuous string, 1/s.
+pub fn continuous(k: usize) -> f64 {
     k as f64 * std::f64::consts::PI / LENGTH * (EA * (STRETCH - 1.0) / (STRETCH * DENSITY)).sqrt()
 }
 
-fn discrete(k: usize, segments: usize) -> f64 {
+/// Of as many bars, 1/s.
+pub fn discrete(k: usize, segments: usize) -> f64 {
     let part = k as f64 * std::f64::consts::PI / (2.0 * segments as f64);
     continuous(k) * part.sin() / part
 }
