@@ -31,6 +31,7 @@ pub mod math;
 pub mod model;
 pub mod problem;
 pub mod record;
+pub mod robot;
 pub mod scene;
 pub mod simulation;
 pub mod solution;

@@ -192,7 +192,7 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
             },
             at: match s.kind {
                 SupportKind::Load | SupportKind::Free => None,
-                SupportKind::Robot => scene.robot.as_ref().and_then(|r| r.hitch_m()).map(vec2),
+                SupportKind::Robot => scene.hitch_m().map(vec2),
                 _ => s.at_m.map(vec2),
             },
             motion: s.motion.clone(),

@@ -5,8 +5,9 @@ use crate::math::Vec2;
 use crate::model::auto::{self, Question};
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::problems;
-use crate::scene::Scene;
-use crate::solution::{CableSolution, Cost, Solution, Warning};
+use crate::robot::{self, Vehicle};
+use crate::scene::{Scene, SupportKind};
+use crate::solution::{CableSolution, Cost, Energy, Solution, Warning};
 use crate::state::State;
 use crate::strand::Strand;
 use crate::watch::{Bends, Subject, Watch};
@@ -22,9 +23,11 @@ pub struct Simulation {
     reason: String,
     cables: Vec<Strand>,
     start: Option<Vec<Strand>>,
+    vehicle: Option<Vehicle>,
     /// The answers of the cables at the present instant.
     answers: Vec<CableSolution>,
     watch: Watch,
+    energy: Energy,
     cost: Cost,
     warnings: Vec<Warning>,
 }
@@ -76,6 +79,7 @@ impl Simulation {
         let cables = cables?;
         let answers = cables.iter().map(Strand::answer).collect();
         Ok(Self {
+            vehicle: Vehicle::of(&scene),
             scene,
             model: chosen,
             reason,
@@ -83,6 +87,7 @@ impl Simulation {
             start: None,
             answers,
             watch: Watch::default(),
+            energy: Energy::default(),
             cost: Cost::default(),
             warnings: Vec::new(),
         })
@@ -96,6 +101,7 @@ impl Simulation {
             (answer.tightest_bend, answer.sidewall_pressure) = (bends.tightest(), bends.pressure);
         }
         let time_s = self.time_s();
+        self.energy = self.cables.iter().zip(&self.answers).map(|(c, a)| Energy::of(c.problem(), a)).sum();
         let subjects: Vec<Subject<'_>> = (self.cables.iter().zip(&self.answers))
             .map(|(c, answer)| Subject { problem: c.problem(), answer, breaks: c.breaks() })
             .collect();
@@ -166,10 +172,64 @@ impl Simulation {
     }
 
     fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
-        let done = self.each(|c| c.advance(dt_s, inertia));
+        let done = match self.vehicle.is_some() && dt_s > 0.0 && dt_s.is_finite() {
+            true => self.drive(dt_s, inertia),
+            false => self.each(|c| c.advance(dt_s, inertia)),
+        };
         // A cable alone that fails stays where it came: that is what there is to see then.
         self.look(true);
         done
+    }
+
+    /// Advances robot and cables in turn: the robot under the pull of the cables as they are, then the cables with
+    /// their hitch where the robot then is.
+    fn drive(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
+        let pieces = (dt_s / robot::STEP_S - 1e-9).ceil().max(1.0);
+        let h = dt_s / pieces;
+        let (mut cost, mut warnings) = (Cost::default(), Vec::new());
+        for piece in 0..pieces as u64 {
+            // Those of the start are known.
+            if piece > 0 {
+                self.answers = self.cables.iter().map(Strand::answer).collect();
+            }
+            let hitches = self.hitches();
+            let pull = hitches.iter().fold(Vec2::zeros(), |sum, &(cable, support)| {
+                let at = self.answers.get(cable).and_then(|a| a.supports.get(support));
+                sum + at.map_or_else(Vec2::zeros, |s| Vec2::new(s.reaction_x_n, s.reaction_y_n))
+            });
+            let Some(vehicle) = &mut self.vehicle else { break };
+            vehicle.advance(h, pull);
+            let target = vehicle.hitch_target();
+            for (cable, support) in hitches {
+                self.drag_support(cable, support, target);
+            }
+            self.each(|c| c.advance(h, inertia))?;
+            cost = Cost {
+                iterations: cost.iterations + self.cost.iterations,
+                halved_steps: cost.halved_steps + self.cost.halved_steps,
+                ..self.cost
+            };
+            warnings.append(&mut self.warnings);
+        }
+        warnings.dedup_by(|a, b| (a.kind, &a.cable) == (b.kind, &b.cable));
+        (self.cost, self.warnings) = (cost, warnings);
+        Ok(())
+    }
+
+    /// Cable and support of everything that hangs on the robot.
+    fn hitches(&self) -> Vec<(usize, usize)> {
+        let of = |(k, c): (usize, &crate::scene::Cable)| {
+            let supports = c.supports.iter().enumerate().filter(|(_, s)| s.kind == SupportKind::Robot);
+            supports.map(move |(i, _)| (k, i)).collect::<Vec<_>>()
+        };
+        self.scene.cables.iter().enumerate().flat_map(of).collect()
+    }
+
+    /// From now on the robot goes at this speed (m/s, positive to the right); None: on along its path.
+    pub fn command_robot(&mut self, speed_m_per_s: Option<f64>) {
+        if let Some(vehicle) = &mut self.vehicle {
+            vehicle.command(speed_m_per_s);
+        }
     }
 
     /// Advances by a display frame: at most [`MAX_FRAME_S`], so a stalled picture makes time run slower instead of
@@ -243,6 +303,8 @@ impl Simulation {
             cables: self.answers.clone(),
             warnings,
             cost: self.cost,
+            energy: self.energy,
+            robot: self.vehicle.as_ref().map(Vehicle::report),
         }
     }
 
@@ -257,6 +319,7 @@ impl Simulation {
     pub fn reset(&mut self) {
         if let Some(start) = &self.start {
             self.cables.clone_from(start);
+            self.vehicle = Vehicle::of(&self.scene);
             self.cost = Cost::default();
             self.warnings.clear();
             self.look(false);
@@ -276,6 +339,9 @@ impl Simulation {
     pub fn carry(&mut self, old: &Self) -> Result<(), SolveError> {
         for (new, old) in self.cables.iter_mut().zip(&old.cables) {
             new.carry(old)?;
+        }
+        if let (Some(new), Some(old), true) = (&mut self.vehicle, &old.vehicle, old.time_s() > 0.0) {
+            new.carry(old);
         }
         self.look(false);
         Ok(())

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::model::Model;
+use crate::robot::RobotReport;
 
 /// The answer of a model at an instant, all cables of the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,6 +20,25 @@ pub struct Solution {
     pub warnings: Vec<Warning>,
     /// What the last solve or step took.
     pub cost: Cost,
+    /// Energy of all cables.
+    #[serde(default)]
+    pub energy: Energy,
+    /// The robot, where the scene has one that can move.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub robot: Option<RobotReport>,
+}
+
+/// Energy in its forms.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Energy {
+    /// Of motion, J.
+    pub kinetic_j: f64,
+    /// Of height above y = 0, J.
+    pub gravity_j: f64,
+    /// Of stretch, J.
+    pub stretch_j: f64,
+    /// Of bending, J.
+    pub bending_j: f64,
 }
 
 /// The answer for one cable.

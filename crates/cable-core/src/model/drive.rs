@@ -11,6 +11,9 @@ use crate::math::Vec2;
 /// hand by 3τ. Chosen so that the trailing (45 ms) is under three frames.
 const LAG: f64 = 0.015;
 
+/// How long a support trails a target that moves evenly, s.
+pub const TRAILING_S: f64 = 3.0 * LAG;
+
 /// Largest speed of a dragged support, m/s. Uncapped, a jump of 10 m in a frame loses 77 to 734 steps.
 pub const MAX_SPEED: f64 = 20.0;
 

@@ -96,7 +96,7 @@ fn size_of_solution(s: &Solution) -> usize {
 mod tests {
     use super::*;
     use crate::model::Model;
-    use crate::solution::Cost;
+    use crate::solution::{Cost, Energy};
 
     fn at(time_s: f64) -> Solution {
         let cable = CableSolution { nodes: vec![Node::default(); 100], ..CableSolution::default() };
@@ -107,6 +107,8 @@ mod tests {
             cables: vec![cable],
             warnings: Vec::new(),
             cost: Cost::default(),
+            energy: Energy::default(),
+            robot: None,
         }
     }
 

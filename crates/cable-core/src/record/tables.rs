@@ -102,6 +102,17 @@ pub struct HistoryTable {
     pub max_tension_arc_length_m: Vec<f64>,
     /// Reactions of each support.
     pub supports: Vec<SupportColumn>,
+    /// Energies, and the figures of a robot.
+    pub extras: Vec<Extra>,
+}
+
+/// A column of `history.csv` that is of no support.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Extra {
+    /// Its name, which ends in its unit.
+    pub name: &'static str,
+    /// Its value at each time.
+    pub values: Vec<f64>,
 }
 
 /// Reactions of one support over time.
@@ -164,6 +175,7 @@ impl<W: Write> RunWriter<W> {
                 columns.push(format!("{name}.reaction_y_n"));
             }
         }
+        columns.extend(extras(solution).map(|(name, _)| name.to_owned()));
         self.history.write_record(&columns).map_err(|e| io_error(HISTORY, e))?;
         self.nodes.write_record(NODE_COLUMNS).map_err(|e| io_error(NODES, e))?;
         self.events.write_record(EVENT_COLUMNS).map_err(|e| io_error(EVENTS, e))
@@ -179,6 +191,9 @@ impl<W: Write> RunWriter<W> {
         for s in solution.cables.iter().flat_map(|c| &c.supports) {
             number(to, text, s.reaction_x_n).map_err(|e| io_error(HISTORY, e))?;
             number(to, text, s.reaction_y_n).map_err(|e| io_error(HISTORY, e))?;
+        }
+        for (_, value) in extras(solution) {
+            number(to, text, value).map_err(|e| io_error(HISTORY, e))?;
         }
         end_row(to).map_err(|e| io_error(HISTORY, e))
     }
@@ -241,6 +256,17 @@ impl<W: Write> RunWriter<W> {
     }
 }
 
+/// Columns of `history.csv` that are of no support.
+const ENERGY_COLUMNS: [&str; 4] = ["kinetic_energy_j", "gravity_energy_j", "stretch_energy_j", "bending_energy_j"];
+const ROBOT_COLUMNS: [&str; 5] = ["robot_x_m", "robot_y_m", "robot_pitch_deg", "robot_speed_m_per_s", "robot_thrust_n"];
+
+fn extras(s: &Solution) -> impl Iterator<Item = (&'static str, f64)> {
+    let e = s.energy;
+    let energies = [e.kinetic_j, e.gravity_j, e.stretch_j, e.bending_j];
+    let robot = s.robot.map(|r| [r.x_m, r.y_m, r.pitch_deg, r.speed_m_per_s, r.thrust_n]);
+    ENERGY_COLUMNS.into_iter().zip(energies).chain(ROBOT_COLUMNS.into_iter().zip(robot.into_iter().flatten()))
+}
+
 const NODE_COLUMNS: [&str; 11] = [
     "time_s",
     "cable",
@@ -294,6 +320,9 @@ fn check_finite(s: &Solution) -> Result<(), WriteError> {
                 return Err(bad(HISTORY, format!("the reaction of support `{}`", r.name)));
             }
         }
+    }
+    if let Some((column, _)) = extras(s).find(|(_, value)| !value.is_finite()) {
+        return Err(bad(HISTORY, column.to_owned()));
     }
     for w in &s.warnings {
         if ![w.arc_length_m, w.value, w.limit].iter().all(|v| v.is_finite()) {
@@ -417,16 +446,24 @@ pub fn read_history(from: impl Read) -> Result<HistoryTable, ReadError> {
     expect_columns(HISTORY, &mut from, &["time_s", "max_tension_n", "max_tension_arc_length_m"])?;
     let header = from.headers().map_err(|e| row_error(HISTORY, 1, e))?.clone();
     let mut table = HistoryTable::default();
-    // Reactions come in pairs of columns: x, y of each support.
-    for k in (3..header.len()).step_by(2) {
-        let x = header.get(k).and_then(|c| c.strip_suffix(".reaction_x_n"));
+    // Reactions come in pairs of columns: x, y of each support. Then the extras, which older tables lack.
+    let mut k = 3;
+    while k < header.len() {
+        let name = header.get(k).unwrap_or_default();
+        if let Some(known) = ENERGY_COLUMNS.into_iter().chain(ROBOT_COLUMNS).find(|c| *c == name) {
+            table.extras.push(Extra { name: known, values: Vec::new() });
+            k += 1;
+            continue;
+        }
+        let x = name.strip_suffix(".reaction_x_n");
         let y = header.get(k + 1).and_then(|c| c.strip_suffix(".reaction_y_n"));
         match (x, y) {
-            (Some(x), Some(y)) if x == y => {
+            (Some(x), Some(y)) if x == y && table.extras.is_empty() => {
                 table.supports.push(SupportColumn { name: x.to_owned(), ..SupportColumn::default() });
             }
             _ => return Err(row_error(HISTORY, 1, format!("column {} is not a support's reaction", k + 1))),
         }
+        k += 2;
     }
     rows(HISTORY, &mut from, |r| {
         table.time_s.push(parse(HISTORY, r, 0, "time_s")?);
@@ -435,6 +472,10 @@ pub fn read_history(from: impl Read) -> Result<HistoryTable, ReadError> {
         for (i, s) in table.supports.iter_mut().enumerate() {
             s.reaction_x_n.push(parse(HISTORY, r, 3 + 2 * i, "reaction_x_n")?);
             s.reaction_y_n.push(parse(HISTORY, r, 4 + 2 * i, "reaction_y_n")?);
+        }
+        let first = 3 + 2 * table.supports.len();
+        for (i, extra) in table.extras.iter_mut().enumerate() {
+            extra.values.push(parse(HISTORY, r, first + i, extra.name)?);
         }
         Ok(())
     })?;

@@ -1,6 +1,6 @@
 use super::*;
 use crate::model::Model;
-use crate::solution::{CableSolution, Cost, SupportReaction};
+use crate::solution::{CableSolution, Cost, Energy, SupportReaction};
 use proptest::prelude::*;
 
 fn solution(time_s: f64, values: [f64; 9], name: &str) -> Solution {
@@ -29,6 +29,8 @@ fn solution(time_s: f64, values: [f64; 9], name: &str) -> Solution {
         }],
         warnings: vec![warning],
         cost: Cost::default(),
+        energy: Energy { kinetic_j: x_m, gravity_j: y_m, stretch_j: strain, bending_j: stress_pa },
+        robot: None,
     }
 }
 
@@ -59,6 +61,8 @@ proptest! {
         prop_assert_eq!(history.time_s[0].to_bits(), time.to_bits());
         prop_assert_eq!(history.supports[0].reaction_x_n[0].to_bits(), values[1].to_bits());
         prop_assert_eq!(&history.supports[0].name, &name);
+        prop_assert_eq!(history.extras.len(), 4);
+        prop_assert_eq!(history.extras[3].values[0].to_bits(), values[7].to_bits());
         let events = read_events(e.as_slice()).unwrap();
         prop_assert_eq!(&events[0].message, &s.warnings[0].message);
         prop_assert_eq!(events[0].limit.to_bits(), values[2].to_bits());

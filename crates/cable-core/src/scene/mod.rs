@@ -7,6 +7,7 @@ pub mod cable;
 pub mod catalog;
 mod crossing;
 pub mod file;
+pub mod ground;
 pub mod load;
 pub mod motion;
 pub mod obstacle;

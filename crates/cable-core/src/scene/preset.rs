@@ -125,6 +125,16 @@ pub struct RobotPreset {
     pub outline_m: Vec<Point>,
 }
 
+impl RobotPreset {
+    /// Half the length of its tracks on the ground, m: of the foot of its outline.
+    #[must_use]
+    pub fn track_half_length_m(&self) -> f64 {
+        let foot = self.outline_m.iter().filter(|p| p[1] <= 1e-9).map(|p| p[0]);
+        let [low, high] = foot.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(x), h.max(x)]);
+        if low < high { 0.5 * (high - low) } else { 0.5 * self.length_m.value }
+    }
+}
+
 /// A tank or course to put a cable in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

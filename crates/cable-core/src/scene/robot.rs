@@ -3,23 +3,43 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::ground::Ground;
+use super::preset::{RobotPreset, robot_preset};
+use super::{Scene, View};
 use crate::math::Point;
 
 /// A tracked vehicle standing on the terrain.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Robot {
     /// Preset its numbers come from.
     pub preset: String,
-    /// Where its tracks' middle touches the ground, m.
+    /// Where its tracks' middle touches the ground, m. In a side view it stands on the highest terrain at this x; the
+    /// height counts where there is none.
     pub at_m: Point,
     /// Which way it looks.
     #[serde(default)]
     pub heading: Heading,
+    /// Coulomb friction between tracks and ground; left out: [`TRACK_FRICTION`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub track_friction: Option<f64>,
+    /// Rolling resistance over normal force; left out: [`ROLLING_RESISTANCE`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rolling_resistance: Option<f64>,
+    /// Begins its path anew after the last leg.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub repeat: bool,
     /// What it does by itself, in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub path: Vec<RobotTask>,
 }
+
+/// Friction of tracks where a scene does not say: the middle of 0.3 (wet, smooth) to 0.6 (rough), estimated.
+pub const TRACK_FRICTION: f64 = 0.45;
+
+/// Rolling resistance of tracks where a scene does not say. Books on terramechanics have 0.03 on concrete to 0.1 on soft
+/// ground (after J. Y. Wong, "Theory of Ground Vehicles", Wiley, 4th ed. 2008; remembered, to be taken as estimated).
+pub const ROLLING_RESISTANCE: f64 = 0.06;
 
 /// Which way a robot looks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -73,16 +93,65 @@ impl TryFrom<TaskKeys> for RobotTask {
 }
 
 impl Robot {
-    /// Where the cable hangs on it, m; None for an unknown preset. On level ground: a robot that tilts turns
-    /// its hitch with it.
+    /// Where the cable hangs on it on level ground, m; None for an unknown preset. See [`Scene::robot_pose`] for the
+    /// ground of a scene.
     #[must_use]
     pub fn hitch_m(&self) -> Option<Point> {
-        let preset = super::preset::robot_preset(&self.preset)?;
-        let back = preset.hitch_back_m.value;
-        let x = match self.heading {
-            Heading::Right => self.at_m[0] - back,
-            Heading::Left => self.at_m[0] + back,
-        };
-        Some([x, self.at_m[1] + preset.hitch_up_m.value])
+        Some(Pose { at_m: self.at_m, pitch: 0.0, heading: self.heading }.hitch_m(robot_preset(&self.preset)?))
+    }
+
+    /// How it stands with its tracks' middle at `x_m`: None where the ground ends below its tracks.
+    #[must_use]
+    pub fn pose_on(&self, ground: &Ground, preset: &RobotPreset, x_m: f64) -> Option<Pose> {
+        let stand = ground.stand(x_m, preset.track_half_length_m())?;
+        Some(Pose { at_m: [x_m, stand.y], pitch: stand.pitch, heading: self.heading })
+    }
+}
+
+/// Where a vehicle is and how it leans.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Pose {
+    /// Middle of its tracks on the ground, m.
+    pub at_m: Point,
+    /// Slope it stands on, rad, positive where it climbs to the right.
+    pub pitch: f64,
+    /// Which way it looks.
+    pub heading: Heading,
+}
+
+impl Pose {
+    /// From the vehicle's own axes (looking right, from the middle of its tracks on the ground) to the plane, m.
+    #[must_use]
+    pub fn place(&self, p: Point) -> Point {
+        let x = if self.heading == Heading::Left { -p[0] } else { p[0] };
+        let (sin, cos) = self.pitch.sin_cos();
+        // On level ground exactly where it was put: cos 0 = 1, sin 0 = 0.
+        [self.at_m[0] + x * cos - p[1] * sin, self.at_m[1] + x * sin + p[1] * cos]
+    }
+
+    /// Where the cable hangs on it, m.
+    #[must_use]
+    pub fn hitch_m(&self, preset: &RobotPreset) -> Point {
+        self.place([-preset.hitch_back_m.value, preset.hitch_up_m.value])
+    }
+}
+
+impl Scene {
+    /// How the robot stands at the start: on the ground in a side view, as it was put where there is none and in a plan view.
+    #[must_use]
+    pub fn robot_pose(&self) -> Option<Pose> {
+        let robot = self.robot.as_ref()?;
+        let as_put = Pose { at_m: robot.at_m, pitch: 0.0, heading: robot.heading };
+        let preset = robot_preset(&robot.preset)?;
+        match self.view {
+            View::Plan => Some(as_put),
+            View::Elevation => Some(robot.pose_on(&Ground::of(self), preset, robot.at_m[0]).unwrap_or(as_put)),
+        }
+    }
+
+    /// Where a cable hangs on the robot at the start, m.
+    #[must_use]
+    pub fn hitch_m(&self) -> Option<Point> {
+        Some(self.robot_pose()?.hitch_m(robot_preset(&self.robot.as_ref()?.preset)?))
     }
 }

@@ -265,6 +265,12 @@ fn check_robot(robot: &Robot, at: &Path<'_>) -> Checked {
         return Err(at.key("preset").fault(preset::unknown("robot preset", &robot.preset, known)));
     }
     point(&at.key("at_m"), robot.at_m, range::COORDINATE)?;
+    if let Some(friction) = robot.track_friction {
+        number(&at.key("track_friction"), friction, range::FRICTION)?;
+    }
+    if let Some(rolling) = robot.rolling_resistance {
+        number(&at.key("rolling_resistance"), rolling, range::ROLLING)?;
+    }
     let path = at.key("path");
     at_most(&path, robot.path.len(), MAX_KNOTS)?;
     for (i, task) in robot.path.iter().enumerate() {

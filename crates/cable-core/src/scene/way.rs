@@ -53,7 +53,7 @@ struct Waypoint {
 impl Waypoint {
     fn of(scene: &Scene, cable: &Cable, support: &Support) -> Option<Self> {
         let at = match support.kind {
-            SupportKind::Robot => scene.robot.as_ref()?.hitch_m()?,
+            SupportKind::Robot => scene.hitch_m()?,
             _ => support.at_m?,
         };
         let radius = support.radius_m.filter(|&r| r > 0.0).map_or(0.0, |r| r + cable.diameter_m / 2.0);

@@ -216,6 +216,9 @@ fn scenes() -> impl Strategy<Value = Scene> {
                 at_m: [1.0, -0.5],
                 heading: if plan { Heading::Left } else { Heading::Right },
                 path: vec![RobotTask::Drive { to_x_m: 3.0, speed_m_per_s: 0.1 + 0.2 }, RobotTask::Wait { wait_s: 1.0 }],
+                track_friction: plan.then_some(0.3),
+                rolling_resistance: None,
+                repeat: plan,
             }),
         })
 }

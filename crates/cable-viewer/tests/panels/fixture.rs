@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use cable_core::scene::{Obstacle, Shape, Support, catalog};
 use cable_core::solution::{
-    CableSolution, ContactReport, ContactState, Cost, Node, Solution, SupportReaction, Warning, WarningKind,
+    CableSolution, ContactReport, ContactState, Cost, Energy, Node, Solution, SupportReaction, Warning, WarningKind,
 };
 use cable_core::{Load, Model, Scene};
 use cable_viewer::command::{self, Command, Effects};
@@ -118,6 +118,8 @@ fn answer(scene: &Scene) -> Solution {
         }],
         warnings: Vec::new(),
         cost: Cost { iterations: 7, halved_steps: 0, residual_n: 3.4e-7, inner_step_s: 1.0 / 240.0 },
+        energy: Energy { kinetic_j: 12.5, gravity_j: 512.0, stretch_j: 0.9, bending_j: 0.0 },
+        robot: None,
     }
 }
 

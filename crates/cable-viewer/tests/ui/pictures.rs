@@ -120,12 +120,8 @@ fn obstacles_light() {
 #[test]
 fn robot_light() {
     let mut scene = catalog::over_beam();
-    scene.robot = Some(cable_core::Robot {
-        preset: "brokk-170".to_owned(),
-        at_m: [10.0, 0.0],
-        heading: cable_core::scene::Heading::Right,
-        path: Vec::new(),
-    });
+    scene.robot =
+        Some(cable_core::Robot { preset: "brokk-170".to_owned(), at_m: [10.0, 0.0], ..cable_core::Robot::default() });
     let end = scene.cables[0].supports.last_mut().expect("an end");
     (end.kind, end.at_m) = (cable_core::scene::SupportKind::Robot, None);
     compare("robot_light", solved(scene), Theme::Light);

@@ -60,7 +60,7 @@ fn a_damaged_copy_is_said_and_the_window_stays_usable() {
 #[test]
 fn a_robot_is_dragged_along_the_ground_with_the_cable_on_its_hitch() {
     let mut scene = catalog::over_beam();
-    let robot = Robot { preset: "brokk-110".to_owned(), at_m: [10.0, 0.0], heading: Heading::Right, path: Vec::new() };
+    let robot = Robot { preset: "brokk-110".to_owned(), at_m: [10.0, 0.0], ..Robot::default() };
     let hitch = robot.hitch_m().unwrap();
     let end = scene.cables[0].supports.last_mut().unwrap();
     (end.kind, end.at_m) = (SupportKind::Robot, None);

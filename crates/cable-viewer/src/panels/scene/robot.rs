@@ -60,7 +60,7 @@ fn chosen(state: &AppState, p: &RobotPreset) -> Robot {
     let end = state.scene.cables.get(state.current_cable()).and_then(|c| c.supports.last()?.at_m).unwrap_or_default();
     let x = end[0] + p.hitch_back_m.value;
     let y = ground::height_at(&state.scene, x).unwrap_or(end[1] - p.hitch_up_m.value);
-    Robot { preset: p.id.to_owned(), at_m: [x, y], heading: Heading::Right, path: Vec::new() }
+    Robot { preset: p.id.to_owned(), at_m: [x, y], ..Robot::default() }
 }
 
 fn placed(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {

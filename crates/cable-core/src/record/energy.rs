@@ -1,0 +1,54 @@
+//! Energy of a cable from its nodes, whichever model gave them.
+//!
+//! Everything is linear between two nodes, so that products are integrated exactly: ∫ a b ds = ds (2 a₀b₀ + a₀b₁ + a₁b₀ + 2 a₁b₁)/6.
+//! A sagging bar drawn straight is second order. Lumps, pulleys and loads are left out.
+
+use crate::problem::Problem;
+use crate::solution::{CableSolution, Energy, Node};
+
+/// ∫ a² ds between two nodes.
+fn squared(a: f64, b: f64, ds: f64) -> f64 {
+    ds * (a * a + a * b + b * b) / 3.0
+}
+
+impl Energy {
+    /// That of a cable.
+    #[must_use]
+    pub fn of(problem: &Problem, answer: &CableSolution) -> Self {
+        let elements = answer.pieces().flat_map(|piece| piece.windows(2));
+        elements
+            .filter_map(|pair| if let [a, b] = pair { Some((a, b)) } else { None })
+            .map(|(a, b)| element(problem, a, b))
+            .sum()
+    }
+
+    /// All of it, J.
+    #[must_use]
+    pub fn total_j(&self) -> f64 {
+        self.kinetic_j + self.gravity_j + self.stretch_j + self.bending_j
+    }
+}
+
+fn element(problem: &Problem, a: &Node, b: &Node) -> Energy {
+    let ds = b.arc_length_m - a.arc_length_m;
+    let speed = squared(a.vx_m_per_s, b.vx_m_per_s, ds) + squared(a.vy_m_per_s, b.vy_m_per_s, ds);
+    let height = 0.5 * ds * (a.y_m + b.y_m);
+    Energy {
+        kinetic_j: 0.5 * problem.linear_density * speed,
+        gravity_j: -problem.weight.y * height,
+        // Strain by tension is T/EA of a length that temperature has changed.
+        stretch_j: 0.5 * problem.thermal_stretch * squared(a.tension_n, b.tension_n, ds) / problem.axial_stiffness,
+        bending_j: 0.5 * problem.bending_stiffness * squared(a.curvature_per_m, b.curvature_per_m, ds),
+    }
+}
+
+impl std::iter::Sum for Energy {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |s, e| Self {
+            kinetic_j: s.kinetic_j + e.kinetic_j,
+            gravity_j: s.gravity_j + e.gravity_j,
+            stretch_j: s.stretch_j + e.stretch_j,
+            bending_j: s.bending_j + e.bending_j,
+        })
+    }
+}

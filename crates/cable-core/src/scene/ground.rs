@@ -1,0 +1,134 @@
+//! The ground a vehicle stands on: the highest terrain of a scene, and how a rigid track rests on it.
+
+use super::{Scene, Shape};
+use crate::math::Point;
+
+/// The terrains of a scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Ground {
+    lines: Vec<Vec<Point>>,
+}
+
+/// How a track rests.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stand {
+    /// Height of its middle, m.
+    pub y: f64,
+    /// Its slope, rad, positive where it climbs to the right.
+    pub pitch: f64,
+}
+
+impl Ground {
+    /// That of a scene.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let lines = scene.obstacles.iter().filter_map(|o| match &o.shape {
+            Shape::Terrain { points_m } => Some(points_m.clone()),
+            _ => None,
+        });
+        Self { lines: lines.collect() }
+    }
+
+    /// The highest terrain at `x` (m), m; None where there is none.
+    #[must_use]
+    pub fn height(&self, x: f64) -> Option<f64> {
+        let stretches = self.lines.iter().flat_map(|points| points.windows(2));
+        let heights = stretches.filter_map(|s| {
+            let [[ax, ay], [bx, by]] = s else { return None };
+            let (ax, ay, bx, by) = (*ax, *ay, *bx, *by);
+            if !(ax.min(bx) <= x && x <= ax.max(bx)) {
+                return None;
+            }
+            Some(if ax == bx { ay.max(by) } else { ay + (by - ay) * (x - ax) / (bx - ax) })
+        });
+        heights.reduce(f64::max)
+    }
+
+    /// How a rigid track with its middle at `x` that reaches `half` to both sides (both m, measured level) rests.
+    ///
+    /// A rod on bumps touches two of them, one on each side of its centre of mass, and nothing is above it: it lies on the
+    /// edge of the upper convex hull of the ground below it that spans its middle. None where the ground ends below it.
+    #[must_use]
+    pub fn stand(&self, x: f64, half: f64) -> Option<Stand> {
+        let (low, high) = (x - half, x + half);
+        let mut points = vec![[low, self.height(low)?], [high, self.height(high)?]];
+        let inside = self.lines.iter().flatten().filter(|p| low < p[0] && p[0] < high);
+        // Of ground under an overhang only the highest part is touched.
+        points.extend(inside.filter_map(|p| Some([p[0], self.height(p[0])?])));
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let [a, b] = edge_over(&upper_hull(&points), x)?;
+        let slope = (b[1] - a[1]) / (b[0] - a[0]);
+        Some(Stand { y: a[1] + slope * (x - a[0]), pitch: slope.atan() })
+    }
+}
+
+/// Corners of the upper convex hull of points in order of x (A. M. Andrew, "Another efficient algorithm for convex hulls in
+/// two dimensions", Information Processing Letters 9(5), 1979).
+fn upper_hull(points: &[Point]) -> Vec<Point> {
+    let mut hull: Vec<Point> = Vec::with_capacity(points.len());
+    for &p in points {
+        while let [.., a, b] = hull.as_slice()
+            && (b[0] - a[0]) * (p[1] - a[1]) >= (b[1] - a[1]) * (p[0] - a[0])
+        {
+            hull.pop();
+        }
+        hull.push(p);
+    }
+    hull
+}
+
+fn edge_over(hull: &[Point], x: f64) -> Option<[Point; 2]> {
+    let edge = hull.windows(2).find(|w| w[0][0] <= x && x <= w[1][0] && w[0][0] < w[1][0])?;
+    Some([edge[0], edge[1]])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn ground(points: &[Point]) -> Ground {
+        Ground { lines: vec![points.to_vec()] }
+    }
+
+    #[test]
+    fn on_a_plane_it_has_the_plane_s_slope() {
+        for slope in [-0.4, 0.0, 0.25] {
+            let g = ground(&[[-10.0, -10.0 * slope], [10.0, 10.0 * slope]]);
+            let s = g.stand(1.5, 0.6).unwrap();
+            assert!((s.y - 1.5 * slope).abs() < 1e-12 && (s.pitch - f64::atan(slope)).abs() < 1e-12, "{s:?}");
+        }
+    }
+
+    #[test]
+    fn it_rests_on_a_bump_and_on_the_ground_behind_its_middle() {
+        // A bump of 0.2 m half a metre ahead of the middle: the rod leans on it and on its own rear end.
+        let g = ground(&[[-5.0, 0.0], [0.45, 0.0], [0.5, 0.2], [0.55, 0.0], [5.0, 0.0]]);
+        let s = g.stand(0.0, 0.6).unwrap();
+        assert!((s.pitch - f64::atan(0.2 / 1.1)).abs() < 1e-12, "{s:?}");
+        assert!((s.y - 0.6 * 0.2 / 1.1).abs() < 1e-12, "{s:?}");
+    }
+
+    #[test]
+    fn it_bridges_a_ditch_and_ends_with_the_ground() {
+        let g = ground(&[[-5.0, 1.0], [-0.2, 1.0], [0.0, -3.0], [0.2, 1.0], [5.0, 1.0]]);
+        assert_eq!(g.stand(0.0, 0.6), Some(Stand { y: 1.0, pitch: 0.0 }));
+        assert_eq!(g.stand(4.9, 0.6), None);
+        assert_eq!(Ground::default().stand(0.0, 1.0), None);
+    }
+
+    proptest! {
+        /// Nothing of the ground is above the rod, and it touches on both sides of its middle.
+        #[test]
+        fn nothing_is_above_the_rod(heights in prop::collection::vec(-1.0..1.0_f64, 12), x in 3.0..8.0_f64) {
+            let points: Vec<Point> = heights.iter().enumerate().map(|(k, h)| [k as f64, *h]).collect();
+            let g = ground(&points);
+            let s = g.stand(x, 2.5).unwrap();
+            let gap = |at: f64| s.y + s.pitch.tan() * (at - x) - g.height(at).unwrap();
+            let places: Vec<f64> = points.iter().map(|p| p[0]).chain([x - 2.5, x + 2.5]).filter(|at| (at - x).abs() <= 2.5).collect();
+            prop_assert!(places.iter().all(|at| gap(*at) > -1e-9));
+            prop_assert!(places.iter().any(|at| *at <= x && gap(*at) < 1e-9));
+            prop_assert!(places.iter().any(|at| *at >= x && gap(*at) < 1e-9));
+        }
+    }
+}
