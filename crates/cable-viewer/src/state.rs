@@ -10,6 +10,7 @@ use crate::camera::Camera;
 use crate::colour::ColourScale;
 use crate::dialog::Dialog;
 use crate::history::History;
+use crate::recording::Recording;
 use crate::undo::Undo;
 
 /// Everything the window shows.
@@ -43,8 +44,14 @@ pub struct AppState {
     pub colour: ColourScale,
     /// What is drawn.
     pub layers: Layers,
-    /// The latest answer.
+    /// The answer on screen: the latest, or an earlier one of the recording.
     pub snapshot: Snapshot,
+    /// The latest answer.
+    pub live: Snapshot,
+    /// Every answer since the last start, and which of them is on screen.
+    pub recording: Recording,
+    /// Speed of the robot by hand, m/s, positive to the right; None: it follows its path.
+    pub robot_order: Option<f64>,
     /// How the solver thread is doing.
     pub worker: WorkerStatus,
     /// Tension and reactions against time since the last start.
@@ -196,6 +203,9 @@ impl AppState {
             colour: ColourScale::default(),
             layers: Layers { grid: true, labels: true, contacts: true, forces: true, nodes: false, snap: false },
             snapshot: Snapshot::default(),
+            live: Snapshot::default(),
+            recording: Recording::default(),
+            robot_order: None,
             worker: WorkerStatus::Idle,
             history: History::default(),
             edits_sent: 0,
@@ -211,6 +221,29 @@ impl AppState {
     #[must_use]
     pub fn unsaved(&self) -> bool {
         self.document.recovered || self.scene != self.document.saved
+    }
+
+    /// Takes in the latest answer, which is on screen unless an earlier one is.
+    pub fn take(&mut self, snapshot: Snapshot) {
+        self.live = snapshot;
+        self.refresh();
+    }
+
+    /// Shows an earlier time of the recording (s), or the present.
+    pub fn show_time(&mut self, time_s: Option<f64>) {
+        if self.recording.shown_s.is_some() || time_s.is_some() {
+            self.recording.shown_s = time_s;
+            self.refresh();
+        }
+    }
+
+    /// Puts what is to be shown on screen.
+    pub fn refresh(&mut self) {
+        self.snapshot = self.live.clone();
+        if let Some(shown) = self.recording.shown() {
+            self.snapshot.solution = Some(shown);
+            self.snapshot.real_speed = None;
+        }
     }
 
     /// The cable that panels edit: the selected one, else that of the selected support, else the first.

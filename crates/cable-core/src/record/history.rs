@@ -4,8 +4,8 @@ use crate::solution::{CableSolution, ContactReport, Node, Solution, SupportReact
 
 /// Solutions by time, oldest thinned out when a memory budget is reached.
 ///
-/// Thinning drops every second entry of the older half, so the recent past keeps its full rate and the distant
-/// past an ever coarser one; the first and the last entry are always kept.
+/// Thinning halves the rate of the older three quarters where it is highest, so the recent past keeps its full rate and the
+/// distant past an even, ever coarser one; the first and the last entry are always kept.
 #[derive(Clone, Debug)]
 pub struct History {
     entries: Vec<Solution>,
@@ -37,15 +37,21 @@ impl History {
         self.entries.truncate(keep);
     }
 
+    /// Halves the rate where it is highest among the older three quarters: the far past becomes evenly coarser.
     fn thin(&mut self) {
-        // Entries 1, 3, 5 … of the older half go; with few entries at least entry 1 goes.
-        let half = (self.entries.len() / 2).max(2);
-        let (mut index, mut freed) = (0, 0);
+        let older = (self.entries.len() * 3 / 4).max(2);
+        let gaps = self.entries.windows(2).take(older - 1).filter_map(|w| Some(w.last()?.time_s - w.first()?.time_s));
+        let least = gaps.fold(f64::INFINITY, |a, b| if b < a { b } else { a });
+        let (mut index, mut freed, mut kept_s) = (0, 0, f64::NEG_INFINITY);
         self.entries.retain(|e| {
-            let drop = index % 2 == 1 && index < half;
+            // Entry 1 goes in any case where it is the only one that can.
+            let close = e.time_s - kept_s < 1.5 * least || older == 2;
+            let drop = index > 0 && index < older && close;
             index += 1;
             if drop {
                 freed += size_of_solution(e);
+            } else {
+                kept_s = e.time_s;
             }
             !drop
         });

@@ -125,7 +125,7 @@ mod tests {
             let g = ground(&points);
             let s = g.stand(x, 2.5).unwrap();
             let gap = |at: f64| s.y + s.pitch.tan() * (at - x) - g.height(at).unwrap();
-            let places: Vec<f64> = points.iter().map(|p| p[0]).chain([x - 2.5, x + 2.5]).filter(|at| (at - x).abs() <= 2.5).collect();
+            let places: Vec<f64> = points.iter().map(|p| p[0]).chain([x - 2.5, x + 2.5]).filter(|at| (at - x).abs() < 2.5 + 1e-9).collect();
             prop_assert!(places.iter().all(|at| gap(*at) > -1e-9));
             prop_assert!(places.iter().any(|at| *at <= x && gap(*at) < 1e-9));
             prop_assert!(places.iter().any(|at| *at >= x && gap(*at) < 1e-9));

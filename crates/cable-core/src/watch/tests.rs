@@ -311,8 +311,8 @@ fn degenerate_lines_have_no_crossings() {
 }
 
 /// What is named in the catalogue at rest: sharp corners of beams and an eye, slack on floors, the bight of the draped cable,
-/// the corner in which the cable between the posts was laid, and nothing else.
-const NAMED: [(&str, &[WarningKind]); 8] = [
+/// the corners in which the cables between the posts and behind the robot were laid, and nothing else.
+const NAMED: [(&str, &[WarningKind]); 9] = [
     ("tank", &[WarningKind::BendRadius]),
     ("slack-to-floor", &[WarningKind::Slack]),
     ("pulley-waypoints", &[WarningKind::BendRadius]),
@@ -321,6 +321,7 @@ const NAMED: [(&str, &[WarningKind]); 8] = [
     ("floor-drag", &[WarningKind::Slack]),
     ("plan-posts", &[WarningKind::Kink]),
     ("near-taut", &[]),
+    ("robot-drive", &[WarningKind::Kink, WarningKind::Slack]),
 ];
 
 #[test]

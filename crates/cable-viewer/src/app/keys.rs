@@ -60,6 +60,9 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     if plain(Key::ArrowRight) {
         commands.push(Command::Playback(PlaybackCommand::Step));
     }
+    if plain(Key::ArrowLeft) {
+        commands.push(Command::Playback(PlaybackCommand::StepBack));
+    }
     if plain(Key::R) {
         commands.push(Command::Playback(PlaybackCommand::Reset));
     }

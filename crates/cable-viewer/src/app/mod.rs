@@ -14,6 +14,7 @@ use cable_core::Scene;
 use crate::autosave::Autosave;
 use crate::command::{self, Command, Effects};
 use crate::dialog::Dialog;
+use crate::history::Sample;
 use crate::state::{AppState, WorkerStatus};
 use crate::theme;
 use crate::worker::Worker;
@@ -138,8 +139,25 @@ impl ViewerApp {
             ctx.request_repaint();
         }
         if matches!(self.state.worker, WorkerStatus::Dead(_)) {
+            self.state.live.stale = true;
             self.state.snapshot.stale = true;
             self.asked.clear();
+        }
+    }
+
+    /// Lets what was recorded go on while it is replayed.
+    fn replay(&mut self, ctx: &egui::Context) {
+        let state = &mut self.state;
+        if state.playback.paused || state.recording.shown_s.is_none() {
+            return;
+        }
+        let ended = state.recording.replay(f64::from(ctx.input(|i| i.stable_dt)) * state.playback.speed);
+        state.refresh();
+        ctx.request_repaint();
+        if ended {
+            let mut effects = Effects::default();
+            command::playback::send(state, &mut effects);
+            self.carry_out(ctx, effects);
         }
     }
 
@@ -147,14 +165,16 @@ impl ViewerApp {
         let state = &mut self.state;
         if report.history_restarts {
             state.history.clear();
+            state.recording.clear();
         }
-        for sample in report.samples {
-            state.history.push(sample);
+        for answer in report.answers {
+            state.history.push(Sample::of(&answer));
+            state.recording.push(answer);
         }
         if report.paused_itself {
             state.playback.paused = true;
         }
-        state.snapshot = report.snapshot;
+        state.take(report.snapshot);
         // Several edits may be answered at once: the delay shown is that of the one that waited longest.
         let answered = self.asked.iter().take_while(|(number, _)| *number <= state.snapshot.edit).count();
         if let Some((_, began)) = self.asked.drain(..answered).next() {
@@ -177,6 +197,7 @@ impl eframe::App for ViewerApp {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         self.take_answers(&ctx);
+        self.replay(&ctx);
         ctx.set_theme(self.state.theme);
         let mut commands = Vec::new();
         keys::read(&ctx, &self.state, &mut commands);

@@ -1,9 +1,10 @@
 //! The robot, to scale: body, tracks, hitch.
 
 use cable_core::math::Point;
+use cable_core::robot::Going;
 use cable_core::scene::preset::{RobotPreset, robot_preset};
-use cable_core::scene::{Heading, Robot};
-use egui::{Color32, Mesh, Pos2, Stroke, StrokeKind, vec2};
+use cable_core::scene::robot::Pose;
+use egui::{Color32, Mesh, Pos2, Stroke};
 
 use super::triangulate::triangulate;
 use super::view::View;
@@ -17,31 +18,37 @@ const WHEELS: u8 = 4;
 /// Its outline in the world, m; empty where there is no robot or no such preset.
 #[must_use]
 pub fn outline(state: &AppState) -> Vec<Point> {
-    let Some((robot, preset)) = robot(state) else { return Vec::new() };
-    preset.outline_m.iter().map(|&p| placed(robot, p)).collect()
+    let Some((pose, preset)) = robot(state) else { return Vec::new() };
+    preset.outline_m.iter().map(|&p| pose.place(p)).collect()
 }
 
-/// Where its name stands and what it says.
+/// Where its name stands and what it says: its name, and why it goes as it does.
 #[must_use]
 pub fn title(state: &AppState) -> Option<(Point, String)> {
-    let (robot, preset) = robot(state)?;
-    Some((placed(robot, [0.0, preset.height_m.value]), preset.name.clone()))
+    let (pose, preset) = robot(state)?;
+    let going = state.snapshot.solution.as_ref().and_then(|s| s.robot).map(|r| r.going);
+    let text = match going {
+        None | Some(Going::Standing | Going::Driving) => preset.name.clone(),
+        Some(going) => format!("{}: {}", preset.name, going.name()),
+    };
+    Some((pose.place([0.0, preset.height_m.value]), text))
 }
 
-fn robot(state: &AppState) -> Option<(&Robot, &'static RobotPreset)> {
+/// How it stands: while time runs where the answer has it, else where it is being put.
+fn robot(state: &AppState) -> Option<(Pose, &'static RobotPreset)> {
     let robot = state.scene.robot.as_ref()?;
-    Some((robot, robot_preset(&robot.preset)?))
-}
-
-/// From the robot's own axes (looking right, from where the middle of its tracks touches the ground) to the world, m.
-fn placed(robot: &Robot, p: Point) -> Point {
-    let x = if robot.heading == Heading::Left { -p[0] } else { p[0] };
-    [robot.at_m[0] + x, robot.at_m[1] + p[1]]
+    let preset = robot_preset(&robot.preset)?;
+    let moved = state.snapshot.solution.as_ref().filter(|s| s.time_s > 0.0).and_then(|s| s.robot);
+    let pose = match moved {
+        Some(r) => Pose { at_m: [r.x_m, r.y_m], pitch: r.pitch_deg.to_radians(), heading: robot.heading },
+        None => state.scene.robot_pose()?,
+    };
+    Some((pose, preset))
 }
 
 /// Draws it.
 pub fn draw(view: &mut View<'_>, state: &AppState) {
-    let Some((robot, preset)) = robot(state) else { return };
+    let Some((pose, preset)) = robot(state) else { return };
     let is = |item: Option<Item>| item == Some(Item::Robot);
     let line = match (is(state.selected), is(state.hovered)) {
         (true, _) => Stroke::new(2.5, view.palette.accent),
@@ -59,28 +66,36 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
     view.painter.add(mesh);
     let body: Vec<Pos2> = points.iter().map(|&p| view.at(p)).collect();
     view.painter.add(egui::Shape::closed_line(body, line));
-    tracks(view, robot, preset);
-    if let Some(hitch) = robot.hitch_m() {
-        view.painter.circle(view.at(hitch), 4.0, Color32::TRANSPARENT, Stroke::new(1.6, view.palette.support));
-    }
+    tracks(view, &pose, preset);
+    let hitch = view.at(pose.hitch_m(preset));
+    view.painter.circle(hitch, 4.0, Color32::TRANSPARENT, Stroke::new(1.6, view.palette.support));
 }
 
 /// A belt with wheels along the foot of the outline.
-fn tracks(view: &View<'_>, robot: &Robot, preset: &RobotPreset) {
+fn tracks(view: &View<'_>, pose: &Pose, preset: &RobotPreset) {
     let height = TRACK_HEIGHT * preset.height_m.value;
     let foot = preset.outline_m.iter().filter(|p| p[1] < height).map(|p| p[0]);
     let (low, high) = foot.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-    if !(low < high) {
+    let radius = 0.5 * height;
+    if !(low + height < high) {
         return;
     }
-    let [a, b] = [placed(robot, [low, height]), placed(robot, [high, 0.0])].map(|p| view.at(p));
-    let belt = egui::Rect::from_two_pos(a, b);
-    let radius = 0.5 * belt.height();
+    // Two half circles and what is between them.
+    let turn = |centre: f64, from: f64| {
+        (0..=12).map(move |k| {
+            let angle = from + std::f64::consts::PI * f64::from(k) / 12.0;
+            [centre + radius * angle.cos(), radius + radius * angle.sin()]
+        })
+    };
+    let right = turn(high - radius, -std::f64::consts::FRAC_PI_2);
+    let left = turn(low + radius, std::f64::consts::FRAC_PI_2);
+    let belt: Vec<Pos2> = right.chain(left).map(|p| view.at(pose.place(p))).collect();
     let stroke = Stroke::new(1.2, view.palette.surface);
-    view.painter.rect(belt, radius, view.palette.hatch, stroke, StrokeKind::Middle);
+    view.painter.add(egui::Shape::convex_polygon(belt, view.palette.hatch, stroke));
+    let wheel = 0.55 * radius as f32 * view.camera.points_per_m as f32;
     for k in 0..WHEELS {
-        let share = f32::from(k) / f32::from(WHEELS - 1);
-        let x = belt.left() + radius + share * (belt.width() - 2.0 * radius);
-        view.painter.circle_stroke(belt.left_center() + vec2(x - belt.left(), 0.0), 0.55 * radius, stroke);
+        let share = f64::from(k) / f64::from(WHEELS - 1);
+        let x = low + radius + share * (high - low - 2.0 * radius);
+        view.painter.circle_stroke(view.at(pose.place([x, radius])), wheel, stroke);
     }
 }

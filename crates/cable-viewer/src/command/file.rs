@@ -106,6 +106,8 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
     state.selected = None;
     state.hovered = None;
     state.playback.paused = true;
+    state.robot_order = None;
+    effects.request.robot = Some(None);
     state.camera.fit_wanted = true;
     state.dialog = None;
     submit_scene(state, true, effects);

@@ -1,11 +1,11 @@
 //! Commands that change the scene.
 
 use cable_core::math::Point;
+use cable_core::scene::ground::Ground;
 use cable_core::scene::{Environment, Shape, Support, SupportKind};
 use cable_core::{Cable, Load, Obstacle, Robot, Scene};
 
 use super::{Effects, next_number, submit_scene};
-use crate::ground;
 use crate::state::{AppState, Item};
 use crate::undo::EditKind;
 use crate::worker::request::{Drag, Request};
@@ -143,6 +143,7 @@ fn after_edit(state: &mut AppState, dragged: Option<(usize, usize, Point)>, effe
     state.scene_fault = state.scene.validate().err();
     match dragged {
         Some((cable, support, to_m)) if !state.playback.paused && state.scene_fault.is_none() => {
+            state.show_time(None);
             let drag = Drag { cable, support, to_m, scene: state.scene.clone() };
             let request = Request { drag: Some(drag), number: next_number(state), ..Request::default() };
             effects.request.merge(request);
@@ -235,7 +236,7 @@ fn move_item(state: &mut AppState, item: Item, to_m: Point) {
             }
         }
         Item::Robot => {
-            let y = ground::height_at(scene, to_m[0]).unwrap_or(to_m[1]);
+            let y = Ground::of(scene).height(to_m[0]).unwrap_or(to_m[1]);
             if let Some(robot) = &mut scene.robot {
                 robot.at_m = [to_m[0], y];
             }
@@ -246,7 +247,7 @@ fn move_item(state: &mut AppState, item: Item, to_m: Point) {
 
 /// The support that hangs on the robot, and where.
 fn hitched(scene: &Scene) -> Option<(usize, usize, Point)> {
-    let hitch = scene.robot.as_ref()?.hitch_m()?;
+    let hitch = scene.hitch_m()?;
     scene.cables.iter().enumerate().find_map(|(cable, c)| {
         let support = c.supports.iter().position(|s| s.kind == SupportKind::Robot)?;
         Some((cable, support, hitch))

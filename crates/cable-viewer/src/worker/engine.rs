@@ -6,11 +6,10 @@ use std::time::Instant;
 use cable_core::math::vec2;
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
-use cable_core::{Error, Model, Scene, Settings, Simulation, SolveError};
+use cable_core::{Error, Model, Scene, Settings, Simulation, Solution, SolveError};
 
 use super::draft;
 use super::request::{Drag, Edit, Request};
-use crate::history::Sample;
 use crate::state::{Playback, Snapshot};
 
 /// One frame of simulated time at normal speed, s.
@@ -27,6 +26,10 @@ const DRAFT_AFTER_S: f64 = 0.012;
 /// GPU), and the next draft waits for it.
 pub const QUIET_S: f64 = 0.2;
 
+/// Most answers waiting for a window that does not look: ten seconds of them. Fewer: a window that stalls loses some; more:
+/// one that is hidden for long fills the memory.
+pub const MOST_ANSWERS: usize = 600;
+
 /// Owns the simulation.
 #[derive(Debug)]
 pub struct Engine {
@@ -40,9 +43,11 @@ pub struct Engine {
     before_motion: Option<Simulation>,
     playback: Playback,
     snapshot: Snapshot,
-    samples: Vec<Sample>,
-    /// The history starts again before the first of `samples`.
+    answers: Vec<Solution>,
+    /// The history starts again before the first of `answers`.
     history_restarts: bool,
+    /// Speed of the robot by hand, m/s.
+    robot_order: Option<f64>,
     /// Drafts may be shown: there is a thread to replace them by the answer.
     drafts: bool,
     /// `simulation` is a draft of the last edit.
@@ -60,8 +65,8 @@ pub struct Report {
     pub snapshot: Snapshot,
     /// Forget the history shown so far.
     pub history_restarts: bool,
-    /// New samples.
-    pub samples: Vec<Sample>,
+    /// New answers; at most [`MOST_ANSWERS`].
+    pub answers: Vec<Solution>,
     /// The worker paused itself because a step failed.
     pub paused_itself: bool,
 }
@@ -75,7 +80,8 @@ impl Default for Engine {
             before_motion: None,
             playback: Playback { paused: true, speed: 1.0 },
             snapshot: Snapshot::default(),
-            samples: Vec::new(),
+            answers: Vec::new(),
+            robot_order: None,
             history_restarts: false,
             drafts: false,
             draft: false,
@@ -108,6 +114,9 @@ impl Engine {
     pub fn handle(&mut self, request: Request) -> Report {
         if let Some(playback) = request.playback {
             self.playback = playback;
+        }
+        if let Some(order) = request.robot {
+            self.robot_order = order;
         }
         let began = Instant::now();
         let mut solved = request.edit.is_some() || request.reset || request.steps > 0;
@@ -240,7 +249,7 @@ impl Engine {
             self.simulation = None;
             self.snapshot.solution = None;
             self.history_restarts = true;
-            self.samples.clear();
+            self.answers.clear();
         }
         self.draft = false;
         // Models are compared by what they answer for the scene as laid, not for where another model left the cable.
@@ -303,7 +312,7 @@ impl Engine {
 
     fn reset(&mut self) -> Result<(), Error> {
         self.history_restarts = true;
-        self.samples.clear();
+        self.answers.clear();
         // At the start already: lay the cable anew, which forgets the friction of edits since.
         if self.start_kept
             && let Some(simulation) = &mut self.simulation
@@ -326,6 +335,7 @@ impl Engine {
         let Some(simulation) = &mut self.simulation else {
             return Ok(());
         };
+        simulation.command_robot(self.robot_order);
         match simulation.step(dt_s) {
             Err(SolveError::Unsupported { .. }) if self.edit.as_ref().is_some_and(|e| e.model == Model::Auto) => {
                 let moving =
@@ -341,9 +351,9 @@ impl Engine {
     /// Adds the present instant to the history: the start as well as every step.
     fn sample(&mut self) {
         if let Some(simulation) = &self.simulation
-            && self.samples.len() < crate::history::History::CAPACITY
+            && self.answers.len() < MOST_ANSWERS
         {
-            self.samples.push(Sample::of(&simulation.solution()));
+            self.answers.push(simulation.solution());
         }
     }
 
@@ -372,7 +382,7 @@ impl Engine {
         Report {
             snapshot: self.snapshot.clone(),
             history_restarts: std::mem::take(&mut self.history_restarts),
-            samples: std::mem::take(&mut self.samples),
+            answers: std::mem::take(&mut self.answers),
             paused_itself,
         }
     }

@@ -55,11 +55,11 @@ impl Report {
         self.paused_itself |= later.paused_itself;
         if later.history_restarts {
             self.history_restarts = true;
-            self.samples.clear();
+            self.answers.clear();
         }
-        self.samples.extend(later.samples);
-        let excess = self.samples.len().saturating_sub(crate::history::History::CAPACITY);
-        self.samples.drain(..excess);
+        self.answers.extend(later.answers);
+        let excess = self.answers.len().saturating_sub(engine::MOST_ANSWERS);
+        self.answers.drain(..excess);
     }
 }
 

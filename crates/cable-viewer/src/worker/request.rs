@@ -12,6 +12,8 @@ pub struct Request {
     pub edit: Option<Edit>,
     /// A support dragged while time runs.
     pub drag: Option<Drag>,
+    /// Speed of the robot by hand, m/s; Some(None): along its path.
+    pub robot: Option<Option<f64>>,
     /// Back to the start.
     pub reset: bool,
     /// Time runs or stands still.
@@ -74,6 +76,7 @@ impl Request {
             self.reset = true;
             self.steps = 0;
         }
+        self.robot = later.robot.or(self.robot);
         self.playback = later.playback.or(self.playback);
         self.steps = (self.steps + later.steps).min(MOST_STEPS);
         self.number = self.number.max(later.number);
@@ -82,6 +85,11 @@ impl Request {
     /// Nothing is asked.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.edit.is_none() && self.drag.is_none() && !self.reset && self.playback.is_none() && self.steps == 0
+        self.edit.is_none()
+            && self.drag.is_none()
+            && !self.reset
+            && self.playback.is_none()
+            && self.robot.is_none()
+            && self.steps == 0
     }
 }

@@ -33,6 +33,8 @@ pub fn state() -> AppState {
         state.history.push(Sample {
             time_s,
             max_tension_n: 640.0 + 180.0 * swing,
+            energy_j: [20.0 * swing * swing, 512.0, 0.9, 0.0],
+            robot: None,
             reactions_n: vec![[560.0 + 150.0 * swing, -310.0], [-560.0 - 120.0 * swing, -290.0]],
         });
     }

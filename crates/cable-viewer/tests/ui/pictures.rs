@@ -105,6 +105,8 @@ fn contacts_dark() {
         cables: vec![cable],
         warnings: Vec::new(),
         cost: Cost::default(),
+        energy: cable_core::solution::Energy::default(),
+        robot: None,
     }));
     compare("contacts_dark", state, Theme::Dark);
 }

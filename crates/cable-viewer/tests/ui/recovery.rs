@@ -1,7 +1,7 @@
 //! What a window that died has left, and the robot.
 
 use cable_core::Robot;
-use cable_core::scene::{Heading, SupportKind, catalog};
+use cable_core::scene::{SupportKind, catalog};
 use cable_viewer::command::{Command, SceneCommand};
 use cable_viewer::dialog::Dialog;
 use cable_viewer::state::Item;

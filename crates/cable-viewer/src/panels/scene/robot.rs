@@ -7,10 +7,10 @@ use egui::{ComboBox, Ui};
 
 use super::{coordinates, show_faults};
 use crate::command::{Command, SceneCommand};
-use crate::ground;
 use crate::panels::cable::labelled;
 use crate::panels::fault;
 use crate::state::AppState;
+use cable_core::scene::ground::Ground;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -59,7 +59,7 @@ fn chosen(state: &AppState, p: &RobotPreset) -> Robot {
     }
     let end = state.scene.cables.get(state.current_cable()).and_then(|c| c.supports.last()?.at_m).unwrap_or_default();
     let x = end[0] + p.hitch_back_m.value;
-    let y = ground::height_at(&state.scene, x).unwrap_or(end[1] - p.hitch_up_m.value);
+    let y = Ground::of(&state.scene).height(x).unwrap_or(end[1] - p.hitch_up_m.value);
     Robot { preset: p.id.to_owned(), at_m: [x, y], ..Robot::default() }
 }
 
