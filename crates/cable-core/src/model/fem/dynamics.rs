@@ -6,6 +6,7 @@ use super::assembly::Mesh;
 use super::contact_set::ContactSet;
 use super::contact_start::{lay, push_out, way};
 use super::contact_step::{Done, Failure, Task, Workspace};
+use super::free_step::FreeStep;
 use super::prepare::{load_scale, tolerance};
 use super::sleep::Sleep;
 use super::sliding::Seat;
@@ -89,6 +90,7 @@ pub struct Dynamics {
     pub(super) support_node: Vec<Option<usize>>,
     pub(super) loads: Vec<(usize, Series)>,
     pub(super) memory: Memory,
+    pub(super) free: FreeStep,
     pub(super) sleep: Sleep,
     pub(super) rested: bool,
     pub(super) held_back: Vec<usize>,
@@ -142,6 +144,7 @@ impl Dynamics {
             slides: true,
             even_bars: segments,
             memory: Memory(None),
+            free: FreeStep::default(),
             sleep: Sleep::default(),
             rested: false,
             held_back: Vec::new(),

@@ -20,6 +20,7 @@ mod contact_tests;
 pub mod dynamics;
 pub mod element;
 mod estimate;
+mod free_step;
 mod handover;
 mod integrate;
 mod layout;

@@ -142,7 +142,23 @@ impl Dynamics {
         (gripped, changed)
     }
 
+    /// Whether the cable is flexible and nothing but its supports can touch it.
+    fn moves_freely(&self) -> bool {
+        self.problem.world.is_empty()
+            && self.problem.floor_friction.is_none()
+            && self.mesh.bending_stiffness == 0.0
+            && self.mesh.sliding.iter().all(Option::is_none)
+    }
+
     pub(super) fn minimise(&mut self, pose: &mut Pose) -> Result<Done, Failure> {
+        if self.moves_freely()
+            && let Some(done) = self.free.solve(&self.mesh, &self.task, pose)
+        {
+            for (k, reaction) in self.reaction.iter_mut().enumerate() {
+                *reaction = -self.free.gradient_at(k);
+            }
+            return Ok(done);
+        }
         let mut memory = match self.memory.0.take() {
             Some(m) if m.nodes() == self.mesh.nodes() => m,
             _ => Box::new(Workspace::new(&self.mesh).map_err(|_| Failure {
