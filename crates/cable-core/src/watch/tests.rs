@@ -310,14 +310,13 @@ fn degenerate_lines_have_no_crossings() {
     assert!(crossings(&spiral, |_| true).is_empty());
 }
 
-/// What is named in the catalogue at rest: sharp corners of beams and an eye, slack on floors, the bight of the draped cable,
-/// the corners in which the cables between the posts and behind the robot were laid, and nothing else.
-const NAMED: [(&str, &[WarningKind]); 9] = [
+/// What is named in the catalogue at rest: sharp corners of beams and an eye, slack on floors, the corners in which the
+/// cables between the posts and behind the robot were laid, and nothing else.
+const NAMED: [(&str, &[WarningKind]); 8] = [
     ("tank", &[WarningKind::BendRadius]),
     ("slack-to-floor", &[WarningKind::Slack]),
     ("pulley-waypoints", &[WarningKind::BendRadius]),
     ("over-beam", &[WarningKind::BendRadius]),
-    ("draped-slipping", &[WarningKind::Kink]),
     ("floor-drag", &[WarningKind::Slack]),
     ("plan-posts", &[WarningKind::Kink]),
     ("near-taut", &[]),

@@ -38,6 +38,10 @@ pub const ROUNDED: f64 = 0.01;
 /// Least part of the cable between a sliding node and its neighbour that one iteration leaves.
 const LEAVE: f64 = 0.3;
 
+/// Short moves of held nodes towards their targets before they are stopped. Fewer: supports lag that could have got there;
+/// more: iterations spent on what the next step does as well.
+const MAX_PUSHES: usize = 12;
+
 /// The unknowns of a step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pose {
@@ -68,6 +72,8 @@ pub struct Task {
     pub force: Vec<Vec2>,
     /// Where each held node has to go, m (others: ignored).
     pub target: Vec<Vec2>,
+    /// Whether held nodes may stop short of it where an obstacle or the cable is in the way.
+    pub may_lag: bool,
     /// Where the step began, m.
     pub start: Vec<Vec2>,
     /// Plan view: largest friction force of each node, N (empty otherwise).
@@ -100,8 +106,6 @@ pub struct Done {
     pub iterations: usize,
     /// Largest unbalanced force left, N.
     pub residual: f64,
-    /// Whether a held node could not reach its target.
-    pub held_back: bool,
 }
 
 /// Memory of the minimisation.
@@ -113,6 +117,8 @@ pub struct Workspace {
     trial: Pose,
     touches: Vec<Touch>,
     magnitude: f64,
+    /// Where held nodes go: their targets, or where they had to stop, m.
+    goal: Vec<Vec2>,
 }
 
 impl Workspace {
@@ -128,6 +134,7 @@ impl Workspace {
             trial: Pose { x: vec![Vec2::zeros(); mesh.nodes()], slide: vec![0.0; mesh.nodes()] },
             touches: Vec::new(),
             magnitude: 0.0,
+            goal: Vec::new(),
             system,
             factor,
         })
@@ -244,7 +251,7 @@ impl Workspace {
         let (rows, band) = (s.hessian.rows(), s.hessian.half_bandwidth());
         for node in 0..mesh.nodes() {
             if mesh.held[node] {
-                let go = task.target[node] - x[node];
+                let go = self.goal[node] - x[node];
                 for (k, go) in [(2 * node, go.x), (2 * node + 1, go.y)] {
                     for i in k.saturating_sub(band)..(k + band + 1).min(rows) {
                         self.direction[i] -= s.hessian.get(i, k) * go;
@@ -256,7 +263,7 @@ impl Workspace {
         }
         for node in 0..mesh.nodes() {
             if mesh.held[node] {
-                let go = task.target[node] - x[node];
+                let go = self.goal[node] - x[node];
                 for (k, go) in [(2 * node, go.x), (2 * node + 1, go.y)] {
                     s.hessian.pin(k);
                     self.direction[k] = go;
@@ -290,6 +297,7 @@ impl Workspace {
         let mut shift = task.shift;
         let mut pushes = 0;
         let mut done = Done::default();
+        self.goal.clone_from(&task.target);
         let mut value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Exact);
         loop {
             let (residual, node) = self.residual(mesh, task);
@@ -297,9 +305,8 @@ impl Workspace {
             if !value.is_finite() || !residual.is_finite() {
                 return failed("the energy is not finite");
             }
-            let left = (0..mesh.nodes()).any(|k| mesh.held[k] && task.target[k] != pose.x[k]);
+            let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != pose.x[k]);
             done.residual = residual;
-            done.held_back = left;
             if residual <= task.tolerance && !left {
                 return Ok(done);
             }
@@ -342,8 +349,10 @@ impl Workspace {
                     }
                     if left && fraction < 0.5 {
                         pushes += 1;
-                        if pushes > 12 {
+                        if pushes > MAX_PUSHES && !task.may_lag {
                             return failed("a support cannot reach its place");
+                        } else if pushes > MAX_PUSHES {
+                            self.goal.clone_from(&pose.x);
                         }
                     }
                 }
@@ -428,7 +437,7 @@ impl Workspace {
                 trial.x[k] = pose.x[k] + step;
                 // A full step ends exactly on target.
                 if mesh.held[k] && fraction == 1.0 {
-                    trial.x[k] = task.target[k];
+                    trial.x[k] = self.goal[k];
                 }
             }
             let new_value = self.assemble(problem, mesh, contacts, (task, &trial), Curvature::Exact);

@@ -7,6 +7,7 @@ use super::contact_set::ContactSet;
 use super::contact_start::{lay, push_out, way};
 use super::contact_step::{Done, Failure, Task, Workspace};
 use super::free_step::FreeStep;
+use super::integrate::PULLED;
 use super::prepare::{load_scale, tolerance};
 use super::sleep::Sleep;
 use super::sliding::Seat;
@@ -28,6 +29,17 @@ pub const REACH: f64 = 1e-4;
 
 /// Barrier stiffness in units of the weight of one element: 20 times smaller rebounds and costs 30 % more.
 pub(super) const STIFFNESS: f64 = 20.0;
+
+/// Barrier stiffness in units of the greatest tension, where that is more. With a hundredth of it the gap of a node that
+/// a taut cable turns at is still a millionth of a metre; with the weight alone a cable of 1e6 N came as near as 1e-9 m, and no
+/// Newton step moved it.
+const TAUT_STIFFNESS: f64 = 0.05;
+
+/// Times the barrier's stiffness for its tension that a step is tried again with: the tension may grow in it.
+const SNATCH: f64 = 8.0;
+
+/// Change of the barrier's stiffness from one step to the next: up, so that it follows a snatch, and down.
+pub(super) const STIFFNESS_CHANGE: [f64; 2] = [2.0, 0.8];
 
 /// A step is halved at most this often.
 const MAX_DEPTH: usize = 10;
@@ -86,6 +98,8 @@ pub struct Dynamics {
     pub(super) slides: bool,
     /// Number of bars of the even mesh.
     pub(super) even_bars: usize,
+    /// What presses an even bar on flat ground, N.
+    pub(super) bar_weight: f64,
     /// Node of each support; None for one that slides.
     pub(super) support_node: Vec<Option<usize>>,
     pub(super) loads: Vec<(usize, Series)>,
@@ -143,6 +157,7 @@ impl Dynamics {
             saved: None,
             slides: true,
             even_bars: segments,
+            bar_weight: normal_per_m * even,
             memory: Memory(None),
             free: FreeStep::default(),
             sleep: Sleep::default(),
@@ -264,6 +279,23 @@ impl Dynamics {
         }
     }
 
+    /// The barrier's stiffness follows the greatest tension; `change` bounds by how much, up and down;
+    /// `ahead` is how many times that tension is reckoned with.
+    pub(super) fn adapt_stiffness(&mut self, [up, down]: [f64; 2], ahead: f64) {
+        if self.problem.world.is_empty() {
+            return;
+        }
+        let mut most = 0.0;
+        for e in 0..self.mesh.rest_length.len() {
+            let tension = self.mesh.bar(e).tension(self.mesh.path(e, &self.motion.x).length);
+            most = if tension > most { tension } else { most };
+        }
+        let least = STIFFNESS * self.bar_weight;
+        let wanted = if TAUT_STIFFNESS * most > least { TAUT_STIFFNESS * most } else { least };
+        let now = self.contacts.barrier.stiffness;
+        self.contacts.barrier.stiffness = (wanted * ahead).clamp(now * down, now * up);
+    }
+
     /// `h` (s), or less where a support lets go on the way.
     fn until_release(&self, h: f64) -> f64 {
         let now = self.motion.time;
@@ -316,6 +348,12 @@ impl Dynamics {
                     let f = other.err().unwrap_or(Failure { node: 0, residual: f64::NAN, cause: "not finite" });
 
                     self.restore();
+                    if f.cause == PULLED && self.settle_down(f.node) {
+                        self.renew_task();
+                        continue;
+                    }
+                    // The barrier may be too soft for what this step does.
+                    self.adapt_stiffness([2.0, 1.0], SNATCH);
                     *halved += 1;
                     depth += 1;
                     size *= 0.5;

@@ -9,13 +9,16 @@
 //! 0.4 to 0.8 of its speed, so the velocity along the normal is taken out of everything that touches.
 
 use super::contact_step::{Done, Failure, Pose};
-use super::dynamics::{Dynamics, REACH};
+use super::dynamics::{Dynamics, REACH, STIFFNESS_CHANGE};
 use super::prepare::damping_time;
 use crate::math::Vec2;
 use crate::model::drive::Follower;
 
 /// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
 const QUIET: f64 = 0.05;
+
+/// Why a step is tried again without a sliding node.
+pub(super) const PULLED: &str = "a corner would have to pull";
 
 /// Rounds of finding out which sliding nodes hold and which slip, in a step with inertia.
 const GRIP_ROUNDS: usize = 6;
@@ -72,6 +75,7 @@ impl Dynamics {
         }
         self.prepare_step([self.motion.time, self.motion.time + h], Some(dragged));
         self.adapt_reach();
+        self.adapt_stiffness(STIFFNESS_CHANGE, 1.0);
         let omega = if self.motion.step_before > 0.0 { h / self.motion.step_before } else { 0.0 };
         let alpha = (1.0 + 2.0 * omega) / (1.0 + omega);
         let (now, past) = ((1.0 + omega) / alpha, omega * omega / (1.0 + omega) / alpha);
@@ -83,6 +87,10 @@ impl Dynamics {
         let done = self.grip_and_minimise(&mut pose);
         self.task.tolerance = exact;
         let done = done?;
+        if let Some(node) = self.pulled(&pose.x) {
+            return Err(Failure { node, residual: done.residual, cause: PULLED });
+        }
+        self.note_lag(&pose);
         self.contacts.commit(&self.problem, &self.mesh, &pose.x, &self.motion.x, &pose.slide);
         let (m, mesh) = (&mut self.motion, &self.mesh);
         for k in 0..pose.x.len() {
@@ -104,6 +112,21 @@ impl Dynamics {
         self.land(h);
         self.remesh();
         Ok(done)
+    }
+
+    /// Supports that could not get where they were to be: said, and their hands start again from there.
+    fn note_lag(&mut self, pose: &Pose) {
+        for (support, node) in self.support_node.iter().enumerate() {
+            let Some(k) = node.filter(|&k| self.mesh.held[k]) else { continue };
+            if pose.x[k] != self.task.target[k] && !self.held_back.contains(&support) {
+                self.held_back.push(support);
+            }
+            if let Some(f) = &mut self.motion.followers[support]
+                && f.position() != pose.x[k]
+            {
+                f.stop_at(pose.x[k]);
+            }
+        }
     }
 
     /// The present pose moved on at its velocities for `h` (s), where nothing can be in the way. Newton then starts nearer

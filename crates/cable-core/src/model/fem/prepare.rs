@@ -4,6 +4,7 @@ use super::contact_step::{Done, Failure, Pose, Workspace};
 use super::dynamics::{Dynamics, INNER_STEP, REACH};
 use super::sliding::Seat;
 use crate::math::Vec2;
+use crate::model::drive::MAX_SPEED;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 
@@ -15,7 +16,7 @@ const TOLERANCE: f64 = 1e-6;
 const MATERIAL_DAMPING: f64 = 1e-3;
 
 /// Newton iterations of a dynamic step.
-const STEP_ITERATIONS: usize = 60;
+const STEP_ITERATIONS: usize = 120;
 
 /// Factors of sliding nodes count as found when they change by less than this.
 const SAME_FACTOR: f64 = 1e-9;
@@ -61,6 +62,8 @@ impl Dynamics {
             {
                 let hand = dragged.and_then(|d| d.get(k).copied().flatten());
                 let at = self.motion.followers[k].map_or(hand.unwrap_or(at), |f| f.position());
+                // What was stopped and is free again catches up no faster than anything moves.
+                let at = if to > from { within(self.motion.x[node], at, MAX_SPEED * (to - from)) } else { at };
                 mesh.held[node] = true;
                 task.target[node] = clear_way(problem, self.motion.x[node], at);
                 if task.target[node] != at && !self.held_back.contains(&k) {
@@ -92,6 +95,7 @@ impl Dynamics {
         if let Some((friction, normal)) = problem.floor_friction {
             task.floor_limit.extend((0..n).map(|k| friction * normal * mesh.share(k)));
         }
+        task.may_lag = to > from;
         task.max_iterations = STEP_ITERATIONS;
         task.max_move = 2.0 * INNER_STEP * 100.0;
         task.shift = 0.0;
@@ -177,18 +181,43 @@ impl Dynamics {
     }
 }
 
+/// The point on the way from `from` towards `to` that is at most `most` (m) away.
+fn within(from: Vec2, to: Vec2, most: f64) -> Vec2 {
+    let (way, distance) = (to - from, (to - from).norm());
+    if distance > most { from + way * (most / distance) } else { to }
+}
+
+/// Gap (m) that a support keeps from what it is driven against. The bar beside it presses there with hardly a lever: nearer,
+/// and its normal force, 1e14 N at 1e-8 m, is all that Newton sees.
+const STAND_OFF: f64 = 0.2 * REACH;
+
+/// Rounding of a gap, m.
+const TOUCHING: f64 = 1e-9;
+
+/// Part of its gap that a support keeps in one step.
+const KEEP_GAP: f64 = 0.2;
+
+/// Halvings of the way of a support that comes too near, before it stays where it is.
+const STAND_OFF_TRIES: usize = 4;
+
 /// The target of a held node, stopped where an obstacle is in its way (m).
 fn clear_way(problem: &Problem, from: Vec2, to: Vec2) -> Vec2 {
     if problem.world.is_empty() || from == to {
         return to;
     }
-    let free = problem.world.free_fraction([from, from], [to, to], 0.2);
-    if free >= 1.0 {
-        return to;
+    let gap = |p: Vec2| problem.world.signed_gap(p, STAND_OFF).map_or(STAND_OFF, |g| g.gap_m);
+    // A support that the scene puts on a surface may stay on it; none may come nearer than it stands.
+    let least = gap(from) - TOUCHING;
+    let free = problem.world.free_fraction([from, from], [to, to], KEEP_GAP);
+    let mut part = if free >= 1.0 { 1.0 } else { free };
+    for _ in 0..STAND_OFF_TRIES {
+        let at = if part >= 1.0 { to } else { from + (to - from) * part };
+        if gap(at) >= least {
+            return at;
+        }
+        part *= 0.5;
     }
-    // Near the surface already: it stays, so that its gap never shrinks away.
-    let near = problem.world.signed_gap(from, 0.2 * REACH).is_some_and(|g| g.gap_m.abs() < 0.2 * REACH);
-    if near { from } else { from + (to - from) * free }
+    from
 }
 
 /// Load per metre that presses on the ground and the whole load, N/m and N; never 0.

@@ -9,7 +9,7 @@
 //!
 //! Material, place and momentum of what stays are left as they are.
 
-use super::dynamics::{Dynamics, STIFFNESS};
+use super::dynamics::Dynamics;
 use super::path::{End, Path, angle_between};
 use super::sliding::{Grip, Load, Seat, Sliding, round_of};
 use crate::math::{Vec2, perp};
@@ -44,8 +44,15 @@ const TAUT: f64 = 4.0;
 /// See `TAUT`.
 const SLACK: f64 = 2.0;
 
+/// Turn (rad) the wrong way round a corner that a step may end with. The node leaves after the step; with more, its
+/// tangents would lie inside the obstacle.
+const WRONG_TURN: f64 = 0.02;
+
 /// Half of the turn (rad) up to which a slack cable may leave a round with one node.
 const MOST_BEND: f64 = 1.0;
+
+/// Half of the turn (rad) up to which the node that takes the place of a sliding one goes where the tangents meet.
+const SHARPEST: f64 = 1.4;
 
 /// Turn (rad) below which a node that leaves its corner is taken out; else it becomes a node of the cable.
 const NEARLY_STRAIGHT: f64 = 0.3;
@@ -67,7 +74,11 @@ impl Dynamics {
     pub(super) fn remesh(&mut self) -> bool {
         let nodes = self.mesh.nodes();
         let mut changed = self.let_go();
-        changed |= self.take_hold();
+        if self.take_hold() {
+            // What took hold may lift its neighbour off.
+            self.let_go();
+            changed = true;
+        }
         let moved = self.move_marks();
         let wound = self.wind();
         self.even_out();
@@ -120,8 +131,13 @@ impl Dynamics {
             if leaves && self.runs_straight(k) && self.clear_without(k) {
                 self.remove(k);
                 changed = true;
+            } else if leaves && self.settle_down(k) {
+                changed = true;
+                k += 1;
+            } else if leaves && self.clear_without(k) {
+                self.remove(k);
+                changed = true;
             } else {
-                changed |= leaves && self.settle_down(k);
                 k += 1;
             }
         }
@@ -150,9 +166,9 @@ impl Dynamics {
     /// A sliding node becomes one that moves with its material: something else is in the way of a bar in its place.
     ///
     /// It goes where its two tangents meet, 1/cos(φ/2) radii from the centre, so that the bars lie where they lay.
-    fn settle_down(&mut self, k: usize) -> bool {
+    pub(super) fn settle_down(&mut self, k: usize) -> bool {
         let half = (0.5 * self.turn(k)).abs();
-        let out = 1.0 / if half < MOST_BEND { half.cos() } else { MOST_BEND.cos() };
+        let out = 1.0 / if half < SHARPEST { half.cos() } else { SHARPEST.cos() };
         let Some(end) = self.mesh.sliding[k].map(|s| s.end) else { return false };
         let x = &self.motion.x;
         let along = self.mesh.path(k - 1, x).direction + self.mesh.path(k, x).direction;
@@ -193,17 +209,26 @@ impl Dynamics {
         }
         let Some(load) = self.load(k) else { return false };
         let (turn, tension) = (self.turn(k), 0.5 * (load.tension[0] + load.tension[1]));
-        load.normal < 0.0 || turn < 0.0 || (tension < SLACK * self.bar_weight() && turn < 2.0 * MOST_BEND)
-    }
-
-    /// What presses an even bar on flat ground, N.
-    fn bar_weight(&self) -> f64 {
-        self.contacts.barrier.stiffness / STIFFNESS
+        load.normal < 0.0 || turn < 0.0 || (tension < SLACK * self.bar_weight && turn < 2.0 * MOST_BEND)
     }
 
     /// Angle through which the bars beside node `k` turn, in the sense of a sliding node, rad.
     fn turn(&self, k: usize) -> f64 {
-        let x = &self.motion.x;
+        self.turn_at(k, &self.motion.x)
+    }
+
+    /// The sliding nodes of obstacles that the cable, at positions `x` (m), turns round the wrong way: there a corner would
+    /// have to pull.
+    pub(super) fn pulled(&self, x: &[Vec2]) -> Option<usize> {
+        (1..self.mesh.nodes().saturating_sub(1)).find(|&k| {
+            self.mesh.sliding[k].is_some_and(|node| {
+                let shared = |j: usize| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
+                node.feature().is_some() && !shared(k - 1) && !shared(k + 1) && self.turn_at(k, x) < -WRONG_TURN
+            })
+        })
+    }
+
+    fn turn_at(&self, k: usize, x: &[Vec2]) -> f64 {
         let paths = [self.mesh.path(k - 1, x), self.mesh.path(k, x)];
         match &self.mesh.sliding[k] {
             Some(s) if s.end.radius > 0.0 => paths[0].arcs[1] + paths[1].arcs[0],
@@ -232,13 +257,16 @@ impl Dynamics {
             let found = touches.iter().find_map(|t| {
                 let pressed =
                     t.pair.weight > 0.0 && t.load(&self.contacts.barrier) > 0.0 && t.pair.gap.feature % 2 == 1;
-                if pressed { self.seat_for(t.node, t.on_segment, &t.pair.gap) } else { None }
+                let (bar, arc_length, sliding) =
+                    if pressed { self.seat_for(t.node, t.on_segment, &t.pair.gap)? } else { return None };
+                let near = NEAR * self.even();
+                let node = [bar, bar + 1]
+                    .into_iter()
+                    .find(|&k| self.removable(k) && (self.mesh.arc_length[k] - arc_length).abs() < near);
+                let beside = node.map_or([bar, bar + 1], |k| [k - 1, k + 1]);
+                self.fits(beside, &sliding).then_some((bar, node, arc_length, sliding))
             });
-            let Some((bar, arc_length, sliding)) = found else { break };
-            let near = NEAR * self.even();
-            let node = [bar, bar + 1]
-                .into_iter()
-                .find(|&k| self.removable(k) && (self.mesh.arc_length[k] - arc_length).abs() < near);
+            let Some((bar, node, arc_length, sliding)) = found else { break };
             match node {
                 Some(k) => self.pin_down(k, arc_length, sliding),
                 None => self.insert(bar + 1, arc_length, Some(sliding)),
@@ -247,6 +275,32 @@ impl Dynamics {
             changed = true;
         }
         changed
+    }
+
+    /// Whether a sliding node between two nodes would bend the cable the right way and its bars would meet nothing.
+    fn fits(&self, [before, after]: [usize; 2], sliding: &Sliding) -> bool {
+        let (x, geometry) = (&self.motion.x, self.problem.world.geometry());
+        let paths = [
+            Path::between(&self.mesh.end(before, x), &sliding.end),
+            Path::between(&sliding.end, &self.mesh.end(after, x)),
+        ];
+        let feature = |k: usize| self.mesh.sliding[k].as_ref().and_then(Sliding::feature);
+        let rounds = [[feature(before), sliding.feature()], [sliding.feature(), feature(after)]];
+        let least = LEAST_GAP * self.contacts.barrier.reach;
+        let turn = if sliding.end.radius > 0.0 {
+            paths[0].arcs[1] + paths[1].arcs[0]
+        } else {
+            sliding.end.sense * angle_between(paths[0].direction, paths[1].direction)
+        };
+        // Nor may it turn a neighbour the wrong way.
+        let beside = |k: usize, arc: f64, e: usize, j: usize| {
+            self.mesh.sliding[k].is_none_or(|s| {
+                s.feature().is_none() || s.shares_round(sliding) || arc + self.mesh.path(e, x).arcs[j] > -WRONG_TURN
+            })
+        };
+        let sides = (before == 0 || beside(before, paths[0].arcs[0], before - 1, 1))
+            && (after + 1 == self.mesh.nodes() || beside(after, paths[1].arcs[1], after, 0));
+        turn > -WRONG_TURN && sides && (0..2).all(|j| geometry.is_clear(paths[j].ends, least, rounds[j]))
     }
 
     /// The sliding node that a corner or circle pressing on a bar or node asks for: its bar, arc length and itself.
@@ -272,7 +326,7 @@ impl Dynamics {
         let beyond = (bar + 1).min(last - 1);
         let wrap = sense * angle_between(mesh.path(first, x).direction, mesh.path(beyond, x).direction);
         let tension = mesh.bar(bar).tension(path.length);
-        if !(wrap > 0.0 && tension > TAUT * self.bar_weight()) {
+        if !(wrap > 0.0 && tension > TAUT * self.bar_weight) {
             return None;
         }
         let s = [mesh.arc_length[bar], mesh.arc_length[bar + 1]];

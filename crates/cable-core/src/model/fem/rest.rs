@@ -1,7 +1,7 @@
 //! Resting places and slow motion in contact.
 
 use super::contact_step::{Done, Failure, Pose};
-use super::dynamics::{Dynamics, REACH, STIFFNESS};
+use super::dynamics::{Dynamics, REACH};
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::{Model, StepReport};
@@ -28,6 +28,7 @@ impl Dynamics {
         for _ in 0..CORNER_ROUNDS {
             self.prepare_task(to, Some(dragged));
             self.set_reach(REACH);
+            self.adapt_stiffness([f64::INFINITY, 0.0], 1.0);
             self.task.max_iterations = REST_ITERATIONS;
             let mut pose = self.still_pose();
             let done = self.lag(&mut pose, LAG_ROUNDS)?;
@@ -86,13 +87,15 @@ impl Dynamics {
 
     /// Weight of an element over a tenth of a metre: enough to keep slack nodes from wandering.
     fn soft_shift(&self) -> f64 {
-        self.contacts.barrier.stiffness / STIFFNESS / 0.1
+        self.bar_weight / 0.1
     }
 
     /// Follows the way down with ever weaker viscous resistance, then finds the resting place itself.
     pub(super) fn relax(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Done, Failure> {
         let mut resistance = self.soft_shift();
         let (full, floor) = (resistance, 1e-5 * resistance);
+        // Set where Newton without resistance has failed: then steps are solved exactly, until what resists is nothing.
+        let mut stubborn = false;
         let mut total = 0;
         let mut last = Failure { node: 0, residual: f64::NAN, cause: "it never came to rest" };
         for round in 0..MAX_RELAX {
@@ -103,7 +106,7 @@ impl Dynamics {
                 self.task.inertia[k] *= self.mesh.share(k) / even;
             }
             let exact = self.task.tolerance;
-            self.task.tolerance = 1e2 * exact;
+            self.task.tolerance = if stubborn { exact } else { 1e2 * exact };
             // A first lay carries no normal force yet: without refreshing, it would slide as if on ice.
             let mut pose = self.still_pose();
             let done = self.lag(&mut pose, RELAX_LAG_ROUNDS);
@@ -111,15 +114,17 @@ impl Dynamics {
             match done {
                 Ok(done) => {
                     total += done.iterations;
-                    let mut moved: f64 = 0.0;
-                    for (a, b) in pose.x.iter().zip(&self.motion.x) {
-                        moved = moved.max((a - b).norm());
-                    }
-                    for slid in &pose.slide {
-                        moved = moved.max(slid.abs());
+                    let (mut moved, mut resists): (f64, f64) = (0.0, 0.0);
+                    for (k, (a, b)) in pose.x.iter().zip(&self.motion.x).enumerate() {
+                        let way = (a - b).norm().max(pose.slide[k].abs());
+                        moved = moved.max(way);
+                        resists = resists.max(if self.mesh.held[k] { 0.0 } else { way * self.task.inertia[k] });
                     }
                     if self.accept_rest(&pose, self.motion.time) {
                         moved = moved.max(0.1);
+                    } else if stubborn && resists <= exact {
+                        self.motion.time = to;
+                        return Ok(Done { iterations: total, residual: done.residual + resists });
                     }
                     resistance *= if moved < 0.3 { 0.6 } else { 1.0 };
                     if resistance < floor || (moved < 1e-4 && round % 8 == 7) || moved < 1e-7 {
@@ -127,7 +132,8 @@ impl Dynamics {
                             Ok(done) => return Ok(Done { iterations: total + done.iterations, ..done }),
                             Err(failure) => {
                                 last = failure;
-                                resistance = resistance.max(floor) * 30.0;
+                                stubborn = true;
+                                resistance = (resistance.max(floor) * 30.0).min(full);
                             }
                         }
                     }
