@@ -98,7 +98,7 @@ impl FreeStep {
                 return None;
             }
             if balance.force <= task.tolerance && balance.pull <= task.tolerance && !left {
-                return Some(Done { iterations, residual: balance.force, held_back: false });
+                return Some(Done { iterations, residual: balance.force });
             }
             if iterations == MAX_STEPS {
                 return None;
