@@ -156,7 +156,9 @@ impl Vehicle {
             waited: 0.0,
             report: RobotReport::default(),
         };
-        vehicle.tell(Vec2::zeros(), Forces::default(), (0.0, Going::Standing));
+        let (sin, cos) = pose.pitch.sin_cos();
+        let forces = Forces { normal: vehicle.weight * cos, thrust: vehicle.weight * sin };
+        vehicle.tell(Vec2::zeros(), forces, (0.0, Going::Standing));
         Some(vehicle)
     }
 
@@ -318,7 +320,7 @@ impl Vehicle {
 }
 
 /// What the ground does to it, N.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Forces {
     normal: f64,
     thrust: f64,

@@ -20,6 +20,20 @@ pub enum Dialog {
         /// The path as typed so far.
         path: String,
     },
+    /// Where to export a graph to; the ending says how.
+    Export {
+        /// The path as typed so far.
+        path: String,
+        /// What was in view.
+        sheet: Box<crate::plot::export::Sheet>,
+    },
+    /// Where to save what was recorded.
+    SaveRun {
+        /// The folder as typed so far.
+        path: String,
+    },
+    /// What was validated and what was not.
+    About,
     /// A window that did not close has left unsaved changes.
     Recover {
         /// The scene as it was last kept.

@@ -52,6 +52,8 @@ pub struct AppState {
     pub recording: Recording,
     /// Speed of the robot by hand, m/s, positive to the right; None: it follows its path.
     pub robot_order: Option<f64>,
+    /// Speed the robot is driven with by hand, m/s; None: its greatest.
+    pub robot_speed: Option<f64>,
     /// How the solver thread is doing.
     pub worker: WorkerStatus,
     /// Tension and reactions against time since the last start.
@@ -206,6 +208,7 @@ impl AppState {
             live: Snapshot::default(),
             recording: Recording::default(),
             robot_order: None,
+            robot_speed: None,
             worker: WorkerStatus::Idle,
             history: History::default(),
             edits_sent: 0,

@@ -18,6 +18,19 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
             Dialog::Message { title, text } => message(ui, title, text, commands),
             Dialog::Open { path } => ask_path(ui, "Open a scene", path, false, commands),
             Dialog::SaveAs { path } => ask_path(ui, "Save the scene as", path, true, commands),
+            Dialog::Export { path, sheet } => {
+                let note = "CSV has every sample in view in SI units; SVG and PNG are drawings of it";
+                if let Some(path) = ask(ui, "Export what is in view", ("Ends in .csv, .svg or .png", note), path, commands) {
+                    commands.push(Command::File(FileCommand::Export(path, sheet.clone())));
+                }
+            }
+            Dialog::SaveRun { path } => {
+                let note = "The scene and the tables history.csv, nodes.csv and events.csv; those of an earlier run there are replaced";
+                if let Some(path) = ask(ui, "Save what was recorded", ("A folder", note), path, commands) {
+                    commands.push(Command::File(FileCommand::SaveRun(path)));
+                }
+            }
+            Dialog::About => about(ui, commands),
             Dialog::Unsaved { then } => unsaved(ui, &name, then, commands),
             Dialog::Recover { scene } => recover(ui, scene, commands),
             Dialog::Help => help(ui, commands),
@@ -41,6 +54,80 @@ fn message(ui: &mut Ui, title: &str, text: &str, commands: &mut Vec<Command>) {
         commands.push(close());
     }
 }
+
+/// A path to type; some once it is entered.
+fn ask(
+    ui: &mut Ui,
+    title: &str,
+    (hint, note): (&str, &str),
+    path: &mut String,
+    commands: &mut Vec<Command>,
+) -> Option<PathBuf> {
+    ui.heading(title);
+    ui.add_space(6.0);
+    let mut done = false;
+    ui.horizontal(|ui| {
+        let label = ui.label("Path");
+        let field = egui::TextEdit::singleline(path).desired_width(320.0).hint_text(hint);
+        let field = ui.add(field).labelled_by(label.id).on_hover_text(hint);
+        done |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+    });
+    ui.weak(note);
+    ui.add_space(10.0);
+    ui.horizontal(|ui| {
+        done |= ui.button("Save").clicked();
+        if ui.button("Cancel").clicked() {
+            commands.push(close());
+        }
+    });
+    (done && !path.trim().is_empty()).then(|| PathBuf::from(path.trim()))
+}
+
+/// What was checked and what was not.
+fn about(ui: &mut Ui, commands: &mut Vec<Command>) {
+    ui.heading("About the cable simulator");
+    ui.weak(format!("Version {}; MIT or Apache-2.0", env!("CARGO_PKG_VERSION")));
+    for (title, lines) in ABOUT {
+        ui.add_space(8.0);
+        ui.strong(*title);
+        for line in *lines {
+            ui.horizontal_top(|ui| {
+                ui.label("•");
+                ui.add(egui::Label::new(*line).wrap());
+            });
+        }
+    }
+    ui.add_space(10.0);
+    if ui.button("Close").clicked() {
+        commands.push(close());
+    }
+}
+
+/// As the tests of the project have it.
+const ABOUT: &[(&str, &[&str])] = &[
+    (
+        "Checked",
+        &[
+            "Free spans against the elastic catenary, to 40 digits",
+            "Whole scenes over floors, beams and posts against references found by shooting",
+            "Motion against closed forms: pendulums, falling and hanging chains, strings, Irvine’s modes, the capstan",
+            "Breaking at the time and place that the strain says",
+            "The robot’s speed, stall and slip against its balance of forces by hand",
+            "Its models against each other",
+        ],
+    ),
+    (
+        "Not checked",
+        &[
+            "Nothing was compared with a test of a real cable or robot: it is not certified",
+            "Figures of presets marked ≈ or C are estimates; bending stiffness of rubber cables lies anywhere in about 10 : 1",
+            "Everything is plane: no cable passes sideways round anything, and knots cannot be told",
+            "The robot’s body is no obstacle for the cable yet; its drive curve is an assumption",
+            "Violent motion (ends thrown metres in a frame) can end in a stop that says so",
+            "With friction there are many resting places; one way of laying is answered",
+        ],
+    ),
+];
 
 /// A path to type, and the system's own dialog for those who have one.
 fn ask_path(ui: &mut Ui, title: &str, path: &mut String, saving: bool, commands: &mut Vec<Command>) {
@@ -121,10 +208,12 @@ fn help(ui: &mut Ui, commands: &mut Vec<Command>) {
             ("Drag an obstacle", "Moves all of it; click it to see its corners"),
             ("Double-click the cable", "Adds a waypoint"),
             ("Drag the background", "Moves the view"),
-            ("Wheel", "Zooms at the pointer"),
+            ("Wheel", "Zooms at the pointer, in graphs too"),
+            ("Click in a graph", "Sets a cursor; a second one tells the difference"),
             ("F, C", "Fits the scene, recentres on the cable"),
             ("Space", "Runs or pauses"),
-            ("→", "One step of 1/60 s"),
+            ("→, ←", "One step of 1/60 s; one picture back"),
+            ("Hold A, D", "Drives the robot left, right"),
             ("R", "Back to the start"),
             ("Del", "Removes what is selected"),
             ("Ctrl+Z, Ctrl+Shift+Z", "Undo, redo"),

@@ -3,6 +3,7 @@
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
+use crate::panels::robot;
 use crate::state::AppState;
 
 /// Ctrl or ⌘ with a key.
@@ -63,6 +64,7 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     if plain(Key::ArrowLeft) {
         commands.push(Command::Playback(PlaybackCommand::StepBack));
     }
+    drive(ctx, state, commands);
     if plain(Key::R) {
         commands.push(Command::Playback(PlaybackCommand::Reset));
     }
@@ -76,5 +78,26 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     }
     if plain(Key::Escape) {
         commands.push(Command::View(ViewCommand::Select(None)));
+    }
+}
+
+/// A and D drive the robot while they are held.
+fn drive(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
+    if state.scene.robot.is_none() {
+        return;
+    }
+    let [left, right, released] = ctx.input(|i| {
+        let released = i.key_released(Key::A) || i.key_released(Key::D);
+        [i.modifiers.is_none() && i.key_down(Key::A), i.modifiers.is_none() && i.key_down(Key::D), released]
+    });
+    let speed = robot::hand_speed(state);
+    let order = match (left, right) {
+        (true, false) => Some(-speed),
+        (false, true) => Some(speed),
+        _ if released => Some(0.0),
+        _ => return,
+    };
+    if order != state.robot_order {
+        commands.push(Command::Playback(PlaybackCommand::DriveRobot(order)));
     }
 }

@@ -14,6 +14,7 @@ type Section = (&'static str, PanelUi);
 /// What is edited.
 const EDIT: &[Section] = &[
     ("Scene", panels::scene::ui),
+    ("Robot", panels::robot::ui),
     ("Cable", panels::cable::ui),
     ("Environment", panels::environment::ui),
     ("Solver", panels::solver::ui),
@@ -30,7 +31,10 @@ const LEAST_GRAPHS: f32 = 130.0;
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     Panel::top("menu").show(ui, |ui| menu::ui(ui, state, commands));
     Panel::bottom("status").show(ui, |ui| menu::status(ui, state));
-    Panel::bottom("playback").show(ui, |ui| panels::playback::ui(ui, state, commands));
+    Panel::bottom("playback").show(ui, |ui| {
+        panels::timeline::ui(ui, state, commands);
+        panels::playback::ui(ui, state, commands);
+    });
     let [width, height] = ui.ctx().content_rect().size().into();
     if width >= WIDE {
         side(ui, "edit", (EDIT, state, commands));
@@ -58,7 +62,7 @@ fn tabs(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let id = Id::unique("narrow tab");
         let mut read: bool = ui.data(|d| d.get_temp(id)).unwrap_or_default();
         ui.horizontal(|ui| {
-            ui.selectable_value(&mut read, false, "Edit").on_hover_text("Scene, cable, environment, solver");
+            ui.selectable_value(&mut read, false, "Edit").on_hover_text("Scene, robot, cable, environment, solver");
             ui.selectable_value(&mut read, true, "Read").on_hover_text("Warnings and readouts");
             let warnings = state.snapshot.solution.as_ref().map_or(0, |s| s.warnings.len());
             if state.scene_fault.is_some() || state.snapshot.error.is_some() || warnings > 0 {
@@ -74,6 +78,9 @@ fn tabs(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 fn scroll(ui: &mut Ui, id: &str, (sections, state, commands): (&[Section], &AppState, &mut Vec<Command>)) {
     ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| {
         for (title, panel) in sections {
+            if *title == "Robot" && state.scene.robot.is_none() {
+                continue;
+            }
             CollapsingHeader::new(*title).default_open(true).show_unindented(ui, |ui| panel(ui, state, commands));
         }
     });

@@ -15,8 +15,11 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.menu_button("Edit", |ui| edit(ui, state, commands));
         ui.menu_button("View", |ui| view(ui, state, commands));
         ui.menu_button("Scenes", |ui| scenes(ui, commands));
-        if ui.button("Help").clicked() {
+        if ui.button("Help").on_hover_text("Pointer and keys (F1)").clicked() {
             commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::Help))));
+        }
+        if ui.button("About").on_hover_text("What was checked and what was not").clicked() {
+            commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::About))));
         }
         ui.separator();
         ui.strong(title(state));
@@ -47,6 +50,7 @@ fn file(ui: &mut Ui, commands: &mut Vec<Command>) {
         ("Open…", Some(&keys::OPEN), FileCommand::AskOpen),
         ("Save", Some(&keys::SAVE), FileCommand::Save),
         ("Save as…", Some(&keys::SAVE_AS), FileCommand::AskSaveAs),
+        ("Save run…", None, FileCommand::SetDialog(Some(Dialog::SaveRun { path: "run".to_owned() }))),
         ("Quit", None, FileCommand::Quit),
     ] {
         if entry(ui, text, shortcut) {

@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use cable_core::Scene;
 use cable_core::scene::catalog;
+use cable_core::{Scene, files};
 
 use super::{Command, Effects, submit_scene};
 use crate::dialog::Dialog;
+use crate::plot::export::{self, Sheet};
 use crate::scene_file;
 use crate::state::AppState;
 
@@ -25,6 +26,10 @@ pub enum FileCommand {
     AskSaveAs,
     /// Saves to a file.
     SaveAs(PathBuf),
+    /// Writes what was in view of a graph.
+    Export(PathBuf, Box<Sheet>),
+    /// Writes everything recorded as a run folder.
+    SaveRun(PathBuf),
     /// Shows a dialog, or closes it.
     SetDialog(Option<Dialog>),
     /// Takes over what a window that died had kept.
@@ -66,6 +71,14 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
             None => state.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
         },
         FileCommand::SaveAs(path) => save(state, &path),
+        FileCommand::Export(path, sheet) => match export::save(&path, &sheet) {
+            Ok(()) => state.dialog = None,
+            Err(text) => complain(state, &format!("“{}” was not written", path.display()), text),
+        },
+        FileCommand::SaveRun(path) => match save_run(state, &path) {
+            Ok(()) => state.dialog = None,
+            Err(text) => complain(state, &format!("The run was not written to “{}”", path.display()), text),
+        },
         FileCommand::SetDialog(dialog) => state.dialog = dialog,
         FileCommand::Recover(scene) => {
             open(state, *scene, None, effects);
@@ -123,6 +136,15 @@ fn save(state: &mut AppState, path: &Path) {
         }
         Err(text) => complain(state, &format!("“{}” was not saved", path.display()), text),
     }
+}
+
+fn save_run(state: &AppState, path: &Path) -> Result<(), String> {
+    let scene = state.live.scene.as_deref().ok_or("nothing was solved yet")?;
+    let mut folder = files::create_run(path, scene).map_err(|e| e.to_string())?;
+    for answer in state.recording.answers() {
+        folder.push(answer).map_err(|e| e.to_string())?;
+    }
+    folder.flush().map_err(|e| e.to_string())
 }
 
 fn complain(state: &mut AppState, title: &str, text: String) {

@@ -25,6 +25,8 @@ pub enum PlaybackCommand {
     Reset,
     /// The robot goes at this speed, m/s, positive to the right; None: along its path.
     DriveRobot(Option<f64>),
+    /// Speed it is driven with by hand, m/s.
+    SetRobotSpeed(f64),
 }
 
 /// Does one of them.
@@ -65,9 +67,25 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
             effects.request.merge(Request { reset: true, number: next_number(state), ..Request::default() });
         }
         PlaybackCommand::DriveRobot(order) => {
+            // Who drives wants to see it: time runs, from the present on.
+            if order.is_some_and(|v| v != 0.0) {
+                state.show_time(None);
+                state.playback.paused = false;
+            }
             if state.robot_order != order {
                 state.robot_order = order;
                 effects.request.merge(Request { robot: Some(order), ..Request::default() });
+            }
+        }
+        PlaybackCommand::SetRobotSpeed(speed) => {
+            if speed.is_finite() && speed > 0.0 {
+                state.robot_speed = Some(speed);
+                // What is being driven goes on at the new speed.
+                if let Some(order) = state.robot_order.filter(|v| *v != 0.0) {
+                    let order = Some(speed.copysign(order));
+                    state.robot_order = order;
+                    effects.request.merge(Request { robot: Some(order), ..Request::default() });
+                }
             }
         }
     }

@@ -1,11 +1,13 @@
-//! Plots panel: tension, stress or strain over time and along the cable.
+//! Plots panel: a quantity over time and along the cable, with cursors and export.
 
 use egui::{ComboBox, Id, Ui};
 
 use super::field;
 use crate::colour::Quantity;
-use crate::command::Command;
-use crate::plot::{View, along, time};
+use crate::command::{Command, FileCommand};
+use crate::dialog::Dialog;
+use crate::plot::measure::Measure;
+use crate::plot::{Touched, View, along, time};
 use crate::state::AppState;
 
 /// Below this width the graphs stand one under the other, points.
@@ -18,40 +20,45 @@ const WINDOWS: [(Option<f64>, &str); 4] =
     [(Some(10.0), "Last 10 s"), (Some(60.0), "Last 60 s"), (Some(300.0), "Last 300 s"), (None, "All")];
 
 /// Draws it.
-pub fn ui(ui: &mut Ui, state: &AppState, _commands: &mut Vec<Command>) {
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let id = Id::unique("plot view");
     let mut view: View = ui.data(|d| d.get_temp(id)).unwrap_or_default();
     ui.horizontal_wrapped(|ui| controls(ui, state, &mut view));
-    ui.data_mut(|d| d.insert_temp(id, view));
     let wide = ui.available_width() >= SIDE_BY_SIDE;
     let room = ui.available_height() - ui.spacing().item_spacing.y;
     let height = if wide { room } else { room / 2.0 };
-    if !wide && height < LEAST_HEIGHT {
+    let touched = if !wide && height < LEAST_HEIGHT {
         // No room for both: the one that is always full.
-        along_cable(ui, state, view, room);
+        vec![along_cable(ui, state, view, room)]
     } else if wide {
         ui.columns_const(|[left, right]| {
-            time::ui(left, state, view, height);
-            along_cable(right, state, view, height);
-        });
+            vec![time::ui(left, state, view, height), along_cable(right, state, view, height)]
+        })
     } else {
-        time::ui(ui, state, view, height);
-        along_cable(ui, state, view, height);
+        vec![time::ui(ui, state, view, height), along_cable(ui, state, view, height)]
+    };
+    for graph in touched {
+        // A graph that follows would take the zoom back at once.
+        view.follow &= !graph.zoomed;
+        if let Some(sheet) = graph.export {
+            let path = format!("{}.csv", sheet.title.to_lowercase().replace(' ', "-"));
+            commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::Export { path, sheet }))));
+        }
     }
+    ui.data_mut(|d| d.insert_temp(id, view));
 }
 
 fn controls(ui: &mut Ui, state: &AppState, view: &mut View) {
-    for quantity in Quantity::ALL {
-        let help = match quantity {
-            Quantity::Tension => "Pull in the cable",
-            Quantity::Stress => "Tension over the full round section",
-            Quantity::Strain => "Change of length over length",
-        };
-        ui.selectable_value(&mut view.quantity, quantity, quantity.name()).on_hover_text(help);
+    for measure in Measure::ALL {
+        let robot = matches!(measure, Measure::Pull | Measure::Speed);
+        if !robot || state.scene.robot.is_some() {
+            ui.selectable_value(&mut view.measure, measure, measure.name()).on_hover_text(measure.help());
+        }
     }
     ui.separator();
     ui.checkbox(&mut view.follow, "Follow").on_hover_text(
-        "The graphs keep up with the data. Off: drag to move, scroll with Ctrl to zoom, double-click to fit",
+        "The graphs keep up with the data. The wheel zooms at the pointer and turns this off; then drag to move, double-click \
+         to fit. Click for a cursor, again for a second and their difference, again for none",
     );
     let present = WINDOWS.iter().find(|(w, _)| *w == view.window_s).map_or("", |(_, text)| text);
     let combo = ComboBox::from_id_salt("window").selected_text(present).width(84.0);
@@ -64,12 +71,14 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut View) {
     shown.response.on_hover_text("How much of the past the time graph follows");
     if state.history.samples.len() < 2 {
         ui.weak("Press play to record over time");
-    } else if state.scene.cables.len() > 1 && view.quantity != Quantity::Tension {
+    } else if state.scene.cables.len() > 1
+        && matches!(view.measure, Measure::Cable(Quantity::Stress | Quantity::Strain))
+    {
         ui.weak("Over time: tension, as there are several cables");
     }
 }
 
-fn along_cable(ui: &mut Ui, state: &AppState, view: View, height: f32) {
+fn along_cable(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touched {
     let index = state.current_cable();
     let scene = state.snapshot.scene.as_deref().unwrap_or(&state.scene);
     let answer = state.snapshot.solution.as_deref().and_then(|s| s.cables.get(index));
@@ -77,6 +86,7 @@ fn along_cable(ui: &mut Ui, state: &AppState, view: View, height: f32) {
         (Some(cable), Some(solved)) => along::ui(ui, cable, solved, view, height),
         _ => {
             ui.weak("Nothing solved yet");
+            Touched::default()
         }
     }
 }

@@ -62,6 +62,8 @@ impl Unit {
     pub const PPM_PER_K: Self = Self::of("ppm/K", 1e-6, &[("1/K", 1.0)]);
     /// Kelvins (a difference).
     pub const K: Self = Self::of("K", 1.0, &[("°C", 1.0)]);
+    /// Metres per second.
+    pub const M_PER_S: Self = Self::of("m/s", 1.0, &[("km/h", 1.0 / 3.6)]);
     /// Metres per second squared.
     pub const M_PER_S2: Self = Self::of("m/s²", 1.0, &[("m/s2", 1.0), ("g", 9.80665)]);
     /// Hundredths.

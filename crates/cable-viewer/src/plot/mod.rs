@@ -1,25 +1,42 @@
-//! Graphs of tension, stress and strain: along the cable and against time.
+//! Graphs: tension, stress and strain along the cable; these, the robot and energies against time.
 
 pub mod along;
+mod cursors;
+pub mod export;
+pub mod measure;
 pub mod series;
 pub mod time;
 
 use cable_core::Cable;
-use egui::{Color32, Id, RichText, Sense, Stroke, TextStyle, Ui, vec2};
+use egui::{Align2, Color32, Id, RichText, Sense, Stroke, TextStyle, Ui, vec2};
 use egui_plot::{GridInput, GridMark, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
 
 use crate::colour::Quantity;
 use crate::panels::field;
-use crate::panels::unit::{self, DIGITS, significant};
+use crate::panels::unit::{DIGITS, significant};
+use cursors::Cursors;
+use export::Sheet;
+use measure::Measure;
 use series::{Series, value_at};
 
 /// Colours of the lines, distinct to colour-blind eyes (after M. Okabe and K. Ito, “Color Universal Design”, 2008).
-pub const LINES: [Color32; 3] =
-    [Color32::from_rgb(0, 114, 178), Color32::from_rgb(0, 158, 115), Color32::from_rgb(170, 110, 190)];
+pub const LINES: [Color32; 4] = [
+    Color32::from_rgb(0, 114, 178),
+    Color32::from_rgb(0, 158, 115),
+    Color32::from_rgb(170, 110, 190),
+    Color32::from_rgb(150, 120, 60),
+];
 /// The service limit.
 const SERVICE: Color32 = Color32::from_rgb(230, 159, 0);
 /// The breaking limit.
 const BREAKING: Color32 = Color32::from_rgb(213, 60, 40);
+
+/// The time shown, where it is not the present.
+const SHOWN: Color32 = Color32::from_rgb(213, 94, 0);
+/// A cursor.
+const CURSOR: Color32 = Color32::GRAY;
+/// Zoom per point of wheel, as on the canvas.
+const WHEEL: f32 = 0.0025;
 
 /// A limit is kept in view once the data reach this share of it; before, it would press the data flat.
 const NEAR: f64 = 0.5;
@@ -33,6 +50,9 @@ const COLUMN: f32 = 66.0;
 /// Distance of numbers on the vertical axis, points.
 const ROW: f32 = 24.0;
 
+/// Room for the export button beside the legend, points.
+const EXPORT: f32 = 62.0;
+
 /// Length of a line in the legend, points.
 const SWATCH: f32 = 16.0;
 
@@ -40,7 +60,7 @@ const SWATCH: f32 = 16.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// What goes up.
-    pub quantity: Quantity,
+    pub measure: Measure,
     /// The view follows the data.
     pub follow: bool,
     /// How much of the past is followed, s; None = all of it.
@@ -49,7 +69,7 @@ pub struct View {
 
 impl Default for View {
     fn default() -> Self {
-        Self { quantity: Quantity::Tension, follow: true, window_s: Some(10.0) }
+        Self { measure: Measure::Cable(Quantity::Tension), follow: true, window_s: Some(10.0) }
     }
 }
 
@@ -58,7 +78,7 @@ pub struct Graph<'a> {
     /// Names the graph to tests and screen readers.
     pub title: &'a str,
     /// What goes up, and its unit.
-    pub quantity: Quantity,
+    pub measure: Measure,
     /// What goes right, and its unit, such as `Time` and `s`.
     pub across: [&'a str; 2],
     /// Left and right end in view while following.
@@ -69,6 +89,17 @@ pub struct Graph<'a> {
     pub follow: bool,
     /// Height, points.
     pub height: f32,
+    /// A time to mark, where one is shown that is not the present.
+    pub mark: Option<f64>,
+}
+
+/// What the user did to a graph.
+#[derive(Debug, Default)]
+pub struct Touched {
+    /// It was zoomed: it is not to follow the data any more.
+    pub zoomed: bool,
+    /// It is to be exported: what is in view, with the lines as they were drawn.
+    pub export: Option<Box<Sheet>>,
 }
 
 /// Service and breaking limit of a quantity, SI.
@@ -99,9 +130,9 @@ fn vertical_range(lines: &[Series], limits: [f64; 2]) -> [f64; 2] {
 }
 
 /// Draws lines (SI values) with their limits.
-pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) {
+pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
     let [low, high] = vertical_range(lines, graph.limits);
-    let (symbol, si) = graph.quantity.unit(high);
+    let (symbol, si) = graph.measure.unit(high);
     let [across, across_symbol] = graph.across;
     let read = |x: f64| {
         let mut text = format!("{} {across_symbol}", significant(x, DIGITS));
@@ -114,14 +145,16 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) {
     };
     let follow = graph.follow;
     let top = ui.cursor().top();
-    let title = legend(ui, graph, lines, high);
+    let (title, export) = legend(ui, graph, lines, high);
+    let mut cursors = Cursors::load(ui, graph.title);
+    let cursor_text = cursors.text((across_symbol, symbol, si), lines.first());
     let height = (graph.height - (ui.cursor().top() - top)).max(LEAST_HEIGHT);
     let columns = f64::from(ui.available_width() / COLUMN).max(1.0);
     let rows = f64::from((height - 40.0) / ROW).max(1.0);
     let plot = Plot::new(graph.title)
         .height(height)
         .x_axis_label(format!("{across}, {across_symbol}"))
-        .y_axis_label(format!("{}, {symbol}", graph.quantity.name()))
+        .y_axis_label(format!("{}, {symbol}", graph.measure.name()))
         .y_axis_min_width(44.0)
         .allow_drag(!follow)
         .allow_zoom(!follow)
@@ -147,14 +180,63 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) {
             plot.line(egui_plot::Line::new(line.name.clone(), points).color(colour).width(2.0));
         }
         draw_limits(plot, graph.limits, si, symbol);
+        draw_marks(plot, graph.mark, &cursors.0, cursor_text.as_deref());
+        wheel(plot)
     });
+    let bounds = response.transform.bounds();
+    let clicked = response.response.clicked().then(|| response.response.interact_pointer_pos()).flatten();
+    if let Some(at) = clicked {
+        cursors.click(ui, graph.title, response.transform.value_from_position(at).x);
+    }
     let last = lines.iter().filter_map(|l| Some((l, l.points.last()?)));
     let spoken: Vec<String> =
         last.map(|(l, p)| format!("{} {} {symbol}", l.name, significant(p[1] / si, DIGITS))).collect();
     let figure = response.response.labelled_by(title);
     figure.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Figure, true, graph.title));
     field::name(&figure, graph.title);
-    ui.ctx().accesskit_node_builder(figure.id, |node| node.set_description(spoken.join(", ")));
+    let spoken = spoken.join(", ") + &cursor_text.map_or_else(String::new, |t| format!("; {}", t.replace('\n', "; ")));
+    ui.ctx().accesskit_node_builder(figure.id, |node| node.set_description(spoken.as_str()));
+    let sheet = || Sheet {
+        title: graph.title.to_owned(),
+        across: [
+            format!("{across}, {across_symbol}"),
+            format!("{}_{across_symbol}", across.to_lowercase().replace(' ', "_")),
+        ],
+        up: [format!("{}, {symbol}", graph.measure.name()), graph.measure.suffix().to_owned()],
+        si,
+        bounds: [bounds.min()[0], bounds.min()[1], bounds.max()[0], bounds.max()[1]],
+        lines: lines.to_vec(),
+    };
+    Touched { zoomed: response.inner, export: export.then(|| Box::new(sheet())) }
+}
+
+/// The wheel zooms at the pointer; whether it did.
+fn wheel(plot: &mut PlotUi<'_>) -> bool {
+    if !plot.response().hovered() {
+        return false;
+    }
+    let scroll = plot.ctx().input(|i| i.smooth_scroll_delta().y);
+    if scroll == 0.0 {
+        return false;
+    }
+    plot.zoom_bounds_around_hovered(egui::Vec2::splat((WHEEL * scroll).exp()));
+    true
+}
+
+fn draw_marks(plot: &mut PlotUi<'_>, mark: Option<f64>, cursors: &[f64], text: Option<&str>) {
+    if let Some(x) = mark {
+        plot.vline(egui_plot::VLine::new("Shown", x).color(SHOWN).width(1.5).allow_hover(false));
+    }
+    for (x, name) in cursors.iter().zip(["A", "B"]) {
+        let line = egui_plot::VLine::new(name, *x).color(CURSOR).width(1.0).allow_hover(false);
+        plot.vline(line.style(LineStyle::dashed_dense()));
+    }
+    if let Some(text) = text {
+        let bounds = plot.plot_bounds();
+        let at = egui_plot::PlotPoint::new(bounds.min()[0], bounds.max()[1]);
+        let text = egui_plot::Text::new("cursors", at, RichText::new(text).small()).anchor(Align2::LEFT_TOP);
+        plot.text(text.allow_hover(false));
+    }
 }
 
 /// The round step (1, 2 or 5 times a power of ten) that cuts a range into about so many parts.
@@ -185,16 +267,12 @@ fn tick(mark: GridMark) -> String {
 
 /// What the colours mean, on one line above the graph, where it hides nothing. Limits out of view are not drawn and so
 /// not named; what finds no room is told on hover.
-fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series], high: f64) -> Id {
+fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series], high: f64) -> (Id, bool) {
     let mut entries: Vec<(String, Color32, bool)> =
         lines.iter().zip(LINES).map(|(line, colour)| (line.name.clone(), colour, false)).collect();
     for (name, limit, colour) in named_limits(graph.limits) {
         if limit <= high {
-            let value = match graph.quantity {
-                Quantity::Tension => unit::force(limit),
-                Quantity::Stress => unit::stress(limit),
-                Quantity::Strain => unit::strain(limit),
-            };
+            let value = graph.measure.text(limit);
             entries.push((format!("{name} {value}"), colour, true));
         }
     }
@@ -205,7 +283,7 @@ fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series], high: f64) -> Id {
         let mut left_out = Vec::new();
         for (name, colour, dashed) in entries {
             let galley = ui.painter().layout_no_wrap(name.clone(), small.clone(), colour);
-            if !left_out.is_empty() || galley.size().x + 2.0 * SWATCH + 10.0 > ui.available_width() {
+            if !left_out.is_empty() || galley.size().x + 2.0 * SWATCH + 10.0 > ui.available_width() - EXPORT {
                 left_out.push(name);
                 continue;
             }
@@ -215,7 +293,13 @@ fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series], high: f64) -> Id {
         if !left_out.is_empty() {
             ui.label(RichText::new("…").small()).on_hover_text(left_out.join("\n"));
         }
-        title
+        let room = egui::Layout::right_to_left(egui::Align::Center);
+        let export = ui.with_layout(room, |ui| {
+            let button = ui.small_button("Export…").on_hover_text("What is in view, as CSV, SVG or PNG");
+            field::name(&button, &format!("Export {}", graph.title));
+            button.clicked()
+        });
+        (title, export.inner)
     });
     row.inner
 }

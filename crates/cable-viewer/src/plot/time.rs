@@ -1,9 +1,11 @@
-//! The largest tension and the pulls at both ends against time.
+//! The largest tension and the pulls at both ends, the robot and energies against time.
 
+use cable_core::Scene;
 use egui::Ui;
 
+use super::measure::Measure;
 use super::series::{Series, thin};
-use super::{Graph, View, limits, per_newton, show};
+use super::{Graph, Touched, View, per_newton, show};
 use crate::colour::Quantity;
 use crate::history::Sample;
 use crate::state::AppState;
@@ -12,12 +14,13 @@ use crate::state::AppState;
 const SHORTEST_S: f64 = 1.0;
 
 /// Draws it. Stress and strain follow from tension for a single cable only; with several, tension is shown.
-pub fn ui(ui: &mut Ui, state: &AppState, view: View, height: f32) {
-    let index = state.current_cable();
+pub fn ui(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touched {
     let scene = state.snapshot.scene.as_deref().unwrap_or(&state.scene);
-    let Some(cable) = scene.cables.get(index) else { return };
-    let quantity = if scene.cables.len() == 1 { view.quantity } else { Quantity::Tension };
-    let scale = per_newton(quantity, cable);
+    let Some(cable) = scene.cables.get(state.current_cable()) else { return Touched::default() };
+    let measure = match view.measure {
+        Measure::Cable(_) if scene.cables.len() > 1 => Measure::Cable(Quantity::Tension),
+        measure => measure,
+    };
     let now_s = state.history.samples.back().map_or(0.0, |s| s.time_s);
     let first_s = state.history.samples.front().map_or(0.0, |s| s.time_s);
     let left_s = view.window_s.map_or(first_s, |w| (now_s - w).max(first_s));
@@ -25,9 +28,38 @@ pub fn ui(ui: &mut Ui, state: &AppState, view: View, height: f32) {
     // Outside the window nothing is seen while it follows, and everything while it does not.
     let start = if view.follow { state.history.samples.partition_point(|s| s.time_s < left_s) } else { 0 };
     let columns = ui.available_width().max(1.0) as usize;
-    let line = |name: String, of: &dyn Fn(&Sample) -> f64| Series {
-        name,
-        points: thin(state.history.samples.range(start..).map(|s| [s.time_s, of(s) * scale]), columns),
+    let graph = Graph {
+        title: "Over time",
+        measure,
+        across: ["Time", "s"],
+        range,
+        limits: measure.limits(cable),
+        follow: view.follow,
+        height,
+        mark: state.recording.shown_s,
+    };
+    let mut touched = show(ui, &graph, &lines(state, scene, measure, (start, Some(columns))));
+    if let Some(sheet) = &mut touched.export {
+        // Every sample, not only those that can be told apart on screen.
+        sheet.lines = lines(state, scene, measure, (0, None));
+    }
+    touched
+}
+
+/// The lines of a measure, SI: from the sample `start` on, thinned to `columns` of the screen if there are any.
+fn lines(state: &AppState, scene: &Scene, measure: Measure, (start, columns): (usize, Option<usize>)) -> Vec<Series> {
+    let index = state.current_cable();
+    let cable = scene.cables.get(index);
+    let scale = match (measure, cable) {
+        (Measure::Cable(quantity), Some(cable)) => per_newton(quantity, cable),
+        _ => 1.0,
+    };
+    let line = |name: String, of: &dyn Fn(&Sample) -> f64| {
+        let points = state.history.samples.range(start..).map(|s| [s.time_s, of(s) * scale]);
+        Series { name, points: columns.map_or_else(|| points.clone().collect(), |c| thin(points.clone(), c)) }
+    };
+    let (Measure::Cable(_), Some(cable)) = (measure, cable) else {
+        return measure.lines().iter().map(|(name, of)| line((*name).to_owned(), of)).collect();
     };
     let what = if scene.cables.len() == 1 { "Maximum" } else { "Maximum of all" };
     let mut lines = vec![line(what.to_owned(), &|s| s.max_tension_n)];
@@ -38,14 +70,5 @@ pub fn ui(ui: &mut Ui, state: &AppState, view: View, height: f32) {
         let pull = move |s: &Sample| s.reactions_n.get(before + k).map_or(f64::NAN, |r| r[0].hypot(r[1]));
         lines.push(line(format!("At {}", support.name), &pull));
     }
-    let graph = Graph {
-        title: "Over time",
-        quantity,
-        across: ["Time", "s"],
-        range,
-        limits: limits(quantity, cable),
-        follow: view.follow,
-        height,
-    };
-    show(ui, &graph, &lines);
+    lines
 }

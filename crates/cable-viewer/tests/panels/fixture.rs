@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use cable_core::robot::{Going, RobotReport};
 use cable_core::scene::{Obstacle, Shape, Support, catalog};
 use cable_core::solution::{
     CableSolution, ContactReport, ContactState, Cost, Energy, Node, Solution, SupportReaction, Warning, WarningKind,
@@ -155,6 +156,51 @@ pub fn warn(state: &mut AppState) {
         ),
     ];
     state.snapshot.solution = Some(Arc::new(solution));
+}
+
+/// Ten seconds recorded, with three events, and an earlier time shown.
+pub fn recorded() -> AppState {
+    let mut state = state();
+    let answer = (**state.snapshot.solution.as_ref().unwrap()).clone();
+    let event = |k: u32| match k {
+        120..150 => Some(WarningKind::ServiceTension),
+        300..400 => Some(WarningKind::Slack),
+        480.. => Some(WarningKind::Broken),
+        _ => None,
+    };
+    for k in 0..600_u32 {
+        let warning = |kind| Warning::new(kind, "cable", 0.0, [912.0, 800.0], "as it says".to_owned());
+        let warnings = event(k).map(warning).into_iter().collect();
+        state.recording.push(Solution { time_s: f64::from(k) / 60.0, warnings, ..answer.clone() });
+    }
+    state.live = state.snapshot.clone();
+    state.show_time(Some(4.2));
+    state
+}
+
+/// A robot on its path.
+pub fn driven() -> AppState {
+    let mut state = state();
+    let mut scene = catalog::robot_drive();
+    scene.name.clone_from(&state.scene.name);
+    state.scene = scene;
+    let mut answer = (**state.snapshot.solution.as_ref().unwrap()).clone();
+    answer.robot = Some(RobotReport {
+        x_m: 11.2,
+        y_m: 0.05,
+        pitch_deg: 4.5,
+        speed_m_per_s: 0.482,
+        commanded_m_per_s: 0.6,
+        thrust_n: 2310.0,
+        normal_n: 9612.0,
+        traction_n: 4325.0,
+        hitch_x_n: -980.0,
+        hitch_y_n: 212.0,
+        going: Going::Slowed,
+        leg: Some(0),
+    });
+    state.snapshot.solution = Some(Arc::new(answer));
+    state
 }
 
 /// A support and its reaction in the middle.

@@ -5,7 +5,7 @@ use cable_viewer::panels;
 use cable_viewer::state::{AppState, Item};
 use egui_kittest::{SnapshotOptions, SnapshotResults};
 
-use crate::fixture::{PanelUi, bench, state, warn, with_pulley};
+use crate::fixture::{PanelUi, bench, driven, recorded, state, warn, with_pulley};
 
 /// Differences of a rounding here and there between drivers are let pass.
 const MOST_DIFFERENT_PIXELS: usize = 80;
@@ -78,6 +78,16 @@ fn playback() {
         state
     };
     picture("playback", running, panels::playback::ui, [900.0, 44.0]);
+}
+
+#[test]
+fn timeline() {
+    picture("timeline", recorded, panels::timeline::ui, [900.0, 44.0]);
+}
+
+#[test]
+fn robot() {
+    picture("robot", driven, panels::robot::ui, [320.0, 420.0]);
 }
 
 #[test]

@@ -5,6 +5,7 @@
 mod pictures;
 mod playing;
 mod recovery;
+mod stories;
 mod timing;
 
 use cable_core::scene::{Shape, catalog};

@@ -40,10 +40,13 @@ pub fn sag(cable: &CableSolution, view: View) -> Option<(f64, Node)> {
     best
 }
 
-/// Stretched length, m.
+/// Stretched length, m: ∫ (1 + ε) θ ds with θ = 1 + αΔT. The sum of the chords between nodes would be shorter where the cable
+/// is curved, shorter even than the cable.
 #[must_use]
-pub fn stretched_length(cable: &CableSolution) -> f64 {
-    cable.nodes.windows(2).map(|w| (w[1].x_m - w[0].x_m).hypot(w[1].y_m - w[0].y_m)).sum()
+pub fn stretched_length(cable: &CableSolution, thermal_stretch: f64) -> f64 {
+    let elements = cable.pieces().flat_map(|piece| piece.windows(2));
+    let each = elements.map(|w| (w[1].arc_length_m - w[0].arc_length_m) * (1.0 + 0.5 * (w[0].strain + w[1].strain)));
+    thermal_stretch * each.sum::<f64>()
 }
 
 #[cfg(test)]
@@ -84,6 +87,16 @@ mod tests {
         let mut cable = parabola(0.0);
         cable.supports[1].x_m = 0.0;
         assert!(sag(&cable, View::Elevation).is_none_or(|(d, _)| d.is_finite()));
+    }
+
+    #[test]
+    fn a_slack_cable_is_as_long_as_it_is_however_it_sags() {
+        let mut cable = parabola(0.0);
+        assert!((stretched_length(&cable, 1.0) - 1.0).abs() < 1e-12);
+        for node in &mut cable.nodes {
+            node.strain = 1e-3;
+        }
+        assert!((stretched_length(&cable, 1.002) - 1.002 * 1.001).abs() < 1e-12);
     }
 
     #[test]

@@ -42,7 +42,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     tension(ui, cable, solved, commands);
     ui.separator();
     Grid::new(("figures", index)).num_columns(3).spacing([10.0, 3.0]).show(ui, |ui| {
-        shape(ui, scene.view, cable, solved, commands);
+        let heat_k = scene.environment.temperature_change_k;
+        let thermal = 1.0 + cable.thermal_expansion_per_k * heat_k;
+        shape(ui, scene.view, (cable, solved, thermal), commands);
         material(ui, cable, solved, commands);
         accuracy(ui, solved);
     });
@@ -113,7 +115,12 @@ fn place(ui: &mut Ui, label: &str, node: &Node, commands: &mut Vec<Command>) {
     }
 }
 
-fn shape(ui: &mut Ui, view: View, cable: &Cable, solved: &CableSolution, commands: &mut Vec<Command>) {
+fn shape(
+    ui: &mut Ui,
+    view: View,
+    (cable, solved, thermal): (&Cable, &CableSolution, f64),
+    commands: &mut Vec<Command>,
+) {
     let help = match view {
         View::Elevation => "Greatest depth below the straight line between neighbouring supports",
         View::Plan => "Greatest distance from the straight line between neighbouring supports",
@@ -122,11 +129,17 @@ fn shape(ui: &mut Ui, view: View, cable: &Cable, solved: &CableSolution, command
         Some((depth_m, node)) => figure(ui, "Sag", unit::length(depth_m), help, Some((&node, &mut *commands))),
         None => figure(ui, "Sag", "–".to_owned(), "No two neighbouring supports stand apart", None),
     }
-    let stretched_m = figures::stretched_length(solved);
+    let stretched_m = figures::stretched_length(solved, thermal);
     let longer = stretched_m - cable.length_m;
     let text =
         format!("{} ({}{})", unit::length(stretched_m), if longer < 0.0 { "" } else { "+" }, unit::length(longer));
-    figure(ui, "Length now", text, "Length along the nodes, and how much that is above the unstretched length", None);
+    figure(
+        ui,
+        "Length now",
+        text,
+        "Unstretched length with strain and heat, and how much that is above the unstretched length",
+        None,
+    );
 }
 
 fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Vec<Command>) {

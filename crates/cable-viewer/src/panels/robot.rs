@@ -1,0 +1,219 @@
+//! Robot panel: driving by hand, its path, and what its motion is made of.
+
+use cable_core::Robot;
+use cable_core::robot::RobotReport;
+use cable_core::scene::RobotTask;
+use cable_core::scene::preset::robot_preset;
+use cable_core::scene::robot::{ROLLING_RESISTANCE, TRACK_FRICTION};
+use egui::{Grid, Ui};
+
+use super::cable::labelled;
+use super::icon::{self, Icon};
+use super::unit::{self, Unit};
+use super::{fault, field};
+use crate::command::{Command, PlaybackCommand, SceneCommand};
+use crate::state::AppState;
+
+/// Width of a number, points: “12.34 m/s” fits.
+const WIDTH: f32 = 72.0;
+/// Speed of a new leg, m/s, and its wait, s.
+const FIRST_LEG: (f64, f64) = (0.3, 2.0);
+
+/// Draws it, if the scene has one.
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let Some(robot) = &state.scene.robot else {
+        ui.weak("No robot: choose one under Scene");
+        return;
+    };
+    by_hand(ui, state, commands);
+    match state.snapshot.solution.as_ref().and_then(|s| s.robot) {
+        Some(report) => readouts(ui, &report),
+        None => {
+            ui.weak("It cannot drive here: it needs terrain below it in a side view");
+        }
+    }
+    figures(ui, robot, commands);
+    path(ui, robot, commands);
+    fault::inline(ui, state, "robot.path", commands);
+}
+
+/// Speed of the robot by hand, m/s: what was set, else its greatest.
+#[must_use]
+pub fn hand_speed(state: &AppState) -> f64 {
+    let top = state.scene.robot.as_ref().and_then(|r| robot_preset(&r.preset)).map_or(0.0, |p| p.speed_m_per_s.value);
+    state.robot_speed.map_or(top, |v| v.min(top))
+}
+
+fn by_hand(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let speed = hand_speed(state);
+    let order = state.robot_order;
+    ui.horizontal_wrapped(|ui| {
+        for (text, help, wanted, on) in [
+            (
+                "Drive left",
+                "Drives to the left until it is stopped (hold A)",
+                Some(-speed),
+                order.is_some_and(|v| v < 0.0),
+            ),
+            ("Stop", "Brakes", Some(0.0), order == Some(0.0)),
+            (
+                "Drive right",
+                "Drives to the right until it is stopped (hold D)",
+                Some(speed),
+                order.is_some_and(|v| v > 0.0),
+            ),
+            ("Follow path", "Drives its path by itself", None, order.is_none()),
+        ] {
+            if ui.selectable_label(on, text).on_hover_text(help).clicked() {
+                commands.push(Command::Playback(PlaybackCommand::DriveRobot(wanted)));
+            }
+        }
+    });
+    labelled(ui, "Hand speed", "Hand speed", |ui| {
+        let entry = field::number(ui, "Hand speed", Unit::M_PER_S, speed, WIDTH);
+        if let Some(speed) = entry.value {
+            commands.push(Command::Playback(PlaybackCommand::SetRobotSpeed(speed)));
+        }
+        entry.response.on_hover_text("How fast it is driven by hand; at most its greatest speed")
+    });
+}
+
+fn readouts(ui: &mut Ui, r: &RobotReport) {
+    let share = if r.traction_n > 0.0 { r.thrust_n.abs() / r.traction_n } else { 0.0 };
+    let rows = [
+        ("Motion", r.going.name().to_owned(), "Why it is as fast as it is"),
+        (
+            "Speed",
+            format!("{} of {} m/s", unit::significant(r.speed_m_per_s, 3), unit::significant(r.commanded_m_per_s, 3)),
+            "Along the ground, of what is asked for",
+        ),
+        ("Slope", format!("{:.1}°", r.pitch_deg), "Positive where it climbs to the right"),
+        (
+            "Track force",
+            format!("{}, {} of what holds", unit::force(r.thrust_n), unit::percent(share)),
+            "Force of the tracks along the ground, and its share of friction times normal force",
+        ),
+        ("Normal force", unit::force(r.normal_n), "Of the ground on its tracks; the cable can lift or press"),
+        (
+            "Pull of the cable",
+            unit::force(r.hitch_x_n.hypot(r.hitch_y_n)),
+            "On its hitch; it slows the robot by the balance of forces",
+        ),
+    ];
+    Grid::new("robot readouts").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
+        for (name, value, help) in rows {
+            ui.weak(name).on_hover_text(help);
+            ui.label(value).on_hover_text(help);
+            ui.end_row();
+        }
+    });
+}
+
+fn set(robot: Robot, commands: &mut Vec<Command>) {
+    commands.push(Command::Scene(SceneCommand::SetRobot(Some(robot))));
+    commands.push(Command::Scene(SceneCommand::EditDone));
+}
+
+fn figures(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
+    let friction = robot.track_friction.unwrap_or(TRACK_FRICTION);
+    let rolling = robot.rolling_resistance.unwrap_or(ROLLING_RESISTANCE);
+    labelled(ui, "Track friction", "Track friction", |ui| {
+        let entry = field::number(ui, "Track friction", Unit::NONE, friction, WIDTH);
+        if let Some(value) = entry.value {
+            set(Robot { track_friction: Some(value), ..robot.clone() }, commands);
+        }
+        entry
+            .response
+            .on_hover_text("Of tracks on the ground: 0.3 wet and smooth, 0.6 rough; 0.45 unless set (estimated)")
+    });
+    labelled(ui, "Rolling resistance", "Rolling resistance", |ui| {
+        let entry = field::number(ui, "Rolling resistance", Unit::NONE, rolling, WIDTH);
+        if let Some(value) = entry.value {
+            set(Robot { rolling_resistance: Some(value), ..robot.clone() }, commands);
+        }
+        entry
+            .response
+            .on_hover_text("Over normal force: 0.03 on concrete, 0.1 on soft ground; 0.06 unless set (estimated)")
+    });
+}
+
+fn path(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
+    ui.separator();
+    ui.weak(if robot.path.is_empty() { "No path: it stands until it is driven" } else { "Path" });
+    let mut faults = Vec::new();
+    for (k, task) in robot.path.iter().enumerate() {
+        ui.push_id(("leg", k), |ui| leg(ui, robot, (k, task), &mut faults, commands));
+    }
+    for text in &faults {
+        field::fault(ui, text);
+    }
+    ui.horizontal(|ui| {
+        let mut add = |task| {
+            let mut changed = robot.clone();
+            changed.path.push(task);
+            set(changed, commands);
+        };
+        if ui.button("Add drive").on_hover_text("A leg to a place").clicked() {
+            add(RobotTask::Drive { to_x_m: robot.at_m[0] + 1.0, speed_m_per_s: FIRST_LEG.0 });
+        }
+        if ui.button("Add wait").on_hover_text("Stands still for a while").clicked() {
+            add(RobotTask::Wait { wait_s: FIRST_LEG.1 });
+        }
+        let mut repeat = robot.repeat;
+        if ui.checkbox(&mut repeat, "Repeat").on_hover_text("Begins anew after the last leg").changed() {
+            set(Robot { repeat, ..robot.clone() }, commands);
+        }
+    });
+}
+
+fn leg(
+    ui: &mut Ui,
+    robot: &Robot,
+    (k, task): (usize, &RobotTask),
+    faults: &mut Vec<String>,
+    commands: &mut Vec<Command>,
+) {
+    let number = k + 1;
+    let put = |task: Option<RobotTask>, commands: &mut Vec<Command>| {
+        let mut changed = robot.clone();
+        match (task, changed.path.get_mut(k)) {
+            (Some(task), Some(slot)) => *slot = task,
+            (None, Some(_)) => {
+                changed.path.remove(k);
+            }
+            _ => return,
+        }
+        set(changed, commands);
+    };
+    ui.horizontal(|ui| {
+        match *task {
+            RobotTask::Drive { to_x_m, speed_m_per_s } => {
+                ui.label(format!("{number}  Drive to"));
+                let to = field::number(ui, &format!("Place of leg {number}"), Unit::COORDINATE, to_x_m, WIDTH);
+                if let Some(to_x_m) = to.value {
+                    put(Some(RobotTask::Drive { to_x_m, speed_m_per_s }), commands);
+                }
+                faults.extend(to.fault);
+                ui.label("at");
+                let at = field::number(ui, &format!("Speed of leg {number}"), Unit::M_PER_S, speed_m_per_s, WIDTH);
+                if let Some(speed_m_per_s) = at.value {
+                    put(Some(RobotTask::Drive { to_x_m, speed_m_per_s }), commands);
+                }
+                faults.extend(at.fault);
+            }
+            RobotTask::Wait { wait_s } => {
+                ui.label(format!("{number}  Wait"));
+                let wait = field::number(ui, &format!("Wait of leg {number}"), Unit::S, wait_s, WIDTH);
+                if let Some(wait_s) = wait.value {
+                    put(Some(RobotTask::Wait { wait_s }), commands);
+                }
+                faults.extend(wait.fault);
+            }
+        }
+        let remove = icon::plain_button(ui, Icon::Remove, true);
+        field::name(&remove, &format!("Remove leg {number}"));
+        if remove.on_hover_text("Takes this leg out").clicked() {
+            put(None, commands);
+        }
+    });
+}

@@ -1,0 +1,65 @@
+//! Up to two cursors in a graph: the first click sets one, the second another, the third takes both away.
+
+use egui::{Id, Ui};
+
+use super::series::{Series, value_at};
+use crate::panels::unit::{DIGITS, significant};
+
+/// Places of the cursors of a graph.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cursors(pub Vec<f64>);
+
+impl Cursors {
+    /// Those of a graph.
+    #[must_use]
+    pub fn load(ui: &Ui, title: &str) -> Self {
+        Self(ui.data(|d| d.get_temp(id(title))).unwrap_or_default())
+    }
+
+    /// Takes in a click at `x`.
+    pub fn click(&mut self, ui: &Ui, title: &str, x: f64) {
+        if self.0.len() == 2 {
+            self.0.clear();
+        } else {
+            self.0.push(x);
+        }
+        let places = self.0.clone();
+        ui.data_mut(|d| d.insert_temp(id(title), places));
+    }
+
+    /// What they read: values of the first line at each, and the difference.
+    #[must_use]
+    pub fn text(&self, (x_symbol, y_symbol, si): (&str, &str, f64), line: Option<&Series>) -> Option<String> {
+        let line = line?;
+        let read = |x: f64| value_at(&line.points, x).map_or(f64::NAN, |v| v / si);
+        let one = |name: &str, x: f64, y: f64| {
+            format!("{name} {} {x_symbol}: {} {y_symbol}", significant(x, DIGITS), significant(y, DIGITS))
+        };
+        match *self.0.as_slice() {
+            [a] => Some(one("A", a, read(a))),
+            [a, b] => {
+                let lines = [one("A", a, read(a)), one("B", b, read(b)), one("B − A", b - a, read(b) - read(a))];
+                Some(lines.join("\n"))
+            }
+            _ => None,
+        }
+    }
+}
+
+fn id(title: &str) -> Id {
+    Id::unique(("cursors", title))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_cursors_tell_their_difference() {
+        let line = Series { name: "T".to_owned(), points: vec![[0.0, 100.0], [2.0, 300.0]] };
+        let units = ("s", "N", 1.0);
+        let text = Cursors(vec![0.5, 1.5]).text(units, Some(&line)).unwrap();
+        assert!(text.contains("A 0.5000 s: 150.0 N") && text.contains("B − A 1.000 s: 100.0 N"), "{text}");
+        assert_eq!(Cursors::default().text(units, Some(&line)), None);
+    }
+}

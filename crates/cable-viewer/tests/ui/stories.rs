@@ -1,0 +1,246 @@
+//! What the users asked for, done by hand: each test is named after its story.
+
+use cable_core::record::read_history;
+use cable_core::robot::{Going, RobotReport};
+use cable_core::scene::catalog;
+use cable_viewer::ViewerApp;
+use cable_viewer::command::{Command, FileCommand, PlaybackCommand};
+use cable_viewer::dialog::Dialog;
+use egui::{Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+
+use crate::{apply, open, open_span};
+
+fn time_s(harness: &Harness<'_, ViewerApp>) -> f64 {
+    harness.state().state.snapshot.solution.as_ref().expect("an answer").time_s
+}
+
+fn robot(harness: &Harness<'_, ViewerApp>) -> RobotReport {
+    harness.state().state.snapshot.solution.as_ref().and_then(|s| s.robot).expect("a robot")
+}
+
+fn click(harness: &mut Harness<'_, ViewerApp>, label: &str) {
+    harness.get_by_label(label).click();
+    harness.run_steps(2);
+}
+
+fn hold(harness: &mut Harness<'_, ViewerApp>, key: Key, pressed: bool) {
+    harness.event(egui::Event::Key { key, physical_key: None, pressed, repeat: false, modifiers: Modifiers::NONE });
+    harness.step();
+}
+
+#[test]
+fn s06_keys_drive_the_robot_and_the_cable_follows() {
+    let mut harness = open(catalog::robot_drive());
+    let start = robot(&harness);
+    hold(&mut harness, Key::D, true);
+    harness.run_steps(60);
+    let state = &harness.state().state;
+    assert_eq!(state.snapshot.error, None);
+    assert!(!state.playback.paused, "who drives sees time run");
+    let driven = robot(&harness);
+    assert!(driven.x_m > start.x_m + 0.3 && driven.going == Going::Driving, "{driven:?}");
+    let end = harness.state().state.snapshot.solution.as_ref().unwrap().cables[0].nodes.last().copied().unwrap();
+    assert!((end.x_m - (driven.x_m - 0.9)).abs() < 0.02, "{} {}", end.x_m, driven.x_m);
+    hold(&mut harness, Key::D, false);
+    harness.run_steps(60);
+    let stopped = robot(&harness);
+    assert!(stopped.speed_m_per_s == 0.0 && stopped.going == Going::Standing, "{stopped:?}");
+    hold(&mut harness, Key::A, true);
+    harness.run_steps(30);
+    assert!(robot(&harness).speed_m_per_s < -0.2);
+    hold(&mut harness, Key::A, false);
+}
+
+#[test]
+fn s08_pause_step_back_scrub_and_go_on() {
+    let mut harness = open_span();
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    harness.run_steps(30);
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
+    let now = time_s(&harness);
+    assert!(now > 0.4, "{now}");
+    harness.key_press(Key::ArrowLeft);
+    harness.run_steps(2);
+    assert!((now - time_s(&harness) - 1.0 / 60.0).abs() < 1e-9, "{now} {}", time_s(&harness));
+    click(&mut harness, "Step back");
+    assert!((now - time_s(&harness) - 2.0 / 60.0).abs() < 1e-9);
+    // Forward again: through what was recorded to the present, then on.
+    for _ in 0..2 {
+        harness.key_press(Key::ArrowRight);
+        harness.run_steps(2);
+    }
+    assert!(harness.state().state.recording.shown_s.is_none() && time_s(&harness) == now);
+    harness.key_press(Key::ArrowRight);
+    harness.run_steps(2);
+    assert!(time_s(&harness) > now);
+
+    // Scrubbed to the middle, everything on screen is of that time; played, it runs to the present and on.
+    apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.25))));
+    assert!((time_s(&harness) - 0.25).abs() < 1.0 / 60.0);
+    harness.get_by_label_contains("showing 0.25 s");
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    harness.run_steps(5);
+    let replayed = time_s(&harness);
+    assert!(replayed > 0.25 && replayed < 0.45 && harness.state().state.recording.shown_s.is_some(), "{replayed}");
+    harness.run_steps(60);
+    assert!(harness.state().state.recording.shown_s.is_none() && time_s(&harness) > now, "{}", time_s(&harness));
+}
+
+#[test]
+fn s08_a_loop_begins_anew_and_speeds_are_kept() {
+    let mut harness = open_span();
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    harness.run_steps(20);
+    click(&mut harness, "Loop");
+    let last = harness.state().state.recording.span_s().unwrap()[1];
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    harness.run_steps(120);
+    assert_eq!(harness.state().state.recording.span_s().unwrap()[1], last, "nothing new while it loops");
+    assert!(time_s(&harness) <= last);
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetSpeed(0.01)));
+    let before = harness.state().state.recording.shown_s.unwrap();
+    harness.run_steps(6);
+    let passed = harness.state().state.recording.shown_s.unwrap() - before;
+    assert!(passed > 0.0 && passed < 0.01, "{passed}");
+}
+
+#[test]
+fn s08_an_edit_is_of_the_present() {
+    let mut harness = open_span();
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    harness.run_steps(20);
+    apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.1))));
+    let mut cable = harness.state().state.scene.cables[0].clone();
+    cable.length_m += 0.01;
+    let edit = cable_viewer::command::SceneCommand::SetCable { cable: 0, value: Box::new(cable) };
+    apply(&mut harness, Command::Scene(edit));
+    assert!(harness.state().state.recording.shown_s.is_none());
+}
+
+#[test]
+fn s14_the_robot_follows_its_path_and_it_can_be_edited() {
+    let mut harness = open(catalog::robot_drive());
+    click(&mut harness, "Follow path");
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    harness.run_steps(60);
+    let r = robot(&harness);
+    assert!(r.leg == Some(0) && (r.commanded_m_per_s - 0.6).abs() < 1e-9 && r.x_m > 10.2, "{r:?}");
+    apply(&mut harness, Command::Playback(PlaybackCommand::Reset));
+    assert_eq!(robot(&harness).x_m, 10.0);
+    let legs = harness.state().state.scene.robot.as_ref().unwrap().path.len();
+    click(&mut harness, "Add wait");
+    click(&mut harness, "Remove leg 1");
+    assert_eq!(harness.state().state.scene.robot.as_ref().unwrap().path.len(), legs);
+    assert_eq!(harness.state().state.snapshot.error, None);
+}
+
+#[test]
+fn s17_the_robot_says_that_its_cable_holds_it() {
+    let mut scene = catalog::robot_drive();
+    scene.robot.as_mut().unwrap().at_m = [13.2, 0.0];
+    let mut harness = open(scene);
+    click(&mut harness, "Drive right");
+    harness.run_steps(240);
+    let r = robot(&harness);
+    assert!(r.speed_m_per_s.abs() < 0.05, "{r:?}");
+    assert!(matches!(r.going, Going::Stalled | Going::Slipping | Going::Slowed), "{r:?}");
+    harness.get_by_label(r.going.name());
+    assert!(!harness.state().state.recording.events().is_empty(), "the pull beyond the service tension is marked");
+    click(&mut harness, "Stop");
+}
+
+#[test]
+fn s11_what_was_recorded_is_saved_and_read_again() {
+    let mut harness = open(catalog::robot_drive());
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    harness.run_steps(20);
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
+    let folder = tempfile::tempdir().unwrap();
+    let run = folder.path().join("run");
+    apply(&mut harness, Command::File(FileCommand::SaveRun(run.clone())));
+    assert_eq!(harness.state().state.dialog, None);
+    let table = read_history(std::fs::File::open(run.join("history.csv")).unwrap()).unwrap();
+    let answers = harness.state().state.recording.answers();
+    assert_eq!(table.time_s.len(), answers.len());
+    for (k, answer) in answers.iter().enumerate() {
+        assert_eq!(table.max_tension_n[k].to_bits(), answer.max_tension().tension_n.to_bits());
+    }
+    let speed = table.extras.iter().find(|e| e.name == "robot_speed_m_per_s").expect("the robot's speed");
+    assert_eq!(speed.values.last().copied(), answers.last().and_then(|a| a.robot).map(|r| r.speed_m_per_s));
+    assert!(table.extras.iter().any(|e| e.name == "kinetic_energy_j"));
+}
+
+#[test]
+fn s12_a_graph_is_zoomed_read_with_cursors_and_exported() {
+    let mut harness = open_span();
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    harness.run_steps(60);
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
+    let plot = harness.get_by_label("Over time").rect();
+    // Two cursors: the difference is told.
+    for share in [0.2, 0.5] {
+        let at = plot.left_center() + egui::vec2(70.0 + share * (plot.width() - 80.0), 0.0);
+        harness.hover_at(at);
+        harness.step();
+        for pressed in [true, false] {
+            crate::press(&harness, at, pressed);
+            harness.step();
+        }
+        harness.run_steps(30);
+    }
+    let spoken = harness.get_by_label("Over time").accesskit_node().description().unwrap_or_default();
+    assert!(spoken.contains("B − A"), "{spoken}");
+    // The wheel ends following.
+    harness.event(egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: egui::Vec2::new(0.0, 80.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    });
+    harness.run_steps(30);
+    click(&mut harness, "Export Over time");
+    let Some(Dialog::Export { sheet, .. }) = harness.state().state.dialog.clone() else {
+        panic!("{:?}", harness.state().state.dialog)
+    };
+    assert!(sheet.bounds[2] - sheet.bounds[0] < 9.0, "it is zoomed: {:?}", sheet.bounds);
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["graph.csv", "graph.svg"] {
+        let path = folder.path().join(name);
+        apply(&mut harness, Command::File(FileCommand::Export(path.clone(), sheet.clone())));
+        assert_eq!(harness.state().state.dialog, None, "{name}");
+        assert!(std::fs::read_to_string(path).unwrap().contains(if name.ends_with("csv") { "time_s" } else { "<svg" }));
+    }
+    if cable_viewer::screenshot::renderer().is_ok() {
+        let path = folder.path().join("graph.png");
+        apply(&mut harness, Command::File(FileCommand::Export(path.clone(), sheet)));
+        assert!(std::fs::read(path).unwrap().starts_with(b"\x89PNG"));
+    }
+}
+
+#[test]
+fn s10_energies_and_the_robot_are_graphs_too() {
+    let mut harness = open(catalog::robot_drive());
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    harness.run_steps(20);
+    for measure in ["Energy", "Robot speed", "Hitch pull", "Strain", "Stress"] {
+        click(&mut harness, measure);
+        let spoken = harness.get_by_label("Over time").accesskit_node().description().unwrap_or_default();
+        assert!(!spoken.is_empty() && !spoken.contains("NaN"), "{measure}: {spoken}");
+    }
+}
+
+#[test]
+fn t01_about_says_what_was_checked_and_what_was_not() {
+    let mut harness = open_span();
+    click(&mut harness, "About");
+    harness.run_steps(3);
+    harness.get_by_label("Not checked");
+    harness.get_by_label_contains("not certified");
+    click(&mut harness, "Close");
+    harness.key_press(Key::F1);
+    harness.run_steps(5);
+    harness.get_by_label("Hold A, D");
+}
