@@ -116,6 +116,66 @@ fn throw_about(scenes: std::ops::Range<usize>, frames: usize, dt: f64) -> Count 
     count
 }
 
+/// A cable of 30 m above rubble whose ends let go at once.
+fn falling_scene(dice: &mut Dice, stiffness: f64, segments: usize) -> Scene {
+    let mut scene = catalog::hanging_span();
+    let points_m = (0..=160).map(|k| [-20.0 + 0.25 * f64::from(k), dice.between(0.0, 0.4)]).collect();
+    let shape = Shape::Terrain { points_m };
+    scene.obstacles = vec![Obstacle { name: "rubble".to_owned(), shape, friction: Some(0.6) }];
+    let c = &mut scene.cables[0];
+    (c.breaking_tension_n, c.service_tension_n) = (1e12, 1e12);
+    (c.length_m, c.axial_stiffness_n, c.segments) = (30.0, stiffness, Some(segments));
+    let half = dice.between(6.0, 14.0);
+    c.supports = vec![Support::fixed("left", [-half, 13.0]), Support::fixed("right", [half, 13.0])];
+    for support in &mut c.supports {
+        support.release_s = Some(0.05);
+    }
+    scene
+}
+
+/// Drops cables for some time (s) each, in frames of `dt` (s).
+fn drop_all(stiffnesses: &[f64], segments: usize, time: f64, dt: f64) -> Count {
+    let mut count = Count::default();
+    for (k, &stiffness) in stiffnesses.iter().enumerate() {
+        let scene = falling_scene(&mut Dice::new(1000 + k), stiffness, segments);
+        let c = &scene.cables[0];
+        let world = World::new(&scene.obstacles, c.friction, c.diameter_m / 2.0);
+        let mut sim = Simulation::new(scene.clone(), Model::Fem).unwrap();
+        for f in 0..(time / dt).round() as usize {
+            count.steps += (dt * 240.0).ceil() as usize;
+            if let Err(e) = sim.step(dt) {
+                count.failed.push(format!("EA {stiffness:e} frame {f}: {e}"));
+                break;
+            }
+            count.halved += sim.solution().cost.halved_steps;
+            let gap = smallest_gap(&world, &sim);
+            if !(gap > -1e-9) {
+                count.failed.push(format!("EA {stiffness:e} frame {f}: gap {gap}"));
+                break;
+            }
+        }
+    }
+    count
+}
+
+#[test]
+fn a_cable_dropped_on_rubble_crosses_nothing() {
+    let count = drop_all(&[1e5, 1e8], 60, 2.0, 1.0 / 60.0);
+    println!("{} steps, {} halved", count.steps, count.halved);
+    assert!(count.failed.is_empty(), "{:#?}", count.failed);
+}
+
+#[test]
+#[ignore = "takes minutes: cargo test -p cable-core --test fem_robust -- --ignored --nocapture"]
+fn thirty_metres_of_any_stiffness_drop_on_rubble() {
+    for dt in [1.0 / 60.0, 1.0 / 240.0] {
+        let count = drop_all(&[1e5, 1e6, 1e7, 1e8], 200, 4.0, dt);
+        println!("frames of {dt:.4} s: {} steps, {} halved", count.steps, count.halved);
+        assert!(count.failed.is_empty(), "{:#?}", count.failed);
+        assert!(count.halved * 500 <= count.steps, "{} of {} steps halved", count.halved, count.steps);
+    }
+}
+
 #[test]
 fn ends_thrown_about_cross_nothing() {
     let count = throw_about(0..8, 60, 1.0 / 60.0);
