@@ -32,6 +32,15 @@ pub enum Dialog {
         /// The folder as typed so far.
         path: String,
     },
+    /// Terrain and beams to read, from a file or pasted.
+    ImportMap {
+        /// The path as typed so far; empty: what was pasted.
+        path: String,
+        /// What was pasted.
+        text: String,
+        /// Length of a unit of it as typed so far, m.
+        unit_m: String,
+    },
     /// What was validated and what was not.
     About,
     /// A window that did not close has left unsaved changes.

@@ -50,6 +50,8 @@ pub struct AppState {
     pub live: Snapshot,
     /// Every answer since the last start, and which of them is on screen.
     pub recording: Recording,
+    /// Answers kept on screen to compare with.
+    pub held: Vec<Held>,
     /// Speed of the robot by hand, m/s, positive to the right; None: it follows its path.
     pub robot_order: Option<f64>,
     /// Speed the robot is driven with by hand, m/s; None: its greatest.
@@ -173,6 +175,24 @@ pub struct Snapshot {
     pub edit: u64,
 }
 
+/// An answer that is kept to compare with.
+#[derive(Clone, Debug)]
+pub struct Held {
+    /// What it is of.
+    pub name: String,
+    /// The scene it answers.
+    pub scene: Arc<Scene>,
+    /// The answer.
+    pub solution: Arc<Solution>,
+    /// Wall time it took, s.
+    pub wall_s: f64,
+}
+
+impl Held {
+    /// Most that are held: more lines cannot be told apart.
+    pub const MOST: usize = 8;
+}
+
 /// How the solver thread is doing.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum WorkerStatus {
@@ -207,6 +227,7 @@ impl AppState {
             snapshot: Snapshot::default(),
             live: Snapshot::default(),
             recording: Recording::default(),
+            held: Vec::new(),
             robot_order: None,
             robot_speed: None,
             worker: WorkerStatus::Idle,

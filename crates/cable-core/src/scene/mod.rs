@@ -8,6 +8,7 @@ pub mod catalog;
 mod crossing;
 pub mod file;
 pub mod ground;
+pub mod import;
 pub mod load;
 pub mod motion;
 pub mod obstacle;

@@ -31,6 +31,7 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
                 }
             }
             Dialog::About => about(ui, commands),
+            Dialog::ImportMap { path, text, unit_m } => import_map(ui, [path, text, unit_m], commands),
             Dialog::Unsaved { then } => unsaved(ui, &name, then, commands),
             Dialog::Recover { scene } => recover(ui, scene, commands),
             Dialog::Help => help(ui, commands),
@@ -83,6 +84,41 @@ fn ask(
     (done && !path.trim().is_empty()).then(|| PathBuf::from(path.trim()))
 }
 
+fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], commands: &mut Vec<Command>) {
+    ui.heading("Import terrain and beams");
+    ui.add_space(6.0);
+    ui.weak("A table of x and y (tab, comma, semicolon; decimal comma) or an SVG with paths. Open lines become ground, solid below; closed ones beams.");
+    ui.horizontal(|ui| {
+        let label = ui.label("File");
+        ui.add(egui::TextEdit::singleline(path).desired_width(320.0)).labelled_by(label.id);
+    });
+    let label = ui.label("or paste it here");
+    egui::ScrollArea::vertical().max_height(160.0).show(ui, |ui| {
+        ui.add(egui::TextEdit::multiline(text).desired_rows(6).desired_width(f32::INFINITY).code_editor())
+            .labelled_by(label.id);
+    });
+    ui.horizontal(|ui| {
+        let label = ui.label("Length of a unit, m");
+        ui.add(egui::TextEdit::singleline(unit_m).desired_width(70.0)).labelled_by(label.id);
+    });
+    let unit = unit_m.trim().replacen(',', ".", 1).parse::<f64>().ok().filter(|u| *u > 0.0 && u.is_finite());
+    if unit.is_none() {
+        ui.colored_label(ui.visuals().error_fg_color, "A unit is a number above 0");
+    }
+    ui.add_space(10.0);
+    ui.horizontal(|ui| {
+        let ready = !path.trim().is_empty() || !text.trim().is_empty();
+        let import = ui.add_enabled(ready && unit.is_some(), egui::Button::new("Import"));
+        if let (true, Some(unit_m)) = (import.clicked(), unit) {
+            let path = (!path.trim().is_empty()).then(|| PathBuf::from(path.trim()));
+            commands.push(Command::File(FileCommand::ImportMap { path, text: text.clone(), unit_m }));
+        }
+        if ui.button("Cancel").clicked() {
+            commands.push(close());
+        }
+    });
+}
+
 /// What was checked and what was not.
 fn about(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.heading("About the cable simulator");
@@ -123,7 +159,7 @@ const ABOUT: &[(&str, &[&str])] = &[
             "Figures of presets marked ≈ or C are estimates; bending stiffness of rubber cables lies anywhere in about 10 : 1",
             "Everything is plane: no cable passes sideways round anything, and knots cannot be told",
             "The robot’s body is no obstacle for the cable yet; its drive curve is an assumption",
-            "Violent motion (ends thrown metres in a frame) can end in a stop that says so",
+            "How accurate violent motion is (ends thrown metres in a frame): only that it does not fail",
             "With friction there are many resting places; one way of laying is answered",
         ],
     ),

@@ -50,6 +50,7 @@ fn file(ui: &mut Ui, commands: &mut Vec<Command>) {
         ("Open…", Some(&keys::OPEN), FileCommand::AskOpen),
         ("Save", Some(&keys::SAVE), FileCommand::Save),
         ("Save as…", Some(&keys::SAVE_AS), FileCommand::AskSaveAs),
+        ("Import map…", None, import_map()),
         ("Save run…", None, FileCommand::SetDialog(Some(Dialog::SaveRun { path: "run".to_owned() }))),
         ("Quit", None, FileCommand::Quit),
     ] {
@@ -57,6 +58,11 @@ fn file(ui: &mut Ui, commands: &mut Vec<Command>) {
             commands.push(Command::File(command));
         }
     }
+}
+
+fn import_map() -> FileCommand {
+    let (path, text, unit_m) = (String::new(), String::new(), "1".to_owned());
+    FileCommand::SetDialog(Some(Dialog::ImportMap { path, text, unit_m }))
 }
 
 fn edit(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {

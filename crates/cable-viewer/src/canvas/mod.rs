@@ -4,6 +4,7 @@ pub mod bounds;
 mod cable;
 mod forces;
 pub mod grid;
+mod held;
 mod legend;
 mod obstacles;
 pub mod pick;
@@ -55,6 +56,7 @@ fn draw(view: &mut View<'_>, state: &AppState) {
     }
     obstacles::draw(view, state);
     robot::draw(view, state);
+    held::draw(view, state);
     cable::draw(view, state);
     let mut figures = Vec::new();
     forces::draw(view, state, &mut figures);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use cable_core::scene::catalog;
 use cable_core::{Scene, files};
 
-use super::{Command, Effects, submit_scene};
+use super::{Command, Effects, SceneCommand, import, submit_scene};
 use crate::dialog::Dialog;
 use crate::plot::export::{self, Sheet};
 use crate::scene_file;
@@ -28,6 +28,15 @@ pub enum FileCommand {
     SaveAs(PathBuf),
     /// Writes what was in view of a graph.
     Export(PathBuf, Box<Sheet>),
+    /// Adds terrain and beams read from a file, or from a text.
+    ImportMap {
+        /// The file; None: the text.
+        path: Option<PathBuf>,
+        /// What was pasted.
+        text: String,
+        /// Length of a unit of it, m.
+        unit_m: f64,
+    },
     /// Writes everything recorded as a run folder.
     SaveRun(PathBuf),
     /// Shows a dialog, or closes it.
@@ -75,6 +84,16 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
             Ok(()) => state.dialog = None,
             Err(text) => complain(state, &format!("“{}” was not written", path.display()), text),
         },
+        FileCommand::ImportMap { path, text, unit_m } => {
+            match import::add(&state.scene, path.as_deref(), &text, unit_m) {
+                Ok((scene, report)) => {
+                    super::apply(state, Command::Scene(SceneCommand::SetScene(Box::new(scene))), effects);
+                    state.camera.fit_wanted = true;
+                    state.dialog = Some(Dialog::Message { title: "Imported".to_owned(), text: report });
+                }
+                Err(text) => complain(state, "The map was not imported", text),
+            }
+        }
         FileCommand::SaveRun(path) => match save_run(state, &path) {
             Ok(()) => state.dialog = None,
             Err(text) => complain(state, &format!("The run was not written to “{}”", path.display()), text),

@@ -2,6 +2,7 @@
 //! [`apply`] is the one place that changes [`AppState`], split by group.
 
 pub mod file;
+mod import;
 pub mod playback;
 pub mod scene;
 pub mod view;

@@ -3,7 +3,7 @@
 use cable_core::math::Point;
 
 use crate::colour::ColourScale;
-use crate::state::{AppState, Grab, Item, Layers};
+use crate::state::{AppState, Grab, Held, Item, Layers};
 
 /// Changes what is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +35,10 @@ pub enum ViewCommand {
     SetLayers(Layers),
     /// Light or dark.
     SetTheme(egui::ThemePreference),
+    /// Keeps the answer on screen to compare with.
+    Hold,
+    /// Lets one go, or all.
+    LetGo(Option<usize>),
 }
 
 /// Does one of them.
@@ -66,5 +70,19 @@ pub fn apply(state: &mut AppState, command: ViewCommand) {
         ViewCommand::SetColour(colour) => state.colour = colour,
         ViewCommand::SetLayers(layers) => state.layers = layers,
         ViewCommand::SetTheme(theme) => state.theme = theme,
+        ViewCommand::Hold => {
+            if let (Some(solution), Some(scene)) = (state.snapshot.solution.clone(), state.snapshot.scene.clone())
+                && state.held.len() < Held::MOST
+            {
+                let name = format!("{}, {} model, {:.2} s", scene.name, solution.model, solution.time_s);
+                state.held.push(Held { name, scene, solution, wall_s: state.snapshot.solve_wall_s });
+            }
+        }
+        ViewCommand::LetGo(None) => state.held.clear(),
+        ViewCommand::LetGo(Some(k)) => {
+            if k < state.held.len() {
+                state.held.remove(k);
+            }
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! The panels: each reads the state and pushes commands, nothing else.
 
 pub mod cable;
+pub mod compare;
 pub mod environment;
 pub mod fault;
 pub mod field;

@@ -10,7 +10,7 @@ use cable_core::solution::{
 use cable_core::{Load, Model, Scene};
 use cable_viewer::command::{self, Command, Effects};
 use cable_viewer::history::Sample;
-use cable_viewer::state::{AppState, Snapshot};
+use cable_viewer::state::{AppState, Held, Snapshot};
 use egui_kittest::Harness;
 
 pub type PanelUi = fn(&mut egui::Ui, &AppState, &mut Vec<Command>);
@@ -175,6 +175,25 @@ pub fn recorded() -> AppState {
     }
     state.live = state.snapshot.clone();
     state.show_time(Some(4.2));
+    state
+}
+
+/// Two answers held: one of a longer and lighter cable.
+pub fn compared() -> AppState {
+    let mut state = state();
+    let mut other = state.scene.clone();
+    other.cables[0].length_m = 12.5;
+    other.cables[0].linear_density_kg_per_m = 1.0;
+    let mut answer = (**state.snapshot.solution.as_ref().unwrap()).clone();
+    for node in &mut answer.cables[0].nodes {
+        node.tension_n *= 0.83;
+        node.y_m -= 0.1;
+    }
+    for (scene, solution) in [(state.scene.clone(), None), (other, Some(answer))] {
+        let solution = solution.map_or_else(|| state.snapshot.solution.clone().unwrap(), Arc::new);
+        let name = format!("{}, fem model", scene.name);
+        state.held.push(Held { name, scene: Arc::new(scene), solution, wall_s: 2.5e-3 });
+    }
     state
 }
 

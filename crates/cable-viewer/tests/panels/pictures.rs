@@ -5,7 +5,7 @@ use cable_viewer::panels;
 use cable_viewer::state::{AppState, Item};
 use egui_kittest::{SnapshotOptions, SnapshotResults};
 
-use crate::fixture::{PanelUi, bench, driven, recorded, state, warn, with_pulley};
+use crate::fixture::{PanelUi, bench, compared, driven, recorded, state, warn, with_pulley};
 
 /// Differences of a rounding here and there between drivers are let pass.
 const MOST_DIFFERENT_PIXELS: usize = 80;
@@ -88,6 +88,11 @@ fn timeline() {
 #[test]
 fn robot() {
     picture("robot", driven, panels::robot::ui, [320.0, 420.0]);
+}
+
+#[test]
+fn compare() {
+    picture("compare", compared, panels::compare::ui, [320.0, 240.0]);
 }
 
 #[test]

@@ -244,3 +244,74 @@ fn t01_about_says_what_was_checked_and_what_was_not() {
     harness.run_steps(5);
     harness.get_by_label("Hold A, D");
 }
+
+#[test]
+fn s09_a_pasted_table_becomes_ground_and_undo_takes_it_back() {
+    let mut harness = open_span();
+    let before = harness.state().state.scene.clone();
+    let text = "x;y\n-2,0;-4,0\n5;-3,5\n12;-4\n".to_owned();
+    apply(&mut harness, Command::File(FileCommand::ImportMap { path: None, text, unit_m: 1.0 }));
+    let state = &harness.state().state;
+    assert_eq!(state.scene.obstacles.len(), before.obstacles.len() + 1);
+    assert_eq!(state.snapshot.error, None);
+    let Some(Dialog::Message { text, .. }) = &state.dialog else { panic!("{:?}", state.dialog) };
+    assert!(text.contains("3 points") && text.contains("heading"), "{text}");
+    apply(&mut harness, Command::File(FileCommand::SetDialog(None)));
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(2);
+    assert_eq!(harness.state().state.scene, before);
+    // What cannot be read changes nothing and says the line.
+    let text = "0 0\n1 x\n".to_owned();
+    apply(&mut harness, Command::File(FileCommand::ImportMap { path: None, text, unit_m: 1.0 }));
+    assert_eq!(harness.state().state.scene, before);
+    let Some(Dialog::Message { text, .. }) = &harness.state().state.dialog else { panic!("no message") };
+    assert!(text.contains("line 2"), "{text}");
+}
+
+#[test]
+fn s16_four_answers_are_held_and_their_differences_told() {
+    let mut harness = open_span();
+    for k in 0..4 {
+        click(&mut harness, "Hold this answer");
+        let mut cable = harness.state().state.scene.cables[0].clone();
+        cable.length_m += 0.1 * f64::from(k + 1);
+        let edit = cable_viewer::command::SceneCommand::SetCable { cable: 0, value: Box::new(cable) };
+        apply(&mut harness, Command::Scene(edit));
+    }
+    let state = &harness.state().state;
+    assert_eq!(state.held.len(), 4);
+    let told = cable_viewer::panels::compare::differences(&state.held[0], state);
+    assert!(told.iter().any(|l| l.starts_with("length_m 12")), "{told:?}");
+    assert!(harness.get_all_by_label_contains(" %").count() >= 8, "differences of tension and sag");
+    click(&mut harness, "Let go 2");
+    assert_eq!(harness.state().state.held.len(), 3);
+    click(&mut harness, "Let all go");
+    assert!(harness.state().state.held.is_empty());
+}
+
+#[test]
+fn t03_hundreds_of_load_changes_end_at_the_last() {
+    let mut harness = open_span();
+    click(&mut harness, "Add load");
+    let load = harness.state().state.scene.loads[0].clone();
+    harness.get_by_label("Load force");
+    let before = harness.state().state.scene.clone();
+    let ctx = harness.ctx.clone();
+    for k in 1..=300 {
+        let value = cable_core::Load { force_n: Some([0.0, -f64::from(k)]), ..load.clone() };
+        let command = cable_viewer::command::SceneCommand::SetLoad { load: 0, value };
+        harness.state_mut().apply(&ctx, vec![Command::Scene(command)]);
+        if k % 20 == 0 {
+            harness.step();
+        }
+    }
+    harness.run_steps(2);
+    let state = &harness.state().state;
+    assert_eq!(state.snapshot.error, None);
+    assert_eq!(state.scene.loads[0].force_n, Some([0.0, -300.0]));
+    assert_eq!(state.snapshot.scene.as_deref(), Some(&state.scene));
+    // One drag of the slider is one entry.
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(2);
+    assert_eq!(harness.state().state.scene, before);
+}

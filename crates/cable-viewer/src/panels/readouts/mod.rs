@@ -1,6 +1,6 @@
 //! Readouts panel: the figures of the present answer.
 
-pub mod figures;
+pub(crate) mod figures;
 mod reactions;
 
 use cable_core::Cable;

@@ -5,12 +5,21 @@ use egui::{ComboBox, Ui};
 
 use super::{GAP, KIND_WIDTH, NAME_WIDTH, NUMBER_WIDTH, components, headings, remove, selectable_name, show_faults};
 use crate::command::{Command, SceneCommand};
+use crate::panels::property::{Known, Quantity, row};
 use crate::panels::unit::Unit;
 use crate::panels::{fault, field};
 use crate::state::{AppState, Item};
 
 /// Force of a new load, N.
 const FIRST_LOAD_N: [f64; 2] = [0.0, -100.0];
+
+const STRENGTH: Quantity = Quantity {
+    name: "Load force",
+    unit: Unit::N,
+    usual: [1.0, 5000.0],
+    logarithmic: true,
+    help: "How strong the selected load is, in the direction it has; the cable follows while the slider moves.",
+};
 
 /// Draws them.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -69,6 +78,9 @@ fn line(ui: &mut Ui, state: &AppState, k: usize, load: &Load, commands: &mut Vec
             remove(ui, item, &name, "Takes it off", commands);
         });
     });
+    if let (Some(force_n), true) = (load.force_n, state.selected == Some(item)) {
+        strength(ui, load, (k, force_n), commands);
+    }
     if state.scene.cables.len() > 1 {
         ui.horizontal(|ui| {
             ui.label("    on");
@@ -83,4 +95,19 @@ fn line(ui: &mut Ui, state: &AppState, k: usize, load: &Load, commands: &mut Vec
         });
     }
     show_faults(ui, &faults);
+}
+
+/// The slider of a selected load: how much, in the direction it has.
+fn strength(ui: &mut Ui, load: &Load, (k, force_n): (usize, [f64; 2]), commands: &mut Vec<Command>) {
+    let size = force_n[0].hypot(force_n[1]);
+    let known = Known { value: size, ..Known::default() };
+    let change = row(ui, &STRENGTH, &known);
+    if let Some(wanted) = change.value.filter(|v| v.is_finite() && *v >= 0.0) {
+        let direction = if size > 0.0 { force_n.map(|f| f / size) } else { [0.0, -1.0] };
+        let value = Load { force_n: Some(direction.map(|d| d * wanted)), ..load.clone() };
+        commands.push(Command::Scene(SceneCommand::SetLoad { load: k, value }));
+    }
+    if change.done {
+        commands.push(Command::Scene(SceneCommand::EditDone));
+    }
 }

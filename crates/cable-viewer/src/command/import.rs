@@ -1,0 +1,51 @@
+//! Terrain and beams from tables and drawings, added to a scene.
+
+use std::path::Path;
+
+use cable_core::scene::{Obstacle, Shape, import};
+use cable_core::{Scene, files};
+
+/// Largest file, bytes: a million points with room to spare.
+const MOST_BYTES: u64 = 64 << 20;
+
+/// The scene with what was read added to it, and what was done, in words.
+///
+/// # Errors
+/// What cannot be read, or why the scene would not hold it, in words.
+pub fn add(scene: &Scene, path: Option<&Path>, text: &str, unit_m: f64) -> Result<(Scene, String), String> {
+    let from_file;
+    let text = match path {
+        Some(path) => {
+            let bytes = files::read_limited(path, MOST_BYTES).map_err(|e| e.to_string())?;
+            from_file = String::from_utf8(bytes).map_err(|_| "it is no text in UTF-8".to_owned())?;
+            &from_file
+        }
+        None => text,
+    };
+    let read = import::read(text, unit_m).map_err(|e| e.to_string())?;
+    let mut scene = scene.clone();
+    let mut report = Vec::new();
+    for line in read.lines {
+        let count = line.points_m.len();
+        let (kind, shape) = if line.closed {
+            ("imported beam", Shape::Polygon { points_m: line.points_m })
+        } else {
+            ("imported ground", Shape::Terrain { points_m: line.points_m })
+        };
+        let taken = |n: &str| scene.obstacles.iter().any(|o| o.name == n);
+        let name = std::iter::once(kind.to_owned())
+            .chain((2..).map(|k| format!("{kind} {k}")))
+            .find(|n| !taken(n))
+            .unwrap_or_default();
+        report.push(format!("“{name}”: {count} points"));
+        scene.obstacles.push(Obstacle { name, shape, friction: None });
+    }
+    report.extend(read.report);
+    // What is already wrong with the scene is not the import's fault.
+    if let Err(fault) = scene.validate()
+        && fault.path.starts_with("obstacles")
+    {
+        return Err(fault.to_string());
+    }
+    Ok((scene, report.join("\n")))
+}

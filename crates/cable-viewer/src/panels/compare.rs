@@ -1,0 +1,143 @@
+//! Compare panel: answers held beside the present one, their figures and what differs in their input.
+
+use cable_core::{Scene, Solution};
+use egui::{Grid, RichText, Ui};
+
+use super::readouts::figures;
+use super::{field, unit};
+use crate::command::{Command, ViewCommand};
+use crate::plot::LINES;
+use crate::state::{AppState, Held};
+
+/// Most lines of difference told; more are counted.
+const MOST_LINES: usize = 12;
+
+/// Draws it.
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        let full = state.held.len() == Held::MOST;
+        let help =
+            if full { "No more can be held: let one go" } else { "Keeps this answer on screen beside what follows" };
+        let can = state.snapshot.solution.is_some() && !full;
+        if ui.add_enabled(can, egui::Button::new("Hold this answer")).on_hover_text(help).clicked() {
+            commands.push(Command::View(ViewCommand::Hold));
+        }
+        if !state.held.is_empty() && ui.button("Let all go").clicked() {
+            commands.push(Command::View(ViewCommand::LetGo(None)));
+        }
+    });
+    if state.held.is_empty() {
+        ui.weak("Nothing held: hold an answer, then change the scene or the model");
+        return;
+    }
+    let present = state.snapshot.solution.as_deref().map(|s| Figures::of(s, &state.scene, state.snapshot.solve_wall_s));
+    Grid::new("compare").num_columns(6).spacing([7.0, 3.0]).striped(true).show(ui, |ui| {
+        for title in ["", "Tension", "Sag", "Energy", "Cost", ""] {
+            ui.weak(title);
+        }
+        ui.end_row();
+        if let Some(present) = &present {
+            ui.strong("Now").on_hover_text("What is on screen");
+            row(ui, present, None);
+            ui.end_row();
+        }
+        for (k, held) in state.held.iter().enumerate() {
+            let colour = LINES[k % LINES.len()];
+            ui.label(RichText::new(format!("{}", k + 1)).color(colour).strong()).on_hover_text(&held.name);
+            row(ui, &Figures::of(&held.solution, &held.scene, held.wall_s), present.as_ref());
+            let away = super::icon::plain_button(ui, super::icon::Icon::Remove, true);
+            field::name(&away, &format!("Let go {}", k + 1));
+            if away.on_hover_text("Not held any more").clicked() {
+                commands.push(Command::View(ViewCommand::LetGo(Some(k))));
+            }
+            ui.end_row();
+        }
+    });
+    for (k, held) in state.held.iter().enumerate() {
+        ui.weak(format!("{}: {}", k + 1, held.name));
+        for line in differences(held, state) {
+            ui.label(RichText::new(line).small());
+        }
+    }
+}
+
+/// What is compared.
+struct Figures {
+    tension_n: f64,
+    sag_m: Option<f64>,
+    energy_j: f64,
+    wall_s: f64,
+}
+
+impl Figures {
+    fn of(solution: &Solution, scene: &Scene, wall_s: f64) -> Self {
+        let sags = solution.cables.iter().filter_map(|c| figures::sag(c, scene.view)).map(|(depth, _)| depth);
+        Self {
+            tension_n: solution.max_tension().tension_n,
+            sag_m: sags.reduce(f64::max),
+            energy_j: solution.energy.total_j(),
+            wall_s,
+        }
+    }
+}
+
+fn row(ui: &mut Ui, f: &Figures, present: Option<&Figures>) {
+    cell(ui, unit::force(f.tension_n), (Some(f.tension_n), present.map(|p| p.tension_n)));
+    let sag = f.sag_m.map_or_else(|| "–".to_owned(), unit::length);
+    cell(ui, sag, (f.sag_m, present.and_then(|p| p.sag_m)));
+    let energy = format!("{} J", unit::significant(f.energy_j, 4));
+    cell(ui, energy, (Some(f.energy_j), present.map(|p| p.energy_j)));
+    cell(ui, unit::duration(f.wall_s), (None, None));
+}
+
+/// A figure, and below it how much it is above the present one.
+fn cell(ui: &mut Ui, text: String, (value, present): (Option<f64>, Option<f64>)) {
+    ui.vertical(|ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        ui.add(egui::Label::new(text).extend());
+        if let (Some(value), Some(present)) = (value, present)
+            && present != 0.0
+            && value.is_finite()
+        {
+            let share = format!("{:+.2} %", 100.0 * (value / present - 1.0)).replace('-', "−");
+            ui.label(RichText::new(share).small().weak()).on_hover_text("Against the present answer");
+        }
+    });
+}
+
+/// What differs in the input of a held answer and the present one, line by line of their files; the models first.
+#[must_use]
+pub fn differences(held: &Held, state: &AppState) -> Vec<String> {
+    let mut out = Vec::new();
+    if let Some(present) = &state.snapshot.solution
+        && present.model != held.solution.model
+    {
+        out.push(format!("model {} → {}", held.solution.model, present.model));
+    }
+    let (a, b) = (held.scene.to_toml(), state.scene.to_toml());
+    let (a, b): (Vec<&str>, Vec<&str>) = (a.lines().collect(), b.lines().collect());
+    if a.len() == b.len() {
+        let pairs = a.iter().zip(&b).filter(|(x, y)| x != y);
+        out.extend(pairs.map(|(x, y)| match (x.split_once(" = "), y.split_once(" = ")) {
+            (Some((key, was)), Some((_, is))) => format!("{} {} → {}", key.trim(), short(was), short(is)),
+            _ => format!("{} → {}", short(x), short(y)),
+        }));
+    } else {
+        out.extend(a.iter().filter(|x| !b.contains(x)).map(|x| format!("− {}", short(x))));
+        out.extend(b.iter().filter(|y| !a.contains(y)).map(|y| format!("+ {}", short(y))));
+    }
+    if out.is_empty() {
+        out.push("the same input".to_owned());
+    }
+    if out.len() > MOST_LINES {
+        let more = out.len() - MOST_LINES;
+        out.truncate(MOST_LINES);
+        out.push(format!("and {more} more"));
+    }
+    out
+}
+
+fn short(text: &str) -> String {
+    let text = text.trim();
+    if text.chars().count() > 40 { text.chars().take(40).collect::<String>() + "…" } else { text.to_owned() }
+}
