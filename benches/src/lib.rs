@@ -1,6 +1,8 @@
 //! What the benches and the charts share: the grid of spans, and scenes brought to a model and a mesh.
 
 pub mod chart;
+pub mod compare;
+pub mod dots;
 
 use cable_core::catenary::Span;
 use cable_core::{Model, Scene, Settings, Simulation, Vec2};

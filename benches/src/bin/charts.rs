@@ -1,5 +1,6 @@
 //! Speed against accuracy: the error of the largest tension and of the shape against what an answer costs, for a
-//! slack and a nearly taut span. Writes `docs/charts/speed_accuracy.csv` and `.svg`.
+//! slack and a nearly taut span, into `docs/charts/speed_accuracy.csv` and `.svg`; and every scene of the catalogue,
+//! `fem` beside `mass-spring`, into `scenes.csv`, `scenes.svg` (100 elements) and `scenes_ladder.svg` (25 to 400).
 //!
 //! Run from the root of the repository: `cargo run --release -p cable-benches --bin charts`. The exact answer is
 //! the elastic catenary's, tested to 1e-9 against 40-digit references; the catenary's own points show the
@@ -9,6 +10,8 @@ use std::error::Error;
 use std::time::Instant;
 
 use cable_benches::chart::{Panel, Series, svg};
+use cable_benches::compare::{self, Question, Reference};
+use cable_benches::dots::{self, Dot, Line, Plot};
 use cable_benches::fresh;
 use cable_core::catenary::{Catenary, Span};
 use cable_core::math::vec2;
@@ -59,8 +62,116 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(FOLDER)?;
     write_csv(&rows)?;
     std::fs::write(format!("{FOLDER}/speed_accuracy.svg"), svg(&panels(&rows), scenes.len()))?;
+    catalogue()?;
     println!("{} points written to {FOLDER}/speed_accuracy.csv and .svg", rows.len());
     Ok(())
+}
+
+/// Elements of the ladder over the catalogue; those of the dot plot. A motion is dearer than a rest.
+const REST_MESHES: [usize; 3] = [25, 100, 400];
+const MOTION_MESHES: [usize; 3] = [25, 50, 100];
+const DOT_SEGMENTS: usize = 100;
+/// Elements of the reference where there is no closed form: the first that answers.
+const FINEST: [usize; 2] = [1600, 400];
+const FINEST_MOTION: [usize; 2] = [200, 100];
+/// Colours and marks of the two models.
+const MARKS: [(Model, &str, u32); 2] = [(Model::Fem, "#0072B2", 0), (Model::MassSpring, "#D55E00", 4)];
+
+/// Every scene of the catalogue: a table, a dot plot, a ladder.
+fn catalogue() -> Result<(), Box<dyn Error>> {
+    let mut csv = csv::Writer::from_path(format!("{FOLDER}/scenes.csv"))?;
+    csv.write_record([
+        "scene",
+        "question",
+        "model",
+        "segments",
+        "error",
+        "cost_s",
+        "stated_error",
+        "reference",
+        "reference_uncertainty",
+    ])?;
+    let (mut lines, mut ladders) = (Vec::new(), Vec::new());
+    for (id, scene) in catalog::all() {
+        let question = Question::of(&scene);
+        let (meshes, finest) =
+            if question == Question::Rest { (REST_MESHES, FINEST) } else { (MOTION_MESHES, FINEST_MOTION) };
+        let Some(reference) = finest.iter().find_map(|n| Reference::of(&scene, *n)) else {
+            eprintln!("skipped: {id} has no reference");
+            continue;
+        };
+        let mut rows = Vec::new();
+        for (model, ..) in MARKS {
+            for n in meshes {
+                rows.extend(compare::measure(id, &scene, &reference, model, n));
+            }
+        }
+        for r in &rows {
+            println!("{id}, {}, {}: error {:.1e}, {:.2e} s", r.model, r.segments, r.error, r.cost_s);
+            csv.write_record([
+                id.to_owned(),
+                question.name().to_owned(),
+                r.model.to_string(),
+                r.segments.to_string(),
+                format!("{:.3e}", r.error),
+                format!("{:.3e}", r.cost_s),
+                r.said.map(|e| format!("{e:.3e}")).unwrap_or_default(),
+                reference.by.clone(),
+                format!("{:.1e}", reference.uncertainty),
+            ])?;
+        }
+        lines.push(line(id, question, &reference, &rows));
+        ladders.push(ladder(id, &rows));
+    }
+    csv.flush()?;
+    let plot = Plot {
+        title: "Every scene with 100 elements: error and cost (further left is better)".to_owned(),
+        legend: MARKS.map(|(m, colour, corners)| (m.to_string(), colour, corners)).into(),
+        columns: [("error of forces (relative)", (-10, 0)), ("cost of an answer, wall time (s)", (-5, 1))],
+        lines,
+    };
+    std::fs::write(format!("{FOLDER}/scenes.svg"), dots::svg(&plot))?;
+    std::fs::write(format!("{FOLDER}/scenes_ladder.svg"), svg(&ladders, 4))?;
+    Ok(())
+}
+
+/// A scene's line of the dot plot.
+fn line(id: &str, question: Question, reference: &Reference, rows: &[compare::Row]) -> Line {
+    let pick = |read: fn(&compare::Row) -> f64| {
+        let middle = rows.iter().filter(|r| r.segments == DOT_SEGMENTS);
+        middle
+            .filter_map(|r| MARKS.iter().find(|m| m.0 == r.model).map(|m| (r, m)))
+            .map(|(r, m)| Dot { value: read(r), colour: m.1, corners: m.2 })
+            .collect()
+    };
+    Line {
+        name: id.to_owned(),
+        note: format!("{}, against {}", question.name(), reference.by),
+        blind_to: reference.uncertainty,
+        dots: [pick(|r| r.error), pick(|r| r.cost_s)],
+    }
+}
+
+/// A scene's panel of error over cost.
+fn ladder(id: &str, rows: &[compare::Row]) -> Panel {
+    let series = MARKS.map(|(model, colour, corners)| Series {
+        name: format!("{model}, 25 to 400 elements"),
+        colour,
+        corners,
+        points: rows
+            .iter()
+            .filter(|r| r.model == model && r.error.is_finite())
+            .map(|r| (r.cost_s, if r.error < 1e-12 { 1e-12 } else { r.error }))
+            .collect(),
+    });
+    Panel {
+        title: id.to_owned(),
+        x_label: "cost of an answer, wall time (s)",
+        y_label: "error of forces (relative)",
+        x_decades: (-6, 2),
+        y_decades: (-12, 0),
+        series: series.into(),
+    }
 }
 
 /// The catenary of a scene of two fixed supports.

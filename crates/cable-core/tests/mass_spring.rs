@@ -2,8 +2,8 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
-use cable_core::scene::{Motion, Scene, Support, SupportKind, catalog};
-use cable_core::solution::CableSolution;
+use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
+use cable_core::solution::{CableSolution, WarningKind};
 use cable_core::{Load, Model, Settings, Simulation};
 use serde_json::Value;
 
@@ -340,4 +340,71 @@ fn heat_lengthens_a_hanging_cable() {
     let tip = solve(&scene, Model::MassSpring, 16).nodes.last().unwrap().y_m;
     let exact = -1.002 * (10.0 + 20.0 * 100.0 / (2.0 * 2e4));
     assert!((tip / exact - 1.0).abs() < 1e-9, "{tip} against {exact}");
+}
+
+/// Drawn slowly over a corner or a round by hand against a dead load: how far the ratio of tensions is from e^{μφ} in the
+/// worst frame, and what the answer says of itself.
+fn drawn_over(radius_m: Option<f64>, turn_deg: f64, segments: usize) -> (f64, f64) {
+    let half = 0.5 * turn_deg.to_radians();
+    let (sin, cos) = half.sin_cos();
+    let mut scene = catalog::hanging_span();
+    scene.environment.gravity_m_per_s2 = 1e-3;
+    let c = &mut scene.cables[0];
+    (c.length_m, c.linear_density_kg_per_m, c.axial_stiffness_n) = (6.0, 1.0, 1e6);
+    (c.bending_stiffness_n_m2, c.diameter_m) = (0.0, 0.028);
+    c.segments = Some(segments);
+    let (near, far) = ([2.6 * cos, -2.6 * sin], [2.9 * cos, -2.9 * sin]);
+    c.route_m = vec![[-3.4 * cos, -3.4 * sin], [0.0, 0.014 / cos + 1e-4], near];
+    let load = Support { force_n: Some([-100.0 * cos, -100.0 * sin]), ..Support::new("load", SupportKind::Load) };
+    let motion = Some(Motion { times_s: vec![0.0, 3.0], points_m: vec![near, far] });
+    c.supports = vec![load, Support { motion, ..Support::fixed("hand", near) }];
+    let flank = half + 0.35;
+    let shape = match radius_m {
+        Some(radius_m) => Shape::Circle { center_m: [0.0, -radius_m], radius_m },
+        None => Shape::Polygon {
+            points_m: vec![
+                [0.0, 0.0],
+                [-3.0 * flank.cos(), -3.0 * flank.sin()],
+                [3.0 * flank.cos(), -3.0 * flank.sin()],
+            ],
+        },
+    };
+    scene.obstacles = vec![Obstacle { name: "beam".to_owned(), shape, friction: Some(0.3) }];
+    let mut sim = Simulation::new(scene, Model::MassSpring).unwrap();
+    sim.settle().unwrap();
+    let exact = 100.0 * (0.3 * turn_deg.to_radians()).exp();
+    let (mut worst, mut said) = (0.0f64, 0.0f64);
+    for k in 0..150 {
+        sim.step_quasi_static(0.02).unwrap();
+        if k >= 60 {
+            let s = sim.solution();
+            let hand = &s.cables[0].supports[1];
+            worst = worst.max((hand.reaction_x_n.hypot(hand.reaction_y_n) / exact - 1.0).abs());
+            said = said.max(s.cables[0].error_estimate.unwrap_or(0.0));
+            let warned = s.warnings.iter().any(|w| w.kind == WarningKind::Accuracy && w.message.contains("`beam`"));
+            assert!(warned, "nothing is said at {} s", s.time_s);
+        }
+    }
+    (worst, said)
+}
+
+/// On a round the sawtooth falls with the element, on a sharp corner it stays: the answer says how uncertain it is, and that is
+/// no less than what is found and no more than a few times of it.
+#[test]
+fn what_corners_leave_uncertain_is_said() {
+    for (radius, turn) in [(Some(0.3), 60.0), (None, 30.0)] {
+        let mut errors = Vec::new();
+        for segments in [60, 240] {
+            let (worst, said) = drawn_over(radius, turn, segments);
+            println!("radius {radius:?}, {turn}°, {segments} elements: off by {worst:.3} at worst, said {said:.3}");
+            assert!(worst <= 1.1 * said, "{worst} is more than the {said} it says");
+            assert!(said < 6.0 * worst + 0.01, "{said} is far more than {worst}");
+            errors.push(worst);
+        }
+        if radius.is_some() {
+            assert!(errors[1] < 0.5 * errors[0], "a finer mesh must help on a round: {errors:?}");
+        } else {
+            assert!(errors[1] > 0.4 * errors[0], "no mesh helps on a corner: {errors:?}");
+        }
+    }
 }

@@ -23,7 +23,8 @@ impl MassSpringModel {
             name: self.problem.cable.name.clone(),
             nodes: self.nodes(),
             supports: (0..self.node_of.len()).map(|k| self.reaction(k)).collect(),
-            contacts: self.contact_reports(),
+            error_estimate: self.least_certain().map(|(_, uncertain)| uncertain),
+            contacts: self.wraps().into_iter().map(|(contact, _)| contact).collect(),
             ..CableSolution::default()
         }
     }
@@ -135,7 +136,7 @@ impl MassSpringModel {
     fn node(&self, i: usize) -> Node {
         let tension_n = match (i.checked_sub(1), i < self.rest.len()) {
             (Some(e), true) => ((self.element_force(e) + self.element_force(i)) * 0.5).norm(),
-            _ if self.held[i] => self.on_support(i).norm(),
+            _ if self.held[i] => self.end_tension(i),
             (Some(e), false) => self.tension[e],
             (None, _) => self.tension.first().copied().unwrap_or(0.0),
         };
@@ -159,6 +160,16 @@ impl MassSpringModel {
             stress_pa: tension_n / self.problem.cable.area_m2(),
             curvature_per_m,
         }
+    }
+
+    /// Tension at a held end: the whole force of a flexible cable, without the shear of a stiff one.
+    fn end_tension(&self, i: usize) -> f64 {
+        let force = self.on_support(i);
+        if !(self.problem.bending_stiffness > 0.0) {
+            return force.norm();
+        }
+        let along = self.clamp_at(i).unwrap_or_else(|| self.reach(i.min(self.rest.len() - 1)).direction);
+        force.dot(&along).abs()
     }
 
     /// From a clamp at an end to the middle of its element `e`, which lies along `d`; 0 where nothing is clamped.
@@ -208,17 +219,17 @@ impl MassSpringModel {
         }
     }
 
-    /// Neighbouring contacts with the same obstacle are one.
-    fn contact_reports(&self) -> Vec<ContactReport> {
+    /// Contacts, and how uncertain each leaves tension. Neighbouring ones with the same obstacle are one.
+    pub(super) fn wraps(&self) -> Vec<(ContactReport, f64)> {
         let h = if self.cost.inner_step_s > 0.0 { self.cost.inner_step_s } else { 1.0 };
-        let mut out: Vec<ContactReport> = Vec::new();
-        let mut last: Option<(usize, usize, Vec2)> = None;
+        let mut out: Vec<(ContactReport, [usize; 2], f64)> = Vec::new();
+        let mut last: Option<(usize, usize)> = None;
         for t in self.touches.iter().filter(|t| t.normal > 0.0) {
             let (obstacle, e) = (t.gap.obstacle, t.element);
+            let nodes = [e + usize::from(t.gap.fraction == 1.0), e + usize::from(t.gap.fraction > 0.0)];
             match (last, out.last_mut()) {
-                (Some((o, before, n)), Some(r)) if o == obstacle && e <= before + 1 => {
-                    let turned = cross(n, t.gap.normal).atan2(n.dot(&t.gap.normal));
-                    r.turn_deg += turned.to_degrees();
+                (Some((o, before)), Some((r, range, _))) if o == obstacle && e <= before + 1 => {
+                    range[1] = nodes[1];
                     self.add(r, t, h);
                 }
                 _ => {
@@ -228,18 +239,20 @@ impl MassSpringModel {
                         ..ContactReport::default()
                     };
                     self.add(&mut r, t, h);
-                    out.push(r);
+                    out.push((r, nodes, t.gap.friction));
                 }
             }
-            last = Some((obstacle, e, t.gap.normal));
+            last = Some((obstacle, e));
         }
-        for r in &mut out {
-            r.turn_deg = r.turn_deg.abs();
+        let finish = |(mut r, range, mu): (ContactReport, [usize; 2], f64)| {
+            let wrap = self.wrap(range, mu);
+            r.turn_deg = wrap.turn.to_degrees().abs();
             let at = self.s.partition_point(|&s| s <= r.arc_length_m).clamp(1, self.x.len() - 1) - 1;
             let p = self.x[at] + (self.x[at + 1] - self.x[at]) * ((r.arc_length_m - self.s[at]) / self.span[at]);
             (r.x_m, r.y_m) = (p.x, p.y);
-        }
-        out
+            (r, wrap.uncertain)
+        };
+        out.into_iter().map(finish).collect()
     }
 
     fn add(&self, r: &mut ContactReport, t: &Touch, h: f64) {

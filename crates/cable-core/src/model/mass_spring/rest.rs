@@ -116,6 +116,10 @@ impl MassSpringModel {
     pub(super) fn equilibrium(&mut self, anew: bool) -> Result<(), SolveError> {
         self.v.fill(Vec2::zeros());
         self.place_supports();
+        if !self.held.contains(&true) && !self.touches_something() {
+            let why = "no support holds the cable and there is nothing that it could lie on".to_owned();
+            return Err(SolveError::NoRestingPlace { why });
+        }
         self.weigh();
         let mut contacts = Contacts::new(self, anew);
         for p in &mut self.pulleys {

@@ -1,0 +1,174 @@
+//! Every scene of the catalogue, `fem` and `mass-spring` side by side: error against a reference, and cost.
+//!
+//! Where nothing rubs or nothing moves the question is where it rests; where friction decides and a support is drawn, which
+//! place of the many it comes to at the end of that motion, slowly: there everything slides, and one place is right.
+//!
+//! The reference is the elastic catenary where it can answer (no discretisation error), else the finest `fem`, uncertain by
+//! what half as many elements change. The error is the largest of a support's force and of the largest tension, over the
+//! largest tension. `mass-spring` starts from the shape that `fem` finds at rest.
+
+use std::time::Instant;
+
+use cable_core::{Model, Scene, Simulation, Solution, SolveError};
+
+use crate::fresh;
+
+/// A cost is the median of this many solves, or of as many as fit the time below, at least one.
+const REPEATS: usize = 15;
+const LONGEST_S: f64 = 1.5;
+
+/// Steps of a slow motion.
+const STEPS: u32 = 60;
+/// A motion that lasts longer (s) is not followed: the question is then where it rests.
+const LONGEST_MOTION_S: f64 = 10.0;
+
+/// What is asked of a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Question {
+    /// Where it rests.
+    Rest,
+    /// Where it is when its motion ends, after so many seconds.
+    EndOfMotion(f64),
+}
+
+impl Question {
+    /// The one that has one answer.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let ends = scene.cables.iter().flat_map(|c| &c.supports).filter_map(|s| s.motion.as_ref()?.times_s.last());
+        let last = ends.copied().fold(0.0, f64::max);
+        let rubs = !scene.obstacles.is_empty();
+        if rubs && last > 0.0 && last <= LONGEST_MOTION_S { Self::EndOfMotion(last) } else { Self::Rest }
+    }
+
+    /// How it reads beside the name of a scene.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rest => "at rest",
+            Self::EndOfMotion(_) => "after its motion",
+        }
+    }
+
+    fn answer(self, simulation: &mut Simulation) -> Result<Solution, SolveError> {
+        let rest = simulation.settle()?;
+        let Self::EndOfMotion(end_s) = self else { return Ok(rest) };
+        for _ in 0..STEPS {
+            simulation.step_quasi_static(end_s / f64::from(STEPS))?;
+        }
+        Ok(simulation.solution())
+    }
+
+    /// The answer of a model with `segments` elements; None, with a note, where there is none.
+    fn ask(self, scene: &Scene, model: Model, segments: Option<usize>) -> Option<Solution> {
+        let mut simulation = fresh(scene, model, segments)?;
+        match self.answer(&mut simulation) {
+            Ok(answer) => Some(answer),
+            Err(e) => {
+                eprintln!("skipped: {model} on \"{}\" with {segments:?} elements: {e}", scene.name);
+                None
+            }
+        }
+    }
+}
+
+/// What is compared against.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// What gave it.
+    pub by: String,
+    /// Relative uncertainty; 0 for a closed form.
+    pub uncertainty: f64,
+    answer: Solution,
+}
+
+/// One measured answer.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// Id of the scene.
+    pub scene: &'static str,
+    /// Who answered.
+    pub model: Model,
+    /// With how many elements.
+    pub segments: usize,
+    /// Wall time, s.
+    pub cost_s: f64,
+    /// Relative error.
+    pub error: f64,
+    /// Relative error it states itself, if it does.
+    pub said: Option<f64>,
+}
+
+impl Reference {
+    /// The best answer of a scene there is, with `finest` elements where there is no closed form.
+    #[must_use]
+    pub fn of(scene: &Scene, finest: usize) -> Option<Self> {
+        let flexible = scene.cables.iter().all(|c| c.bending_stiffness_n_m2 == 0.0);
+        if flexible
+            && scene.obstacles.is_empty()
+            && let Some(answer) = Question::Rest.ask(scene, Model::Catenary, None)
+        {
+            return Some(Self { by: "catenary".to_owned(), uncertainty: 0.0, answer });
+        }
+        let question = Question::of(scene);
+        let half = question.ask(scene, Model::Fem, Some(finest / 2))?;
+        let answer = question.ask(scene, Model::Fem, Some(finest))?;
+        let mut this = Self { by: format!("fem, {finest} elements"), uncertainty: 0.0, answer };
+        this.uncertainty = this.error(&half);
+        Some(this)
+    }
+
+    /// Relative error of an answer of the same scene.
+    #[must_use]
+    pub fn error(&self, answer: &Solution) -> f64 {
+        let top = self.answer.max_tension().tension_n;
+        let mut worst = (answer.max_tension().tension_n - top).abs();
+        for (a, b) in answer.cables.iter().zip(&self.answer.cables) {
+            for (a, b) in a.supports.iter().zip(&b.supports) {
+                let off = (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n);
+                worst = if off > worst || off.is_nan() { off } else { worst };
+            }
+        }
+        worst / top
+    }
+}
+
+/// Error and cost of a model; None, with a note, where it does not answer.
+#[must_use]
+pub fn measure(id: &'static str, scene: &Scene, reference: &Reference, model: Model, segments: usize) -> Option<Row> {
+    repeated((id, scene), reference, (model, segments), REPEATS)
+}
+
+/// As [`measure`], of one solve.
+#[must_use]
+pub fn once(id: &'static str, scene: &Scene, reference: &Reference, model: Model, segments: usize) -> Option<Row> {
+    repeated((id, scene), reference, (model, segments), 1)
+}
+
+fn repeated(
+    (id, scene): (&'static str, &Scene),
+    reference: &Reference,
+    (model, segments): (Model, usize),
+    repeats: usize,
+) -> Option<Row> {
+    let start = fresh(scene, model, Some(segments))?;
+    let (mut costs, all) = (Vec::new(), Instant::now());
+    let mut answer = None;
+    while costs.len() < repeats && (costs.is_empty() || all.elapsed().as_secs_f64() < LONGEST_S) {
+        let mut simulation = start.clone();
+        let clock = Instant::now();
+        let result = Question::of(scene).answer(&mut simulation);
+        costs.push(clock.elapsed().as_secs_f64());
+        match result {
+            Ok(a) => answer = Some(a),
+            Err(e) => {
+                eprintln!("skipped: {model} on \"{id}\" with {segments} elements: {e}");
+                return None;
+            }
+        }
+    }
+    costs.sort_by(f64::total_cmp);
+    let answer = answer?;
+    let said = answer.cables.iter().filter_map(|c| c.error_estimate).reduce(f64::max);
+    Some(Row { scene: id, model, segments, cost_s: costs[costs.len() / 2], error: reference.error(&answer), said })
+}

@@ -1,0 +1,178 @@
+//! The stability atlas: where methods are known to fail, what each model does there.
+//!
+//! Every regime has an answer that does not come from the model asked: a closed form, a balance, a bound on energy, a wall
+//! nothing may enter. A model may be right, may refuse with a typed error, or may say how uncertain it is. Wrong in silence
+//! fails the test. The verdicts stand in `docs/charts/stability.csv` and `.md`; `UPDATE_CHARTS=1 cargo test -p cable-tests
+//! --test stability_atlas` writes them, without it they are compared.
+
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
+mod motion;
+mod rest;
+mod slow;
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use cable_core::scene::{Scene, Support, SupportKind, catalog};
+use cable_core::solution::{Solution, WarningKind};
+use cable_core::{Error, Model, Settings, Simulation, SolveError};
+
+/// Gravity, m/s².
+pub const G: f64 = 9.80665;
+
+/// What a model does in a regime.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// Right, to this relative error.
+    Right(f64),
+    /// Off by more than a right answer may be, but it says so: error, and what it says.
+    Said(f64, f64),
+    /// A typed error.
+    Refused(&'static str),
+    /// Wrong, and does not say so.
+    Wrong(f64),
+}
+
+impl Verdict {
+    /// The word for it in tables.
+    fn name(&self) -> String {
+        match self {
+            Self::Right(_) => "right".to_owned(),
+            Self::Said(..) => "says how uncertain".to_owned(),
+            Self::Refused(kind) => format!("refuses: {kind}"),
+            Self::Wrong(_) => "WRONG".to_owned(),
+        }
+    }
+
+    /// Of an error that may be `most`, of an answer that may say that it is uncertain.
+    pub fn of(error: f64, most: f64, answer: &Solution) -> Self {
+        let said = answer.cables[0].error_estimate.unwrap_or(0.0);
+        let marked = answer.warnings.iter().any(|w| matches!(w.kind, WarningKind::Accuracy | WarningKind::Stabilised));
+        if error <= most {
+            Self::Right(error)
+        } else if error <= said || marked {
+            Self::Said(error, said)
+        } else {
+            Self::Wrong(error)
+        }
+    }
+
+    /// Of a typed error.
+    pub fn refused(e: &SolveError) -> Self {
+        Self::Refused(match e {
+            SolveError::NotConverged { .. } => "not converged",
+            SolveError::Compressed { .. } => "compressed",
+            SolveError::Indefinite { .. } => "not stable",
+            SolveError::NoRestingPlace { .. } => "no resting place",
+            SolveError::Unsupported { .. } => "not supported",
+            SolveError::NonFinite { .. } => "not finite",
+            SolveError::TimeStep { .. } => "time step",
+            SolveError::StepFailed { .. } => "step failed",
+        })
+    }
+}
+
+/// A regime: its name, what the figure is, and what a model does in it.
+pub struct Regime {
+    /// What makes it hard.
+    pub name: &'static str,
+    /// What the error is of.
+    pub figure: &'static str,
+    /// What a model does there.
+    pub judge: fn(Model) -> Result<Verdict, SolveError>,
+}
+
+/// A cable alone: its length (m), density (kg/m) and EA (N).
+pub fn cable([length, density, ea]: [f64; 3], supports: Vec<Support>) -> Scene {
+    let mut scene = catalog::hanging_span();
+    scene.loads.clear();
+    scene.environment.gravity_m_per_s2 = G;
+    scene.environment.temperature_change_k = 0.0;
+    let c = &mut scene.cables[0];
+    (c.length_m, c.linear_density_kg_per_m, c.axial_stiffness_n) = (length, density, ea);
+    (c.bending_stiffness_n_m2, c.thermal_expansion_per_k, c.damping_ratio) = (0.0, 0.0, 0.02);
+    (c.service_tension_n, c.breaking_tension_n, c.diameter_m) = (1e15, 1e15, 0.02);
+    c.segments = Some(100);
+    c.supports = supports;
+    scene
+}
+
+/// A dead load on an end, N.
+pub fn load(name: &str, force_n: [f64; 2]) -> Support {
+    Support { force_n: Some(force_n), ..Support::new(name, SupportKind::Load) }
+}
+
+/// The simulation of a scene; a scene that is no scene is a fault of the regime.
+pub fn simulation(scene: Scene, model: Model) -> Result<Simulation, SolveError> {
+    match Simulation::with_settings(scene, model, Settings::default()) {
+        Ok(s) => Ok(s),
+        Err(Error::Solve(e)) => Err(e),
+        Err(e) => panic!("the scene of a regime is refused: {e}"),
+    }
+}
+
+fn charts() -> PathBuf {
+    std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/charts")
+}
+
+/// Regime and model of each row of a table, and how good its verdict is. Its figures are left out: they differ in the last
+/// digits from machine to machine.
+fn ranks(csv: &str) -> Vec<(String, u8)> {
+    let rank = |verdict: &str| match verdict {
+        "right" => 3,
+        "says how uncertain" => 2,
+        v if v.starts_with("refuses") => 1,
+        _ => 0,
+    };
+    let row = |l: &str| {
+        let cells: Vec<&str> = l.splitn(4, ',').collect();
+        (cells[..2].join(", "), rank(cells[2]))
+    };
+    csv.lines().skip(1).map(row).collect()
+}
+
+#[test]
+fn no_model_is_wrong_in_silence() {
+    let regimes: Vec<Regime> = rest::regimes().into_iter().chain(slow::regimes()).chain(motion::regimes()).collect();
+    let mut csv = "regime,model,verdict,error,said,figure\n".to_owned();
+    let mut table = "# Stability atlas\n\nWhere methods are known to fail, and what each model does there. Written by `UPDATE_CHARTS=1 cargo test -p cable-tests --test stability_atlas`,\nwhich fails where a model is wrong without saying so. Figures are relative errors of what the last column names.\n\n| regime | catenary | fem | mass-spring | figure |\n|---|---|---|---|---|\n".to_owned();
+    let mut wrong = Vec::new();
+    for r in &regimes {
+        let _ = write!(table, "| {} |", r.name);
+        for model in Model::SOLVERS {
+            let verdict = (r.judge)(model).unwrap_or_else(|e| Verdict::refused(&e));
+            let (error, said) = match verdict {
+                Verdict::Right(e) | Verdict::Wrong(e) => (format!("{e:.1e}"), String::new()),
+                Verdict::Said(e, said) => (format!("{e:.1e}"), format!("{said:.1e}")),
+                Verdict::Refused(_) => (String::new(), String::new()),
+            };
+            println!("{}, {model}: {} {error} {said}", r.name, verdict.name());
+            let _ = writeln!(csv, "{},{model},{},{error},{said},{}", r.name, verdict.name(), r.figure);
+            let _ = match &verdict {
+                Verdict::Said(..) => write!(table, " {} ({error}, says {said}) |", verdict.name()),
+                Verdict::Refused(_) => write!(table, " {} |", verdict.name()),
+                _ => write!(table, " {} ({error}) |", verdict.name()),
+            };
+            if matches!(verdict, Verdict::Wrong(_)) || error == "NaN" {
+                wrong.push(format!("{}: {model} is off by {error}", r.name));
+            }
+        }
+        let _ = writeln!(table, " {} |", r.figure);
+    }
+    if std::env::var_os("UPDATE_CHARTS").is_some() {
+        std::fs::create_dir_all(charts()).unwrap();
+        std::fs::write(charts().join("stability.csv"), &csv).unwrap();
+        std::fs::write(charts().join("stability.md"), &table).unwrap();
+    }
+    assert!(wrong.is_empty(), "wrong in silence:\n{}", wrong.join("\n"));
+    let kept = std::fs::read_to_string(charts().join("stability.csv")).expect("docs/charts/stability.csv");
+    let (kept, now) = (ranks(&kept), ranks(&csv));
+    assert!(kept.iter().map(|r| &r.0).eq(now.iter().map(|r| &r.0)), "other regimes than the table: UPDATE_CHARTS=1");
+    for ((case, before), (_, rank)) in kept.iter().zip(&now) {
+        assert!(rank >= before, "{case}: worse than docs/charts/stability.csv says");
+        if rank > before {
+            println!("{case}: better than docs/charts/stability.csv says, UPDATE_CHARTS=1 writes it");
+        }
+    }
+}
