@@ -342,6 +342,24 @@ fn heat_lengthens_a_hanging_cable() {
     assert!((tip / exact - 1.0).abs() < 1e-9, "{tip} against {exact}");
 }
 
+/// From above, on a rough floor and round rough posts: friction of both is remembered from step to step. (It stopped the
+/// program: anchors on posts were taken for nodes on the floor.)
+#[test]
+fn a_floor_and_posts_rub_at_once() {
+    let mut scene = catalog::plan_posts();
+    scene.cables[0].segments = Some(40);
+    let mut sim = Simulation::new(scene, Model::MassSpring).unwrap();
+    let mut last = sim.settle().unwrap().cables[0].supports[1].reaction_x_n;
+    let start = last;
+    for _ in 0..35 {
+        sim.step_quasi_static(0.2).unwrap();
+        last = sim.solution().cables[0].supports[1].reaction_x_n;
+        assert!(last.is_finite());
+    }
+    // Drawn away from the posts, the hand feels more than before.
+    assert!(last.abs() > start.abs(), "{last} N after {start} N");
+}
+
 /// Drawn slowly over a corner or a round by hand against a dead load: how far the ratio of tensions is from e^{μφ} in the
 /// worst frame, and what the answer says of itself.
 fn drawn_over(radius_m: Option<f64>, turn_deg: f64, segments: usize) -> (f64, f64) {

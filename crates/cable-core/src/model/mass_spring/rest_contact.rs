@@ -70,8 +70,12 @@ pub(super) struct Contacts {
 impl Contacts {
     pub(super) fn new(model: &MassSpringModel, anew: bool) -> Self {
         let mut anchors = if anew { Vec::new() } else { model.anchors.clone() };
-        if model.problem.floor_friction.is_some() && anchors.len() != model.x.len() {
-            anchors = model.s.iter().zip(&model.x).map(|(&s, &at)| Anchor { obstacle: FLOOR, s, at }).collect();
+        // Those of the floor come first, one a node.
+        let on_floor = anchors.iter().filter(|a| a.obstacle == FLOOR).count();
+        if model.problem.floor_friction.is_some() && on_floor != model.x.len() {
+            let others = anchors.iter().copied().filter(|a| a.obstacle != FLOOR);
+            let floor = model.s.iter().zip(&model.x).map(|(&s, &at)| Anchor { obstacle: FLOOR, s, at });
+            anchors = floor.chain(others).collect();
         }
         let stiffness = model.problem.force_scale() / OFFSET;
         let mut this = Self { stiffness, anchors, rubs: Vec::new(), pushes: Vec::new() };
@@ -119,7 +123,7 @@ impl Contacts {
         self.find(model, OFFSET);
         self.rubs.clear();
         if let Some((mu, normal)) = model.problem.floor_friction {
-            for n in 0..self.anchors.len() {
+            for n in 0..model.x.len() {
                 let limit = mu * normal * model.half_share(n);
                 let (element, fraction) = model.material(model.s[n]);
                 self.rubs.push(Rub {
