@@ -41,6 +41,11 @@ pub enum Dialog {
         /// Length of a unit of it as typed so far, m.
         unit_m: String,
     },
+    /// Everything that can be done, by name.
+    Palette {
+        /// What was typed so far.
+        text: String,
+    },
     /// What was validated and what was not.
     About,
     /// A window that did not close has left unsaved changes.

@@ -31,6 +31,7 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
                 }
             }
             Dialog::About => about(ui, commands),
+            Dialog::Palette { text } => super::palette::ui(ui, text, commands),
             Dialog::ImportMap { path, text, unit_m } => import_map(ui, [path, text, unit_m], commands),
             Dialog::Unsaved { then } => unsaved(ui, &name, then, commands),
             Dialog::Recover { scene } => recover(ui, scene, commands),
@@ -254,6 +255,7 @@ fn help(ui: &mut Ui, commands: &mut Vec<Command>) {
             ("Del", "Removes what is selected"),
             ("Ctrl+Z, Ctrl+Shift+Z", "Undo, redo"),
             ("Ctrl+O, Ctrl+S", "Open, save"),
+            ("Ctrl+P", "Everything by name"),
         ] {
             ui.strong(what);
             ui.label(does);

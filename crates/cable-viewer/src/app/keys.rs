@@ -3,6 +3,7 @@
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
+use crate::dialog::Dialog;
 use crate::panels::robot;
 use crate::state::AppState;
 
@@ -17,6 +18,8 @@ pub const OPEN: KeyboardShortcut = with_command(Key::O);
 pub const SAVE: KeyboardShortcut = with_command(Key::S);
 /// Saves under another name.
 pub const SAVE_AS: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S);
+/// Everything by name.
+pub const PALETTE: KeyboardShortcut = with_command(Key::P);
 /// Back by one edit.
 pub const UNDO: KeyboardShortcut = with_command(Key::Z);
 /// Forward by one edit.
@@ -35,6 +38,7 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
         (SAVE_AS, Command::File(FileCommand::AskSaveAs)),
         (SAVE, Command::File(FileCommand::Save)),
         (OPEN, Command::File(FileCommand::AskOpen)),
+        (PALETTE, Command::File(FileCommand::SetDialog(Some(Dialog::Palette { text: String::new() })))),
     ] {
         if ctx.input_mut(|i| i.consume_shortcut(&shortcut)) {
             commands.push(command);
@@ -69,7 +73,7 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
         commands.push(Command::Playback(PlaybackCommand::Reset));
     }
     if plain(Key::F1) {
-        commands.push(Command::File(FileCommand::SetDialog(Some(crate::dialog::Dialog::Help))));
+        commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::Help))));
     }
     if (plain(Key::Delete) || plain(Key::Backspace))
         && let Some(item) = state.selected

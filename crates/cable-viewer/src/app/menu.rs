@@ -60,7 +60,8 @@ fn file(ui: &mut Ui, commands: &mut Vec<Command>) {
     }
 }
 
-fn import_map() -> FileCommand {
+/// Asks what to import.
+pub fn import_map() -> FileCommand {
     let (path, text, unit_m) = (String::new(), String::new(), "1".to_owned());
     FileCommand::SetDialog(Some(Dialog::ImportMap { path, text, unit_m }))
 }
@@ -75,6 +76,9 @@ fn edit(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 commands.push(Command::Scene(command));
             }
         });
+    }
+    if entry(ui, "Command palette…", Some(&keys::PALETTE)) {
+        commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::Palette { text: String::new() }))));
     }
     ui.separator();
     ui.add_enabled_ui(state.selected.is_some(), |ui| {

@@ -4,6 +4,7 @@ mod dialogs;
 mod keys;
 mod layout;
 mod menu;
+mod palette;
 
 use std::collections::VecDeque;
 use std::path::PathBuf;

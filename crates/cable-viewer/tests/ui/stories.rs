@@ -315,3 +315,17 @@ fn t03_hundreds_of_load_changes_end_at_the_last() {
     harness.run_steps(2);
     assert_eq!(harness.state().state.scene, before);
 }
+
+#[test]
+fn t01_everything_is_found_by_name_in_the_palette() {
+    let mut harness = open_span();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
+    harness.run_steps(4);
+    harness.get_by_label("Command").type_text("robot out");
+    harness.run_steps(3);
+    harness.key_press(Key::Enter);
+    harness.run_steps(6);
+    let state = &harness.state().state;
+    assert_eq!(state.dialog, None);
+    assert!(state.scene.robot.is_some(), "{}", state.scene.name);
+}

@@ -1,0 +1,103 @@
+//! The command palette: everything that can be done, found by typing part of its name.
+
+use cable_core::Model;
+use cable_core::scene::catalog;
+use egui::{Key, ScrollArea, TextEdit, Ui};
+
+use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
+use crate::dialog::Dialog;
+
+/// Everything, with the words it is found by.
+fn entries() -> Vec<(String, Command)> {
+    let file = |dialog| Command::File(FileCommand::SetDialog(Some(dialog)));
+    let theme = |theme| Command::View(ViewCommand::SetTheme(theme));
+    let fixed = [
+        ("Open a file…", Command::File(FileCommand::AskOpen)),
+        ("Save", Command::File(FileCommand::Save)),
+        ("Save as…", Command::File(FileCommand::AskSaveAs)),
+        ("Save run…", file(Dialog::SaveRun { path: "run".to_owned() })),
+        ("Import map…", Command::File(super::menu::import_map())),
+        ("Undo", Command::Scene(SceneCommand::Undo)),
+        ("Redo", Command::Scene(SceneCommand::Redo)),
+        ("Remove the robot", Command::Scene(SceneCommand::SetRobot(None))),
+        ("Play or pause", Command::Playback(PlaybackCommand::TogglePause)),
+        ("Step", Command::Playback(PlaybackCommand::Step)),
+        ("Step back", Command::Playback(PlaybackCommand::StepBack)),
+        ("Reset to the start", Command::Playback(PlaybackCommand::Reset)),
+        ("Show the present", Command::Playback(PlaybackCommand::Show(None))),
+        ("Real-time speed", Command::Playback(PlaybackCommand::SetSpeed(1.0))),
+        ("Slow motion 0.1×", Command::Playback(PlaybackCommand::SetSpeed(0.1))),
+        ("Robot: follow path", Command::Playback(PlaybackCommand::DriveRobot(None))),
+        ("Robot: stop", Command::Playback(PlaybackCommand::DriveRobot(Some(0.0)))),
+        ("Fit scene", Command::View(ViewCommand::Fit)),
+        ("Recentre on the cable", Command::View(ViewCommand::Recentre)),
+        ("Hold this answer", Command::View(ViewCommand::Hold)),
+        ("Let all held answers go", Command::View(ViewCommand::LetGo(None))),
+        ("Light theme", theme(egui::ThemePreference::Light)),
+        ("Dark theme", theme(egui::ThemePreference::Dark)),
+        ("Theme of the system", theme(egui::ThemePreference::System)),
+        ("Restart the solver", Command::File(FileCommand::RestartWorker)),
+        ("Help: pointer and keys", file(Dialog::Help)),
+        ("About: what was checked", file(Dialog::About)),
+        ("Quit", Command::File(FileCommand::Quit)),
+    ];
+    let models = [Model::Auto, Model::Catenary, Model::Fem, Model::MassSpring];
+    let mut all: Vec<(String, Command)> = fixed.map(|(name, command)| (name.to_owned(), command)).into();
+    all.extend(models.map(|m| (format!("Solve with {m}"), Command::SetModel(m))));
+    all.extend(catalog::all().into_iter().map(|(id, scene)| {
+        (format!("Open scene: {}", scene.name), Command::File(FileCommand::OpenCatalogue(id.to_owned())))
+    }));
+    all
+}
+
+/// Those that have every word of a text in their name.
+fn found(text: &str) -> Vec<(String, Command)> {
+    let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
+    let mut all = entries();
+    all.retain(|(name, _)| {
+        let name = name.to_lowercase();
+        words.iter().all(|w| name.contains(w))
+    });
+    all
+}
+
+/// Draws it; Enter does the first found.
+pub fn ui(ui: &mut Ui, text: &mut String, commands: &mut Vec<Command>) {
+    let field = TextEdit::singleline(text).hint_text("What to do").desired_width(f32::INFINITY);
+    let field = ui.add(field);
+    crate::panels::field::name(&field, "Command");
+    let entered = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
+    if !entered {
+        field.request_focus();
+    }
+    let found = found(text);
+    let mut chosen = found.first().filter(|_| entered).map(|(_, command)| command.clone());
+    ScrollArea::vertical().max_height(320.0).auto_shrink([false, true]).show(ui, |ui| {
+        for (k, (name, command)) in found.iter().enumerate() {
+            if ui.selectable_label(k == 0, name).clicked() {
+                chosen = Some(command.clone());
+            }
+        }
+        if found.is_empty() {
+            ui.weak("Nothing is called so");
+        }
+    });
+    if let Some(command) = chosen {
+        // Closed first: what is chosen may open another.
+        commands.push(Command::File(FileCommand::SetDialog(None)));
+        commands.push(command);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_found_in_any_order_and_case() {
+        assert_eq!(found("THEME dark")[0].0, "Dark theme");
+        assert!(found("tank out")[0].0.starts_with("Open scene: Tank"));
+        assert!(found("no such thing").is_empty());
+        assert_eq!(found("").len(), entries().len());
+    }
+}
