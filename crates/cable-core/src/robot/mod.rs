@@ -327,5 +327,4 @@ struct Forces {
 }
 
 #[cfg(test)]
-#[path = "robot_tests.rs"]
 mod tests;
