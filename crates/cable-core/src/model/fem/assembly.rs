@@ -69,6 +69,21 @@ impl Mesh {
         }
     }
 
+    /// Becomes a copy without new memory where there is room; `slides`: whether there can be sliding nodes to copy.
+    pub fn copy_from(&mut self, other: &Self, slides: bool) {
+        let Self { arc_length, rest_length, held, clamps, sliding, .. } = other;
+        self.arc_length.clone_from(arc_length);
+        self.rest_length.clone_from(rest_length);
+        self.held.clone_from(held);
+        self.clamps.clone_from(clamps);
+        if slides {
+            self.sliding.clone_from(sliding);
+        }
+        self.thermal_stretch = other.thermal_stretch;
+        self.axial_stiffness = other.axial_stiffness;
+        self.bending_stiffness = other.bending_stiffness;
+    }
+
     /// Number of nodes.
     #[must_use]
     pub fn nodes(&self) -> usize {

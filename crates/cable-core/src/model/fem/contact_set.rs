@@ -122,6 +122,15 @@ impl ContactSet {
         }
     }
 
+    /// Becomes a copy without new memory where there is room.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Self { barrier, rubs, memory, scratch: _, floor_slid } = other;
+        self.barrier = *barrier;
+        self.rubs.clone_from(rubs);
+        self.memory.clone_from(memory);
+        self.floor_slid.clone_from(floor_slid);
+    }
+
     /// Forgets all friction.
     pub fn forget(&mut self) {
         self.memory.clear();

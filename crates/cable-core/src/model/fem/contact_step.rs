@@ -444,7 +444,7 @@ impl Workspace {
             self.trial = trial;
             let lower = new_value <= value + DECREASE * fraction * slope + noise;
             if new_value.is_finite() && (moving || lower) {
-                pose.clone_from(&self.trial);
+                std::mem::swap(pose, &mut self.trial);
                 return Some((new_value, fraction));
             }
             fraction *= 0.5;

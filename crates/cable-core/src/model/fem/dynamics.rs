@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::assembly::Mesh;
 use super::contact_set::ContactSet;
 use super::contact_start::{lay, push_out, way};
-use super::contact_step::{Done, Failure, Task, Workspace};
+use super::contact_step::{Done, Failure, Pose, Task, Workspace};
 use super::free_step::FreeStep;
 use super::integrate::PULLED;
 use super::prepare::{load_scale, tolerance};
@@ -17,6 +17,7 @@ use crate::math::Vec2;
 use crate::model::drive::Follower;
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::{Problem, Series};
+use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
 
@@ -79,8 +80,25 @@ struct Saved {
     mesh: Mesh,
     contacts: ContactSet,
     support_node: Vec<Option<usize>>,
-    loads: Vec<(usize, Series)>,
+    /// Nodes of the loads; their number never changes.
+    load_node: Vec<usize>,
     reaction: Vec<Vec2>,
+}
+
+impl Motion {
+    /// Becomes a copy without new memory where there is room.
+    fn copy_from(&mut self, other: &Self) {
+        let Self { x, v, x_before, v_before, s_before, w, w_before, step_before, followers, time } = other;
+        self.x.clone_from(x);
+        self.v.clone_from(v);
+        self.x_before.clone_from(x_before);
+        self.v_before.clone_from(v_before);
+        self.s_before.clone_from(s_before);
+        self.w.clone_from(w);
+        self.w_before.clone_from(w_before);
+        self.followers.clone_from(followers);
+        (self.step_before, self.time) = (*step_before, *time);
+    }
 }
 
 /// The moving cable, or the resting one where it can touch something.
@@ -94,8 +112,13 @@ pub struct Dynamics {
     pub(super) reaction: Vec<Vec2>,
     pub(super) motion: Motion,
     saved: Option<Box<Saved>>,
+    can_restore: bool,
+    /// Memory of the pose of a step.
+    pub(super) pose: Pose,
     /// Whether corners and posts get sliding nodes.
     pub(super) slides: bool,
+    /// Whether there is nothing that nodes could slide over: no obstacle and no pulley.
+    pub(super) never_slides: bool,
     /// Number of bars of the even mesh.
     pub(super) even_bars: usize,
     /// What presses an even bar on flat ground, N.
@@ -155,7 +178,10 @@ impl Dynamics {
                 ..Motion::default()
             },
             saved: None,
+            can_restore: false,
+            pose: Pose::default(),
             slides: true,
+            never_slides: problem.world.is_empty() && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley),
             even_bars: segments,
             bar_weight: normal_per_m * even,
             memory: Memory(None),
@@ -256,25 +282,44 @@ impl Dynamics {
         Ok(self.report(total, halved, h))
     }
 
+    /// Keeps the present state to go back to, in the memory of the one kept before.
     pub(super) fn save(&mut self) {
-        self.saved = Some(Box::new(Saved {
-            motion: self.motion.clone(),
-            mesh: self.mesh.clone(),
-            contacts: self.contacts.clone(),
-            support_node: self.support_node.clone(),
-            loads: self.loads.clone(),
-            reaction: self.reaction.clone(),
-        }));
+        match &mut self.saved {
+            Some(s) => {
+                s.motion.copy_from(&self.motion);
+                s.mesh.copy_from(&self.mesh, !self.never_slides);
+                s.contacts.copy_from(&self.contacts);
+                s.support_node.clone_from(&self.support_node);
+                s.reaction.clone_from(&self.reaction);
+                s.load_node.clear();
+                s.load_node.extend(self.loads.iter().map(|l| l.0));
+            }
+            None => {
+                self.saved = Some(Box::new(Saved {
+                    motion: self.motion.clone(),
+                    mesh: self.mesh.clone(),
+                    contacts: self.contacts.clone(),
+                    support_node: self.support_node.clone(),
+                    load_node: self.loads.iter().map(|l| l.0).collect(),
+                    reaction: self.reaction.clone(),
+                }));
+            }
+        }
+        self.can_restore = true;
     }
 
+    /// Goes back to the state kept, once.
     pub(super) fn restore(&mut self) {
-        if let Some(s) = self.saved.take() {
-            self.motion = s.motion;
-            self.mesh = s.mesh;
-            self.contacts = s.contacts;
-            self.support_node = s.support_node;
-            self.loads = s.loads;
-            self.reaction = s.reaction;
+        if let Some(s) = self.saved.as_ref().filter(|_| self.can_restore) {
+            self.motion.copy_from(&s.motion);
+            self.mesh.copy_from(&s.mesh, !self.never_slides);
+            self.contacts.copy_from(&s.contacts);
+            self.support_node.clone_from(&s.support_node);
+            self.reaction.clone_from(&s.reaction);
+            for (load, &node) in self.loads.iter_mut().zip(&s.load_node) {
+                load.0 = node;
+            }
+            self.can_restore = false;
             self.renew_task();
         }
     }

@@ -24,7 +24,7 @@ use crate::math::Vec2;
 const MAX_STEPS: usize = 16;
 
 /// Roundings of a coordinate that a bar's length may be off by.
-const ROUNDING: f64 = 4.0;
+const ROUNDING: f64 = 16.0;
 
 /// A symmetric 2×2 matrix: xx, xy, yy.
 type Symmetric = [f64; 3];

@@ -107,10 +107,13 @@ impl Dynamics {
             m.w[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
         }
         self.slide(&pose.slide);
+        self.pose = pose;
         self.motion.step_before = h;
         self.motion.time += h;
         self.land(h);
-        self.remesh();
+        if !self.never_slides {
+            self.remesh();
+        }
         Ok(done)
     }
 
@@ -131,12 +134,15 @@ impl Dynamics {
 
     /// The present pose moved on at its velocities for `h` (s), where nothing can be in the way. Newton then starts nearer
     /// by a factor of the step, and what it leaves is smaller and not always on the same side.
-    fn moving_pose(&self, h: f64) -> Pose {
+    fn moving_pose(&mut self, h: f64) -> Pose {
         let mut pose = self.still_pose();
         if self.problem.world.is_empty() {
             for (k, (x, v)) in pose.x.iter_mut().zip(&self.motion.v).enumerate() {
                 if self.mesh.is_free(k) {
                     *x += v * h;
+                } else if self.mesh.held[k] {
+                    // Short bars beside a support would have to turn by large angles if it stayed behind.
+                    *x = self.task.target[k];
                 }
             }
         }
@@ -227,8 +233,12 @@ impl Dynamics {
     }
 
     /// The present pose.
-    pub(super) fn still_pose(&self) -> Pose {
-        Pose { x: self.task.start.clone(), slide: vec![0.0; self.mesh.nodes()] }
+    pub(super) fn still_pose(&mut self) -> Pose {
+        let mut pose = std::mem::take(&mut self.pose);
+        pose.x.clone_from(&self.task.start);
+        pose.slide.clear();
+        pose.slide.resize(self.mesh.nodes(), 0.0);
+        pose
     }
 
     /// Lets the material slide through the sliding nodes, m of arc length each.

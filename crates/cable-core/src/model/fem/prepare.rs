@@ -124,6 +124,9 @@ impl Dynamics {
 
     /// Reads turn and grip of every sliding node off a pose; returns whether a grip changed, and whether a factor did.
     pub(super) fn update_grips(&mut self, pose: &Pose) -> (bool, bool) {
+        if self.never_slides {
+            return (false, false);
+        }
         let (mut gripped, mut changed) = (false, false);
         for k in 0..self.mesh.nodes() {
             let (Some(node), Some(load)) = (self.mesh.sliding[k], self.load_at(k, &pose.x, Some(&pose.slide))) else {
@@ -148,10 +151,7 @@ impl Dynamics {
 
     /// Whether the cable is flexible and nothing but its supports can touch it.
     fn moves_freely(&self) -> bool {
-        self.problem.world.is_empty()
-            && self.problem.floor_friction.is_none()
-            && self.mesh.bending_stiffness == 0.0
-            && self.mesh.sliding.iter().all(Option::is_none)
+        self.never_slides && self.problem.floor_friction.is_none() && self.mesh.bending_stiffness == 0.0
     }
 
     pub(super) fn minimise(&mut self, pose: &mut Pose) -> Result<Done, Failure> {

@@ -99,6 +99,7 @@ impl MassSpringModel {
             warnings: Vec::new(),
             settings,
             driven: 0.0,
+            kept: super::Kept::default(),
             problem,
             s,
             rest,

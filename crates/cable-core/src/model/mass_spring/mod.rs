@@ -15,6 +15,7 @@ mod chain;
 mod collide;
 mod corner;
 mod creep;
+mod kept;
 mod mesh;
 mod preview;
 mod pulley;
@@ -36,6 +37,7 @@ use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost, Warning};
 use crate::state::State;
+use kept::Kept;
 use pulley::Pulley;
 pub use stepping::Stepping;
 
@@ -93,6 +95,7 @@ pub struct MassSpringModel {
     settings: Settings,
     /// Fastest any support has moved, m/s.
     driven: f64,
+    kept: Kept,
 }
 
 /// Where friction holds the cable: the material point, m, and where it lies.
@@ -255,17 +258,12 @@ impl Mechanics for MassSpringModel {
             return Err(SolveError::TimeStep { dt_s, allowed: "above 0 s, at most 60 s" });
         }
         self.laid = true;
-        let kept = self.clone();
         let end_s = self.time_s + dt_s;
-        let done = match inertia {
-            Inertia::Dynamic if self.previews() => self.preview(dt_s),
-            Inertia::Dynamic => self.integrate(dt_s),
-            Inertia::QuasiStatic => self.creep(dt_s),
-        };
-        if let Err(e) = done {
-            *self = kept;
-            return Err(e);
-        }
+        self.or_as_before(|this| match inertia {
+            Inertia::Dynamic if this.previews() => this.preview(dt_s),
+            Inertia::Dynamic => this.integrate(dt_s),
+            Inertia::QuasiStatic => this.creep(dt_s),
+        })?;
         self.time_s = end_s;
         Ok(self.report())
     }
