@@ -39,7 +39,7 @@ pub struct Plot {
     pub lines: Vec<Line>,
 }
 
-const NAMES: f64 = 170.0;
+const NAMES: f64 = 240.0;
 const COLUMN: f64 = 360.0;
 const GAP: f64 = 40.0;
 const ROW: f64 = 34.0;
