@@ -7,12 +7,14 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::ldlt::factor::LdltRegularization;
+use faer::prelude::Solve;
+use faer::sparse::linalg::LltError;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LdltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
+use faer::sparse::{SparseColMat, SparseColMatRef, SymbolicSparseColMat, Triplet};
 use faer::{Conj, MatMut, Par, Side};
 use thiserror::Error;
 
@@ -219,6 +221,36 @@ impl BandFactor {
             MemStack::new(&mut self.memory),
         );
     }
+}
+
+/// Solves `(A + C) x = b`, where C are symmetric entries outside the band, each given once for (i, j) with i ≠ j; `b`
+/// becomes `x`. Sparse Cholesky with a fill-reducing order; it allocates.
+///
+/// # Errors
+/// `NotPositive` when the sum is not positive definite, `TooLarge` when there is no memory for it.
+pub fn solve_coupled(a: &BandMatrix, coupling: &[(usize, usize, f64)], b: &mut [f64]) -> Result<(), FactorError> {
+    let too_large = FactorError::TooLarge { rows: a.rows };
+    let mut entries = Vec::with_capacity(a.values.len() + coupling.len());
+    for j in 0..a.rows {
+        for i in j.saturating_sub(a.half_bandwidth)..=j {
+            entries.push(Triplet::new(j, i, a.get(i, j)));
+        }
+    }
+    // Lower triangle: rows at or below the diagonal.
+    entries.extend(coupling.iter().map(|&(i, j, value)| Triplet::new(i.max(j), i.min(j), value)));
+    let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(a.rows, a.rows, &entries).map_err(|_| too_large)?;
+    if entries.iter().any(|t| !t.val.is_finite()) {
+        return Err(FactorError::NotPositive { row: 0, pivot: f64::NAN });
+    }
+    let factor = matrix.sp_cholesky(Side::Lower).map_err(|error| match error {
+        LltError::Numeric(faer::linalg::cholesky::llt::factor::LltError::NonPositivePivot { index }) => {
+            FactorError::NotPositive { row: index.saturating_sub(1), pivot: 0.0 }
+        }
+        LltError::Generic(_) => too_large,
+    })?;
+    let rows = a.rows;
+    factor.solve_in_place(MatMut::from_column_major_slice_mut(b, rows, 1));
+    Ok(())
 }
 
 impl std::fmt::Debug for BandFactor {

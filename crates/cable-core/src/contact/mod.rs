@@ -8,6 +8,7 @@ pub mod barrier;
 pub mod distance;
 pub mod friction;
 pub mod geometry;
+pub mod own;
 pub mod pairs;
 mod sweep;
 #[cfg(test)]

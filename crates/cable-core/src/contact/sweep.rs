@@ -112,7 +112,7 @@ impl Geometry {
 }
 
 /// The free way up to `limit` against one feature.
-fn advance(distance: impl Fn(f64) -> f64, offset: f64, [speed, keep, noise]: [f64; 3], limit: f64) -> f64 {
+pub(super) fn advance(distance: impl Fn(f64) -> f64, offset: f64, [speed, keep, noise]: [f64; 3], limit: f64) -> f64 {
     let d0 = distance(0.0);
     // A cable already overlapping (not this model's doing) still must not be crossed by its centre line; a centre
     // line already across cannot be crossed again, and holding it there would trap it.

@@ -21,6 +21,8 @@ pub fn choose(problem: &Problem, question: Question) -> (Model, String) {
         (Model::Fem, "the cable has bending stiffness".to_owned())
     } else if !problem.world.is_empty() || problem.floor_friction.is_some() {
         (Model::Fem, "the scene has obstacles the cable can touch".to_owned())
+    } else if problem.cable.self_contact {
+        (Model::Fem, "the cable can touch itself".to_owned())
     } else {
         (Model::Catenary, "supports only: the elastic catenary has no discretisation error".to_owned())
     }

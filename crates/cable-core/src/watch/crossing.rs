@@ -10,7 +10,7 @@ const LEAF: usize = 4;
 
 /// A crossing of segment `first` with the later segment `second`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Crossing {
+pub(crate) struct Crossing {
     /// Index of a segment.
     pub first: usize,
     /// Index of a later one.
@@ -26,7 +26,7 @@ type Extent = [Vec2; 2];
 
 /// All crossings of the segments `points[k]`–`points[k + 1]`, by first and second segment. `joined(k)` says whether segment
 /// k is one (a break of the line is none).
-pub(super) fn crossings(points: &[Vec2], joined: impl Fn(usize) -> bool) -> Vec<Crossing> {
+pub(crate) fn crossings(points: &[Vec2], joined: impl Fn(usize) -> bool) -> Vec<Crossing> {
     let segments = points.len().saturating_sub(1);
     let leaves = segments.div_ceil(LEAF).next_power_of_two();
     let boxes = boxes(points, segments, leaves);

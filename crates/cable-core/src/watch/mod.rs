@@ -5,6 +5,7 @@
 
 mod bend;
 mod crossing;
+pub(crate) use crossing::crossings;
 mod snag;
 mod tangle;
 mod tension;

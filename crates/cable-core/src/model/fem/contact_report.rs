@@ -203,6 +203,7 @@ fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> Vec<ContactReport> {
         out.push(report(d, x, tension, &stretch));
     }
     rounds(d, x, &mut out);
+    d.own_contacts(x, tension, &mut out);
     out.retain(|c| c.normal_n > 0.0);
     out.sort_by(|a, b| a.arc_length_m.total_cmp(&b.arc_length_m));
     out

@@ -1,6 +1,7 @@
 //! The contacts of a mesh at an instant, and the friction each carries.
 
 use super::assembly::Mesh;
+use super::own::Own;
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
 use crate::contact::pairs::Pair;
@@ -107,6 +108,8 @@ pub struct ContactSet {
     scratch: Vec<Touch>,
     /// Plan view: sliding of each node remembered, m.
     pub floor_slid: Vec<Vec2>,
+    /// Contacts of the cable with itself.
+    pub own: Own,
 }
 
 impl ContactSet {
@@ -119,16 +122,18 @@ impl ContactSet {
             memory: Vec::new(),
             scratch: Vec::new(),
             floor_slid: vec![Vec2::zeros(); nodes],
+            own: Own::default(),
         }
     }
 
     /// Becomes a copy without new memory where there is room.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { barrier, rubs, memory, scratch: _, floor_slid } = other;
+        let Self { barrier, rubs, memory, scratch: _, floor_slid, own } = other;
         self.barrier = *barrier;
         self.rubs.clone_from(rubs);
         self.memory.clone_from(memory);
         self.floor_slid.clone_from(floor_slid);
+        self.own.copy_from(own);
     }
 
     /// Forgets all friction.
@@ -136,6 +141,7 @@ impl ContactSet {
         self.memory.clear();
         self.rubs.clear();
         self.floor_slid.fill(Vec2::zeros());
+        self.own.forget();
     }
 
     /// Finds the contacts of the mesh at `x` (m), in order of arc length. Held nodes push on nothing.
@@ -168,6 +174,7 @@ impl ContactSet {
     pub fn prepare(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
         let mut touches = std::mem::take(&mut self.scratch);
         self.find(problem, mesh, now, &mut touches);
+        self.own.prepare(&self.barrier, mesh, now, start);
         self.rubs.clear();
         for touch in &touches {
             let limit = touch.pair.gap.friction * touch.load(&self.barrier);
@@ -205,6 +212,7 @@ impl ContactSet {
     /// Accepts the step from `start` to `end` (m): anchors follow what slid; `slide` is that of sliding nodes (m).
     pub fn commit(&mut self, problem: &Problem, mesh: &Mesh, end: &[Vec2], start: &[Vec2], slide: &[f64]) {
         self.prepare(problem, mesh, end, start);
+        self.own.commit(end);
         // A contact that trembles loses its load now and then: forgetting it each time would let it creep by ε a step.
         let old = std::mem::take(&mut self.memory);
         for rub in &self.rubs {

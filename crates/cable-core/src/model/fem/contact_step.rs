@@ -11,8 +11,9 @@ use super::bar;
 use super::contact_set::{ContactSet, SLIDE, Touch};
 use super::path::{End, Path};
 use crate::contact::friction;
+use crate::contact::own::{Order, OwnPair, OwnShape};
 use crate::energy::Curvature;
-use crate::linalg::{BandFactor, FactorError};
+use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2};
 use crate::problem::Problem;
 
@@ -119,6 +120,10 @@ pub struct Workspace {
     magnitude: f64,
     /// Where held nodes go: their targets, or where they had to stop, m.
     goal: Vec<Vec2>,
+    own_pairs: Vec<OwnPair>,
+    order: Order,
+    /// Entries of the Hessian outside its band, from contacts of the cable with itself.
+    coupling: Vec<(usize, usize, f64)>,
 }
 
 impl Workspace {
@@ -135,6 +140,9 @@ impl Workspace {
             touches: Vec::new(),
             magnitude: 0.0,
             goal: Vec::new(),
+            own_pairs: Vec::new(),
+            order: Order::default(),
+            coupling: Vec::new(),
             system,
             factor,
         })
@@ -223,6 +231,38 @@ impl Workspace {
             }
         }
         self.touches = touches;
+        if contacts.own.shape.is_on() {
+            value += self.add_own(mesh, contacts, x, curvature);
+        }
+        value
+    }
+
+    /// Barrier and friction of the cable on itself. The curvature of the gap itself is left out: it is that of the barrier
+    /// times its reach over the length of a segment.
+    fn add_own(&mut self, mesh: &Mesh, contacts: &ContactSet, x: &[Vec2], curvature: Curvature) -> f64 {
+        let own = &contacts.own;
+        self.coupling.clear();
+        own.shape.pairs((x, &mesh.arc_length), contacts.barrier.reach, &mut self.order, &mut self.own_pairs);
+        let mut value = 0.0;
+        for pair in &self.own_pairs {
+            let b = contacts.barrier.at(pair.gap_m);
+            let bend = b.curvature * pair.weight;
+            let bend = if curvature == Curvature::Clipped && bend < 0.0 { 0.0 } else { bend };
+            let n = pair.normal;
+            add_shared(
+                &mut self.system,
+                &mut self.coupling,
+                pair,
+                (n * (b.slope * pair.weight), &(n * n.transpose() * bend)),
+            );
+            value += b.value * pair.weight;
+        }
+        for rub in &own.rubs {
+            let (d, slope, bend) = friction::at(rub.sliding(x), rub.limit, SLIDE);
+            let t = rub.pair.tangent();
+            add_shared(&mut self.system, &mut self.coupling, &rub.pair, (t * slope, &(t * t.transpose() * bend)));
+            value += d;
+        }
         value
     }
 
@@ -256,6 +296,9 @@ impl Workspace {
                     for i in k.saturating_sub(band)..(k + band + 1).min(rows) {
                         self.direction[i] -= s.hessian.get(i, k) * go;
                     }
+                    for &(i, j, v) in self.coupling.iter().filter(|c| c.0 == k || c.1 == k) {
+                        self.direction[i + j - k] -= v * go;
+                    }
                 }
             } else if shift > 0.0 {
                 s.add_block(node, node, &(Mat2::identity() * (shift * node_scale(task, node))));
@@ -275,6 +318,11 @@ impl Workspace {
                     self.direction[k] = 0.0;
                 }
             }
+        }
+        if !self.coupling.is_empty() {
+            self.coupling.retain(|&(i, j, _)| !mesh.held[i / 2] && !mesh.held[j / 2]);
+            return solve_coupled(&s.hessian, &self.coupling, &mut self.direction).is_ok()
+                && self.direction.iter().all(|d| d.is_finite());
         }
         if self.factor.factor(&s.hessian).is_err() {
             return false;
@@ -373,13 +421,14 @@ impl Workspace {
 
     /// The largest part (at most `fraction`) of the direction that crosses nothing and leaves some cable between sliding
     /// nodes and their neighbours.
-    fn free_way(&self, problem: &Problem, mesh: &Mesh, pose: &Pose, fraction: f64) -> f64 {
-        let step = |k: usize| Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]);
+    fn free_way(&mut self, problem: &Problem, mesh: &Mesh, (pose, own): (&Pose, OwnShape), fraction: f64) -> f64 {
+        let direction = &self.direction;
+        let step = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]);
         let mut free = fraction;
         for e in 0..mesh.rest_length.len() {
             let slides = [e, e + 1].map(|k| mesh.sliding[k].is_some());
             if slides != [false, false] {
-                let go = [e, e + 1].map(|k| if mesh.sliding[k].is_some() { self.direction[2 * k] } else { 0.0 });
+                let go = [e, e + 1].map(|k| if mesh.sliding[k].is_some() { direction[2 * k] } else { 0.0 });
                 let change = go[1] - go[0];
                 let whole = mesh.rest_length[e] / mesh.thermal_stretch + pose.slide[e + 1] - pose.slide[e];
                 let straight = mesh.path(e, &pose.x).straight;
@@ -401,7 +450,8 @@ impl Workspace {
             };
             free *= problem.world.geometry().free_fraction_round(from, to, KEEP, mesh.rounds(e));
         }
-        free
+        let limits = [KEEP, free];
+        own.free_fraction((&pose.x, &mesh.arc_length), &step, limits, &mut self.order)
     }
 
     /// Moves `pose` along the direction as far as is free and lowers Φ; None if nothing does. Returns Φ and the part of
@@ -422,7 +472,7 @@ impl Workspace {
             }
         }
         let whole = if largest > task.max_move { task.max_move / largest } else { 1.0 };
-        let mut fraction = self.free_way(problem, mesh, pose, whole);
+        let mut fraction = self.free_way(problem, mesh, (pose, contacts.own.shape), whole);
         let noise = ENERGY_NOISE * (self.magnitude.abs() + value.abs());
         for _ in 0..MAX_HALVINGS {
             let mut trial = std::mem::take(&mut self.trial);
@@ -450,6 +500,29 @@ impl Workspace {
             fraction *= 0.5;
         }
         None
+    }
+}
+
+/// Adds a force gradient and a block shared by the nodes of a contact of the cable with itself.
+fn add_shared(
+    s: &mut System,
+    coupling: &mut Vec<(usize, usize, f64)>,
+    pair: &OwnPair,
+    (gradient, block): (Vec2, &Mat2),
+) {
+    let shares = pair.shares();
+    for (a, &(i, ci)) in shares.iter().enumerate() {
+        s.add_gradient(i, gradient * ci);
+        for &(j, cj) in &shares[a..] {
+            let part = block * (ci * cj);
+            if i.abs_diff(j) <= 1 {
+                s.add_block(i, j, &part);
+                continue;
+            }
+            for (r, c) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                coupling.push((2 * i + r, 2 * j + c, part[(r, c)]));
+            }
+        }
     }
 }
 

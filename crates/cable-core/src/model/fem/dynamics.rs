@@ -147,7 +147,7 @@ impl Dynamics {
         breaks.extend(problem.loads.iter().map(|l| l.arc_length));
         breaks.sort_by(f64::total_cmp);
         breaks.dedup_by(|a, b| *a - *b < 1e-9 * problem.length);
-        if !problem.world.is_empty() {
+        if !problem.world.is_empty() || problem.cable.self_contact {
             for (s, _) in &way {
                 if breaks.iter().all(|b| (b - s).abs() > 0.3 * even) {
                     breaks.push(*s);
@@ -180,7 +180,8 @@ impl Dynamics {
             saved: None,
             can_restore: false,
             pose: Pose::default(),
-            slides: true,
+            // A sliding node scales the forces of all that lies beyond it; what touches itself has one scale.
+            slides: !problem.cable.self_contact,
             never_slides: problem.world.is_empty() && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley),
             even_bars: segments,
             bar_weight: normal_per_m * even,
@@ -195,6 +196,10 @@ impl Dynamics {
             task,
             problem,
         };
+        if this.problem.cable.self_contact {
+            this.contacts.own.shape.diameter = this.problem.cable.diameter_m;
+            this.contacts.own.friction = this.problem.cable.friction;
+        }
         this.forget_history();
         this.prepare_task(0.0, None);
         for k in 0..n {
@@ -240,7 +245,9 @@ impl Dynamics {
     pub(super) fn refuse(&self) -> Result<(), SolveError> {
         let feature = |s: &str| SolveError::Unsupported { model: Model::Fem, feature: s.to_owned() };
         if self.problem.cable.self_contact {
-            return Err(feature("contact of the cable with itself"));
+            if self.mesh.sliding.iter().flatten().any(|s| matches!(s.seat, Seat::Pulley(_))) {
+                return Err(feature("contact of the cable with itself in a scene with pulleys"));
+            }
         }
         Ok(())
     }
@@ -327,7 +334,7 @@ impl Dynamics {
     /// The barrier's stiffness follows the greatest tension; `change` bounds by how much, up and down;
     /// `ahead` is how many times that tension is reckoned with.
     pub(super) fn adapt_stiffness(&mut self, [up, down]: [f64; 2], ahead: f64) {
-        if self.problem.world.is_empty() {
+        if self.meets_nothing() {
             return;
         }
         let mut most = 0.0;

@@ -111,6 +111,7 @@ impl Dynamics {
         self.motion.step_before = h;
         self.motion.time += h;
         self.land(h);
+        self.land_on_itself(QUIET, h);
         if !self.never_slides {
             self.remesh();
         }
@@ -136,7 +137,7 @@ impl Dynamics {
     /// by a factor of the step, and what it leaves is smaller and not always on the same side.
     fn moving_pose(&mut self, h: f64) -> Pose {
         let mut pose = self.still_pose();
-        if self.problem.world.is_empty() {
+        if self.meets_nothing() {
             for (k, (x, v)) in pose.x.iter_mut().zip(&self.motion.v).enumerate() {
                 if self.mesh.is_free(k) {
                     *x += v * h;
@@ -177,7 +178,7 @@ impl Dynamics {
 
     /// The gap at which contact begins follows the speed of the cable.
     fn adapt_reach(&mut self) {
-        if self.problem.world.is_empty() {
+        if self.meets_nothing() {
             return;
         }
         let fastest = self.motion.v.iter().map(Vec2::norm).fold(0.0, |a: f64, b| if b <= a { a } else { b });

@@ -25,6 +25,7 @@ mod handover;
 mod integrate;
 mod layout;
 mod network;
+mod own;
 mod path;
 mod prepare;
 mod remesh;
@@ -102,7 +103,7 @@ impl FemModel {
 
 /// Whether the cable can touch nothing but its supports.
 fn touches_nothing(problem: &Problem) -> bool {
-    problem.world.is_empty() && problem.floor_friction.is_none()
+    problem.world.is_empty() && problem.floor_friction.is_none() && !problem.cable.self_contact
 }
 
 impl Mechanics for FemModel {

@@ -151,7 +151,10 @@ impl Dynamics {
 
     /// Whether the cable is flexible and nothing but its supports can touch it.
     fn moves_freely(&self) -> bool {
-        self.never_slides && self.problem.floor_friction.is_none() && self.mesh.bending_stiffness == 0.0
+        self.never_slides
+            && self.meets_nothing()
+            && self.problem.floor_friction.is_none()
+            && self.mesh.bending_stiffness == 0.0
     }
 
     pub(super) fn minimise(&mut self, pose: &mut Pose) -> Result<Done, Failure> {

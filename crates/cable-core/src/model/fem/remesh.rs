@@ -72,6 +72,9 @@ const MAX_CHANGES: usize = 400;
 impl Dynamics {
     /// Adapts the mesh to what the cable runs over; returns whether that changed (new bars alone do not count).
     pub(super) fn remesh(&mut self) -> bool {
+        if self.contacts.own.shape.is_on() {
+            return false;
+        }
         let nodes = self.mesh.nodes();
         let mut changed = self.let_go();
         if self.take_hold() {

@@ -160,7 +160,7 @@ impl Dynamics {
         self.held_back.clear();
         self.save();
         self.motion.followers.fill(None);
-        match self.relax(self.motion.time, dragged) {
+        match self.find_rest(dragged)? {
             Ok(done) => {
                 self.rested = true;
                 Ok(self.report(done, 0, 0.0))
@@ -172,6 +172,40 @@ impl Dynamics {
                 Err(SolveError::NotConverged { model: Model::Fem, iterations: MAX_RELAX, residual_n, node, at_m })
             }
         }
+    }
+
+    /// The resting place; one that the cable reaches without ever touching itself is found as if it could pass itself, for
+    /// its first lay is no shape it could have.
+    fn find_rest(&mut self, dragged: &[Option<Vec2>]) -> Result<Result<Done, Failure>, SolveError> {
+        let time = self.motion.time;
+        let shape = self.contacts.own.shape;
+        if !shape.is_on() {
+            return Ok(self.relax(time, dragged));
+        }
+        if !self.rested {
+            self.contacts.own.shape.diameter = 0.0;
+            let found = self.relax(time, dragged);
+            self.contacts.own.shape = shape;
+            let clear = self.contacts.own.smallest_gap(&self.mesh, &self.motion.x, REACH).is_none();
+            if found.is_ok() && clear && !self.crosses_itself() {
+                return Ok(found);
+            }
+            self.restore();
+            self.save();
+        }
+        let overlap = self.contacts.own.smallest_gap(&self.mesh, &self.motion.x, 0.0);
+        if overlap.is_some() || self.crosses_itself() {
+            let s = self.mesh.arc_length[overlap.map_or(0, |o| o.1)];
+            let feature =
+                format!("a cable that touches itself where it is laid (near {s:.2} m): draw it a route that does not");
+            return Err(SolveError::Unsupported { model: Model::Fem, feature });
+        }
+        Ok(self.relax(time, dragged))
+    }
+
+    /// Whether two bars of the cable cross.
+    fn crosses_itself(&self) -> bool {
+        !crate::watch::crossings(&self.motion.x, |_| true).is_empty()
     }
 
     /// Steps without inertia that keep every support's move below half an element.

@@ -38,7 +38,7 @@ impl Dynamics {
             && self.sleep.place.iter().zip(&self.motion.x).all(near)
             && self.sleep.arc_length.iter().zip(&self.mesh.arc_length).all(|(a, b)| (a - b).abs() <= STILL_WITHIN);
         // A cable that touches nothing may be at the turn of a slow swing.
-        let lies = !self.contacts.rubs.is_empty();
+        let lies = !self.contacts.rubs.is_empty() || !self.contacts.own.rubs.is_empty();
         if still && lies && self.same_input() {
             self.sleep.asleep = true;
             self.motion.v.fill(Vec2::zeros());

@@ -1,0 +1,161 @@
+//! Contact of the cable with itself in a step: friction, its memory, and landing.
+//!
+//! As with obstacles the normal force of friction is that of the step before, and sliding is measured from an anchor.
+
+use super::assembly::Mesh;
+use super::contact_set::SLIDE;
+use super::dynamics::Dynamics;
+use crate::contact::barrier::Barrier;
+use crate::contact::friction;
+use crate::contact::own::{Order, OwnPair, OwnShape};
+use crate::math::Vec2;
+use crate::solution::{ContactReport, ContactState};
+
+/// Friction of one contact of the cable with itself during a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OwnRub {
+    /// The contact.
+    pub pair: OwnPair,
+    /// Largest friction force μN, N.
+    pub limit: f64,
+    /// Sliding remembered at the start of the step, m.
+    slid: f64,
+    /// Where the node was from the segment at the start of the step, m.
+    origin: Vec2,
+}
+
+impl OwnRub {
+    /// Sliding of the node along the segment since the anchor, m.
+    #[must_use]
+    pub fn sliding(&self, x: &[Vec2]) -> f64 {
+        self.slid + self.pair.tangent().dot(&(self.pair.difference(x) - self.origin))
+    }
+}
+
+/// The contacts of a cable with itself, with their history.
+#[derive(Clone, Debug, Default)]
+pub struct Own {
+    /// The cable as an obstacle.
+    pub shape: OwnShape,
+    /// Coulomb friction of the cable on itself.
+    pub friction: f64,
+    /// Friction of the present step.
+    pub rubs: Vec<OwnRub>,
+    memory: Vec<(usize, usize, f64)>,
+    scratch: Vec<OwnPair>,
+    order: Order,
+}
+
+impl Own {
+    /// Becomes a copy, in the memory it has.
+    pub fn copy_from(&mut self, other: &Self) {
+        (self.shape, self.friction) = (other.shape, other.friction);
+        self.rubs.clone_from(&other.rubs);
+        self.memory.clone_from(&other.memory);
+    }
+
+    /// Forgets all friction.
+    pub fn forget(&mut self) {
+        self.memory.clear();
+        self.rubs.clear();
+    }
+
+    /// Sets up friction for a step that began at `start`: contacts and normal forces as at `now` (m).
+    pub fn prepare(&mut self, barrier: &Barrier, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
+        self.rubs.clear();
+        if !self.shape.is_on() {
+            return;
+        }
+        self.shape.pairs((now, &mesh.arc_length), barrier.reach, &mut self.order, &mut self.scratch);
+        for pair in &self.scratch {
+            let load = -barrier.at(pair.gap_m).slope * pair.weight;
+            if load > 0.0 {
+                let known = |m: &&(usize, usize, f64)| (m.0, m.1) == (pair.node, pair.segment);
+                let slid = self.memory.iter().find(known).map_or(0.0, |m| m.2);
+                let origin = pair.difference(start);
+                self.rubs.push(OwnRub { pair: *pair, limit: self.friction * load, slid, origin });
+            }
+        }
+    }
+
+    /// Accepts a step that ended at `end` (m): anchors follow what slid.
+    pub fn commit(&mut self, end: &[Vec2]) {
+        self.memory.clear();
+        for rub in &mut self.rubs {
+            rub.slid = friction::return_map(rub.sliding(end), SLIDE);
+            rub.origin = rub.pair.difference(end);
+            self.memory.push((rub.pair.node, rub.pair.segment, rub.slid));
+        }
+    }
+
+    /// Smallest gap (m) and its node, if any is below `within` (m).
+    #[must_use]
+    pub fn smallest_gap(&self, mesh: &Mesh, x: &[Vec2], within: f64) -> Option<(f64, usize)> {
+        self.shape.smallest_gap(x, &mesh.arc_length, within)
+    }
+}
+
+impl Dynamics {
+    /// Whether there is nothing to touch: no obstacle, and the cable can pass itself.
+    pub(super) fn meets_nothing(&self) -> bool {
+        self.problem.world.is_empty() && !self.contacts.own.shape.is_on()
+    }
+
+    /// Takes the normal speed out of contacts of the cable with itself that are faster than `quiet` (m/s); momentum is kept.
+    pub(super) fn land_on_itself(&mut self, quiet: f64, h: f64) {
+        let m = &mut self.motion;
+        for rub in &self.contacts.own.rubs {
+            let n = rub.pair.normal;
+            let speed = n.dot(&rub.pair.difference(&m.v));
+            if speed.abs() < quiet {
+                continue;
+            }
+            let shares = rub.pair.shares();
+            let give = |k: usize| if self.mesh.is_free(k) { 1.0 / self.mesh.share(k) } else { 0.0 };
+            let sum: f64 = shares.iter().map(|&(k, part)| part * part * give(k)).sum();
+            if !(sum > 0.0) {
+                continue;
+            }
+            for (k, part) in shares.into_iter().filter(|&(k, _)| give(k) > 0.0) {
+                m.v[k] -= n * (speed * part * give(k) / sum);
+                m.v_before[k] = m.v[k];
+                m.x_before[k] = m.x[k] - m.v[k] * h;
+            }
+        }
+    }
+
+    /// Where the cable touches itself at positions `x` (m): one report for each stretch of nodes.
+    pub(super) fn own_contacts(&self, x: &[Vec2], tension: &[f64], out: &mut Vec<ContactReport>) {
+        let own = &self.contacts.own;
+        let mut last = None;
+        for rub in &own.rubs {
+            let (k, pair) = (rub.pair.node, &rub.pair);
+            let load = -self.contacts.barrier.at(pair.gap_m).slope * pair.weight;
+            let along = self.mesh.path(k.min(tension.len().saturating_sub(1)), x).direction;
+            let (_, rubbing, _) = friction::at(rub.sliding(x), rub.limit, SLIDE);
+            let new = last.is_none_or(|l| k > l + 1);
+            last = Some(k);
+            if new {
+                let around = [k.saturating_sub(1), k.min(tension.len().saturating_sub(1))];
+                out.push(ContactReport {
+                    obstacle: self.problem.cable.name.clone(),
+                    x_m: x[k].x,
+                    y_m: x[k].y,
+                    arc_length_m: self.mesh.arc_length[k],
+                    normal: [pair.normal.x, pair.normal.y],
+                    state: ContactState::Stick,
+                    tension_before_n: tension[around[0]],
+                    ..ContactReport::default()
+                });
+            }
+            if let Some(report) = out.last_mut() {
+                report.normal_n += load;
+                report.friction_n -= rubbing * pair.tangent().dot(&along);
+                report.tension_after_n = tension[k.min(tension.len().saturating_sub(1))];
+                if rubbing.abs() >= rub.limit {
+                    report.state = ContactState::Slip;
+                }
+            }
+        }
+    }
+}

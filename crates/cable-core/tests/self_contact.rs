@@ -1,0 +1,119 @@
+//! A cable that is an obstacle to itself: piles, legs that meet, and what must not change where nothing touches.
+
+#![allow(clippy::unwrap_used)]
+
+use cable_core::contact::own::OwnShape;
+use cable_core::math::Vec2;
+use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};
+use cable_core::{Model, Simulation};
+
+const FLOOR: f64 = -0.5;
+
+/// A cable of a length (m) in `segments` above a floor, between two supports.
+fn scene(length_m: f64, segments: usize, ends: [[f64; 2]; 2]) -> Scene {
+    let mut scene = catalog::hanging_span();
+    let shape = Shape::Terrain { points_m: vec![[-20.0, FLOOR], [20.0, FLOOR]] };
+    scene.obstacles = vec![Obstacle { name: "floor".to_owned(), shape, friction: Some(0.4) }];
+    let c = &mut scene.cables[0];
+    c.self_contact = true;
+    c.diameter_m = 0.03;
+    c.axial_stiffness_n = 1e5;
+    (c.breaking_tension_n, c.service_tension_n) = (1e12, 1e12);
+    (c.length_m, c.segments) = (length_m, Some(segments));
+    c.supports = vec![Support::fixed("a", ends[0]), Support::fixed("b", ends[1])];
+    scene
+}
+
+/// Smallest distance of the cable's surface from itself, m (1 where it is farther).
+fn own_gap(sim: &Simulation) -> f64 {
+    let nodes = &sim.solution().cables[0].nodes;
+    let x: Vec<Vec2> = nodes.iter().map(|n| Vec2::new(n.x_m, n.y_m)).collect();
+    let s: Vec<f64> = nodes.iter().map(|n| n.arc_length_m).collect();
+    assert!(x.iter().all(|p| p.x.is_finite() && p.y.is_finite()));
+    OwnShape { diameter: 0.03 }.smallest_gap(&x, &s, 1.0).map_or(1.0, |g| g.0)
+}
+
+fn top(sim: &Simulation) -> f64 {
+    sim.solution().cables[0].nodes.iter().map(|n| n.y_m).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// A cable let go above the floor, upright but for a slight lean, comes down on itself.
+fn pile(self_contact: bool, seconds: f64) -> (Simulation, f64, usize) {
+    let mut scene = scene(3.0, 60, [[0.0, 2.6], [0.05, FLOOR + 0.2]]);
+    scene.cables[0].self_contact = self_contact;
+    scene.cables[0].supports[0].release_s = Some(0.05);
+    scene.cables[0].supports[1].release_s = Some(0.05);
+    let mut sim = Simulation::new(scene, Model::Fem).unwrap();
+    let (mut least, mut halved) = (f64::INFINITY, 0);
+    for _ in 0..(seconds * 60.0) as usize {
+        sim.step(1.0 / 60.0).unwrap();
+        halved += sim.solution().cost.halved_steps;
+        let gap = own_gap(&sim);
+        least = if gap < least { gap } else { least };
+    }
+    (sim, least, halved)
+}
+
+#[test]
+fn a_falling_cable_piles_up_on_itself() {
+    let (sim, least, halved) = pile(true, 2.0);
+    let (through, crossed, _) = pile(false, 2.0);
+    println!(
+        "least gap {least:e} m, {halved} halved, top {} m, without {} m",
+        top(&sim) - FLOOR,
+        top(&through) - FLOOR
+    );
+    assert!(least > 0.0, "{least}");
+    // The test can fail: a cable that may pass itself does.
+    assert!(crossed < 0.0, "{crossed}");
+    assert!(top(&sim) > top(&through) + 0.03);
+    let own = sim.solution().cables[0].contacts.iter().filter(|c| c.obstacle == sim.scene().cables[0].name).count();
+    assert!(own > 0);
+    let nodes = &sim.solution().cables[0].nodes;
+    assert!((nodes[nodes.len() - 1].arc_length_m - 3.0).abs() < 1e-12);
+}
+
+#[test]
+fn an_end_drawn_against_its_own_leg_pushes_it_aside() {
+    let mut sim = Simulation::new(scene(6.0, 60, [[0.0, 3.0], [1.5, 2.0]]), Model::Fem).unwrap();
+    sim.settle().unwrap();
+    let mut hand = Vec2::new(1.5, 2.0);
+    for _ in 0..120 {
+        hand.x -= 0.03;
+        sim.drag_support(0, 1, hand);
+        sim.step(1.0 / 60.0).unwrap();
+        let gap = own_gap(&sim);
+        assert!(gap > 0.0, "{gap} with the hand at {}", hand.x);
+    }
+    // The hand went to x = −2.1; the leg it pushed hangs from x = 0 and lies to its left now.
+    let nodes = &sim.solution().cables[0].nodes;
+    let leg = nodes.iter().filter(|n| n.arc_length_m < 2.0).map(|n| n.x_m).fold(f64::INFINITY, f64::min);
+    assert!(leg < -0.5, "{leg}");
+}
+
+#[test]
+fn a_cable_that_does_not_meet_itself_is_as_it_was() {
+    let ends = [[-2.0, 1.5], [2.0, 1.0]];
+    let tension = |self_contact: bool| {
+        let mut scene = scene(5.0, 80, ends);
+        scene.cables[0].self_contact = self_contact;
+        let mut sim = Simulation::new(scene, Model::Fem).unwrap();
+        sim.settle().unwrap().max_tension().tension_n
+    };
+    let (with, without) = (tension(true), tension(false));
+    assert!((with / without - 1.0).abs() < 1e-6, "{with} {without}");
+}
+
+#[test]
+fn a_pile_weighs_what_its_cable_weighs() {
+    let (mut sim, _, _) = pile(true, 6.0);
+    for _ in 0..60 {
+        sim.step(1.0 / 60.0).unwrap();
+    }
+    let cable = &sim.solution().cables[0];
+    let floor: f64 = cable.contacts.iter().filter(|c| c.obstacle == "floor").map(|c| c.normal_n * c.normal[1]).sum();
+    let c = &sim.scene().cables[0];
+    let weight = c.linear_density_kg_per_m * 3.0 * 9.80665;
+    println!("floor carries {floor} N of {weight} N");
+    assert!((floor / weight - 1.0).abs() < 0.02, "{floor} {weight}");
+}
