@@ -9,6 +9,7 @@
 use super::assembly::{Mesh, System};
 use super::bar;
 use super::contact_set::{ContactSet, SLIDE, Touch};
+use super::own::{self, Coupling};
 use super::path::{End, Path};
 use crate::contact::friction;
 use crate::contact::own::{Order, OwnPair, OwnShape};
@@ -123,7 +124,7 @@ pub struct Workspace {
     own_pairs: Vec<OwnPair>,
     order: Order,
     /// Entries of the Hessian outside its band, from contacts of the cable with itself.
-    coupling: Vec<(usize, usize, f64)>,
+    coupling: Coupling,
 }
 
 impl Workspace {
@@ -142,7 +143,7 @@ impl Workspace {
             goal: Vec::new(),
             own_pairs: Vec::new(),
             order: Order::default(),
-            coupling: Vec::new(),
+            coupling: Coupling::new(),
             system,
             factor,
         })
@@ -232,36 +233,13 @@ impl Workspace {
         }
         self.touches = touches;
         if contacts.own.shape.is_on() {
-            value += self.add_own(mesh, contacts, x, curvature);
-        }
-        value
-    }
-
-    /// Barrier and friction of the cable on itself. The curvature of the gap itself is left out: it is that of the barrier
-    /// times its reach over the length of a segment.
-    fn add_own(&mut self, mesh: &Mesh, contacts: &ContactSet, x: &[Vec2], curvature: Curvature) -> f64 {
-        let own = &contacts.own;
-        self.coupling.clear();
-        own.shape.pairs((x, &mesh.arc_length), contacts.barrier.reach, &mut self.order, &mut self.own_pairs);
-        let mut value = 0.0;
-        for pair in &self.own_pairs {
-            let b = contacts.barrier.at(pair.gap_m);
-            let bend = b.curvature * pair.weight;
-            let bend = if curvature == Curvature::Clipped && bend < 0.0 { 0.0 } else { bend };
-            let n = pair.normal;
-            add_shared(
-                &mut self.system,
-                &mut self.coupling,
-                pair,
-                (n * (b.slope * pair.weight), &(n * n.transpose() * bend)),
-            );
-            value += b.value * pair.weight;
-        }
-        for rub in &own.rubs {
-            let (d, slope, bend) = friction::at(rub.sliding(x), rub.limit, SLIDE);
-            let t = rub.pair.tangent();
-            add_shared(&mut self.system, &mut self.coupling, &rub.pair, (t * slope, &(t * t.transpose() * bend)));
-            value += d;
+            let place = (x.as_slice(), mesh.arc_length.as_slice());
+            contacts.own.shape.pairs(place, contacts.barrier.reach, &mut self.order, &mut self.own_pairs);
+            self.coupling.clear();
+            let (energy, size) =
+                own::add((&mut self.system, &mut self.coupling), contacts, (&self.own_pairs, x), curvature);
+            value += energy;
+            self.magnitude += size;
         }
         value
     }
@@ -500,29 +478,6 @@ impl Workspace {
             fraction *= 0.5;
         }
         None
-    }
-}
-
-/// Adds a force gradient and a block shared by the nodes of a contact of the cable with itself.
-fn add_shared(
-    s: &mut System,
-    coupling: &mut Vec<(usize, usize, f64)>,
-    pair: &OwnPair,
-    (gradient, block): (Vec2, &Mat2),
-) {
-    let shares = pair.shares();
-    for (a, &(i, ci)) in shares.iter().enumerate() {
-        s.add_gradient(i, gradient * ci);
-        for &(j, cj) in &shares[a..] {
-            let part = block * (ci * cj);
-            if i.abs_diff(j) <= 1 {
-                s.add_block(i, j, &part);
-                continue;
-            }
-            for (r, c) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                coupling.push((2 * i + r, 2 * j + c, part[(r, c)]));
-            }
-        }
     }
 }
 

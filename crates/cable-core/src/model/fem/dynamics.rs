@@ -244,10 +244,9 @@ impl Dynamics {
 
     pub(super) fn refuse(&self) -> Result<(), SolveError> {
         let feature = |s: &str| SolveError::Unsupported { model: Model::Fem, feature: s.to_owned() };
-        if self.problem.cable.self_contact {
-            if self.mesh.sliding.iter().flatten().any(|s| matches!(s.seat, Seat::Pulley(_))) {
-                return Err(feature("contact of the cable with itself in a scene with pulleys"));
-            }
+        let pulleys = self.mesh.sliding.iter().flatten().any(|s| matches!(s.seat, Seat::Pulley(_)));
+        if self.problem.cable.self_contact && pulleys {
+            return Err(feature("contact of the cable with itself in a scene with pulleys"));
         }
         Ok(())
     }

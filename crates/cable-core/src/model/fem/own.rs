@@ -2,13 +2,14 @@
 //!
 //! As with obstacles the normal force of friction is that of the step before, and sliding is measured from an anchor.
 
-use super::assembly::Mesh;
-use super::contact_set::SLIDE;
+use super::assembly::{Mesh, System};
+use super::contact_set::{ContactSet, SLIDE};
 use super::dynamics::Dynamics;
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
 use crate::contact::own::{Order, OwnPair, OwnShape};
-use crate::math::Vec2;
+use crate::energy::Curvature;
+use crate::math::{Mat2, Vec2};
 use crate::solution::{ContactReport, ContactState};
 
 /// Friction of one contact of the cable with itself during a step.
@@ -92,6 +93,76 @@ impl Own {
     #[must_use]
     pub fn smallest_gap(&self, mesh: &Mesh, x: &[Vec2], within: f64) -> Option<(f64, usize)> {
         self.shape.smallest_gap(x, &mesh.arc_length, within)
+    }
+}
+
+/// Entries (row, column, value) of the Hessian outside its band, one of each symmetric pair.
+pub type Coupling = Vec<(usize, usize, f64)>;
+
+/// Adds barrier and friction of the cable on itself at `x` (m); returns the energy and the size of what was summed, J.
+///
+/// A pair's distance d = m·(p − c) has, with u along the segment of length l, the curvature (as in `contact_step`)
+/// ```text
+/// inside:  ∇²d = −(θ qᵀ + q θᵀ) − d θ θᵀ,   θ = m·(δb − δa)/l,   q = u·(δp − δc)
+/// joint:   ∇²d = (I − m mᵀ)/d on δp − δc
+/// ```
+pub fn add(
+    (s, coupling): (&mut System, &mut Coupling),
+    contacts: &ContactSet,
+    (pairs, x): (&[OwnPair], &[Vec2]),
+    curvature: Curvature,
+) -> (f64, f64) {
+    let (own, exact) = (&contacts.own, curvature == Curvature::Exact);
+    let (mut value, mut size) = (0.0, 0.0);
+    for pair in pairs {
+        let b = contacts.barrier.at(pair.gap_m);
+        let (slope, bend) = (b.slope * pair.weight, b.curvature * pair.weight);
+        let bend = if !exact && bend < 0.0 { 0.0 } else { bend };
+        let (n, d) = (pair.normal, pair.gap_m + own.shape.diameter);
+        let shares = pair.shares();
+        let chord = x[pair.segment + 1] - x[pair.segment];
+        let (length, inside) = (chord.norm(), pair.fraction > 0.0 && pair.fraction < 1.0);
+        let u = chord / length;
+        let theta = [Vec2::zeros(), -n / length, n / length];
+        for (j, &(node, part)) in shares.iter().enumerate() {
+            s.add_gradient(node, n * (slope * part));
+            for (k, &(other, its)) in shares.iter().enumerate().skip(j) {
+                let mut block = n * n.transpose() * (bend * part * its);
+                if exact && inside {
+                    let turn = theta[j] * (u * its).transpose() + (u * part) * theta[k].transpose();
+                    block -= (turn + theta[j] * theta[k].transpose() * d) * slope;
+                } else if exact {
+                    block += (Mat2::identity() - n * n.transpose()) * (slope * part * its / d);
+                }
+                couple(s, coupling, [node, other], &block);
+            }
+        }
+        value += b.value * pair.weight;
+        size += b.value;
+    }
+    for rub in &own.rubs {
+        let (d, slope, bend) = friction::at(rub.sliding(x), rub.limit, SLIDE);
+        let (t, shares) = (rub.pair.tangent(), rub.pair.shares());
+        for (j, &(node, part)) in shares.iter().enumerate() {
+            s.add_gradient(node, t * (slope * part));
+            for &(other, its) in &shares[j..] {
+                couple(s, coupling, [node, other], &(t * t.transpose() * (bend * part * its)));
+            }
+        }
+        value += d;
+        size += d;
+    }
+    (value, size)
+}
+
+/// Adds a block for two nodes, in the band or outside it.
+fn couple(s: &mut System, coupling: &mut Coupling, [i, j]: [usize; 2], block: &Mat2) {
+    if i.abs_diff(j) <= 1 {
+        s.add_block(i, j, block);
+        return;
+    }
+    for (r, c) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        coupling.push((2 * i + r, 2 * j + c, block[(r, c)]));
     }
 }
 
