@@ -24,3 +24,30 @@ pub fn perp(v: Vec2) -> Vec2 {
 pub fn cross(a: Vec2, b: Vec2) -> f64 {
     a.x * b.y - a.y * b.x
 }
+
+/// The larger of two numbers; NaN once one of them is, unlike `f64::max`.
+#[must_use]
+pub fn larger(a: f64, b: f64) -> f64 {
+    if b <= a || a.is_nan() { a } else { b }
+}
+
+/// The smaller of two numbers; NaN once one of them is, unlike `f64::min`.
+#[must_use]
+pub fn smaller(a: f64, b: f64) -> f64 {
+    if b >= a || a.is_nan() { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_that_is_none_is_never_lost() {
+        for list in [[f64::NAN, 1.0, 2.0], [1.0, f64::NAN, 2.0], [1.0, 2.0, f64::NAN]] {
+            assert!(list.into_iter().fold(0.0, larger).is_nan());
+            assert!(list.into_iter().fold(9.0, smaller).is_nan());
+        }
+        assert_eq!([1.0, 3.0, 2.0].into_iter().fold(0.0, larger), 3.0);
+        assert_eq!([1.0, 3.0, 2.0].into_iter().fold(9.0, smaller), 1.0);
+    }
+}

@@ -1,7 +1,7 @@
 //! A scene, a model and its state: the object users hold.
 
 use crate::error::{Error, SolveError};
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 use crate::model::auto::{self, Question};
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::problems;
@@ -280,9 +280,7 @@ impl Simulation {
             };
             cost.iterations += report.cost.iterations;
             cost.halved_steps += report.cost.halved_steps;
-            if !(report.cost.residual_n <= cost.residual_n) {
-                cost.residual_n = report.cost.residual_n;
-            }
+            cost.residual_n = larger(cost.residual_n, report.cost.residual_n);
             cost.inner_step_s = cost.inner_step_s.max(report.cost.inner_step_s);
             warnings.extend(report.warnings);
         }

@@ -1,6 +1,6 @@
 //! Distances between points and segments, unsigned, robust for degenerate input.
 
-use crate::math::{Vec2, cross};
+use crate::math::{Vec2, cross, smaller};
 
 /// Position (0 to 1) along the segment `a`–`b` of the point nearest to `p`; 0 for a segment of no length.
 #[must_use]
@@ -26,9 +26,7 @@ pub fn segment_segment(a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> f64 {
     // Segments that do not cross are nearest at an end of one of them.
     let mut d = point_segment(a, p, q);
     for other in [point_segment(b, p, q), point_segment(p, a, b), point_segment(q, a, b)] {
-        if !(d <= other) {
-            d = other;
-        }
+        d = smaller(d, other);
     }
     d
 }

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use deal::{Cut, Deal};
 
 use crate::error::SolveError;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 use crate::model::{self, Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
@@ -389,9 +389,7 @@ fn add(sum: &mut StepReport, more: StepReport) {
     sum.cost.iterations += iterations;
     sum.cost.halved_steps += halved_steps;
     // Not `max`: what is not a number must show.
-    if !(residual_n <= sum.cost.residual_n) {
-        sum.cost.residual_n = residual_n;
-    }
+    sum.cost.residual_n = larger(sum.cost.residual_n, residual_n);
     if inner_step_s > sum.cost.inner_step_s {
         sum.cost.inner_step_s = inner_step_s;
     }

@@ -3,7 +3,7 @@
 use super::layout::{Anchor, Layout, angle_near, angle_of, unsupported};
 use super::slide::{Arc, Mode, Slide, Stretches};
 use crate::error::SolveError;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 use crate::model::Model;
 use crate::problem::Problem;
 
@@ -220,12 +220,8 @@ fn rows(slide: &Slide<'_>, s: &Stretches, modes: &[Mode], smooth: bool) -> Optio
         }
         let tension = Slide::forces(s, k).1?.norm();
         let relative = if smooth { rk.abs() / (slide.problem.thermal_stretch * tension) } else { rk.abs() };
-        if !(relative <= worst) {
-            worst = relative;
-        }
-        if !(relative * tension <= newtons) {
-            newtons = relative * tension;
-        }
+        worst = larger(worst, relative);
+        newtons = larger(newtons, relative * tension);
         (r[k], j[k]) = (rk, row);
     }
     Some((r, j, worst, newtons))

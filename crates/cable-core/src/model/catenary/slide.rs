@@ -17,7 +17,7 @@
 use super::layout::{Anchor, Layout, angle_near, angle_of};
 use super::wheel::pass;
 use crate::catenary::{Chain, ChainForce};
-use crate::math::{Vec2, cross};
+use crate::math::{Vec2, cross, larger};
 use crate::problem::Problem;
 
 /// How a pulley stands.
@@ -265,9 +265,7 @@ impl Slide<'_> {
             };
             let ((off1, step1), (off2, step2)) = (step(fb, arc.arrive), step(fa, leave));
             for off in [off1, off2] {
-                if !(off <= worst) {
-                    worst = off;
-                }
+                worst = larger(worst, off);
             }
             let (mut arrive, leave) = (arc.arrive + step1, leave + step2);
             let mut turn = a.facing * (arrive - leave);
@@ -278,9 +276,7 @@ impl Slide<'_> {
             }
             let passed = pass(&self.chain(0.0, 1.0), a, fb.norm(), (arrive, turn), m(k));
             let change = (passed.material - arc.material).abs() / a.radius;
-            if !(change <= worst) {
-                worst = change;
-            }
+            worst = larger(worst, change);
             out.push(Arc { arrive, turn, material: passed.material, ..*arc });
         }
         (out, worst, lifted)

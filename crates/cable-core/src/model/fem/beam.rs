@@ -23,7 +23,7 @@ use super::element::Material;
 use super::layout::{Layout, Stop};
 use super::network::Network;
 use crate::linalg::{BandFactor, BandMatrix};
-use crate::math::{Vec2, perp};
+use crate::math::{Vec2, larger, perp};
 
 /// Newton steps at one bending stiffness. Measured: 4 to 12.
 const MAX_STEPS: usize = 40;
@@ -371,9 +371,7 @@ impl Beam {
                 let d = Vec2::new(force_step[2 * i], force_step[2 * i + 1]) * scale;
                 *f += d;
                 let part = d.norm() / (f.norm() + least);
-                if !(part <= change) {
-                    change = part;
-                }
+                change = larger(change, part);
                 self.residual = d.norm();
             }
             self.steps += 1;

@@ -15,7 +15,7 @@ use crate::contact::friction;
 use crate::contact::own::{Order, OwnPair, OwnShape};
 use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
-use crate::math::{Mat2, Vec2};
+use crate::math::{Mat2, Vec2, larger};
 use crate::problem::Problem;
 
 /// Part of each gap that a Newton step leaves. Smaller: gaps shrink too fast for Newton; larger: more steps.
@@ -267,7 +267,7 @@ impl Workspace {
                 Some(_) => self.system.gradient[2 * node].abs(),
                 None => self.system.gradient_at(node).norm(),
             } / node_scale(task, node);
-            if !(r <= worst.0) {
+            if !(r <= worst.0) && !worst.0.is_nan() {
                 worst = (r, node);
             }
         }
@@ -466,9 +466,7 @@ impl Workspace {
         let mut largest = 0.0;
         for d in self.direction.chunks_exact(2) {
             let m = d[0].hypot(d[1]);
-            if !(m <= largest) {
-                largest = m;
-            }
+            largest = larger(largest, m);
         }
         let whole = if largest > task.max_move { task.max_move / largest } else { 1.0 };
         let mut fraction = self.free_way(problem, mesh, (pose, contacts.own.shape), whole);
@@ -500,11 +498,6 @@ impl Workspace {
         }
         None
     }
-}
-
-/// The larger of two sizes, the first where the second is no number.
-fn larger(a: f64, b: f64) -> f64 {
-    if b > a { b } else { a }
 }
 
 /// Factor of the equations of a node.

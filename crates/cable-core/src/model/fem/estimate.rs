@@ -11,7 +11,7 @@
 use super::beam::Beam;
 use super::network::Network;
 use super::span::elements;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 
 /// Estimated relative error of the largest tension.
 #[must_use]
@@ -21,13 +21,9 @@ pub fn relative_error(network: &Network) -> f64 {
     for (forces, change) in network.forces.iter().zip(&changes) {
         for (force, d) in forces.iter().zip(change) {
             let tension = force.norm();
-            if !(tension <= largest) {
-                largest = tension;
-            }
+            largest = larger(largest, tension);
             let off = if tension > 0.0 { force.dot(d) / tension } else { 0.0 };
-            if !(off.abs() <= error) {
-                error = off.abs();
-            }
+            error = larger(error, off.abs());
         }
     }
     if largest > 0.0 { error / largest } else { error }
@@ -77,12 +73,8 @@ pub fn halving_error(coarse: &Beam, fine: &Beam) -> f64 {
     let (mut largest, mut change) = (fine.bending_force(), 0.0);
     for (a, b) in coarse.stop_forces().iter().flatten().zip(fine.stop_forces().iter().flatten()) {
         let (size, off) = (b.norm(), (b - a).norm());
-        if !(size <= largest) {
-            largest = size;
-        }
-        if !(off <= change) {
-            change = off;
-        }
+        largest = larger(largest, size);
+        change = larger(change, off);
     }
     if largest > 0.0 { change / (15.0 * largest) } else { change }
 }

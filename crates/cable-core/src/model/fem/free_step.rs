@@ -18,7 +18,7 @@ use super::assembly::Mesh;
 use super::bar::PUSH;
 use super::contact_step::{Done, Pose, Task};
 use crate::energy::Curvature;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 
 /// Iterations before the minimiser is asked. Measured: 2 to 5 in a swing, up to 12 where a slack chain snaps taut.
 const MAX_STEPS: usize = 16;
@@ -235,11 +235,6 @@ impl FreeStep {
             }
         }
     }
-}
-
-/// The larger of two numbers; NaN once one of them is.
-fn larger(a: f64, b: f64) -> f64 {
-    if b <= a || a.is_nan() { a } else { b }
 }
 
 fn times(m: &Symmetric, v: Vec2) -> Vec2 {

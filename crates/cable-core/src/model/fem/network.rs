@@ -15,7 +15,7 @@
 use super::element::{Material, turn_between};
 use super::layout::{Hold, Layout, Wheel};
 use super::span::{self, Span, elements};
-use crate::math::{Vec2, perp};
+use crate::math::{Vec2, larger, perp};
 
 /// Newton steps for the pulleys together. Measured: 3 to 8.
 const MAX_STEPS: usize = 40;
@@ -141,9 +141,7 @@ impl Network {
         let span = warm.or_else(|| solve(guess)).or_else(|| self.unfold((first, last), d, guess));
         let span = span.ok_or(Failure::Span(first, f64::NAN))?;
         self.steps += span.steps;
-        if !(span.residual <= self.residual) {
-            self.residual = span.residual;
-        }
+        self.residual = larger(self.residual, span.residual);
         self.forces[first][1] = span.force;
         self.forces[last][0] = span.walk.end_force;
         self.spans[i] = span;
@@ -412,9 +410,7 @@ impl Network {
             let before = self.layout.stops[k].arc_length;
             self.bisect(k)?;
             let moved = (self.layout.stops.get(k).map_or(before, |s| s.arc_length) - before).abs();
-            if !(moved <= largest) {
-                largest = moved;
-            }
+            largest = larger(largest, moved);
         }
         Ok(largest)
     }

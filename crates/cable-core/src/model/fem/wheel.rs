@@ -7,7 +7,7 @@
 use super::element::{Material, turn_between};
 use super::layout::{Hold, Wheel};
 use super::network::{Failure, Network};
-use crate::math::{Vec2, cross, perp};
+use crate::math::{Vec2, cross, larger, perp};
 use crate::scene::PulleySide;
 
 /// Steps of the integration round a wheel.
@@ -117,9 +117,7 @@ impl Network {
                 (turn, lifted) = (0.0, Some(k));
             }
             let moved = (0..2).map(|i| (contact[i] - wheel.contact[i]).norm()).sum::<f64>();
-            if !(moved <= largest) {
-                largest = moved;
-            }
+            largest = larger(largest, moved);
             wheel.contact = contact;
             // Simpson's mean over the arc.
             let tension = [0.0, 0.5, 1.0].map(|f| tension(&wheel, &self.material, [before, after], f));
