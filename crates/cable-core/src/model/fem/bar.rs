@@ -11,7 +11,8 @@
 //! Damping with time constant τ is a second bar of stiffness EA τ a whose strain is measured from the one predicted.
 
 use super::assembly::{Mesh, System};
-use super::contact_step::{Pose, ROUNDED, Task};
+use super::contact_step::ROUNDED;
+use super::task::{Pose, Task};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 

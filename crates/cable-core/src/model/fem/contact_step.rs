@@ -11,6 +11,8 @@ use super::bar;
 use super::contact_set::{ContactSet, SLIDE, Touch};
 use super::own::{self, Coupling};
 use super::path::{End, Path};
+use super::task::{Done, Failure, Pose, Task};
+use super::touch::{add_pair, add_touch};
 use crate::contact::friction;
 use crate::contact::own::{Order, OwnPair, OwnShape};
 use crate::energy::Curvature;
@@ -47,72 +49,6 @@ const LEAVE: f64 = 0.3;
 /// Short moves of held nodes towards their targets before they are stopped. Fewer: supports lag that could have got there;
 /// more: iterations spent on what the next step does as well.
 const MAX_PUSHES: usize = 12;
-
-/// The unknowns of a step.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Pose {
-    /// Position of each node, m; of a sliding one its mark.
-    pub x: Vec<Vec2>,
-    /// How far the arc length at each sliding node has moved in this step, m.
-    pub slide: Vec<f64>,
-}
-
-/// What a step is about.
-#[derive(Clone, Debug, Default)]
-pub struct Task {
-    /// Factor of each bar's energy (see `sliding`); 1 without friction at sliding nodes.
-    pub scale: Vec<f64>,
-    /// Distributed force, N/m.
-    pub body: Vec2,
-    /// Predicted slide of each sliding node, m.
-    pub predicted_slide: Vec<f64>,
-    /// mᵢ a², N/m.
-    pub inertia: Vec<f64>,
-    /// x̃, m.
-    pub predicted: Vec<Vec2>,
-    /// EA τ a, N (0: no damping).
-    pub damping: f64,
-    /// Predicted length of each bar, m.
-    pub predicted_length: Vec<f64>,
-    /// External force on each node, N.
-    pub force: Vec<Vec2>,
-    /// Where each held node has to go, m (others: ignored).
-    pub target: Vec<Vec2>,
-    /// Whether held nodes may stop short of it where an obstacle or the cable is in the way.
-    pub may_lag: bool,
-    /// Where the step began, m.
-    pub start: Vec<Vec2>,
-    /// Plan view: largest friction force of each node, N (empty otherwise).
-    pub floor_limit: Vec<f64>,
-    /// Unbalanced force to reach, N.
-    pub tolerance: f64,
-    /// Iterations allowed.
-    pub max_iterations: usize,
-    /// Largest move of a node in one iteration, m.
-    pub max_move: f64,
-    /// Regularisation to begin with, N/m.
-    pub shift: f64,
-}
-
-/// Why a step failed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Failure {
-    /// Worst node.
-    pub node: usize,
-    /// Its unbalanced force, N.
-    pub residual: f64,
-    /// In words.
-    pub cause: &'static str,
-}
-
-/// What a step did.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Done {
-    /// Newton iterations.
-    pub iterations: usize,
-    /// Largest unbalanced force left, N.
-    pub residual: f64,
-}
 
 /// Memory of the minimisation.
 #[derive(Debug)]
@@ -508,74 +444,4 @@ fn node_scale(task: &Task, node: usize) -> f64 {
 fn grow(shift: f64, task: &Task) -> f64 {
     let least = if task.shift > 0.0 { task.shift } else { 1.0 };
     if shift > 0.0 { 4.0 * shift } else { least }
-}
-
-/// Adds a force gradient and a block shared by the nodes of a touch; those that slide feel neither.
-fn add_pair(s: &mut System, mesh: &Mesh, touch: &Touch, gradient: Vec2, block: &Mat2) {
-    let (node, [a, b]) = (touch.node, touch.shares());
-    let moves = |k: usize| mesh.sliding[k].is_none();
-    if moves(node) {
-        s.add_gradient(node, gradient * a);
-        s.add_block(node, node, &(block * (a * a)));
-    }
-    if b != 0.0 && moves(node + 1) {
-        s.add_gradient(node + 1, gradient * b);
-        s.add_block(node + 1, node + 1, &(block * (b * b)));
-        if moves(node) {
-            s.add_block(node, node + 1, &(block * (a * b)));
-        }
-    }
-}
-
-/// The barrier of one touch. Its distance d from the corner has curvature (θ the turn of the segment, u its
-/// direction, c the touching point, all linear in the nodes):
-/// ```text
-/// node:     ∇²d = (I − n nᵀ)/d  at a corner, 0 at an edge
-/// segment:  ∇²d = −(θ qᵀ + q θᵀ) − d θ θᵀ,   q = u·δc,   θ = n·(δb − δa)/l
-/// ```
-fn add_touch(
-    s: &mut System,
-    mesh: &Mesh,
-    (touch, scale): (&Touch, f64),
-    contacts: &ContactSet,
-    x: &[Vec2],
-    curvature: Curvature,
-) -> f64 {
-    let (gap, weight) = (&touch.pair.gap, touch.pair.weight * scale);
-    let b = contacts.barrier.at(gap.gap_m);
-    let (slope, bend) = (b.slope * weight, b.curvature * weight);
-    let n = gap.normal;
-    let definite = curvature == Curvature::Clipped;
-    let bend = if definite && bend < 0.0 { 0.0 } else { bend };
-    add_pair(s, mesh, touch, n * slope, &(n * n.transpose() * bend));
-    if definite {
-        return b.value * weight;
-    }
-    if !touch.on_segment {
-        let distance = (x[touch.node] - gap.point).norm();
-        // Edges have even feature numbers: their distance is linear.
-        if gap.feature % 2 == 1 && distance > 0.0 {
-            s.add_block(touch.node, touch.node, &((Mat2::identity() - n * n.transpose()) * (slope / distance)));
-        }
-        return b.value * weight;
-    }
-    let (i, shares) = (touch.node, touch.shares());
-    let [from, to] = mesh.straight(i, x);
-    let (d, distance) = (to - from, (from * shares[0] + to * shares[1] - gap.point).norm());
-    let length = d.norm();
-    let u = d / length;
-    let theta = [n * (-1.0 / length), n * (1.0 / length)];
-    let q = [u * shares[0], u * shares[1]];
-    let block = |a: usize, b: usize| {
-        (-(theta[a] * q[b].transpose() + q[a] * theta[b].transpose()) - theta[a] * theta[b].transpose() * distance)
-            * slope
-    };
-    let moves = [0, 1].map(|j| mesh.sliding[i + j].is_none());
-    for j in (0..2).filter(|&j| moves[j]) {
-        s.add_block(i + j, i + j, &block(j, j));
-    }
-    if moves == [true, true] {
-        s.add_block(i, i + 1, &block(0, 1));
-    }
-    b.value * weight
 }

@@ -16,7 +16,7 @@
 
 use super::assembly::Mesh;
 use super::bar::PUSH;
-use super::contact_step::{Done, Pose, Task};
+use super::task::{Done, Pose, Task};
 use crate::energy::Curvature;
 use crate::math::{Vec2, larger};
 

@@ -8,9 +8,9 @@
 //! After each step contacts are made plastic: the barrier is a spring and would throw a landing cable back at
 //! 0.4 to 0.8 of its speed, so the velocity along the normal is taken out of everything that touches.
 
-use super::contact_step::{Done, Failure, Pose};
 use super::dynamics::{Dynamics, REACH, STIFFNESS_CHANGE};
 use super::prepare::damping_time;
+use super::task::{Done, Failure, Pose};
 use crate::math::Vec2;
 use crate::model::drive::Follower;
 

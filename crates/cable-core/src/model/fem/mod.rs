@@ -24,6 +24,8 @@ mod free_step;
 mod handover;
 mod integrate;
 mod layout;
+mod marks;
+mod mesh_edit;
 mod network;
 mod own;
 mod path;
@@ -36,6 +38,8 @@ mod sliding;
 mod sliding_tests;
 mod span;
 pub mod statics;
+mod task;
+mod touch;
 mod wheel;
 
 use std::sync::Arc;

@@ -1,8 +1,9 @@
 //! What one step is about: forces, targets, inertia, damping and grip at an instant.
 
-use super::contact_step::{Done, Failure, Pose, Workspace};
+use super::contact_step::Workspace;
 use super::dynamics::{Dynamics, INNER_STEP, REACH};
 use super::sliding::Seat;
+use super::task::{Done, Failure, Pose};
 use crate::math::Vec2;
 use crate::model::drive::MAX_SPEED;
 use crate::problem::Problem;

@@ -24,19 +24,7 @@ const SHORT: f64 = 0.35;
 const LONG: f64 = 1.6;
 
 /// A node this near (in even bars) to a new sliding node is in its way.
-const NEAR: f64 = 0.1;
-
-/// An arc of more than this (rad) from the tangent to the first mark gets another mark.
-const WIDE: f64 = 0.8;
-
-/// Angle (rad) between marks of one round.
-const SPACING: f64 = 0.4;
-
-/// Rounds with less than this part of an even bar on them keep one mark.
-const SMALL: f64 = 0.3;
-
-/// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
-const STILL: f64 = 1e-9;
+pub(super) const NEAR: f64 = 0.1;
 
 /// Tension in weights of an even bar from which a corner gets a sliding node, and below which it loses it: a slack
 /// cable lies on corners with its nodes, and the barrier carries it as well.
@@ -67,7 +55,7 @@ const FOLDED: f64 = 0.2;
 const LEAST_GAP: f64 = 0.05;
 
 /// Most changes of one kind after one step.
-const MAX_CHANGES: usize = 400;
+pub(super) const MAX_CHANGES: usize = 400;
 
 impl Dynamics {
     /// Adapts the mesh to what the cable runs over; returns whether that changed (new bars alone do not count).
@@ -95,7 +83,7 @@ impl Dynamics {
     }
 
     /// Length of an even bar, m of arc length.
-    fn even(&self) -> f64 {
+    pub(super) fn even(&self) -> f64 {
         self.problem.length / self.even_bars as f64
     }
 
@@ -373,89 +361,6 @@ impl Dynamics {
         }
     }
 
-    /// Moves the mark of a round with one node to the middle of its arc.
-    fn move_marks(&mut self) -> bool {
-        let mut moved = false;
-        for k in 1..self.mesh.nodes().saturating_sub(1) {
-            let Some(node) = self.mesh.sliding[k] else { continue };
-            let shared = |j: usize| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
-            if !(node.end.radius > 0.0) || shared(k - 1) || shared(k + 1) {
-                continue;
-            }
-            let x = &self.motion.x;
-            let paths = [self.mesh.path(k - 1, x), self.mesh.path(k, x)];
-            let shift = 0.5 * (paths[1].arcs[0] - paths[0].arcs[1]);
-            if !(shift.abs() * node.end.radius > STILL) {
-                continue;
-            }
-            let stretch =
-                (paths[0].length + paths[1].length) / (self.mesh.rest_length[k - 1] + self.mesh.rest_length[k]);
-            let material = shift * node.end.radius / (stretch * self.mesh.thermal_stretch);
-            let room = NEAR * NEAR * self.even();
-            let s = &self.mesh.arc_length;
-            if s[k] + material < s[k - 1] + room || s[k] + material > s[k + 1] - room {
-                continue;
-            }
-            let turned =
-                Sliding { end: End { mark: rotate(node.end.mark, node.end.sense * shift), ..node.end }, ..node };
-            self.mesh.sliding[k] = Some(turned);
-            self.mesh.arc_length[k] += material;
-            self.motion.s_before[k] += material;
-            self.mesh.rest_length[k - 1] += self.mesh.thermal_stretch * material;
-            self.mesh.rest_length[k] -= self.mesh.thermal_stretch * material;
-            self.motion.x[k] = turned.position();
-            self.motion.x_before[k] = self.motion.x[k];
-            moved = true;
-        }
-        moved
-    }
-
-    /// Gives long arcs more marks and takes away those that the tangent has passed.
-    fn wind(&mut self) -> bool {
-        let mut changed = false;
-        let mut k = 1;
-        let mut changes = 0;
-        while k + 1 < self.mesh.nodes() && changes < MAX_CHANGES {
-            let Some(node) = self.mesh.sliding[k].filter(|s| s.end.radius > 0.0) else {
-                k += 1;
-                continue;
-            };
-            let shared = [k - 1, k + 1].map(|j| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node)));
-            let x = &self.motion.x;
-            let arcs = [self.mesh.path(k - 1, x).arcs[1], self.mesh.path(k, x).arcs[0]];
-            let big = |arc: f64| arc > WIDE && arc * node.end.radius > SMALL * self.even();
-            changes += 1;
-            if (!shared[0] && shared[1] && arcs[0] < 0.0) || (!shared[1] && shared[0] && arcs[1] < 0.0) {
-                self.remove(k);
-                changed = true;
-            } else if !shared[0] && big(arcs[0]) {
-                self.add_mark(k, 0, arcs[0] - SPACING);
-                changed = true;
-            } else if !shared[1] && big(arcs[1]) {
-                self.add_mark(k, 1, arcs[1] - SPACING);
-                changed = true;
-                k += 1;
-            } else {
-                k += 1;
-                changes = 0;
-            }
-        }
-        changed
-    }
-
-    /// Adds a mark on the round of node `k`, `angle` (rad) before it (`side` 0) or after it (1).
-    fn add_mark(&mut self, k: usize, side: usize, angle: f64) {
-        let Some(node) = self.mesh.sliding[k] else { return };
-        let bar = k - 1 + side;
-        let sign = if side == 0 { -1.0 } else { 1.0 };
-        let mark = rotate(node.end.mark, node.end.sense * sign * angle);
-        let length = self.mesh.path(bar, &self.motion.x).length;
-        let s = [self.mesh.arc_length[bar], self.mesh.arc_length[bar + 1]];
-        let part = angle * node.end.radius / length * (s[1] - s[0]);
-        let arc_length = if side == 0 { s[1] - part } else { s[0] + part };
-        self.insert(bar + 1, arc_length, Some(Sliding { end: End { mark, ..node.end }, ..node }));
-    }
-
     /// Cuts long bars beside sliding nodes and takes out nodes that came too near to one.
     pub(super) fn even_out(&mut self) {
         let even = self.even();
@@ -527,82 +432,4 @@ impl Dynamics {
             && !self.support_node.contains(&Some(k))
             && self.loads.iter().all(|l| l.0 != k)
     }
-
-    /// Puts a node at an arc length (m) between nodes `k` − 1 and `k`.
-    pub(super) fn insert(&mut self, k: usize, arc_length: f64, sliding: Option<Sliding>) {
-        let mesh = &mut self.mesh;
-        let path = mesh.path(k - 1, &self.motion.x);
-        let (a, b) = (mesh.arc_length[k - 1], mesh.arc_length[k]);
-        let part = (arc_length - a) / (b - a);
-        let lead = path.arcs[0] * mesh.end(k - 1, &self.motion.x).radius;
-        let fraction =
-            if path.straight > 0.0 { ((part * path.length - lead) / path.straight).clamp(0.0, 1.0) } else { 0.5 };
-        let at = path.ends[0] + (path.ends[1] - path.ends[0]) * fraction;
-        let m = &mut self.motion;
-        let t = path.direction;
-        let speed = |j: usize| if mesh.sliding[j].is_some() { t * -m.w[j] } else { m.v[j] };
-        let v = speed(k - 1) * (1.0 - part) + speed(k) * part;
-        let h = m.step_before;
-        mesh.arc_length.insert(k, arc_length);
-        mesh.rest_length[k - 1] = mesh.thermal_stretch * (arc_length - a);
-        mesh.rest_length.insert(k, mesh.thermal_stretch * (b - arc_length));
-        mesh.held.insert(k, false);
-        mesh.sliding.insert(k, sliding);
-        let w = if sliding.is_some() { -v.dot(&t) } else { 0.0 };
-        let (x, v) = sliding.map_or((at, v), |s| (s.position(), Vec2::zeros()));
-        m.x.insert(k, x);
-        m.v.insert(k, v);
-        m.x_before.insert(k, x - v * h);
-        m.v_before.insert(k, v);
-        m.w.insert(k, w);
-        m.w_before.insert(k, w);
-        m.s_before.insert(k, arc_length - w * h);
-        self.reaction.insert(k, Vec2::zeros());
-        self.contacts.floor_slid.insert(k, Vec2::zeros());
-        self.renumber(|node| Some(if node >= k { node + 1 } else { node }));
-    }
-
-    /// Takes node `k` out.
-    pub(super) fn remove(&mut self, k: usize) {
-        let mesh = &mut self.mesh;
-        mesh.arc_length.remove(k);
-        mesh.rest_length.remove(k);
-        mesh.rest_length[k - 1] = mesh.thermal_stretch * (mesh.arc_length[k] - mesh.arc_length[k - 1]);
-        mesh.held.remove(k);
-        mesh.sliding.remove(k);
-        let m = &mut self.motion;
-        m.x.remove(k);
-        m.v.remove(k);
-        m.x_before.remove(k);
-        m.v_before.remove(k);
-        m.w.remove(k);
-        m.w_before.remove(k);
-        m.s_before.remove(k);
-        self.reaction.remove(k);
-        self.contacts.floor_slid.remove(k);
-        self.renumber(|node| match node.cmp(&k) {
-            std::cmp::Ordering::Less => Some(node),
-            std::cmp::Ordering::Equal => None,
-            std::cmp::Ordering::Greater => Some(node - 1),
-        });
-    }
-
-    fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {
-        for node in &mut self.support_node {
-            *node = node.and_then(&change);
-        }
-        for (node, _) in &mut self.loads {
-            *node = change(*node).unwrap_or(*node);
-        }
-        for clamp in &mut self.mesh.clamps {
-            clamp.node = change(clamp.node).unwrap_or(clamp.node);
-        }
-        self.contacts.renumber(change);
-    }
-}
-
-/// A vector turned by an angle (rad), counter-clockwise.
-fn rotate(v: Vec2, angle: f64) -> Vec2 {
-    let (sin, cos) = angle.sin_cos();
-    Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
 }

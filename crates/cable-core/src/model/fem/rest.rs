@@ -1,7 +1,7 @@
 //! Resting places and slow motion in contact.
 
-use super::contact_step::{Done, Failure, Pose};
 use super::dynamics::{Dynamics, REACH};
+use super::task::{Done, Failure, Pose};
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::{Model, StepReport};

@@ -1,0 +1,110 @@
+//! Marks: the places on a round at which its material is counted.
+
+use super::dynamics::Dynamics;
+use super::path::End;
+use super::remesh::{MAX_CHANGES, NEAR};
+use super::sliding::Sliding;
+use crate::math::Vec2;
+
+/// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
+const STILL: f64 = 1e-9;
+
+/// An arc of more than this (rad) from the tangent to the first mark gets another mark.
+const WIDE: f64 = 0.8;
+
+/// Rounds with less than this part of an even bar on them keep one mark.
+const SMALL: f64 = 0.3;
+
+/// Angle (rad) between marks of one round.
+const SPACING: f64 = 0.4;
+
+impl Dynamics {
+    /// Moves the mark of a round with one node to the middle of its arc.
+    pub(super) fn move_marks(&mut self) -> bool {
+        let mut moved = false;
+        for k in 1..self.mesh.nodes().saturating_sub(1) {
+            let Some(node) = self.mesh.sliding[k] else { continue };
+            let shared = |j: usize| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
+            if !(node.end.radius > 0.0) || shared(k - 1) || shared(k + 1) {
+                continue;
+            }
+            let x = &self.motion.x;
+            let paths = [self.mesh.path(k - 1, x), self.mesh.path(k, x)];
+            let shift = 0.5 * (paths[1].arcs[0] - paths[0].arcs[1]);
+            if !(shift.abs() * node.end.radius > STILL) {
+                continue;
+            }
+            let stretch =
+                (paths[0].length + paths[1].length) / (self.mesh.rest_length[k - 1] + self.mesh.rest_length[k]);
+            let material = shift * node.end.radius / (stretch * self.mesh.thermal_stretch);
+            let room = NEAR * NEAR * self.even();
+            let s = &self.mesh.arc_length;
+            if s[k] + material < s[k - 1] + room || s[k] + material > s[k + 1] - room {
+                continue;
+            }
+            let turned =
+                Sliding { end: End { mark: rotate(node.end.mark, node.end.sense * shift), ..node.end }, ..node };
+            self.mesh.sliding[k] = Some(turned);
+            self.mesh.arc_length[k] += material;
+            self.motion.s_before[k] += material;
+            self.mesh.rest_length[k - 1] += self.mesh.thermal_stretch * material;
+            self.mesh.rest_length[k] -= self.mesh.thermal_stretch * material;
+            self.motion.x[k] = turned.position();
+            self.motion.x_before[k] = self.motion.x[k];
+            moved = true;
+        }
+        moved
+    }
+
+    /// Gives long arcs more marks and takes away those that the tangent has passed.
+    pub(super) fn wind(&mut self) -> bool {
+        let mut changed = false;
+        let mut k = 1;
+        let mut changes = 0;
+        while k + 1 < self.mesh.nodes() && changes < MAX_CHANGES {
+            let Some(node) = self.mesh.sliding[k].filter(|s| s.end.radius > 0.0) else {
+                k += 1;
+                continue;
+            };
+            let shared = [k - 1, k + 1].map(|j| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node)));
+            let x = &self.motion.x;
+            let arcs = [self.mesh.path(k - 1, x).arcs[1], self.mesh.path(k, x).arcs[0]];
+            let big = |arc: f64| arc > WIDE && arc * node.end.radius > SMALL * self.even();
+            changes += 1;
+            if (!shared[0] && shared[1] && arcs[0] < 0.0) || (!shared[1] && shared[0] && arcs[1] < 0.0) {
+                self.remove(k);
+                changed = true;
+            } else if !shared[0] && big(arcs[0]) {
+                self.add_mark(k, 0, arcs[0] - SPACING);
+                changed = true;
+            } else if !shared[1] && big(arcs[1]) {
+                self.add_mark(k, 1, arcs[1] - SPACING);
+                changed = true;
+                k += 1;
+            } else {
+                k += 1;
+                changes = 0;
+            }
+        }
+        changed
+    }
+
+    /// Adds a mark on the round of node `k`, `angle` (rad) before it (`side` 0) or after it (1).
+    fn add_mark(&mut self, k: usize, side: usize, angle: f64) {
+        let Some(node) = self.mesh.sliding[k] else { return };
+        let bar = k - 1 + side;
+        let sign = if side == 0 { -1.0 } else { 1.0 };
+        let mark = rotate(node.end.mark, node.end.sense * sign * angle);
+        let length = self.mesh.path(bar, &self.motion.x).length;
+        let s = [self.mesh.arc_length[bar], self.mesh.arc_length[bar + 1]];
+        let part = angle * node.end.radius / length * (s[1] - s[0]);
+        let arc_length = if side == 0 { s[1] - part } else { s[0] + part };
+        self.insert(bar + 1, arc_length, Some(Sliding { end: End { mark, ..node.end }, ..node }));
+    }
+}
+
+/// A vector turned by an angle (rad), counter-clockwise.
+fn rotate(v: Vec2, angle: f64) -> Vec2 {
+    let (sin, cos) = angle.sin_cos();
+    Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
+}

@@ -1,0 +1,69 @@
+//! What a step is about, its unknowns, and how it ended.
+
+use crate::math::Vec2;
+
+/// The unknowns of a step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pose {
+    /// Position of each node, m; of a sliding one its mark.
+    pub x: Vec<Vec2>,
+    /// How far the arc length at each sliding node has moved in this step, m.
+    pub slide: Vec<f64>,
+}
+
+/// What a step is about.
+#[derive(Clone, Debug, Default)]
+pub struct Task {
+    /// Factor of each bar's energy (see `sliding`); 1 without friction at sliding nodes.
+    pub scale: Vec<f64>,
+    /// Distributed force, N/m.
+    pub body: Vec2,
+    /// Predicted slide of each sliding node, m.
+    pub predicted_slide: Vec<f64>,
+    /// mᵢ a², N/m.
+    pub inertia: Vec<f64>,
+    /// x̃, m.
+    pub predicted: Vec<Vec2>,
+    /// EA τ a, N (0: no damping).
+    pub damping: f64,
+    /// Predicted length of each bar, m.
+    pub predicted_length: Vec<f64>,
+    /// External force on each node, N.
+    pub force: Vec<Vec2>,
+    /// Where each held node has to go, m (others: ignored).
+    pub target: Vec<Vec2>,
+    /// Whether held nodes may stop short of it where an obstacle or the cable is in the way.
+    pub may_lag: bool,
+    /// Where the step began, m.
+    pub start: Vec<Vec2>,
+    /// Plan view: largest friction force of each node, N (empty otherwise).
+    pub floor_limit: Vec<f64>,
+    /// Unbalanced force to reach, N.
+    pub tolerance: f64,
+    /// Iterations allowed.
+    pub max_iterations: usize,
+    /// Largest move of a node in one iteration, m.
+    pub max_move: f64,
+    /// Regularisation to begin with, N/m.
+    pub shift: f64,
+}
+
+/// Why a step failed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Failure {
+    /// Worst node.
+    pub node: usize,
+    /// Its unbalanced force, N.
+    pub residual: f64,
+    /// In words.
+    pub cause: &'static str,
+}
+
+/// What a step did.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Done {
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Largest unbalanced force left, N.
+    pub residual: f64,
+}
