@@ -78,7 +78,7 @@ fn smallest_gap(world: &World, sim: &Simulation) -> f64 {
     least
 }
 
-fn throw_about(scenes: std::ops::Range<usize>, frames: usize, dt: f64, self_contact: bool) -> Count {
+fn throw_about(scenes: impl IntoIterator<Item = usize>, frames: usize, dt: f64, self_contact: bool) -> Count {
     let mut count = Count::default();
     for s in scenes {
         let mut dice = Dice::new(s);
@@ -190,7 +190,8 @@ fn thirty_metres_of_any_stiffness_drop_on_rubble() {
 
 #[test]
 fn ends_thrown_about_cross_nothing() {
-    let count = throw_about(0..8, 60, 1.0 / 60.0, false);
+    // Scenes that each found a fault: no rest, a support squeezed against a post, a corner taken hold of through another.
+    let count = throw_about([17, 45, 73, 98], 60, 1.0 / 60.0, false);
     println!("{} steps, {} halved", count.steps, count.halved);
     assert!(count.failed.is_empty(), "{:#?}", count.failed);
 }
@@ -207,7 +208,8 @@ fn ends_thrown_about_ten_thousand_times_cross_nothing() {
 
 #[test]
 fn ends_thrown_about_do_not_cross_the_cable_itself() {
-    let count = throw_about(0..2, 40, 1.0 / 60.0, true);
+    // One in which a support squeezes the cable, one in which it does not.
+    let count = throw_about([0, 45], 40, 1.0 / 60.0, true);
     println!("{} steps, {} halved", count.steps, count.halved);
     assert!(count.failed.is_empty(), "{:#?}", count.failed);
 }
