@@ -356,6 +356,21 @@ impl Simulation {
         self.look(false);
         Ok(())
     }
+
+    /// Goes on from an answer of an earlier instant of the same scene: cables where and as fast as they were, all whole, the
+    /// robot where it was. What an answer does not hold is lost: friction takes hold anew, a robot that waits begins to wait
+    /// again.
+    ///
+    /// # Errors
+    /// As [`Self::adopt`].
+    pub fn resume(&mut self, answer: &Solution) -> Result<(), SolveError> {
+        let states: Vec<State> = answer.cables.iter().map(|c| State::of_answer(c, answer.time_s)).collect();
+        self.adopt(&states)?;
+        if let (Some(vehicle), Some(then)) = (&mut self.vehicle, &answer.robot) {
+            vehicle.resume(then);
+        }
+        Ok(())
+    }
 }
 
 impl std::fmt::Debug for Simulation {

@@ -1,6 +1,7 @@
 //! Where a cable is at an instant, in a form every model can give and take.
 
 use crate::math::Vec2;
+use crate::solution::CableSolution;
 
 /// Part of its radius by which a point on a round may be off it.
 const ON_ROUND: f64 = 1e-6;
@@ -19,6 +20,18 @@ pub struct State {
 }
 
 impl State {
+    /// That of a whole cable as an answer has it.
+    #[must_use]
+    pub fn of_answer(cable: &CableSolution, time_s: f64) -> Self {
+        let nodes = || cable.nodes.iter();
+        Self {
+            time_s,
+            arc_length_m: nodes().map(|n| n.arc_length_m).collect(),
+            position_m: nodes().map(|n| Vec2::new(n.x_m, n.y_m)).collect(),
+            velocity_m_per_s: nodes().map(|n| Vec2::new(n.vx_m_per_s, n.vy_m_per_s)).collect(),
+        }
+    }
+
     /// The first node with a number that is not finite.
     #[must_use]
     pub fn first_non_finite(&self) -> Option<usize> {

@@ -4,6 +4,8 @@ use cable_core::Solution;
 use cable_core::solution::Node;
 use egui::Color32;
 
+use crate::panels::system;
+
 /// How the cable is coloured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourScale {
@@ -60,8 +62,8 @@ impl Quantity {
     #[must_use]
     pub fn unit(self, greatest: f64) -> (&'static str, f64) {
         match self {
-            Self::Tension if greatest >= 1e4 => ("kN", 1e3),
-            Self::Tension => ("N", 1.0),
+            Self::Tension => system::for_size(system::Kind::Force, greatest),
+            Self::Stress if system::shown() == system::System::Us => system::for_size(system::Kind::Stress, greatest),
             Self::Stress if greatest >= 1e5 => ("MPa", 1e6),
             Self::Stress => ("kPa", 1e3),
             Self::Strain if greatest >= 1e-3 => ("%", 1e-2),

@@ -32,6 +32,13 @@ pub enum Dialog {
         /// The folder as typed so far.
         path: String,
     },
+    /// Which run to open.
+    OpenRun {
+        /// The folder as typed so far.
+        path: String,
+        /// It is to be held beside the present scene, not opened in its place.
+        hold: bool,
+    },
     /// Terrain and beams to read, from a file or pasted.
     ImportMap {
         /// The path as typed so far; empty: what was pasted.

@@ -59,13 +59,21 @@ pub fn draw(
 /// # Errors
 /// There is none.
 pub fn renderer() -> Result<WgpuTestRenderer, String> {
+    render_state(egui_wgpu::RendererOptions::PREDICTABLE).map(WgpuTestRenderer::from_render_state)
+}
+
+/// What draws on whatever adapter there is, without a window.
+///
+/// # Errors
+/// There is none.
+pub fn render_state(options: egui_wgpu::RendererOptions) -> Result<egui_wgpu::RenderState, String> {
     let setup = default_wgpu_setup();
     let configuration = egui_wgpu::WgpuConfiguration { wgpu_setup: setup.clone(), ..Default::default() };
     let state = ready(async move {
         let instance = setup.new_instance().await;
-        egui_wgpu::RenderState::create(&configuration, &instance, None, egui_wgpu::RendererOptions::PREDICTABLE).await
+        egui_wgpu::RenderState::create(&configuration, &instance, None, options).await
     });
-    state.map(WgpuTestRenderer::from_render_state).map_err(|e| {
+    state.map_err(|e| {
         format!(
             "no graphics adapter was found ({e}); install a Vulkan driver (Debian: mesa-vulkan-drivers) or try WGPU_BACKEND=gl"
         )

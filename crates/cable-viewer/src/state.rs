@@ -8,9 +8,14 @@ use cable_core::{Model, Scene, SceneError, Settings, Solution};
 
 use crate::camera::Camera;
 use crate::colour::ColourScale;
+use crate::command::clipboard::Clipboard;
 use crate::dialog::Dialog;
+use crate::guide;
 use crate::history::History;
+use crate::panels::system::System;
+use crate::reach::Progress;
 use crate::recording::Recording;
+use crate::run::Run;
 use crate::undo::Undo;
 
 /// Everything the window shows.
@@ -26,6 +31,12 @@ pub struct AppState {
     pub undo: Undo,
     /// What the user picked.
     pub selected: Option<Item>,
+    /// What was picked besides: moved, copied and removed with it.
+    pub also: Vec<Item>,
+    /// Two corners of the frame being drawn round things to pick, m.
+    pub frame_m: Option<[Point; 2]>,
+    /// What was copied.
+    pub clipboard: Clipboard,
     /// What the pointer is over.
     pub hovered: Option<Item>,
     /// What is being dragged.
@@ -50,12 +61,18 @@ pub struct AppState {
     pub live: Snapshot,
     /// Every answer since the last start, and which of them is on screen.
     pub recording: Recording,
+    /// Instants of a run that was opened, to be recorded once its scene is solved.
+    pub reopened: Vec<Solution>,
     /// Answers kept on screen to compare with.
     pub held: Vec<Held>,
     /// Speed of the robot by hand, m/s, positive to the right; None: it follows its path.
     pub robot_order: Option<f64>,
     /// Speed the robot is driven with by hand, m/s; None: its greatest.
     pub robot_speed: Option<f64>,
+    /// Where the robot can go.
+    pub reach: Progress,
+    /// The guided scene that is on.
+    pub guide: Option<guide::Place>,
     /// How the solver thread is doing.
     pub worker: WorkerStatus,
     /// Tension and reactions against time since the last start.
@@ -70,6 +87,8 @@ pub struct AppState {
     pub closing: bool,
     /// The dialog that is open.
     pub dialog: Option<Dialog>,
+    /// Units on screen; files stay SI.
+    pub units: System,
     /// Light or dark.
     pub theme: egui::ThemePreference,
 }
@@ -108,8 +127,12 @@ pub enum Item {
     },
     /// A point load.
     Load(usize),
+    /// The head of a load's arrow: its force.
+    Head(usize),
     /// The robot.
     Robot,
+    /// Where a leg of the robot's path ends.
+    Leg(usize),
 }
 
 /// A thing being dragged.
@@ -148,6 +171,8 @@ pub struct Layers {
     pub contacts: bool,
     /// Loads, reactions and wind.
     pub forces: bool,
+    /// The parts of each force to the right and upwards.
+    pub components: bool,
     /// The model's nodes.
     pub nodes: bool,
     /// Dragged points land on the grid.
@@ -186,11 +211,19 @@ pub struct Held {
     pub solution: Arc<Solution>,
     /// Wall time it took, s.
     pub wall_s: f64,
+    /// The run it is the end of, where time ran.
+    pub run: Option<Arc<Run>>,
 }
 
 impl Held {
     /// Most that are held: more lines cannot be told apart.
     pub const MOST: usize = 8;
+
+    /// What to draw beside a picture of a time, s: the same time of its run.
+    #[must_use]
+    pub fn picture(&self, time_s: f64) -> &Solution {
+        self.run.as_ref().and_then(|r| r.at(time_s)).unwrap_or(&self.solution)
+    }
 }
 
 /// How the solver thread is doing.
@@ -215,6 +248,9 @@ impl AppState {
             scene,
             undo: Undo::default(),
             selected: None,
+            also: Vec::new(),
+            frame_m: None,
+            clipboard: Clipboard::default(),
             hovered: None,
             grabbed: None,
             cursor_m: None,
@@ -223,13 +259,24 @@ impl AppState {
             model: Model::Auto,
             settings: Settings::default(),
             colour: ColourScale::default(),
-            layers: Layers { grid: true, labels: true, contacts: true, forces: true, nodes: false, snap: false },
+            layers: Layers {
+                grid: true,
+                labels: true,
+                contacts: true,
+                forces: true,
+                components: false,
+                nodes: false,
+                snap: false,
+            },
             snapshot: Snapshot::default(),
             live: Snapshot::default(),
             recording: Recording::default(),
+            reopened: Vec::new(),
             held: Vec::new(),
             robot_order: None,
             robot_speed: None,
+            reach: Progress::None,
+            guide: None,
             worker: WorkerStatus::Idle,
             history: History::default(),
             edits_sent: 0,
@@ -237,6 +284,7 @@ impl AppState {
             autosave_fault: None,
             closing: false,
             dialog: None,
+            units: System::Si,
             theme: egui::ThemePreference::System,
         }
     }
@@ -270,12 +318,24 @@ impl AppState {
         }
     }
 
+    /// Everything picked.
+    #[must_use]
+    pub fn picks(&self) -> Vec<Item> {
+        self.selected.into_iter().chain(self.also.iter().copied()).collect()
+    }
+
+    /// Whether a thing is picked.
+    #[must_use]
+    pub fn picked(&self, item: Item) -> bool {
+        self.selected == Some(item) || self.also.contains(&item)
+    }
+
     /// The cable that panels edit: the selected one, else that of the selected support, else the first.
     #[must_use]
     pub fn current_cable(&self) -> usize {
         let index = match self.selected {
             Some(Item::Cable(cable) | Item::Support { cable, .. }) => cable,
-            Some(Item::Load(k)) => self
+            Some(Item::Load(k) | Item::Head(k)) => self
                 .scene
                 .loads
                 .get(k)

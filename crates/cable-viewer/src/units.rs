@@ -1,13 +1,17 @@
 //! Figures with their unit, as short as their accuracy allows.
 
+use crate::panels::system;
+use crate::panels::unit::Unit;
+
 /// A force, N or kN, three significant digits.
 #[must_use]
 pub fn force(newtons: f64) -> String {
     let size = newtons.abs();
     if !size.is_finite() {
-        return "– N".to_owned();
+        return format!("– {}", Unit::N.shown().symbol);
     }
-    if size >= 1e4 { format!("{} kN", digits(newtons / 1e3)) } else { format!("{} N", digits(newtons)) }
+    let (symbol, si) = system::for_size(system::Kind::Force, newtons);
+    format!("{} {symbol}", digits(newtons / si))
 }
 
 /// A number with three significant digits, without an exponent between 0.001 and 1e6.
@@ -24,12 +28,20 @@ pub fn digits(value: f64) -> String {
     }
 }
 
-/// A coordinate, m, with as many decimals as the view shows.
+/// The unit of coordinates, and how many metres it holds.
+#[must_use]
+pub fn of_length() -> (&'static str, f64) {
+    let Unit { symbol, si, .. } = Unit::M.shown();
+    (symbol, si)
+}
+
+/// A coordinate, m, in the unit shown, with as many decimals as the view shows.
 #[must_use]
 pub fn coordinate(metres: f64, step_m: f64) -> String {
-    let decimals = decimals_of(step_m);
+    let (_, si) = of_length();
+    let decimals = decimals_of(step_m / si * (1.0 + 1e-9));
     // −0 reads as a mistake.
-    let text = format!("{metres:.decimals$}");
+    let text = format!("{:.decimals$}", metres / si);
     if text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.')) {
         text.trim_start_matches('-').to_owned()
     } else {
@@ -41,4 +53,11 @@ pub fn coordinate(metres: f64, step_m: f64) -> String {
 #[must_use]
 pub fn decimals_of(step: f64) -> usize {
     (-step.log10().floor()).clamp(0.0, 9.0) as usize
+}
+
+/// A speed, m/s, three significant digits.
+#[must_use]
+pub fn speed(metres_per_second: f64) -> String {
+    let Unit { symbol, si, .. } = Unit::M_PER_S.shown();
+    format!("{} {symbol}", digits(metres_per_second / si))
 }

@@ -14,6 +14,8 @@
 //!
 //! The cable is felt with the delay of one [`STEP_S`]; its own hitch follows the vehicle as a support dragged by hand does.
 
+pub mod reach;
+
 use serde::{Deserialize, Serialize};
 
 use crate::math::{Vec2, vec2};
@@ -179,6 +181,17 @@ impl Vehicle {
             let forces = Forces { normal: old.report.normal_n, thrust: old.report.thrust_n };
             let hitch = Vec2::new(old.report.hitch_x_n, old.report.hitch_y_n);
             self.tell(hitch, forces, (old.report.commanded_m_per_s, old.report.going));
+        }
+    }
+
+    /// Goes on from how it was at an earlier instant; a wait begins anew.
+    pub fn resume(&mut self, then: &RobotReport) {
+        if let Some(pose) = self.robot.pose_on(&self.ground, self.preset, then.x_m) {
+            (self.pose, self.speed) = (pose, then.speed_m_per_s);
+            (self.leg, self.waited) = (then.leg.unwrap_or(self.robot.path.len()), 0.0);
+            let forces = Forces { normal: then.normal_n, thrust: then.thrust_n };
+            let hitch = Vec2::new(then.hitch_x_n, then.hitch_y_n);
+            self.tell(hitch, forces, (then.commanded_m_per_s, then.going));
         }
     }
 

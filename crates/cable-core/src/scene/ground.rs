@@ -6,7 +6,87 @@ use crate::math::Point;
 /// The terrains of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ground {
-    lines: Vec<Vec<Point>>,
+    stretches: Vec<[Point; 2]>,
+    columns: Columns,
+}
+
+/// Which stretches lie over which part of x, so that one place asks a few of them and not a million.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Columns {
+    /// Left end, m, and how wide each is, m.
+    left: f64,
+    width: f64,
+    /// Where the list of each column begins in `items`; one more at the end.
+    starts: Vec<usize>,
+    /// Indices of stretches.
+    items: Vec<usize>,
+}
+
+/// Most columns for each stretch that a list may hold over all: ground that folds back over itself many times would fill
+/// the memory with fine ones.
+const MOST_ITEMS: usize = 4;
+
+impl Columns {
+    fn of(stretches: &[[Point; 2]]) -> Self {
+        let ends = |k: usize| stretches.iter().flatten().map(move |p| p[k]);
+        let left = ends(0).fold(f64::INFINITY, f64::min);
+        let right = ends(0).fold(f64::NEG_INFINITY, f64::max);
+        let mut count = stretches.len();
+        loop {
+            let width = (right - left) / count.max(1) as f64;
+            let mut columns = Self { left, width, starts: vec![0; count + 1], items: Vec::new() };
+            if count == 0 || !(width > 0.0 && width.is_finite()) {
+                // A wall, or nothing: one column.
+                columns.starts = vec![0, stretches.len()];
+                columns.items = (0..stretches.len()).collect();
+                return columns;
+            }
+            let total: usize = stretches.iter().map(|s| columns.range(s).count()).sum();
+            if total > MOST_ITEMS * stretches.len() && count > 1 {
+                count /= 2;
+                continue;
+            }
+            columns.fill(stretches, total);
+            return columns;
+        }
+    }
+
+    fn fill(&mut self, stretches: &[[Point; 2]], total: usize) {
+        for s in stretches {
+            for c in self.range(s) {
+                self.starts[c + 1] += 1;
+            }
+        }
+        for c in 1..self.starts.len() {
+            self.starts[c] += self.starts[c - 1];
+        }
+        let mut next = self.starts.clone();
+        self.items = vec![0; total];
+        for (k, s) in stretches.iter().enumerate() {
+            for c in self.range(s) {
+                self.items[next[c]] = k;
+                next[c] += 1;
+            }
+        }
+    }
+
+    /// The column of a place; those beyond the ends belong to the last ones.
+    fn column(&self, x: f64) -> usize {
+        (((x - self.left) / self.width) as usize).min(self.starts.len().saturating_sub(2))
+    }
+
+    fn range(&self, s: &[Point; 2]) -> std::ops::RangeInclusive<usize> {
+        self.column(s[0][0].min(s[1][0]))..=self.column(s[0][0].max(s[1][0]))
+    }
+
+    /// Stretches that may lie over a part of x; one may come twice.
+    fn over(&self, low: f64, high: f64) -> &[usize] {
+        if self.starts.len() < 2 {
+            return &[];
+        }
+        let (from, to) = (self.column(low), self.column(high));
+        self.items.get(self.starts[from]..self.starts[to.max(from) + 1]).unwrap_or_default()
+    }
 }
 
 /// How a track rests.
@@ -23,19 +103,23 @@ impl Ground {
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let lines = scene.obstacles.iter().filter_map(|o| match &o.shape {
-            Shape::Terrain { points_m } => Some(points_m.clone()),
+            Shape::Terrain { points_m } => Some(points_m.as_slice()),
             _ => None,
         });
-        Self { lines: lines.collect() }
+        Self::of_lines(lines)
+    }
+
+    fn of_lines<'a>(lines: impl Iterator<Item = &'a [Point]>) -> Self {
+        let stretches: Vec<[Point; 2]> =
+            lines.flat_map(|points| points.windows(2)).filter_map(|w| w.try_into().ok()).collect();
+        Self { columns: Columns::of(&stretches), stretches }
     }
 
     /// The highest terrain at `x` (m), m; None where there is none.
     #[must_use]
     pub fn height(&self, x: f64) -> Option<f64> {
-        let stretches = self.lines.iter().flat_map(|points| points.windows(2));
-        let heights = stretches.filter_map(|s| {
-            let [[ax, ay], [bx, by]] = s else { return None };
-            let (ax, ay, bx, by) = (*ax, *ay, *bx, *by);
+        let near = self.columns.over(x, x).iter().filter_map(|k| self.stretches.get(*k));
+        let heights = near.filter_map(|&[[ax, ay], [bx, by]]| {
             if !(ax.min(bx) <= x && x <= ax.max(bx)) {
                 return None;
             }
@@ -52,7 +136,8 @@ impl Ground {
     pub fn stand(&self, x: f64, half: f64) -> Option<Stand> {
         let (low, high) = (x - half, x + half);
         let mut points = vec![[low, self.height(low)?], [high, self.height(high)?]];
-        let inside = self.lines.iter().flatten().filter(|p| low < p[0] && p[0] < high);
+        let near = self.columns.over(low, high).iter().filter_map(|k| self.stretches.get(*k)).flatten();
+        let inside = near.filter(|p| low < p[0] && p[0] < high);
         // Of ground under an overhang only the highest part is touched.
         points.extend(inside.filter_map(|p| Some([p[0], self.height(p[0])?])));
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -88,7 +173,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn ground(points: &[Point]) -> Ground {
-        Ground { lines: vec![points.to_vec()] }
+        Ground::of_lines(std::iter::once(points))
     }
 
     #[test]

@@ -20,14 +20,22 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
             Dialog::SaveAs { path } => ask_path(ui, "Save the scene as", path, true, commands),
             Dialog::Export { path, sheet } => {
                 let note = "CSV has every sample in view in SI units; SVG and PNG are drawings of it";
-                if let Some(path) = ask(ui, "Export what is in view", ("Ends in .csv, .svg or .png", note), path, commands) {
+                if let Some(path) = ask(ui, ("Export what is in view", "Save"), ("Ends in .csv, .svg or .png", note), path, commands) {
                     commands.push(Command::File(FileCommand::Export(path, sheet.clone())));
                 }
             }
             Dialog::SaveRun { path } => {
                 let note = "The scene and the tables history.csv, nodes.csv and events.csv; those of an earlier run there are replaced";
-                if let Some(path) = ask(ui, "Save what was recorded", ("A folder", note), path, commands) {
+                if let Some(path) = ask(ui, ("Save what was recorded", "Save"), ("A folder", note), path, commands) {
                     commands.push(Command::File(FileCommand::SaveRun(path)));
+                }
+            }
+            Dialog::OpenRun { path, hold } => {
+                let title = if *hold { "Hold a run to compare with" } else { "Open a run" };
+                let note = "A folder with scene.toml, history.csv, nodes.csv and events.csv, as this window and cable run write them";
+                if let Some(path) = ask(ui, (title, "Open"), ("A folder", note), path, commands) {
+                    let command = if *hold { FileCommand::HoldRun(path) } else { FileCommand::OpenRun(path) };
+                    commands.push(Command::File(command));
                 }
             }
             Dialog::About => about(ui, commands),
@@ -60,7 +68,7 @@ fn message(ui: &mut Ui, title: &str, text: &str, commands: &mut Vec<Command>) {
 /// A path to type; some once it is entered.
 fn ask(
     ui: &mut Ui,
-    title: &str,
+    (title, does): (&str, &str),
     (hint, note): (&str, &str),
     path: &mut String,
     commands: &mut Vec<Command>,
@@ -77,7 +85,7 @@ fn ask(
     ui.weak(note);
     ui.add_space(10.0);
     ui.horizontal(|ui| {
-        done |= ui.button("Save").clicked();
+        done |= ui.button(does).clicked();
         if ui.button("Cancel").clicked() {
             commands.push(close());
         }

@@ -1,7 +1,8 @@
 //! The keyboard. Single keys are left to a text field that has the focus.
 
-use egui::{Context, Key, KeyboardShortcut, Modifiers};
+use egui::{Context, Event, Key, KeyboardShortcut, Modifiers};
 
+use crate::canvas::{grid, place};
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::dialog::Dialog;
 use crate::panels::robot;
@@ -20,6 +21,14 @@ pub const SAVE: KeyboardShortcut = with_command(Key::S);
 pub const SAVE_AS: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S);
 /// Everything by name.
 pub const PALETTE: KeyboardShortcut = with_command(Key::P);
+/// Copies what is picked. (egui turns these three into events of their own.)
+pub const COPY: KeyboardShortcut = with_command(Key::C);
+/// Cuts it out.
+pub const CUT: KeyboardShortcut = with_command(Key::X);
+/// Puts it in.
+pub const PASTE: KeyboardShortcut = with_command(Key::V);
+/// Picks everything.
+pub const SELECT_ALL: KeyboardShortcut = with_command(Key::A);
 /// Back by one edit.
 pub const UNDO: KeyboardShortcut = with_command(Key::Z);
 /// Forward by one edit.
@@ -52,6 +61,9 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
             commands.push(Command::Scene(command));
         }
     }
+    clipboard(ctx, state, commands);
+    // The longer ones first here too: a plain arrow is found in alt with an arrow.
+    pick_and_move(ctx, state, commands);
     let plain = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
     if plain(Key::F) {
         commands.push(Command::View(ViewCommand::Fit));
@@ -75,13 +87,63 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     if plain(Key::F1) {
         commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::Help))));
     }
-    if (plain(Key::Delete) || plain(Key::Backspace))
-        && let Some(item) = state.selected
-    {
-        commands.push(Command::Scene(SceneCommand::Remove(item)));
+    if (plain(Key::Delete) || plain(Key::Backspace)) && state.selected.is_some() {
+        commands.push(Command::Scene(SceneCommand::RemoveAll(state.picks())));
     }
     if plain(Key::Escape) {
         commands.push(Command::View(ViewCommand::Select(None)));
+    }
+}
+
+/// Copy, cut and paste: of things of the scene, and of a table of points from another program.
+fn clipboard(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
+    let scene = |command| Command::Scene(command);
+    for event in ctx.input(|i| i.events.clone()) {
+        match event {
+            Event::Copy => commands.push(scene(SceneCommand::Copy)),
+            Event::Cut => commands.push(scene(SceneCommand::Cut)),
+            Event::Paste(text) if text == state.clipboard.text && !state.clipboard.is_empty() => {
+                commands.push(scene(SceneCommand::Paste { at_m: state.cursor_m }));
+            }
+            Event::Paste(text) => {
+                let (path, unit_m) = (String::new(), "1".to_owned());
+                let dialog = Dialog::ImportMap { path, text, unit_m };
+                commands.push(Command::File(FileCommand::SetDialog(Some(dialog))));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// N picks the next thing, Alt with an arrow moves what is picked by a grid line, Ctrl+A picks everything.
+fn pick_and_move(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
+    let all = place::all(state);
+    for (modifiers, forward) in [(Modifiers::SHIFT, false), (Modifiers::NONE, true)] {
+        if ctx.input_mut(|i| i.consume_key(modifiers, Key::N)) && !all.is_empty() {
+            let here = state.selected.and_then(|s| all.iter().position(|i| *i == s));
+            let next = match (here, forward) {
+                (Some(k), true) => (k + 1) % all.len(),
+                (Some(k), false) => (k + all.len() - 1) % all.len(),
+                (None, true) => 0,
+                (None, false) => all.len() - 1,
+            };
+            commands.push(Command::View(ViewCommand::Select(all.get(next).copied())));
+        }
+    }
+    if ctx.input_mut(|i| i.consume_shortcut(&SELECT_ALL)) {
+        commands.push(Command::View(ViewCommand::SelectAll(all)));
+    }
+    let Some(item) = state.selected else { return };
+    let [_, step] = grid::steps(&state.camera);
+    for (key, by) in [
+        (Key::ArrowRight, [step, 0.0]),
+        (Key::ArrowLeft, [-step, 0.0]),
+        (Key::ArrowUp, [0.0, step]),
+        (Key::ArrowDown, [0.0, -step]),
+    ] {
+        if ctx.input_mut(|i| i.consume_key(Modifiers::ALT, key)) {
+            commands.push(Command::Scene(SceneCommand::MoveAll(place::moved(state, item, by))));
+        }
     }
 }
 

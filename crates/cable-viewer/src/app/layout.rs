@@ -2,7 +2,7 @@
 
 use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, ScrollArea, Ui};
 
-use super::menu;
+use super::{guide, menu};
 use crate::canvas;
 use crate::command::Command;
 use crate::panels;
@@ -31,6 +31,9 @@ const LEAST_GRAPHS: f32 = 130.0;
 /// Draws everything but dialogs. Only the canvas needs the state mutable: it fits the camera to its own size.
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     Panel::top("menu").show(ui, |ui| menu::ui(ui, state, commands));
+    if state.guide.is_some() {
+        Panel::top("guide").show(ui, |ui| guide::strip(ui, state, commands));
+    }
     Panel::bottom("status").show(ui, |ui| menu::status(ui, state));
     Panel::bottom("playback").show(ui, |ui| {
         panels::timeline::ui(ui, state, commands);

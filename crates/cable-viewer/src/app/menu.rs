@@ -4,9 +4,12 @@ use cable_core::scene::catalog;
 use egui::{Button, KeyboardShortcut, MenuBar, Ui};
 
 use super::keys;
+use crate::colour::{ColourMap, Quantity};
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::dialog::Dialog;
+use crate::panels::system::System;
 use crate::state::{AppState, WorkerStatus};
+use crate::units;
 
 /// The menu bar.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -15,6 +18,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.menu_button("Edit", |ui| edit(ui, state, commands));
         ui.menu_button("View", |ui| view(ui, state, commands));
         ui.menu_button("Scenes", |ui| scenes(ui, commands));
+        ui.menu_button("Learn", |ui| super::guide::menu(ui, commands));
         if ui.button("Help").on_hover_text("Pointer and keys (F1)").clicked() {
             commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::Help))));
         }
@@ -51,6 +55,7 @@ fn file(ui: &mut Ui, commands: &mut Vec<Command>) {
         ("Save", Some(&keys::SAVE), FileCommand::Save),
         ("Save as…", Some(&keys::SAVE_AS), FileCommand::AskSaveAs),
         ("Import map…", None, import_map()),
+        ("Open run…", None, FileCommand::SetDialog(Some(Dialog::OpenRun { path: "run".to_owned(), hold: false }))),
         ("Save run…", None, FileCommand::SetDialog(Some(Dialog::SaveRun { path: "run".to_owned() }))),
         ("Quit", None, FileCommand::Quit),
     ] {
@@ -81,13 +86,20 @@ fn edit(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::Palette { text: String::new() }))));
     }
     ui.separator();
-    ui.add_enabled_ui(state.selected.is_some(), |ui| {
-        if entry(ui, "Remove selected", None)
-            && let Some(item) = state.selected
-        {
-            commands.push(Command::Scene(SceneCommand::Remove(item)));
-        }
-    });
+    let picked = state.selected.is_some();
+    for (text, shortcut, enabled, command) in [
+        ("Copy", Some(&keys::COPY), picked, SceneCommand::Copy),
+        ("Cut", Some(&keys::CUT), picked, SceneCommand::Cut),
+        ("Paste", Some(&keys::PASTE), !state.clipboard.is_empty(), SceneCommand::Paste { at_m: None }),
+        ("Remove selected", None, picked, SceneCommand::RemoveAll(state.picks())),
+        ("Add a cable", None, !state.scene.cables.is_empty(), SceneCommand::AddCable),
+    ] {
+        ui.add_enabled_ui(enabled, |ui| {
+            if entry(ui, text, shortcut) {
+                commands.push(Command::Scene(command));
+            }
+        });
+    }
     if entry(ui, "Reset to start (R)", None) {
         commands.push(Command::Playback(PlaybackCommand::Reset));
     }
@@ -109,11 +121,21 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.checkbox(&mut layers.labels, "Labels");
     ui.checkbox(&mut layers.contacts, "Contacts");
     ui.checkbox(&mut layers.forces, "Forces");
+    ui.checkbox(&mut layers.components, "Parts of forces").on_hover_text("Of each force, to the right and upwards");
     ui.checkbox(&mut layers.nodes, "Nodes");
     ui.separator();
     ui.checkbox(&mut layers.snap, "Snap to grid").on_hover_text("Dragged points land on the finest grid lines shown");
     if layers != state.layers {
         commands.push(Command::View(ViewCommand::SetLayers(layers)));
+    }
+    ui.separator();
+    colours(ui, state, commands);
+    ui.separator();
+    let mut units = state.units;
+    ui.radio_value(&mut units, System::Si, "SI units").on_hover_text("Metres, newtons, kilograms");
+    ui.radio_value(&mut units, System::Us, "US units").on_hover_text("Feet, pounds-force, pounds; files stay SI");
+    if units != state.units {
+        commands.push(Command::View(ViewCommand::SetUnits(units)));
     }
     ui.separator();
     let mut theme = state.theme;
@@ -122,6 +144,38 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.radio_value(&mut theme, egui::ThemePreference::Dark, "Dark theme");
     if theme != state.theme {
         commands.push(Command::View(ViewCommand::SetTheme(theme)));
+    }
+}
+
+/// What the cable's colours show, and between which values.
+fn colours(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let mut colour = state.colour;
+    for quantity in Quantity::ALL {
+        let text = format!("Colour by {}", quantity.name().to_lowercase());
+        if ui
+            .radio_value(&mut colour.quantity, quantity, text)
+            .on_hover_text("What the colours of the cable show")
+            .changed()
+        {
+            // A range of another quantity means nothing.
+            colour.fixed = None;
+        }
+    }
+    ui.menu_button("Colours", |ui| {
+        for map in ColourMap::ALL {
+            let help = "Even steps to every eye, also in grey and to colour-blind eyes";
+            ui.radio_value(&mut colour.map, map, map.name()).on_hover_text(help);
+        }
+        let mut fixed = colour.fixed.is_some();
+        let help =
+            "On: the colours keep the values they have now; off: they follow the least and greatest of each answer";
+        let present = state.snapshot.solution.as_deref().map(|s| state.colour.range(s));
+        if ui.checkbox(&mut fixed, "Keep the range").on_hover_text(help).changed() {
+            colour.fixed = present.filter(|_| fixed);
+        }
+    });
+    if colour != state.colour {
+        commands.push(Command::View(ViewCommand::SetColour(colour)));
     }
 }
 
@@ -136,9 +190,10 @@ fn scenes(ui: &mut Ui, commands: &mut Vec<Command>) {
 /// The status line: cursor, model, time taken.
 pub fn status(ui: &mut Ui, state: &AppState) {
     ui.horizontal(|ui| {
-        match state.cursor_m {
-            Some([x, y]) => ui.monospace(format!("x {x:9.3} m   y {y:9.3} m")),
-            None => ui.monospace("x         – m   y         – m"),
+        let (length, si) = units::of_length();
+        match state.cursor_m.map(|p| p.map(|v| v / si)) {
+            Some([x, y]) => ui.monospace(format!("x {x:9.3} {length}   y {y:9.3} {length}")),
+            None => ui.monospace(format!("x         – {length}   y         – {length}")),
         };
         ui.separator();
         if let Some(solution) = &state.snapshot.solution {

@@ -1,6 +1,7 @@
 //! The window: takes in the worker's answers, lays out panels and canvas, applies what they push.
 
 mod dialogs;
+mod guide;
 mod keys;
 mod layout;
 mod menu;
@@ -16,6 +17,8 @@ use crate::autosave::Autosave;
 use crate::command::{self, Command, Effects};
 use crate::dialog::Dialog;
 use crate::history::Sample;
+use crate::panels::system;
+use crate::reach;
 use crate::state::{AppState, WorkerStatus};
 use crate::theme;
 use crate::worker::Worker;
@@ -36,6 +39,8 @@ pub struct ViewerApp {
     autosave: Option<Autosave>,
     /// Numbers of the edits not yet answered and when they were sent, oldest first; at most [`MOST_ASKED`].
     asked: VecDeque<(u64, Instant)>,
+    /// The map of where the robot can go, while it is computed.
+    reach: Option<reach::Job>,
 }
 
 impl ViewerApp {
@@ -61,6 +66,7 @@ impl ViewerApp {
             title: String::new(),
             autosave: None,
             asked: VecDeque::new(),
+            reach: None,
         };
         let mut effects = Effects::default();
         command::submit_scene(&mut app.state, true, &mut effects);
@@ -112,6 +118,13 @@ impl ViewerApp {
         if let (true, Some(autosave)) = (effects.forget_recovery, &mut self.autosave) {
             autosave.forget();
         }
+        if let Some(text) = effects.copied {
+            ctx.copy_text(text);
+        }
+        if let Some(order) = effects.reach {
+            let shown = ctx.clone();
+            self.reach = order.map(|o| reach::Job::start(*o, move || shown.request_repaint()));
+        }
         if effects.restart_worker {
             self.worker = new_worker(ctx, self.threaded);
         }
@@ -134,6 +147,12 @@ impl ViewerApp {
     fn take_answers(&mut self, ctx: &egui::Context) {
         if let Some(report) = self.worker.poll() {
             self.show(report);
+        }
+        if let Some(job) = &self.reach {
+            self.state.reach = job.progress();
+            if !matches!(self.state.reach, reach::Progress::Running(_)) {
+                self.reach = None;
+            }
         }
         self.state.worker = self.worker.status();
         if !self.threaded && !self.state.playback.paused {
@@ -176,6 +195,15 @@ impl ViewerApp {
             state.playback.paused = true;
         }
         state.take(report.snapshot);
+        if report.history_restarts && !state.reopened.is_empty() {
+            let answers = std::mem::take(&mut state.reopened);
+            let last_s = answers.last().map(|a| a.time_s);
+            for answer in answers {
+                state.history.push(Sample::of(&answer));
+                state.recording.push(answer);
+            }
+            state.show_time(last_s);
+        }
         // Several edits may be answered at once: the delay shown is that of the one that waited longest.
         let answered = self.asked.iter().take_while(|(number, _)| *number <= state.snapshot.edit).count();
         if let Some((_, began)) = self.asked.drain(..answered).next() {
@@ -197,6 +225,7 @@ fn new_worker(ctx: &egui::Context, threaded: bool) -> Worker {
 impl eframe::App for ViewerApp {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
+        system::show(self.state.units);
         self.take_answers(&ctx);
         self.replay(&ctx);
         ctx.set_theme(self.state.theme);

@@ -4,8 +4,10 @@ use cable_core::Model;
 use cable_core::scene::catalog;
 use egui::{Key, ScrollArea, TextEdit, Ui};
 
+use crate::colour::{ColourScale, Quantity};
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::dialog::Dialog;
+use crate::panels::system::System;
 
 /// Everything, with the words it is found by.
 fn entries() -> Vec<(String, Command)> {
@@ -15,6 +17,8 @@ fn entries() -> Vec<(String, Command)> {
         ("Open a file…", Command::File(FileCommand::AskOpen)),
         ("Save", Command::File(FileCommand::Save)),
         ("Save as…", Command::File(FileCommand::AskSaveAs)),
+        ("Open run…", file(Dialog::OpenRun { path: "run".to_owned(), hold: false })),
+        ("Hold a run…", file(Dialog::OpenRun { path: "run".to_owned(), hold: true })),
         ("Save run…", file(Dialog::SaveRun { path: "run".to_owned() })),
         ("Import map…", Command::File(super::menu::import_map())),
         ("Undo", Command::Scene(SceneCommand::Undo)),
@@ -36,14 +40,20 @@ fn entries() -> Vec<(String, Command)> {
         ("Light theme", theme(egui::ThemePreference::Light)),
         ("Dark theme", theme(egui::ThemePreference::Dark)),
         ("Theme of the system", theme(egui::ThemePreference::System)),
+        ("SI units", Command::View(ViewCommand::SetUnits(System::Si))),
+        ("US units", Command::View(ViewCommand::SetUnits(System::Us))),
+        ("Add a cable", Command::Scene(SceneCommand::AddCable)),
+        ("Go on from the time shown", Command::Playback(PlaybackCommand::GoOn)),
         ("Restart the solver", Command::File(FileCommand::RestartWorker)),
         ("Help: pointer and keys", file(Dialog::Help)),
         ("About: what was checked", file(Dialog::About)),
         ("Quit", Command::File(FileCommand::Quit)),
     ];
+    let colour = |quantity| Command::View(ViewCommand::SetColour(ColourScale { quantity, ..ColourScale::default() }));
     let models = [Model::Auto, Model::Catenary, Model::Fem, Model::MassSpring];
     let mut all: Vec<(String, Command)> = fixed.map(|(name, command)| (name.to_owned(), command)).into();
     all.extend(models.map(|m| (format!("Solve with {m}"), Command::SetModel(m))));
+    all.extend(Quantity::ALL.map(|q| (format!("Colour by {}", q.name().to_lowercase()), colour(q))));
     all.extend(catalog::all().into_iter().map(|(id, scene)| {
         (format!("Open scene: {}", scene.name), Command::File(FileCommand::OpenCatalogue(id.to_owned())))
     }));

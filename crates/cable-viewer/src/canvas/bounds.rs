@@ -69,3 +69,20 @@ pub fn scene(state: &AppState) -> [Point; 2] {
     super::robot::outline(state).into_iter().for_each(|p| bounds.add(p));
     bounds.or_unit()
 }
+
+/// Left and right end of the ground, where there is some, within what a robot could be led to by its cable, m.
+#[must_use]
+pub fn ground(state: &AppState) -> [f64; 2] {
+    let mut bounds = Bounds::EMPTY;
+    for obstacle in &state.scene.obstacles {
+        if let Shape::Terrain { points_m } = &obstacle.shape {
+            points_m.iter().for_each(|&p| bounds.add(p));
+        }
+    }
+    let [low, high] = bounds.or_unit();
+    let from = state.scene.robot.as_ref().map_or(0.0, |r| r.at_m[0]);
+    let longest = state.scene.cables.iter().map(|c| c.length_m).fold(0.0, f64::max);
+    let starts = state.scene.cables.iter().filter_map(|c| c.supports.first()?.at_m).map(|p| p[0]);
+    let (near, far) = starts.fold((from, from), |(a, b), x| (a.min(x), b.max(x)));
+    [low[0].max(near - longest), high[0].min(far + longest)]
+}

@@ -28,7 +28,7 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
         let service = cable.service_tension_n;
         for nodes in answer.pieces() {
             let line = Ribbon::new(view, nodes);
-            if picked(state.selected) || picked(state.hovered) {
+            if state.picked(Item::Cable(k)) || picked(state.hovered) {
                 line.add(&mut mesh, width + 7.0, |_| Some(view.palette.accent.gamma_multiply(0.55)));
             }
             line.add(&mut mesh, width + 6.0, |i| (nodes[i].tension_n > service).then_some(fade(view.palette.risk)));

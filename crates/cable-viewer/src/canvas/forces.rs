@@ -6,11 +6,17 @@ use cable_core::solution::{CableSolution, ContactState};
 use egui::{Align2, Color32, Pos2, Stroke, Vec2, pos2, vec2};
 
 use super::view::View;
+use crate::panels::unit::Unit;
 use crate::state::{AppState, Item};
 use crate::units;
 
 /// Longest and shortest arrow, points.
 const LENGTH: [f64; 2] = [64.0, 9.0];
+/// Length of a load's arrow of 1 N, points; it grows with the square root. Loads have a scale of their own that does not depend
+/// on the answer, so that the head of an arrow can be dragged: 100 N are 48 points.
+const LOAD_POINTS: f64 = 4.8;
+/// Shortest and longest arrow of a load, points.
+const LOAD_LENGTH: [f64; 2] = [18.0, 220.0];
 
 /// All arrows; their figures go to `figures` for the labels to place.
 pub fn draw(view: &mut View<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
@@ -22,7 +28,7 @@ pub fn draw(view: &mut View<'_>, state: &AppState, figures: &mut Vec<(Pos2, Stri
             contacts(view, cable, &scale);
         }
         if state.layers.forces {
-            reactions(view, cable, &scale, figures);
+            reactions(view, state, cable, (&scale, figures));
             loads(view, state, k, cable, figures);
         }
     }
@@ -79,11 +85,22 @@ fn tangent_at(cable: &CableSolution, arc_length_m: f64, normal: Point) -> Point 
     if forward { t } else { [-t[0], -t[1]] }
 }
 
+/// A force as text, with its parts to the right and upwards where they are asked for.
+fn figure(force: Point, components: bool) -> String {
+    let size = units::force(force[0].hypot(force[1]));
+    if !components {
+        return size;
+    }
+    let part =
+        |f: f64, [minus, plus]: [&str; 2]| format!("{} {}", if f < 0.0 { minus } else { plus }, units::force(f.abs()));
+    format!("{size}\n{}  {}", part(force[0], ["←", "→"]), part(force[1], ["↓", "↑"]))
+}
+
 fn reactions(
     view: &mut View<'_>,
+    state: &AppState,
     cable: &CableSolution,
-    scale: &impl Fn(Point) -> Vec2,
-    figures: &mut Vec<(Pos2, String, Color32)>,
+    (scale, figures): (&impl Fn(Point) -> Vec2, &mut Vec<(Pos2, String, Color32)>),
 ) {
     for s in &cable.supports {
         let along = scale([s.reaction_x_n, s.reaction_y_n]);
@@ -91,7 +108,7 @@ fn reactions(
             let at = view.at([s.x_m, s.y_m]);
             view.arrow(at, along, Stroke::new(2.0, view.palette.reaction));
             view.avoid_line(at, at + along);
-            let figure = units::force(s.reaction_x_n.hypot(s.reaction_y_n));
+            let figure = figure([s.reaction_x_n, s.reaction_y_n], state.layers.components);
             figures.push((at + along, figure, view.palette.reaction));
         }
     }
@@ -112,6 +129,37 @@ pub fn load_at(state: &AppState, load: usize) -> Option<(Point, Point)> {
     Some(([before.x_m + (node.x_m - before.x_m) * f, before.y_m + (node.y_m - before.y_m) * f], force))
 }
 
+/// The arrow of a load on screen, points (y down).
+fn load_arrow(force: Point) -> Vec2 {
+    let size = force[0].hypot(force[1]);
+    if !(size > 0.0 && size.is_finite()) {
+        return Vec2::ZERO;
+    }
+    let length = (LOAD_POINTS * size.sqrt()).clamp(LOAD_LENGTH[0], LOAD_LENGTH[1]);
+    vec2((force[0] / size * length) as f32, (-force[1] / size * length) as f32)
+}
+
+/// Where the head of a load's arrow is, m.
+#[must_use]
+pub fn head_at(state: &AppState, load: usize) -> Option<Point> {
+    let (tail, force) = load_at(state, load)?;
+    let along = load_arrow(force);
+    let scale = state.camera.points_per_m;
+    Some([tail[0] + f64::from(along.x) / scale, tail[1] - f64::from(along.y) / scale])
+}
+
+/// The force whose arrow goes along a vector of the world (m), N: the inverse of how it is drawn.
+#[must_use]
+pub fn force_of_arrow(along_m: Point, camera: &crate::camera::Camera) -> Point {
+    let points = along_m[0].hypot(along_m[1]) * camera.points_per_m;
+    if !(points > 0.0 && points.is_finite()) {
+        return [0.0; 2];
+    }
+    let size = (points / LOAD_POINTS).powi(2);
+    let metres = points / camera.points_per_m;
+    along_m.map(|v| v / metres * size)
+}
+
 fn loads(
     view: &mut View<'_>,
     state: &AppState,
@@ -120,14 +168,16 @@ fn loads(
     figures: &mut Vec<(Pos2, String, Color32)>,
 ) {
     let mut arrow = |at: Point, force: Point, item: Item| {
-        let along = screen_vector(force, force[0].hypot(force[1]).max(1.0)) * 0.75;
-        let picked = state.selected == Some(item) || state.hovered == Some(item);
+        let along = load_arrow(force);
+        let head = matches!((item, state.hovered), (Item::Load(k), Some(Item::Head(h))) if k == h);
+        let picked = state.picked(item) || state.hovered == Some(item) || head;
         let colour = if picked { view.palette.accent } else { view.palette.load };
         let tail = view.at(at);
         view.arrow(tail, along, Stroke::new(2.6, colour));
         view.avoid_line(tail, tail + along);
         view.painter.circle_filled(tail, 3.5, colour);
-        figures.push((tail + along, units::force(force[0].hypot(force[1])), colour));
+        let text = figure(force, state.layers.components || picked);
+        figures.push((tail + along, text, colour));
     };
     for (k, load) in state.scene.loads.iter().enumerate() {
         if load.cable == answer.name
@@ -153,6 +203,7 @@ fn wind(view: &View<'_>, per_metre: Point) {
     let dir = vec2((per_metre[0] / size) as f32, (-per_metre[1] / size) as f32);
     let centre = pos2(view.rect.min.x + super::grid::STRIP[0] + 56.0, view.rect.min.y + 40.0);
     view.arrow(centre - dir * 24.0, dir * 48.0, Stroke::new(3.0, view.palette.load));
-    let text = format!("Wind {} N/m", units::digits(size));
+    let unit = Unit::N_PER_M.shown();
+    let text = format!("Wind {} {}", units::digits(size / unit.si), unit.symbol);
     view.text(pos2(centre.x, centre.y + 28.0), Align2::CENTER_TOP, &text, 11.0, view.palette.text);
 }

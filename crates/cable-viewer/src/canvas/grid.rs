@@ -14,13 +14,15 @@ pub const STRIP: [f32; 2] = [46.0, 20.0];
 /// Distance of numbered lines (1, 2 or 5 times a power of ten) and of the thin ones between, m.
 #[must_use]
 pub fn steps(camera: &Camera) -> [f64; 2] {
-    let least = LEAST_SPACING / camera.points_per_m;
+    // Round in the unit shown.
+    let (_, unit_m) = units::of_length();
+    let least = LEAST_SPACING / (camera.points_per_m * unit_m);
     let power = 10f64.powf(least.log10().floor());
     let (factor, parts) = [(1.0, 5.0), (2.0, 4.0), (5.0, 5.0), (10.0, 5.0)]
         .into_iter()
         .find(|(f, _)| f * power >= least)
         .unwrap_or((10.0, 5.0));
-    [factor * power, factor * power / parts]
+    [factor * power * unit_m, factor * power / parts * unit_m]
 }
 
 /// Lines behind everything.
@@ -63,6 +65,7 @@ fn numbered(view: &View<'_>, axis: usize, step: f64, mut line: impl FnMut(f32, f
 /// Numbers along the left and lower edge, on strips over everything.
 pub fn axes(view: &mut View<'_>) {
     let [major, _] = steps(&view.camera);
+    let (length, _) = units::of_length();
     let (rect, palette) = (view.rect, view.palette);
     let left = Rect::from_min_max(rect.min, pos2(rect.min.x + STRIP[0], rect.max.y));
     let below = Rect::from_min_max(pos2(rect.min.x, rect.max.y - STRIP[1]), rect.max);
@@ -87,8 +90,14 @@ pub fn axes(view: &mut View<'_>) {
             view.text(pos2(left.max.x - 6.0, y), Align2::RIGHT_CENTER, &text, 11.0, palette.weak_text);
         }
     });
-    view.text(pos2(rect.max.x - 6.0, below.min.y + 4.0), Align2::RIGHT_TOP, "x (m)", 11.0, palette.text);
-    view.text(pos2(left.min.x + 6.0, rect.min.y + 6.0), Align2::LEFT_TOP, "y (m)", 11.0, palette.text);
+    view.text(
+        pos2(rect.max.x - 6.0, below.min.y + 4.0),
+        Align2::RIGHT_TOP,
+        &format!("x ({length})"),
+        11.0,
+        palette.text,
+    );
+    view.text(pos2(left.min.x + 6.0, rect.min.y + 6.0), Align2::LEFT_TOP, &format!("y ({length})"), 11.0, palette.text);
     view.taken.extend([left, below]);
 }
 
@@ -103,7 +112,7 @@ pub fn scale_bar(view: &mut View<'_>) {
     for p in [begin, end] {
         view.painter.vline(p.x, p.y - 4.0..=p.y + 4.0, stroke);
     }
-    let text = format!("{} m", units::coordinate(major, major));
+    let text = format!("{} {}", units::coordinate(major, major), units::of_length().0);
     let middle = pos2(0.5 * (begin.x + end.x), begin.y - 4.0);
     let rect = view.text(middle, Align2::CENTER_BOTTOM, &text, 11.0, view.palette.text);
     view.taken.push(rect.union(Rect::from_two_pos(begin, end)).expand(4.0));

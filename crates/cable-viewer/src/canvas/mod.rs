@@ -2,19 +2,23 @@
 
 pub mod bounds;
 mod cable;
-mod forces;
+pub mod forces;
 pub mod grid;
 mod held;
 mod legend;
+mod named;
 mod obstacles;
+mod path;
 pub mod pick;
+pub mod place;
 mod pointer;
-mod robot;
-mod supports;
+mod reach;
+pub mod robot;
+pub mod supports;
 mod triangulate;
 mod view;
 
-use egui::{Rect, Role, Sense, Ui, WidgetInfo, vec2};
+use egui::{Role, Sense, Ui, WidgetInfo};
 
 use crate::command::Command;
 use crate::state::AppState;
@@ -27,6 +31,8 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     let (response, painter) = ui.allocate_painter(ui.available_size(), Sense::CLICK | Sense::DRAG);
     let rect = response.rect;
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Canvas"));
+    // Written only for who listens.
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(named::summary(state)));
     if !rect.is_positive() {
         return;
     }
@@ -36,7 +42,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         state.camera.fit(rect, bounds);
     }
     pointer::read(ui, &response, state, commands);
-    name_supports(ui, rect, state);
+    named::ui(ui, rect, state);
     let mut view = View {
         rect,
         camera: state.camera,
@@ -60,7 +66,10 @@ fn draw(view: &mut View<'_>, state: &AppState) {
     cable::draw(view, state);
     let mut figures = Vec::new();
     forces::draw(view, state, &mut figures);
+    reach::draw(view, state, &mut figures);
     supports::draw(view, state);
+    path::draw(view, state, &mut figures);
+    pointer::frame(view, state);
     if state.layers.grid {
         grid::axes(view);
         grid::scale_bar(view);
@@ -69,19 +78,5 @@ fn draw(view: &mut View<'_>, state: &AppState) {
     legend::banner(view, state);
     if state.layers.labels {
         supports::labels(view, state, figures);
-    }
-}
-
-/// Lets a screen reader, and the tests, find each support where it is painted.
-fn name_supports(ui: &Ui, canvas: Rect, state: &AppState) {
-    for (cable, c) in state.scene.cables.iter().enumerate() {
-        for (support, s) in c.supports.iter().enumerate() {
-            let Some(at) = supports::place(state, cable, support) else { continue };
-            let spot = Rect::from_center_size(state.camera.to_screen(canvas, at), vec2(20.0, 20.0));
-            let id = ui.scope_id().with(("support", cable, support));
-            let response = ui.interact(spot.intersect(canvas), id, Sense::hover());
-            let text = format!("Support {} of {}", s.name, c.name);
-            response.widget_info(|| WidgetInfo::labeled(Role::GraphicsSymbol, true, &text));
-        }
     }
 }

@@ -16,7 +16,7 @@ pub fn draw(view: &View<'_>, state: &AppState) {
     for (k, obstacle) in state.scene.obstacles.iter().enumerate() {
         let touched =
             |item: Item| item == Item::Obstacle(k) || matches!(item, Item::Corner { obstacle, .. } if obstacle == k);
-        let selected = state.selected.is_some_and(touched);
+        let selected = state.selected.is_some_and(touched) || state.picked(Item::Obstacle(k));
         let stroke = if selected {
             Stroke::new(2.5, view.palette.accent)
         } else if state.hovered.is_some_and(touched) {

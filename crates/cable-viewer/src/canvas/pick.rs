@@ -4,7 +4,7 @@ use cable_core::math::Point;
 use cable_core::scene::Shape;
 use egui::{Pos2, Rect};
 
-use super::{forces, robot, supports};
+use super::{forces, path, robot, supports};
 use crate::state::{AppState, Item};
 
 /// How near counts as on it, points.
@@ -35,6 +35,12 @@ pub fn item_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
     }
     for load in 0..state.scene.loads.len() {
         offer(forces::load_at(state, load).and_then(|(at, _)| near(at, CORNER)), Item::Load(load));
+        if state.layers.forces {
+            offer(forces::head_at(state, load).and_then(|at| near(at, CORNER)), Item::Head(load));
+        }
+    }
+    for (leg, at, _) in path::flags(state) {
+        offer(near(at, CORNER), Item::Leg(leg));
     }
     for (obstacle, o) in state.scene.obstacles.iter().enumerate() {
         // Corners can be picked once their handles are shown; before, the whole obstacle is.
@@ -103,6 +109,22 @@ pub fn cable_at(state: &AppState, canvas: Rect, p: Pos2, reach: f32) -> Option<(
     }
     let (d, k, s, q) = best?;
     (d * state.camera.points_per_m <= f64::from(reach)).then_some((k, s, q))
+}
+
+/// Arc length where a cable is nearest to a point, m.
+#[must_use]
+pub fn nearest_on(state: &AppState, cable: usize, p: Point) -> Option<f64> {
+    let answer = state.snapshot.solution.as_ref()?.cables.get(cable)?;
+    let mut best: Option<(f64, f64)> = None;
+    for pair in answer.pieces().flat_map(|p| p.windows(2)) {
+        let (a, b) = ([pair[0].x_m, pair[0].y_m], [pair[1].x_m, pair[1].y_m]);
+        let f = along(a, b, p);
+        let d = (a[0] + (b[0] - a[0]) * f - p[0]).hypot(a[1] + (b[1] - a[1]) * f - p[1]);
+        if best.is_none_or(|(least, _)| d < least) {
+            best = Some((d, pair[0].arc_length_m + (pair[1].arc_length_m - pair[0].arc_length_m) * f));
+        }
+    }
+    best.map(|(_, s)| s)
 }
 
 /// Where on a segment (0 to 1) a point is nearest.

@@ -1,10 +1,10 @@
-//! The pointer on the canvas: hover, pick, drag, pan, zoom, add a waypoint.
+//! The pointer on the canvas: hover, pick, drag, frame, pan, zoom, add a waypoint or a leg.
 
-use cable_core::math::Point;
 use cable_core::scene::Shape;
-use egui::{CursorIcon, PointerButton, Pos2, Response, Ui};
+use egui::{CursorIcon, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui};
 
-use super::{grid, pick, supports};
+use super::view::View;
+use super::{grid, pick, place};
 use crate::command::{Command, SceneCommand, ViewCommand};
 use crate::state::{AppState, Grab, Item};
 
@@ -19,17 +19,37 @@ pub fn read(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<C
     hover(ui, response, state, commands);
     wheel(ui, response, state, commands);
     if response.double_clicked() {
-        if let Some(p) = response.interact_pointer_pos()
-            && let Some((cable, arc_length_m, at_m)) = pick::cable_at(state, canvas, p, WAYPOINT_REACH)
-        {
-            commands.push(Command::Scene(SceneCommand::AddWaypoint { cable, arc_length_m, at_m }));
+        if let Some(p) = response.interact_pointer_pos() {
+            double_click(state, canvas, p, commands);
         }
     } else if response.clicked()
         && let Some(p) = response.interact_pointer_pos()
     {
-        commands.push(Command::View(ViewCommand::Select(pick::item_at(state, canvas, p))));
+        let item = pick::item_at(state, canvas, p);
+        commands.push(Command::View(match item {
+            Some(item) if adds(ui) => ViewCommand::Toggle(item),
+            item => ViewCommand::Select(item),
+        }));
     }
     drag(ui, response, state, commands);
+}
+
+/// The keys that add to what is picked are held.
+fn adds(ui: &Ui) -> bool {
+    ui.input(|i| i.modifiers.command || i.modifiers.shift)
+}
+
+/// A waypoint on the cable; on the ground a leg of the robot's path to there.
+fn double_click(state: &AppState, canvas: Rect, p: Pos2, commands: &mut Vec<Command>) {
+    if let Some((cable, arc_length_m, at_m)) = pick::cable_at(state, canvas, p, WAYPOINT_REACH) {
+        commands.push(Command::Scene(SceneCommand::AddWaypoint { cable, arc_length_m, at_m }));
+    } else if state.scene.robot.is_some()
+        && let Some(Item::Obstacle(k)) = pick::item_at(state, canvas, p)
+        && state.scene.obstacles.get(k).is_some_and(|o| matches!(o.shape, Shape::Terrain { .. }))
+    {
+        let [to_x_m, _] = state.camera.to_world(canvas, p);
+        commands.push(Command::Scene(SceneCommand::AddLeg { to_x_m }));
+    }
 }
 
 fn hover(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Command>) {
@@ -48,7 +68,7 @@ fn hover(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comm
     let icon = match (state.grabbed.is_some(), item) {
         (true, _) => CursorIcon::Grabbing,
         (false, Some(Item::Cable(_))) => CursorIcon::PointingHand,
-        (false, Some(item)) if place(state, item).is_some() => CursorIcon::Grab,
+        (false, Some(item)) if place::of(state, item).is_some() => CursorIcon::Grab,
         (false, Some(_)) => CursorIcon::PointingHand,
         (false, None) if response.dragged() => CursorIcon::AllScroll,
         (false, None) => CursorIcon::Default,
@@ -70,10 +90,18 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
     let canvas = response.rect;
     if response.drag_started_by(PointerButton::Primary)
         && let Some(p) = ui.input(|i| i.pointer.press_origin())
-        && let Some(item) = pick::item_at(state, canvas, p)
     {
-        commands.push(Command::View(ViewCommand::Select(Some(item))));
-        if let Some(at) = place(state, item) {
+        let Some(item) = pick::item_at(state, canvas, p) else {
+            if adds(ui) {
+                let at = state.camera.to_world(canvas, p);
+                commands.push(Command::View(ViewCommand::Frame(Some([at, at]))));
+            }
+            return;
+        };
+        if !state.picked(item) {
+            commands.push(Command::View(ViewCommand::Select(Some(item))));
+        }
+        if let Some(at) = place::of(state, item) {
             let w = state.camera.to_world(canvas, p);
             let grab = Grab { item, offset_m: [at[0] - w[0], at[1] - w[1]] };
             commands.push(Command::View(ViewCommand::Grab(Some(grab))));
@@ -96,6 +124,7 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
                 commands.push(Command::Scene(SceneCommand::EditDone));
             }
         }
+        None if state.frame_m.is_some() => frame_to(ui, response, state, commands),
         None => {
             let delta = response.drag_delta();
             if response.dragged() && delta != egui::Vec2::ZERO {
@@ -123,30 +152,30 @@ fn move_to(state: &AppState, grab: &Grab, canvas: egui::Rect, p: Pos2, commands:
         let [_, step] = grid::steps(&state.camera);
         to_m = to_m.map(|v| (v / step).round() * step);
     }
-    commands.push(Command::Scene(SceneCommand::Move { item: grab.item, to_m }));
+    let item = grab.item;
+    let from_m = place::of(state, item).filter(|_| state.picked(item) && !state.also.is_empty());
+    commands.push(Command::Scene(match from_m {
+        Some(from) => SceneCommand::MoveAll(place::moved(state, item, [to_m[0] - from[0], to_m[1] - from[1]])),
+        None => SceneCommand::Move { item, to_m },
+    }));
 }
 
-/// Where a thing that can be dragged is, m; None for one that cannot.
-fn place(state: &AppState, item: Item) -> Option<Point> {
-    match item {
-        Item::Support { cable, support } => {
-            state.scene.cables.get(cable)?.supports.get(support)?.at_m?;
-            supports::place(state, cable, support)
-        }
-        Item::Corner { obstacle, corner } => match &state.scene.obstacles.get(obstacle)?.shape {
-            Shape::Terrain { points_m } | Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => {
-                points_m.get(corner).copied()
-            }
-            Shape::Circle { .. } => None,
-        },
-        Item::Obstacle(k) => match &state.scene.obstacles.get(k)?.shape {
-            // The whole ground is not dragged by accident: its corners are.
-            Shape::Terrain { .. } => None,
-            Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => points_m.first().copied(),
-            Shape::Circle { center_m, .. } => Some(*center_m),
-        },
-        Item::Load(k) => super::forces::load_at(state, k).map(|(at, _)| at),
-        Item::Robot => state.scene.robot.as_ref().map(|r| r.at_m),
-        Item::Cable(_) => None,
+/// Draws the frame on, and picks what is in it when it is let go.
+fn frame_to(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Command>) {
+    let Some([from, to]) = state.frame_m else { return };
+    let to = response.interact_pointer_pos().map_or(to, |p| state.camera.to_world(response.rect, p));
+    if response.drag_stopped() || !ui.input(|i| i.pointer.primary_down()) {
+        commands.push(Command::View(ViewCommand::SelectAll(place::within(state, [from, to]))));
+        commands.push(Command::View(ViewCommand::Frame(None)));
+    } else {
+        commands.push(Command::View(ViewCommand::Frame(Some([from, to]))));
     }
+}
+
+/// The frame being drawn round things to pick.
+pub fn frame(view: &View<'_>, state: &AppState) {
+    let Some([a, b]) = state.frame_m else { return };
+    let rect = Rect::from_two_pos(view.at(a), view.at(b));
+    let line = Stroke::new(1.2, view.palette.accent);
+    view.painter.rect(rect, 0.0, view.palette.accent.gamma_multiply(0.12), line, StrokeKind::Middle);
 }

@@ -50,7 +50,7 @@ fn robot(state: &AppState) -> Option<(Pose, &'static RobotPreset)> {
 pub fn draw(view: &mut View<'_>, state: &AppState) {
     let Some((pose, preset)) = robot(state) else { return };
     let is = |item: Option<Item>| item == Some(Item::Robot);
-    let line = match (is(state.selected), is(state.hovered)) {
+    let line = match (state.picked(Item::Robot), is(state.hovered)) {
         (true, _) => Stroke::new(2.5, view.palette.accent),
         (_, true) => Stroke::new(2.0, view.palette.accent),
         _ => Stroke::new(1.4, view.palette.surface),

@@ -29,9 +29,9 @@ pub fn draw(view: &View<'_>, state: &AppState) {
         for (support, s) in c.supports.iter().enumerate() {
             let Some(at) = place(state, cable, support) else { continue };
             let p = view.at(at);
-            let item = Some(Item::Support { cable, support });
-            if state.selected == item || state.hovered == item {
-                let strong = if state.selected == item { 0.5 } else { 0.28 };
+            let item = Item::Support { cable, support };
+            if state.picked(item) || state.hovered == Some(item) {
+                let strong = if state.picked(item) { 0.5 } else { 0.28 };
                 view.painter.circle_filled(p, 15.0, view.palette.accent.gamma_multiply(strong));
             }
             sign(view, p, s);
@@ -82,7 +82,7 @@ pub fn labels(view: &mut View<'_>, state: &AppState, figures: Vec<(Pos2, String,
                 let p = view.at(at);
                 view.taken.push(egui::Rect::from_min_max(p + vec2(-10.0, -8.0), p + vec2(10.0, 13.0)));
                 let [x, y] = at.map(|v| units::coordinate(v, 0.01));
-                spots.push((p, format!("{}  ({x}, {y}) m", s.name)));
+                spots.push((p, format!("{}  ({x}, {y}) {}", s.name, units::of_length().0)));
             }
         }
     }

@@ -1,15 +1,19 @@
 //! Commands about files, scenes to open, dialogs and the window.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use cable_core::scene::catalog;
 use cable_core::{Scene, files};
 
 use super::{Command, Effects, SceneCommand, import, submit_scene};
 use crate::dialog::Dialog;
+use crate::guide::{GUIDES, Place};
+use crate::history::Sample;
 use crate::plot::export::{self, Sheet};
+use crate::run::{self, Run};
 use crate::scene_file;
-use crate::state::AppState;
+use crate::state::{AppState, Held};
 
 /// Files and the window.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +24,8 @@ pub enum FileCommand {
     Open(PathBuf),
     /// Opens a catalogue scene by its short id.
     OpenCatalogue(String),
+    /// Opens the scene of a guide and leads through it.
+    OpenGuide(usize),
     /// Saves where it came from, else asks where to.
     Save,
     /// Asks where to save.
@@ -39,6 +45,10 @@ pub enum FileCommand {
     },
     /// Writes everything recorded as a run folder.
     SaveRun(PathBuf),
+    /// Opens the folder of a run: its scene, and all it recorded.
+    OpenRun(PathBuf),
+    /// Holds the run of a folder to compare with.
+    HoldRun(PathBuf),
     /// Shows a dialog, or closes it.
     SetDialog(Option<Dialog>),
     /// Takes over what a window that died had kept.
@@ -75,6 +85,11 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
                 open(state, scene, None, effects);
             }
         }
+        FileCommand::OpenGuide(index) => {
+            let Some(guide) = GUIDES.get(index) else { return };
+            carry_out(state, FileCommand::OpenCatalogue(guide.scene.to_owned()), effects);
+            state.guide = Some(Place { guide: index, step: 0 });
+        }
         FileCommand::Save => match state.document.path.clone() {
             Some(path) => save(state, &path),
             None => state.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
@@ -97,6 +112,17 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
         FileCommand::SaveRun(path) => match save_run(state, &path) {
             Ok(()) => state.dialog = None,
             Err(text) => complain(state, &format!("The run was not written to “{}”", path.display()), text),
+        },
+        FileCommand::OpenRun(path) => match run::open(&path) {
+            Ok(opened) => {
+                open(state, opened.scene, None, effects);
+                state.reopened = opened.answers;
+            }
+            Err(text) => complain(state, &format!("The run “{}” was not opened", path.display()), text),
+        },
+        FileCommand::HoldRun(path) => match run::open(&path) {
+            Ok(opened) => hold(state, &path, opened),
+            Err(text) => complain(state, &format!("The run “{}” was not opened", path.display()), text),
         },
         FileCommand::SetDialog(dialog) => state.dialog = dialog,
         FileCommand::Recover(scene) => {
@@ -126,7 +152,14 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
 }
 
 fn replaces_scene(command: &FileCommand) -> bool {
-    matches!(command, FileCommand::Open(_) | FileCommand::OpenCatalogue(_) | FileCommand::Quit)
+    matches!(
+        command,
+        FileCommand::Open(_)
+            | FileCommand::OpenRun(_)
+            | FileCommand::OpenCatalogue(_)
+            | FileCommand::OpenGuide(_)
+            | FileCommand::Quit
+    )
 }
 
 fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut Effects) {
@@ -135,14 +168,29 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
     state.scene_fault = fresh.scene_fault;
     state.document = fresh.document;
     state.undo = fresh.undo;
-    state.selected = None;
+    (state.selected, state.also) = (None, Vec::new());
     state.hovered = None;
     state.playback.paused = true;
     state.robot_order = None;
+    state.reopened = Vec::new();
+    state.guide = None;
+    (state.reach, effects.reach) = (crate::reach::Progress::None, Some(None));
     effects.request.robot = Some(None);
     state.camera.fit_wanted = true;
     state.dialog = None;
     submit_scene(state, true, effects);
+}
+
+fn hold(state: &mut AppState, path: &Path, opened: run::Opened) {
+    let samples: Vec<Sample> = opened.answers.iter().map(Sample::of).collect();
+    let events = opened.answers.iter().map(|a| a.warnings.len()).sum();
+    let run = Run::of(samples.iter(), &opened.answers, events).map(Arc::new);
+    state.dialog = None;
+    if let (Some(solution), true) = (opened.answers.into_iter().next_back(), state.held.len() < Held::MOST) {
+        let name = format!("{}, {}, {:.2} s", opened.scene.name, path.display(), solution.time_s);
+        let (scene, solution) = (Arc::new(opened.scene), Arc::new(solution));
+        state.held.push(Held { name, scene, solution, wall_s: f64::NAN, run });
+    }
 }
 
 fn save(state: &mut AppState, path: &Path) {

@@ -1,8 +1,10 @@
 //! Every edit and action of the window. Panels, canvas, menus and keys only push commands;
 //! [`apply`] is the one place that changes [`AppState`], split by group.
 
+pub mod clipboard;
 pub mod file;
 mod import;
+mod items;
 pub mod playback;
 pub mod scene;
 pub mod view;
@@ -14,6 +16,7 @@ pub use view::ViewCommand;
 
 use cable_core::{Model, Settings};
 
+use crate::reach::Order;
 use crate::state::AppState;
 use crate::worker::request::{Edit, Request};
 
@@ -45,6 +48,10 @@ pub struct Effects {
     pub forget_recovery: bool,
     /// Start the solver thread anew.
     pub restart_worker: bool,
+    /// Look for where the robot can go, or end that.
+    pub reach: Option<Option<Box<Order>>>,
+    /// Text for the clipboard of the system.
+    pub copied: Option<String>,
 }
 
 /// Does one command.
@@ -60,7 +67,7 @@ pub fn apply(state: &mut AppState, command: Command, effects: &mut Effects) {
             state.settings = settings;
             submit_scene(state, false, effects);
         }
-        Command::View(c) => view::apply(state, c),
+        Command::View(c) => view::apply(state, c, effects),
         Command::File(c) => file::apply(state, c, effects),
     }
 }

@@ -1,8 +1,15 @@
 //! Commands about time and the robot that moves in it.
 
+use cable_core::scene::SupportKind;
+
 use super::{Effects, next_number};
+use crate::dialog::Dialog;
 use crate::state::{AppState, Playback};
-use crate::worker::request::Request;
+use crate::undo::EditKind;
+use crate::worker::request::{Edit, Request, Resume};
+
+/// A support that is farther than this from where it was has been moved since, m. Less: rounding counts as moving.
+const MOVED_M: f64 = 1e-6;
 
 /// Time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +26,8 @@ pub enum PlaybackCommand {
     StepBack,
     /// Shows an earlier time (s), or the present; pauses.
     Show(Option<f64>),
+    /// Goes on from the earlier time shown: what came after it is forgotten.
+    GoOn,
     /// A replay begins anew at its end, or ends there.
     SetLoop(bool),
     /// Back to the start, bit for bit; pauses.
@@ -60,6 +69,7 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
             state.playback.paused = true;
             state.show_time(time_s.filter(|t| t.is_finite()));
         }
+        PlaybackCommand::GoOn => go_on(state, effects),
         PlaybackCommand::SetLoop(looped) => state.recording.looped = looped,
         PlaybackCommand::Reset => {
             state.playback.paused = true;
@@ -90,6 +100,37 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
         }
     }
     send(state, effects);
+}
+
+/// Takes the answer shown as the present one: supports stand where they stood then.
+fn go_on(state: &mut AppState, effects: &mut Effects) {
+    let Some(answer) = state.recording.shown() else { return };
+    state.playback.paused = true;
+    if answer.cables.iter().any(|c| !c.breaks.is_empty()) {
+        let title = "Time does not go on from here".to_owned();
+        let text = "The cable has broken by then: choose a time before it broke".to_owned();
+        state.dialog = Some(Dialog::Message { title, text });
+        return;
+    }
+    let before = state.scene.clone();
+    for (cable, then) in state.scene.cables.iter_mut().zip(&answer.cables) {
+        for (s, then) in cable.supports.iter_mut().zip(&then.supports) {
+            let moved = s.at_m.is_some_and(|at| (at[0] - then.x_m).hypot(at[1] - then.y_m) > MOVED_M);
+            if moved && s.motion.is_none() && s.kind != SupportKind::Pulley {
+                s.at_m = Some([then.x_m, then.y_m]);
+            }
+        }
+    }
+    if state.scene != before {
+        state.undo.close_entry();
+        state.undo.record(&before, EditKind("go on".to_owned()));
+        state.undo.close_entry();
+    }
+    state.scene_fault = state.scene.validate().err();
+    state.show_time(None);
+    let edit = Edit { scene: state.scene.clone(), model: state.model, settings: state.settings, fresh: false };
+    let resume = Some(Box::new(Resume { edit, answer }));
+    effects.request.merge(Request { resume, number: next_number(state), ..Request::default() });
 }
 
 /// Tells the worker whether time runs: not while what was recorded is replayed.

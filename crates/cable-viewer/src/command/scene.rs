@@ -1,11 +1,11 @@
 //! Commands that change the scene.
 
 use cable_core::math::Point;
-use cable_core::scene::ground::Ground;
-use cable_core::scene::{Environment, Shape, Support, SupportKind};
+use cable_core::scene::{Environment, RobotTask, Support};
 use cable_core::{Cable, Load, Obstacle, Robot, Scene};
 
-use super::{Effects, next_number, submit_scene};
+use super::items::{drop_lost_selection, hitched, move_item, remove_all, set_robot};
+use super::{Effects, clipboard, next_number, submit_scene};
 use crate::state::{AppState, Item};
 use crate::undo::EditKind;
 use crate::worker::request::{Drag, Request};
@@ -56,6 +56,8 @@ pub enum SceneCommand {
         /// Where to, m.
         to_m: Point,
     },
+    /// Puts several things at points, m.
+    MoveAll(Vec<(Item, Point)>),
     /// A frictionless point pulley on the cable.
     AddWaypoint {
         /// Index of the cable.
@@ -67,12 +69,30 @@ pub enum SceneCommand {
     },
     /// Another robot, or none: what hung on it is then fixed where it hung.
     SetRobot(Option<Robot>),
+    /// A leg of the robot's path to a place, m: after the leg that is picked, else at its end.
+    AddLeg {
+        /// Where to, m.
+        to_x_m: f64,
+    },
+    /// Another cable like the current one, beside it.
+    AddCable,
     /// A new obstacle; its name is made unique.
     AddObstacle(Obstacle),
     /// A new load.
     AddLoad(Load),
     /// Takes a thing out; the ends of a cable become free, its last cable stays.
     Remove(Item),
+    /// Takes several things out.
+    RemoveAll(Vec<Item>),
+    /// Keeps what is picked to paste it.
+    Copy,
+    /// Keeps what is picked and takes it out.
+    Cut,
+    /// Puts what was copied into the scene, its middle at a point (m), else a little beside where it was.
+    Paste {
+        /// Where, m.
+        at_m: Option<Point>,
+    },
     /// A pointer drag or a typed value is complete: the next edit is undone by itself.
     EditDone,
     /// Back by one edit.
@@ -93,6 +113,7 @@ impl SceneCommand {
             Self::SetLoad { load, .. } => format!("load {load}"),
             Self::SetRobot(_) => "robot".to_owned(),
             Self::Move { item, .. } => format!("move {item:?}"),
+            Self::MoveAll(moves) => format!("move {:?}", moves.iter().map(|(item, _)| item).collect::<Vec<_>>()),
             _ => "once".to_owned(),
         })
     }
@@ -102,6 +123,8 @@ impl SceneCommand {
 pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects) {
     match command {
         SceneCommand::EditDone => return state.undo.close_entry(),
+        SceneCommand::Copy => return clipboard::copy(state, effects),
+        SceneCommand::Cut => clipboard::copy(state, effects),
         SceneCommand::Undo | SceneCommand::Redo => {
             let other = match command {
                 SceneCommand::Undo => state.undo.back(&state.scene),
@@ -167,8 +190,12 @@ fn change(state: &mut AppState, command: SceneCommand) {
         SceneCommand::SetObstacle { obstacle, value } => set(&mut scene.obstacles, obstacle, value),
         SceneCommand::SetLoad { load, value } => set(&mut scene.loads, load, value),
         SceneCommand::Move { item, to_m } => move_item(state, item, to_m),
+        SceneCommand::MoveAll(moves) => moves.into_iter().for_each(|(item, to_m)| move_item(state, item, to_m)),
         SceneCommand::AddWaypoint { cable, arc_length_m, at_m } => add_waypoint(state, cable, arc_length_m, at_m),
         SceneCommand::SetRobot(robot) => set_robot(scene, robot),
+        SceneCommand::AddLeg { to_x_m } => add_leg(state, to_x_m),
+        SceneCommand::AddCable => clipboard::add_cable(state),
+        SceneCommand::Paste { at_m } => clipboard::paste(state, at_m),
         SceneCommand::AddObstacle(mut obstacle) => {
             obstacle.name = unique(&obstacle.name, |n| scene.obstacles.iter().any(|o| o.name == n));
             scene.obstacles.push(obstacle);
@@ -178,97 +205,28 @@ fn change(state: &mut AppState, command: SceneCommand) {
             scene.loads.push(load);
             state.selected = Some(Item::Load(state.scene.loads.len() - 1));
         }
-        SceneCommand::Remove(item) => remove(state, item),
-        SceneCommand::EditDone | SceneCommand::Undo | SceneCommand::Redo => {}
+        SceneCommand::Remove(item) => remove_all(state, vec![item]),
+        SceneCommand::RemoveAll(items) => remove_all(state, items),
+        SceneCommand::Cut => remove_all(state, state.picks()),
+        SceneCommand::EditDone | SceneCommand::Copy | SceneCommand::Undo | SceneCommand::Redo => {}
     }
 }
 
-fn set<T>(list: &mut [T], index: usize, value: T) {
+pub(super) fn set<T>(list: &mut [T], index: usize, value: T) {
     if let Some(slot) = list.get_mut(index) {
         *slot = value;
     }
 }
 
 /// The name, with the first free number appended if it is taken.
-fn unique(name: &str, taken: impl Fn(&str) -> bool) -> String {
+pub(super) fn unique(name: &str, taken: impl Fn(&str) -> bool) -> String {
     if !taken(name) {
         return name.to_owned();
     }
     (2..).map(|k| format!("{name} {k}")).find(|n| !taken(n)).unwrap_or_default()
 }
 
-fn move_item(state: &mut AppState, item: Item, to_m: Point) {
-    if !to_m.iter().all(|v| v.is_finite()) {
-        return;
-    }
-    let scene = &mut state.scene;
-    match item {
-        Item::Support { cable, support } => {
-            let Some(s) = scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support)) else { return };
-            let Some(at) = s.at_m.replace(to_m) else {
-                s.at_m = None; // a load or a free end has no place of its own
-                return;
-            };
-            if let Some(motion) = &mut s.motion {
-                for p in &mut motion.points_m {
-                    *p = shifted(*p, at, to_m);
-                }
-            }
-        }
-        Item::Obstacle(index) => {
-            let Some(o) = scene.obstacles.get_mut(index) else { return };
-            match &mut o.shape {
-                Shape::Circle { center_m, .. } => *center_m = to_m,
-                Shape::Terrain { points_m } | Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => {
-                    let Some(&first) = points_m.first() else { return };
-                    for p in points_m {
-                        *p = shifted(*p, first, to_m);
-                    }
-                }
-            }
-        }
-        Item::Corner { obstacle, corner } => {
-            let Some(o) = scene.obstacles.get_mut(obstacle) else { return };
-            if let Shape::Terrain { points_m } | Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } =
-                &mut o.shape
-            {
-                set(points_m, corner, to_m);
-            }
-        }
-        Item::Robot => {
-            let y = Ground::of(scene).height(to_m[0]).unwrap_or(to_m[1]);
-            if let Some(robot) = &mut scene.robot {
-                robot.at_m = [to_m[0], y];
-            }
-        }
-        Item::Cable(_) | Item::Load(_) => {}
-    }
-}
-
-/// The support that hangs on the robot, and where.
-fn hitched(scene: &Scene) -> Option<(usize, usize, Point)> {
-    let hitch = scene.hitch_m()?;
-    scene.cables.iter().enumerate().find_map(|(cable, c)| {
-        let support = c.supports.iter().position(|s| s.kind == SupportKind::Robot)?;
-        Some((cable, support, hitch))
-    })
-}
-
-fn set_robot(scene: &mut Scene, robot: Option<Robot>) {
-    if robot.is_none()
-        && let Some((cable, support, hitch)) = hitched(scene)
-        && let Some(s) = scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support))
-    {
-        *s = Support::fixed(s.name.clone(), hitch);
-    }
-    scene.robot = robot;
-}
-
-fn shifted(p: Point, from: Point, to: Point) -> Point {
-    [p[0] + to[0] - from[0], p[1] + to[1] - from[1]]
-}
-
-fn add_waypoint(state: &mut AppState, cable: usize, arc_length_m: f64, at_m: Point) {
+pub(super) fn add_waypoint(state: &mut AppState, cable: usize, arc_length_m: f64, at_m: Point) {
     let place = waypoint_place(state, cable, arc_length_m);
     let Some(c) = state.scene.cables.get_mut(cable) else { return };
     if c.supports.len() < 2 {
@@ -283,7 +241,7 @@ fn add_waypoint(state: &mut AppState, cable: usize, arc_length_m: f64, at_m: Poi
 }
 
 /// Which place among the supports a point of the cable falls into: after those that sit before it now.
-fn waypoint_place(state: &AppState, cable: usize, arc_length_m: f64) -> usize {
+pub(super) fn waypoint_place(state: &AppState, cable: usize, arc_length_m: f64) -> usize {
     let answer = state.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable));
     let (Some(answer), Some(c)) = (answer, state.scene.cables.get(cable)) else {
         return 1;
@@ -294,71 +252,20 @@ fn waypoint_place(state: &AppState, cable: usize, arc_length_m: f64) -> usize {
     answer.supports.iter().take_while(|s| s.arc_length_m < arc_length_m).count()
 }
 
-fn remove(state: &mut AppState, item: Item) {
-    let scene = &mut state.scene;
-    match item {
-        Item::Cable(k) if scene.cables.len() > 1 && k < scene.cables.len() => {
-            let gone = scene.cables.remove(k);
-            scene.loads.retain(|l| l.cable != gone.name);
-        }
-        Item::Cable(_) => {}
-        Item::Robot => set_robot(scene, None),
-        Item::Support { cable, support } => {
-            let Some(c) = scene.cables.get_mut(cable) else { return };
-            let last = c.supports.len().saturating_sub(1);
-            if support == 0 || support == last {
-                if let Some(s) = c.supports.get_mut(support) {
-                    *s = Support::free(s.name.clone());
-                }
-            } else if support < last {
-                c.supports.remove(support);
-            }
-        }
-        Item::Obstacle(k) => {
-            if k < scene.obstacles.len() {
-                scene.obstacles.remove(k);
-            }
-        }
-        Item::Corner { obstacle, corner } => {
-            let Some(o) = scene.obstacles.get_mut(obstacle) else { return };
-            let (points, least) = match &mut o.shape {
-                Shape::Polygon { points_m } => (points_m, 3),
-                Shape::Terrain { points_m } | Shape::Polyline { points_m, .. } => (points_m, 2),
-                Shape::Circle { .. } => return,
-            };
-            if points.len() > least && corner < points.len() {
-                points.remove(corner);
-            }
-        }
-        Item::Load(k) => {
-            if k < scene.loads.len() {
-                scene.loads.remove(k);
-            }
-        }
-    }
-    state.selected = None;
-}
+/// Speed of a first leg, m/s: a careful walk.
+const FIRST_LEG_M_PER_S: f64 = 0.3;
 
-/// A selection that no longer exists must not point at its neighbour's panel.
-fn drop_lost_selection(state: &mut AppState) {
-    if state.selected.is_some_and(|item| !exists(state, item)) {
-        state.selected = None;
-    }
-}
-
-fn exists(state: &AppState, item: Item) -> bool {
-    let scene = &state.scene;
-    match item {
-        Item::Cable(k) => k < scene.cables.len(),
-        Item::Support { cable, support } => scene.cables.get(cable).is_some_and(|c| support < c.supports.len()),
-        Item::Obstacle(k) => k < scene.obstacles.len(),
-        Item::Corner { obstacle, corner } => scene.obstacles.get(obstacle).is_some_and(|o| match &o.shape {
-            Shape::Terrain { points_m } | Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => {
-                corner < points_m.len()
-            }
-            Shape::Circle { .. } => false,
-        }),
-        Item::Load(k) => k < scene.loads.len(),
-        Item::Robot => scene.robot.is_some(),
-    }
+fn add_leg(state: &mut AppState, to_x_m: f64) {
+    let Some(robot) = state.scene.robot.as_mut().filter(|_| to_x_m.is_finite()) else { return };
+    let place = match state.selected {
+        Some(Item::Leg(k)) => (k + 1).min(robot.path.len()),
+        _ => robot.path.len(),
+    };
+    let speeds = robot.path.iter().take(place).rev().filter_map(|task| match task {
+        RobotTask::Drive { speed_m_per_s, .. } => Some(*speed_m_per_s),
+        RobotTask::Wait { .. } => None,
+    });
+    let speed_m_per_s = speeds.into_iter().next().unwrap_or(FIRST_LEG_M_PER_S);
+    robot.path.insert(place, RobotTask::Drive { to_x_m, speed_m_per_s });
+    (state.selected, state.also) = (Some(Item::Leg(place)), Vec::new());
 }

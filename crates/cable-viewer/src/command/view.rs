@@ -1,15 +1,28 @@
 //! Commands that change what is shown.
 
+use std::sync::Arc;
+
 use cable_core::math::Point;
 
+use super::Effects;
 use crate::colour::ColourScale;
+use crate::guide;
+use crate::panels::system::System;
+use crate::reach::{Order, Progress};
+use crate::run::Run;
 use crate::state::{AppState, Grab, Held, Item, Layers};
 
 /// Changes what is shown.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ViewCommand {
     /// Picks a thing, or nothing.
     Select(Option<Item>),
+    /// Picks a thing besides what is picked, or not any more.
+    Toggle(Item),
+    /// Picks several things.
+    SelectAll(Vec<Item>),
+    /// Draws a frame round things to pick, between two corners, m.
+    Frame(Option<[Point; 2]>),
     /// The pointer is over a thing, or over nothing, at a point of the world (m).
     Hover(Option<Item>, Option<Point>),
     /// Picks a thing up, or lets it go.
@@ -35,6 +48,12 @@ pub enum ViewCommand {
     SetLayers(Layers),
     /// Light or dark.
     SetTheme(egui::ThemePreference),
+    /// Looks for where the robot can go, or ends that and forgets it.
+    Reach(bool),
+    /// Leads to a step of a guided scene, or not any more.
+    Guide(Option<guide::Place>),
+    /// SI or US units; files stay SI.
+    SetUnits(System),
     /// Keeps the answer on screen to compare with.
     Hold,
     /// Lets one go, or all.
@@ -42,14 +61,24 @@ pub enum ViewCommand {
 }
 
 /// Does one of them.
-pub fn apply(state: &mut AppState, command: ViewCommand) {
+pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) {
     match command {
         ViewCommand::Select(item) => {
             if state.selected != item {
                 state.undo.close_entry();
             }
-            state.selected = item;
+            (state.selected, state.also) = (item, Vec::new());
         }
+        ViewCommand::Toggle(item) => {
+            let mut picks = state.picks();
+            match picks.iter().position(|i| *i == item) {
+                Some(k) => drop(picks.remove(k)),
+                None => picks.push(item),
+            }
+            select_all(state, picks);
+        }
+        ViewCommand::SelectAll(items) => select_all(state, items),
+        ViewCommand::Frame(corners) => state.frame_m = corners,
         ViewCommand::Hover(item, at_m) => {
             state.hovered = item;
             state.cursor_m = at_m;
@@ -70,12 +99,24 @@ pub fn apply(state: &mut AppState, command: ViewCommand) {
         ViewCommand::SetColour(colour) => state.colour = colour,
         ViewCommand::SetLayers(layers) => state.layers = layers,
         ViewCommand::SetTheme(theme) => state.theme = theme,
+        ViewCommand::Reach(false) => (state.reach, effects.reach) = (Progress::None, Some(None)),
+        ViewCommand::Reach(true) => {
+            state.reach = Progress::Running(0.0);
+            let [low, high] = crate::canvas::bounds::ground(state);
+            let order = Order { scene: state.scene.clone(), settings: state.settings, ends_m: [low, high] };
+            effects.reach = Some(Some(Box::new(order)));
+        }
+        ViewCommand::Guide(place) => state.guide = place.filter(|p| p.step().is_some()),
+        ViewCommand::SetUnits(units) => state.units = units,
         ViewCommand::Hold => {
             if let (Some(solution), Some(scene)) = (state.snapshot.solution.clone(), state.snapshot.scene.clone())
                 && state.held.len() < Held::MOST
             {
                 let name = format!("{}, {} model, {:.2} s", scene.name, solution.model, solution.time_s);
-                state.held.push(Held { name, scene, solution, wall_s: state.snapshot.solve_wall_s });
+                let recording = &state.recording;
+                let run = Run::of(state.history.samples.iter(), recording.answers(), recording.events().len());
+                let (run, wall_s) = (run.map(Arc::new), state.snapshot.solve_wall_s);
+                state.held.push(Held { name, scene, solution, wall_s, run });
             }
         }
         ViewCommand::LetGo(None) => state.held.clear(),
@@ -85,4 +126,10 @@ pub fn apply(state: &mut AppState, command: ViewCommand) {
             }
         }
     }
+}
+
+fn select_all(state: &mut AppState, items: Vec<Item>) {
+    state.undo.close_entry();
+    let mut items = items.into_iter();
+    (state.selected, state.also) = (items.next(), items.collect());
 }

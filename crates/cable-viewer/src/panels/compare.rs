@@ -5,8 +5,12 @@ use egui::{Grid, RichText, Ui};
 
 use super::readouts::figures;
 use super::{field, unit};
-use crate::command::{Command, ViewCommand};
+use crate::colour::Quantity;
+use crate::command::{Command, FileCommand, ViewCommand};
+use crate::dialog::Dialog;
 use crate::plot::LINES;
+use crate::plot::measure::Measure;
+use crate::run::Peak;
 use crate::state::{AppState, Held};
 
 /// Most lines of difference told; more are counted.
@@ -22,7 +26,12 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         if ui.add_enabled(can, egui::Button::new("Hold this answer")).on_hover_text(help).clicked() {
             commands.push(Command::View(ViewCommand::Hold));
         }
-        if !state.held.is_empty() && ui.button("Let all go").clicked() {
+        let help = "Reads a run from its folder and holds it";
+        if ui.add_enabled(!full, egui::Button::new("Hold a run…")).on_hover_text(help).clicked() {
+            let dialog = Dialog::OpenRun { path: "run".to_owned(), hold: true };
+            commands.push(Command::File(FileCommand::SetDialog(Some(dialog))));
+        }
+        if !state.held.is_empty() && ui.button("Let all go").on_hover_text("None is held any more").clicked() {
             commands.push(Command::View(ViewCommand::LetGo(None)));
         }
     });
@@ -53,12 +62,59 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             ui.end_row();
         }
     });
+    runs(ui, state);
     for (k, held) in state.held.iter().enumerate() {
         ui.weak(format!("{}: {}", k + 1, held.name));
         for line in differences(held, state) {
             ui.label(RichText::new(line).small());
         }
     }
+}
+
+/// The greatest of each whole run, where time ran.
+fn runs(ui: &mut Ui, state: &AppState) {
+    if state.held.iter().all(|h| h.run.is_none()) {
+        return;
+    }
+    let measures = [Measure::Cable(Quantity::Tension), Measure::Pull];
+    let samples = &state.history.samples;
+    let own = state.recording.span_s().map(|span_s| {
+        let peaks = measures.map(|m| Peak::of(samples.iter().filter_map(|s| Some([s.time_s, m.lead()?(s)]))));
+        ("Now".to_owned(), None, (span_s, peaks, state.recording.events().len()))
+    });
+    ui.separator();
+    ui.strong("Whole runs");
+    Grid::new("runs").num_columns(5).spacing([7.0, 3.0]).striped(true).show(ui, |ui| {
+        for (title, help) in [
+            ("", ""),
+            ("Lasts", "From its first to its last picture"),
+            ("Most tension", "Over the whole run, and when"),
+            ("Most pull", "Of the cable on the robot"),
+            ("Events", "Warnings that began"),
+        ] {
+            let title = ui.weak(title);
+            if !help.is_empty() {
+                title.on_hover_text(help);
+            }
+        }
+        ui.end_row();
+        let held = state.held.iter().enumerate();
+        let held = held.filter_map(|(k, h)| {
+            let run = h.run.as_deref()?;
+            Some((format!("{}", k + 1), Some(k), (run.span_s(), measures.map(|m| run.peak(m)), run.events)))
+        });
+        for (name, k, ([first, last], peaks, events)) in own.into_iter().chain(held) {
+            let text = RichText::new(name).strong();
+            ui.label(k.map_or(text.clone(), |k| text.color(LINES[k % LINES.len()])));
+            ui.label(unit::duration(last - first));
+            for peak in peaks {
+                let at = |p: Peak| format!("{} at {:.2} s", unit::force(p.value), p.time_s);
+                ui.label(peak.map_or_else(|| "–".to_owned(), at));
+            }
+            ui.label(events.to_string());
+            ui.end_row();
+        }
+    });
 }
 
 /// What is compared.
@@ -85,7 +141,7 @@ fn row(ui: &mut Ui, f: &Figures, present: Option<&Figures>) {
     cell(ui, unit::force(f.tension_n), (Some(f.tension_n), present.map(|p| p.tension_n)));
     let sag = f.sag_m.map_or_else(|| "–".to_owned(), unit::length);
     cell(ui, sag, (f.sag_m, present.and_then(|p| p.sag_m)));
-    let energy = format!("{} J", unit::significant(f.energy_j, 4));
+    let energy = unit::energy(f.energy_j);
     cell(ui, energy, (Some(f.energy_j), present.map(|p| p.energy_j)));
     cell(ui, unit::duration(f.wall_s), (None, None));
 }

@@ -30,10 +30,12 @@ pub fn at<'a>(state: &'a AppState, path: &str) -> Option<&'a SceneError> {
 /// One sentence that says what is wrong.
 #[must_use]
 pub fn sentence(fault: &SceneFault) -> String {
+    let Unit { symbol, si, .. } = Unit::M.shown();
     match fault {
         SceneFault::TooShort { length_m, way_m, needed_n, breaking_n } => format!(
-            "needs ≥ {} m, is {length_m:.2} m: stretching to its supports would take {}, and it breaks at {}",
-            up_to_cm(*way_m),
+            "needs ≥ {} {symbol}, is {:.2} {symbol}: stretching to its supports would take {}, and it breaks at {}",
+            up_to_hundredth(*way_m / si),
+            length_m / si,
             super::unit::force(*needed_n),
             super::unit::force(*breaking_n)
         ),
@@ -41,13 +43,13 @@ pub fn sentence(fault: &SceneFault) -> String {
     }
 }
 
-/// Rounded up to the next centimetre, so that the figure shown is long enough.
-fn up_to_cm(length_m: f64) -> String {
-    format!("{:.2}", ceil_cm(length_m))
+/// Rounded up to the next hundredth, so that the figure shown is long enough.
+fn up_to_hundredth(length: f64) -> String {
+    format!("{:.2}", ceil_hundredth(length))
 }
 
-fn ceil_cm(length_m: f64) -> f64 {
-    (length_m * 100.0 - 1e-9).ceil() / 100.0
+fn ceil_hundredth(length: f64) -> f64 {
+    (length * 100.0 - 1e-9).ceil() / 100.0
 }
 
 /// What would put the scene's fault right, where one change does.
@@ -64,8 +66,9 @@ pub fn fix(state: &AppState) -> Option<Fix> {
                 return None;
             }
             let thermal = length_m / cable.length_m;
-            let wanted = ceil_cm(if thermal > 0.0 { way_m / thermal } else { *way_m });
-            Some(set_cable(index, cable, format!("Set to {wanted:.2} m"), |c| c.length_m = wanted))
+            let Unit { symbol, si, .. } = Unit::M.shown();
+            let wanted = ceil_hundredth(if thermal > 0.0 { way_m / thermal } else { *way_m } / si);
+            Some(set_cable(index, cable, format!("Set to {wanted:.2} {symbol}"), |c| c.length_m = wanted * si))
         }
         SceneFault::Shape { .. }
             if key == "service_tension_n" && cable.service_tension_n > cable.breaking_tension_n =>
@@ -120,9 +123,9 @@ mod tests {
 
     #[test]
     fn the_length_shown_is_never_too_short() {
-        assert_eq!(up_to_cm(31.4159), "31.42");
-        assert_eq!(up_to_cm(31.42), "31.42");
-        assert_eq!(up_to_cm(31.420_001), "31.43");
+        assert_eq!(up_to_hundredth(31.4159), "31.42");
+        assert_eq!(up_to_hundredth(31.42), "31.42");
+        assert_eq!(up_to_hundredth(31.420_001), "31.43");
     }
 
     #[test]

@@ -63,6 +63,7 @@ fn speed(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     response.on_hover_text("Simulated seconds per second, 0.01× to 4×");
     let unchanged = state.playback.speed == 1.0;
     let reset = ui.add_enabled(!unchanged, Button::new("1×")).on_hover_text("Back to real time");
+    let reset = reset.on_disabled_hover_text("It runs in real time");
     field::name(&reset, "Real-time speed");
     if reset.clicked() {
         commands.push(Command::Playback(PlaybackCommand::SetSpeed(1.0)));

@@ -98,7 +98,7 @@ pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Known) -> Change {
 }
 
 fn slider(ui: &mut Ui, quantity: &Quantity, known: &Known, change: &mut Change) {
-    let si = quantity.unit.si;
+    let si = quantity.unit.shown().si;
     let [low, high] = quantity.usual.map(|v| v / si);
     let mut shown = known.value / si;
     if !shown.is_finite() {

@@ -35,6 +35,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     figures(ui, robot, commands);
     path(ui, robot, commands);
     fault::inline(ui, state, "robot.path", commands);
+    super::reach::ui(ui, state, commands);
 }
 
 /// Speed of the robot by hand, m/s: what was set, else its greatest.
@@ -84,7 +85,11 @@ fn readouts(ui: &mut Ui, r: &RobotReport) {
         ("Motion", r.going.name().to_owned(), "Why it is as fast as it is"),
         (
             "Speed",
-            format!("{} of {} m/s", unit::significant(r.speed_m_per_s, 3), unit::significant(r.commanded_m_per_s, 3)),
+            {
+                let Unit { symbol, si, .. } = Unit::M_PER_S.shown();
+                let shown = |v: f64| unit::significant(v / si, 3);
+                format!("{} of {} {symbol}", shown(r.speed_m_per_s), shown(r.commanded_m_per_s))
+            },
             "Along the ground, of what is asked for",
         ),
         ("Slope", format!("{:.1}°", r.pitch_deg), "Positive where it climbs to the right"),
@@ -194,12 +199,14 @@ fn leg(
                     put(Some(RobotTask::Drive { to_x_m, speed_m_per_s }), commands);
                 }
                 faults.extend(to.fault);
+                to.response.on_hover_text("Where the middle of its tracks goes; its flag on the canvas can be dragged");
                 ui.label("at");
                 let at = field::number(ui, &format!("Speed of leg {number}"), Unit::M_PER_S, speed_m_per_s, WIDTH);
                 if let Some(speed_m_per_s) = at.value {
                     put(Some(RobotTask::Drive { to_x_m, speed_m_per_s }), commands);
                 }
                 faults.extend(at.fault);
+                at.response.on_hover_text("How fast; at most its greatest speed");
             }
             RobotTask::Wait { wait_s } => {
                 ui.label(format!("{number}  Wait"));
@@ -208,6 +215,7 @@ fn leg(
                     put(Some(RobotTask::Wait { wait_s }), commands);
                 }
                 faults.extend(wait.fault);
+                wait.response.on_hover_text("How long it stands");
             }
         }
         let remove = icon::plain_button(ui, Icon::Remove, true);

@@ -112,7 +112,10 @@ fn cost(ui: &mut Ui, state: &AppState, answer: Option<&Solution>) {
         ),
         (
             "Residual",
-            format!("{} N", unit::significant(cost.residual_n, 2)),
+            {
+                let Unit { symbol, si, .. } = Unit::N.shown();
+                format!("{} {symbol}", unit::significant(cost.residual_n / si, 2))
+            },
             "Largest force left unbalanced at a node: the smaller, the closer to equilibrium",
         ),
         ("Inner time step", step, "The step the model takes inside a frame"),

@@ -13,6 +13,11 @@ const BESIDE: f32 = 250.0;
 /// How near to a mark the pointer tells what it is, points.
 const NEAR: f32 = 4.0;
 
+/// Why its controls are off.
+const NOTHING: &str = "Nothing is recorded yet: press play";
+/// Why what leads back to the present is off.
+const PRESENT: &str = "The present is shown";
+
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let span = state.recording.span_s();
@@ -21,12 +26,13 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let mut push = |command| commands.push(Command::Playback(command));
         ui.add_enabled_ui(span.is_some(), |ui| {
             let back = ui.button("Step back").on_hover_text("The picture before this one (←)");
+            let back = back.on_disabled_hover_text(NOTHING);
             if back.clicked() {
                 push(PlaybackCommand::StepBack);
             }
             let mut looped = state.recording.looped;
             let help = "Play begins anew at the end of what was recorded; off, it goes on from there";
-            if ui.checkbox(&mut looped, "Loop").on_hover_text(help).changed() {
+            if ui.checkbox(&mut looped, "Loop").on_hover_text(help).on_disabled_hover_text(NOTHING).changed() {
                 push(PlaybackCommand::SetLoop(looped));
                 // A loop of what is not shown begins at its start.
                 if let (true, None, Some([first, _])) = (looped, state.recording.shown_s, span) {
@@ -35,8 +41,15 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             }
             let shown = state.recording.shown_s.is_some();
             let help = "Ends the look at the past";
-            if ui.add_enabled(shown, egui::Button::new("Present")).on_hover_text(help).clicked() {
+            let present = ui.add_enabled(shown, egui::Button::new("Present")).on_hover_text(help);
+            if present.on_disabled_hover_text(PRESENT).clicked() {
                 push(PlaybackCommand::Show(None));
+            }
+            let help =
+                "Takes the time shown as the present: what came after it is forgotten, and friction takes hold anew";
+            let on = ui.add_enabled(shown, egui::Button::new("Go on from here")).on_hover_text(help);
+            if on.on_disabled_hover_text(PRESENT).clicked() {
+                push(PlaybackCommand::GoOn);
             }
         });
         let [first, last] = span.unwrap_or([0.0, 1.0]);
@@ -50,7 +63,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         if span.is_some() {
             marks(ui, state, slider.rect, [first, last]);
         }
-        slider.on_hover_text(state.recording.about());
+        slider.on_hover_text(state.recording.about()).on_disabled_hover_text(NOTHING);
         let text = match state.recording.shown_s {
             Some(t) => format!("showing {t:.2} s of {last:.2} s"),
             None => format!("recorded {}", unit::duration(last - first)),

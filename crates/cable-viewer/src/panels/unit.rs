@@ -2,6 +2,8 @@
 //!
 //! Values are SI inside; a [`Unit`] says how one is shown.
 
+use super::system;
+
 /// Digits of a figure on screen. Fewer hide differences an engineer decides on, more are noise.
 pub const DIGITS: usize = 4;
 
@@ -18,16 +20,19 @@ pub struct Unit {
     pub decimals: Option<usize>,
 }
 
-const LENGTHS: &[(&str, f64)] = &[("km", 1e3), ("m", 1.0), ("cm", 1e-2), ("mm", 1e-3)];
+/// Every unit of length that may be typed.
+pub const LENGTHS: &[(&str, f64)] =
+    &[("km", 1e3), ("m", 1.0), ("cm", 1e-2), ("mm", 1e-3), ("ft", 0.3048), ("in", 0.0254)];
 const FORCES: &[(&str, f64)] = &[("MN", 1e6), ("kN", 1e3), ("N", 1.0)];
-const STRESSES: &[(&str, f64)] = &[("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3), ("Pa", 1.0)];
 const TIMES: &[(&str, f64)] = &[("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)];
 const MASSES: &[(&str, f64)] = &[("t", 1e3), ("kg", 1.0), ("g", 1e-3)];
 const DENSITIES: &[(&str, f64)] = &[("kg/m", 1.0), ("g/m", 1e-3)];
 const RATIOS: &[(&str, f64)] = &[("%", 1e-2)];
 
 impl Unit {
-    const fn of(symbol: &'static str, si: f64, others: &'static [(&'static str, f64)]) -> Self {
+    /// A unit that holds so many SI units, and what may be typed instead.
+    #[must_use]
+    pub const fn of(symbol: &'static str, si: f64, others: &'static [(&'static str, f64)]) -> Self {
         Self { symbol, si, others, decimals: None }
     }
 
@@ -38,8 +43,14 @@ impl Unit {
 
     /// Without its symbol, for a column that has it in its heading; units may still be typed.
     #[must_use]
-    pub const fn bare(self) -> Self {
-        Self { symbol: "", ..self }
+    pub fn bare(self) -> Self {
+        Self { symbol: "", ..self.shown() }
+    }
+
+    /// The unit it is shown in: itself, or that of the other system.
+    #[must_use]
+    pub fn shown(self) -> Self {
+        system::unit(self)
     }
 
     /// Metres.
@@ -80,21 +91,23 @@ impl Unit {
     /// A value (SI) with [`DIGITS`] digits, or the unit's own decimals, and the unit.
     #[must_use]
     pub fn text(self, value: f64) -> String {
-        let number = match self.decimals {
-            Some(decimals) if value.is_finite() => format!("{:.decimals$}", value / self.si).replace('-', "−"),
-            _ => significant(value / self.si, DIGITS),
+        let unit = self.shown();
+        let number = match unit.decimals {
+            Some(decimals) if value.is_finite() => format!("{:.decimals$}", value / unit.si).replace('-', "−"),
+            _ => significant(value / unit.si, DIGITS),
         };
-        with_symbol(number, self.symbol)
+        with_symbol(number, unit.symbol)
     }
 
     /// A value (SI) with all its digits and the unit, to be edited.
     #[must_use]
     pub fn exact(self, value: f64) -> String {
-        let shown = value / self.si;
+        let unit = self.shown();
+        let shown = value / unit.si;
         // Division by the unit may add a last wrong digit; 15 digits are what decimal text keeps.
         let rounded = format!("{shown:.14e}").parse().unwrap_or(shown);
         let written = if (1e-4..1e9).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") };
-        with_symbol(if rounded == 0.0 { "0".to_owned() } else { written }, self.symbol)
+        with_symbol(if rounded == 0.0 { "0".to_owned() } else { written }, unit.symbol)
     }
 
     /// The SI value of typed text: a number, alone or with a unit of this quantity.
@@ -102,10 +115,11 @@ impl Unit {
     /// # Errors
     /// What is wrong with the text and what would be right.
     pub fn parse(self, text: &str) -> Result<f64, String> {
+        let Self { symbol, si, others, .. } = self.shown();
         let plain = text.trim().replace('−', "-").replace(' ', "");
         let number = |digits: &str, si: f64| digits.parse::<f64>().ok().filter(|v| v.is_finite()).map(|v| v * si);
-        let spelled = std::iter::once((self.symbol, self.si)).chain(self.others.iter().copied());
-        number(&plain, self.si)
+        let spelled = std::iter::once((symbol, si)).chain(others.iter().copied());
+        number(&plain, si)
             .or_else(|| {
                 let mut units: Vec<_> = spelled.filter(|(symbol, _)| !symbol.is_empty()).collect();
                 // The longest first, or “12 kN” would read as “12k” newtons.
@@ -113,7 +127,7 @@ impl Unit {
                 units.iter().find_map(|&(symbol, si)| number(plain.strip_suffix(symbol)?, si))
             })
             .ok_or_else(|| {
-                let example = with_symbol("12.5".to_owned(), self.symbol);
+                let example = with_symbol("12.5".to_owned(), symbol);
                 if plain.contains(',') {
                     format!("“{}” is not a number: write the decimal mark as a point, like {example}", text.trim())
                 } else {
@@ -162,13 +176,20 @@ pub fn significant(value: f64, digits: usize) -> String {
 /// A force with N, kN or MN, N.
 #[must_use]
 pub fn force(value_n: f64) -> String {
-    prefixed(value_n, FORCES, 1e4)
+    scaled(value_n, system::Kind::Force)
+}
+
+/// A force and what it is measured against, N, in the unit of the larger.
+#[must_use]
+pub fn force_of(value_n: f64, limit_n: f64) -> String {
+    let (symbol, si) = system::for_size(system::Kind::Force, value_n.abs().max(limit_n.abs()));
+    format!("{} of {}", significant(value_n / si, DIGITS), with_symbol(significant(limit_n / si, DIGITS), symbol))
 }
 
 /// A stress with Pa, kPa, MPa or GPa, Pa.
 #[must_use]
 pub fn stress(value_pa: f64) -> String {
-    prefixed(value_pa, STRESSES, 1e3)
+    scaled(value_pa, system::Kind::Stress)
 }
 
 /// A strain in % or µm/m.
@@ -181,16 +202,25 @@ pub fn strain(value: f64) -> String {
     }
 }
 
+/// An energy, J.
+#[must_use]
+pub fn energy(value_j: f64) -> String {
+    scaled(value_j, system::Kind::Energy)
+}
+
 /// A length in m, mm or µm, m.
 #[must_use]
 pub fn length(value_m: f64) -> String {
-    prefixed(value_m, &[("m", 1.0), ("mm", 1e-3), ("µm", 1e-6)], 1e7)
+    scaled(value_m, system::Kind::Length)
 }
 
 /// A duration in s, ms or µs, s.
 #[must_use]
 pub fn duration(value_s: f64) -> String {
-    prefixed(value_s, TIMES, 1e7)
+    let size = value_s.abs();
+    let found = TIMES.iter().find(|(_, si)| size >= *si).or(TIMES.last());
+    let (symbol, si) = found.filter(|_| size > 0.0 && size.is_finite()).copied().unwrap_or(("s", 1.0));
+    with_symbol(significant(value_s / si, DIGITS), symbol)
 }
 
 /// A ratio in per cent with three digits.
@@ -202,18 +232,12 @@ pub fn percent(ratio: f64) -> String {
 /// A position, m, to the millimetre.
 #[must_use]
 pub fn position(at_m: [f64; 2]) -> String {
-    format!("({:.3}, {:.3}) m", at_m[0], at_m[1]).replace('-', "−")
+    let Unit { symbol, si, .. } = Unit::M.shown();
+    format!("({:.3}, {:.3}) {symbol}", at_m[0] / si, at_m[1] / si).replace('-', "−")
 }
 
-/// The largest unit the value fills; prefixes above 1 only from `large` on.
-fn prefixed(value: f64, units: &[(&'static str, f64)], large: f64) -> String {
-    let size = value.abs();
-    let fits = |si: f64| if si > 1.0 { size >= large.max(si) } else { size >= si };
-    let fallback =
-        if value == 0.0 || !value.is_finite() { units.iter().find(|(_, si)| *si == 1.0) } else { units.last() };
-    let Some(&(symbol, si)) = units.iter().find(|(_, si)| fits(*si) && value.is_finite()).or(fallback) else {
-        return significant(value, DIGITS);
-    };
+fn scaled(value: f64, kind: system::Kind) -> String {
+    let (symbol, si) = system::for_size(kind, value);
     with_symbol(significant(value / si, DIGITS), symbol)
 }
 

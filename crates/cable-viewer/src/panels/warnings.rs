@@ -119,7 +119,8 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
     };
     let index = state.scene.cables.iter().position(|c| c.name == warning.cable);
     let since = warning.since_s.map_or_else(String::new, |t| format!(" since {t:.2}\u{a0}s"));
-    let place = format!("{} at {:.2}\u{a0}m{since}", warning.cable, warning.arc_length_m);
+    let along = unit::Unit { decimals: Some(2), ..unit::Unit::M }.text(warning.arc_length_m);
+    let place = format!("{} at {}{since}", warning.cable, along.replace(' ', "\u{a0}"));
     let figures = figures(warning).map_or_else(String::new, |f| format!(" – {f}"));
     Entry {
         severity,
@@ -135,14 +136,15 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
 fn figures(warning: &Warning) -> Option<String> {
     let Warning { value, limit, .. } = *warning;
     match warning.kind {
-        WarningKind::ServiceTension | WarningKind::BreakingTension => {
-            Some(format!("{} of {}", unit::force(value), unit::force(limit)))
-        }
+        WarningKind::ServiceTension | WarningKind::BreakingTension => Some(unit::force_of(value, limit)),
         WarningKind::Broken => Some(unit::force(limit)),
         WarningKind::BendRadius | WarningKind::Kink | WarningKind::Slack => {
             Some(format!("{} of {}", unit::length(value), unit::length(limit)))
         }
-        WarningKind::SidewallPressure => Some(format!("{value:.0}\u{a0}N/m of {limit:.0}\u{a0}N/m")),
+        WarningKind::SidewallPressure => {
+            let per_metre = |v| unit::Unit { decimals: Some(0), ..unit::Unit::N_PER_M }.text(v).replace(' ', "\u{a0}");
+            Some(format!("{} of {}", per_metre(value), per_metre(limit)))
+        }
         WarningKind::Wrapped => Some(format!("{value:.2} turns")),
         WarningKind::Curl => Some(format!("{value:.0}° of {limit:.0}°")),
         WarningKind::Snag => Some(format!("tension ratio {value:.2}")),

@@ -4,6 +4,8 @@ use cable_core::Cable;
 use cable_core::solution::CableSolution;
 use egui::Ui;
 
+use crate::panels::unit::Unit;
+
 use super::measure::Measure;
 use super::series::Series;
 use super::{Graph, Touched, View, limits, show};
@@ -15,12 +17,12 @@ pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, view: View, height
     let graph = Graph {
         title: "Along the cable",
         measure: Measure::Cable(quantity),
-        across: ["Arc length", "m"],
+        across: ("Arc length", Unit::M),
         range: [0.0, cable.length_m],
         limits: limits(quantity, cable),
         follow,
         height,
         mark: None,
     };
-    show(ui, &graph, &[Series { name: quantity.name().to_owned(), points }])
+    show(ui, &graph, &[Series { name: quantity.name().to_owned(), points, held: None }])
 }

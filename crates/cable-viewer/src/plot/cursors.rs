@@ -27,13 +27,13 @@ impl Cursors {
         ui.data_mut(|d| d.insert_temp(id(title), places));
     }
 
-    /// What they read: values of the first line at each, and the difference.
+    /// What they read: values of the first line at each, and the difference; symbols with how many SI units they hold.
     #[must_use]
-    pub fn text(&self, (x_symbol, y_symbol, si): (&str, &str, f64), line: Option<&Series>) -> Option<String> {
+    pub fn text(&self, [(x_symbol, x_si), (y_symbol, si)]: [(&str, f64); 2], line: Option<&Series>) -> Option<String> {
         let line = line?;
         let read = |x: f64| value_at(&line.points, x).map_or(f64::NAN, |v| v / si);
         let one = |name: &str, x: f64, y: f64| {
-            format!("{name} {} {x_symbol}: {} {y_symbol}", significant(x, DIGITS), significant(y, DIGITS))
+            format!("{name} {} {x_symbol}: {} {y_symbol}", significant(x / x_si, DIGITS), significant(y, DIGITS))
         };
         match *self.0.as_slice() {
             [a] => Some(one("A", a, read(a))),
@@ -56,8 +56,9 @@ mod tests {
 
     #[test]
     fn two_cursors_tell_their_difference() {
-        let line = Series { name: "T".to_owned(), points: vec![[0.0, 100.0], [2.0, 300.0]] };
-        let units = ("s", "N", 1.0);
+        let points = vec![[0.0, 100.0], [2.0, 300.0]];
+        let line = Series { name: "T".to_owned(), points, held: None };
+        let units = [("s", 1.0), ("N", 1.0)];
         let text = Cursors(vec![0.5, 1.5]).text(units, Some(&line)).unwrap();
         assert!(text.contains("A 0.5000 s: 150.0 N") && text.contains("B − A 1.000 s: 100.0 N"), "{text}");
         assert_eq!(Cursors::default().text(units, Some(&line)), None);

@@ -17,8 +17,8 @@ pub struct Sheet {
     pub across: [String; 2],
     /// What goes up, the same, and how many SI units its unit holds.
     pub up: [String; 2],
-    /// SI units in one unit shown.
-    pub si: f64,
+    /// SI units in one unit shown, across and up.
+    pub si: [f64; 2],
     /// Left, bottom, right, top in the units shown.
     pub bounds: [f64; 4],
     /// The lines, every sample, SI.
@@ -47,7 +47,7 @@ pub fn save(path: &Path, sheet: &Sheet) -> Result<(), String> {
 
 /// Points of a line in view, and one on each side of it so that it reaches the frame.
 fn visible<'a>(line: &'a Series, sheet: &Sheet) -> &'a [[f64; 2]] {
-    let [left, _, right, _] = sheet.bounds;
+    let [left, right] = [sheet.bounds[0], sheet.bounds[2]].map(|x| x * sheet.si[0]);
     let from = line.points.partition_point(|p| p[0] < left);
     let to = line.points.partition_point(|p| p[0] <= right).max(from);
     line.points.get(from..to).unwrap_or_default()
@@ -109,13 +109,15 @@ pub fn svg(sheet: &Sheet) -> String {
         let _ = writeln!(out, "<text x=\"{tx:.2}\" y=\"{ty:.2}\" text-anchor=\"{anchor}\">{text}</text>");
     }
     for (k, line) in sheet.lines.iter().enumerate() {
-        let c = LINES[k % LINES.len()];
+        let c = LINES[line.held.unwrap_or(k) % LINES.len()];
+        let dashes = if line.held.is_some() { " stroke-dasharray=\"6 4\"" } else { "" };
         let colour = format!("#{:02x}{:02x}{:02x}", c.r(), c.g(), c.b());
         let points = visible(line, sheet).iter().filter(|p| p[1].is_finite());
-        let path: Vec<String> = points.map(|p| format!("{:.2},{:.2}", x(p[0]), y(p[1] / sheet.si))).collect();
+        let path: Vec<String> =
+            points.map(|p| format!("{:.2},{:.2}", x(p[0] / sheet.si[0]), y(p[1] / sheet.si[1]))).collect();
         let _ = writeln!(
             out,
-            "<polyline clip-path=\"url(#c)\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.8\" points=\"{}\"/>",
+            "<polyline clip-path=\"url(#c)\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.8\"{dashes} points=\"{}\"/>",
             path.join(" ")
         );
         let at = ROOM[0] + 150.0 * k as f64;
@@ -170,10 +172,12 @@ fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
                 .height(size[1] - 50.0)
                 .show(ui, |plot| {
                     plot.set_plot_bounds(egui_plot::PlotBounds::from_min_max([left, bottom], [right, top]));
-                    for (line, colour) in sheet.lines.iter().zip(LINES) {
+                    for (k, line) in sheet.lines.iter().enumerate() {
+                        let (colour, style) = super::look(line, k);
                         let points: Vec<[f64; 2]> =
-                            visible(line, &sheet).iter().map(|p| [p[0], p[1] / sheet.si]).collect();
-                        plot.line(egui_plot::Line::new(line.name.clone(), points).color(colour).width(2.0));
+                            visible(line, &sheet).iter().map(|p| [p[0] / sheet.si[0], p[1] / sheet.si[1]]).collect();
+                        let drawn = egui_plot::Line::new(line.name.clone(), points).color(colour).width(2.0);
+                        plot.line(drawn.style(style));
                     }
                 });
         });
@@ -192,12 +196,13 @@ mod tests {
         let line = |name: &str, f: fn(f64) -> f64| Series {
             name: name.to_owned(),
             points: (0..100).map(|k| f64::from(k) / 10.0).map(|x| [x, f(x)]).collect(),
+            held: None,
         };
         Sheet {
             title: "Over <time>".to_owned(),
             across: ["Time, s".to_owned(), "time_s".to_owned()],
             up: ["Tension, kN".to_owned(), "tension_n".to_owned()],
-            si: 1e3,
+            si: [1.0, 1e3],
             bounds: [2.0, 0.0, 5.0, 1.0],
             lines: vec![line("Maximum", |x| 100.0 * x.sin() + 0.1), line("At left, end", |x| 1.0 / (x - 3.0))],
         }
@@ -224,7 +229,7 @@ mod tests {
         let text = svg(&sheet());
         assert!(text.starts_with("<svg") && text.trim_end().ends_with("</svg>"));
         assert!(text.contains("Over &lt;time&gt;") && text.matches("<polyline").count() == 2 && !text.contains("NaN"));
-        assert!(!svg(&Sheet { bounds: [0.0, 0.0, 1.0, 1.0], si: 1.0, ..Sheet::default() }).contains("NaN"));
+        assert!(!svg(&Sheet { bounds: [0.0, 0.0, 1.0, 1.0], si: [1.0; 2], ..Sheet::default() }).contains("NaN"));
     }
 
     #[test]

@@ -4,10 +4,12 @@ use cable_core::Cable;
 
 use crate::colour::Quantity;
 use crate::history::Sample;
-use crate::panels::unit;
+use crate::panels::{system, unit};
 
 /// A line over time: its name, and how to read it off a sample.
-pub type OverTime = (&'static str, fn(&Sample) -> f64);
+pub type OverTime = (&'static str, ReadOff);
+/// Reads a value (SI) off a sample.
+pub type ReadOff = fn(&Sample) -> f64;
 
 /// What goes up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +34,26 @@ impl Measure {
         Self::Speed,
         Self::Energy,
     ];
+
+    /// The line of each that a whole run is compared by, SI. Stress and strain follow from tension.
+    pub const LEADS: [(Self, ReadOff); 4] = [
+        (Self::Cable(Quantity::Tension), |s| s.max_tension_n),
+        (Self::Pull, |s| s.robot.map_or(f64::NAN, |r| r[1])),
+        (Self::Speed, |s| s.robot.map_or(f64::NAN, |r| r[0])),
+        (Self::Energy, |s| s.energy_j[0]),
+    ];
+
+    /// The line this one is compared by.
+    #[must_use]
+    pub fn lead(self) -> Option<ReadOff> {
+        Self::LEADS.iter().find(|(m, _)| m.leads_as(self)).map(|(_, of)| *of)
+    }
+
+    /// Whether the line of this one is that of another.
+    #[must_use]
+    pub fn leads_as(self, other: Self) -> bool {
+        self == other || matches!((self, other), (Self::Cable(_), Self::Cable(_)))
+    }
 
     /// Its name.
     #[must_use]
@@ -63,9 +85,11 @@ impl Measure {
         match self {
             Self::Cable(quantity) => quantity.unit(greatest),
             Self::Pull => Quantity::Tension.unit(greatest),
-            Self::Speed => ("m/s", 1.0),
-            Self::Energy if greatest >= 1e4 => ("kJ", 1e3),
-            Self::Energy => ("J", 1.0),
+            Self::Speed => {
+                let unit::Unit { symbol, si, .. } = unit::Unit::M_PER_S.shown();
+                (symbol, si)
+            }
+            Self::Energy => system::for_size(system::Kind::Energy, greatest),
         }
     }
 

@@ -4,6 +4,7 @@ pub mod along;
 mod cursors;
 pub mod export;
 pub mod measure;
+pub mod pyramid;
 pub mod series;
 pub mod time;
 
@@ -13,7 +14,7 @@ use egui_plot::{GridInput, GridMark, HLine, HoverPosition, LineStyle, Plot, Plot
 
 use crate::colour::Quantity;
 use crate::panels::field;
-use crate::panels::unit::{DIGITS, significant};
+use crate::panels::unit::{DIGITS, Unit, significant};
 use cursors::Cursors;
 use export::Sheet;
 use measure::Measure;
@@ -79,9 +80,9 @@ pub struct Graph<'a> {
     pub title: &'a str,
     /// What goes up, and its unit.
     pub measure: Measure,
-    /// What goes right, and its unit, such as `Time` and `s`.
-    pub across: [&'a str; 2],
-    /// Left and right end in view while following.
+    /// What goes right, its unit, and how many SI units that holds, such as `Time`, `s`, 1.
+    pub across: (&'a str, Unit),
+    /// Left and right end in view while following, SI.
     pub range: [f64; 2],
     /// Service and breaking limit, SI.
     pub limits: [f64; 2],
@@ -133,11 +134,12 @@ fn vertical_range(lines: &[Series], limits: [f64; 2]) -> [f64; 2] {
 pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
     let [low, high] = vertical_range(lines, graph.limits);
     let (symbol, si) = graph.measure.unit(high);
-    let [across, across_symbol] = graph.across;
+    let (across, unit) = graph.across;
+    let (Unit { symbol: across_symbol, si: x_si, .. }, column) = (unit.shown(), unit.symbol);
     let read = |x: f64| {
         let mut text = format!("{} {across_symbol}", significant(x, DIGITS));
         for line in lines {
-            if let Some(value) = value_at(&line.points, x) {
+            if let Some(value) = value_at(&line.points, x * x_si) {
                 text += &format!("\n{}: {} {symbol}", line.name, significant(value / si, DIGITS));
             }
         }
@@ -147,7 +149,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
     let top = ui.cursor().top();
     let (title, export) = legend(ui, graph, lines, high);
     let mut cursors = Cursors::load(ui, graph.title);
-    let cursor_text = cursors.text((across_symbol, symbol, si), lines.first());
+    let cursor_text = cursors.text([(across_symbol, x_si), (symbol, si)], lines.first());
     let height = (graph.height - (ui.cursor().top() - top)).max(LEAST_HEIGHT);
     let columns = f64::from(ui.available_width() / COLUMN).max(1.0);
     let rows = f64::from((height - 40.0) / ROW).max(1.0);
@@ -172,21 +174,25 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
         });
     let response = plot.show(ui, |plot| {
         if follow {
-            let [left, right] = graph.range;
+            let [left, right] = graph.range.map(|x| x / x_si);
             plot.set_plot_bounds(PlotBounds::from_min_max([left, low / si], [right, high / si]));
         }
-        for (line, colour) in lines.iter().zip(LINES) {
-            let points: Vec<[f64; 2]> = line.points.iter().map(|p| [p[0], p[1] / si]).collect();
-            plot.line(egui_plot::Line::new(line.name.clone(), points).color(colour).width(2.0));
+        for (k, line) in lines.iter().enumerate() {
+            let (colour, style) = look(line, k);
+            let points: Vec<[f64; 2]> = line.points.iter().map(|p| [p[0] / x_si, p[1] / si]).collect();
+            plot.line(egui_plot::Line::new(line.name.clone(), points).color(colour).width(2.0).style(style));
         }
         draw_limits(plot, graph.limits, si, symbol);
-        draw_marks(plot, graph.mark, &cursors.0, cursor_text.as_deref());
+        let places: Vec<f64> = cursors.0.iter().map(|x| x / x_si).collect();
+        draw_marks(plot, graph.mark, &places, cursor_text.as_deref());
         wheel(plot)
     });
     let bounds = response.transform.bounds();
+    let ends = [bounds.min()[0] * x_si, bounds.max()[0] * x_si];
+    ui.data_mut(|d| d.insert_temp(Id::unique(("in view", graph.title)), ends));
     let clicked = response.response.clicked().then(|| response.response.interact_pointer_pos()).flatten();
     if let Some(at) = clicked {
-        cursors.click(ui, graph.title, response.transform.value_from_position(at).x);
+        cursors.click(ui, graph.title, response.transform.value_from_position(at).x * x_si);
     }
     let last = lines.iter().filter_map(|l| Some((l, l.points.last()?)));
     let spoken: Vec<String> =
@@ -198,16 +204,27 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
     ui.ctx().accesskit_node_builder(figure.id, |node| node.set_description(spoken.as_str()));
     let sheet = || Sheet {
         title: graph.title.to_owned(),
-        across: [
-            format!("{across}, {across_symbol}"),
-            format!("{}_{across_symbol}", across.to_lowercase().replace(' ', "_")),
-        ],
+        across: [format!("{across}, {across_symbol}"), format!("{}_{column}", across.to_lowercase().replace(' ', "_"))],
         up: [format!("{}, {symbol}", graph.measure.name()), graph.measure.suffix().to_owned()],
-        si,
+        si: [x_si, si],
         bounds: [bounds.min()[0], bounds.min()[1], bounds.max()[0], bounds.max()[1]],
         lines: lines.to_vec(),
     };
     Touched { zoomed: response.inner, export: export.then(|| Box::new(sheet())) }
+}
+
+/// Colour and style of the `k`-th line of a graph.
+fn look(line: &Series, k: usize) -> (Color32, LineStyle) {
+    match line.held {
+        Some(held) => (LINES[held % LINES.len()], LineStyle::dashed_loose()),
+        None => (LINES[k % LINES.len()], LineStyle::Solid),
+    }
+}
+
+/// Left and right end of what was last in view of a graph, SI.
+#[must_use]
+pub fn in_view(ui: &Ui, title: &str) -> Option<[f64; 2]> {
+    ui.data(|d| d.get_temp(Id::unique(("in view", title))))
 }
 
 /// The wheel zooms at the pointer; whether it did.
@@ -269,7 +286,7 @@ fn tick(mark: GridMark) -> String {
 /// not named; what finds no room is told on hover.
 fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series], high: f64) -> (Id, bool) {
     let mut entries: Vec<(String, Color32, bool)> =
-        lines.iter().zip(LINES).map(|(line, colour)| (line.name.clone(), colour, false)).collect();
+        lines.iter().enumerate().map(|(k, l)| (l.name.clone(), look(l, k).0, l.held.is_some())).collect();
     for (name, limit, colour) in named_limits(graph.limits) {
         if limit <= high {
             let value = graph.measure.text(limit);
@@ -332,7 +349,11 @@ mod tests {
     use super::*;
 
     fn line(values: &[f64]) -> Series {
-        Series { name: String::new(), points: values.iter().enumerate().map(|(i, &v)| [i as f64, v]).collect() }
+        Series {
+            name: String::new(),
+            points: values.iter().enumerate().map(|(i, &v)| [i as f64, v]).collect(),
+            held: None,
+        }
     }
 
     #[test]

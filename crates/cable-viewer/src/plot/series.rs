@@ -7,6 +7,8 @@ pub struct Series {
     pub name: String,
     /// x and value.
     pub points: Vec<[f64; 2]>,
+    /// It is of this held run, and drawn in its colour and dashed.
+    pub held: Option<usize>,
 }
 
 /// Thins points to at most two a column, keeping each column's least and greatest value, so that no peak is lost.

@@ -5,11 +5,14 @@ use egui::Ui;
 
 use super::measure::Measure;
 use super::series::{Series, thin};
-use super::{Graph, Touched, View, per_newton, show};
+use super::{Graph, Touched, View, in_view, per_newton, show};
 use crate::colour::Quantity;
 use crate::history::Sample;
+use crate::panels::unit::Unit;
 use crate::state::AppState;
 
+/// Names the graph.
+const TITLE: &str = "Over time";
 /// Shortest time axis, s: the first frames would otherwise jump.
 const SHORTEST_S: f64 = 1.0;
 
@@ -25,29 +28,50 @@ pub fn ui(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touched {
     let first_s = state.history.samples.front().map_or(0.0, |s| s.time_s);
     let left_s = view.window_s.map_or(first_s, |w| (now_s - w).max(first_s));
     let range = [left_s, now_s.max(left_s + view.window_s.unwrap_or(SHORTEST_S).max(SHORTEST_S))];
-    // Outside the window nothing is seen while it follows, and everything while it does not.
-    let start = if view.follow { state.history.samples.partition_point(|s| s.time_s < left_s) } else { 0 };
+    // A zoomed graph shows what it showed in the frame before, and a little on each side.
+    let seen = if view.follow { None } else { in_view(ui, TITLE) }.unwrap_or(range);
+    let margin = 0.1 * (seen[1] - seen[0]);
+    let seen = [seen[0] - margin, seen[1] + margin];
     let columns = ui.available_width().max(1.0) as usize;
     let graph = Graph {
-        title: "Over time",
+        title: TITLE,
         measure,
-        across: ["Time", "s"],
+        across: ("Time", Unit::S),
         range,
         limits: measure.limits(cable),
         follow: view.follow,
         height,
         mark: state.recording.shown_s,
     };
-    let mut touched = show(ui, &graph, &lines(state, scene, measure, (start, Some(columns))));
+    let mut touched = show(ui, &graph, &lines(state, scene, measure, (seen, Some(columns))));
     if let Some(sheet) = &mut touched.export {
         // Every sample, not only those that can be told apart on screen.
-        sheet.lines = lines(state, scene, measure, (0, None));
+        sheet.lines = lines(state, scene, measure, ([f64::NEG_INFINITY, f64::INFINITY], None));
     }
     touched
 }
 
-/// The lines of a measure, SI: from the sample `start` on, thinned to `columns` of the screen if there are any.
-fn lines(state: &AppState, scene: &Scene, measure: Measure, (start, columns): (usize, Option<usize>)) -> Vec<Series> {
+/// The lines of a measure, SI, between two times: thinned to `columns` of the screen if there are any; then those of held runs.
+fn lines(state: &AppState, scene: &Scene, measure: Measure, (seen, columns): ([f64; 2], Option<usize>)) -> Vec<Series> {
+    let mut lines = own(state, scene, measure, (seen, columns));
+    for (k, held) in state.held.iter().enumerate() {
+        let Some(line) = held.run.as_ref().and_then(|r| r.line(measure)) else { continue };
+        let scale = match (measure, held.scene.cables.first()) {
+            (Measure::Cable(quantity), Some(cable)) => per_newton(quantity, cable),
+            _ => 1.0,
+        };
+        let mut points = line.view(seen, columns.unwrap_or(usize::MAX));
+        points.iter_mut().for_each(|p| p[1] *= scale);
+        lines.push(Series { name: format!("Held {}", k + 1), points, held: Some(k) });
+    }
+    lines
+}
+
+/// Those of what was recorded.
+fn own(state: &AppState, scene: &Scene, measure: Measure, (seen, columns): ([f64; 2], Option<usize>)) -> Vec<Series> {
+    let samples = &state.history.samples;
+    let start = samples.partition_point(|s| s.time_s < seen[0]).saturating_sub(1);
+    let end = (samples.partition_point(|s| s.time_s <= seen[1]) + 1).min(samples.len()).max(start);
     let index = state.current_cable();
     let cable = scene.cables.get(index);
     let scale = match (measure, cable) {
@@ -55,8 +79,9 @@ fn lines(state: &AppState, scene: &Scene, measure: Measure, (start, columns): (u
         _ => 1.0,
     };
     let line = |name: String, of: &dyn Fn(&Sample) -> f64| {
-        let points = state.history.samples.range(start..).map(|s| [s.time_s, of(s) * scale]);
-        Series { name, points: columns.map_or_else(|| points.clone().collect(), |c| thin(points.clone(), c)) }
+        let points = samples.range(start..end).map(|s| [s.time_s, of(s) * scale]);
+        let points = columns.map_or_else(|| points.clone().collect(), |c| thin(points.clone(), c));
+        Series { name, points, held: None }
     };
     let (Measure::Cable(_), Some(cable)) = (measure, cable) else {
         return measure.lines().iter().map(|(name, of)| line((*name).to_owned(), of)).collect();

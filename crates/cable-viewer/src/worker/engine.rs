@@ -9,7 +9,7 @@ use cable_core::model::auto::Question;
 use cable_core::{Error, Model, Scene, Settings, Simulation, Solution, SolveError};
 
 use super::draft;
-use super::request::{Drag, Edit, Request};
+use super::request::{Drag, Edit, Request, Resume};
 use crate::state::{Playback, Snapshot};
 
 /// One frame of simulated time at normal speed, s.
@@ -56,6 +56,8 @@ pub struct Engine {
     falling: bool,
     /// Wall time of the last answer to an edit, s.
     solve_s: f64,
+    /// Why the last edit has no answer: what `simulation` holds is of the scene before it, and time stands.
+    refused: Option<String>,
 }
 
 /// What goes to the window.
@@ -87,6 +89,7 @@ impl Default for Engine {
             draft: false,
             falling: false,
             solve_s: 0.0,
+            refused: None,
         }
     }
 }
@@ -107,7 +110,7 @@ impl Engine {
     /// Time runs.
     #[must_use]
     pub fn playing(&self) -> bool {
-        !self.playback.paused && self.simulation.is_some()
+        !self.playback.paused && self.simulation.is_some() && self.refused.is_none()
     }
 
     /// Does what is asked; returns what to show.
@@ -119,7 +122,7 @@ impl Engine {
             self.robot_order = order;
         }
         let began = Instant::now();
-        let mut solved = request.edit.is_some() || request.reset || request.steps > 0;
+        let mut solved = request.edit.is_some() || request.resume.is_some() || request.reset || request.steps > 0;
         let mut result = Ok(());
         if let Some(edit) = request.edit {
             let stays = self.playback.paused && !request.reset && request.steps == 0;
@@ -129,6 +132,9 @@ impl Engine {
             result = self.solve_draft();
             solved = true;
         }
+        if let Some(resume) = request.resume {
+            result = self.resume(*resume);
+        }
         if let Some(drag) = request.drag {
             solved = true;
             result = result.and_then(|()| self.drag(drag));
@@ -136,15 +142,20 @@ impl Engine {
         if request.reset {
             result = result.and_then(|()| self.reset());
         }
-        for _ in 0..request.steps {
-            result = result.and_then(|()| self.step(FRAME_S));
+        if self.refused.is_none() {
+            for _ in 0..request.steps {
+                result = result.and_then(|()| self.step(FRAME_S));
+            }
         }
+        // Time must not run in a scene that is no longer the one on screen.
+        let held_back = self.refused.is_some() && !self.playback.paused;
+        self.playback.paused |= held_back;
         self.snapshot.edit = request.number.max(self.snapshot.edit);
         if solved {
             self.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
             self.show(result);
         }
-        self.report(false)
+        self.report(held_back)
     }
 
     /// What is shown is a draft that still moves.
@@ -226,6 +237,7 @@ impl Engine {
         self.before_motion = None;
         self.start_kept = false;
         self.draft = true;
+        self.refused = None;
         self.edit = Some(edit.clone());
         true
     }
@@ -263,6 +275,7 @@ impl Engine {
                 self.simulation = Some(simulation);
                 self.before_motion = None;
                 self.start_kept = kept;
+                self.refused = None;
                 self.sample();
                 Ok(())
             }
@@ -271,6 +284,7 @@ impl Engine {
                 self.simulation = old;
                 self.start_kept = false;
                 self.playback.paused = true;
+                self.refused = Some(e.to_string());
                 Err(e)
             }
         }
@@ -310,11 +324,27 @@ impl Engine {
         Ok(())
     }
 
+    /// Goes on from an earlier answer.
+    fn resume(&mut self, resume: Resume) -> Result<(), Error> {
+        let Resume { edit, answer } = resume;
+        let mut then = Simulation::for_question(edit.scene.clone(), edit.model, edit.settings, MOTION)?;
+        then.resume(&answer)?;
+        self.simulation = Some(then);
+        self.before_motion = None;
+        self.edit = Some(edit);
+        self.start_kept = false;
+        self.draft = false;
+        self.refused = None;
+        self.sample();
+        Ok(())
+    }
+
     fn reset(&mut self) -> Result<(), Error> {
         self.history_restarts = true;
         self.answers.clear();
         // At the start already: lay the cable anew, which forgets the friction of edits since.
         if self.start_kept
+            && self.refused.is_none()
             && let Some(simulation) = &mut self.simulation
             && simulation.time_s() > 0.0
         {
@@ -326,6 +356,7 @@ impl Engine {
             self.simulation = Some(self.rebuild(&edit, None)?.0);
             self.before_motion = None;
             self.start_kept = true;
+            self.refused = None;
         }
         self.sample();
         Ok(())
@@ -362,10 +393,12 @@ impl Engine {
         match (result, &self.simulation) {
             (Ok(()), Some(simulation)) => {
                 self.snapshot.solution = Some(Arc::new(simulation.solution()));
-                self.snapshot.scene = scene;
-                self.snapshot.error = None;
-                self.snapshot.stale = false;
+                self.snapshot.error.clone_from(&self.refused);
+                self.snapshot.stale = self.refused.is_some();
                 self.snapshot.draft = self.draft;
+                if self.refused.is_none() {
+                    self.snapshot.scene = scene;
+                }
             }
             (Ok(()), None) => {}
             (Err(e), _) => {

@@ -1,7 +1,9 @@
 //! What the window asks of the worker. Requests merge: the latest scene, drag and speed win.
 
+use std::sync::Arc;
+
 use cable_core::math::Point;
-use cable_core::{Model, Scene, Settings};
+use cable_core::{Model, Scene, Settings, Solution};
 
 use crate::state::Playback;
 
@@ -14,6 +16,8 @@ pub struct Request {
     pub drag: Option<Drag>,
     /// Speed of the robot by hand, m/s; Some(None): along its path.
     pub robot: Option<Option<f64>>,
+    /// An earlier instant to go on from.
+    pub resume: Option<Box<Resume>>,
     /// Back to the start.
     pub reset: bool,
     /// Time runs or stands still.
@@ -35,6 +39,15 @@ pub struct Edit {
     pub settings: Settings,
     /// Another scene, not a change of the present one: nothing is carried over.
     pub fresh: bool,
+}
+
+/// An earlier instant to go on from.
+#[derive(Clone, Debug)]
+pub struct Resume {
+    /// The scene as it was then.
+    pub edit: Edit,
+    /// The answer of then.
+    pub answer: Arc<Solution>,
 }
 
 /// A support dragged while time runs.
@@ -63,6 +76,7 @@ impl Request {
                 self.steps = 0;
             }
             self.drag = None;
+            self.resume = None;
             self.edit = Some(Edit { fresh, ..edit });
         }
         if let Some(drag) = later.drag {
@@ -71,6 +85,10 @@ impl Request {
             } else {
                 self.drag = Some(drag);
             }
+        }
+        if later.resume.is_some() {
+            (self.edit, self.drag, self.reset, self.steps) = (None, None, false, 0);
+            self.resume = later.resume;
         }
         if later.reset {
             self.reset = true;
@@ -87,6 +105,7 @@ impl Request {
     pub fn is_empty(&self) -> bool {
         self.edit.is_none()
             && self.drag.is_none()
+            && self.resume.is_none()
             && !self.reset
             && self.playback.is_none()
             && self.robot.is_none()

@@ -128,7 +128,7 @@ fn a_preset_fills_in_the_figures_and_leaves_the_rest() {
 }
 
 #[test]
-fn segments_can_be_fixed_and_freed_and_self_contact_is_not_offered_yet() {
+fn segments_can_be_fixed_and_freed_and_self_contact_chosen() {
     let mut harness = open(panels::cable::ui);
     click(&mut harness, "Fixed number of segments");
     assert_eq!(harness.state().state.scene.cables[0].segments, Some(48));
@@ -136,8 +136,8 @@ fn segments_can_be_fixed_and_freed_and_self_contact_is_not_offered_yet() {
     assert_eq!(harness.state().state.scene.cables[0].segments, Some(64));
     click(&mut harness, "Fixed number of segments");
     assert_eq!(harness.state().state.scene.cables[0].segments, None);
-    click(&mut harness, "Self-contact (not yet)");
-    assert!(!harness.state().state.scene.cables[0].self_contact);
+    click(&mut harness, "Self-contact");
+    assert!(harness.state().state.scene.cables[0].self_contact);
 }
 
 #[test]
@@ -304,7 +304,7 @@ fn warnings_show_their_place_and_offer_the_fix() {
     let mut state = state();
     warn(&mut state);
     let mut harness = open_with(state, panels::warnings::ui);
-    harness.get_by_label_contains("912.0 N of 800.0 N");
+    harness.get_by_label_contains("912.0 of 800.0 N");
     click(&mut harness, "Show warning 1");
     assert!(matches!(harness.state().commands.first(), Some(Command::View(ViewCommand::CentreOn(_)))));
     click(&mut harness, "Use 96 segments");

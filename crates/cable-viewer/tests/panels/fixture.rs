@@ -192,7 +192,7 @@ pub fn compared() -> AppState {
     for (scene, solution) in [(state.scene.clone(), None), (other, Some(answer))] {
         let solution = solution.map_or_else(|| state.snapshot.solution.clone().unwrap(), Arc::new);
         let name = format!("{}, fem model", scene.name);
-        state.held.push(Held { name, scene: Arc::new(scene), solution, wall_s: 2.5e-3 });
+        state.held.push(Held { name, scene: Arc::new(scene), solution, wall_s: 2.5e-3, run: None });
     }
     state
 }

@@ -2,9 +2,15 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+mod editing;
+mod help;
 mod pictures;
 mod playing;
 mod recovery;
+mod rows;
+mod runs;
+mod session;
+mod speed;
 mod stories;
 mod timing;
 
@@ -67,7 +73,7 @@ fn apply(harness: &mut Harness<'_, ViewerApp>, command: Command) {
 }
 
 #[test]
-fn dragging_an_end_moves_the_support_and_the_cable_follows() {
+fn u13_dragging_an_end_moves_the_support_and_the_cable_follows() {
     let mut harness = open_span();
     let scale = harness.state().state.camera.points_per_m;
     let before = harness.state().state.scene.cables[0].supports[1].at_m.unwrap();
@@ -91,7 +97,7 @@ fn dragging_an_end_moves_the_support_and_the_cable_follows() {
 }
 
 #[test]
-fn double_click_on_the_cable_adds_a_waypoint_and_delete_removes_it() {
+fn u06_double_click_on_the_cable_adds_a_waypoint_and_delete_removes_it() {
     let mut harness = open_span();
     let node = {
         let solution = harness.state().state.snapshot.solution.clone().expect("an answer");
@@ -117,7 +123,7 @@ fn double_click_on_the_cable_adds_a_waypoint_and_delete_removes_it() {
 }
 
 #[test]
-fn dragging_the_background_moves_the_view_and_not_the_scene() {
+fn t04_dragging_the_background_moves_the_view_and_not_the_scene() {
     let mut harness = open(catalog::hanging_span());
     let canvas = harness.get_by_label("Canvas").rect();
     let before = harness.state().state.camera.centre_m;
@@ -153,7 +159,7 @@ fn an_obstacle_is_dragged_whole_and_its_corners_once_it_is_selected() {
 }
 
 #[test]
-fn the_wheel_zooms_at_the_pointer() {
+fn t04_the_wheel_zooms_at_the_pointer() {
     let mut harness = open(catalog::hanging_span());
     let canvas = harness.get_by_label("Canvas").rect();
     let pointer = canvas.center() + Vec2::new(90.0, -70.0);
@@ -187,7 +193,7 @@ fn every_catalogue_scene_is_drawn() {
 }
 
 #[test]
-fn a_scene_without_an_answer_keeps_the_last_picture_and_says_why() {
+fn u12_a_scene_without_an_answer_keeps_the_last_picture_and_says_why() {
     let mut harness = open_span();
     let good = harness.state().state.snapshot.solution.clone().expect("an answer");
     let mut cable = harness.state().state.scene.cables[0].clone();
@@ -221,7 +227,7 @@ fn a_window_without_area_does_not_panic() {
 }
 
 #[test]
-fn a_file_that_is_no_scene_leaves_the_scene_and_says_where() {
+fn t01_a_file_that_is_no_scene_leaves_the_scene_and_says_where() {
     let mut harness = open(catalog::hanging_span());
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("broken.toml");

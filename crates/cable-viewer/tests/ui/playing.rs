@@ -53,7 +53,7 @@ fn an_edit_at_rest_starts_the_history_again() {
 }
 
 #[test]
-fn reset_after_steps_is_the_start_bit_for_bit() {
+fn u07_reset_after_steps_is_the_start_bit_for_bit() {
     for (scene, model) in [
         (catalog::hanging_span(), Model::Auto),
         (catalog::hanging_span(), Model::Fem),
@@ -96,7 +96,7 @@ fn space_runs_and_pauses() {
 }
 
 #[test]
-fn slow_motion_and_fast_motion_keep_their_speed() {
+fn s08_slow_motion_and_fast_motion_keep_their_speed() {
     for speed in [0.01, 0.5, 4.0] {
         let mut harness = open_span();
         apply(&mut harness, Command::Playback(PlaybackCommand::SetSpeed(speed)));
@@ -162,7 +162,7 @@ fn a_support_dragged_while_time_runs_is_followed_and_never_jumps() {
 
 /// A model on a scene it can do, and one it cannot: the refusal is shown beside the greyed last good picture.
 #[test]
-fn every_model_answers_what_it_can_and_refuses_the_rest_in_words() {
+fn u12_every_model_answers_what_it_can_and_refuses_the_rest_in_words() {
     let ends_only = |mut scene: Scene| {
         scene.cables[0].bending_stiffness_n_m2 = 0.0;
         scene
@@ -211,7 +211,7 @@ fn a_property_the_model_lacks_is_refused_beside_the_last_picture() {
 
 /// Every scene of the catalogue runs, or says why it does not; none hangs or breaks the solver.
 #[test]
-fn every_catalogue_scene_plays_five_frames_or_says_why_not() {
+fn u18_every_catalogue_scene_plays_five_frames_or_says_why_not() {
     let mut refused = Vec::new();
     for (id, scene) in catalog::all() {
         let mut harness = open(scene);

@@ -25,6 +25,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     ui.push_id(index, |ui| {
         picker(ui, state, index, commands);
+        count(ui, state, index, commands);
         presets(ui, index, cable, commands);
         // The loaded scene's cable of this name is what reset returns to without a preset.
         let loaded = state.document.saved.cables.iter().find(|c| c.name == cable.name);
@@ -40,7 +41,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             fault::inline(ui, state, &format!("cables[{index}].{}", property.key), commands);
         }
         segments(ui, state, index, loaded, commands);
-        self_contact(ui, cable);
+        self_contact(ui, index, cable, commands);
     });
 }
 
@@ -143,10 +144,30 @@ fn solved_segments(state: &AppState, index: usize) -> Option<usize> {
     answer.nodes.len().checked_sub(1).filter(|&n| n > 0)
 }
 
-fn self_contact(ui: &mut Ui, cable: &Cable) {
+fn self_contact(ui: &mut Ui, index: usize, cable: &Cable, commands: &mut Vec<Command>) {
     let mut on = cable.self_contact;
-    ui.add_enabled(false, egui::Checkbox::new(&mut on, "Self-contact (not yet)"))
-        .on_disabled_hover_text("No model stops a cable on itself yet: it passes in front of itself");
+    let help = "The cable is an obstacle to itself (fem only, without pulleys). Off: it passes in front of itself";
+    if ui.checkbox(&mut on, "Self-contact").on_hover_text(help).changed() {
+        commands.push(changed(index, cable, |c| c.self_contact = on));
+        commands.push(Command::Scene(SceneCommand::EditDone));
+    }
+}
+
+/// Adds and takes out cables.
+fn count(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        let help = "Another cable with the same properties, half a metre above this one";
+        if ui.button("Add cable").on_hover_text(help).clicked() {
+            commands.push(Command::Scene(SceneCommand::AddCable));
+        }
+        let several = state.scene.cables.len() > 1;
+        let remove = ui.add_enabled(several, egui::Button::new("Remove cable"));
+        let remove =
+            remove.on_hover_text("Takes this cable out, with its loads").on_disabled_hover_text("The last one stays");
+        if remove.clicked() {
+            commands.push(Command::Scene(SceneCommand::Remove(Item::Cable(index))));
+        }
+    });
 }
 
 /// A text in the column of names, and the widget it names beside it; `name` is what tests and screen readers call it.

@@ -63,7 +63,7 @@ fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Ve
         ui.label(RichText::new(unit::force(tension_n)).strong().size(18.0));
         place(ui, "Show the largest tension", &node, commands);
     });
-    ui.weak(format!("at {:.3} m along the cable, {}", node.arc_length_m, unit::position([node.x_m, node.y_m])));
+    ui.weak(format!("at {} along the cable, {}", along(&node), unit::position([node.x_m, node.y_m])));
     for (name, limit_n, help) in [
         ("service", cable.service_tension_n, "Share of the tension of the first warning"),
         ("break", cable.breaking_tension_n, "Share of the tension at which it breaks"),
@@ -104,12 +104,15 @@ fn figure(ui: &mut Ui, name: &str, value: String, help: &str, at: Option<(&Node,
     ui.end_row();
 }
 
+fn along(node: &Node) -> String {
+    unit::Unit::COORDINATE.text(node.arc_length_m)
+}
+
 fn place(ui: &mut Ui, label: &str, node: &Node, commands: &mut Vec<Command>) {
     let at_m = [node.x_m, node.y_m];
     let button = icon::plain_button(ui, Icon::Locate, true);
     field::name(&button, label);
-    let text =
-        format!("At {:.3} m along the cable, {}; click to centre on it", node.arc_length_m, unit::position(at_m));
+    let text = format!("At {} along the cable, {}; click to centre on it", along(node), unit::position(at_m));
     if button.on_hover_text(text).clicked() {
         commands.push(Command::View(ViewCommand::CentreOn(at_m)));
     }

@@ -49,12 +49,12 @@ fn direction_deg(s: &SupportReaction) -> f64 {
 
 fn explanation(cable: &Cable, s: &SupportReaction) -> String {
     let mut text = format!(
-        "{} at {:.1}° (anticlockwise from the right)\nAt {}, {:.3} m of {:.3} m along the cable",
+        "{} at {:.1}° (anticlockwise from the right)\nAt {}, {} of {} along the cable",
         unit::force(size(s)),
         direction_deg(s),
         unit::position([s.x_m, s.y_m]),
-        s.arc_length_m,
-        cable.length_m
+        unit::Unit::COORDINATE.text(s.arc_length_m),
+        unit::Unit::COORDINATE.text(cable.length_m)
     );
     if let (Some(before), Some(after)) = (s.tension_before_n, s.tension_after_n) {
         text += &format!("\nTension {} before and {} after it", unit::force(before), unit::force(after));

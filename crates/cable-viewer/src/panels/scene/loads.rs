@@ -24,8 +24,9 @@ const STRENGTH: Quantity = Quantity {
 /// Draws them.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if !state.scene.loads.is_empty() {
-        let columns =
-            [("Name", NAME_WIDTH), ("At, m", KIND_WIDTH), ("Right, N", NUMBER_WIDTH), ("Up, N", NUMBER_WIDTH)];
+        let (length, force) = (Unit::M.shown().symbol, Unit::N.shown().symbol);
+        let [at, right, up] = [format!("At, {length}"), format!("Right, {force}"), format!("Up, {force}")];
+        let columns = [("Name", NAME_WIDTH), (&*at, KIND_WIDTH), (&*right, NUMBER_WIDTH), (&*up, NUMBER_WIDTH)];
         headings(ui, &columns);
     }
     for (k, load) in state.scene.loads.iter().enumerate() {

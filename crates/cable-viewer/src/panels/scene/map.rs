@@ -6,6 +6,7 @@ use egui::{ComboBox, Ui};
 
 use crate::command::{Command, SceneCommand, ViewCommand};
 use crate::panels::cable::labelled;
+use crate::panels::unit;
 use crate::state::AppState;
 
 /// Draws it.
@@ -35,8 +36,11 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 fn about(map: &MapPreset) -> String {
     format!(
-        "{}\nInside width {:.2} m, waste up to {:.2} m deep, opening at ({:.2}, {:.2}) m",
-        map.note, map.inside_width_m.value, map.waste_depth_m.value, map.riser_at_m[0], map.riser_at_m[1]
+        "{}\nInside width {}, waste up to {} deep, opening at {}",
+        map.note,
+        unit::length(map.inside_width_m.value),
+        unit::length(map.waste_depth_m.value),
+        unit::position(map.riser_at_m)
     )
 }
 

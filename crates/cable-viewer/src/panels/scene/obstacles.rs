@@ -22,13 +22,15 @@ const CORNERS_HEIGHT: f32 = 240.0;
 /// Draws them.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if !state.scene.obstacles.is_empty() {
-        headings(ui, &[("Name", NAME_WIDTH), ("Form", KIND_WIDTH), ("x, m", NUMBER_WIDTH), ("y, m", NUMBER_WIDTH)]);
+        let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.shown().symbol));
+        headings(ui, &[("Name", NAME_WIDTH), ("Form", KIND_WIDTH), (&x, NUMBER_WIDTH), (&y, NUMBER_WIDTH)]);
     }
     for (k, obstacle) in state.scene.obstacles.iter().enumerate() {
         ui.push_id(k, |ui| line(ui, state, k, obstacle, commands));
         fault::inline(ui, state, &format!("obstacles[{k}]"), commands);
     }
-    ui.menu_button("Add obstacle", |ui| add(ui, state, commands));
+    let menu = ui.menu_button("Add obstacle", |ui| add(ui, state, commands));
+    menu.response.on_hover_text("Ground, a beam, a post or a sheet, in the middle of the picture");
 }
 
 /// New obstacles stand in the middle of the picture, where the user looks.
@@ -152,7 +154,7 @@ fn details(ui: &mut Ui, k: usize, obstacle: &Obstacle, commands: &mut Vec<Comman
 
 /// The corners with exact coordinates; only those in view are drawn, terrain can have thousands.
 fn corners(ui: &mut Ui, k: usize, points_m: &mut Vec<Point>, faults: &mut Vec<String>) {
-    ui.weak(format!("{} corners, x and y in m", points_m.len()));
+    ui.weak(format!("{} corners, x and y in {}", points_m.len(), Unit::M.shown().symbol));
     let mut gone = None;
     let mut doubled = None;
     let height = ui.spacing().interact_size.y;

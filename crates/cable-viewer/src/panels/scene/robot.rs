@@ -9,6 +9,7 @@ use super::{coordinates, show_faults};
 use crate::command::{Command, SceneCommand};
 use crate::panels::cable::labelled;
 use crate::panels::fault;
+use crate::panels::unit::Unit;
 use crate::state::AppState;
 use cable_core::scene::ground::Ground;
 
@@ -42,8 +43,13 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 fn about(p: &RobotPreset) -> String {
     format!(
-        "{}\n{:.2} m long, {:.2} m high, {:.0} kg; hitch {:.2} m behind the middle, {:.2} m up",
-        p.note, p.length_m.value, p.height_m.value, p.mass_kg.value, p.hitch_back_m.value, p.hitch_up_m.value
+        "{}\n{} long, {} high, {}; hitch {} behind the middle, {} up",
+        p.note,
+        Unit::M.text(p.length_m.value),
+        Unit::M.text(p.height_m.value),
+        Unit::KG.text(p.mass_kg.value),
+        Unit::M.text(p.hitch_back_m.value),
+        Unit::M.text(p.hitch_up_m.value)
     )
 }
 
@@ -65,7 +71,8 @@ fn chosen(state: &AppState, p: &RobotPreset) -> Robot {
 
 fn placed(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     let mut faults = Vec::new();
-    labelled(ui, "Stands at, m", "Robot stands at", |ui| {
+    let at = format!("Stands at, {}", Unit::M.shown().symbol);
+    labelled(ui, &at, "Robot stands at", |ui| {
         let label = ui.weak("x, y");
         if let Some(at_m) = coordinates(ui, "robot", robot.at_m, &mut faults) {
             set(Some(Robot { at_m, ..robot.clone() }), commands);
@@ -77,11 +84,12 @@ fn placed(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     labelled(ui, "Looks", "Robot looks", |ui| {
         let mut heading = robot.heading;
         let left = ui.selectable_value(&mut heading, Heading::Left, "Left");
-        ui.selectable_value(&mut heading, Heading::Right, "Right");
+        let help = "Its hitch is at its other end";
+        ui.selectable_value(&mut heading, Heading::Right, "Right").on_hover_text(help);
         if heading != robot.heading {
             set(Some(Robot { heading, ..robot.clone() }), commands);
         }
-        left
+        left.on_hover_text(help)
     });
     show_faults(ui, &faults);
 }

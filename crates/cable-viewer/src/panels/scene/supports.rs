@@ -49,7 +49,8 @@ impl Row<'_> {
 pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Command>) {
     let Some(cable) = state.scene.cables.get(index) else { return };
     let last = cable.supports.len().saturating_sub(1);
-    headings(ui, &[("Name", NAME_WIDTH), ("Kind", KIND_WIDTH), ("x, m", NUMBER_WIDTH), ("y, m", NUMBER_WIDTH)]);
+    let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.shown().symbol));
+    headings(ui, &[("Name", NAME_WIDTH), ("Kind", KIND_WIDTH), (&x, NUMBER_WIDTH), (&y, NUMBER_WIDTH)]);
     for (support, value) in cable.supports.iter().enumerate() {
         let end = support == 0 || support == last;
         let row = Row { cable: index, support, value, end, now: place_now(state, index, support, cable) };
@@ -108,7 +109,7 @@ fn line(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command
                     let (at_m, _) = row.now;
                     for v in at_m {
                         cell(ui, NUMBER_WIDTH, |ui| {
-                            ui.weak(format!("{v:.3}")).on_hover_text("Where it is now; not held there");
+                            ui.weak(Unit::COORDINATE.bare().text(v)).on_hover_text("Where it is now; not held there");
                         });
                     }
                 }
@@ -163,7 +164,9 @@ fn details(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>) {
             row.changed(commands, |s| s.arc_length_m = Some(v));
         }
     } else {
-        labelled(ui, "Sits at", "Place on the cable", |ui| ui.label(format!("{:.3} m along the cable", row.now.1)));
+        labelled(ui, "Sits at", "Place on the cable", |ui| {
+            ui.label(format!("{} along the cable", Unit::COORDINATE.text(row.now.1)))
+        });
     }
     match s.kind {
         SupportKind::Clamped => {
@@ -226,7 +229,7 @@ fn load(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Ve
     };
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        ui.label("Force right, up, N");
+        ui.label(format!("Force right, up, {}", Unit::N.shown().symbol));
         let labels = ["Force to the right", "Force upwards"].map(str::to_owned);
         if let Some(force_n) = components(ui, labels, Unit::N, force_n, faults) {
             row.changed(commands, |s| s.force_n = Some(force_n));

@@ -1,0 +1,148 @@
+//! Whole runs: kept, read again, overlaid, compared; long ones at the speed of the screen.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use cable_core::scene::catalog;
+use cable_viewer::ViewerApp;
+use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
+use cable_viewer::history::Sample;
+use cable_viewer::plot::measure::Measure;
+use cable_viewer::run::Run;
+use cable_viewer::state::AppState;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+
+use crate::{apply, open, open_span};
+
+fn state<'a>(harness: &'a Harness<'_, ViewerApp>) -> &'a AppState {
+    &harness.state().state
+}
+
+fn play(harness: &mut Harness<'_, ViewerApp>, frames: usize) {
+    apply(harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    harness.run_steps(frames);
+    apply(harness, Command::Playback(PlaybackCommand::SetPaused(true)));
+}
+
+#[test]
+fn s11_a_run_is_opened_again_and_nothing_is_lost() {
+    let mut harness = open(catalog::robot_drive());
+    play(&mut harness, 30);
+    let folder = tempfile::tempdir().unwrap();
+    let run = folder.path().join("run");
+    apply(&mut harness, Command::File(FileCommand::SaveRun(run.clone())));
+    let saved: Vec<_> = state(&harness).recording.answers().to_vec();
+    let scene = state(&harness).scene.clone();
+
+    let mut harness = open_span();
+    apply(&mut harness, Command::File(FileCommand::Discard(Box::new(Command::File(FileCommand::OpenRun(run))))));
+    harness.run_steps(3);
+    assert_eq!(state(&harness).dialog, None);
+    assert_eq!(state(&harness).scene, scene);
+    let read = state(&harness).recording.answers();
+    assert_eq!(read.len(), saved.len());
+    for (a, b) in read.iter().zip(&saved) {
+        assert_eq!(a.time_s.to_bits(), b.time_s.to_bits());
+        assert_eq!(a.cables[0].nodes, b.cables[0].nodes, "{} s", a.time_s);
+        assert_eq!(a.robot.unwrap().x_m, b.robot.unwrap().x_m);
+        assert_eq!(a.energy, b.energy);
+    }
+    let last = saved.last().unwrap();
+    assert_eq!(state(&harness).recording.shown_s, Some(last.time_s));
+    assert_eq!(state(&harness).snapshot.solution.as_ref().unwrap().time_s, last.time_s);
+    // Time can be taken up where it ended.
+    harness.get_by_label("Go on from here").click();
+    harness.run_steps(2);
+    assert_eq!(state(&harness).snapshot.error, None);
+    play(&mut harness, 5);
+    assert!(state(&harness).snapshot.solution.as_ref().unwrap().time_s > last.time_s);
+}
+
+#[test]
+fn a_folder_that_is_no_run_changes_nothing_and_is_named() {
+    let mut harness = open_span();
+    let before = state(&harness).scene.clone();
+    let folder = tempfile::tempdir().unwrap();
+    apply(&mut harness, Command::File(FileCommand::OpenRun(folder.path().to_owned())));
+    let Some(cable_viewer::dialog::Dialog::Message { text, .. }) = &state(&harness).dialog else { panic!() };
+    assert!(text.contains("scene.toml"), "{text}");
+    assert_eq!(state(&harness).scene, before);
+}
+
+#[test]
+fn s16_whole_runs_are_overlaid_and_compared() {
+    let mut harness = open_span();
+    play(&mut harness, 30);
+    apply(&mut harness, Command::View(ViewCommand::Hold));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run");
+    apply(&mut harness, Command::File(FileCommand::SaveRun(path.clone())));
+    let mut cable = state(&harness).scene.cables[0].clone();
+    cable.linear_density_kg_per_m *= 2.0;
+    apply(&mut harness, Command::Playback(PlaybackCommand::Reset));
+    apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
+    play(&mut harness, 30);
+    apply(&mut harness, Command::File(FileCommand::HoldRun(path)));
+    harness.run_steps(2);
+    let [own, read] = [0, 1].map(|k| state(&harness).held[k].run.clone().expect("a run"));
+    let tension = Measure::ALL[0];
+    assert_eq!(own.span_s(), read.span_s());
+    assert_eq!(own.line(tension).unwrap().points(), read.line(tension).unwrap().points());
+    let now = state(&harness).history.samples.iter().map(|s| s.max_tension_n).fold(0.0, f64::max);
+    assert!(now > 1.8 * own.peak(tension).unwrap().value);
+    harness.get_by_label("Whole runs");
+    let spoken = harness.get_by_label("Over time").accesskit_node().description().unwrap_or_default();
+    assert!(spoken.contains("Held 1") && spoken.contains("Held 2"), "{spoken}");
+    // The picture of a held run is that of the time shown.
+    apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.2))));
+    let time_s = state(&harness).snapshot.solution.as_ref().unwrap().time_s;
+    assert!((state(&harness).held[0].picture(time_s).time_s - time_s).abs() < 0.02);
+    let told = cable_viewer::panels::compare::differences(&state(&harness).held[0], state(&harness));
+    assert!(told.iter().any(|l| l.contains("linear_density_kg_per_m")), "{told:?}");
+}
+
+/// A million samples in the time graph: milliseconds of a frame, printed and not asserted.
+/// `cargo test --workspace --test ui speed -- --nocapture --test-threads 1`.
+#[test]
+fn speed_of_a_million_samples() {
+    let mut harness = open_span();
+    play(&mut harness, 3);
+    apply(&mut harness, Command::View(ViewCommand::Hold));
+    let frame = |harness: &mut Harness<'_, ViewerApp>| {
+        let began = Instant::now();
+        harness.run_steps(30);
+        began.elapsed().as_secs_f64() / 30.0 * 1e3
+    };
+    let short = frame(&mut harness);
+    let samples: Vec<Sample> = (0..1_000_000)
+        .map(|k| {
+            let time_s = f64::from(k) * 1e-3;
+            Sample {
+                time_s,
+                max_tension_n: 500.0 + 100.0 * (0.1 * time_s).sin() + 20.0 * (7.0 * time_s).sin(),
+                energy_j: [0.0; 4],
+                robot: None,
+                reactions_n: Vec::new(),
+            }
+        })
+        .collect();
+    let began = Instant::now();
+    let answers = state(&harness).recording.answers().to_vec();
+    let run = Run::of(samples.iter(), &answers, 0).map(Arc::new);
+    let built = began.elapsed().as_secs_f64() * 1e3;
+    harness.state_mut().state.held[0].run = run.clone();
+    // All of it in view.
+    let all = cable_viewer::plot::View { window_s: None, ..cable_viewer::plot::View::default() };
+    harness.ctx.data_mut(|d| d.insert_temp(egui::Id::unique("plot view"), all));
+    harness.state_mut().state.history.samples.push_back(Sample { time_s: 1000.0, ..samples[0].clone() });
+    let long = frame(&mut harness);
+    let line = run.as_ref().unwrap().line(Measure::ALL[0]).unwrap().clone();
+    let began = Instant::now();
+    let seen = (0..100).map(|_| line.view([0.0, 1000.0], 600).len()).max().unwrap();
+    let view = began.elapsed().as_secs_f64() * 1e4;
+    println!(
+        "1e6 samples: frame of the whole window {long:.1} ms (3 samples: {short:.1} ms), \
+         thinned to {seen} in {view:.0} µs, built once in {built:.0} ms"
+    );
+}

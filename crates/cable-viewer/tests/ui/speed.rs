@@ -1,0 +1,193 @@
+//! How fast the window is drawn (printed, never asserted): a cable of 1000 segments over ground of 1000 points at
+//! 1280×800, through the same renderer as the pictures, in software where there is no GPU.
+//!
+//! The figures: `cargo test --workspace --test ui speed -- --nocapture --test-threads 1`.
+
+use std::time::Instant;
+
+use cable_core::scene::{Obstacle, Shape, catalog};
+use cable_core::{Model, Scene};
+use cable_viewer::command::{Command, ViewCommand};
+use cable_viewer::{ViewerApp, screenshot};
+use eframe::egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, wgpu};
+use egui::Vec2;
+use egui_kittest::{Harness, TestRenderer};
+
+/// Frames that are measured.
+const FRAMES: usize = 20;
+
+/// A cable of so many segments hung over ground of so many points.
+pub fn big(segments: usize, points: usize) -> Scene {
+    let mut scene = catalog::hanging_span();
+    scene.name = format!("{segments} segments over {points} points");
+    scene.cables[0].segments = Some(segments);
+    let ground = |k: usize| {
+        let x = -2.0 + 14.0 * k as f64 / (points - 1) as f64;
+        [x, 0.2 + 0.25 * (1.3 * x).sin() + 0.04 * (23.0 * x).sin()]
+    };
+    let shape = Shape::Terrain { points_m: (0..points).map(ground).collect() };
+    scene.obstacles.push(Obstacle { name: "ground".to_owned(), shape, friction: None });
+    scene
+}
+
+/// What a window does with a frame: tessellates it, hands it to the graphics driver, waits for the picture. Nothing is read back:
+/// a window shows it where it is.
+struct Screen {
+    state: RenderState,
+    view: Option<wgpu::TextureView>,
+}
+
+impl Screen {
+    fn new() -> Result<Self, String> {
+        Ok(Self { state: screenshot::render_state(RendererOptions::default())?, view: None })
+    }
+}
+
+impl TestRenderer for Screen {
+    fn handle_delta(&mut self, delta: &mut egui::TexturesDelta) {
+        let mut renderer = self.state.renderer.write();
+        for (id, images) in delta.set.drain() {
+            for image in images {
+                renderer.update_texture(&self.state.device, &self.state.queue, id, &image);
+            }
+        }
+        for id in delta.free.drain() {
+            renderer.free_texture(&id);
+        }
+    }
+
+    fn render(&mut self, ctx: &egui::Context, output: &egui::FullOutput) -> Result<image::RgbaImage, String> {
+        let (device, queue) = (&self.state.device, &self.state.queue);
+        let size = ctx.content_rect().size();
+        let size_in_pixels = [size.x as u32, size.y as u32];
+        let screen = ScreenDescriptor { pixels_per_point: ctx.pixels_per_point(), size_in_pixels };
+        let view = self.view.get_or_insert_with(|| {
+            let [width, height] = size_in_pixels;
+            let texture = device.create_texture(&wgpu::TextureDescriptor {
+                label: None,
+                size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: self.state.target_format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
+                view_formats: &[],
+            });
+            texture.create_view(&wgpu::TextureViewDescriptor::default())
+        });
+        let jobs = ctx.tessellate(output.shapes.clone(), ctx.pixels_per_point());
+        let mut renderer = self.state.renderer.write();
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: None });
+        let before = renderer.update_buffers(device, queue, &mut encoder, &jobs, &screen);
+        {
+            let attachment = wgpu::RenderPassColorAttachment {
+                view,
+                resolve_target: None,
+                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+                depth_slice: None,
+            };
+            let descriptor =
+                wgpu::RenderPassDescriptor { color_attachments: &[Some(attachment)], ..Default::default() };
+            let mut pass = encoder.begin_render_pass(&descriptor).forget_lifetime();
+            renderer.render(&mut pass, &jobs, &screen);
+        }
+        queue.submit(before.into_iter().chain(std::iter::once(encoder.finish())));
+        device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| e.to_string())?;
+        Ok(image::RgbaImage::new(1, 1))
+    }
+}
+
+/// Milliseconds of each part of a frame in order: median, 95 %.
+fn figures(mut ms: Vec<f64>) -> String {
+    ms.sort_by(f64::total_cmp);
+    let at = |share: f64| ms[((ms.len() - 1) as f64 * share).round() as usize];
+    format!("median {:.1} ms, 95 % {:.1} ms", at(0.5), at(0.95))
+}
+
+fn draw(name: &str, mut scene: Scene) {
+    // The ground is only drawn: what is measured is not how the cable was found.
+    let ground = std::mem::take(&mut scene.obstacles);
+    let renderer = match Screen::new() {
+        Ok(renderer) => renderer,
+        Err(why) => return eprintln!("{name}: not measured, {why}"),
+    };
+    let mut harness = Harness::builder()
+        .with_size(Vec2::new(1280.0, 800.0))
+        .with_step_dt(1.0 / 60.0)
+        .with_render_cursor(false)
+        .with_accessibility_check(false)
+        .allow_missing_glyphs()
+        .renderer(renderer)
+        .build_eframe(|cc| {
+            let mut app = ViewerApp::inline(&cc.egui_ctx, scene, None);
+            app.apply(&cc.egui_ctx, vec![Command::SetModel(Model::Fem)]);
+            app
+        });
+    harness.run_steps(4);
+    assert_eq!(harness.state().state.snapshot.error, None);
+    harness.state_mut().state.scene.obstacles = ground;
+    harness.run_steps(2);
+    harness.render().unwrap();
+    let ctx = harness.ctx.clone();
+    let (mut laid, mut drawn, began) = (Vec::new(), Vec::new(), Instant::now());
+    for k in 0..FRAMES {
+        // Nothing on the canvas is where it was a frame ago.
+        let to = if k % 2 == 0 { Vec2::new(3.0, 1.0) } else { Vec2::new(-3.0, -1.0) };
+        let from = Instant::now();
+        harness.state_mut().apply(&ctx, vec![Command::View(ViewCommand::Pan(to))]);
+        harness.step();
+        laid.push(from.elapsed().as_secs_f64() * 1e3);
+        let from = Instant::now();
+        harness.render().unwrap();
+        drawn.push(from.elapsed().as_secs_f64() * 1e3);
+    }
+    let rate = FRAMES as f64 / began.elapsed().as_secs_f64();
+    println!("{name}: {rate:.1} frames a second; laid out {}; drawn {}", figures(laid), figures(drawn));
+}
+
+#[test]
+fn speed_of_drawing() {
+    for (segments, points) in [(20, 2), (1000, 1000)] {
+        draw(&format!("{segments} segments, {points} points of ground"), big(segments, points));
+    }
+}
+
+/// Ground from a table with so many points, printed and not asserted.
+#[test]
+fn speed_of_import() {
+    use std::fmt::Write as _;
+    for count in [100_000, 1_000_000] {
+        let mut text = String::with_capacity(24 * count);
+        for k in 0..count {
+            let x = k as f64 * 1e-4;
+            let _ = writeln!(text, "{x:.4},{:.5}", -4.0 + 0.2 * (0.7 * x).sin() + 0.001 * (913.0 * x).sin());
+        }
+        let began = Instant::now();
+        let read = cable_core::scene::import::read(&text, 1.0).unwrap();
+        let parsed = began.elapsed().as_secs_f64();
+        let mut scene = catalog::hanging_span();
+        let points_m = read.lines[0].points_m.clone();
+        scene.obstacles.push(Obstacle {
+            name: "ground".to_owned(),
+            shape: Shape::Terrain { points_m },
+            friction: None,
+        });
+        let began = Instant::now();
+        assert_eq!(scene.validate(), Ok(()));
+        let validated = began.elapsed().as_secs_f64();
+        let began = Instant::now();
+        let mut harness = crate::open(catalog::hanging_span());
+        let ready = began.elapsed().as_secs_f64();
+        let import = cable_viewer::command::FileCommand::ImportMap { path: None, text, unit_m: 1.0 };
+        let ctx = harness.ctx.clone();
+        let began = Instant::now();
+        harness.state_mut().apply(&ctx, vec![Command::File(import)]);
+        harness.step();
+        println!(
+            "{count} points: read {parsed:.2} s, checked {validated:.2} s, in the window and solved {:.2} s \
+             (an empty window takes {ready:.2} s)",
+            began.elapsed().as_secs_f64()
+        );
+        assert_eq!(harness.state().state.snapshot.error, None);
+    }
+}
