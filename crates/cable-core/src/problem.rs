@@ -249,6 +249,17 @@ impl Problem {
         self.weight + self.wind.at(time_s)
     }
 
+    /// What hangs on a free support at a time, N: its load, the weight of its lump, point loads at the same place. At rest the
+    /// tension just inside a free end is the size of it, and the cable pulls at it with the opposite of it.
+    #[must_use]
+    pub fn hung_on(&self, support: usize, time_s: f64) -> Vec2 {
+        let Some(s) = self.supports.get(support) else { return Vec2::zeros() };
+        let gravity = if self.linear_density > 0.0 { self.weight / self.linear_density } else { Vec2::zeros() };
+        let here = |l: &&PointLoad| s.arc_length.is_some_and(|a| (l.arc_length - a).abs() <= 1e-9 * self.length);
+        let points: Vec2 = self.loads.iter().filter(here).map(|l| l.force.at(time_s)).sum();
+        s.force.at(time_s) + gravity * s.mass + points
+    }
+
     /// A force that says how large forces are here, N: the whole distributed load, point loads and the weight of lumps, or EA·1e-6 without one.
     #[must_use]
     pub fn force_scale(&self) -> f64 {

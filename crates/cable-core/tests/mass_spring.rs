@@ -19,7 +19,11 @@ const MOST_STEPS: usize = 700;
 #[test]
 fn the_catalogue_settles() {
     for (id, scene) in catalog::all() {
-        let mut sim = Simulation::new(scene, Model::MassSpring).unwrap();
+        let touches_itself = scene.cables.iter().any(|c| c.self_contact);
+        let Ok(mut sim) = Simulation::new(scene, Model::MassSpring) else {
+            assert!(touches_itself, "{id} is refused");
+            continue;
+        };
         let s = sim.settle().unwrap_or_else(|e| panic!("{id}: {e}"));
         println!("{id}: {} steps, {:.1e} N", s.cost.iterations, s.cost.residual_n);
         assert!(s.cost.iterations < MOST_STEPS, "{id}: {} steps", s.cost.iterations);

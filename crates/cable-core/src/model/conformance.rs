@@ -2,9 +2,10 @@
 
 use super::Model;
 use crate::error::Error;
-use crate::scene::{Scene, Support, catalog};
+use crate::math::{Vec2, larger};
+use crate::scene::{Obstacle, Scene, Shape, Support, SupportKind, catalog};
 use crate::simulation::Simulation;
-use crate::solution::Solution;
+use crate::solution::{Solution, SupportReaction};
 
 /// One property of a model, and how well it holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +67,37 @@ pub fn run(model: Model) -> Result<Vec<Check>, Error> {
     check("a smooth pulley passes tension on", passed_on(&slid), shape);
     let pulled = (sum_y(&slid) + weight).abs() / weight;
     check("reactions with a pulley sum to the weight", pulled, 10.0 * equilibrium);
+    let hung = "a dead load at a free end is the tension there";
+    check(hung, loaded_end(model, false)?, 10.0 * equilibrium);
+    // With something to touch each of a hundred nodes may be out of balance by 1e-6 of all that acts.
+    let near = "a dead load at a free end is the tension there, with something to touch";
+    check(near, loaded_end(model, true)?, 100.0 * equilibrium);
     Ok(out)
+}
+
+/// A cable that hangs from its start, a dead load on its end: how far the tension just inside the end is from the load, the
+/// force on the end from its opposite, and the sum of both forces from the weight; relative to the load.
+fn loaded_end(model: Model, floor: bool) -> Result<f64, Error> {
+    let force = Vec2::new(20.0, -35.0);
+    let mut scene = span([0.0, 5.0], [0.0, 0.0]);
+    let c = &mut scene.cables[0];
+    c.length_m = 4.0;
+    c.supports[1] = Support { force_n: Some([force.x, force.y]), ..Support::new("load", SupportKind::Load) };
+    let weight = Vec2::new(0.0, -4.0 * c.linear_density_kg_per_m * scene.environment.gravity_m_per_s2);
+    if floor {
+        let shape = Shape::Terrain { points_m: vec![[-50.0, -20.0], [50.0, -20.0]] };
+        scene.obstacles.push(Obstacle { name: "floor".to_owned(), shape, friction: None });
+    }
+    let answer = settle(&scene, model)?;
+    let [Some(held), Some(end)] = [0, 1].map(|k| answer.cables[0].supports.get(k)) else { return Ok(f64::NAN) };
+    let reaction = |r: &SupportReaction| Vec2::new(r.reaction_x_n, r.reaction_y_n);
+    let tension = answer.cables[0].nodes.last().map_or(f64::NAN, |n| n.tension_n);
+    let off = [
+        (tension - force.norm()).abs(),
+        (reaction(end) + force).norm(),
+        (reaction(held) + reaction(end) - weight).norm(),
+    ];
+    Ok(off.into_iter().fold(0.0, larger) / force.norm())
 }
 
 /// A flexible span of 12 m between two points.

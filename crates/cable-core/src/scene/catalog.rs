@@ -47,6 +47,8 @@ scenes! {
     floor_drag = "floor-drag";
     /// Both ends let go above rough ground.
     rubble_drop = "rubble-drop";
+    /// A cable that comes down on itself.
+    pile = "pile";
     /// A robot that drives out and back by itself.
     robot_drive = "robot-drive";
     /// From above, between two posts.

@@ -35,22 +35,33 @@ fn bar_tensions(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
         .collect()
 }
 
-/// Tension force (N) at the start of the first bar and at the end of the last: that of the middle plus what acts on
-/// the half between. On the ground what acts on the half is guessed from the next node.
+/// Tension force (N) at the start of the first bar and at the end of the last: what hangs there on a free end, else that of
+/// the middle plus what acts on the half between. On the ground what acts on the half is guessed from the next node.
 fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> [Vec2; 2] {
     let n = x.len();
     let end = |node: usize, next: usize, e: usize, sign: f64| {
+        let ground = d.problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach);
+        if let Some(hung) = free_end(d, node) {
+            // What presses on the ground there is the ground's.
+            let pressed = ground.map_or(Vec2::zeros(), |g| g.normal * hung.dot(&g.normal).min(0.0));
+            return (pressed - hung) * sign;
+        }
         let middle = d.mesh.path(e, x).direction * tension[e];
         let half = d.mesh.share(node);
         let body = d.problem.body_force(d.time()) * half;
-        let lies = d.problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach).is_some();
-        let ground = if lies { ground_force(d, next, x) * (half / d.mesh.share(next)) } else { Vec2::zeros() };
+        let ground = if ground.is_some() { ground_force(d, next, x) * (half / d.mesh.share(next)) } else { Vec2::zeros() };
         middle + (body + ground) * sign
     };
     if n < 3 {
         return [Vec2::zeros(); 2];
     }
     [end(0, 1, 0, 1.0), end(n - 1, n - 2, n - 2, -1.0)]
+}
+
+/// What hangs on a free end without a lump, whose inertia would pull as well, N; None for other nodes.
+fn free_end(d: &Dynamics, node: usize) -> Option<Vec2> {
+    let k = d.support_node.iter().position(|n| *n == Some(node)).filter(|_| !d.mesh.held[node])?;
+    (d.problem.supports.get(k)?.mass == 0.0).then(|| d.problem.hung_on(k, d.time()))
 }
 
 /// Normal and friction force of edges and floor on a node, N.
@@ -107,10 +118,8 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
             continue;
         }
         let t = match k {
-            0 if mesh.held[0] => ends[0].norm(),
-            k if k + 1 == n && mesh.held[k] => ends[1].norm(),
-            0 => d.task.force[0].norm().min(tension[0]),
-            k if k + 1 == n => d.task.force[k].norm().min(tension[k - 1]),
+            0 => ends[0].norm(),
+            k if k + 1 == n => ends[1].norm(),
             k => 0.5 * (tension[k - 1] + tension[k]),
         };
         let mut curvature = 0.0;
@@ -163,7 +172,10 @@ fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<
             let last = x.len() - 1;
             let lies = problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach).is_some();
             let reaction = match node {
-                _ if !d.mesh.held[node] => Vec2::zeros(),
+                // A dead load is what hangs there: the cable pulls it the other way; a lump it may pull faster.
+                0 if !d.mesh.held[node] => ends[0],
+                k if k == last && !d.mesh.held[node] => -ends[1],
+                _ if !d.mesh.held[node] => -problem.hung_on(k, d.time()),
                 // On the ground the end's own share of weight and friction is the ground's, not the support's.
                 0 if lies => ends[0],
                 k if k == last && lies => -ends[1],

@@ -121,6 +121,39 @@ fn a_load_over_a_corner_rests_and_stays() {
     assert!(moved < 1e-3, "{moved}");
 }
 
+/// A steel-stiff cable drawn to 1e5 N over a post, without sliding nodes: the barrier alone carries it.
+fn taut_over_a_post() -> Dynamics {
+    let post = Shape::Circle { center_m: [0.0, 0.0], radius_m: 0.2 };
+    let scene = scene(
+        |c| {
+            (c.length_m, c.axial_stiffness_n, c.segments) = (4.0, 1e7, Some(40));
+            (c.breaking_tension_n, c.service_tension_n) = (1e12, 1e12);
+            c.route_m = vec![[-2.0, -0.2], [0.0, 0.22], [2.0, -0.2]];
+            c.supports = vec![Support::fixed("a", [-2.0, -0.2]), Support::fixed("b", [2.0, -0.2])];
+        },
+        vec![Obstacle { name: "post".to_owned(), shape: post, friction: Some(0.3) }],
+    );
+    let mut d = build(&scene);
+    d.slides = false;
+    d
+}
+
+#[test]
+fn a_barrier_as_stiff_as_the_cable_is_taut_keeps_a_gap_that_numbers_can_tell() {
+    let mut d = taut_over_a_post();
+    d.settle(&[]).unwrap();
+    let mut halved = 0;
+    for _ in 0..12 {
+        halved += d.advance(1.0 / 60.0, Inertia::Dynamic, &[]).unwrap().cost.halved_steps;
+        let gap = d.smallest_gap();
+        let pull = d.solution().supports[1].reaction_x_n.abs();
+        println!("{gap:e} m under {pull:.0} N, {halved} halved");
+        assert!(pull > 5e4, "{pull}");
+        // A hundredth of the tension turns at a node here: φ'(u) = −0.2 of the barrier's stiffness, at u = 0.7.
+        assert!(gap > 0.2 * super::dynamics::REACH && halved == 0, "{gap:e} m under {pull} N, {halved} halved");
+    }
+}
+
 #[test]
 fn an_end_thrown_ten_metres_in_a_frame_does_not_pass_a_beam() {
     let beam = Shape::Polygon { points_m: vec![[15.0, -50.0], [15.05, -50.0], [15.05, 50.0], [15.0, 50.0]] };

@@ -46,6 +46,11 @@ pub(super) const STIFFNESS_CHANGE: [f64; 2] = [2.0, 0.8];
 /// A step is halved at most this often.
 const MAX_DEPTH: usize = 10;
 
+/// Part of a step that the first one of a motion takes, the next ones each as long as all before. It has no history: implicit
+/// Euler carries a cable let go ½ a h² too far, and BDF2 makes ¾ a h² of that. Larger: a free fall at 1/240 s is off by
+/// ¾ of this part's square times 1.7e-4 m; smaller: one step more for each halving.
+const FIRST: f64 = 0.125;
+
 /// The minimiser's memory; a copy of the model makes its own.
 #[derive(Debug, Default)]
 pub(super) struct Memory(pub(super) Option<Box<Workspace>>);
@@ -365,7 +370,13 @@ impl Dynamics {
     ) -> Result<Done, SolveError> {
         let (mut left, mut size, mut depth) = (h, h, 0);
         let mut total = Done::default();
+        // What was left when a motion without history began.
+        let mut began = None;
         loop {
+            let begins = self.motion.step_before == 0.0 && inertia == Inertia::Dynamic && self.meets_nothing();
+            if begins && depth == 0 && left > FIRST * h {
+                (began, size) = (Some(left), FIRST * left);
+            }
             self.save();
             let start = self.motion.time;
             let piece = match inertia {
@@ -394,7 +405,7 @@ impl Dynamics {
                     if left <= 1e-9 * h {
                         return Ok(total);
                     }
-                    size = size.min(left);
+                    size = began.filter(|_| depth == 0).map_or(size, |b: f64| b - left).min(left);
                 }
                 other => {
                     let f = other.err().unwrap_or(Failure { node: 0, residual: f64::NAN, cause: "not finite" });

@@ -48,12 +48,12 @@ fn over_a_beam(friction: f64, segments: usize, pull: f64) -> Scene {
 }
 
 /// Pull over load, at times in `from`..2 s of a slow pull.
-fn ratios(scene: &Scene, from: f64) -> Vec<f64> {
+fn ratios(scene: &Scene, inertia: Inertia, from: f64) -> Vec<f64> {
     let mut d = build(scene);
     d.settle(&[]).unwrap();
     let mut out = Vec::new();
     for k in 1..=120 {
-        d.advance(1.0 / 60.0, Inertia::QuasiStatic, &[]).unwrap();
+        d.advance(1.0 / 60.0, inertia, &[]).unwrap();
         assert!(d.smallest_gap() > 0.0);
         if f64::from(k) / 60.0 > from {
             let r = &d.solution().supports[1];
@@ -66,7 +66,7 @@ fn ratios(scene: &Scene, from: f64) -> Vec<f64> {
 #[test]
 fn a_load_drawn_over_a_corner_follows_the_capstan_without_ripple() {
     for friction in [0.0, 0.1, 0.3, 0.8] {
-        let ratios = ratios(&over_a_beam(friction, 42, 0.6), 0.5);
+        let ratios = ratios(&over_a_beam(friction, 42, 0.6), Inertia::QuasiStatic, 0.5);
         let round = RADIUS + super::dynamics::REACH;
         let motion = Motion { times_s: vec![0.0, 2.0], points_m: vec![[0.0, 0.0], [0.6, 0.0]] };
         for (k, ratio) in ratios.iter().enumerate() {
@@ -82,8 +82,8 @@ fn a_load_drawn_over_a_corner_follows_the_capstan_without_ripple() {
 
 #[test]
 fn refining_changes_nothing_at_a_corner() {
-    let coarse = ratios(&over_a_beam(0.3, 21, 0.3), 1.9);
-    let fine = ratios(&over_a_beam(0.3, 84, 0.3), 1.9);
+    let coarse = ratios(&over_a_beam(0.3, 21, 0.3), Inertia::QuasiStatic, 1.9);
+    let fine = ratios(&over_a_beam(0.3, 84, 0.3), Inertia::QuasiStatic, 1.9);
     for (a, b) in coarse.iter().zip(&fine) {
         assert!((a / b - 1.0).abs() < 1e-5, "{a} {b}");
     }
@@ -121,7 +121,7 @@ fn round_a_post(friction: f64, turn: f64, pull: f64) -> Scene {
 fn the_capstan_holds_from_a_twelfth_turn_to_one_and_a_half() {
     for (degrees, friction) in [(30.0f64, 0.8), (90.0, 0.3), (180.0, 0.3), (360.0, 0.2), (540.0, 0.1)] {
         let turn = degrees.to_radians();
-        let ratios = ratios(&round_a_post(friction, turn, 0.5), 1.0);
+        let ratios = ratios(&round_a_post(friction, turn, 0.5), Inertia::QuasiStatic, 1.0);
         let expected = (friction * turn).exp();
         let (mut low, mut high) = (f64::INFINITY, 0.0);
         for r in &ratios {
@@ -129,6 +129,24 @@ fn the_capstan_holds_from_a_twelfth_turn_to_one_and_a_half() {
             assert!((r / expected - 1.0).abs() < 1e-3, "{degrees}°, μ {friction}: {r}, expected {expected}");
         }
         assert!((high - low) / expected < 1e-3, "{degrees}°, μ {friction}: {low} to {high}");
+    }
+}
+
+#[test]
+fn the_capstan_holds_in_motion() {
+    for degrees in [30.0f64, 90.0, 180.0, 360.0, 540.0] {
+        for friction in [0.1, 0.3, 0.8] {
+            let turn = degrees.to_radians();
+            let expected = (friction * turn).exp();
+            let mut scene = round_a_post(friction, turn, 0.5);
+            // The pull grows to e^{7.5} times the load: as stiff a cable as bears it.
+            scene.cables[0].axial_stiffness_n *= if expected > 20.0 { expected / 20.0 } else { 1.0 };
+            let ratios = ratios(&scene, Inertia::Dynamic, 1.0);
+            let (low, high) = ratios.iter().fold((f64::INFINITY, 0.0f64), |(l, h), r| (r.min(l), r.max(h)));
+            let (off, ripple) = ((low / expected - 1.0).abs().max((high / expected - 1.0).abs()), (high - low) / expected);
+            println!("{degrees}°, μ {friction}: e^(μφ) {expected:.3}, off by {off:.1e}, ripple {ripple:.1e}");
+            assert!(off < 1e-4 && ripple < 2e-5, "{degrees}°, μ {friction}: {low} to {high}, expected {expected}");
+        }
     }
 }
 
@@ -161,5 +179,41 @@ fn material_is_neither_made_nor_lost_at_corners() {
         assert!(s.windows(2).all(|p| p[1] > p[0]));
         let rest: f64 = d.mesh.rest_length.iter().sum();
         assert!((rest - 4.2).abs() < 1e-12, "{rest}");
+    }
+}
+
+/// A soft cable drawn down over a beam at both ends, and thrown up from it at a speed, m/s.
+fn thrown_off_a_beam(speed: f64) -> Dynamics {
+    let scene = scene(
+        |c| {
+            (c.length_m, c.linear_density_kg_per_m, c.segments) = (3.33, 0.5, Some(33));
+            c.axial_stiffness_n = 2e3;
+            c.route_m = vec![[-1.5, -0.5], [-0.01, 0.02], [0.21, 0.02], [1.7, -0.5]];
+            c.supports = vec![Support::fixed("a", [-1.5, -0.5]), Support::fixed("b", [1.7, -0.5])];
+        },
+        vec![beam(0.3)],
+    );
+    let mut d = build(&scene);
+    d.settle(&[]).unwrap();
+    assert!(d.mesh.sliding.iter().flatten().count() > 0);
+    for k in 1..d.mesh.nodes() - 1 {
+        if d.mesh.sliding[k].is_none() {
+            d.motion.v[k].y = speed;
+        }
+    }
+    d
+}
+
+#[test]
+fn a_corner_never_pulls_at_what_is_thrown_off_it() {
+    for speed in [4.0, 8.0, 16.0] {
+        let mut d = thrown_off_a_beam(speed);
+        for k in 0..6 {
+            let before: Vec<_> = (0..d.mesh.nodes()).filter(|&k| d.mesh.sliding[k].is_some()).collect();
+            let report = d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
+            let most = d.solution().nodes.iter().map(|n| n.tension_n).fold(0.0, f64::max);
+            let low = d.solution().nodes.iter().filter(|n| n.x_m.abs() < 0.3).map(|n| n.y_m).fold(9.0, f64::min);
+            println!("{speed} {k}: {before:?} slide, {most:.1} N, {} halved, low {low}", report.cost.halved_steps);
+        }
     }
 }

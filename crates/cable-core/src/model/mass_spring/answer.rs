@@ -137,8 +137,8 @@ impl MassSpringModel {
         let tension_n = match (i.checked_sub(1), i < self.rest.len()) {
             (Some(e), true) => ((self.element_force(e) + self.element_force(i)) * 0.5).norm(),
             _ if self.held[i] => self.end_tension(i),
-            (Some(e), false) => self.tension[e],
-            (None, _) => self.tension.first().copied().unwrap_or(0.0),
+            (Some(e), false) => self.free_end_tension(i, e),
+            (None, _) => self.free_end_tension(i, 0),
         };
         let curvature_per_m = match (i.checked_sub(1), self.x.get(i + 1)) {
             (Some(e), Some(next)) => {
@@ -170,6 +170,15 @@ impl MassSpringModel {
         }
         let along = self.clamp_at(i).unwrap_or_else(|| self.reach(i.min(self.rest.len() - 1)).direction);
         force.dot(&along).abs()
+    }
+
+    /// Tension just inside a free end: what hangs there; with a lump, whose inertia pulls as well, that of its element `e`.
+    fn free_end_tension(&self, i: usize, e: usize) -> f64 {
+        let support = self.node_of.iter().position(|&n| n == i).filter(|&k| self.problem.supports[k].mass == 0.0);
+        let tension = self.tension.get(e).copied().unwrap_or(0.0);
+        let hung = support.map_or(tension, |k| self.problem.hung_on(k, self.time_s).norm());
+        // On the ground a part of it presses there.
+        if self.problem.world.signed_gap(self.x[i], SKIN).is_some() && hung > tension { tension } else { hung }
     }
 
     /// From a clamp at an end to the middle of its element `e`, which lies along `d`; 0 where nothing is clamped.
@@ -205,7 +214,7 @@ impl MassSpringModel {
             self.on_support(i)
         } else {
             // A dead load is what hangs there: the cable pulls it the other way.
-            -self.problem.supports[k].force.at(self.time_s)
+            -self.problem.hung_on(k, self.time_s)
         };
         SupportReaction {
             name: self.problem.supports[k].name.clone(),
