@@ -101,7 +101,7 @@ fn panel(out: &mut String, p: &Panel, (x0, y0): (f64, f64)) {
     for n in p.x_decades.0..=p.x_decades.1 {
         let x = at((10f64.powi(n), 1.0)).0;
         let _ = writeln!(out, r##"<line x1="{x:.2}" y1="{}" x2="{x:.2}" y2="{bottom}" stroke="#ddd"/>"##, y0 + TOP);
-        let _ = writeln!(out, r#"<text x="{x:.2}" y="{}" text-anchor="middle">{}</text>"#, bottom + 18.0, power(n));
+        let _ = writeln!(out, r#"<text x="{x:.2}" y="{}" text-anchor="middle">{}</text>"#, bottom + 20.0, power(n));
     }
     for n in (p.y_decades.0..=p.y_decades.1).filter(|n| n % 2 == 0) {
         let y = at((1.0, 10f64.powi(n))).1;
@@ -119,7 +119,7 @@ fn panel(out: &mut String, p: &Panel, (x0, y0): (f64, f64)) {
         out,
         r#"<text x="{}" y="{}" text-anchor="middle">{}</text>"#,
         x0 + LEFT + w / 2.0,
-        bottom + 38.0,
+        bottom + 40.0,
         p.x_label
     );
     let (lx, ly) = (x0 + 16.0, y0 + TOP + h / 2.0);

@@ -39,9 +39,10 @@ pub struct Plot {
     pub lines: Vec<Line>,
 }
 
-const NAMES: f64 = 240.0;
+/// Room for the longest note: 45 letters of 10 points.
+const NAMES: f64 = 300.0;
 const COLUMN: f64 = 360.0;
-const GAP: f64 = 40.0;
+const GAP: f64 = 60.0;
 const ROW: f64 = 34.0;
 const TOP: f64 = 92.0;
 const BOTTOM: f64 = 56.0;

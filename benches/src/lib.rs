@@ -3,6 +3,7 @@
 pub mod chart;
 pub mod compare;
 pub mod dots;
+pub mod table;
 
 use cable_core::catenary::Span;
 use cable_core::{Model, Scene, Settings, Simulation, Vec2};

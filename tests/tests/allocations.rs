@@ -7,19 +7,8 @@ use cable_core::model::fem::FemModel;
 use cable_core::model::mass_spring::MassSpringModel;
 use cable_core::model::{Inertia, Mechanics, Settings};
 use cable_core::problem::{Problem, problems};
-use cable_core::scene::{Motion, Scene, catalog};
+use cable_core::scene::{Scene, catalog};
 use std::sync::Arc;
-
-/// A flexible hanging span whose far support goes to and fro.
-fn swinging() -> Scene {
-    let mut scene = catalog::hanging_span();
-    scene.cables[0].bending_stiffness_n_m2 = 0.0;
-    let far = &mut scene.cables[0].supports[1];
-    let at = far.at_m.unwrap();
-    let near = [at[0] - 0.2, at[1]];
-    far.motion = Some(Motion { times_s: vec![0.0, 1.0, 2.0], points_m: vec![at, near, at] });
-    scene
-}
 
 fn problem(scene: &Scene) -> Arc<Problem> {
     problems(scene).unwrap().remove(0)
@@ -40,13 +29,13 @@ fn warm_steps(model: &mut dyn Mechanics, dt_s: f64) -> u64 {
 
 #[test]
 fn a_free_step_of_fem_takes_no_memory() {
-    let mut model = FemModel::new(problem(&swinging()), Settings::default()).unwrap();
+    let mut model = FemModel::new(problem(&catalog::swinging_span()), Settings::default()).unwrap();
     assert_eq!(warm_steps(&mut model, 1.0 / 240.0), 0);
 }
 
 #[test]
 fn a_free_step_of_a_stiff_cable_takes_no_memory() {
-    let mut scene = swinging();
+    let mut scene = catalog::swinging_span();
     scene.cables[0].bending_stiffness_n_m2 = 2.0;
     let mut model = FemModel::new(problem(&scene), Settings::default()).unwrap();
     assert_eq!(warm_steps(&mut model, 1.0 / 240.0), 0);
@@ -54,7 +43,7 @@ fn a_free_step_of_a_stiff_cable_takes_no_memory() {
 
 #[test]
 fn a_step_of_mass_spring_takes_no_memory() {
-    let mut model = MassSpringModel::new(problem(&swinging()), Settings::default()).unwrap();
+    let mut model = MassSpringModel::new(problem(&catalog::swinging_span()), Settings::default()).unwrap();
     assert_eq!(warm_steps(&mut model, 1.0 / 240.0), 0);
 }
 
@@ -63,7 +52,7 @@ fn a_step_of_mass_spring_takes_no_memory() {
 fn a_warm_rest_of_fem_takes_a_handful_of_lists() {
     for segments in [20, 2000] {
         let settings = Settings { segments: Some(segments), ..Settings::default() };
-        let mut model = FemModel::new(problem(&swinging()), settings).unwrap();
+        let mut model = FemModel::new(problem(&catalog::swinging_span()), settings).unwrap();
         let mut step = || drop(model.advance(1.0 / 60.0, Inertia::QuasiStatic).unwrap());
         step();
         step();

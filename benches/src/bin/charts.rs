@@ -2,17 +2,19 @@
 //! slack and a nearly taut span, into `docs/charts/speed_accuracy.csv` and `.svg`; and every scene of the catalogue,
 //! `fem` beside `mass-spring`, into `scenes.csv`, `scenes.svg` (100 elements) and `scenes_ladder.svg` (25 to 400).
 //!
-//! Run from the root of the repository: `cargo run --release -p cable-benches --bin charts`. The exact answer is
+//! Run from the root of the repository: `cargo run --release -p cable-benches --bin charts`; with `-- draw` the scenes are
+//! drawn again from their table, and nothing is measured. The exact answer is
 //! the elastic catenary's, tested to 1e-9 against 40-digit references; the catenary's own points show the
 //! round-off between two ways to it. A cost is that of settling from the first route, without building the model.
 
 use std::error::Error;
+use std::path::PathBuf;
 use std::time::Instant;
 
 use cable_benches::chart::{Panel, Series, svg};
 use cable_benches::compare::{self, Question, Reference};
-use cable_benches::dots::{self, Dot, Line, Plot};
-use cable_benches::fresh;
+use cable_benches::table::{self, Record};
+use cable_benches::{dots, fresh};
 use cable_core::catenary::{Catenary, Span};
 use cable_core::math::vec2;
 use cable_core::scene::catalog;
@@ -42,6 +44,9 @@ struct Row {
 type Read = fn(&Row) -> f64;
 
 fn main() -> Result<(), Box<dyn Error>> {
+    if std::env::args().nth(1).as_deref() == Some("draw") {
+        return draw();
+    }
     let scenes = [("hanging-span", catalog::hanging_span()), ("near-taut", catalog::near_taut())];
     let mut rows = Vec::new();
     for (id, scene) in &scenes {
@@ -63,35 +68,23 @@ fn main() -> Result<(), Box<dyn Error>> {
     write_csv(&rows)?;
     std::fs::write(format!("{FOLDER}/speed_accuracy.svg"), svg(&panels(&rows), scenes.len()))?;
     catalogue()?;
+    draw()?;
     println!("{} points written to {FOLDER}/speed_accuracy.csv and .svg", rows.len());
     Ok(())
 }
 
-/// Elements of the ladder over the catalogue; those of the dot plot. A motion is dearer than a rest.
+/// Elements of the ladder over the catalogue. A motion is dearer than a rest.
 const REST_MESHES: [usize; 3] = [25, 100, 400];
 const MOTION_MESHES: [usize; 3] = [25, 50, 100];
-const DOT_SEGMENTS: usize = 100;
 /// Elements of the reference where there is no closed form: the first that answers.
 const FINEST: [usize; 2] = [1600, 400];
 const FINEST_MOTION: [usize; 2] = [200, 100];
-/// Colours and marks of the two models.
-const MARKS: [(Model, &str, u32); 2] = [(Model::Fem, "#0072B2", 0), (Model::MassSpring, "#D55E00", 4)];
+/// The table of the catalogue.
+const TABLE: &str = "scenes.csv";
 
-/// Every scene of the catalogue: a table, a dot plot, a ladder.
+/// Every scene of the catalogue, measured.
 fn catalogue() -> Result<(), Box<dyn Error>> {
-    let mut csv = csv::Writer::from_path(format!("{FOLDER}/scenes.csv"))?;
-    csv.write_record([
-        "scene",
-        "question",
-        "model",
-        "segments",
-        "error",
-        "cost_s",
-        "stated_error",
-        "reference",
-        "reference_uncertainty",
-    ])?;
-    let (mut lines, mut ladders) = (Vec::new(), Vec::new());
+    let mut records = Vec::new();
     for (id, scene) in catalog::all() {
         let question = Question::of(&scene);
         let (meshes, finest) =
@@ -100,78 +93,23 @@ fn catalogue() -> Result<(), Box<dyn Error>> {
             eprintln!("skipped: {id} has no reference");
             continue;
         };
-        let mut rows = Vec::new();
-        for (model, ..) in MARKS {
+        for (model, ..) in table::MARKS {
             for n in meshes {
-                rows.extend(compare::measure(id, &scene, &reference, model, n));
+                let Some(row) = compare::measure(id, &scene, &reference, model, n) else { continue };
+                println!("{id}, {model}, {n}: error {:.1e}, {:.2e} s", row.error, row.cost_s);
+                records.push(Record::of(&row, question, &reference));
             }
         }
-        for r in &rows {
-            println!("{id}, {}, {}: error {:.1e}, {:.2e} s", r.model, r.segments, r.error, r.cost_s);
-            csv.write_record([
-                id.to_owned(),
-                question.name().to_owned(),
-                r.model.to_string(),
-                r.segments.to_string(),
-                format!("{:.3e}", r.error),
-                format!("{:.3e}", r.cost_s),
-                r.said.map(|e| format!("{e:.3e}")).unwrap_or_default(),
-                reference.by.clone(),
-                format!("{:.1e}", reference.uncertainty),
-            ])?;
-        }
-        lines.push(line(id, question, &reference, &rows));
-        ladders.push(ladder(id, &rows));
     }
-    csv.flush()?;
-    let plot = Plot {
-        title: "Every scene with 100 elements: error and cost (further left is better)".to_owned(),
-        legend: MARKS.map(|(m, colour, corners)| (m.to_string(), colour, corners)).into(),
-        columns: [("error of forces (relative)", (-10, 0)), ("cost of an answer, wall time (s)", (-5, 1))],
-        lines,
-    };
-    std::fs::write(format!("{FOLDER}/scenes.svg"), dots::svg(&plot))?;
-    std::fs::write(format!("{FOLDER}/scenes_ladder.svg"), svg(&ladders, 4))?;
+    table::write(&PathBuf::from(FOLDER).join(TABLE), &records)
+}
+
+/// Draws what the table says.
+fn draw() -> Result<(), Box<dyn Error>> {
+    let records = table::read(&PathBuf::from(FOLDER).join(TABLE))?;
+    std::fs::write(format!("{FOLDER}/scenes.svg"), dots::svg(&table::plot(&records)))?;
+    std::fs::write(format!("{FOLDER}/scenes_ladder.svg"), svg(&table::ladders(&records), 4))?;
     Ok(())
-}
-
-/// A scene's line of the dot plot.
-fn line(id: &str, question: Question, reference: &Reference, rows: &[compare::Row]) -> Line {
-    let pick = |read: fn(&compare::Row) -> f64| {
-        let middle = rows.iter().filter(|r| r.segments == DOT_SEGMENTS);
-        middle
-            .filter_map(|r| MARKS.iter().find(|m| m.0 == r.model).map(|m| (r, m)))
-            .map(|(r, m)| Dot { value: read(r), colour: m.1, corners: m.2 })
-            .collect()
-    };
-    Line {
-        name: id.to_owned(),
-        note: format!("{}, against {}", question.name(), reference.by),
-        blind_to: reference.uncertainty,
-        dots: [pick(|r| r.error), pick(|r| r.cost_s)],
-    }
-}
-
-/// A scene's panel of error over cost.
-fn ladder(id: &str, rows: &[compare::Row]) -> Panel {
-    let series = MARKS.map(|(model, colour, corners)| Series {
-        name: format!("{model}, 25 to 400 elements"),
-        colour,
-        corners,
-        points: rows
-            .iter()
-            .filter(|r| r.model == model && r.error.is_finite())
-            .map(|r| (r.cost_s, if r.error < 1e-12 { 1e-12 } else { r.error }))
-            .collect(),
-    });
-    Panel {
-        title: id.to_owned(),
-        x_label: "cost of an answer, wall time (s)",
-        y_label: "error of forces (relative)",
-        x_decades: (-6, 2),
-        y_decades: (-12, 0),
-        series: series.into(),
-    }
 }
 
 /// The catenary of a scene of two fixed supports.

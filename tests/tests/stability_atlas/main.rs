@@ -14,12 +14,15 @@ mod slow;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use cable_core::scene::{Scene, Support, SupportKind, catalog};
+use cable_core::scene::{Obstacle, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::solution::{Solution, WarningKind};
 use cable_core::{Error, Model, Settings, Simulation, SolveError};
 
 /// Gravity, m/s².
-pub const G: f64 = 9.80665;
+pub const G: f64 = cable_core::scene::STANDARD_GRAVITY;
+
+/// Height of the centre line of a cable that lies on a floor, m.
+pub const ON_FLOOR: f64 = 0.01;
 
 /// What a model does in a regime.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,18 +86,24 @@ pub struct Regime {
     pub judge: fn(Model) -> Result<Verdict, SolveError>,
 }
 
-/// A cable alone: its length (m), density (kg/m) and EA (N).
-pub fn cable([length, density, ea]: [f64; 3], supports: Vec<Support>) -> Scene {
-    let mut scene = catalog::hanging_span();
-    scene.loads.clear();
-    scene.environment.gravity_m_per_s2 = G;
-    scene.environment.temperature_change_k = 0.0;
+/// A cable alone, see [`catalog::cable_alone`], of 100 elements, slightly damped.
+pub fn cable(figures: [f64; 3], supports: Vec<Support>) -> Scene {
+    let mut scene = catalog::cable_alone(figures, supports);
     let c = &mut scene.cables[0];
-    (c.length_m, c.linear_density_kg_per_m, c.axial_stiffness_n) = (length, density, ea);
-    (c.bending_stiffness_n_m2, c.thermal_expansion_per_k, c.damping_ratio) = (0.0, 0.0, 0.02);
-    (c.service_tension_n, c.breaking_tension_n, c.diameter_m) = (1e15, 1e15, 0.02);
-    c.segments = Some(100);
-    c.supports = supports;
+    (c.damping_ratio, c.diameter_m, c.segments) = (0.02, 0.02, Some(100));
+    scene
+}
+
+/// Five metres on a floor that rubs with μ = 0.5, from one support to another, 40 elements.
+pub fn on_a_floor(ea: f64, supports: Vec<Support>) -> Scene {
+    let mut scene = cable([5.0, 1.0, ea], supports);
+    scene.cables[0].segments = Some(40);
+    scene.cables[0].route_m = vec![[0.0, ON_FLOOR], [5.0, ON_FLOOR]];
+    scene.obstacles = vec![Obstacle {
+        name: "floor".to_owned(),
+        shape: Shape::Terrain { points_m: vec![[-5.0, 0.0], [20.0, 0.0]] },
+        friction: Some(0.5),
+    }];
     scene
 }
 

@@ -3,7 +3,7 @@
 use cable_core::scene::{Motion, Obstacle, Shape, Support, SupportKind};
 use cable_core::{Model, Simulation, SolveError, Vec2};
 
-use super::{G, Regime, Verdict, cable, simulation};
+use super::{G, ON_FLOOR, Regime, Verdict, cable, on_a_floor, simulation};
 
 pub fn regimes() -> Vec<Regime> {
     vec![
@@ -134,18 +134,10 @@ fn rubble(model: Model) -> Result<Verdict, SolveError> {
 
 /// A tail drawn over a floor by a support whose motion is given in knots of 1/60 s.
 fn knots(model: Model) -> Result<Verdict, SolveError> {
-    let y = 0.01;
     let times_s: Vec<f64> = (0..=120).map(|k| f64::from(k) / 60.0).collect();
-    let points_m = times_s.iter().map(|t| [5.0 + t, y]).collect();
-    let hitch = Support { motion: Some(Motion { times_s, points_m }), ..Support::fixed("hitch", [5.0, y]) };
-    let mut scene = cable([5.0, 1.0, 2e4], vec![Support::free("tail"), hitch]);
-    scene.cables[0].segments = Some(40);
-    scene.cables[0].route_m = vec![[0.0, y], [5.0, y]];
-    scene.obstacles = vec![Obstacle {
-        name: "floor".to_owned(),
-        shape: Shape::Terrain { points_m: vec![[-5.0, 0.0], [20.0, 0.0]] },
-        friction: Some(0.5),
-    }];
+    let points_m = times_s.iter().map(|t| [5.0 + t, ON_FLOOR]).collect();
+    let hitch = Support { motion: Some(Motion { times_s, points_m }), ..Support::fixed("hitch", [5.0, ON_FLOOR]) };
+    let scene = on_a_floor(2e4, vec![Support::free("tail"), hitch]);
     let mut sim = simulation(scene, model)?;
     sim.settle()?;
     let mut sum = 0.0;

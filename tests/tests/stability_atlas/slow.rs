@@ -3,7 +3,7 @@
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support};
 use cable_core::{Model, SolveError};
 
-use super::{G, Regime, Verdict, cable, load, simulation};
+use super::{G, ON_FLOOR, Regime, Verdict, cable, load, on_a_floor, simulation};
 
 pub fn regimes() -> Vec<Regime> {
     vec![
@@ -22,20 +22,12 @@ pub fn regimes() -> Vec<Regime> {
     ]
 }
 
-/// 5 m of cable on a floor, pulled by its end.
+/// A cable on a floor, pulled by its end.
 fn on_the_floor(ea: f64, tail: Support, way: Vec<[f64; 2]>) -> Scene {
-    let y = 0.01;
     let times_s = (0..way.len()).map(|k| k as f64).collect();
-    let hitch = Support { motion: Some(Motion { times_s, points_m: way }), ..Support::fixed("hitch", [5.0, y]) };
-    let mut scene = cable([5.0, 1.0, ea], vec![tail, hitch]);
-    scene.cables[0].segments = Some(40);
-    scene.cables[0].route_m = vec![[0.0, y], [5.0, y]];
-    scene.obstacles = vec![Obstacle {
-        name: "floor".to_owned(),
-        shape: Shape::Terrain { points_m: vec![[-5.0, 0.0], [20.0, 0.0]] },
-        friction: Some(0.5),
-    }];
-    scene
+    let at = [5.0, ON_FLOOR];
+    let hitch = Support { motion: Some(Motion { times_s, points_m: way }), ..Support::fixed("hitch", at) };
+    on_a_floor(ea, vec![tail, hitch])
 }
 
 fn drag(model: Model, ea: f64, steps: u32) -> Result<Verdict, SolveError> {

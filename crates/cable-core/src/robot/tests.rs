@@ -131,6 +131,12 @@ fn a_path_is_driven_leg_by_leg_and_again() {
     let mut again = on_slope(0.0, |r| (r.path, r.repeat) = (path.clone(), true));
     run(&mut again, 16.0, Vec2::zeros());
     assert!(again.report.leg.is_some(), "{:?}", again.report);
+    // The second wait is as long as the first.
+    let mut waits = on_slope(0.0, |r| r.path = vec![RobotTask::Wait { wait_s: 2.0 }, RobotTask::Wait { wait_s: 1.0 }]);
+    run(&mut waits, 2.5, Vec2::zeros());
+    assert_eq!(waits.report.leg, Some(1));
+    run(&mut waits, 1.0, Vec2::zeros());
+    assert_eq!(waits.report.leg, None);
     // Nothing but legs that are done: it stands, and comes back.
     let mut idle = on_slope(0.0, |r| (r.path, r.repeat) = (vec![drive(0.0, 1.0)], true));
     run(&mut idle, 1.0, Vec2::zeros());

@@ -1,6 +1,6 @@
 //! Named scenes from `assets/scenes/`, used by tests, benches, examples and the viewer alike.
 
-use super::{Environment, Scene, VERSION, View};
+use super::{Environment, Motion, Scene, Support, VERSION, View};
 
 macro_rules! scenes {
     ($($(#[$doc:meta])* $name:ident = $id:literal;)+) => {
@@ -57,6 +57,37 @@ scenes! {
     clamped_stiff = "clamped-stiff";
     /// Point loads, wind and temperature.
     loads_wind_heat = "loads-wind-heat";
+}
+
+/// A flexible, undamped cable alone, which nothing breaks: its length (m), density (kg/m) and EA (N). What closed forms are of.
+#[must_use]
+pub fn cable_alone([length, density, ea]: [f64; 3], supports: Vec<Support>) -> Scene {
+    let mut scene = hanging_span();
+    scene.loads.clear();
+    scene.environment = Environment::default();
+    if let Some(c) = scene.cables.first_mut() {
+        (c.length_m, c.linear_density_kg_per_m, c.axial_stiffness_n) = (length, density, ea);
+        (c.bending_stiffness_n_m2, c.thermal_expansion_per_k, c.damping_ratio) = (0.0, 0.0, 0.0);
+        (c.service_tension_n, c.breaking_tension_n) = (1e15, 1e15);
+        c.route_m.clear();
+        c.supports = supports;
+    }
+    scene
+}
+
+/// The hanging span, flexible, its far support going to and fro by 0.2 m in 2 s.
+#[must_use]
+pub fn swinging_span() -> Scene {
+    let mut scene = hanging_span();
+    if let Some(c) = scene.cables.first_mut() {
+        c.bending_stiffness_n_m2 = 0.0;
+        if let Some(far) = c.supports.last_mut()
+            && let Some(at) = far.at_m
+        {
+            far.motion = Some(Motion { times_s: vec![0.0, 1.0, 2.0], points_m: vec![at, [at[0] - 0.2, at[1]], at] });
+        }
+    }
+    scene
 }
 
 /// An embedded scene. One that cannot be read (a test sees to it that none is) has no cables and is refused

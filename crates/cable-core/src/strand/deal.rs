@@ -159,3 +159,69 @@ fn free_end() -> SupportPoint {
         release: None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Load, Support, catalog};
+
+    /// A cable of 10 m with a load at each end of it, in its middle, and at its middle support.
+    fn loaded() -> Problem {
+        let mid = Support { arc_length_m: Some(6.0), ..Support::fixed("mid", [6.0, 0.0]) };
+        let ends = [Support::fixed("a", [0.0, 0.0]), mid, Support::fixed("b", [9.9, 0.0])];
+        let mut scene = catalog::cable_alone([10.0, 1.0, 1e5], ends.into());
+        scene.cables[0].damping_ratio = 0.01;
+        let load = |arc_length_m: f64| Load {
+            cable: scene.cables[0].name.clone(),
+            arc_length_m,
+            force_n: Some([0.0, -1.0]),
+            times_s: Vec::new(),
+            forces_n: Vec::new(),
+        };
+        scene.loads = [0.0, 3.0, 6.0, 10.0].map(load).into();
+        (*crate::problem::problems(&scene).unwrap()[0]).clone()
+    }
+
+    fn cut(problem: &Problem, at: f64, after: bool) -> Vec<Deal> {
+        Deal::whole(problem).cut(problem, &Cut { at, near: 0.1, after, sits: &[0.0, 6.0, 10.0] })
+    }
+
+    #[test]
+    fn what_sits_at_the_cut_stays_with_the_side_that_holds() {
+        let p = loaded();
+        for (after, loads, supports) in [
+            (true, [vec![0, 1, 2], vec![3]], [vec![Some(0), Some(1)], vec![None, Some(2)]]),
+            (false, [vec![0, 1], vec![2, 3]], [vec![Some(0), None], vec![Some(1), Some(2)]]),
+        ] {
+            let pieces = cut(&p, 6.05, after);
+            assert_eq!([pieces[0].loads.clone(), pieces[1].loads.clone()], loads, "{after}");
+            assert_eq!([pieces[0].supports.clone(), pieces[1].supports.clone()], supports, "{after}");
+            assert_eq!((pieces[0].to, pieces[1].from), (6.05, 6.05));
+        }
+    }
+
+    #[test]
+    fn a_cable_torn_off_loses_what_hung_there() {
+        let p = loaded();
+        let [start] = &cut(&p, 0.05, true)[..] else { panic!("torn off the start") };
+        assert_eq!((start.supports[0], &start.loads[..]), (None, &[1, 2, 3][..]));
+        let [end] = &cut(&p, 9.95, true)[..] else { panic!("torn off the end") };
+        assert_eq!((end.supports[2], &end.loads[..]), (None, &[0, 1, 2][..]));
+    }
+
+    /// τ = 2ζ/ω₁ with ω₁ = πc/L: a part of the cable has a faster first mode and the same τ.
+    #[test]
+    fn a_piece_is_of_the_same_material() {
+        let p = loaded();
+        let state = State {
+            arc_length_m: vec![0.0, 1.0, 2.0],
+            position_m: vec![Vec2::zeros(), Vec2::x(), Vec2::x() * 2.0],
+            velocity_m_per_s: vec![Vec2::zeros(); 3],
+            time_s: 0.0,
+        };
+        let piece = &cut(&p, 2.0, true)[0];
+        let own = piece.problem(&p, &state);
+        assert_eq!((own.length, own.cable.segments), (2.0, Some(2)));
+        assert!((own.cable.damping_ratio * own.length - p.cable.damping_ratio * p.length).abs() < 1e-15);
+    }
+}

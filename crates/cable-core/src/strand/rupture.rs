@@ -91,3 +91,24 @@ pub(super) fn part(state: &State, from: f64, to: f64) -> State {
     push(to, state.position_at(to), state.velocity_at(to));
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_state_in_between_is_linear_in_places_and_speeds() {
+        let at = |time_s: f64, x: f64| State {
+            time_s,
+            arc_length_m: vec![0.0, 1.0],
+            position_m: vec![Vec2::zeros(), Vec2::x() * x],
+            velocity_m_per_s: vec![Vec2::zeros(), Vec2::y() * x],
+        };
+        let mid = between(&at(1.0, 2.0), &at(3.0, 6.0), 0.25);
+        assert_eq!(mid, at(1.5, 3.0));
+        // On another mesh it is the later one, at the time of the break.
+        let mut other = at(1.0, 2.0);
+        other.arc_length_m[1] = 0.9;
+        assert_eq!(between(&other, &at(3.0, 6.0), 0.25), at(1.5, 6.0));
+    }
+}

@@ -95,6 +95,26 @@ fn a_cable_pulled_evenly_breaks_when_its_strain_says() {
     }
 }
 
+/// In one step without inertia from slack to broken: d = 10 + 2.5 (10u³ − 15u⁴ + 6u⁵) passes 11 m at u = 0.446.
+#[test]
+fn a_break_within_one_long_slow_step_is_found_to_a_hundredth_of_it() {
+    let quintic = |u: f64| u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
+    let (mut low, mut high) = (0.0, 1.0);
+    while high - low > 1e-12 {
+        let u = 0.5 * (low + high);
+        if quintic(u) < 0.4 { low = u } else { high = u }
+    }
+    for model in [Model::Fem, Model::Catenary] {
+        let mut scene = span(1e-3, [10.0, 0.0]);
+        moved(&mut scene, 1, vec![0.0, 4.0], vec![[10.0, 0.0], [12.5, 0.0]]);
+        let mut sim = Simulation::new(scene, model).unwrap();
+        sim.settle().unwrap();
+        sim.step_quasi_static(4.0).unwrap();
+        let (time_s, _) = broken(&sim.solution())[0];
+        assert!((time_s - 4.0 * low).abs() < 0.04, "{model}: {time_s} for {}", 4.0 * low);
+    }
+}
+
 /// A hanging cable is pulled hardest at its top: T = w L + F. With the load growing as F = 12 kN/s t, it breaks at the top
 /// at t = (T − wL)/12 kN/s, later by at most what a wave needs for its way there and back, and all of it falls. The load stays below what breaks
 /// the cable beside it.

@@ -65,6 +65,10 @@ fn a_loop_is_named_where_it_crosses() {
     let w = w.iter().find(|w| w.kind == WarningKind::Loop).unwrap();
     assert_eq!(w.at_m, Some([1.0, 1.0]));
     assert!((w.arc_length_m - 2f64.sqrt()).abs() < 1e-12 && (w.value - (2.0 * 2f64.sqrt() + 2.0)).abs() < 1e-12);
+    // Loops of less than four diameters are folds of single elements.
+    let small = |side: f64| along(&[[0.0, 0.0], [side, 0.0], [side, side], [0.5 * side, -side]], 1.0);
+    assert!(kinds(&p, &small(0.1)).contains(&WarningKind::Loop));
+    assert!(!kinds(&p, &small(0.03)).contains(&WarningKind::Loop));
     // Pieces of a broken cable are apart where the break is.
     let mut broken = along(&[[0.0, 0.0], [2.0, 0.0], [1.0, -1.0], [1.0, 1.0]], 1.0);
     assert!(kinds(&p, &broken).contains(&WarningKind::Loop));
@@ -125,6 +129,12 @@ fn free_bends_are_kinks_and_led_ones_are_too_tight_rounds() {
     let bow = |radius: f64| along(&arc([3.0, 2.0], radius, 0.0, PI, 40), 700.0);
     assert_eq!(kinds(&problem(&s), &bow(0.16)), []);
     assert_eq!(kinds(&problem(&s), &bow(0.12)), [WarningKind::Kink]);
+    // Where no smallest radius is stated it is the cable's own width.
+    let mut unstated = s.clone();
+    unstated.cables[0].min_bend_radius_m = 0.0;
+    for (radius, kinked) in [(0.12, false), (0.03, false), (0.025, true)] {
+        assert_eq!(kinds(&problem(&unstated), &bow(radius)).contains(&WarningKind::Kink), kinked, "{radius}");
+    }
     // The same bow round a post: led. 700 N on a radius of 0.12 m press with 5.8 kN/m.
     let post = |s: &Scene, radius_m: f64| {
         let mut s = s.clone();
@@ -208,6 +218,20 @@ fn tension_warnings_do_not_flicker() {
                 }
             }
         }
+        // Just below its limit a tension holds a warning that stands, and begins none.
+        let hovers = |t: f64| {
+            level
+                * if t < 0.1 {
+                    1.1
+                } else if t < 4.0 {
+                    0.97
+                } else {
+                    0.9
+                }
+        };
+        let times = toggles(&mut Watch::default(), &p, hovers, kind, 8.0);
+        assert!(times.len() == 2 && (times[1] - 4.0 - HOLD_S).abs() < 0.02, "{times:?}");
+        assert!(toggles(&mut Watch::default(), &p, |_| 0.97 * level, kind, 1.0).is_empty());
         // A single peak is said for a second.
         let times = toggles(&mut Watch::default(), &p, |t| if t < 0.1 { 1.1 * level } else { 10.0 }, kind, 3.0);
         assert!(times.len() == 2 && (times[1] - times[0] - HOLD_S - 0.1).abs() < 0.02, "{times:?}");
@@ -236,14 +260,14 @@ fn at_rest_the_past_does_not_count_and_times_are_kept_in_motion() {
 #[test]
 fn a_contact_that_holds_against_a_growing_pull_is_a_snag() {
     let p = problem(&scene());
-    let run = |state: ContactState, before: fn(f64) -> f64, after: fn(f64) -> f64| {
+    let run_at = |state: ContactState, at: fn(f64) -> f64, before: fn(f64) -> f64, after: fn(f64) -> f64| {
         let mut watch = Watch::default();
         for k in 0..60 {
             let t = f64::from(k) / 30.0;
             let mut answer = along(&[[0.0, 5.0], [6.0, 5.0]], 100.0);
             answer.contacts = vec![ContactReport {
                 obstacle: "post".into(),
-                arc_length_m: 4.0,
+                arc_length_m: at(t),
                 x_m: 1.0,
                 state,
                 tension_before_n: before(t),
@@ -254,12 +278,19 @@ fn a_contact_that_holds_against_a_growing_pull_is_a_snag() {
         }
         watch.warnings().find(|w| w.kind == WarningKind::Snag).cloned()
     };
+    let run = |state, before, after| run_at(state, |_| 4.0, before, after);
     let w = run(ContactState::Stick, |_| 80.0, |t| 100.0 + 150.0 * t).unwrap();
     // The ratio reaches 1.5 · 100/80 at 150 N, t = 1/3 s.
     assert!((w.since_s.unwrap() - 1.0 / 3.0).abs() < 0.07 && w.at_m == Some([1.0, 0.0]), "{w:?}");
     assert!(run(ContactState::Slip, |_| 80.0, |t| 100.0 + 150.0 * t).is_none());
     assert!(run(ContactState::Stick, |t| 80.0 + 120.0 * t, |t| 100.0 + 150.0 * t).is_none());
     assert!(run(ContactState::Stick, |t| 80.0 - 39.0 * t, |_| 100.0).is_none(), "the slack side empties");
+    // What holds for less than 0.3 s is a landing.
+    let w = run(ContactState::Stick, |_| 80.0, |t| if t < 0.05 { 100.0 } else { 200.0 }).unwrap();
+    assert!((w.since_s.unwrap() - 0.3).abs() < 0.04, "{w:?}");
+    // 28 cm from one look to the next is the same contact; farther, another one each time.
+    assert!(run_at(ContactState::Stick, |t| 4.0 + t, |_| 80.0, |t| 100.0 + 150.0 * t).is_some());
+    assert!(run_at(ContactState::Stick, |t| 4.0 + 9.0 * t, |_| 80.0, |t| 100.0 + 150.0 * t).is_none());
 }
 
 proptest! {
@@ -312,7 +343,7 @@ fn degenerate_lines_have_no_crossings() {
 
 /// What is named in the catalogue at rest: sharp corners of beams and an eye, slack on floors, the corners in which the
 /// cables between the posts and behind the robot were laid, and nothing else.
-const NAMED: [(&str, &[WarningKind]); 8] = [
+const NAMED: [(&str, &[WarningKind]); 9] = [
     ("tank", &[WarningKind::BendRadius]),
     ("slack-to-floor", &[WarningKind::Slack]),
     ("pulley-waypoints", &[WarningKind::BendRadius]),
@@ -320,6 +351,7 @@ const NAMED: [(&str, &[WarningKind]); 8] = [
     ("floor-drag", &[WarningKind::Slack]),
     ("plan-posts", &[WarningKind::Kink]),
     ("near-taut", &[]),
+    ("pile", &[WarningKind::Kink]),
     ("robot-drive", &[WarningKind::Kink, WarningKind::Slack]),
 ];
 

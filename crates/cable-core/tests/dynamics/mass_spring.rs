@@ -24,7 +24,7 @@ fn settled(scene: &Scene) -> Simulation {
 }
 
 /// A motion from the resting place as `change` changes it.
-fn started(scene: &Scene, change: impl FnOnce(&mut State)) -> Simulation {
+pub fn started(scene: &Scene, change: impl FnOnce(&mut State)) -> Simulation {
     let mut sim = settled(scene);
     let mut states = sim.states();
     states[0].velocity_m_per_s.fill(Vec2::zeros());

@@ -5,21 +5,12 @@ use cable_core::state::State;
 use cable_core::{Model, Simulation, Vec2};
 
 /// Gravity of these scenes, m/s².
-pub const G: f64 = 9.80665;
+pub const G: f64 = cable_core::scene::STANDARD_GRAVITY;
 
-/// A cable alone: its length (m), density (kg/m) and EA (N).
-pub fn cable([length, density, ea]: [f64; 3], segments: usize, supports: Vec<Support>) -> Scene {
-    let mut scene = catalog::hanging_span();
-    scene.loads.clear();
-    scene.environment.gravity_m_per_s2 = G;
-    scene.environment.temperature_change_k = 0.0;
-    let c = &mut scene.cables[0];
-    (c.length_m, c.linear_density_kg_per_m, c.axial_stiffness_n) = (length, density, ea);
-    (c.bending_stiffness_n_m2, c.thermal_expansion_per_k, c.damping_ratio) = (0.0, 0.0, 0.0);
-    (c.service_tension_n, c.breaking_tension_n) = (1e15, 1e15);
-    c.route_m.clear();
-    c.segments = Some(segments);
-    c.supports = supports;
+/// A cable alone, see [`catalog::cable_alone`], of so many bars.
+pub fn cable(figures: [f64; 3], segments: usize, supports: Vec<Support>) -> Scene {
+    let mut scene = catalog::cable_alone(figures, supports);
+    scene.cables[0].segments = Some(segments);
     scene
 }
 

@@ -49,7 +49,8 @@ fn a_span_let_go_at_both_ends_falls_as_a_stone() {
         assert!(spin.abs() < 1e-6 && (at.x - start.x).abs() < 1e-7, "{spin} {}", at.x - start.x);
         (at - start).y + 0.5 * G * (t - RELEASE).powi(2)
     });
-    ladder("span let go, fall in m", &errors, 2.0, 1.3e-4);
+    // ¾ g h² of a first step of h by implicit Euler would be 1.3e-4 m; it is an eighth as long.
+    ladder("span let go, fall in m", &errors, 2.0, 2.5e-6);
 }
 
 #[test]

@@ -49,7 +49,8 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> [Vec2; 2] {
         let middle = d.mesh.path(e, x).direction * tension[e];
         let half = d.mesh.share(node);
         let body = d.problem.body_force(d.time()) * half;
-        let ground = if ground.is_some() { ground_force(d, next, x) * (half / d.mesh.share(next)) } else { Vec2::zeros() };
+        let ground =
+            if ground.is_some() { ground_force(d, next, x) * (half / d.mesh.share(next)) } else { Vec2::zeros() };
         middle + (body + ground) * sign
     };
     if n < 3 {

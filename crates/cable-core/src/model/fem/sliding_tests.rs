@@ -143,7 +143,8 @@ fn the_capstan_holds_in_motion() {
             scene.cables[0].axial_stiffness_n *= if expected > 20.0 { expected / 20.0 } else { 1.0 };
             let ratios = ratios(&scene, Inertia::Dynamic, 1.0);
             let (low, high) = ratios.iter().fold((f64::INFINITY, 0.0f64), |(l, h), r| (r.min(l), r.max(h)));
-            let (off, ripple) = ((low / expected - 1.0).abs().max((high / expected - 1.0).abs()), (high - low) / expected);
+            let (off, ripple) =
+                ((low / expected - 1.0).abs().max((high / expected - 1.0).abs()), (high - low) / expected);
             println!("{degrees}°, μ {friction}: e^(μφ) {expected:.3}, off by {off:.1e}, ripple {ripple:.1e}");
             assert!(off < 1e-4 && ripple < 2e-5, "{degrees}°, μ {friction}: {low} to {high}, expected {expected}");
         }
@@ -206,14 +207,26 @@ fn thrown_off_a_beam(speed: f64) -> Dynamics {
 
 #[test]
 fn a_corner_never_pulls_at_what_is_thrown_off_it() {
-    for speed in [4.0, 8.0, 16.0] {
-        let mut d = thrown_off_a_beam(speed);
-        for k in 0..6 {
-            let before: Vec<_> = (0..d.mesh.nodes()).filter(|&k| d.mesh.sliding[k].is_some()).collect();
-            let report = d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
-            let most = d.solution().nodes.iter().map(|n| n.tension_n).fold(0.0, f64::max);
-            let low = d.solution().nodes.iter().filter(|n| n.x_m.abs() < 0.3).map(|n| n.y_m).fold(9.0, f64::min);
-            println!("{speed} {k}: {before:?} slide, {most:.1} N, {} halved, low {low}", report.cost.halved_steps);
-        }
+    let mut d = thrown_off_a_beam(16.0);
+    d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
+    // The node at the corner stood still and is drawn along by its neighbours, 7 cm up by then; held for the step, it would
+    // lie at the corner.
+    let nodes = d.solution().nodes;
+    let i = nodes.partition_point(|n| n.x_m < 0.0);
+    let (a, b) = (&nodes[i - 1], &nodes[i]);
+    let y = a.y_m + (b.y_m - a.y_m) * (0.0 - a.x_m) / (b.x_m - a.x_m);
+    println!("{y} m above the corner");
+    assert!(y > RADIUS + 5e-3, "{y}");
+}
+
+#[test]
+fn a_pose_that_turns_a_corner_the_wrong_way_is_noticed() {
+    let d = thrown_off_a_beam(0.0);
+    let mut x = d.motion.x.clone();
+    assert_eq!(d.pulled(&x), None);
+    let first = d.mesh.sliding.iter().position(Option::is_some).unwrap();
+    for (k, at) in x.iter_mut().enumerate().filter(|(k, _)| d.mesh.sliding[*k].is_none()) {
+        at.y += if k < first + 2 { 0.1 } else { 0.0 };
     }
+    assert_eq!(d.pulled(&x), Some(first));
 }
