@@ -103,6 +103,16 @@ impl<'a> Chain<'a> {
         self.energy(frame, h, v).phi
     }
 
+    /// From its start to its end for a start force (N): the way, m, and its derivative by the force, m/N.
+    #[must_use]
+    pub fn reach(&self, start_force: Vec2) -> (Vec2, Mat2) {
+        let frame = Frame::new(self.weight, start_force);
+        let (h, v) = frame.split(start_force);
+        let e = self.energy(frame, h, v);
+        let turn = Mat2::from_columns(&[frame.across, frame.up]);
+        (frame.join((e.x, e.z)), turn * Mat2::new(e.k11, e.k12, e.k12, e.k22) * turn.transpose())
+    }
+
     fn energy(&self, frame: Frame, h: f64, v: f64) -> Energy {
         let mut sum = Energy::default();
         let (mut h, mut v) = (h, v);

@@ -33,7 +33,7 @@ impl Check {
 pub fn run(model: Model) -> Result<Vec<Check>, Error> {
     // Equilibrium is what the iteration is stopped by; the shape is what the mesh limits.
     let (shape, equilibrium) = match model {
-        Model::Catenary => (1e-9, 1e-9),
+        Model::Catenary | Model::Spans => (1e-9, 1e-9),
         Model::MassSpring => (1e-3, 2e-5),
         Model::Fem | Model::Auto => (1e-5, 1e-6),
     };

@@ -10,6 +10,7 @@ pub mod conformance;
 pub mod drive;
 pub mod fem;
 pub mod mass_spring;
+pub mod spans;
 
 use std::sync::Arc;
 
@@ -31,6 +32,8 @@ pub enum Model {
     Auto,
     /// Elastic catenaries between supports: no contact, no motion, no discretisation error.
     Catenary,
+    /// Exact catenaries between contacts that are intervals of a boundary: friction without a mesh, no motion.
+    Spans,
     /// Corrected bar elements with contact, friction, bending, dynamics.
     Fem,
     /// Lumped masses and springs, explicit in time.
@@ -39,7 +42,7 @@ pub enum Model {
 
 impl Model {
     /// Every model that solves by itself.
-    pub const SOLVERS: [Self; 3] = [Self::Catenary, Self::Fem, Self::MassSpring];
+    pub const SOLVERS: [Self; 4] = [Self::Catenary, Self::Spans, Self::Fem, Self::MassSpring];
 
     /// The name used on the command line and in files.
     #[must_use]
@@ -47,6 +50,7 @@ impl Model {
         match self {
             Self::Auto => "auto",
             Self::Catenary => "catenary",
+            Self::Spans => "spans",
             Self::Fem => "fem",
             Self::MassSpring => "mass-spring",
         }
@@ -55,7 +59,7 @@ impl Model {
     /// The model of a name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
-        [Self::Auto, Self::Catenary, Self::Fem, Self::MassSpring].into_iter().find(|m| m.name() == name)
+        [Self::Auto].into_iter().chain(Self::SOLVERS).find(|m| m.name() == name)
     }
 }
 
@@ -155,6 +159,7 @@ pub trait Mechanics: Send {
 pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Box<dyn Mechanics>, SolveError> {
     match model {
         Model::Catenary => Ok(Box::new(catenary::CatenaryModel::new(problem, settings)?)),
+        Model::Spans => Ok(Box::new(spans::SpansModel::new(problem, settings)?)),
         Model::Fem => Ok(Box::new(fem::FemModel::new(problem, settings)?)),
         Model::MassSpring => Ok(Box::new(mass_spring::MassSpringModel::new(problem, settings)?)),
         Model::Auto => build(auto::choose(&problem, auto::Question::Rest).0, problem, settings),

@@ -8,7 +8,7 @@
 
 mod equilibrium;
 mod layout;
-mod report;
+pub(super) mod report;
 mod slide;
 mod wheel;
 

@@ -29,23 +29,29 @@ const WHEEL_NODES: usize = 24;
 
 /// A point of the answer.
 #[derive(Clone, Copy, Debug)]
-struct Point {
-    s: f64,
-    at: Vec2,
-    tension: f64,
-    curvature: f64,
+pub(in crate::model) struct Point {
+    pub s: f64,
+    pub at: Vec2,
+    pub tension: f64,
+    pub curvature: f64,
 }
 
 /// Collects nodes of one cable.
-struct Nodes<'a> {
+pub(in crate::model) struct Nodes<'a> {
     problem: &'a Problem,
     flat: f64,
     least_tension: f64,
-    out: Vec<Node>,
+    pub out: Vec<Node>,
 }
 
-impl Nodes<'_> {
-    fn push(&mut self, p: Point) {
+impl<'a> Nodes<'a> {
+    /// None yet, for a cable with a greatest tension (N).
+    pub fn new(problem: &'a Problem, greatest: f64) -> Self {
+        Self { problem, flat: FLATNESS * problem.length, least_tension: TENSION_FLOOR * greatest, out: Vec::new() }
+    }
+
+    /// Adds a point.
+    pub fn push(&mut self, p: Point) {
         let strain = p.tension / self.problem.axial_stiffness;
         // Where a span meets a wheel each has its own rounding of the same point.
         let before = self.out.last().map_or(p.s, |n| n.arc_length_m);
@@ -71,7 +77,7 @@ impl Nodes<'_> {
     }
 
     /// One catenary, from material point `s0` at position `at`.
-    fn catenary(&mut self, s0: f64, at: Vec2, c: &Catenary) {
+    pub fn catenary(&mut self, s0: f64, at: Vec2, c: &Catenary) {
         let point = |s: f64| {
             let force = c.force_at(s);
             let square = force.norm_squared();
@@ -111,8 +117,7 @@ pub(super) fn report(p: &Problem, layout: &Layout, e: &Equilibrium) -> (Vec<Node
         let t = if s.start.norm() > s.end.norm() { s.start.norm() } else { s.end.norm() };
         if t > m { t } else { m }
     });
-    let mut nodes =
-        Nodes { problem: p, flat: FLATNESS * p.length, least_tension: TENSION_FLOOR * greatest, out: Vec::new() };
+    let mut nodes = Nodes::new(p, greatest);
     let n = layout.anchors.len();
     for i in 0..=n {
         if let Some(s) = e.stretches.all[i] {

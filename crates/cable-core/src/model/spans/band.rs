@@ -1,0 +1,122 @@
+//! LU factorisation with partial pivoting of a matrix with a narrow band: G. H. Golub and C. F. Van Loan, *Matrix
+//! Computations*, Johns Hopkins, 4th ed. 2013, §4.3. The network's Jacobian is neither symmetric nor definite.
+
+/// Entries left and right of the diagonal.
+pub(super) const BAND: usize = 4;
+/// Entries of a stored row: pivoting fills as many again on the right.
+const WIDTH: usize = 3 * BAND + 1;
+
+/// A band matrix that is factorised in place.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Band {
+    rows: Vec<[f64; WIDTH]>,
+    pivots: Vec<usize>,
+}
+
+impl Band {
+    /// All zero, of a size.
+    pub fn reset(&mut self, n: usize) {
+        self.rows.clear();
+        self.rows.resize(n, [0.0; WIDTH]);
+    }
+
+    /// Adds to an entry; entries outside the band or the matrix must not be asked for and are left out.
+    pub fn add(&mut self, row: usize, column: usize, value: f64) {
+        if let Some(entry) = self.rows.get_mut(row).and_then(|r| r.get_mut((column + BAND).wrapping_sub(row))) {
+            *entry += value;
+        }
+    }
+
+    /// Divides a row and its right-hand side by its largest entry.
+    pub fn scale(&mut self, rhs: &mut [f64]) {
+        for (row, r) in self.rows.iter_mut().zip(rhs) {
+            let largest = row.iter().fold(0.0f64, |m, v| if v.abs() > m { v.abs() } else { m });
+            if largest > 0.0 {
+                row.iter_mut().for_each(|v| *v /= largest);
+                *r /= largest;
+            }
+        }
+    }
+
+    /// Solves A x = b in place of b; false where A is singular or not finite.
+    pub fn solve(&mut self, b: &mut [f64]) -> bool {
+        let n = self.rows.len();
+        self.pivots.clear();
+        for k in 0..n {
+            let last = (k + BAND + 1).min(n);
+            let (mut best, mut size) = (k, 0.0);
+            for i in k..last {
+                let v = self.rows[i][k + BAND - i].abs();
+                if v > size || v.is_nan() {
+                    (best, size) = (i, v);
+                }
+            }
+            if !(size > 0.0 && size.is_finite()) {
+                return false;
+            }
+            if best != k {
+                // Both rows in the columns k … k + 2 BAND, each at its own place.
+                for c in k..(k + 2 * BAND + 1).min(n) {
+                    let (i, j) = (c + BAND - k, c + BAND - best);
+                    let upper = self.rows[k][i];
+                    self.rows[k][i] = self.rows[best][j];
+                    self.rows[best][j] = upper;
+                }
+                b.swap(k, best);
+            }
+            self.pivots.push(best);
+            let pivot_row = self.rows[k];
+            for i in k + 1..last {
+                let row = &mut self.rows[i];
+                let factor = row[k + BAND - i] / pivot_row[BAND];
+                if factor == 0.0 {
+                    continue;
+                }
+                for c in k + 1..(k + 2 * BAND + 1).min(n) {
+                    row[c + BAND - i] -= factor * pivot_row[c + BAND - k];
+                }
+                b[i] -= factor * b[k];
+            }
+        }
+        for k in (0..n).rev() {
+            let mut sum = b[k];
+            for c in k + 1..(k + 2 * BAND + 1).min(n) {
+                sum -= self.rows[k][c + BAND - k] * b[c];
+            }
+            b[k] = sum / self.rows[k][BAND];
+        }
+        b.iter().all(|v| v.is_finite())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn solves_what_a_dense_solver_solves(n in 1usize..14, seed in prop::collection::vec(-1.0f64..1.0, 14 * 15)) {
+            let mut band = Band::default();
+            band.reset(n);
+            let mut dense = nalgebra::DMatrix::<f64>::zeros(n, n);
+            let mut b = vec![0.0; n];
+            for i in 0..n {
+                for j in i.saturating_sub(BAND)..(i + BAND + 1).min(n) {
+                    // Every third diagonal entry is zero: pivoting must be there.
+                    let v = if i == j && i % 3 == 0 { 0.0 } else { seed[i * 15 + j] };
+                    band.add(i, j, v);
+                    dense[(i, j)] = v;
+                }
+                b[i] = seed[i * 15 + 14];
+            }
+            let rhs = nalgebra::DVector::from_vec(b.clone());
+            let Some(expected) = dense.clone().lu().solve(&rhs) else { return Ok(()) };
+            prop_assume!(expected.amax() < 1e6);
+            prop_assert!(band.solve(&mut b));
+            for i in 0..n {
+                prop_assert!((b[i] - expected[i]).abs() < 1e-7 * (1.0 + expected.amax()), "{} {}", b[i], expected[i]);
+            }
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! The check of an answer that does not use the solver: lengths by quadrature of the law of the free cable, balance of
+//! each contact from its ends, the cone of friction along it, gaps by the obstacles' own distance.
+
+use super::seek;
+use super::strand::{Course, Strand, Tie};
+use super::trouble::Trouble;
+use crate::contact::World;
+use crate::math::{Vec2, cross};
+
+/// Equations must hold to this part of the length, the tension, the angle. The solver stops at 1e-11.
+const HOLDS: f64 = 1e-7;
+/// Depth in an obstacle that is let pass, m.
+const DEEPEST: f64 = 1e-6;
+/// Compression that is rounding, of the greatest tension.
+const PUSHES: f64 = 1e-9;
+/// Points of a contact looked at.
+const SAMPLES: usize = 8;
+/// Panels of the quadrature of a span; 5 Gauss points each.
+const PANELS: usize = 16;
+
+const GAUSS: [(f64, f64); 5] = [
+    (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
+    (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
+    (0.5, 0.284_444_444_444_444_44),
+    (0.769_234_655_052_841_5, 0.239_314_335_249_683_23),
+    (0.953_089_922_969_332, 0.118_463_442_528_094_54),
+];
+
+/// Whether an answer is one.
+pub(super) fn sound(strand: &Strand, course: &Course, world: &World) -> Result<(), Trouble> {
+    let mut before = strand.from;
+    let greatest = strand
+        .contacts
+        .iter()
+        .flat_map(|c| c.ends.t)
+        .chain((0..strand.spans()).filter(|&k| strand.has_span(k)).map(|k| strand.force(course, k, strand.material(k).0).norm()))
+        .fold(0.0f64, |m, t| if t > m { t } else { m });
+    for k in 0..strand.spans() {
+        let (from, to) = strand.material(k);
+        if !(from >= before - HOLDS * (strand.to - strand.from) && to >= from - 1e-12 * (strand.to - strand.from)) {
+            return Err(Trouble::Unsound { what: "material out of order", s: from, at: Vec2::zeros() });
+        }
+        before = to;
+        if strand.has_span(k) {
+            span(strand, course, world, k)?;
+        }
+        if k < strand.contacts.len() {
+            contact(strand, course, k, greatest)?;
+        }
+    }
+    Ok(())
+}
+
+/// The span closes, and is outside everything.
+fn span(strand: &Strand, course: &Course, world: &World, k: usize) -> Result<(), Trouble> {
+    let (from, to) = strand.material(k);
+    if let [Some(a), Some(b)] = strand.ends_of(course, k) {
+        let mut knots = vec![from];
+        knots.extend(course.loads.iter().map(|l| l.arc_length).filter(|s| *s > from && *s < to));
+        knots.push(to);
+        let mut at = a;
+        let mut sharpest = 0.0f64;
+        for w in knots.windows(2) {
+            let h = (w[1] - w[0]) / PANELS as f64;
+            for j in 0..PANELS {
+                for (u, weight) in GAUSS {
+                    let force = strand.force(course, k, w[0] + (j as f64 + u) * h);
+                    at += course.rate(force) * (weight * h);
+                    let turn = cross(force, course.law.load).abs() * h / force.norm_squared();
+                    sharpest = if turn > sharpest { turn } else { sharpest };
+                }
+            }
+        }
+        // Where the cable folds within a panel the quadrature cannot tell.
+        if sharpest < 1.0 && !((at - b).norm() <= HOLDS * (1.0 + 100.0 * sharpest.powi(6)) * (strand.to - strand.from)) {
+            return Err(Trouble::Unsound { what: "a span does not close", s: from, at });
+        }
+    }
+    if let Some(hit) = seek::deepest(strand, course, world, k, DEEPEST) {
+        return Err(Trouble::Unsound { what: "the cable is inside an obstacle", s: hit.s, at: hit.at });
+    }
+    Ok(())
+}
+
+/// A contact presses, does not push along itself, keeps the cone, and the spans leave it along its tangent.
+fn contact(strand: &Strand, course: &Course, j: usize, greatest: f64) -> Result<(), Trouble> {
+    let c = &strand.contacts[j];
+    let (track, friction) = (course.track(c), course.friction(c));
+    let e = &c.ends;
+    let unsound = |what: &'static str, p: f64, s: f64| Trouble::Unsound { what, s, at: track.place(p).at };
+    for side in 0..2 {
+        if let Some(force) = strand.force_at_contact(course, j, side) {
+            let tangent = track.place(e.p[side]).tangent;
+            if !(cross(force, tangent).abs() <= HOLDS * force.norm() && force.dot(&tangent) > 0.0) {
+                return Err(unsound("a span is not tangent to what it leaves", e.p[side], e.s[side]));
+            }
+        } else if matches!(strand.ties[side], Tie::Loose) && e.t[side] != 0.0 {
+            return Err(unsound("a free end is drawn", e.p[side], e.s[side]));
+        }
+        if !(e.t[side] >= -PUSHES * greatest - 1e-9) {
+            return Err(Trouble::Compressed { s: e.s[side], at: track.place(e.p[side]).at, tension: e.t[side] });
+        }
+    }
+    if let Some(l) = course.loads.iter().find(|l| l.arc_length > e.s[0] && l.arc_length < e.s[1] && l.force.norm() > 0.0) {
+        return Err(Trouble::LoadLies { s: l.arc_length });
+    }
+    let mut past = c.history.clone();
+    past.commit(&track, e, c.mode, friction);
+    let (mut p, mut t) = (e.p[0], past.at(&track, e.p[0]).0);
+    for i in 1..=SAMPLES {
+        let q = e.p[0] + (e.p[1] - e.p[0]) * i as f64 / SAMPLES as f64;
+        let (next, s) = past.at(&track, q);
+        let place = track.place(q);
+        if !(next >= -PUSHES * greatest - 1e-9) {
+            return Err(Trouble::Compressed { s, at: place.at, tension: next });
+        }
+        if !(track.law.press(&place, next) >= -HOLDS * (greatest + 1e-9)) {
+            return Err(unsound("a contact pulls", q, s));
+        }
+        let (low, high) = (track.slide(p, q, t, -friction).tension, track.slide(p, q, t, friction).tension);
+        let room = HOLDS * (greatest + 1e-9);
+        if !(next >= low - room && next <= high + room) {
+            eprintln!("CONE j{j} {:?} mode {:?} mu {friction} hist {:?} past {:?} next {next} low {low} high {high} p {p} q {q}", c.ends, c.mode, c.history, past);
+            return Err(unsound("friction beyond its cone", q, s));
+        }
+        (p, t) = (q, next);
+    }
+    if !((t - e.t[1]).abs() <= HOLDS * (greatest + 1e-9)) {
+        return Err(unsound("tension jumps at the end of a contact", e.p[1], e.s[1]));
+    }
+    Ok(())
+}

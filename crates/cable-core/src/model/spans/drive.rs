@@ -1,0 +1,218 @@
+//! From one instant to another, in as many steps as it takes; and the rest from which it starts.
+
+use super::check;
+use super::events;
+use super::history::Mode;
+use super::instant::{Instant, Layout, place_ends};
+use super::lay;
+use super::newton::{Solved, Work};
+use super::strand::{Course, Strand};
+use super::trouble::Trouble;
+
+/// Halvings of a step at most: 2⁻¹² of a step of 1 % of the cable is a hair's breadth.
+const MAX_HALVINGS: u32 = 12;
+/// Tension at which a rest is first sought, of the weight of the cable: so taut that it touches only what it is led
+/// round. Less: it lies on more than the string of the route. More: nothing gained.
+const TAUT: f64 = 4.0;
+/// First step of the way from taut to what it is.
+const FIRST_STEP: f64 = 0.05;
+
+/// All strands of a cable at an instant.
+#[derive(Clone, Debug)]
+pub(super) struct Network {
+    pub strands: Vec<Strand>,
+    pub course: Course,
+    pub instant: Instant,
+}
+
+/// What a step took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Taken {
+    pub solved: Solved,
+    pub halved: usize,
+}
+
+impl Network {
+    /// The rest of a cable laid along its route.
+    ///
+    /// # Errors
+    /// Why none was found.
+    pub fn rest(layout: &Layout, instant: &Instant, work: &mut Work) -> Result<(Self, Taken), Trouble> {
+        let curves = layout.curves();
+        let course = layout.course(curves, instant);
+        // A cable held at both ends is laid where it needs no friction, if that can be; one with an end that is not held
+        // stays where friction holds it.
+        let held = layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
+        let smooth = Instant { friction: 0.0, ..instant.clone() };
+        let ways: [(&Instant, bool); 4] = if held {
+            [(&smooth, false), (&smooth, true), (instant, false), (instant, true)]
+        } else {
+            [(instant, false), (instant, true), (&smooth, false), (&smooth, true)]
+        };
+        let mut first = None;
+        for (begin, cooled) in ways {
+            let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
+            match network.laid(layout, begin, cooled, work).and_then(|taken| {
+                if begin.friction < instant.friction {
+                    network.rub(layout, instant, work).map(|more| taken.and(more))
+                } else {
+                    Ok(taken)
+                }
+            }) {
+                Ok(taken) => return Ok((network, taken)),
+                Err(trouble) => first = first.or(Some(trouble)),
+            }
+        }
+        Err(first.unwrap_or(Trouble::Restless { s: 0.0 }))
+    }
+
+    /// Lays it along the route as it is, or shrunk until it is taut and then let out again.
+    fn laid(&mut self, layout: &Layout, goal: &Instant, shrunk: bool, work: &mut Work) -> Result<Taken, Trouble> {
+        let mut begin = goal.clone();
+        if shrunk {
+            begin.thermal = shrunk_thermal(layout, goal);
+        }
+        layout.give(&mut self.course, &begin);
+        self.strands.clear();
+        for k in 0..layout.strands.len() {
+            let strand = lay::lay(layout, k, &self.course, &begin);
+            self.strands.push(strand.ok_or(Trouble::NoSeat { s: layout.strands[k].material[0], at: goal.places[0] })?);
+        }
+        self.instant = begin.clone();
+        let taken = self.step(layout, &begin, work)?;
+        if !shrunk {
+            return Ok(taken);
+        }
+        Ok(taken.and(self.travel(layout, goal, FIRST_STEP, work)?))
+    }
+
+    /// Friction acts from now on; what rests without it rests with it.
+    fn rub(&mut self, layout: &Layout, goal: &Instant, work: &mut Work) -> Result<Taken, Trouble> {
+        layout.give(&mut self.course, goal);
+        for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts) {
+            if self.course.friction(c) > 0.0 {
+                c.mode = Mode::Hold;
+            }
+        }
+        self.step(layout, goal, work)
+    }
+
+    /// One step to an instant; on an error nothing has changed.
+    pub fn step(&mut self, layout: &Layout, to: &Instant, work: &mut Work) -> Result<Taken, Trouble> {
+        let mut taken = Taken::default();
+        let before = self.strands.clone();
+        let old = std::mem::replace(&mut self.instant, to.clone());
+        layout.give(&mut self.course, to);
+        for k in 0..self.strands.len() {
+            if let Err(trouble) = self.solve(layout, k, work).map(|s| taken.solved = taken.solved.and(s)) {
+                self.strands = before;
+                layout.give(&mut self.course, &old);
+                self.instant = old;
+                return Err(trouble);
+            }
+        }
+        for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts) {
+            let friction = self.course.curves[c.curve].friction;
+            let track = super::law::Track { curve: &self.course.curves[c.curve], home: c.home, law: self.course.law };
+            c.history.commit(&track, &c.ends, c.mode, friction);
+        }
+        Ok(taken)
+    }
+
+    fn solve(&mut self, layout: &Layout, k: usize, work: &mut Work) -> Result<Solved, Trouble> {
+        let world = &layout.problem.world;
+        let start = self.strands[k].clone();
+        let strand = &mut self.strands[k];
+        place_ends(layout, k, strand, &self.course, &self.instant)?;
+        let moved = strand.clone();
+        let mut found = events::solve(strand, &mut self.course, world, work);
+        if found.is_err() {
+            // From where each span by itself would be.
+            *strand = moved;
+            for j in 0..strand.spans() {
+                if strand.has_span(j)
+                    && let Some(g) = strand.solve_span(&self.course, j)
+                {
+                    strand.forces[j] = g;
+                }
+            }
+            found = events::solve(strand, &mut self.course, world, work);
+        }
+        if found.is_ok() {
+            check::sound(&self.strands[k], &self.course, world)?;
+        } else {
+            self.strands[k] = start;
+        }
+        found
+    }
+
+    /// To an instant, in steps of this part of the way at first, halved where one fails.
+    pub fn travel(
+        &mut self,
+        layout: &Layout,
+        to: &Instant,
+        first: f64,
+        work: &mut Work,
+    ) -> Result<Taken, (Trouble, f64)> {
+        let from = self.instant.clone();
+        let (mut done, mut step, mut taken) = (0.0, first, Taken::default());
+        let mut halvings = 0;
+        while done < 1.0 {
+            let next = if done + 1.000_001 * step >= 1.0 { 1.0 } else { done + step };
+            match self.step(layout, &from.towards(to, next), work) {
+                Ok(t) => {
+                    taken = taken.and(t);
+                    done = next;
+                    if halvings > 0 {
+                        halvings -= 1;
+                        step *= 2.0;
+                    }
+                }
+                Err(trouble) => {
+                    halvings += 1;
+                    step *= 0.5;
+                    taken.halved += 1;
+                    if halvings > MAX_HALVINGS {
+                        return Err((trouble, done));
+                    }
+                }
+            }
+        }
+        Ok(taken)
+    }
+}
+
+impl From<(Trouble, f64)> for Trouble {
+    fn from((trouble, _): (Trouble, f64)) -> Self {
+        trouble
+    }
+}
+
+impl Taken {
+    fn and(self, more: Self) -> Self {
+        Self { solved: self.solved.and(more.solved), halved: self.halved + more.halved }
+    }
+}
+
+impl Solved {
+    fn and(self, more: Self) -> Self {
+        Self {
+            iterations: self.iterations + more.iterations,
+            residual: if more.residual > self.residual { more.residual } else { self.residual },
+        }
+    }
+}
+
+/// The factor on lengths at which the cable is taut along its route.
+fn shrunk_thermal(layout: &Layout, goal: &Instant) -> f64 {
+    let p = &layout.problem;
+    let points: Vec<_> = if p.route.len() > 1 {
+        p.route.clone()
+    } else {
+        (0..p.supports.len()).filter(|&k| p.supports[k].at.is_some()).map(|k| goal.places[k]).collect()
+    };
+    let way: f64 = points.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+    let tension = TAUT * goal.load.norm() * p.length;
+    let taut = way / (p.length * (1.0 + tension / p.axial_stiffness));
+    if taut < goal.thermal && taut > 0.0 { taut } else { goal.thermal }
+}

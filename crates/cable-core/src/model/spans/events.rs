@@ -1,0 +1,232 @@
+//! What a converged strand may have to change: contacts released, joined, met, made.
+//!
+//! R a contact whose interval has turned round is let go; M two contacts of one chain are one; P where a span runs into
+//! an obstacle the neighbouring contact is drawn out to it, or a new one begins at a point. After each the strand is
+//! solved again, until nothing fires.
+
+use super::history::{Ends, History, Knot, Mode};
+use super::newton::{self, Solved, Work};
+use super::seek::{self, Hit};
+use super::strand::{Contact, Course, Strand, Tie};
+use super::trouble::Trouble;
+use crate::contact::World;
+use crate::math::{Vec2, perp};
+
+/// Events in one solve at most. A cold start over 24 corners takes 60.
+const MAX_EVENTS: usize = 200;
+/// A contact is let go when its interval has turned round by this much (m or rad). Smaller: rounding releases what
+/// touches in a point. Larger: a contact that pulls is accepted.
+const TURNED: f64 = 1e-10;
+/// Depth inside an obstacle that is met, of the strand's length. Smaller: rounding at touch points; larger: it is seen.
+const DEEP: f64 = 1e-9;
+/// A support this near to a boundary lies on it, m.
+pub(super) const ON: f64 = 1e-9;
+
+/// Solves a strand, events and all.
+pub(super) fn solve(
+    strand: &mut Strand,
+    course: &mut Course,
+    world: &World,
+    work: &mut Work,
+) -> Result<Solved, Trouble> {
+    let mut sum = Solved::default();
+    for _ in 0..MAX_EVENTS {
+        let found = newton::solve(strand, course, work).map_err(|stall| Trouble::Stalled {
+            iterations: stall.iterations,
+            residual: stall.residual,
+            s: strand.material(stall.at).0,
+        })?;
+        sum.iterations += found.iterations;
+        sum.residual = found.residual;
+        if !(release(strand, course)? || join(strand, course) || meet(strand, course, world)?) {
+            return Ok(sum);
+        }
+    }
+    Err(Trouble::Restless { s: strand.from })
+}
+
+/// R: lets go of what no longer presses.
+fn release(strand: &mut Strand, course: &mut Course) -> Result<bool, Trouble> {
+    let turned = |c: &Contact| c.ends.p[1] - c.ends.p[0];
+    let worst = (0..strand.contacts.len()).min_by(|&a, &b| turned(&strand.contacts[a]).total_cmp(&turned(&strand.contacts[b])));
+    let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -TURNED) else { return Ok(false) };
+    if let Some(support) = strand.contacts[j].wheel {
+        turn_eye(&mut strand.contacts[j], course, support)?;
+        return Ok(true);
+    }
+    let contact = strand.contacts.remove(j);
+    let m = strand.contacts.len();
+    // What lay is held in the air now, or hangs.
+    for side in 0..2 {
+        let outer = if side == 0 { j == 0 } else { j == m };
+        if outer && !strand.ties[side].has_span() {
+            strand.ties[side] = match strand.ties[side] {
+                Tie::Lies(p) => Tie::Held(course.track(&contact).place(p).at),
+                _ => Tie::Hangs(Vec2::zeros()),
+            };
+            strand.forces.remove(if side == 0 { 0 } else { m + 1 });
+            if strand.contacts.is_empty() && strand.forces.len() > 1 {
+                strand.forces.truncate(1);
+            }
+            resolve(strand, course, if side == 0 { 0 } else { m });
+            return Ok(true);
+        }
+    }
+    strand.forces.remove(j);
+    resolve(strand, course, j);
+    Ok(true)
+}
+
+/// The force of a span that has changed.
+fn resolve(strand: &mut Strand, course: &Course, k: usize) {
+    if let Some(g) = strand.solve_span(course, k) {
+        strand.forces[k] = g;
+    }
+}
+
+/// A point pulley may be passed on either side; a wheel only as it is.
+fn turn_eye(c: &mut Contact, course: &Course, support: usize) -> Result<(), Trouble> {
+    if course.track(c).place(c.ends.p[0]).stretch > 0.0 {
+        return Err(Trouble::OffWheel { support });
+    }
+    // Its boundary in the other sense: p → −p.
+    c.curve ^= 1;
+    c.ends.p = [-c.ends.p[0], -c.ends.p[1]];
+    let s = 0.5 * (c.ends.s[0] + c.ends.s[1]);
+    let knot = |k: usize| Knot { p: c.ends.p[k], s, tension: c.ends.t[k], m: 0.0 };
+    // Nothing is left between: it holds what it has.
+    let held = c.history.knots().first().map_or(s, |k| k.s);
+    c.history = History::new(Knot { s: held, ..knot(0) }, Knot { s: held, ..knot(1) });
+    if let Mode::Slide(m) = c.mode
+        && m != 0.0
+    {
+        c.mode = Mode::Hold;
+    }
+    Ok(())
+}
+
+/// M: two contacts of one chain, one after the other, are one.
+fn join(strand: &mut Strand, course: &Course) -> bool {
+    for j in 1..strand.contacts.len() {
+        let (a, b) = (&strand.contacts[j - 1], &strand.contacts[j]);
+        if a.curve == b.curve && a.home == b.home && a.wheel.is_none() && b.ends.p[1] >= a.ends.p[0] {
+            let b = strand.contacts.remove(j);
+            strand.forces.remove(j);
+            let a = &mut strand.contacts[j - 1];
+            a.history.append(&course.track(&b), &b.history, course.friction(&b));
+            (a.ends.p[1], a.ends.s[1], a.ends.t[1]) = (b.ends.p[1], b.ends.s[1], b.ends.t[1]);
+            if let (Mode::Slide(m), Mode::Hold) = (a.mode, b.mode)
+                && m != 0.0
+            {
+                a.mode = Mode::Hold;
+            }
+            return true;
+        }
+    }
+    false
+}
+
+/// P: meets the deepest obstacle of each span.
+fn meet(strand: &mut Strand, course: &Course, world: &World) -> Result<bool, Trouble> {
+    if world.is_empty() {
+        return Ok(false);
+    }
+    let deep = DEEP * (strand.to - strand.from);
+    let mut any = false;
+    // From the last span, so that those before keep their number.
+    for k in (0..strand.spans()).rev() {
+        if let Some(at) = landed(strand, course, world, k, deep) {
+            return Err(Trouble::EndLands { at });
+        }
+        if let Some(hit) = seek::deepest(strand, course, world, k, deep) {
+            touch(strand, course, k, &hit)?;
+            any = true;
+        }
+    }
+    Ok(any)
+}
+
+/// Where the tip of a hanging end is inside something.
+fn landed(strand: &Strand, course: &Course, world: &World, k: usize, deep: f64) -> Option<Vec2> {
+    let [start, end] = strand.ends_of(course, k);
+    let (from, to) = strand.material(k);
+    let chain = course.chain(from, to);
+    let tip = match (start, end) {
+        (Some(a), None) => a + chain.reach(strand.force(course, k, from)).0,
+        (None, Some(b)) => b - chain.reach(strand.force(course, k, from)).0,
+        _ => return None,
+    };
+    world.signed_gap(tip, strand.to - strand.from).is_some_and(|g| g.gap_m < -deep).then_some(tip)
+}
+
+/// Lays span k down where it hit.
+fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit) -> Result<(), Trouble> {
+    let no_seat = Trouble::NoSeat { s: hit.s, at: hit.at };
+    let back = hit.gap.normal.dot(&perp(hit.tangent)) < 0.0;
+    let curve_index = 2 * hit.body + usize::from(back);
+    let Some(curve) = course.curves.get(curve_index) else { return Err(no_seat) };
+    let load = course.law.load;
+    let Some(mut i) = curve.piece_of(hit.gap.feature, hit.at) else { return Err(no_seat) };
+    let Some(home) = curve.chain(i, load).or_else(|| {
+        // A wall or an underside: the cable goes round the corner of it that is nearer.
+        i = curve.corner_beside(i, hit.at)?;
+        curve.chain(i, load)
+    }) else {
+        return Err(no_seat);
+    };
+    let edge = curve.place_on(i, 0.0).turn == 0.0;
+    let p = if edge { curve.project(i, hit.at) } else { curve.with_tangent(i, hit.tangent) };
+    let force = strand.force(course, k, hit.s).norm();
+    let same = |c: &Contact| c.curve == curve_index && c.home == home && c.wheel.is_none();
+    if let Some(c) = k.checked_sub(1).and_then(|j| strand.contacts.get_mut(j)).filter(|c| same(c) && p > c.ends.p[1]) {
+        (c.ends.p[1], c.ends.s[1], c.ends.t[1]) = (p, hit.s, force);
+        return Ok(());
+    }
+    if let Some(c) = strand.contacts.get_mut(k).filter(|c| same(c) && p < c.ends.p[0]) {
+        (c.ends.p[0], c.ends.s[0], c.ends.t[0]) = (p, hit.s, force);
+        return Ok(());
+    }
+    let mut contact = Contact {
+        curve: curve_index,
+        home,
+        ends: Ends { p: [p, p], s: [hit.s, hit.s], t: [force, force] },
+        mode: if curve.friction > 0.0 { Mode::Hold } else { Mode::Slide(0.0) },
+        history: History::default(),
+        wheel: None,
+        flips: 0,
+    };
+    let track = course.track(&contact);
+    let mut lies = [None, None];
+    for side in 0..2 {
+        let outer = if side == 0 { k == 0 } else { k == strand.contacts.len() };
+        if let (true, Tie::Held(at)) = (outer, strand.ties[side])
+            && let Some(end) = curve.on_chain(home, at, ON)
+            && (if side == 0 { end <= p } else { end >= p })
+        {
+            let s = if side == 0 { strand.from } else { strand.to };
+            lies[side] = Some(end);
+            (contact.ends.p[side], contact.ends.s[side]) = (end, s);
+            // From the end that is held: so much is laid from there to the other.
+            let laid = track.slide(end, p, force, 0.0).material;
+            if lies[1 - side].is_none() {
+                contact.ends.s[1 - side] = s + laid;
+            }
+        }
+    }
+    let knot = |side: usize| Knot {
+        p: contact.ends.p[side],
+        s: contact.ends.s[side],
+        tension: force,
+        m: 0.0,
+    };
+    contact.history = History::new(knot(0), knot(1));
+    let g = strand.forces[k];
+    strand.contacts.insert(k, contact);
+    strand.forces.insert(k, g);
+    for side in 0..2 {
+        if let Some(p) = lies[side] {
+            strand.ties[side] = Tie::Lies(p);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,301 @@
+//! What friction remembers of a contact, in closed form.
+//!
+//! Where the cable has stuck the tension is what it was, where it slides it follows the law of sliding from one end:
+//!
+//! ```text
+//! T(p) = clamp(T_old(p), max(L₁, L₂), min(U₁, U₂))
+//! ```
+//!
+//! with L and U the least and the greatest tension that sliding allows from the tension at either end (1 at p₁, 2 at
+//! p₂). This is the exact minimiser of the energy and the incremental dissipation: T − T_old has the sign that the law
+//! asks for wherever it slides. U₁ and L₂ follow m = +μ, L₁ and U₂ m = −μ, so whatever happens T stays a curve made of
+//! stretches with one m each: a knot where m changes is all there is to store, and nothing is ever interpolated.
+//! From each end T leaves its envelope at most once, at the *front*; between the fronts it sticks, and the material
+//! there is where it was. Material newly laid down beyond the old contact has the tension of its end, smoothly carried
+//! on (m = 0).
+
+use super::law::{Step, Track};
+
+/// Fronts and meeting points are found to this part of the interval searched: rounding.
+const ROOT: f64 = 1e-15;
+/// Halvings of such a search at most.
+const MAX_HALVINGS: usize = 200;
+
+/// A point from which the tension follows the law with m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Knot {
+    pub p: f64,
+    /// Material there, m.
+    pub s: f64,
+    /// Tension there, N.
+    pub tension: f64,
+    /// m from here to the next knot.
+    pub m: f64,
+}
+
+/// Tension and material along a contact as they were last.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct History {
+    knots: Vec<Knot>,
+}
+
+/// Ends of a contact: place, material (m), tension (N).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Ends {
+    pub p: [f64; 2],
+    pub s: [f64; 2],
+    pub t: [f64; 2],
+}
+
+/// How a contact stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Mode {
+    /// Some of it sticks.
+    Hold,
+    /// All of it slides with this m (0: smooth).
+    Slide(f64),
+}
+
+/// Where sliding from an end stops.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Front {
+    pub p: f64,
+    /// The way from the end to it.
+    pub way: Step,
+    pub m: f64,
+    /// Whether the old tension stopped it; else it came to the other end.
+    pub met: bool,
+}
+
+/// A contact that holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Held {
+    /// It sticks between two fronts (or at one point).
+    Between([Front; 2]),
+    /// Sliding from both ends meets in one point, which sticks.
+    Meet([Front; 2]),
+    /// The end tensions are too far apart: it slides with this m. The fronts have passed each other.
+    Beyond(f64, [Front; 2]),
+}
+
+impl History {
+    /// Material laid with one tension law from a point.
+    pub fn new(start: Knot, end: Knot) -> Self {
+        Self { knots: if end.p > start.p { vec![start, end] } else { vec![start] } }
+    }
+
+    /// The knots.
+    pub fn knots(&self) -> &[Knot] {
+        &self.knots
+    }
+
+    /// Takes over what another contact, joined to this one at its end, remembers. Between the two, and on as far as it
+    /// must, tension is brought within the cone by the least change.
+    pub fn append(&mut self, track: &Track<'_>, next: &Self, friction: f64) {
+        for knot in &next.knots {
+            let mut knot = *knot;
+            if let Some(last) = self.knots.last_mut() {
+                if knot.p <= last.p {
+                    continue;
+                }
+                let reach = |m: f64| track.slide(last.p, knot.p, last.tension, m).tension;
+                let (low, high) = (reach(-friction), reach(friction));
+                if knot.tension >= high {
+                    (last.m, knot.tension) = (friction, high);
+                } else if knot.tension <= low {
+                    (last.m, knot.tension) = (-friction, low);
+                } else {
+                    last.m = crossing(-friction, friction, |m| knot.tension - reach(m));
+                }
+            }
+            self.knots.push(knot);
+        }
+    }
+
+    /// Forgets everything but what is new; keeps the memory of the list.
+    fn clear(&mut self) {
+        self.knots.clear();
+    }
+
+    fn push(&mut self, k: Knot) {
+        if let Some(last) = self.knots.last_mut() {
+            if k.p <= last.p {
+                // A stretch of no extent.
+                last.m = k.m;
+                return;
+            }
+            if self.knots.len() > 1 {
+                let n = self.knots.len();
+                if self.knots[n - 2].m == self.knots[n - 1].m {
+                    self.knots.pop();
+                }
+            }
+        }
+        self.knots.push(k);
+    }
+
+    /// The knot from which the tension at p follows, seen going on to the right or back to the left.
+    fn knot(&self, p: f64, right: bool) -> (Knot, f64) {
+        let k = self.knots.partition_point(|k| if right { k.p <= p } else { k.p < p });
+        match k.checked_sub(1).and_then(|j| self.knots.get(j)) {
+            None => self.knots.first().map_or((Knot { p, s: 0.0, tension: 0.0, m: 0.0 }, 0.0), |k| (*k, 0.0)),
+            Some(knot) => (*knot, if k == self.knots.len() { 0.0 } else { knot.m }),
+        }
+    }
+
+    /// Old tension and material at p.
+    pub fn at(&self, track: &Track<'_>, p: f64) -> (f64, f64) {
+        let (knot, m) = self.knot(p, true);
+        let way = track.slide(knot.p, p, knot.tension, m);
+        (way.tension, knot.s + way.material)
+    }
+
+    /// Slides from an end at p with tension `t` towards `to`, as far as the old tension lets it.
+    pub fn front(&self, track: &Track<'_>, (p, t): (f64, f64), to: f64, friction: f64) -> Front {
+        let right = to > p;
+        let (mut old, _) = self.at(track, p);
+        let sign = if t < old { 1.0 } else { -1.0 };
+        let m = friction * sign * if right { 1.0 } else { -1.0 };
+        let (mut at, mut way) = (p, Step::none(t));
+        if t == old {
+            return Front { p, way, m, met: true };
+        }
+        while at != to {
+            let (_, old_m) = self.knot(at, right);
+            let mut next = track.next_border(at, to);
+            let k = self.knots.partition_point(|k| if right { k.p <= at } else { k.p < at });
+            let border = if right { self.knots.get(k) } else { k.checked_sub(1).and_then(|j| self.knots.get(j)) };
+            if let Some(b) = border
+                && (if right { b.p < next } else { b.p > next })
+            {
+                next = b.p;
+            }
+            let here = track.slide(at, next, way.tension, m);
+            let there = track.slide(at, next, old, old_m).tension;
+            if (there - here.tension) * sign <= 0.0 {
+                let x = crossing(at, next, |x| {
+                    (track.slide(at, x, old, old_m).tension - track.slide(at, x, way.tension, m).tension) * sign
+                });
+                return Front { p: x, way: way.then(track.slide(at, x, way.tension, m)), m, met: true };
+            }
+            way = way.then(here);
+            old = there;
+            at = next;
+        }
+        Front { p: to, way, m, met: false }
+    }
+
+    /// Where a contact sticks under its end tensions.
+    pub fn hold(&self, track: &Track<'_>, e: &Ends, friction: f64) -> Held {
+        let [p1, p2] = e.p;
+        let [t1, t2] = e.t;
+        let left = self.front(track, (p1, t1), p2, friction);
+        let right = self.front(track, (p2, t2), p1, friction);
+        if left.met && right.met && left.p <= right.p {
+            return Held::Between([left, right]);
+        }
+        // One has come past the other, or to the far end: either the tensions are too far apart …
+        let beyond = |m: f64| Held::Beyond(m, [left, right]);
+        if left.m == right.m || !(p2 > p1) {
+            return beyond(if t2 > t1 || left.m == right.m && left.m > 0.0 { friction } else { -friction });
+        }
+        if t2 > track.slide(p1, p2, t1, friction).tension {
+            return beyond(friction);
+        }
+        if t2 < track.slide(p1, p2, t1, -friction).tension {
+            return beyond(-friction);
+        }
+        // … or they slide towards or away from each other.
+        let up = left.m > 0.0;
+        let meet = crossing(p1, p2, |x| {
+            let d = track.slide(p2, x, t2, right.m).tension - track.slide(p1, x, t1, left.m).tension;
+            if up { d } else { -d }
+        });
+        let front = |p: f64, t: f64, m: f64| Front { p: meet, way: track.slide(p, meet, t, m), m, met: true };
+        Held::Meet([front(p1, t1, left.m), front(p2, t2, right.m)])
+    }
+
+    /// Takes what came of a step as the new past.
+    pub fn commit(&mut self, track: &Track<'_>, e: &Ends, mode: Mode, friction: f64) {
+        let [first, last] = [0, 1].map(|k| Knot { p: e.p[k], s: e.s[k], tension: e.t[k], m: 0.0 });
+        if last.p <= first.p {
+            self.clear();
+            self.knots.push(first);
+            return;
+        }
+        match mode {
+            Mode::Slide(m) => {
+                self.clear();
+                self.knots.extend([Knot { m, ..first }, last]);
+            }
+            Mode::Hold => match self.hold(track, e, friction) {
+                Held::Between([left, right]) => {
+                    let old = self.clone();
+                    self.clear();
+                    if left.p > first.p {
+                        self.push(Knot { m: left.m, ..first });
+                    }
+                    let (tension, s) = old.at(track, left.p);
+                    self.push(Knot { p: left.p, s, tension, m: old.knot(left.p, true).1 });
+                    for k in old.knots.iter().filter(|k| k.p > left.p && k.p < right.p) {
+                        self.push(Knot { m: old.knot(k.p, true).1, ..*k });
+                    }
+                    if right.p < last.p {
+                        let (tension, s) = old.at(track, right.p);
+                        self.push(Knot { p: right.p, s, tension, m: right.m });
+                    }
+                    self.push(last);
+                }
+                Held::Meet([left, right]) => {
+                    let (tension, s) = (left.way.tension, e.s[0] + left.way.material);
+                    self.clear();
+                    self.push(Knot { m: left.m, ..first });
+                    self.push(Knot { p: left.p, s, tension, m: right.m });
+                    self.push(last);
+                }
+                Held::Beyond(m, _) => {
+                    self.clear();
+                    self.knots.extend([Knot { m, ..first }, last]);
+                }
+            },
+        }
+    }
+}
+
+/// Where f falls from above zero at `a` to zero or below at `b` (Illinois' rule; M. Dowell and P. Jarratt, "A modified
+/// regula falsi method for computing the root of an equation", BIT 11, 1971).
+fn crossing(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let (mut x0, mut x1) = (a, b);
+    let (mut f0, mut f1) = (f(a), f(b));
+    if !(f0 > 0.0) {
+        return a;
+    }
+    if f1 == 0.0 {
+        return b;
+    }
+    let mut side = 0;
+    for k in 0..MAX_HALVINGS {
+        if (x1 - x0).abs() <= ROOT * (a.abs() + b.abs()) {
+            break;
+        }
+        let x = if k % 3 == 2 { 0.5 * (x0 + x1) } else { x0 + (x1 - x0) * (f0 / (f0 - f1)) };
+        let fx = f(x);
+        if fx == 0.0 {
+            return x;
+        }
+        if fx > 0.0 {
+            (x0, f0) = (x, fx);
+            if side == 1 {
+                f1 *= 0.5;
+            }
+            side = 1;
+        } else {
+            (x1, f1) = (x, fx);
+            if side == -1 {
+                f0 *= 0.5;
+            }
+            side = -1;
+        }
+    }
+    0.5 * (x0 + x1)
+}

@@ -1,0 +1,384 @@
+//! The first guess of a strand: contacts where the taut string of its route bends, the material spread evenly along the
+//! route.
+
+use super::curve::Home;
+use super::history::{Ends, History, Knot, Mode};
+use super::instant::{Instant, Layout, Part, Pulley};
+use super::strand::{Contact, Course, Strand, Tie};
+use super::taut::{self, Bend};
+use crate::contact::World;
+use crate::math::{Vec2, cross};
+
+/// Ends of a route this near to a boundary lie on it, of the cable's radius.
+const LIES: f64 = 0.05;
+/// A contact guessed keeps at least this part of the strand's material clear of the next.
+const CLEAR: f64 = 1e-4;
+
+/// Something the cable bends round, in order.
+#[derive(Clone, Debug)]
+struct Seat {
+    curve: usize,
+    home: Home,
+    /// First and last piece.
+    pieces: [i64; 2],
+    wheel: Option<usize>,
+    /// First and last of it along the route, m.
+    way: [f64; 2],
+    /// How far the string turns there, rad.
+    turn: f64,
+}
+
+/// A route with the length along it.
+struct Way {
+    points: Vec<Vec2>,
+    along: Vec<f64>,
+}
+
+impl Way {
+    fn new(points: Vec<Vec2>) -> Self {
+        let mut along = vec![0.0; points.len()];
+        for k in 1..points.len() {
+            along[k] = along[k - 1] + (points[k] - points[k - 1]).norm();
+        }
+        Self { points, along }
+    }
+
+    fn total(&self) -> f64 {
+        self.along.last().copied().unwrap_or(0.0)
+    }
+
+    /// How far along it comes nearest to a point, not before `from`, up to the end of leg `last`.
+    fn nearest(&self, at: Vec2, from: f64, last: usize) -> f64 {
+        let (mut best, mut found) = (f64::INFINITY, from);
+        for k in 0..self.points.len().saturating_sub(1).min(last + 1) {
+            let d = self.points[k + 1] - self.points[k];
+            let l = d.norm();
+            if l == 0.0 || self.along[k + 1] < from {
+                continue;
+            }
+            let u = ((at - self.points[k]).dot(&d) / l).clamp(0.0, l);
+            let u = if self.along[k] + u < from { from - self.along[k] } else { u };
+            let distance = (self.points[k] + d * (u / l) - at).norm();
+            // Of equals the first, as a post is passed by several turns alike.
+            if distance < best * (1.0 - 1e-6) - 1e-12 {
+                (best, found) = (distance, self.along[k] + u);
+            }
+        }
+        found
+    }
+
+    /// Leg at a length along it.
+    fn leg(&self, w: f64) -> usize {
+        self.along.partition_point(|a| *a <= w).clamp(1, self.points.len().max(2) - 1) - 1
+    }
+}
+
+/// The route of a strand, and where its pulleys are on it.
+fn way(layout: &Layout, part: &Part, instant: &Instant) -> Way {
+    let p = &layout.problem;
+    let place = |k: usize| instant.places[k];
+    let ends = part.supports.map(|s| s.map(place));
+    let stops: Vec<Vec2> =
+        ends[0].into_iter().chain(part.pulleys.iter().map(|q| place(q.support))).chain(ends[1]).collect();
+    if p.route.len() > 1 {
+        let whole = Way::new(p.route.clone());
+        // The part of the route between the grips.
+        let a = ends[0].filter(|_| part.material[0] > 0.0).map_or(0.0, |at| whole.nearest(at, 0.0, usize::MAX - 1));
+        let b = ends[1]
+            .filter(|_| part.material[1] < p.length)
+            .map_or(whole.total(), |at| whole.nearest(at, a, usize::MAX - 1));
+        let mut points: Vec<Vec2> = Vec::with_capacity(whole.points.len() + 2);
+        points.extend(ends[0].or(whole.points.first().copied()));
+        for (k, q) in whole.points.iter().enumerate() {
+            if whole.along[k] > a && whole.along[k] < b {
+                points.push(*q);
+            }
+        }
+        points.extend(ends[1].or(whole.points.last().copied()));
+        return Way::new(points);
+    }
+    let mut points: Vec<Vec2> = Vec::new();
+    let used: f64 = stops.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+    let spare = (part.material[1] - part.material[0] - used).max(0.05 * (part.material[1] - part.material[0]));
+    let loose = part.supports.iter().filter(|s| s.is_none()).count().max(1) as f64;
+    let tail = |side: usize| {
+        let force = layout.end_force(instant, part.material[side]) + instant.load * (0.5 * spare);
+        if force.norm() > 0.0 { force.normalize() * (spare / loose) } else { Vec2::zeros() }
+    };
+    if let (None, Some(first)) = (part.supports[0], stops.first()) {
+        points.push(first + tail(0));
+    }
+    for (k, at) in stops.iter().enumerate() {
+        if k > 0 {
+            points.extend(over(&p.world, stops[k - 1], *at));
+        }
+        points.push(*at);
+    }
+    if let (None, Some(last)) = (part.supports[1], stops.last()) {
+        points.push(last + tail(1));
+    }
+    Way::new(points)
+}
+
+/// Two points above everything between `a` and `b`, where the straight way is blocked.
+fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
+    if world.is_empty() || world.free_fraction([a, a], [b, b], 0.0) >= 1.0 {
+        return Vec::new();
+    }
+    let (low, high) = (a.x.min(b.x), a.x.max(b.x));
+    let mut top = a.y.max(b.y);
+    for body in world.geometry().bodies() {
+        let points = body.edges.iter().flat_map(|e| [e.p, e.q]).chain(body.center);
+        for q in points.filter(|q| q.x > low - body.offset && q.x < high + body.offset) {
+            top = top.max(q.y + 2.0 * body.offset + 1e-3);
+        }
+    }
+    vec![Vec2::new(a.x, top), Vec2::new(b.x, top)]
+}
+
+/// The strand at its route. None where the string of the route finds no end.
+pub(super) fn lay(layout: &Layout, index: usize, course: &Course, instant: &Instant) -> Option<Strand> {
+    let part = layout.strands.get(index)?;
+    let [from, to] = part.material;
+    let way = way(layout, part, instant);
+    let total = way.total();
+    if !(total > 0.0) {
+        return bare(layout, part, instant);
+    }
+    let at = |w: f64| from + (to - from) * w / total;
+    let ties = [0, 1].map(|side| match part.supports[side] {
+        Some(k) => Tie::Held(instant.places[k]),
+        None => Tie::Hangs(layout.end_force(instant, part.material[side])),
+    });
+    let mut strand = Strand { from, to, ties, contacts: Vec::new(), forces: Vec::new() };
+    let slack = total / ((to - from) * course.law.thermal) - 1.0;
+    let tension = if slack > 0.0 { slack * course.law.stiffness } else { 0.0 };
+    // Ends that lie: how many points of the route, and the contact.
+    let heads = [0, 1].map(|side| lying(course, &layout.problem.world, layout.problem.radius, &way.points, side));
+    if let [Some(a), Some(b)] = &heads
+        && (a.count + b.count > way.points.len() && a.curve == b.curve && a.home == b.home)
+    {
+        let mut c = contact(course, (a.curve, a.home), ([a.p[0], b.p[1]], [from, to]), tension);
+        c.wheel = None;
+        strand.ties = [0, 1].map(|side| end_tie(part, side, if side == 0 { a.p[0] } else { b.p[1] }));
+        strand.contacts.push(c);
+        strand.forces = vec![Vec2::zeros(); 2];
+        return Some(strand);
+    }
+    let first = heads[0].as_ref().map_or(0, |h| h.count - 1);
+    let last = way.points.len() - heads[1].as_ref().map_or(1, |h| h.count);
+    if first > last {
+        return None;
+    }
+    let seats = seats(layout, part, course, instant, (&way, first, last))?;
+    let mut contacts = Vec::with_capacity(seats.len() + 2);
+    let rounds = rounds(course, &seats, (way.points[first], way.points[last]));
+    for (k, seat) in seats.iter().enumerate() {
+        let arrive = tangent(rounds[k][1], rounds[k + 1][0]);
+        let leave = tangent(rounds[k + 1][1], rounds[k + 2][0]);
+        let curve = &course.curves[seat.curve];
+        let p1 = curve.with_tangent(seat.pieces[0], arrive);
+        let p2 = curve.with_tangent(seat.pieces[1], leave);
+        // The turns counted along the string, brought to where the tangents are.
+        let turns = if curve.is_round() { ((p1 + seat.turn - p2) / std::f64::consts::TAU).round() } else { 0.0 };
+        let p2 = p2 + std::f64::consts::TAU * turns;
+        let p2 = if p2 > p1 { p2 } else { p1 };
+        let half = 0.5 * curve.length(p1, p2, seat.home) / course.law.stretch(tension);
+        let s = at(0.5 * (seat.way[0] + seat.way[1]));
+        let mut c = contact(course, (seat.curve, seat.home), ([p1, p2], [s - half, s + half]), tension);
+        c.wheel = seat.wheel;
+        contacts.push(c);
+    }
+    for side in 0..2 {
+        if let Some(h) = &heads[side] {
+            let way_at = |k: usize| at(way.along[k]);
+            let s = if side == 0 { [from, way_at(first)] } else { [way_at(last), to] };
+            let c = contact(course, (h.curve, h.home), (h.p, s), tension);
+            contacts.insert(if side == 0 { 0 } else { contacts.len() }, c);
+            strand.ties[side] = end_tie(part, side, h.p[side]);
+        }
+    }
+    strand.forces = vec![Vec2::zeros(); contacts.len() + 1];
+    strand.contacts = contacts;
+    spread(&mut strand);
+    for k in 0..strand.spans() {
+        if strand.has_span(k) {
+            strand.forces[k] = strand.solve_span(course, k)?;
+        }
+    }
+    strand.take_tensions(course);
+    Some(strand)
+}
+
+/// A strand whose ends are in one place: nothing but a span.
+fn bare(layout: &Layout, part: &Part, instant: &Instant) -> Option<Strand> {
+    let [a, b] = part.supports;
+    let [from, to] = part.material;
+    let ties = [Tie::Held(instant.places[a?]), Tie::Held(instant.places[b?])];
+    let _ = layout;
+    part.pulleys.is_empty().then(|| Strand { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()] })
+}
+
+fn end_tie(part: &Part, side: usize, p: f64) -> Tie {
+    if part.supports[side].is_some() { Tie::Lies(p) } else { Tie::Loose }
+}
+
+/// Keeps material in order, and some of it in each span.
+fn spread(strand: &mut Strand) {
+    let least = CLEAR * (strand.to - strand.from);
+    let n = strand.contacts.len();
+    let mut before = strand.from;
+    for j in 0..n {
+        let lies = j == 0 && !strand.ties[0].has_span();
+        let room = strand.to - least * (n - j) as f64;
+        let e = &mut strand.contacts[j].ends;
+        if !lies && e.s[0] < before + least {
+            let shift = before + least - e.s[0];
+            e.s = [e.s[0] + shift, e.s[1] + shift];
+        }
+        let last = j + 1 == n && !strand.ties[1].has_span();
+        if !last && e.s[1] > room {
+            let shift = room - e.s[1];
+            e.s = [e.s[0] + shift, e.s[1] + shift];
+        }
+        before = e.s[1];
+    }
+    for c in &mut strand.contacts {
+        let knot = |k: usize| Knot { p: c.ends.p[k], s: c.ends.s[k], tension: c.ends.t[k], m: 0.0 };
+        c.history = History::new(knot(0), knot(1));
+    }
+}
+
+fn contact(course: &Course, (curve, home): (usize, Home), (p, s): ([f64; 2], [f64; 2]), tension: f64) -> Contact {
+    let knot = |k: usize| Knot { p: p[k], s: s[k], tension, m: 0.0 };
+    Contact {
+        curve,
+        home,
+        ends: Ends { p, s, t: [tension; 2] },
+        mode: if course.curves[curve].friction > 0.0 { Mode::Hold } else { Mode::Slide(0.0) },
+        history: History::new(knot(0), knot(1)),
+        wheel: None,
+        flips: 0,
+    }
+}
+
+/// An end of a route that lies on a boundary.
+struct Head {
+    curve: usize,
+    home: Home,
+    p: [f64; 2],
+    /// Points of the route that lie, the end included.
+    count: usize,
+}
+
+/// Whether the first points of a route (the last, for side 1) lie on one chain.
+fn lying(course: &Course, world: &World, radius: f64, points: &[Vec2], side: usize) -> Option<Head> {
+    let n = points.len();
+    let point = |k: usize| points[if side == 0 { k } else { n - 1 - k }];
+    let within = LIES * radius;
+    let gap = world.signed_gap(point(0), 2.0 * radius).filter(|g| g.gap_m.abs() <= within)?;
+    let body = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle)?;
+    let travel = (point(1) - point(0)) * if side == 0 { 1.0 } else { -1.0 };
+    // n = σ perp t.
+    let back = cross(travel, gap.normal) < 0.0;
+    let curve_index = 2 * body + usize::from(back);
+    let curve = course.curves.get(curve_index)?;
+    let i = curve.piece_of(gap.feature, point(0))?;
+    let home = curve.chain(i, course.law.load)?;
+    let on: Vec<f64> = (0..n).map_while(|k| curve.on_chain(home, point(k), within)).collect();
+    let (first, last) = (*on.first()?, *on.last()?);
+    let p = if side == 0 { [first, last] } else { [last, first] };
+    (on.len() > 1 && p[1] > p[0]).then_some(Head { curve: curve_index, home, p, count: on.len() })
+}
+
+/// What the string bends round, pulleys among it.
+fn seats(
+    layout: &Layout,
+    part: &Part,
+    course: &Course,
+    instant: &Instant,
+    (way, first, last): (&Way, usize, usize),
+) -> Option<Vec<Seat>> {
+    let world = &layout.problem.world;
+    let corners = taut::corners(world);
+    let mut out: Vec<Seat> = Vec::new();
+    let mut reached = way.along[first];
+    let mut begin = (way.points[first], first);
+    for k in 0..=part.pulleys.len() {
+        let pulley: Option<&Pulley> = part.pulleys.get(k);
+        let (stop, w) = match pulley {
+            Some(q) => {
+                let at = instant.places[q.support];
+                (at, way.nearest(at, reached, last.saturating_sub(1)))
+            }
+            None => (way.points[last], way.along[last]),
+        };
+        let leg = if pulley.is_some() { way.leg(w) } else { last.saturating_sub(1) };
+        let mut route = vec![begin.0];
+        for i in begin.1 + 1..=leg.min(way.points.len() - 1) {
+            route.push(way.points[i]);
+        }
+        route.push(stop);
+        let bends = taut::pull(&route, &corners)?;
+        for (j, b) in bends.iter().enumerate() {
+            reached = way.nearest(b.corner.at, reached, begin.1 + b.leg);
+            let before = j.checked_sub(1).and_then(|i| bends.get(i)).map_or(begin.0, |a| a.corner.at);
+            let after = bends.get(j + 1).map_or(stop, |a| a.corner.at);
+            let (u, v) = (b.corner.at - before, after - b.corner.at);
+            push(&mut out, course, b, (reached, cross(u, v).atan2(u.dot(&v)).abs()))?;
+        }
+        if let Some(q) = pulley {
+            let curve = q.curve + usize::from(q.facing < 0.0);
+            let home = Home { first: 0, last: 0 };
+            out.push(Seat { curve, home, pieces: [0, 0], wheel: Some(q.support), way: [w, w], turn: 0.0 });
+            (begin, reached) = ((stop, leg), w);
+        }
+    }
+    Some(out)
+}
+
+/// Adds a bend to what there is, or to the last seat where it goes on there.
+fn push(out: &mut Vec<Seat>, course: &Course, b: &Bend, (w, turn): (f64, f64)) -> Option<()> {
+    let curve_index = 2 * b.corner.body + usize::from(b.sense < 0.0);
+    let curve = course.curves.get(curve_index)?;
+    let i = curve.piece_of(b.corner.feature, b.corner.at)?;
+    let home = curve.chain(i, course.law.load)?;
+    if let Some(last) = out.last_mut().filter(|s| s.wheel.is_none() && s.curve == curve_index) {
+        if curve.is_round() || (last.home == home && i >= last.pieces[1]) {
+            (last.pieces[1], last.way[1]) = (i, w);
+            last.turn += turn;
+            return Some(());
+        }
+    }
+    out.push(Seat { curve: curve_index, home, pieces: [i, i], wheel: None, way: [w, w], turn });
+    Some(())
+}
+
+/// A circle: centre, radius, sense.
+type Round = (Vec2, f64, f64);
+
+/// The circles on which the string arrives at each seat and leaves it; points at both ends.
+fn rounds(course: &Course, seats: &[Seat], (start, end): (Vec2, Vec2)) -> Vec<[Round; 2]> {
+    let mut out = vec![[(start, 0.0, 1.0); 2]];
+    for s in seats {
+        let curve = &course.curves[s.curve];
+        out.push(s.pieces.map(|i| {
+            let place = curve.place_on(i, 0.0);
+            (place.at - place.normal * place.stretch, place.stretch, curve.sense)
+        }));
+    }
+    out.push([(end, 0.0, 1.0); 2]);
+    out
+}
+
+/// Direction of the line that touches two circles: with n = σ perp t, (C₂ − C₁)·perp t = σ₁r₁ − σ₂r₂.
+fn tangent(a: Round, b: Round) -> Vec2 {
+    let d = b.0 - a.0;
+    let far = d.norm();
+    if far == 0.0 {
+        return Vec2::x();
+    }
+    let aside = ((b.2 * b.1 - a.2 * a.1) / far).clamp(-1.0, 1.0).asin();
+    let (sin, cos) = aside.sin_cos();
+    Vec2::new(cos * d.x - sin * d.y, sin * d.x + cos * d.y) / far
+}

@@ -1,0 +1,286 @@
+//! Rung 1: a quasi-static network of exact elements. Free spans are elastic catenaries, contacts are intervals of an
+//! obstacle's boundary through which the material slides, friction remembers in closed form: no mesh, and so none of its
+//! errors.
+//!
+//! Each part has its derivation above it: the boundary (`curve`), the law of sliding along it (`law`), what friction
+//! remembers (`history`), a contact's equations (`rub`), the unknowns (`strand`), their solution (`newton`), contacts that
+//! come and go (`events`, `seek`, `ends`), the way from one instant to the next (`drive`), the first lay (`taut`, `lay`),
+//! and the check of each answer that knows nothing of all this (`check`).
+//!
+//! What it cannot do it refuses: bending, self-contact, inertia, plan view, supports that let go; a cable that loses its
+//! tension is said to have lost it, with the place.
+
+mod band;
+mod check;
+mod curve;
+mod drive;
+mod ends;
+mod events;
+mod history;
+mod instant;
+mod law;
+mod lay;
+mod newton;
+mod report;
+mod rub;
+mod seek;
+mod strand;
+mod taut;
+mod trouble;
+
+use std::sync::Arc;
+
+use self::drive::{Network, Taken};
+use self::instant::{Instant, Layout, unsupported};
+use self::newton::Work;
+use self::report::Report;
+use self::trouble::Trouble;
+use super::{Inertia, Mechanics, Model, Settings, StepReport};
+use crate::error::SolveError;
+use crate::math::Vec2;
+use crate::problem::Problem;
+use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
+use crate::state::State;
+
+/// Supports move by at most this part of the cable in one solve. Larger: sliding that starts and reverses inside a step
+/// is missed, and what is laid down in a step is laid with the tension it began with. Smaller: more solves.
+const STEP: f64 = 0.01;
+/// Longest time step taken, s.
+const LONGEST_STEP_S: f64 = 1e6;
+
+/// The model's mechanics of one cable.
+#[derive(Clone, Debug)]
+pub struct SpansModel {
+    layout: Layout,
+    time_s: f64,
+    dragged: Vec<Option<Vec2>>,
+    network: Option<Network>,
+    work: Work,
+    report: Report,
+}
+
+impl SpansModel {
+    /// Builds it at the route.
+    ///
+    /// # Errors
+    /// `Unsupported` when the scene needs what the model lacks.
+    pub fn new(problem: Arc<Problem>, _settings: Settings) -> Result<Self, SolveError> {
+        let layout = Layout::new(&problem)?;
+        let n = problem.supports.len();
+        let mut points: Vec<Vec2> = problem.route.clone();
+        if points.len() < 2 {
+            points = problem.supports.iter().filter_map(|s| s.position_at(0.0).map(|p| p.0)).collect();
+        }
+        if points.len() < 2 {
+            let at = points.first().copied().unwrap_or_else(Vec2::zeros);
+            points = vec![at, at - Vec2::y() * problem.length];
+        }
+        let last = (points.len() - 1) as f64;
+        let node = |(k, p): (usize, &Vec2)| Node {
+            arc_length_m: problem.length * k as f64 / last,
+            x_m: p.x,
+            y_m: p.y,
+            ..Node::default()
+        };
+        let nodes = points.iter().enumerate().map(node).collect();
+        let report = Report { nodes, ..Report::default() };
+        Ok(Self { layout, time_s: 0.0, dragged: vec![None; n], network: None, work: Work::default(), report })
+    }
+
+    fn look(&mut self) {
+        if let Some(network) = &self.network {
+            self.report = report::report(&self.layout, network);
+        }
+    }
+
+    /// How far any support moves between two instants, m.
+    fn travel(from: &Instant, to: &Instant) -> f64 {
+        from.places.iter().zip(&to.places).map(|(a, b)| (b - a).norm()).fold(0.0, |m, d| if d > m { d } else { m })
+    }
+
+    fn said(&self, trouble: Trouble) -> SolveError {
+        said(&self.layout, trouble, self.time_s)
+    }
+
+    fn report_of(&self, taken: Taken) -> StepReport {
+        let scale = self.layout.problem.force_scale();
+        StepReport {
+            cost: Cost {
+                iterations: taken.solved.iterations,
+                halved_steps: taken.halved,
+                residual_n: taken.solved.residual * scale,
+                inner_step_s: 0.0,
+            },
+            warnings: Vec::new(),
+        }
+    }
+
+    fn rubs(&self) -> bool {
+        let p = &self.layout.problem;
+        p.supports.iter().any(|s| s.friction > 0.0) || p.world.geometry().bodies().iter().any(|b| b.friction > 0.0)
+    }
+}
+
+/// A trouble in the words everyone uses.
+fn said(layout: &Layout, trouble: Trouble, time_s: f64) -> SolveError {
+    let name = |k: usize| layout.problem.supports.get(k).map_or("", |s| s.name.as_str());
+    let _ = time_s;
+    match trouble {
+        Trouble::Stalled { iterations, residual, s } => SolveError::NotConverged {
+            model: Model::Spans,
+            iterations,
+            residual_n: residual * layout.problem.force_scale(),
+            node: 0,
+            at_m: Vec2::new(s, 0.0),
+        },
+        Trouble::Compressed { s, tension, .. } => {
+            let _ = s;
+            SolveError::Compressed { model: Model::Spans, element: 0, tension_n: tension }
+        }
+        Trouble::Restless { s } => unsupported(format!("contacts come and go without end near {s:.3} m")),
+        Trouble::OffWheel { support } => unsupported(format!("the cable lifts off the wheel of `{}`", name(support))),
+        Trouble::SupportInside { at } => {
+            unsupported(format!("a support is inside an obstacle at ({:.3} m, {:.3} m)", at.x, at.y))
+        }
+        Trouble::LoadLies { s } => unsupported(format!("the load at {s:.3} m lies on an obstacle")),
+        Trouble::EndLands { at } => {
+            unsupported(format!("a hanging end reaches an obstacle at ({:.3} m, {:.3} m)", at.x, at.y))
+        }
+        Trouble::NoSeat { s, at } => {
+            unsupported(format!("an obstacle is met {s:.3} m along the cable at ({:.3} m, {:.3} m)", at.x, at.y))
+        }
+        Trouble::Unsound { what, s, at } => unsupported(format!("{what} {s:.3} m along it at ({:.3} m, {:.3} m)", at.x, at.y)),
+    }
+}
+
+impl Mechanics for SpansModel {
+    fn model(&self) -> Model {
+        Model::Spans
+    }
+
+    fn settle(&mut self) -> Result<StepReport, SolveError> {
+        let instant = self.layout.instant(&self.dragged, self.time_s);
+        let mut work = std::mem::take(&mut self.work);
+        let found = match &mut self.network {
+            Some(network) => network.travel(&self.layout, &instant, 1.0, &mut work).map_err(|t| t.0),
+            None => Network::rest(&self.layout, &instant, &mut work).map(|(network, taken)| {
+                self.network = Some(network);
+                taken
+            }),
+        };
+        self.work = work;
+        let taken = found.map_err(|t| self.said(t))?;
+        self.look();
+        let mut report = self.report_of(taken);
+        if self.rubs() {
+            let message = "With friction the resting place depends on how the cable was laid: this is the one laid along its way with the least sliding";
+            let name = &self.layout.problem.cable.name;
+            report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
+        }
+        Ok(report)
+    }
+
+    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+        if inertia == Inertia::Dynamic {
+            return Err(unsupported("motion with inertia"));
+        }
+        if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
+            return Err(SolveError::TimeStep { dt_s, allowed: "0 < dt ≤ 1e6 s" });
+        }
+        if self.network.is_none() {
+            self.settle()?;
+        }
+        let (start, end) = (self.time_s, self.time_s + dt_s);
+        let last = self.layout.instant(&self.dragged, end);
+        let Some(mut network) = self.network.take() else { return Ok(StepReport::default()) };
+        let length = self.layout.problem.length;
+        let pieces = (Self::travel(&network.instant, &last) / (STEP * length)).ceil().clamp(1.0, 1000.0);
+        let mut work = std::mem::take(&mut self.work);
+        let mut sum = StepReport::default();
+        let first = network.instant.clone();
+        let mut failed = None;
+        for k in 1..=pieces as usize {
+            let f = k as f64 / pieces;
+            let time_s = if k == pieces as usize { end } else { start + dt_s * f };
+            // Where a hand drags a support it goes there straight, others follow their motion.
+            let mut instant = self.layout.instant(&self.dragged, time_s);
+            for (i, dragged) in self.dragged.iter().enumerate() {
+                if dragged.is_some() {
+                    instant.places[i] = first.places[i] + (last.places[i] - first.places[i]) * f;
+                }
+            }
+            match network.travel(&self.layout, &instant, 1.0, &mut work) {
+                Ok(taken) => {
+                    let one = self.report_of(taken).cost;
+                    sum.cost.iterations += one.iterations;
+                    sum.cost.halved_steps += one.halved_steps;
+                    sum.cost.residual_n = one.residual_n;
+                    self.time_s = time_s;
+                }
+                Err((trouble, done)) => {
+                    self.time_s += (time_s - self.time_s) * done;
+                    failed = Some(trouble);
+                    break;
+                }
+            }
+        }
+        self.network = Some(network);
+        self.work = work;
+        self.look();
+        match failed {
+            Some(trouble) => Err(self.said(trouble)),
+            None => Ok(sum),
+        }
+    }
+
+    fn time_s(&self) -> f64 {
+        self.time_s
+    }
+
+    fn state(&self) -> State {
+        let mut state = State { time_s: self.time_s, ..State::default() };
+        for n in &self.report.nodes {
+            // One node where the tension jumps.
+            if state.arc_length_m.last().is_none_or(|s| n.arc_length_m > *s) {
+                state.arc_length_m.push(n.arc_length_m);
+                state.position_m.push(Vec2::new(n.x_m, n.y_m));
+                state.velocity_m_per_s.push(Vec2::zeros());
+            }
+        }
+        state
+    }
+
+    fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+        if let Some(node) = state.first_non_finite() {
+            return Err(SolveError::NonFinite { quantity: "position", node, time_s: state.time_s });
+        }
+        self.time_s = state.time_s;
+        self.network = None;
+        Ok(())
+    }
+
+    fn drag_support(&mut self, support: usize, target_m: Vec2) {
+        if let Some(d) = self.dragged.get_mut(support) {
+            *d = Some(target_m);
+        }
+    }
+
+    fn solution(&self) -> CableSolution {
+        CableSolution {
+            name: self.layout.problem.cable.name.clone(),
+            nodes: self.report.nodes.clone(),
+            supports: self.report.supports.clone(),
+            contacts: self.report.contacts.clone(),
+            error_estimate: Some(0.0),
+            ..CableSolution::default()
+        }
+    }
+
+    fn problem(&self) -> &Arc<Problem> {
+        &self.layout.problem
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Mechanics> {
+        Box::new(self.clone())
+    }
+}

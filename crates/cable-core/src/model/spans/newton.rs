@@ -1,0 +1,382 @@
+//! Newton's method for a strand: all spans and contacts at once, never a span solved inside another iteration.
+//!
+//! Six unknowns and six equations for each contact, two more for the last span, in the order span, contact, span …:
+//!
+//! ```text
+//! span     ∫ f(F(s)) ds − (x_b − x_a) = 0,   f(F) = τ(F/T + F/EA)      (2)
+//! contact  F × t = 0 at p₁ and at p₂                                    (2)
+//!          two rows for material and tension, see `rub`                 (2)
+//! ```
+//!
+//! At a lying end the tension takes the place of p among the unknowns, and s = its material that of the tangency.
+
+use super::band::Band;
+use super::history::Ends;
+use super::rub::{self, Rows};
+use super::strand::{Course, Strand, Tie};
+use crate::math::{Vec2, cross, larger};
+
+/// Iterations at most. A failure is not cured by more; steps are halved instead.
+const MAX_ITERATIONS: usize = 60;
+/// Iterations without progress before it is given up.
+const MAX_STALLED: usize = 12;
+/// Halvings of one step at most.
+const MAX_HALVINGS: usize = 14;
+/// Residual wanted: of lengths in hundredths of the strand, of angles, of tensions relative.
+const RESIDUAL: f64 = 1e-11;
+/// Residual that rounding leaves where a cable is EA/T times stiffer than it is taut: this times EA/T.
+const STIFF_RESIDUAL: f64 = 2e-14;
+/// A contact's end moves by at most so many radians in one iteration. Larger: it jumps a turn of a post.
+const MOST_TURN: f64 = 0.7;
+/// A span keeps at least this part of its material in one iteration.
+const KEEP: f64 = 0.1;
+/// Changes of mode of one contact while iterating; after that only between converged states.
+const MOST_FLIPS: u32 = 6;
+
+/// Memory of a solve, kept between steps.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Work {
+    band: Band,
+    rhs: Vec<f64>,
+    residual: Vec<f64>,
+    saved: Vec<f64>,
+    best: Vec<f64>,
+}
+
+/// Newton did not converge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stall {
+    pub iterations: usize,
+    /// Scaled residual left.
+    pub residual: f64,
+    /// The contact or span with the greatest residual, as contacts count.
+    pub at: usize,
+}
+
+/// What a solve took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Solved {
+    pub iterations: usize,
+    pub residual: f64,
+}
+
+fn count(strand: &Strand) -> usize {
+    6 * strand.contacts.len() + 2
+}
+
+fn gather(strand: &Strand, out: &mut Vec<f64>) {
+    out.clear();
+    for k in 0..strand.spans() {
+        out.extend([strand.forces[k].x, strand.forces[k].y]);
+        if let Some(c) = strand.contacts.get(k) {
+            let e = &c.ends;
+            out.extend([slot(strand, k, 0), e.s[0], slot(strand, k, 1), e.s[1]]);
+        }
+    }
+}
+
+/// Whether the tension of that side of contact j is an unknown of its own.
+fn lies(strand: &Strand, j: usize, side: usize) -> bool {
+    let outer = if side == 0 { j == 0 } else { j + 1 == strand.contacts.len() };
+    outer && matches!(strand.ties[side], Tie::Lies(_))
+}
+
+/// Whether that side of contact j is an end of the strand that lies.
+fn is_end(strand: &Strand, j: usize, side: usize) -> bool {
+    let outer = if side == 0 { j == 0 } else { j + 1 == strand.contacts.len() };
+    outer && !strand.ties[side].has_span()
+}
+
+fn slot(strand: &Strand, j: usize, side: usize) -> f64 {
+    let e = &strand.contacts[j].ends;
+    if lies(strand, j, side) { e.t[side] } else { e.p[side] }
+}
+
+fn scatter(strand: &mut Strand, course: &Course, x: &[f64]) {
+    for k in 0..strand.spans() {
+        let x = &x[6 * k..];
+        strand.forces[k] = Vec2::new(x[0], x[1]);
+        if k < strand.contacts.len() {
+            for side in 0..2 {
+                let (slot, s) = (x[2 + 2 * side], x[3 + 2 * side]);
+                let own = lies(strand, k, side);
+                let e = &mut strand.contacts[k].ends;
+                e.s[side] = s;
+                if own {
+                    e.t[side] = slot;
+                } else {
+                    e.p[side] = slot;
+                }
+            }
+        }
+    }
+    strand.take_tensions(course);
+}
+
+/// Residuals of a strand; with `band` also the Jacobian.
+fn assemble(strand: &Strand, course: &Course, r: &mut Vec<f64>, mut band: Option<&mut Band>) {
+    let n = count(strand);
+    r.clear();
+    r.resize(n, 0.0);
+    if let Some(b) = band.as_deref_mut() {
+        b.reset(n);
+    }
+    let scale = 100.0 / (strand.to - strand.from);
+    for k in 0..strand.spans() {
+        span_rows(strand, course, k, (scale, &mut *r, band.as_deref_mut()));
+        if k < strand.contacts.len() {
+            contact_rows(strand, course, k, (scale, &mut *r, band.as_deref_mut()));
+        }
+    }
+}
+
+type Out<'a> = (f64, &'a mut Vec<f64>, Option<&'a mut Band>);
+
+fn span_rows(strand: &Strand, course: &Course, k: usize, (scale, r, band): Out<'_>) {
+    let row = 6 * k;
+    let m = strand.contacts.len();
+    let known = if !strand.has_span(k) {
+        Some(strand.forces[k])
+    } else if k == 0 && matches!(strand.ties[0], Tie::Hangs(_)) {
+        strand.hanging(course, 0)
+    } else if k == m && matches!(strand.ties[1], Tie::Hangs(_)) {
+        strand.hanging(course, 1)
+    } else {
+        None
+    };
+    if let Some(g) = known {
+        let d = strand.forces[k] - g;
+        let size = 1.0 / (g.norm() + course.law.load.norm() * (strand.to - strand.from)).max(f64::MIN_POSITIVE);
+        (r[row], r[row + 1]) = (d.x * size, d.y * size);
+        if let Some(b) = band {
+            b.add(row, row, size);
+            b.add(row + 1, row + 1, size);
+        }
+        return;
+    }
+    let [Some(a), Some(b)] = strand.ends_of(course, k) else { return };
+    let (from, to) = strand.material(k);
+    let (start, end) = (strand.force(course, k, from), strand.force(course, k, to));
+    let (way, compliance) = course.chain(from, to).reach(start);
+    let d = (way - (b - a)) * scale;
+    (r[row], r[row + 1]) = (d.x, d.y);
+    let Some(band) = band else { return };
+    for i in 0..2 {
+        for j in 0..2 {
+            band.add(row + i, row + j, compliance[(i, j)] * scale);
+        }
+    }
+    let mut add = |column: usize, v: Vec2| {
+        band.add(row, column, v.x * scale);
+        band.add(row + 1, column, v.y * scale);
+    };
+    if k > 0 {
+        let c = &strand.contacts[k - 1];
+        let place = course.track(c).place(c.ends.p[1]);
+        if !lies(strand, k - 1, 1) {
+            add(row - 2, place.tangent * place.stretch);
+        }
+        add(row - 1, -course.rate(start));
+    }
+    if let Some(c) = strand.contacts.get(k) {
+        let place = course.track(c).place(c.ends.p[0]);
+        add(row + 2, -place.tangent * place.stretch);
+        add(row + 3, course.rate(end));
+    }
+}
+
+fn contact_rows(strand: &Strand, course: &Course, j: usize, (scale, r, mut band): Out<'_>) {
+    let c = &strand.contacts[j];
+    let track = course.track(c);
+    let row = 6 * j + 2;
+    let rows: Rows = rub::rows(&track, &c.history, &c.ends, c.mode, course.friction(c));
+    let tension = larger(larger(c.ends.t[0].abs(), c.ends.t[1].abs()), 1e-9 * course.law.load.norm());
+    let size = if rows.of_tension { [scale, 1.0 / tension] } else { [scale, scale] };
+    for i in 0..2 {
+        r[row + 1 + i] = rows.residual[i] * size[i];
+    }
+    for side in 0..2 {
+        let tangency = row + 3 * side;
+        let (p_column, s_column) = (row + 2 * side, row + 2 * side + 1);
+        let by = |i: usize, of: usize| rows.by[i][3 * side + of] * size[i];
+        if is_end(strand, j, side) {
+            let s = if side == 0 { strand.from } else { strand.to };
+            r[tangency] = (c.ends.s[side] - s) * scale;
+            if let Some(b) = band.as_deref_mut() {
+                b.add(tangency, s_column, scale);
+                // A free end has no tension and finds its place; a held one has a place and finds its tension.
+                let of = if lies(strand, j, side) { 2 } else { 0 };
+                for i in 0..2 {
+                    b.add(row + 1 + i, p_column, by(i, of));
+                    b.add(row + 1 + i, s_column, by(i, 1));
+                }
+            }
+            continue;
+        }
+        let Some(force) = strand.force_at_contact(course, j, side) else { continue };
+        let place = track.place(c.ends.p[side]);
+        let t = force.norm();
+        r[tangency] = cross(force, place.tangent) / t;
+        // Pointing back is not tangent: keep Newton from it.
+        if force.dot(&place.tangent) < 0.0 {
+            r[tangency] += 2.0 * r[tangency].signum();
+        }
+        let Some(b) = band.as_deref_mut() else { continue };
+        let (load, u, g) = (course.law.load, force / t, 6 * (j + side));
+        // d(F × t)/T with F's own size held.
+        let across = Vec2::new(place.tangent.y, -place.tangent.x) / t;
+        b.add(tangency, g, across.x);
+        b.add(tangency, g + 1, across.y);
+        b.add(tangency, s_column, -across.dot(&load));
+        b.add(tangency, p_column, place.turn * u.dot(&place.tangent));
+        for i in 0..2 {
+            b.add(row + 1 + i, p_column, by(i, 0));
+            b.add(row + 1 + i, s_column, by(i, 1) - by(i, 2) * u.dot(&load));
+            b.add(row + 1 + i, g, by(i, 2) * u.x);
+            b.add(row + 1 + i, g + 1, by(i, 2) * u.y);
+        }
+    }
+}
+
+fn norm(r: &[f64]) -> (f64, usize) {
+    let (mut worst, mut at) = (0.0, 0);
+    for (i, v) in r.iter().enumerate() {
+        if v.abs() > worst || v.is_nan() {
+            (worst, at) = (v.abs(), i);
+        }
+        if v.is_nan() {
+            break;
+        }
+    }
+    (worst, at)
+}
+
+fn squares(r: &[f64]) -> f64 {
+    r.iter().map(|v| v * v).sum()
+}
+
+/// The residual that will do.
+fn tolerance(strand: &Strand, course: &Course) -> f64 {
+    let mut least = f64::INFINITY;
+    for k in 0..strand.spans() {
+        if strand.has_span(k) {
+            let (from, to) = strand.material(k);
+            for s in [from, to] {
+                let t = strand.force(course, k, s).norm();
+                if t < least {
+                    least = t;
+                }
+            }
+        }
+    }
+    let stiff = if least.is_finite() && least > 0.0 { STIFF_RESIDUAL * course.law.stiffness / least } else { 0.0 };
+    larger(RESIDUAL, stiff.min(1e3 * RESIDUAL))
+}
+
+/// Largest part of a step that keeps spans and does not jump turns.
+fn room(strand: &Strand, course: &Course, x: &[f64], d: &[f64]) -> f64 {
+    let mut alpha = 1.0f64;
+    for k in 0..strand.spans() {
+        if strand.has_span(k) {
+            let (from, to) = strand.material(k);
+            let first = if k > 0 { d[6 * k - 1] } else { 0.0 };
+            let last = if k < strand.contacts.len() { d[6 * k + 3] } else { 0.0 };
+            let (length, change) = (to - from, last - first);
+            if change < 0.0 && alpha * -change > (1.0 - KEEP) * length {
+                alpha = (1.0 - KEEP) * length / -change;
+            }
+        }
+        let Some(c) = strand.contacts.get(k) else { continue };
+        let track = course.track(c);
+        for side in 0..2 {
+            if lies(strand, k, side) {
+                continue;
+            }
+            let (p, dp) = (x[6 * k + 2 + 2 * side], d[6 * k + 2 + 2 * side]);
+            let turned = track.place(p).turn != 0.0 || track.place(p + alpha * dp).turn != 0.0;
+            if turned && alpha * dp.abs() > MOST_TURN {
+                alpha = MOST_TURN / dp.abs();
+            }
+        }
+    }
+    alpha
+}
+
+/// Solves a strand from where it is. On an error it is left wherever the iteration was.
+pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Result<Solved, Stall> {
+    strand.take_tensions(course);
+    for c in &mut strand.contacts {
+        c.flips = 0;
+    }
+    let (mut best, mut stalled, mut iterations) = (f64::INFINITY, 0, 0);
+    loop {
+        change_modes(strand, course, MOST_FLIPS);
+        assemble(strand, course, &mut work.residual, Some(&mut work.band));
+        let (mut worst, at) = norm(&work.residual);
+        let stall = move |residual: f64| Stall { iterations, residual, at: at / 6 };
+        if worst <= tolerance(strand, course) {
+            if change_modes(strand, course, 4 * MOST_FLIPS) {
+                assemble(strand, course, &mut work.residual, Some(&mut work.band));
+                worst = norm(&work.residual).0;
+            } else {
+                return Ok(Solved { iterations, residual: worst });
+            }
+        }
+        if worst < 0.5 * best {
+            (best, stalled) = (worst, 0);
+        } else {
+            stalled += 1;
+        }
+        if !worst.is_finite() || iterations == MAX_ITERATIONS || stalled > MAX_STALLED {
+            return Err(stall(worst));
+        }
+        iterations += 1;
+        if !step(strand, course, work) {
+            // Rounding: nothing is gained any more.
+            return if worst <= 1e3 * tolerance(strand, course) && worst <= 1e-8 {
+                Ok(Solved { iterations, residual: worst })
+            } else {
+                Err(stall(worst))
+            };
+        }
+    }
+}
+
+fn change_modes(strand: &mut Strand, course: &Course, most: u32) -> bool {
+    let mut changed = false;
+    for c in &mut strand.contacts {
+        let ends: Ends = c.ends;
+        let next = rub::next_mode(&course.track(c), &c.history, &ends, c.mode, course.friction(c));
+        if next != c.mode && c.flips < most {
+            c.mode = next;
+            c.flips += 1;
+            changed = true;
+        }
+    }
+    changed
+}
+
+/// One Newton step with a line search on the sum of squares; false where none makes it smaller.
+fn step(strand: &mut Strand, course: &Course, work: &mut Work) -> bool {
+    gather(strand, &mut work.saved);
+    let before = squares(&work.residual);
+    work.rhs.clear();
+    work.rhs.extend(work.residual.iter().map(|v| -v));
+    work.band.scale(&mut work.rhs);
+    if !work.band.solve(&mut work.rhs) {
+        return false;
+    }
+    let mut alpha = room(strand, course, &work.saved, &work.rhs);
+    for _ in 0..MAX_HALVINGS {
+        work.best.clear();
+        work.best.extend(work.saved.iter().zip(&work.rhs).map(|(x, d)| x + alpha * d));
+        scatter(strand, course, &work.best);
+        assemble(strand, course, &mut work.residual, None);
+        if squares(&work.residual) < (1.0 - 1e-4 * alpha) * before {
+            return true;
+        }
+        alpha *= 0.5;
+    }
+    scatter(strand, course, &work.saved);
+    false
+}

@@ -1,0 +1,184 @@
+//! Where a free span runs into an obstacle.
+//!
+//! Under an even load a catenary is nowhere deeper in an edge than where it runs along it, F × t = 0, which is one
+//! division; nowhere nearer to a corner or a centre v than where (x − v)·F = 0, which is a root of one variable. Those
+//! points are asked of the obstacle's signed distance, so that a point is inside only if nothing nearer says otherwise.
+
+use super::strand::{Course, Strand};
+use crate::catenary::Catenary;
+use crate::contact::geometry::Body;
+use crate::contact::{Gap, World};
+use crate::math::{Vec2, cross, perp};
+
+/// Stretches of a catenary looked through for points nearest to a corner. Fewer: a corner near both branches of a deep
+/// catenary is seen from one only.
+const SAMPLES: usize = 8;
+/// Halvings of a root.
+const MAX_HALVINGS: usize = 60;
+/// Roots are found to this part of the catenary.
+const ROOT: f64 = 1e-12;
+
+/// A point of a span inside an obstacle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hit {
+    /// Material point, m.
+    pub s: f64,
+    pub at: Vec2,
+    /// Direction of the cable there.
+    pub tangent: Vec2,
+    /// What it is inside of; `gap_m` < 0.
+    pub gap: Gap,
+    /// Index of the body.
+    pub body: usize,
+}
+
+/// One catenary at its place.
+struct Arc<'a> {
+    s0: f64,
+    at: Vec2,
+    shape: &'a Catenary,
+    load: Vec2,
+}
+
+impl Arc<'_> {
+    fn length(&self) -> f64 {
+        self.shape.span().length
+    }
+
+    fn point(&self, s: f64) -> Vec2 {
+        self.at + self.shape.position_at(s)
+    }
+
+    /// The box it lies in: it is widest at its ends and where it runs along an axis.
+    fn bounds(&self) -> (Vec2, Vec2) {
+        let (a, b) = (self.at, self.point(self.length()));
+        let (mut low, mut high) = (a.inf(&b), a.sup(&b));
+        let f = self.shape.force_at(0.0);
+        for s in [f.x / self.load.x, f.y / self.load.y] {
+            if s > 0.0 && s < self.length() {
+                let p = self.point(s);
+                (low, high) = (low.inf(&p), high.sup(&p));
+            }
+        }
+        (low, high)
+    }
+
+    /// The material point where it runs along a direction.
+    fn along(&self, t: Vec2) -> Option<f64> {
+        let s = cross(self.shape.force_at(0.0), t) / cross(self.load, t);
+        (s > 0.0 && s < self.length()).then_some(s)
+    }
+
+    /// Calls back with each material point inside it that is nearer to `v` than its neighbours.
+    fn nearest(&self, v: Vec2, mut found: impl FnMut(f64)) {
+        let g = |s: f64| (self.point(s) - v).dot(&self.shape.force_at(s));
+        let h = self.length() / SAMPLES as f64;
+        let mut before = g(0.0);
+        for k in 0..SAMPLES {
+            let (mut a, mut b) = (k as f64 * h, (k + 1) as f64 * h);
+            let after = g(b);
+            if before < 0.0 && after >= 0.0 {
+                let (mut ga, mut gb) = (before, after);
+                for round in 0..MAX_HALVINGS {
+                    if b - a <= ROOT * self.length() {
+                        break;
+                    }
+                    let s = if round % 3 == 2 { 0.5 * (a + b) } else { a + (b - a) * (ga / (ga - gb)) };
+                    let gs = g(s);
+                    if gs < 0.0 {
+                        (a, ga) = (s, gs);
+                    } else {
+                        (b, gb) = (s, gs);
+                    }
+                    if gs == 0.0 {
+                        break;
+                    }
+                }
+                found(0.5 * (a + b));
+            }
+            before = after;
+        }
+    }
+}
+
+/// The deepest point of span k inside anything, if deeper than `tolerance` (m).
+pub(super) fn deepest(strand: &Strand, course: &Course, world: &World, k: usize, tolerance: f64) -> Option<Hit> {
+    if world.is_empty() || !strand.has_span(k) {
+        return None;
+    }
+    let mut best: Option<Hit> = None;
+    shapes(strand, course, k, |s0, at, shape| {
+        let arc = Arc { s0, at, shape, load: course.law.load };
+        let (low, high) = arc.bounds();
+        for (index, body) in world.geometry().bodies().iter().enumerate() {
+            search(&arc, body, (low, high), tolerance, |s| {
+                let at = arc.point(s);
+                let reach = (high - low).norm() + body.offset;
+                let Some(gap) = world.signed_gap(at, reach) else { return };
+                let here = world.geometry().body_of(gap.feature).map(|b| b.obstacle);
+                if gap.gap_m < -tolerance && here == Some(body.obstacle) && best.is_none_or(|b| gap.gap_m < b.gap.gap_m)
+                {
+                    let force = arc.shape.force_at(s);
+                    let tangent = force / force.norm();
+                    best = Some(Hit { s: arc.s0 + s, at, tangent, gap, body: index });
+                }
+            });
+        }
+    });
+    best
+}
+
+/// Calls back with each catenary of span k: its first material point, where that is, and its shape.
+pub(super) fn shapes(strand: &Strand, course: &Course, k: usize, mut each: impl FnMut(f64, Vec2, &Catenary)) {
+    let (from, to) = strand.material(k);
+    let chain = course.chain(from, to);
+    let start = strand.force(course, k, from);
+    let origin = match strand.ends_of(course, k) {
+        [Some(a), _] => a,
+        [None, Some(b)] => b - chain.reach(start).0,
+        [None, None] => return,
+    };
+    for (s0, at, shape) in chain.spans(start, origin) {
+        each(s0, at, &shape);
+    }
+}
+
+/// Calls back with the points of a catenary that may be deepest in a body.
+fn search(arc: &Arc<'_>, body: &Body, (low, high): (Vec2, Vec2), tolerance: f64, mut found: impl FnMut(f64)) {
+    if let Some(center) = body.center {
+        let near = |p: Vec2| (p - center).norm() < body.offset - tolerance;
+        let clear = Vec2::repeat(body.offset);
+        if (low - clear).iter().zip(center.iter()).all(|(a, b)| a < b)
+            && (high + clear).iter().zip(center.iter()).all(|(a, b)| a > b)
+        {
+            arc.nearest(center, |s| {
+                if near(arc.point(s)) {
+                    found(s);
+                }
+            });
+        }
+        return;
+    }
+    let r = Vec2::repeat(body.offset);
+    for k in body.candidates(low - r, high + r) {
+        let Some(e) = body.edges.get(k) else { continue };
+        if let Some(s) = arc.along(e.tangent) {
+            let d = arc.point(s) - e.p;
+            let (x, height) = (d.dot(&e.tangent), d.dot(&perp(e.tangent)));
+            if height < body.offset - tolerance && x > -body.offset && x < e.length() + body.offset {
+                found(s);
+            }
+        }
+        for corner in body.corners_of(k) {
+            if body.juts_out(&corner) {
+                let outward = corner.outward();
+                arc.nearest(corner.at, |s| {
+                    let d = arc.point(s) - corner.at;
+                    if d.norm() < body.offset - tolerance || d.dot(&outward) < 0.0 {
+                        found(s);
+                    }
+                });
+            }
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! One stretch of cable between two grips: free spans and contacts in a row.
+//!
+//! Unknown are for each span the force G that the cable would carry at the strand's start if its law went on there,
+//! F(s) = G − b(s − s_a) − Σ P_k [s_k < s], and for each contact its interval (p₁, p₂) of the boundary and the material
+//! (s₁, s₂) at both ends. Material sliding through points fixed in space: after S. Sueda, G. L. Jones, D. I. W. Levin and
+//! D. K. Pai, "Large-scale dynamic simulation of highly constrained strands", ACM Transactions on Graphics 30 (2011) 39.
+
+use super::curve::{Curve, Home};
+use super::history::{Ends, History, Mode};
+use super::law::{Law, Track};
+use crate::catenary::{Chain, PointForce};
+use crate::math::Vec2;
+
+/// Everything given at an instant.
+#[derive(Clone, Debug)]
+pub(super) struct Course {
+    /// Boundaries: both senses of each body, then both of each wheel.
+    pub curves: Vec<Curve>,
+    pub law: Law,
+    /// Dead loads inside the cable, in order, N.
+    pub loads: Vec<PointForce>,
+}
+
+/// What is at an end of a strand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Tie {
+    /// Held in the air at a point, m.
+    Held(Vec2),
+    /// Hangs free, drawn by a dead force, N.
+    Hangs(Vec2),
+    /// Held at p on the boundary of the contact beside it.
+    Lies(f64),
+    /// Free, lying on the contact beside it.
+    Loose,
+}
+
+impl Tie {
+    /// Whether a free span begins here.
+    pub fn has_span(&self) -> bool {
+        matches!(self, Self::Held(_) | Self::Hangs(_))
+    }
+}
+
+/// A contact.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Contact {
+    /// Index of the boundary.
+    pub curve: usize,
+    pub home: Home,
+    pub ends: Ends,
+    pub mode: Mode,
+    pub history: History,
+    /// The pulley it is, by its support.
+    pub wheel: Option<usize>,
+    /// Times the mode has changed in this solve.
+    pub flips: u32,
+}
+
+/// A strand.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Strand {
+    /// Material at both ends, m.
+    pub from: f64,
+    pub to: f64,
+    pub ties: [Tie; 2],
+    /// In order along the cable.
+    pub contacts: Vec<Contact>,
+    /// G of each span, N; one more than contacts.
+    pub forces: Vec<Vec2>,
+}
+
+impl Course {
+    /// The chain a contact lies on.
+    pub fn track(&self, c: &Contact) -> Track<'_> {
+        Track { curve: &self.curves[c.curve], home: c.home, law: self.law }
+    }
+
+    /// Friction of a contact.
+    pub fn friction(&self, c: &Contact) -> f64 {
+        self.curves[c.curve].friction
+    }
+
+    /// The span of cable between two material points.
+    pub fn chain(&self, from: f64, to: f64) -> Chain<'_> {
+        Chain {
+            from,
+            to,
+            weight: self.law.load,
+            axial_stiffness: self.law.stiffness,
+            thermal_stretch: self.law.thermal,
+            loads: &self.loads,
+        }
+    }
+
+    /// Load between two material points, N.
+    pub fn load_between(&self, from: f64, to: f64) -> Vec2 {
+        let inside = self.loads.iter().filter(|l| l.arc_length > from && l.arc_length < to);
+        inside.fold(self.law.load * (to - from), |sum, l| sum + l.force)
+    }
+
+    /// d(position)/ds for a force in the cable.
+    pub fn rate(&self, force: Vec2) -> Vec2 {
+        force * (self.law.thermal * (1.0 / force.norm() + 1.0 / self.law.stiffness))
+    }
+}
+
+impl Strand {
+    /// Number of spans (those that are missing beside a lying end included).
+    pub fn spans(&self) -> usize {
+        self.contacts.len() + 1
+    }
+
+    /// Whether span k is there.
+    pub fn has_span(&self, k: usize) -> bool {
+        (k > 0 || self.ties[0].has_span()) && (k < self.contacts.len() || self.ties[1].has_span())
+    }
+
+    /// Material at both ends of span k, m.
+    pub fn material(&self, k: usize) -> (f64, f64) {
+        let from = k.checked_sub(1).and_then(|j| self.contacts.get(j)).map_or(self.from, |c| c.ends.s[1]);
+        let to = self.contacts.get(k).map_or(self.to, |c| c.ends.s[0]);
+        (from, to)
+    }
+
+    /// Force in span k at a material point, N.
+    pub fn force(&self, course: &Course, k: usize, s: f64) -> Vec2 {
+        self.forces.get(k).copied().unwrap_or_default() - course.load_between(self.from, s)
+    }
+
+    /// Where span k starts and ends, m; None where the end hangs.
+    pub fn ends_of(&self, course: &Course, k: usize) -> [Option<Vec2>; 2] {
+        let tie = |t: &Tie| if let Tie::Held(at) = t { Some(*at) } else { None };
+        let point = |c: &Contact, side: usize| Some(course.track(c).place(c.ends.p[side]).at);
+        [
+            match k.checked_sub(1).and_then(|j| self.contacts.get(j)) {
+                Some(c) => point(c, 1),
+                None => tie(&self.ties[0]),
+            },
+            match self.contacts.get(k) {
+                Some(c) => point(c, 0),
+                None => tie(&self.ties[1]),
+            },
+        ]
+    }
+
+    /// G that brings span k from its start to its end.
+    pub fn solve_span(&self, course: &Course, k: usize) -> Option<Vec2> {
+        let (from, to) = self.material(k);
+        match self.ends_of(course, k) {
+            [Some(a), Some(b)] => {
+                let near = self.forces.get(k).map(|g| g - course.load_between(self.from, from));
+                let chain = course.chain(from, to);
+                let near = near.filter(|f| f.norm() > 0.0 && f.iter().all(|v| v.is_finite()));
+                let found = chain.solve(b - a, near).or_else(|_| chain.solve(b - a, None)).ok()?;
+                Some(found.start + course.load_between(self.from, from))
+            }
+            [None, _] => self.hanging(course, 0),
+            [_, None] => self.hanging(course, 1),
+        }
+    }
+
+    /// G of a hanging end.
+    pub fn hanging(&self, course: &Course, side: usize) -> Option<Vec2> {
+        match self.ties[side] {
+            Tie::Hangs(force) if side == 0 => Some(-force),
+            Tie::Hangs(force) => Some(force + course.load_between(self.from, self.to)),
+            _ => None,
+        }
+    }
+
+    /// Writes the end tensions of contacts as the spans beside them have it.
+    pub fn take_tensions(&mut self, course: &Course) {
+        for j in 0..self.contacts.len() {
+            for side in 0..2 {
+                if let Some(force) = self.force_at_contact(course, j, side) {
+                    self.contacts[j].ends.t[side] = force.norm();
+                } else if self.ties[side] == Tie::Loose {
+                    self.contacts[j].ends.t[side] = 0.0;
+                }
+            }
+        }
+    }
+
+    /// Force of the span beside contact j on a side of it; None beside a lying end.
+    pub fn force_at_contact(&self, course: &Course, j: usize, side: usize) -> Option<Vec2> {
+        let k = j + side;
+        let s = self.contacts.get(j)?.ends.s[side];
+        self.has_span(k).then(|| self.force(course, k, s))
+    }
+}
