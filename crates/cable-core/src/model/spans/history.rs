@@ -84,6 +84,24 @@ impl History {
         Self { knots: if end.p > start.p { vec![start, end] } else { vec![start] } }
     }
 
+    /// Material laid with an even tension from p₁ to p₂ as far as friction holds that on every slope.
+    pub fn laid(track: &Track<'_>, e: &Ends, friction: f64) -> Self {
+        let mut out = Self::default();
+        let (mut p, mut tension, mut s) = (e.p[0], e.t[0], e.s[0]);
+        while p < e.p[1] {
+            let next = track.next_border(p, e.p[1]);
+            let place = track.place(0.5 * (p + next));
+            let (along, out_of) = (track.law.load.dot(&place.tangent), track.law.load.dot(&place.normal));
+            // −b·t − m b·n = 0 keeps Θ even on an edge.
+            let m = if place.turn == 0.0 && out_of != 0.0 { (-along / out_of).clamp(-friction, friction) } else { 0.0 };
+            out.push(Knot { p, s, tension, m });
+            let way = track.slide(p, next, tension, m);
+            (p, tension, s) = (next, way.tension, s + way.material);
+        }
+        out.push(Knot { p, s, tension, m: 0.0 });
+        out
+    }
+
     /// The knots.
     pub fn knots(&self) -> &[Knot] {
         &self.knots
@@ -148,6 +166,12 @@ impl History {
         let (knot, m) = self.knot(p, true);
         let way = track.slide(knot.p, p, knot.tension, m);
         (way.tension, knot.s + way.material)
+    }
+
+    /// dT/dp of the old tension at p.
+    pub fn slope(&self, track: &Track<'_>, p: f64) -> f64 {
+        let (_, m) = self.knot(p, true);
+        track.law.slope(&track.place(p), self.at(track, p).0, m)
     }
 
     /// Slides from an end at p with tension `t` towards `to`, as far as the old tension lets it.

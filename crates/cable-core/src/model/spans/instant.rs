@@ -121,7 +121,7 @@ impl Layout {
         if part.material[1] > part.material[0] {
             strands.push(part);
         }
-        if p.supports.iter().all(|s| s.at.is_none()) {
+        if p.supports.iter().all(|s| s.at.is_none()) && p.world.is_empty() {
             return Err(SolveError::NoRestingPlace { why: "nothing holds the cable".to_owned() });
         }
         loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));

@@ -163,6 +163,14 @@ pub(super) fn lay(layout: &Layout, index: usize, course: &Course, instant: &Inst
         strand.ties = [0, 1].map(|side| end_tie(part, side, if side == 0 { a.p[0] } else { b.p[1] }));
         strand.contacts.push(c);
         strand.forces = vec![Vec2::zeros(); 2];
+        spread(&mut strand, course);
+        for side in 0..2 {
+            if strand.ties[side] != Tie::Loose {
+                let c = &mut strand.contacts[0];
+                let track = course.track(c);
+                c.ends.t[side] = c.history.at(&track, c.ends.p[side]).0;
+            }
+        }
         return Some(strand);
     }
     let first = heads[0].as_ref().map_or(0, |h| h.count - 1);
@@ -200,7 +208,7 @@ pub(super) fn lay(layout: &Layout, index: usize, course: &Course, instant: &Inst
     }
     strand.forces = vec![Vec2::zeros(); contacts.len() + 1];
     strand.contacts = contacts;
-    spread(&mut strand);
+    spread(&mut strand, course);
     for k in 0..strand.spans() {
         if strand.has_span(k) {
             strand.forces[k] = strand.solve_span(course, k)?;
@@ -224,7 +232,7 @@ fn end_tie(part: &Part, side: usize, p: f64) -> Tie {
 }
 
 /// Keeps material in order, and some of it in each span.
-fn spread(strand: &mut Strand) {
+fn spread(strand: &mut Strand, course: &Course) {
     let least = CLEAR * (strand.to - strand.from);
     let n = strand.contacts.len();
     let mut before = strand.from;
@@ -244,8 +252,7 @@ fn spread(strand: &mut Strand) {
         before = e.s[1];
     }
     for c in &mut strand.contacts {
-        let knot = |k: usize| Knot { p: c.ends.p[k], s: c.ends.s[k], tension: c.ends.t[k], m: 0.0 };
-        c.history = History::new(knot(0), knot(1));
+        c.history = History::laid(&course.track(c), &c.ends, course.friction(c));
     }
 }
 

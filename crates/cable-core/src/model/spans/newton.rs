@@ -11,7 +11,6 @@
 //! At a lying end the tension takes the place of p among the unknowns, and s = its material that of the tangency.
 
 use super::band::Band;
-use super::history::Ends;
 use super::rub::{self, Rows};
 use super::strand::{Course, Strand, Tie};
 use crate::math::{Vec2, cross, larger};
@@ -79,6 +78,11 @@ fn gather(strand: &Strand, out: &mut Vec<f64>) {
 fn lies(strand: &Strand, j: usize, side: usize) -> bool {
     let outer = if side == 0 { j == 0 } else { j + 1 == strand.contacts.len() };
     outer && matches!(strand.ties[side], Tie::Lies(_))
+}
+
+/// Which ends of contact j are held on the boundary.
+fn pinned(strand: &Strand, j: usize) -> [bool; 2] {
+    [lies(strand, j, 0), lies(strand, j, 1)]
 }
 
 /// Whether that side of contact j is an end of the strand that lies.
@@ -189,9 +193,9 @@ fn contact_rows(strand: &Strand, course: &Course, j: usize, (scale, r, mut band)
     let c = &strand.contacts[j];
     let track = course.track(c);
     let row = 6 * j + 2;
-    let rows: Rows = rub::rows(&track, &c.history, &c.ends, c.mode, course.friction(c));
+    let rows: Rows = rub::rows(&track, &c.history, &c.ends, (c.mode, pinned(strand, j)), course.friction(c));
     let tension = larger(larger(c.ends.t[0].abs(), c.ends.t[1].abs()), 1e-9 * course.law.load.norm());
-    let size = if rows.of_tension { [scale, 1.0 / tension] } else { [scale, scale] };
+    let size = rows.of_tension.map(|of| if of { 1.0 / tension } else { scale });
     for i in 0..2 {
         r[row + 1 + i] = rows.residual[i] * size[i];
     }
@@ -344,9 +348,10 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
 
 fn change_modes(strand: &mut Strand, course: &Course, most: u32) -> bool {
     let mut changed = false;
-    for c in &mut strand.contacts {
-        let ends: Ends = c.ends;
-        let next = rub::next_mode(&course.track(c), &c.history, &ends, c.mode, course.friction(c));
+    for j in 0..strand.contacts.len() {
+        let pinned = pinned(strand, j);
+        let c = &mut strand.contacts[j];
+        let next = rub::next_mode(&course.track(c), &c.history, &c.ends, (c.mode, pinned), course.friction(c));
         if next != c.mode && c.flips < most {
             c.mode = next;
             c.flips += 1;

@@ -12,27 +12,88 @@
 
 use super::history::{Ends, Front, Held, History, Mode};
 use super::law::Track;
+use crate::math::larger;
 
 /// Residuals and their derivatives by (p₁, s₁, T₁, p₂, s₂, T₂).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Rows {
     pub residual: [f64; 2],
     pub by: [[f64; 6]; 2],
-    /// Whether the second row is of tensions (N), not of material (m).
-    pub of_tension: bool,
+    /// Whether a row is of tensions (N), not of material (m).
+    pub of_tension: [bool; 2],
 }
 
 /// The rows of a contact in a mode.
-pub(super) fn rows(track: &Track<'_>, history: &History, e: &Ends, mode: Mode, friction: f64) -> Rows {
+///
+/// `pinned`: which ends are held on the boundary, so that their tension is unknown by itself.
+pub(super) fn rows(
+    track: &Track<'_>,
+    history: &History,
+    e: &Ends,
+    (mode, pinned): (Mode, [bool; 2]),
+    friction: f64,
+) -> Rows {
     // Lifted (Newton looks there): a point without friction.
     let mode = if e.p[1] < e.p[0] { Mode::Slide(0.0) } else { mode };
     match mode {
         Mode::Slide(m) => sliding(track, e, m),
-        Mode::Hold => match history.hold(track, e, friction) {
-            // Beyond its cone the rows of sticking go on smoothly: the mode is changed, not the rows.
-            Held::Between(fronts) | Held::Beyond(_, fronts) => holding(track, history, e, fronts, false),
-            Held::Meet(fronts) => holding(track, history, e, fronts, true),
-        },
+        Mode::Hold => {
+            let (mut out, fronts) = match history.hold(track, e, friction) {
+                // Beyond its cone the rows of sticking go on smoothly: the mode is changed, not the rows.
+                Held::Between(fronts) | Held::Beyond(_, fronts) => {
+                    (holding(track, history, e, fronts, false), fronts)
+                }
+                Held::Meet(fronts) => (holding(track, history, e, fronts, true), fronts),
+            };
+            for side in 0..2 {
+                if pinned[side] {
+                    pin(&mut out, (track, history, e), side, &fronts[side]);
+                }
+            }
+            out
+        }
+    }
+}
+
+/// The row of an end that is held on the boundary, made linear in its tension.
+///
+/// Near the old tension what a change x of it moves is φ = ∓ k x|x|, k = 1/(2·D·EA·τ), D the difference of the slopes
+/// of tension at the front: flat at x = 0, where Newton starts. Its root √|φ| is straight. Where the end has not moved
+/// the answer is x = 0, with nothing to solve.
+fn pin(out: &mut Rows, (track, history, e): (&Track<'_>, &History, &Ends), side: usize, front: &Front) {
+    let (old_t, old_s) = history.at(track, e.p[side]);
+    let gap = e.s[side] - old_s;
+    let x = e.t[side] - old_t;
+    out.of_tension[side] = true;
+    if gap.abs() <= UNMOVED * (e.s[0].abs() + e.s[1].abs()) {
+        out.residual[side] = x;
+        out.by[side] = [0.0; 6];
+        out.by[side][3 * side + 2] = 1.0;
+        return;
+    }
+    let law = &track.law;
+    let place = track.place(e.p[side]);
+    let sign = if side == 0 { -1.0 } else { 1.0 };
+    let target = -sign * gap;
+    // The way the tension will have to go decides the slope of the sliding there.
+    let m = front.m.abs() * if (target > 0.0) == (side == 0) { -1.0 } else { 1.0 };
+    let inner = e.p[side] + (e.p[1 - side] - e.p[side]) * 1e-9;
+    let drop = (law.slope(&place, old_t, m) - history.slope(track, inner)).abs() / place.stretch;
+    let k = place.stretch / (2.0 * (drop + 1e-9 * law.load.norm() + f64::MIN_POSITIVE) * law.stiffness * law.thermal);
+    let phi = sign * (out.residual[side] - gap);
+    let root = |v: f64| v.signum() * v.abs().sqrt();
+    let flat = phi.abs() <= 1e-3 * gap.abs();
+    let value = if flat { x * k.sqrt() } else { root(phi) };
+    out.residual[side] = (value - root(target)) / k.sqrt();
+    let factor = sign / (2.0 * phi.abs().sqrt() * k.sqrt());
+    for (i, by) in out.by[side].iter_mut().enumerate() {
+        *by = if i == 3 * side + 2 {
+            if flat { 1.0 } else { *by * factor }
+        } else if flat || i == 3 * side + 1 {
+            0.0
+        } else {
+            *by * factor
+        };
     }
 }
 
@@ -53,7 +114,7 @@ fn sliding(track: &Track<'_>, e: &Ends, m: f64) -> Rows {
             ],
             [way.by_tension * slope, 0.0, -way.by_tension, -track.law.slope(&b, way.tension, m), 0.0, 1.0],
         ],
-        of_tension: true,
+        of_tension: [false, true],
     }
 }
 
@@ -93,7 +154,13 @@ fn holding(track: &Track<'_>, history: &History, e: &Ends, fronts: [Front; 2], m
 }
 
 /// The mode to go on with: a contact that holds beyond its cone slides; one that would slide the wrong way holds.
-pub(super) fn next_mode(track: &Track<'_>, history: &History, e: &Ends, mode: Mode, friction: f64) -> Mode {
+pub(super) fn next_mode(
+    track: &Track<'_>,
+    history: &History,
+    e: &Ends,
+    (mode, pinned): (Mode, [bool; 2]),
+    friction: f64,
+) -> Mode {
     if friction <= 0.0 || e.p[1] < e.p[0] {
         return if friction <= 0.0 { Mode::Slide(0.0) } else { mode };
     }
@@ -107,6 +174,15 @@ pub(super) fn next_mode(track: &Track<'_>, history: &History, e: &Ends, mode: Mo
             _ => mode,
         },
         Mode::Slide(m) => {
+            for side in (0..2).filter(|&side| pinned[side]) {
+                let (old_t, old_s) = history.at(track, e.p[side]);
+                if (e.s[side] - old_s).abs() <= UNMOVED * (e.s[0].abs() + e.s[1].abs()) {
+                    // What does not move is drawn the more the more the rest slides away from it.
+                    let drawn = (e.t[side] - old_t) * m * if side == 0 { 1.0 } else { -1.0 };
+                    let rounding = CONE * friction * larger(e.t[0].abs(), e.t[1].abs());
+                    return if drawn < -rounding { Mode::Hold } else { mode };
+                }
+            }
             // With m = +μ material goes on along p, so there is less of it than was, s < s_old, at every p. The slip is
             // least where the tension is what it was: before it the one stretch is the greater, after it the other.
             let (old, _) = history.at(track, e.p[0]);
@@ -124,5 +200,7 @@ pub(super) fn next_mode(track: &Track<'_>, history: &History, e: &Ends, mode: Mo
 
 /// Part of a tension by which the cone of friction may be left. Smaller: chatter of rounding; larger: creep.
 const CONE: f64 = 1e-13;
+/// Part of the material coordinate that an end held on the boundary may be off without having moved.
+const UNMOVED: f64 = 1e-14;
 /// Part of the material coordinate that is no movement: rounding.
 const STUCK: f64 = 1e-15;
