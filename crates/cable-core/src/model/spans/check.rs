@@ -120,7 +120,6 @@ fn contact(strand: &Strand, course: &Course, j: usize, greatest: f64) -> Result<
         let (low, high) = (track.slide(p, q, t, -friction).tension, track.slide(p, q, t, friction).tension);
         let room = HOLDS * (greatest + 1e-9);
         if !(next >= low - room && next <= high + room) {
-            eprintln!("CONE j{j} {:?} mode {:?} mu {friction} hist {:?} past {:?} next {next} low {low} high {high} p {p} q {q}", c.ends, c.mode, c.history, past);
             return Err(unsound("friction beyond its cone", q, s));
         }
         (p, t) = (q, next);

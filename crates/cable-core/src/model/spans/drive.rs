@@ -6,8 +6,10 @@ use super::history::Mode;
 use super::instant::{Instant, Layout, place_ends};
 use super::lay;
 use super::newton::{Solved, Work};
+use super::pass;
 use super::strand::{Course, Strand};
 use super::trouble::Trouble;
+use crate::math::Vec2;
 
 /// Halvings of a step at most: 2⁻¹² of a step of 1 % of the cable is a hair's breadth.
 const MAX_HALVINGS: u32 = 12;
@@ -74,12 +76,16 @@ impl Network {
         }
         layout.give(&mut self.course, &begin);
         self.strands.clear();
+        let mut came = Vec::new();
         for k in 0..layout.strands.len() {
-            let strand = lay::lay(layout, k, &self.course, &begin);
-            self.strands.push(strand.ok_or(Trouble::NoSeat { s: layout.strands[k].material[0], at: goal.places[0] })?);
+            let laid = lay::lay(layout, k, &self.course, &begin);
+            let no_way = Trouble::NoSeat { s: layout.strands[k].material[0], at: goal.places[0] };
+            let (strand, way) = laid.ok_or(no_way)?;
+            self.strands.push(strand);
+            came.push(way);
         }
         self.instant = begin.clone();
-        let taken = self.step(layout, &begin, work)?;
+        let taken = self.step_from(layout, &begin, &came, work)?;
         if !shrunk {
             return Ok(taken);
         }
@@ -99,12 +105,23 @@ impl Network {
 
     /// One step to an instant; on an error nothing has changed.
     pub fn step(&mut self, layout: &Layout, to: &Instant, work: &mut Work) -> Result<Taken, Trouble> {
+        self.step_from(layout, to, &[], work)
+    }
+
+    /// One step, of a rest that is sought from the given shapes of the strands.
+    fn step_from(
+        &mut self,
+        layout: &Layout,
+        to: &Instant,
+        came: &[Vec<Vec2>],
+        work: &mut Work,
+    ) -> Result<Taken, Trouble> {
         let mut taken = Taken::default();
         let before = self.strands.clone();
         let old = std::mem::replace(&mut self.instant, to.clone());
         layout.give(&mut self.course, to);
         for k in 0..self.strands.len() {
-            if let Err(trouble) = self.solve(layout, k, work).map(|s| taken.solved = taken.solved.and(s)) {
+            if let Err(trouble) = self.solve(layout, k, came.get(k).map(Vec::as_slice), work).map(|s| taken.solved = taken.solved.and(s)) {
                 self.strands = before;
                 layout.give(&mut self.course, &old);
                 self.instant = old;
@@ -119,13 +136,17 @@ impl Network {
         Ok(taken)
     }
 
-    fn solve(&mut self, layout: &Layout, k: usize, work: &mut Work) -> Result<Solved, Trouble> {
+    fn solve(&mut self, layout: &Layout, k: usize, came: Option<&[Vec2]>, work: &mut Work) -> Result<Solved, Trouble> {
         let world = &layout.problem.world;
         let start = self.strands[k].clone();
+        let mut old = Vec::new();
+        if came.is_none() && !world.is_empty() {
+            pass::shape(&start, &self.course, &mut old);
+        }
         let strand = &mut self.strands[k];
         place_ends(layout, k, strand, &self.course, &self.instant)?;
         let moved = strand.clone();
-        let mut found = events::solve(strand, &mut self.course, world, work);
+        let mut found = events::solve(strand, &mut self.course, world, came, work);
         if found.is_err() {
             // From where each span by itself would be.
             *strand = moved;
@@ -136,11 +157,20 @@ impl Network {
                     strand.forces[j] = g;
                 }
             }
-            found = events::solve(strand, &mut self.course, world, work);
+            found = events::solve(strand, &mut self.course, world, came, work);
         }
-        if found.is_ok() {
+        let found = found.and_then(|solved| {
             check::sound(&self.strands[k], &self.course, world)?;
-        } else {
+            if !world.is_empty() && came.is_none() {
+                let mut new = Vec::new();
+                pass::shape(&self.strands[k], &self.course, &mut new);
+                if let Some(corner) = pass::through(world, &old, &new) {
+                    return Err(Trouble::Passed { at: corner.at });
+                }
+            }
+            Ok(solved)
+        });
+        if found.is_err() {
             self.strands[k] = start;
         }
         found

@@ -17,7 +17,13 @@ pub(super) fn place(strand: &mut Strand, course: &Course, side: usize, at: Vec2)
     match (strand.ties[side], on) {
         (Tie::Lies(_), Some(p)) => {
             strand.ties[side] = Tie::Lies(p);
-            strand.contacts[outer].ends.p[side] = p;
+            let c = &mut strand.contacts[outer];
+            let gap = p - c.ends.p[side];
+            c.ends.p[side] = p;
+            if gap != 0.0 {
+                // The tension starts from what was at its place.
+                c.ends.t[side] = c.history.at(&course.track(c), p).0;
+            }
         }
         (Tie::Lies(_), None) => lift(strand, course, side, (outer, at)),
         (Tie::Held(_), Some(p)) if beyond(strand, outer, side, p) => lay(strand, side, (outer, p)),

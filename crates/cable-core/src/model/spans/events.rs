@@ -6,11 +6,12 @@
 
 use super::history::{Ends, History, Knot, Mode};
 use super::newton::{self, Solved, Work};
+use super::pass;
 use super::seek::{self, Hit};
 use super::strand::{Contact, Course, Strand, Tie};
 use super::trouble::Trouble;
-use crate::contact::World;
-use crate::math::{Vec2, perp};
+use crate::contact::{Gap, World};
+use crate::math::{Vec2, cross, perp};
 
 /// Events in one solve at most. A cold start over 24 corners takes 60.
 const MAX_EVENTS: usize = 200;
@@ -23,10 +24,13 @@ const DEEP: f64 = 1e-9;
 pub(super) const ON: f64 = 1e-9;
 
 /// Solves a strand, events and all.
+///
+/// `came`: the shape it comes from, of a rest that is sought far away; what lies between is met.
 pub(super) fn solve(
     strand: &mut Strand,
     course: &mut Course,
     world: &World,
+    came: Option<&[Vec2]>,
     work: &mut Work,
 ) -> Result<Solved, Trouble> {
     let mut sum = Solved::default();
@@ -38,8 +42,12 @@ pub(super) fn solve(
         })?;
         sum.iterations += found.iterations;
         sum.residual = found.residual;
-        if !(release(strand, course)? || join(strand, course) || meet(strand, course, world)?) {
-            return Ok(sum);
+        if release(strand, course)? || join(strand, course) || meet(strand, course, world)? {
+            continue;
+        }
+        match came {
+            Some(came) if passed(strand, course, world, came)? => {}
+            _ => return Ok(sum),
         }
     }
     Err(Trouble::Restless { s: strand.from })
@@ -158,6 +166,44 @@ fn landed(strand: &Strand, course: &Course, world: &World, k: usize, deep: f64) 
     };
     world.signed_gap(tip, strand.to - strand.from).is_some_and(|g| g.gap_m < -deep).then_some(tip)
 }
+
+/// Lays the cable on a corner it has passed through on its way.
+fn passed(strand: &mut Strand, course: &Course, world: &World, came: &[Vec2]) -> Result<bool, Trouble> {
+    let mut shape = Vec::new();
+    pass::shape(strand, course, &mut shape);
+    let Some(corner) = pass::through(world, came, &shape) else { return Ok(false) };
+    let mut best: Option<(f64, usize, f64, Vec2, Vec2)> = None;
+    for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
+        seek::shapes(strand, course, k, |s0, at, c| {
+            for i in 1..PASSED_POINTS {
+                let s = c.span().length * i as f64 / PASSED_POINTS as f64;
+                let p = at + c.position_at(s);
+                let d = (p - corner.at).norm();
+                if best.is_none_or(|b| d < b.0) {
+                    best = Some((d, k, s0 + s, p, c.force_at(s)));
+                }
+            }
+        });
+    }
+    let Some((_, k, s, at, force)) = best else { return Ok(false) };
+    let tangent = force / force.norm();
+    // It must come to lie on the other side of the cable: on its left now, it shall be on its right.
+    let normal = perp(tangent) * cross(tangent, corner.at - at).signum();
+    let gap = Gap {
+        gap_m: -(corner.at - at).norm(),
+        normal,
+        point: corner.at,
+        fraction: 0.0,
+        friction: 0.0,
+        obstacle: 0,
+        feature: corner.feature,
+    };
+    touch(strand, course, k, &Hit { s, at: corner.at, tangent, gap, body: corner.body })?;
+    Ok(true)
+}
+
+/// Points of a catenary among which the nearest to a corner is sought.
+const PASSED_POINTS: usize = 64;
 
 /// Lays span k down where it hit.
 fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit) -> Result<(), Trouble> {

@@ -8,9 +8,18 @@ use super::strand::{Contact, Course, Strand, Tie};
 use super::taut::{self, Bend};
 use crate::contact::World;
 use crate::math::{Vec2, cross};
+use crate::scene::SupportKind;
 
 /// Ends of a route this near to a boundary lie on it, of the cable's radius.
 const LIES: f64 = 0.05;
+/// Tension with which the cable is laid at least where it does not lie in one piece, of its weight. Smaller: spans over
+/// hollows shrink to nothing. Larger: friction at a free end has to hold it, and it slides there first.
+const LAID: f64 = 1e-3;
+/// Points of a route between its ends lie on a boundary if they are this near, of the cable's radius: routes follow the
+/// surface, the centre line is cut off at kinks.
+const NEAR: f64 = 0.5;
+/// Rounds of bringing a free end to where the material ends; each gains the digits of the strain.
+const FITS: usize = 6;
 /// A contact guessed keeps at least this part of the strand's material clear of the next.
 const CLEAR: f64 = 1e-4;
 
@@ -136,16 +145,27 @@ fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
     vec![Vec2::new(a.x, top), Vec2::new(b.x, top)]
 }
 
-/// The strand at its route. None where the string of the route finds no end.
-pub(super) fn lay(layout: &Layout, index: usize, course: &Course, instant: &Instant) -> Option<Strand> {
+/// The strand at its route, and the route. None where the string of the route finds no end.
+pub(super) fn lay(layout: &Layout, index: usize, course: &Course, instant: &Instant) -> Option<(Strand, Vec<Vec2>)> {
+    let way = way(layout, layout.strands.get(index)?, instant);
+    Some((along(layout, index, course, instant, &way)?, way.points))
+}
+
+fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way: &Way) -> Option<Strand> {
     let part = layout.strands.get(index)?;
     let [from, to] = part.material;
-    let way = way(layout, part, instant);
     let total = way.total();
     if !(total > 0.0) {
         return bare(layout, part, instant);
     }
-    let at = |w: f64| from + (to - from) * w / total;
+    // Evenly along the route; from the end that is held, as it lies, where the other is free.
+    let loose = |side: usize| strand_is_loose(layout, part, side);
+    let way_per_s = course.law.thermal;
+    let at = |w: f64| match (loose(0), loose(1)) {
+        (true, false) => to - (total - w) / way_per_s,
+        (false, true) => from + w / way_per_s,
+        _ => from + (to - from) * w / total,
+    };
     let ties = [0, 1].map(|side| match part.supports[side] {
         Some(k) => Tie::Held(instant.places[k]),
         None => Tie::Hangs(layout.end_force(instant, part.material[side])),
@@ -153,6 +173,7 @@ pub(super) fn lay(layout: &Layout, index: usize, course: &Course, instant: &Inst
     let mut strand = Strand { from, to, ties, contacts: Vec::new(), forces: Vec::new() };
     let slack = total / ((to - from) * course.law.thermal) - 1.0;
     let tension = if slack > 0.0 { slack * course.law.stiffness } else { 0.0 };
+    let least = LAID * course.law.load.norm() * (to - from);
     // Ends that lie: how many points of the route, and the contact.
     let heads = [0, 1].map(|side| lying(course, &layout.problem.world, layout.problem.radius, &way.points, side));
     if let [Some(a), Some(b)] = &heads
@@ -173,12 +194,14 @@ pub(super) fn lay(layout: &Layout, index: usize, course: &Course, instant: &Inst
         }
         return Some(strand);
     }
+    // A span from one lying stretch to the next needs some tension.
+    let tension = if tension > least { tension } else { least };
     let first = heads[0].as_ref().map_or(0, |h| h.count - 1);
     let last = way.points.len() - heads[1].as_ref().map_or(1, |h| h.count);
     if first > last {
         return None;
     }
-    let seats = seats(layout, part, course, instant, (&way, first, last))?;
+    let seats = seats(layout, part, course, instant, (way, first, last))?;
     let mut contacts = Vec::with_capacity(seats.len() + 2);
     let rounds = rounds(course, &seats, (way.points[first], way.points[last]));
     for (k, seat) in seats.iter().enumerate() {
@@ -197,11 +220,23 @@ pub(super) fn lay(layout: &Layout, index: usize, course: &Course, instant: &Inst
         c.wheel = seat.wheel;
         contacts.push(c);
     }
+    // Two stretches that meet at a kink of δ are joined by a span of length Tδ/w.
+    let join = match &heads {
+        [Some(a), Some(b)] if first == last => {
+            let (u, v) = (course.curves[a.curve].place(a.p[1], a.home), course.curves[b.curve].place(b.p[0], b.home));
+            let turn = cross(u.tangent, v.tangent).atan2(u.tangent.dot(&v.tangent)).abs();
+            0.5 * tension * turn / course.law.load.norm()
+        }
+        _ => 0.0,
+    };
     for side in 0..2 {
         if let Some(h) = &heads[side] {
             let way_at = |k: usize| at(way.along[k]);
-            let s = if side == 0 { [from, way_at(first)] } else { [way_at(last), to] };
-            let c = contact(course, (h.curve, h.home), (h.p, s), tension);
+            let room = 0.5 * (h.p[1] - h.p[0]);
+            let join = if join < room { join } else { room };
+            let s = if side == 0 { [from, way_at(first) - join] } else { [way_at(last) + join, to] };
+            let p = if side == 0 { [h.p[0], h.p[1] - join] } else { [h.p[0] + join, h.p[1]] };
+            let c = contact(course, (h.curve, h.home), (p, s), tension);
             contacts.insert(if side == 0 { 0 } else { contacts.len() }, c);
             strand.ties[side] = end_tie(part, side, h.p[side]);
         }
@@ -216,6 +251,12 @@ pub(super) fn lay(layout: &Layout, index: usize, course: &Course, instant: &Inst
     }
     strand.take_tensions(course);
     Some(strand)
+}
+
+/// Whether an end of a strand is free, with nothing drawing it.
+fn strand_is_loose(layout: &Layout, part: &Part, side: usize) -> bool {
+    let support = if side == 0 { layout.problem.supports.first() } else { layout.problem.supports.last() };
+    part.supports[side].is_none() && support.is_some_and(|s| s.kind == SupportKind::Free && s.mass == 0.0)
 }
 
 /// A strand whose ends are in one place: nothing but a span.
@@ -251,8 +292,22 @@ fn spread(strand: &mut Strand, course: &Course) {
         }
         before = e.s[1];
     }
-    for c in &mut strand.contacts {
-        c.history = History::laid(&course.track(c), &c.ends, course.friction(c));
+    let loose = [strand.ties[0] == Tie::Loose, strand.ties[1] == Tie::Loose];
+    for (j, c) in strand.contacts.iter_mut().enumerate() {
+        let (track, friction) = (course.track(c), course.friction(c));
+        if loose[0] && j == 0 {
+            c.ends.t[0] = 0.0;
+        }
+        c.history = History::laid(&track, &c.ends, friction);
+        // A free end lies where the material ends.
+        for side in (0..2).filter(|&side| loose[side] && j == side * (n - 1)) {
+            for _ in 0..FITS {
+                let (tension, s) = c.history.at(&track, c.ends.p[1]);
+                let off = (s - c.ends.s[1]) * course.law.stretch(tension);
+                c.ends.p[side] += if side == 0 { off } else { -off };
+                c.history = History::laid(&track, &c.ends, friction);
+            }
+        }
     }
 }
 
@@ -292,7 +347,8 @@ fn lying(course: &Course, world: &World, radius: f64, points: &[Vec2], side: usi
     let curve = course.curves.get(curve_index)?;
     let i = curve.piece_of(gap.feature, point(0))?;
     let home = curve.chain(i, course.law.load)?;
-    let on: Vec<f64> = (0..n).map_while(|k| curve.on_chain(home, point(k), within)).collect();
+    let near = |k: usize| if k == 0 { within } else { NEAR * radius };
+    let on: Vec<f64> = (0..n).map_while(|k| curve.on_chain(home, point(k), near(k))).collect();
     let (first, last) = (*on.first()?, *on.last()?);
     let p = if side == 0 { [first, last] } else { [last, first] };
     (on.len() > 1 && p[1] > p[0]).then_some(Head { curve: curve_index, home, p, count: on.len() })

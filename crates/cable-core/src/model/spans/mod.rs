@@ -21,6 +21,7 @@ mod instant;
 mod law;
 mod lay;
 mod newton;
+mod pass;
 mod report;
 mod rub;
 mod seek;
@@ -139,6 +140,9 @@ fn said(layout: &Layout, trouble: Trouble, time_s: f64) -> SolveError {
         }
         Trouble::Restless { s } => unsupported(format!("contacts come and go without end near {s:.3} m")),
         Trouble::OffWheel { support } => unsupported(format!("the cable lifts off the wheel of `{}`", name(support))),
+        Trouble::Passed { at } => {
+            unsupported(format!("the cable springs past a corner at ({:.3} m, {:.3} m)", at.x, at.y))
+        }
         Trouble::SupportInside { at } => {
             unsupported(format!("a support is inside an obstacle at ({:.3} m, {:.3} m)", at.x, at.y))
         }

@@ -25,6 +25,9 @@ const MAX_HALVINGS: usize = 14;
 const RESIDUAL: f64 = 1e-11;
 /// Residual that rounding leaves where a cable is EA/T times stiffer than it is taut: this times EA/T.
 const STIFF_RESIDUAL: f64 = 2e-14;
+/// Where no step gains anything the residual is rounding if it is below so many times the one wanted. Larger: a step that
+/// was halved often enough is taken without having been solved.
+const ROUNDING: f64 = 20.0;
 /// A contact's end moves by at most so many radians in one iteration. Larger: it jumps a turn of a post.
 const MOST_TURN: f64 = 0.7;
 /// A span keeps at least this part of its material in one iteration.
@@ -337,7 +340,7 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
         iterations += 1;
         if !step(strand, course, work) {
             // Rounding: nothing is gained any more.
-            return if worst <= 1e3 * tolerance(strand, course) && worst <= 1e-8 {
+            return if worst <= ROUNDING * tolerance(strand, course) {
                 Ok(Solved { iterations, residual: worst })
             } else {
                 Err(stall(worst))

@@ -71,6 +71,7 @@ fn pin(out: &mut Rows, (track, history, e): (&Track<'_>, &History, &Ends), side:
         out.by[side][3 * side + 2] = 1.0;
         return;
     }
+    let size = e.s[0].abs() + e.s[1].abs();
     let law = &track.law;
     let place = track.place(e.p[side]);
     let sign = if side == 0 { -1.0 } else { 1.0 };
@@ -79,12 +80,25 @@ fn pin(out: &mut Rows, (track, history, e): (&Track<'_>, &History, &Ends), side:
     let m = front.m.abs() * if (target > 0.0) == (side == 0) { -1.0 } else { 1.0 };
     let inner = e.p[side] + (e.p[1 - side] - e.p[side]) * 1e-9;
     let drop = (law.slope(&place, old_t, m) - history.slope(track, inner)).abs() / place.stretch;
-    let k = place.stretch / (2.0 * (drop + 1e-9 * law.load.norm() + f64::MIN_POSITIVE) * law.stiffness * law.thermal);
+    if drop <= PARALLEL * law.load.norm() {
+        // It slides on as it slid: the material follows the tension along the whole of the old sliding, evenly, which a
+        // tension that has not changed yet does not show.
+        out.of_tension[side] = false;
+        if x == 0.0 {
+            let nudged = old_t + NUDGE * (old_t.abs() + law.load.norm() * size) * target.signum();
+            let way = history.front(track, (e.p[side], nudged), e.p[1 - side], front.m.abs()).way;
+            out.by[side][3 * side + 2] = way.material_by_tension;
+        }
+        return;
+    }
+    let k = place.stretch / (2.0 * drop * law.stiffness * law.thermal);
+    let solved = out.residual[side].abs() <= ROUNDING * size;
     let phi = sign * (out.residual[side] - gap);
     let root = |v: f64| v.signum() * v.abs().sqrt();
     let flat = phi.abs() <= 1e-3 * gap.abs();
     let value = if flat { x * k.sqrt() } else { root(phi) };
-    out.residual[side] = (value - root(target)) / k.sqrt();
+    // The root of rounding is no rounding.
+    out.residual[side] = if solved { 0.0 } else { (value - root(target)) / k.sqrt() };
     let factor = sign / (2.0 * phi.abs().sqrt() * k.sqrt());
     for (i, by) in out.by[side].iter_mut().enumerate() {
         *by = if i == 3 * side + 2 {
@@ -200,6 +214,12 @@ pub(super) fn next_mode(
 
 /// Part of a tension by which the cone of friction may be left. Smaller: chatter of rounding; larger: creep.
 const CONE: f64 = 1e-13;
+/// Part of the material coordinate that is rounding.
+const ROUNDING: f64 = 1e-15;
+/// Part of a tension by which it is changed to see what that moves.
+const NUDGE: f64 = 1e-6;
+/// Slopes of tension nearer to each other than this part of the load are one.
+const PARALLEL: f64 = 1e-6;
 /// Part of the material coordinate that an end held on the boundary may be off without having moved.
 const UNMOVED: f64 = 1e-14;
 /// Part of the material coordinate that is no movement: rounding.

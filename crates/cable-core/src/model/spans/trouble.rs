@@ -17,6 +17,8 @@ pub(super) enum Trouble {
     Compressed { s: f64, at: Vec2, tension: f64 },
     /// The cable lifts off the wheel of a support.
     OffWheel { support: usize },
+    /// The cable would have passed through a corner.
+    Passed { at: Vec2 },
     /// A support is inside an obstacle.
     SupportInside { at: Vec2 },
     /// A point load lies on an obstacle.
