@@ -37,7 +37,7 @@ pub enum Command {
 pub struct Common {
     /// Scene file (TOML)
     pub scene: PathBuf,
-    /// auto, catenary, fem or mass-spring
+    /// auto, catenary, spans, fem or mass-spring
     #[arg(long, default_value = "auto", value_parser = model)]
     pub model: Model,
     /// Relative accuracy asked of the tension
@@ -76,7 +76,7 @@ pub struct RunArguments {
 }
 
 fn model(text: &str) -> Result<Model, String> {
-    Model::from_name(text).ok_or_else(|| "the models are auto, catenary, fem and mass-spring".to_owned())
+    Model::from_name(text).ok_or_else(|| "the models are auto, catenary, spans, fem and mass-spring".to_owned())
 }
 
 fn stepping(text: &str) -> Result<Stepping, String> {

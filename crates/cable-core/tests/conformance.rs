@@ -18,6 +18,11 @@ fn catenary() {
 }
 
 #[test]
+fn spans() {
+    passes(Model::Spans);
+}
+
+#[test]
 fn fem() {
     passes(Model::Fem);
 }

@@ -145,7 +145,7 @@ fn ranks(csv: &str) -> Vec<(String, u8)> {
 fn no_model_is_wrong_in_silence() {
     let regimes: Vec<Regime> = rest::regimes().into_iter().chain(slow::regimes()).chain(motion::regimes()).collect();
     let mut csv = "regime,model,verdict,error,said,figure\n".to_owned();
-    let mut table = "# Stability atlas\n\nWhere methods are known to fail, and what each model does there. Written by `UPDATE_CHARTS=1 cargo test -p cable-tests --test stability_atlas`,\nwhich fails where a model is wrong without saying so. Figures are relative errors of what the last column names.\n\n| regime | catenary | fem | mass-spring | figure |\n|---|---|---|---|---|\n".to_owned();
+    let mut table = "# Stability atlas\n\nWhere methods are known to fail, and what each model does there. Written by `UPDATE_CHARTS=1 cargo test -p cable-tests --test stability_atlas`,\nwhich fails where a model is wrong without saying so. Figures are relative errors of what the last column names.\n\n| regime | catenary | spans | fem | mass-spring | figure |\n|---|---|---|---|---|---|\n".to_owned();
     let mut wrong = Vec::new();
     for r in &regimes {
         let _ = write!(table, "| {} |", r.name);

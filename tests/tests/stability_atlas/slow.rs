@@ -72,17 +72,30 @@ fn over_a_beam(radius_m: Option<f64>) -> Scene {
     scene
 }
 
+/// Pull of the hand: the load, turned from its direction to the tangent from the hand to the round, and what the cable
+/// weighs between (N/m) up and down.
+fn exact(radius: f64, hand: [f64; 2], load: [f64; 2]) -> f64 {
+    let (round, weight) = (radius + 0.01, 5e-3 * G);
+    let (x, y) = (hand[0], hand[1] + radius);
+    let down = (-y).atan2(x) + (round / x.hypot(y)).asin();
+    let turn = 20f64.to_radians() + down;
+    (100.0 + weight * (0.01 - load[1])) * (0.3 * turn).exp() - weight * (0.01 - hand[1])
+}
+
 fn drawn(model: Model, radius_m: Option<f64>) -> Result<Verdict, SolveError> {
     let mut sim = simulation(over_a_beam(radius_m), model)?;
     sim.settle()?;
-    let exact = 100.0 * (0.3 * 40f64.to_radians()).exp();
+    let radius = radius_m.unwrap_or(0.0);
+    let exact = |hand: [f64; 2], load: [f64; 2]| exact(radius, hand, load);
     let mut worst = Verdict::Right(0.0);
     let mut most = 0.0;
     for k in 0..100 {
         sim.step_quasi_static(0.03)?;
         let answer = sim.solution();
         let hand = &answer.cables[0].supports[1];
-        let off = (hand.reaction_x_n.hypot(hand.reaction_y_n) / exact - 1.0).abs();
+        let tail = &answer.cables[0].nodes[0];
+        let off = hand.reaction_x_n.hypot(hand.reaction_y_n) / exact([hand.x_m, hand.y_m], [tail.x_m, tail.y_m]) - 1.0;
+        let off = off.abs();
         // It slides everywhere after a while.
         if k >= 40 && off >= most {
             (most, worst) = (off, Verdict::of(off, 2e-3, &answer));

@@ -247,7 +247,8 @@ impl Curve {
         let n = self.pieces.len() as i64;
         let open = self.period.is_none();
         let (mut first, mut last) = (i, i);
-        while last - first < n && !(open && first == 0) && !self.piece(first).kink_before && self.holds(first - 1, load) {
+        while last - first < n && !(open && first == 0) && !self.piece(first).kink_before && self.holds(first - 1, load)
+        {
             first -= 1;
         }
         while last - first < n
@@ -356,11 +357,8 @@ fn boundary(body: &Body, c: f64) -> (Vec<Piece>, bool) {
     for (k, (e, index)) in edges.iter().enumerate() {
         let angle = e.tangent.y.atan2(e.tangent.x);
         let up = std::f64::consts::FRAC_PI_2;
-        let (arc_from, arc) = if closed || k > 0 {
-            (angle - turn(k).min(0.0), -turn(k).min(0.0))
-        } else {
-            (up, up - angle)
-        };
+        let (arc_from, arc) =
+            if closed || k > 0 { (angle - turn(k).min(0.0), -turn(k).min(0.0)) } else { (up, up - angle) };
         let kink_before = kink(k) > 0.0;
         let first = out.len();
         if arc > 0.0 {

@@ -121,7 +121,9 @@ impl Network {
         let old = std::mem::replace(&mut self.instant, to.clone());
         layout.give(&mut self.course, to);
         for k in 0..self.strands.len() {
-            if let Err(trouble) = self.solve(layout, k, came.get(k).map(Vec::as_slice), work).map(|s| taken.solved = taken.solved.and(s)) {
+            if let Err(trouble) =
+                self.solve(layout, k, came.get(k).map(Vec::as_slice), work).map(|s| taken.solved = taken.solved.and(s))
+            {
                 self.strands = before;
                 layout.give(&mut self.course, &old);
                 self.instant = old;

@@ -56,7 +56,8 @@ pub(super) fn solve(
 /// R: lets go of what no longer presses.
 fn release(strand: &mut Strand, course: &mut Course) -> Result<bool, Trouble> {
     let turned = |c: &Contact| c.ends.p[1] - c.ends.p[0];
-    let worst = (0..strand.contacts.len()).min_by(|&a, &b| turned(&strand.contacts[a]).total_cmp(&turned(&strand.contacts[b])));
+    let worst =
+        (0..strand.contacts.len()).min_by(|&a, &b| turned(&strand.contacts[a]).total_cmp(&turned(&strand.contacts[b])));
     let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -TURNED) else { return Ok(false) };
     if let Some(support) = strand.contacts[j].wheel {
         turn_eye(&mut strand.contacts[j], course, support)?;
@@ -70,7 +71,8 @@ fn release(strand: &mut Strand, course: &mut Course) -> Result<bool, Trouble> {
         if outer && !strand.ties[side].has_span() {
             strand.ties[side] = match strand.ties[side] {
                 Tie::Lies(p) => Tie::Held(course.track(&contact).place(p).at),
-                _ => Tie::Hangs(Vec2::zeros()),
+                Tie::Loose(force) => Tie::Hangs(force),
+                other => other,
             };
             strand.forces.remove(if side == 0 { 0 } else { m + 1 });
             if strand.contacts.is_empty() && strand.forces.len() > 1 {
@@ -259,12 +261,7 @@ fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit) -> Result<()
             }
         }
     }
-    let knot = |side: usize| Knot {
-        p: contact.ends.p[side],
-        s: contact.ends.s[side],
-        tension: force,
-        m: 0.0,
-    };
+    let knot = |side: usize| Knot { p: contact.ends.p[side], s: contact.ends.s[side], tension: force, m: 0.0 };
     contact.history = History::new(knot(0), knot(1));
     let g = strand.forces[k];
     strand.contacts.insert(k, contact);

@@ -254,7 +254,7 @@ pub(super) fn place_ends(
     let part = &layout.strands[index];
     for side in 0..2 {
         let Some(support) = part.supports[side] else {
-            if let Tie::Hangs(force) = &mut strand.ties[side] {
+            if let Tie::Hangs(force) | Tie::Loose(force) = &mut strand.ties[side] {
                 *force = layout.end_force(instant, part.material[side]);
             }
             continue;

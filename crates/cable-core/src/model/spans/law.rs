@@ -102,7 +102,7 @@ impl Law {
                 let place = curve.place_on(i, x0);
                 self.on_edge(self.edge_rate(&place, m), x1 - x0, t)
             }
-            Form::Arc { radius, .. } if radius == 0.0 => {
+            Form::Arc { radius: 0.0, .. } => {
                 let grown = (m * (x1 - x0)).exp();
                 Step { tension: t * grown, material: 0.0, by_tension: grown, material_by_tension: 0.0 }
             }

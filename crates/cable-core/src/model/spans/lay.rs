@@ -8,7 +8,6 @@ use super::strand::{Contact, Course, Strand, Tie};
 use super::taut::{self, Bend};
 use crate::contact::World;
 use crate::math::{Vec2, cross};
-use crate::scene::SupportKind;
 
 /// Ends of a route this near to a boundary lie on it, of the cable's radius.
 const LIES: f64 = 0.05;
@@ -18,6 +17,8 @@ const LAID: f64 = 1e-3;
 /// Points of a route between its ends lie on a boundary if they are this near, of the cable's radius: routes follow the
 /// surface, the centre line is cut off at kinks.
 const NEAR: f64 = 0.5;
+/// Part of a dead force that lifts an end off what it lies on.
+const LIFTS: f64 = 1e-9;
 /// Rounds of bringing a free end to where the material ends; each gains the digits of the strain.
 const FITS: usize = 6;
 /// A contact guessed keeps at least this part of the strand's material clear of the next.
@@ -156,37 +157,45 @@ fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way:
     let [from, to] = part.material;
     let total = way.total();
     if !(total > 0.0) {
-        return bare(layout, part, instant);
+        return bare(part, instant);
     }
+    let ties = [0, 1].map(|side| match part.supports[side] {
+        Some(k) => Tie::Held(instant.places[k]),
+        None => Tie::Hangs(layout.end_force(instant, part.material[side])),
+    });
+    // Ends that lie: how many points of the route, and the contact. What a load lifts does not.
+    let heads = [0, 1].map(|side| {
+        lying(course, &layout.problem.world, layout.problem.radius, &way.points, side).filter(|h| match ties[side] {
+            Tie::Hangs(force) => {
+                let place = course.curves[h.curve].place(h.p[side], h.home);
+                force.dot(&place.normal) <= LIFTS * force.norm()
+            }
+            _ => true,
+        })
+    });
     // Evenly along the route; from the end that is held, as it lies, where the other is free.
-    let loose = |side: usize| strand_is_loose(layout, part, side);
+    let loose = |side: usize| heads[side].is_some() && part.supports[side].is_none();
     let way_per_s = course.law.thermal;
     let at = |w: f64| match (loose(0), loose(1)) {
         (true, false) => to - (total - w) / way_per_s,
         (false, true) => from + w / way_per_s,
         _ => from + (to - from) * w / total,
     };
-    let ties = [0, 1].map(|side| match part.supports[side] {
-        Some(k) => Tie::Held(instant.places[k]),
-        None => Tie::Hangs(layout.end_force(instant, part.material[side])),
-    });
     let mut strand = Strand { from, to, ties, contacts: Vec::new(), forces: Vec::new() };
     let slack = total / ((to - from) * course.law.thermal) - 1.0;
     let tension = if slack > 0.0 { slack * course.law.stiffness } else { 0.0 };
     let least = LAID * course.law.load.norm() * (to - from);
-    // Ends that lie: how many points of the route, and the contact.
-    let heads = [0, 1].map(|side| lying(course, &layout.problem.world, layout.problem.radius, &way.points, side));
     if let [Some(a), Some(b)] = &heads
         && (a.count + b.count > way.points.len() && a.curve == b.curve && a.home == b.home)
     {
         let mut c = contact(course, (a.curve, a.home), ([a.p[0], b.p[1]], [from, to]), tension);
         c.wheel = None;
-        strand.ties = [0, 1].map(|side| end_tie(part, side, if side == 0 { a.p[0] } else { b.p[1] }));
+        strand.ties = [0, 1].map(|side| end_tie(ties[side], if side == 0 { a.p[0] } else { b.p[1] }));
         strand.contacts.push(c);
         strand.forces = vec![Vec2::zeros(); 2];
         spread(&mut strand, course);
         for side in 0..2 {
-            if strand.ties[side] != Tie::Loose {
+            if matches!(strand.ties[side], Tie::Lies(_)) {
                 let c = &mut strand.contacts[0];
                 let track = course.track(c);
                 c.ends.t[side] = c.history.at(&track, c.ends.p[side]).0;
@@ -201,6 +210,48 @@ fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way:
     if first > last {
         return None;
     }
+    let mut contacts = bends(layout, part, (course, instant), (way, first, last), (&at, tension))?;
+    // Two stretches that meet at a kink of δ are joined by a span of length Tδ/w.
+    let join = match &heads {
+        [Some(a), Some(b)] if first == last => {
+            let (u, v) = (course.curves[a.curve].place(a.p[1], a.home), course.curves[b.curve].place(b.p[0], b.home));
+            let turn = cross(u.tangent, v.tangent).atan2(u.tangent.dot(&v.tangent)).abs();
+            0.5 * tension * turn / course.law.load.norm()
+        }
+        _ => 0.0,
+    };
+    for side in 0..2 {
+        if let Some(h) = &heads[side] {
+            let way_at = |k: usize| at(way.along[k]);
+            let room = 0.5 * (h.p[1] - h.p[0]);
+            let join = if join < room { join } else { room };
+            let s = if side == 0 { [from, way_at(first) - join] } else { [way_at(last) + join, to] };
+            let p = if side == 0 { [h.p[0], h.p[1] - join] } else { [h.p[0] + join, h.p[1]] };
+            let c = contact(course, (h.curve, h.home), (p, s), tension);
+            contacts.insert(if side == 0 { 0 } else { contacts.len() }, c);
+            strand.ties[side] = end_tie(ties[side], h.p[side]);
+        }
+    }
+    strand.forces = vec![Vec2::zeros(); contacts.len() + 1];
+    strand.contacts = contacts;
+    spread(&mut strand, course);
+    for k in 0..strand.spans() {
+        if strand.has_span(k) {
+            strand.forces[k] = strand.solve_span(course, k)?;
+        }
+    }
+    strand.take_tensions(course);
+    Some(strand)
+}
+
+/// Contacts where the taut string of the route bends, `at` the material at a length along the way (m), laid with a tension.
+fn bends(
+    layout: &Layout,
+    part: &Part,
+    (course, instant): (&Course, &Instant),
+    (way, first, last): (&Way, usize, usize),
+    (at, tension): (&dyn Fn(f64) -> f64, f64),
+) -> Option<Vec<Contact>> {
     let seats = seats(layout, part, course, instant, (way, first, last))?;
     let mut contacts = Vec::with_capacity(seats.len() + 2);
     let rounds = rounds(course, &seats, (way.points[first], way.points[last]));
@@ -220,56 +271,24 @@ fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way:
         c.wheel = seat.wheel;
         contacts.push(c);
     }
-    // Two stretches that meet at a kink of δ are joined by a span of length Tδ/w.
-    let join = match &heads {
-        [Some(a), Some(b)] if first == last => {
-            let (u, v) = (course.curves[a.curve].place(a.p[1], a.home), course.curves[b.curve].place(b.p[0], b.home));
-            let turn = cross(u.tangent, v.tangent).atan2(u.tangent.dot(&v.tangent)).abs();
-            0.5 * tension * turn / course.law.load.norm()
-        }
-        _ => 0.0,
-    };
-    for side in 0..2 {
-        if let Some(h) = &heads[side] {
-            let way_at = |k: usize| at(way.along[k]);
-            let room = 0.5 * (h.p[1] - h.p[0]);
-            let join = if join < room { join } else { room };
-            let s = if side == 0 { [from, way_at(first) - join] } else { [way_at(last) + join, to] };
-            let p = if side == 0 { [h.p[0], h.p[1] - join] } else { [h.p[0] + join, h.p[1]] };
-            let c = contact(course, (h.curve, h.home), (p, s), tension);
-            contacts.insert(if side == 0 { 0 } else { contacts.len() }, c);
-            strand.ties[side] = end_tie(part, side, h.p[side]);
-        }
-    }
-    strand.forces = vec![Vec2::zeros(); contacts.len() + 1];
-    strand.contacts = contacts;
-    spread(&mut strand, course);
-    for k in 0..strand.spans() {
-        if strand.has_span(k) {
-            strand.forces[k] = strand.solve_span(course, k)?;
-        }
-    }
-    strand.take_tensions(course);
-    Some(strand)
-}
-
-/// Whether an end of a strand is free, with nothing drawing it.
-fn strand_is_loose(layout: &Layout, part: &Part, side: usize) -> bool {
-    let support = if side == 0 { layout.problem.supports.first() } else { layout.problem.supports.last() };
-    part.supports[side].is_none() && support.is_some_and(|s| s.kind == SupportKind::Free && s.mass == 0.0)
+    Some(contacts)
 }
 
 /// A strand whose ends are in one place: nothing but a span.
-fn bare(layout: &Layout, part: &Part, instant: &Instant) -> Option<Strand> {
+fn bare(part: &Part, instant: &Instant) -> Option<Strand> {
     let [a, b] = part.supports;
     let [from, to] = part.material;
     let ties = [Tie::Held(instant.places[a?]), Tie::Held(instant.places[b?])];
-    let _ = layout;
     part.pulleys.is_empty().then(|| Strand { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()] })
 }
 
-fn end_tie(part: &Part, side: usize, p: f64) -> Tie {
-    if part.supports[side].is_some() { Tie::Lies(p) } else { Tie::Loose }
+/// An end that lies at p.
+fn end_tie(tie: Tie, p: f64) -> Tie {
+    match tie {
+        Tie::Held(_) => Tie::Lies(p),
+        Tie::Hangs(force) => Tie::Loose(force),
+        other => other,
+    }
 }
 
 /// Keeps material in order, and some of it in each span.
@@ -292,11 +311,11 @@ fn spread(strand: &mut Strand, course: &Course) {
         }
         before = e.s[1];
     }
-    let loose = [strand.ties[0] == Tie::Loose, strand.ties[1] == Tie::Loose];
+    let loose = [0, 1].map(|side| matches!(strand.ties[side], Tie::Loose(_)));
     for (j, c) in strand.contacts.iter_mut().enumerate() {
         let (track, friction) = (course.track(c), course.friction(c));
-        if loose[0] && j == 0 {
-            c.ends.t[0] = 0.0;
+        if let (Tie::Loose(force), 0) = (strand.ties[0], j) {
+            c.ends.t[0] = course.pull(c, 0, force);
         }
         c.history = History::laid(&track, &c.ends, friction);
         // A free end lies where the material ends.
@@ -406,12 +425,14 @@ fn push(out: &mut Vec<Seat>, course: &Course, b: &Bend, (w, turn): (f64, f64)) -
     let curve = course.curves.get(curve_index)?;
     let i = curve.piece_of(b.corner.feature, b.corner.at)?;
     let home = curve.chain(i, course.law.load)?;
-    if let Some(last) = out.last_mut().filter(|s| s.wheel.is_none() && s.curve == curve_index) {
-        if curve.is_round() || (last.home == home && i >= last.pieces[1]) {
-            (last.pieces[1], last.way[1]) = (i, w);
-            last.turn += turn;
-            return Some(());
-        }
+    if let Some(last) = out.last_mut()
+        && last.wheel.is_none()
+        && last.curve == curve_index
+        && (curve.is_round() || (last.home == home && i >= last.pieces[1]))
+    {
+        (last.pieces[1], last.way[1]) = (i, w);
+        last.turn += turn;
+        return Some(());
     }
     out.push(Seat { curve: curve_index, home, pieces: [i, i], wheel: None, way: [w, w], turn });
     Some(())

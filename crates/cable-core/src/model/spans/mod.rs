@@ -100,7 +100,7 @@ impl SpansModel {
     }
 
     fn said(&self, trouble: Trouble) -> SolveError {
-        said(&self.layout, trouble, self.time_s)
+        said(&self.layout, trouble)
     }
 
     fn report_of(&self, taken: Taken) -> StepReport {
@@ -123,9 +123,8 @@ impl SpansModel {
 }
 
 /// A trouble in the words everyone uses.
-fn said(layout: &Layout, trouble: Trouble, time_s: f64) -> SolveError {
+fn said(layout: &Layout, trouble: Trouble) -> SolveError {
     let name = |k: usize| layout.problem.supports.get(k).map_or("", |s| s.name.as_str());
-    let _ = time_s;
     match trouble {
         Trouble::Stalled { iterations, residual, s } => SolveError::NotConverged {
             model: Model::Spans,
@@ -134,8 +133,7 @@ fn said(layout: &Layout, trouble: Trouble, time_s: f64) -> SolveError {
             node: 0,
             at_m: Vec2::new(s, 0.0),
         },
-        Trouble::Compressed { s, tension, .. } => {
-            let _ = s;
+        Trouble::Compressed { tension, .. } => {
             SolveError::Compressed { model: Model::Spans, element: 0, tension_n: tension }
         }
         Trouble::Restless { s } => unsupported(format!("contacts come and go without end near {s:.3} m")),
@@ -153,7 +151,9 @@ fn said(layout: &Layout, trouble: Trouble, time_s: f64) -> SolveError {
         Trouble::NoSeat { s, at } => {
             unsupported(format!("an obstacle is met {s:.3} m along the cable at ({:.3} m, {:.3} m)", at.x, at.y))
         }
-        Trouble::Unsound { what, s, at } => unsupported(format!("{what} {s:.3} m along it at ({:.3} m, {:.3} m)", at.x, at.y)),
+        Trouble::Unsound { what, s, at } => {
+            unsupported(format!("{what} {s:.3} m along it at ({:.3} m, {:.3} m)", at.x, at.y))
+        }
     }
 }
 

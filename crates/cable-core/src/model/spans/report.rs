@@ -109,7 +109,14 @@ fn pressed(track: &Track<'_>, c: &Contact) -> (f64, Vec2, f64, f64) {
         for i in 0..=SIMPSON {
             // Inside the stretch: a border belongs to both sides.
             let p = a + (b - a) * (i as f64 / SIMPSON as f64).clamp(1e-12, 1.0 - 1e-12);
-            let weight = h / 3.0 * if i == 0 || i == SIMPSON { 1.0 } else if i % 2 == 1 { 4.0 } else { 2.0 };
+            let weight = h / 3.0
+                * if i == 0 || i == SIMPSON {
+                    1.0
+                } else if i % 2 == 1 {
+                    4.0
+                } else {
+                    2.0
+                };
             let (t, place) = (c.history.at(track, p).0, track.place(p));
             let press = track.law.press(&place, t);
             normal += weight * press;
@@ -152,7 +159,7 @@ fn end_force(network: &Network, strand: &Strand, side: usize) -> Vec2 {
             let c = if side == 0 { strand.contacts.first() } else { strand.contacts.last() };
             c.map_or(Vec2::zeros(), |c| course.track(c).place(p).tangent * c.ends.t[side])
         }
-        Tie::Loose => Vec2::zeros(),
+        Tie::Loose(_) => Vec2::zeros(),
     }
 }
 

@@ -40,9 +40,7 @@ pub(super) fn rows(
         Mode::Hold => {
             let (mut out, fronts) = match history.hold(track, e, friction) {
                 // Beyond its cone the rows of sticking go on smoothly: the mode is changed, not the rows.
-                Held::Between(fronts) | Held::Beyond(_, fronts) => {
-                    (holding(track, history, e, fronts, false), fronts)
-                }
+                Held::Between(fronts) | Held::Beyond(_, fronts) => (holding(track, history, e, fronts, false), fronts),
                 Held::Meet(fronts) => (holding(track, history, e, fronts, true), fronts),
             };
             for side in 0..2 {

@@ -30,8 +30,8 @@ pub(super) enum Tie {
     Hangs(Vec2),
     /// Held at p on the boundary of the contact beside it.
     Lies(f64),
-    /// Free, lying on the contact beside it.
-    Loose,
+    /// Lying on the contact beside it, held by nothing but friction, and drawn by a dead force, N.
+    Loose(Vec2),
 }
 
 impl Tie {
@@ -78,6 +78,12 @@ impl Course {
     /// Friction of a contact.
     pub fn friction(&self, c: &Contact) -> f64 {
         self.curves[c.curve].friction
+    }
+
+    /// Tension a dead force makes at an end that lies, N.
+    pub fn pull(&self, c: &Contact, side: usize, force: Vec2) -> f64 {
+        let along = force.dot(&self.track(c).place(c.ends.p[side]).tangent);
+        if side == 0 { -along } else { along }
     }
 
     /// The span of cable between two material points.
@@ -174,8 +180,8 @@ impl Strand {
             for side in 0..2 {
                 if let Some(force) = self.force_at_contact(course, j, side) {
                     self.contacts[j].ends.t[side] = force.norm();
-                } else if self.ties[side] == Tie::Loose {
-                    self.contacts[j].ends.t[side] = 0.0;
+                } else if let Tie::Loose(force) = self.ties[side] {
+                    self.contacts[j].ends.t[side] = course.pull(&self.contacts[j], side, force);
                 }
             }
         }

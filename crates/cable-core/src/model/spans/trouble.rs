@@ -6,11 +6,7 @@ use crate::math::Vec2;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Trouble {
     /// Newton stopped short: iterations, scaled residual, material point of the worst equation, m.
-    Stalled {
-        iterations: usize,
-        residual: f64,
-        s: f64,
-    },
+    Stalled { iterations: usize, residual: f64, s: f64 },
     /// Events went on and on.
     Restless { s: f64 },
     /// The cable would have to push: material point, place, tension (N, negative).
