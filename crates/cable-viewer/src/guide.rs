@@ -112,7 +112,7 @@ pub const GUIDES: [Guide; 6] = [
         steps: &[
             act("Press Space: time runs and the graphs fill", |s| time_s(s) > 0.3),
             act("Press Space again to stop", |s| s.playback.paused),
-            act("Drag the timeline below the canvas, or press ←, to look at an earlier time", |s| {
+            act("Drag the timeline below the canvas, or press the left arrow, to look at an earlier time", |s| {
                 s.recording.shown_s.is_some()
             }),
             act("Go on from there, or press Present to come back", |s| s.recording.shown_s.is_none()),

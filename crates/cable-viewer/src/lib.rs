@@ -19,6 +19,7 @@ pub mod recording;
 pub mod run;
 pub mod scene_file;
 pub mod screenshot;
+pub mod software;
 pub mod state;
 pub mod theme;
 pub mod undo;

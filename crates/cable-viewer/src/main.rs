@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use cable_core::scene::catalog;
 use cable_core::{Model, Scene};
 use cable_viewer::command::Command;
+use cable_viewer::software::Software;
 use cable_viewer::{ViewerApp, autosave, scene_file, screenshot};
 use clap::Parser;
 
@@ -88,6 +89,9 @@ fn run(arguments: Arguments) -> Result<(), String> {
         ..eframe::NativeOptions::default()
     };
     let create = Box::new(|cc: &eframe::CreationContext<'_>| {
+        if let Some(software) = cc.wgpu_render_state.as_ref().and_then(Software::of) {
+            cc.egui_ctx.add_plugin(software);
+        }
         let mut app = ViewerApp::new(&cc.egui_ctx, scene, path);
         app.state.theme = theme;
         if let Some(path) = autosave::default_path() {

@@ -9,6 +9,9 @@ use crate::state::{AppState, Item};
 
 /// Thinnest ribbon, points: the true diameter is drawn only where it is wider.
 const LEAST_WIDTH: f32 = 4.5;
+/// Nodes nearer to each other than this are drawn as one, points: a ribbon of pieces shorter than it is smooth costs as much as a
+/// screen full of text.
+const APART: f32 = 1.5;
 /// Width of the soft edge, points.
 const FEATHER: f32 = 0.8;
 /// A joint is drawn sharp up to this ratio of its miter to the half width, then cut.
@@ -27,6 +30,7 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
         let picked = |item: Option<Item>| item == Some(Item::Cable(k));
         let service = cable.service_tension_n;
         for nodes in answer.pieces() {
+            let nodes = &seen(view, nodes, service);
             let line = Ribbon::new(view, nodes);
             if state.picked(Item::Cable(k)) || picked(state.hovered) {
                 line.add(&mut mesh, width + 7.0, |_| Some(view.palette.accent.gamma_multiply(0.55)));
@@ -40,8 +44,10 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
         }
     }
     view.painter.add(mesh);
-    for pair in solution.cables.iter().flat_map(|c| c.pieces()).flat_map(|p| p.windows(2)) {
-        view.avoid_line(view.at([pair[0].x_m, pair[0].y_m]), view.at([pair[1].x_m, pair[1].y_m]));
+    for piece in solution.cables.iter().flat_map(|c| c.pieces()) {
+        for pair in seen(view, piece, f64::INFINITY).windows(2) {
+            view.avoid_line(view.at([pair[0].x_m, pair[0].y_m]), view.at([pair[1].x_m, pair[1].y_m]));
+        }
     }
     if state.layers.nodes {
         for n in solution.cables.iter().flat_map(|c| &c.nodes) {
@@ -56,6 +62,22 @@ fn grey(c: Color32) -> Color32 {
     let level = ((u32::from(c.r()) + u32::from(c.g()) + u32::from(c.b())) / 3) as u8;
     let mix = |v: u8| ((u16::from(v) + 5 * (u16::from(level) / 2 + 64)) / 6) as u8;
     Color32::from_rgb(mix(c.r()), mix(c.g()), mix(c.b()))
+}
+
+/// The nodes that can be told apart on screen: the ends, those at least [`APART`] from the one before, and those where the risk
+/// begins or ends.
+fn seen(view: &View<'_>, nodes: &[Node], service: f64) -> Vec<Node> {
+    let mut out: Vec<Node> = Vec::with_capacity(nodes.len());
+    let mut last: Option<(Pos2, bool)> = None;
+    let end = nodes.len().saturating_sub(1);
+    for (i, n) in nodes.iter().enumerate() {
+        let (at, risk) = (view.at([n.x_m, n.y_m]), n.tension_n > service);
+        if i == end || last.is_none_or(|(p, r)| r != risk || p.distance(at) >= APART) {
+            out.push(*n);
+            last = Some((at, risk));
+        }
+    }
+    out
 }
 
 /// A polyline on screen with the direction to widen it at each point.

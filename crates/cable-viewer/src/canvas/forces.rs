@@ -92,8 +92,8 @@ fn figure(force: Point, components: bool) -> String {
         return size;
     }
     let part =
-        |f: f64, [minus, plus]: [&str; 2]| format!("{} {}", if f < 0.0 { minus } else { plus }, units::force(f.abs()));
-    format!("{size}\n{}  {}", part(force[0], ["←", "→"]), part(force[1], ["↓", "↑"]))
+        |f: f64, [minus, plus]: [&str; 2]| format!("{} {}", units::force(f.abs()), if f < 0.0 { minus } else { plus });
+    format!("{size}\n{}, {}", part(force[0], ["left", "right"]), part(force[1], ["down", "up"]))
 }
 
 fn reactions(

@@ -11,6 +11,9 @@ use crate::state::{AppState, Item};
 /// Distance of hatch strokes below a surface and their length, points.
 const HATCH: [f32; 2] = [9.0, 8.0];
 
+/// Points nearer to each other than this are drawn as one, points.
+const APART: f32 = 1.0;
+
 /// All of them.
 pub fn draw(view: &View<'_>, state: &AppState) {
     for (k, obstacle) in state.scene.obstacles.iter().enumerate() {
@@ -60,7 +63,7 @@ fn corners(view: &View<'_>, shape: &Shape, state: &AppState) {
 }
 
 fn terrain(view: &View<'_>, points_m: &[Point], stroke: Stroke) {
-    let line: Vec<Pos2> = points_m.iter().map(|&p| view.at(p)).collect();
+    let line = seen(view, points_m);
     let bottom = line.iter().fold(view.rect.max.y, |b, p| b.max(p.y)) + 4.0;
     let mut mesh = Mesh::default();
     for pair in line.windows(2) {
@@ -76,6 +79,31 @@ fn terrain(view: &View<'_>, points_m: &[Point], stroke: Stroke) {
         hatch(view, pair[0], pair[1]);
     }
     view.painter.line(line, stroke);
+}
+
+/// The points of a line that can be told apart on screen, with one beyond each edge that it crosses.
+fn seen(view: &View<'_>, points_m: &[Point]) -> Vec<Pos2> {
+    let side = |p: Pos2| i8::from(p.x > view.rect.max.x) - i8::from(p.x < view.rect.min.x);
+    let mut out: Vec<Pos2> = Vec::new();
+    let mut skipped: Option<Pos2> = None;
+    for &p in points_m {
+        let at = view.at(p);
+        let Some(&last) = out.last() else {
+            out.push(at);
+            continue;
+        };
+        // Out of view on the same side as the one before, or on it: not drawn, unless the line comes back from there.
+        if (side(at) != 0 && side(at) == side(last)) || last.distance(at) < APART {
+            skipped = Some(at);
+            continue;
+        }
+        if let Some(before) = skipped.take().filter(|s| side(*s) != 0) {
+            out.push(before);
+        }
+        out.push(at);
+    }
+    out.extend(skipped);
+    out
 }
 
 /// Short slanted strokes under a stretch of ground, at places fixed to the screen's x.

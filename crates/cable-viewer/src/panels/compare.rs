@@ -168,15 +168,15 @@ pub fn differences(held: &Held, state: &AppState) -> Vec<String> {
     if let Some(present) = &state.snapshot.solution
         && present.model != held.solution.model
     {
-        out.push(format!("model {} → {}", held.solution.model, present.model));
+        out.push(format!("model {} to {}", held.solution.model, present.model));
     }
     let (a, b) = (held.scene.to_toml(), state.scene.to_toml());
     let (a, b): (Vec<&str>, Vec<&str>) = (a.lines().collect(), b.lines().collect());
     if a.len() == b.len() {
         let pairs = a.iter().zip(&b).filter(|(x, y)| x != y);
         out.extend(pairs.map(|(x, y)| match (x.split_once(" = "), y.split_once(" = ")) {
-            (Some((key, was)), Some((_, is))) => format!("{} {} → {}", key.trim(), short(was), short(is)),
-            _ => format!("{} → {}", short(x), short(y)),
+            (Some((key, was)), Some((_, is))) => format!("{} {} to {}", key.trim(), short(was), short(is)),
+            _ => format!("{} to {}", short(x), short(y)),
         }));
     } else {
         out.extend(a.iter().filter(|x| !b.contains(x)).map(|x| format!("− {}", short(x))));

@@ -25,7 +25,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let mut push = |command| commands.push(Command::Playback(command));
         ui.add_enabled_ui(span.is_some(), |ui| {
-            let back = ui.button("Step back").on_hover_text("The picture before this one (←)");
+            let back = ui.button("Step back").on_hover_text("The picture before this one (arrow left)");
             let back = back.on_disabled_hover_text(NOTHING);
             if back.clicked() {
                 push(PlaybackCommand::StepBack);

@@ -7,13 +7,15 @@ use egui::Ui;
 use crate::panels::unit::Unit;
 
 use super::measure::Measure;
-use super::series::Series;
+use super::series::{Series, thin};
 use super::{Graph, Touched, View, limits, show};
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, view: View, height: f32) -> Touched {
     let (quantity, follow) = (view.measure.quantity(), view.follow);
-    let points = solved.nodes.iter().map(|n| [n.arc_length_m, quantity.of(n)]).collect();
+    let columns = ui.available_width().max(1.0) as usize;
+    let all = || solved.nodes.iter().map(|n| [n.arc_length_m, quantity.of(n)]);
+    let line = |points| vec![Series { name: quantity.name().to_owned(), points, held: None }];
     let graph = Graph {
         title: "Along the cable",
         measure: Measure::Cable(quantity),
@@ -24,5 +26,10 @@ pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, view: View, height
         height,
         mark: None,
     };
-    show(ui, &graph, &[Series { name: quantity.name().to_owned(), points, held: None }])
+    let mut touched = show(ui, &graph, &line(thin(all(), columns)));
+    if let Some(sheet) = &mut touched.export {
+        // Every node, not only those that can be told apart on screen.
+        sheet.lines = line(all().collect());
+    }
+    touched
 }

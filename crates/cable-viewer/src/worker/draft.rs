@@ -4,6 +4,7 @@
 //! a frame of time pass, so it costs the same however far the hand jumped. Relaxing it took 60 to 800 ms where the hand
 //! moved 8 cm an edit on the tank; a frame of motion takes 3 ms. The time shown stands still meanwhile.
 
+use cable_core::math::vec2;
 use cable_core::{Error, Model, Simulation, SolveError};
 
 use super::engine::FRAME_S;
@@ -65,6 +66,36 @@ pub fn coarse(edit: &Edit, old: &Simulation) -> Edit {
     // An explicit model: what `auto` chose for the full mesh.
     coarse.model = old.model();
     coarse
+}
+
+/// A simulation in motion with few segments (or with those asked for) that goes on where `old` is; None where it cannot, and for
+/// other models than `fem`, whose frames are short.
+pub fn moving(edit: &Edit, old: &Simulation, coarse: bool) -> Option<Simulation> {
+    if old.model() != Model::Fem || !same_cables(edit, old) {
+        return None;
+    }
+    let answer = old.solution();
+    let mut scene = edit.scene.clone();
+    // Supports are where the cable is held now, not where the hand already is: they follow from there.
+    let mut targets = Vec::new();
+    for (k, (cable, now)) in scene.cables.iter_mut().zip(&answer.cables).enumerate() {
+        for (i, (s, now)) in cable.supports.iter_mut().zip(&now.supports).enumerate() {
+            if let (Some(at), None) = (s.at_m, &s.motion) {
+                targets.push((k, i, at));
+                s.at_m = Some([now.x_m, now.y_m]);
+            }
+        }
+    }
+    let mut settings = edit.settings;
+    if coarse {
+        settings.segments = Some(SEGMENTS);
+    }
+    let mut next = Simulation::with_settings(scene, Model::Fem, settings).ok()?;
+    next.carry(old).ok()?;
+    for (cable, support, at) in targets {
+        next.drag_support(cable, support, vec2(at));
+    }
+    Some(next)
 }
 
 /// The state of a draft as one at rest, for the answer to begin from.

@@ -56,6 +56,12 @@ pub struct Engine {
     falling: bool,
     /// Wall time of the last answer to an edit, s.
     solve_s: f64,
+    /// Number of a drag while time runs that no frame shows yet.
+    dragged: u64,
+    /// Wall time of the last frame on the full mesh, s.
+    tick_s: f64,
+    /// Since when the present mesh is the coarse one of a drag while time runs: the last time the hand moved.
+    coarse_since: Option<Instant>,
     /// Why the last edit has no answer: what `simulation` holds is of the scene before it, and time stands.
     refused: Option<String>,
 }
@@ -89,6 +95,9 @@ impl Default for Engine {
             draft: false,
             falling: false,
             solve_s: 0.0,
+            dragged: 0,
+            tick_s: 0.0,
+            coarse_since: None,
             refused: None,
         }
     }
@@ -122,6 +131,7 @@ impl Engine {
             self.robot_order = order;
         }
         let began = Instant::now();
+        let dragging = request.drag.is_some() && request.edit.is_none() && request.resume.is_none() && !request.reset;
         let mut solved = request.edit.is_some() || request.resume.is_some() || request.reset || request.steps > 0;
         let mut result = Ok(());
         if let Some(edit) = request.edit {
@@ -150,7 +160,12 @@ impl Engine {
         // Time must not run in a scene that is no longer the one on screen.
         let held_back = self.refused.is_some() && !self.playback.paused;
         self.playback.paused |= held_back;
-        self.snapshot.edit = request.number.max(self.snapshot.edit);
+        if dragging && self.playing() {
+            // The next frame shows it, not this report.
+            self.dragged = self.dragged.max(request.number);
+            return self.report(held_back);
+        }
+        self.snapshot.edit = request.number.max(self.dragged).max(self.snapshot.edit);
         if solved {
             self.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
             self.show(result);
@@ -187,11 +202,19 @@ impl Engine {
 
     /// Lets one frame (1/60 s of wall time) pass.
     pub fn tick(&mut self) -> Report {
+        self.tick_part(1.0)
+    }
+
+    /// Lets a share of a frame pass.
+    pub fn tick_part(&mut self, share: f64) -> Report {
+        if self.coarse_since.is_some_and(|t| t.elapsed().as_secs_f64() > QUIET_S) {
+            self.leave_coarse();
+        }
         let began = Instant::now();
         let speed = self.playback.speed.clamp(Playback::MIN_SPEED, Playback::MAX_SPEED);
         // Slow motion takes finer steps, fast motion several: a step never exceeds one frame.
         let steps = speed.ceil().max(1.0);
-        let dt = FRAME_S * speed / steps;
+        let dt = FRAME_S * share * speed / steps;
         let mut result = Ok(());
         for _ in 0..steps as u32 {
             result = result.and_then(|()| self.step(dt));
@@ -202,7 +225,11 @@ impl Engine {
         }
         let wall = began.elapsed().as_secs_f64();
         self.snapshot.solve_wall_s = wall;
-        self.snapshot.real_speed = (!failed).then(|| speed * (FRAME_S / wall.max(FRAME_S)));
+        self.snapshot.real_speed = (!failed).then(|| speed * (FRAME_S * share / wall.max(FRAME_S * share)));
+        self.snapshot.edit = self.dragged.max(self.snapshot.edit);
+        if self.coarse_since.is_none() {
+            self.tick_s = wall;
+        }
         self.show(result);
         self.report(failed)
     }
@@ -264,6 +291,7 @@ impl Engine {
             self.answers.clear();
         }
         self.draft = false;
+        self.coarse_since = None;
         // Models are compared by what they answer for the scene as laid, not for where another model left the cable.
         let same_model = self.edit.as_ref().is_some_and(|e| e.model == edit.model && e.settings == edit.settings);
         let from = old.as_ref().filter(|o| same_model || o.time_s() > 0.0);
@@ -314,6 +342,11 @@ impl Engine {
     }
 
     fn drag(&mut self, drag: Drag) -> Result<(), Error> {
+        if self.coarse_since.is_some() {
+            self.coarse_since = Some(Instant::now());
+        } else if self.drafts && self.playing() && self.tick_s > DRAFT_AFTER_S {
+            self.enter_coarse();
+        }
         if let Some(simulation) = &mut self.simulation {
             simulation.drag_support(drag.cable, drag.support, vec2(drag.to_m));
         }
@@ -334,13 +367,36 @@ impl Engine {
         self.edit = Some(edit);
         self.start_kept = false;
         self.draft = false;
+        self.coarse_since = None;
         self.refused = None;
         self.sample();
         Ok(())
     }
 
+    /// A coarse mesh follows the hand while time runs, where the full one is late: it goes on where that is.
+    fn enter_coarse(&mut self) {
+        let (Some(edit), Some(old)) = (&self.edit, &self.simulation) else { return };
+        if let Some(coarse) = draft::moving(edit, old, true) {
+            self.simulation = Some(coarse);
+            self.coarse_since = Some(Instant::now());
+        }
+    }
+
+    /// The hand rests: the full mesh goes on where the coarse one is.
+    fn leave_coarse(&mut self) {
+        self.coarse_since = None;
+        if let (Some(edit), Some(old)) = (&self.edit, &self.simulation)
+            && let Some(full) = draft::moving(edit, old, false)
+        {
+            self.simulation = Some(full);
+        }
+    }
+
     fn reset(&mut self) -> Result<(), Error> {
         self.history_restarts = true;
+        if self.coarse_since.take().is_some() {
+            self.start_kept = false;
+        }
         self.answers.clear();
         // At the start already: lay the cable anew, which forgets the friction of edits since.
         if self.start_kept
@@ -395,7 +451,7 @@ impl Engine {
                 self.snapshot.solution = Some(Arc::new(simulation.solution()));
                 self.snapshot.error.clone_from(&self.refused);
                 self.snapshot.stale = self.refused.is_some();
-                self.snapshot.draft = self.draft;
+                self.snapshot.draft = self.draft || self.coarse_since.is_some();
                 if self.refused.is_none() {
                     self.snapshot.scene = scene;
                 }

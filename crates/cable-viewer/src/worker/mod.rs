@@ -143,10 +143,14 @@ fn keep(slot: &mut Option<Report>, report: Report) {
     }
 }
 
+/// Least share of a frame that a drag lets pass at once. Smaller: many short steps for a quick mouse; larger: the hand waits.
+const LEAST_SHARE: f64 = 0.4;
+
 fn work(shared: &Shared, shown: &impl Fn()) {
     let mut engine = Engine::with_drafts();
     let frame = Duration::from_secs_f64(FRAME_S);
     let mut next_tick = Instant::now();
+    let mut last_tick = next_tick;
     // When a draft has stood long enough to be replaced by the answer.
     let mut refine_at = next_tick;
     loop {
@@ -180,7 +184,15 @@ fn work(shared: &Shared, shown: &impl Fn()) {
         };
         let report = match request {
             Some(request) => {
-                let report = guarded(&mut engine, |e| e.handle(request));
+                let drag = request.drag.is_some();
+                let mut report = guarded(&mut engine, |e| e.handle(request));
+                let passed = last_tick.elapsed().as_secs_f64() / FRAME_S;
+                if drag && engine.playing() && passed > LEAST_SHARE {
+                    // The hand does not wait for the next frame: what has passed of this one is let pass.
+                    last_tick = Instant::now();
+                    next_tick = last_tick + frame;
+                    report.merge(guarded(&mut engine, |e| e.tick_part(passed.min(1.0))));
+                }
                 refine_at = Instant::now() + Duration::from_secs_f64(QUIET_S);
                 if engine.draft() {
                     next_tick = Instant::now() + frame;
@@ -194,7 +206,8 @@ fn work(shared: &Shared, shown: &impl Fn()) {
             None if !engine.playing() => guarded(&mut engine, Engine::refine),
             None => {
                 // A late frame is not made up for: time runs slower instead of falling behind for ever.
-                next_tick = Instant::now().max(next_tick + frame);
+                last_tick = Instant::now();
+                next_tick = last_tick.max(next_tick + frame);
                 guarded(&mut engine, Engine::tick)
             }
         };

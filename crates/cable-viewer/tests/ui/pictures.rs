@@ -128,3 +128,53 @@ fn robot_light() {
     (end.kind, end.at_m) = (cable_core::scene::SupportKind::Robot, None);
     compare("robot_light", solved(scene), Theme::Light);
 }
+
+#[test]
+fn safe_reach_and_path_dark() {
+    use cable_core::robot::reach::{Map, Place};
+    let mut state = solved(catalog::robot_drive());
+    // By hand: what a search would find depends on the solver.
+    let place = |k: u32| {
+        let x = 2.0 + 0.4 * f64::from(k);
+        let mound = 0.12 * (1.0 - ((x - 12.0) / 0.9).powi(2)).max(0.0);
+        let there_and_back_n = if x > 14.2 { f64::INFINITY } else { 60.0 + 20.0 * ((x - 8.0) / 1.5).powi(4).min(60.0) };
+        Place { at_m: [x, mound], there_n: there_and_back_n, there_and_back_n }
+    };
+    let map = Map { places: (0..41).map(place).collect(), start_x_m: 10.0, service_n: 800.0, breaking_n: 1e4 };
+    let scene = std::sync::Arc::new(state.scene.clone());
+    state.reach = cable_viewer::reach::Progress::Done(std::sync::Arc::new(map), scene);
+    state.selected = Some(Item::Leg(2));
+    compare("safe_reach_and_path_dark", state, Theme::Dark);
+}
+
+#[test]
+fn several_picked_in_us_units_light() {
+    let mut state = solved(catalog::loads_wind_heat());
+    state.selected = Some(Item::Support { cable: 0, support: 0 });
+    state.also = vec![Item::Load(0)];
+    state.frame_m = Some([[2.0, 1.0], [6.0, 4.0]]);
+    state.layers.components = true;
+    // The window says this at the start of each frame.
+    cable_viewer::panels::system::show(cable_viewer::panels::system::System::Us);
+    compare("several_picked_in_us_units_light", state, Theme::Light);
+    cable_viewer::panels::system::show(cable_viewer::panels::system::System::Si);
+}
+
+#[test]
+fn guide_light() {
+    use cable_viewer::ViewerApp;
+    use cable_viewer::command::FileCommand;
+    let draw = |app: &mut ViewerApp, ctx: &egui::Context| {
+        app.state.theme = egui::ThemePreference::Light;
+        app.apply(ctx, vec![Command::File(FileCommand::OpenGuide(0))]);
+        (app.state.snapshot.solve_wall_s, app.state.live.solve_wall_s) = (1e-3, 1e-3);
+    };
+    let picture = match screenshot::draw(catalog::hanging_span(), [1100, 640], draw) {
+        Ok(picture) => picture,
+        Err(why) if std::env::var("CI").is_ok_and(|v| v == "true") => panic!("{why}"),
+        Err(why) => return eprintln!("skipped, {why}"),
+    };
+    // The strip alone: the rest of the window says how long it took.
+    let strip = image::imageops::crop_imm(&picture, 0, 24, 1100, 34).to_image();
+    egui_kittest::image_snapshot(&strip, "guide_light");
+}

@@ -8,6 +8,7 @@ use std::time::Instant;
 use cable_core::scene::{Obstacle, Shape, catalog};
 use cable_core::{Model, Scene};
 use cable_viewer::command::{Command, ViewCommand};
+use cable_viewer::software::Software;
 use cable_viewer::{ViewerApp, screenshot};
 use eframe::egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, wgpu};
 use egui::Vec2;
@@ -104,13 +105,23 @@ fn figures(mut ms: Vec<f64>) -> String {
     format!("median {:.1} ms, 95 % {:.1} ms", at(0.5), at(0.95))
 }
 
-fn draw(name: &str, mut scene: Scene) {
+/// CPU time of this process so far, s, of all its threads: what a frame costs, whoever else uses the machine. Linux only.
+fn cpu_s() -> Option<f64> {
+    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
+    // After the name, which may hold spaces: user and system time are the 12th and 13th, in hundredths.
+    let mut fields = stat.rsplit(')').next()?.split_whitespace().skip(11);
+    let mut next = || fields.next()?.parse::<f64>().ok();
+    Some((next()? + next()?) / 100.0)
+}
+
+fn draw(name: &str, mut scene: Scene, taken_over: bool) {
     // The ground is only drawn: what is measured is not how the cable was found.
     let ground = std::mem::take(&mut scene.obstacles);
     let renderer = match Screen::new() {
         Ok(renderer) => renderer,
         Err(why) => return eprintln!("{name}: not measured, {why}"),
     };
+    let software = Software::of(&renderer.state).filter(|_| taken_over);
     let mut harness = Harness::builder()
         .with_size(Vec2::new(1280.0, 800.0))
         .with_step_dt(1.0 / 60.0)
@@ -119,6 +130,7 @@ fn draw(name: &str, mut scene: Scene) {
         .allow_missing_glyphs()
         .renderer(renderer)
         .build_eframe(|cc| {
+            software.into_iter().for_each(|s| cc.egui_ctx.add_plugin(s));
             let mut app = ViewerApp::inline(&cc.egui_ctx, scene, None);
             app.apply(&cc.egui_ctx, vec![Command::SetModel(Model::Fem)]);
             app
@@ -129,6 +141,7 @@ fn draw(name: &str, mut scene: Scene) {
     harness.run_steps(2);
     harness.render().unwrap();
     let ctx = harness.ctx.clone();
+    let cpu = cpu_s();
     let (mut laid, mut drawn, began) = (Vec::new(), Vec::new(), Instant::now());
     for k in 0..FRAMES {
         // Nothing on the canvas is where it was a frame ago.
@@ -142,13 +155,19 @@ fn draw(name: &str, mut scene: Scene) {
         drawn.push(from.elapsed().as_secs_f64() * 1e3);
     }
     let rate = FRAMES as f64 / began.elapsed().as_secs_f64();
-    println!("{name}: {rate:.1} frames a second; laid out {}; drawn {}", figures(laid), figures(drawn));
+    let work = match (cpu_s(), cpu) {
+        (Some(after), Some(before)) => format!("{:.0} ms of CPU a frame", (after - before) * 1e3 / FRAMES as f64),
+        _ => "CPU time not known".to_owned(),
+    };
+    println!("{name}: {rate:.1} frames a second, {work}; laid out {}; drawn {}", figures(laid), figures(drawn));
 }
 
 #[test]
 fn speed_of_drawing() {
     for (segments, points) in [(20, 2), (1000, 1000)] {
-        draw(&format!("{segments} segments, {points} points of ground"), big(segments, points));
+        for (how, taken_over) in [("egui's shader", false), ("our own", true)] {
+            draw(&format!("{segments} segments, {points} points of ground, {how}"), big(segments, points), taken_over);
+        }
     }
 }
 
@@ -190,4 +209,49 @@ fn speed_of_import() {
         );
         assert_eq!(harness.state().state.snapshot.error, None);
     }
+}
+
+/// Drawn by our own shader the window looks as egui draws it, but for the rounding of the font's edges.
+#[test]
+fn software_drawing_looks_the_same() {
+    let picture = |taken_over: bool| {
+        let options = RendererOptions { dithering: false, ..RendererOptions::default() };
+        let state = match screenshot::render_state(options) {
+            Ok(state) => state,
+            Err(why) if std::env::var("CI").is_ok_and(|v| v == "true") => panic!("{why}"),
+            Err(why) => {
+                eprintln!("skipped, {why}");
+                return None;
+            }
+        };
+        let software = Software::of(&state).filter(|_| taken_over);
+        let mut harness = Harness::builder()
+            .with_size(Vec2::new(1100.0, 640.0))
+            .with_render_cursor(false)
+            .with_accessibility_check(false)
+            .allow_missing_glyphs()
+            .renderer(egui_kittest::wgpu::WgpuTestRenderer::from_render_state(state))
+            .build_eframe(|cc| {
+                software.into_iter().for_each(|s| cc.egui_ctx.add_plugin(s));
+                ViewerApp::inline(&cc.egui_ctx, catalog::robot_drive(), None)
+            });
+        harness.run_steps(6);
+        // A popup is drawn over the rest, and a font of another size makes the atlas grow.
+        let state = &mut harness.state_mut().state;
+        state.dialog = Some(cable_viewer::dialog::Dialog::About);
+        // The time it took is another every time.
+        (state.snapshot.solve_wall_s, state.live.solve_wall_s) = (1e-3, 1e-3);
+        harness.run_steps(3);
+        Some(harness.render().unwrap())
+    };
+    let (Some(by_egui), Some(own)) = (picture(false), picture(true)) else { return };
+    if let Some(folder) = std::env::var_os("KEEP_PICTURES") {
+        own.save(std::path::Path::new(&folder).join("own.png")).unwrap();
+        by_egui.save(std::path::Path::new(&folder).join("egui.png")).unwrap();
+    }
+    assert_eq!(by_egui.dimensions(), own.dimensions());
+    let most = |(a, b): (&image::Rgba<u8>, &image::Rgba<u8>)| (0..3).map(|k| a[k].abs_diff(b[k])).max().unwrap_or(0);
+    let differences: Vec<u8> = by_egui.pixels().zip(own.pixels()).map(most).collect();
+    let share = |least: u8| differences.iter().filter(|d| **d > least).count() as f64 / differences.len() as f64;
+    assert!(share(2) < 1e-3 && share(40) == 0.0, "{} of the pixels differ, {} much", share(2), share(40));
 }
