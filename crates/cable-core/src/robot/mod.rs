@@ -43,6 +43,14 @@ const APPROACH_S: f64 = 0.3;
 /// Greatest change of speed the governor asks for, m/s²: more, and the tracks slip at every start; less feels dead by hand.
 const RAMP: f64 = 1.0;
 
+/// Fastest it tips over an edge, rad/s: a machine of a metre's length that falls by a hand's breadth takes a fifth of a second.
+/// Faster: its hitch jerks the cable where the ground has a corner; slower: it hangs in the air behind its middle.
+const TIP_RAD_PER_S: f64 = 1.0;
+
+/// Over this time a robot that is held feels the pull of its cable, s, before it starts again. Shorter: it creeps on with every
+/// swing of a taut cable, lets none of it die down, and the pull stays a third off its mean; longer: it starts late by hand.
+const FELT_S: f64 = 0.3;
+
 /// Slower than this it stands, m/s.
 const STANDS_M_PER_S: f64 = 1e-4;
 
@@ -130,6 +138,8 @@ pub struct Vehicle {
     leg: usize,
     /// Time spent waiting on this leg, s.
     waited: f64,
+    /// Force along the ground as it is felt: its mean over the last [`FELT_S`], N.
+    felt: f64,
     report: RobotReport,
 }
 
@@ -156,6 +166,7 @@ impl Vehicle {
             by_hand: None,
             leg: 0,
             waited: 0.0,
+            felt: 0.0,
             report: RobotReport::default(),
         };
         let (sin, cos) = pose.pitch.sin_cos();
@@ -177,7 +188,7 @@ impl Vehicle {
         {
             let legs = self.robot.path.len();
             (self.pose, self.speed, self.by_hand) = (pose, old.speed, old.by_hand);
-            (self.leg, self.waited) = (old.leg.min(legs), old.waited);
+            (self.leg, self.waited, self.felt) = (old.leg.min(legs), old.waited, old.felt);
             let forces = Forces { normal: old.report.normal_n, thrust: old.report.thrust_n };
             let hitch = Vec2::new(old.report.hitch_x_n, old.report.hitch_y_n);
             self.tell(hitch, forces, (old.report.commanded_m_per_s, old.report.going));
@@ -223,11 +234,16 @@ impl Vehicle {
         // Lifted off the ground its tracks find no hold at all.
         let normal = if normal > 0.0 { normal } else { 0.0 };
         let pull = hitch.x * cos + hitch.y * sin - self.weight * sin;
+        self.felt += (pull - self.felt) * (dt / FELT_S).min(1.0);
+        // Held, it starts again when the cable lets it on the whole, not at every swing.
+        let held = self.speed == 0.0 && wanted != 0.0 && self.felt * wanted < pull * wanted;
+        let pull = if held { self.felt } else { pull };
         let (speed, thrust, going) = self.balance(wanted, (normal, pull), dt);
         let x = self.pose.at_m[0] + speed * cos * dt;
         let (speed, going) = match self.robot.pose_on(&self.ground, self.preset, x) {
             Some(pose) if pose.pitch * speed.signum() <= STEEPEST || speed == 0.0 => {
-                self.pose = pose;
+                let tips = (pose.pitch - self.pose.pitch).clamp(-TIP_RAD_PER_S * dt, TIP_RAD_PER_S * dt);
+                self.pose = Pose { pitch: self.pose.pitch + tips, ..pose };
                 (speed, going)
             }
             _ => (0.0, Going::Blocked),

@@ -170,3 +170,41 @@ fn orders_that_are_not_numbers_are_not_taken() {
     run(&mut v, 5.0, Vec2::zeros());
     assert!(v.speed <= v.preset.speed_m_per_s.value);
 }
+
+#[test]
+fn it_tips_over_an_edge_and_does_not_jump() {
+    let mut scene = catalog::hanging_span();
+    let points_m = vec![[-5.0, 0.0], [1.0, 0.0], [1.1, 0.15], [1.2, 0.0], [9.0, 0.0]];
+    scene.obstacles = vec![Obstacle { name: "ground".to_owned(), shape: Shape::Terrain { points_m }, friction: None }];
+    scene.robot = Some(Robot { preset: "brokk-110".to_owned(), ..Robot::default() });
+    let mut v = Vehicle::of(&scene).unwrap();
+    v.command(Some(0.5));
+    let (mut before, mut most) = (v.pose.pitch, 0.0_f64);
+    for _ in 0..(12.0 / STEP_S) as usize {
+        v.advance(STEP_S, Vec2::zeros());
+        assert!((v.pose.pitch - before).abs() <= TIP_RAD_PER_S * STEP_S * (1.0 + 1e-9));
+        before = v.pose.pitch;
+        most = most.max(before);
+    }
+    assert!(most > 0.1, "{most}");
+    assert!(v.pose.pitch.abs() < 1e-12 && v.pose.at_m[0] > 2.5, "{:?}", v.report);
+}
+
+/// A swing of the pull about what the drive can just hold: it stands, and does not creep on with every dip.
+#[test]
+fn a_swinging_pull_does_not_draw_it_on() {
+    let mut v = on_slope(0.0, |_| {});
+    let [m, p, top, c] = figures(&v);
+    let most = p - c * m * G;
+    v.command(Some(top));
+    run(&mut v, 3.0, Vec2::new(-1.05 * most, 0.0));
+    let x = v.pose.at_m[0];
+    for k in 0..600_u32 {
+        let swing = if k % 2 == 0 { 0.15 } else { -0.15 };
+        v.advance(STEP_S, Vec2::new(-(1.05 + swing) * most, 0.0));
+    }
+    assert!((v.pose.at_m[0] - x).abs() < 1e-9 && v.report.going == Going::Stalled, "{:?}", v.report);
+    // Let go for good, it goes on.
+    run(&mut v, 2.0, Vec2::new(-0.5 * most, 0.0));
+    assert!(v.pose.at_m[0] > x + 0.2, "{:?}", v.report);
+}

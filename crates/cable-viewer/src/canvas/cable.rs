@@ -5,6 +5,7 @@ use egui::{Color32, Mesh, Pos2, Stroke, Vec2, vec2};
 
 use super::view::View;
 use crate::colour::ColourScale;
+use crate::plot;
 use crate::state::{AppState, Item};
 
 /// Thinnest ribbon, points: the true diameter is drawn only where it is wider.
@@ -48,6 +49,13 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
         for pair in seen(view, piece, f64::INFINITY).windows(2) {
             view.avoid_line(view.at([pair[0].x_m, pair[0].y_m]), view.at([pair[1].x_m, pair[1].y_m]));
         }
+    }
+    if let Some(s) = plot::hovered(view.painter.ctx(), plot::along::GROUP)
+        && let Some(n) =
+            solution.cables.get(state.current_cable()).and_then(|c| c.nodes.iter().find(|n| n.arc_length_m >= s))
+    {
+        // Where the pointer is in the graph along the cable.
+        view.painter.circle_stroke(view.at([n.x_m, n.y_m]), 7.0, Stroke::new(2.0, view.palette.accent));
     }
     if state.layers.nodes {
         for n in solution.cables.iter().flat_map(|c| &c.nodes) {

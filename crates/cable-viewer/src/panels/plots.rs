@@ -30,6 +30,14 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let touched = if !wide && height < LEAST_HEIGHT {
         // No room for both: the one that is always full.
         vec![along_cable(ui, state, view, room)]
+    } else if wide && view.second.is_some() {
+        ui.columns_const(|[left, middle, right]| {
+            vec![
+                time::ui(left, state, view, height),
+                time::second(middle, state, view, height),
+                along_cable(right, state, view, height),
+            ]
+        })
     } else if wide {
         ui.columns_const(|[left, right]| {
             vec![time::ui(left, state, view, height), along_cable(right, state, view, height)]
@@ -52,7 +60,14 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut View) {
     for measure in Measure::ALL {
         let robot = matches!(measure, Measure::Pull | Measure::Speed);
         if !robot || state.scene.robot.is_some() {
-            ui.selectable_value(&mut view.measure, measure, measure.name()).on_hover_text(measure.help());
+            let on = view.measure == measure || view.second == Some(measure);
+            let help = format!(
+                "{}. Shift+click: in a second graph beside the first, with time and cursors linked",
+                measure.help()
+            );
+            if ui.selectable_label(on, measure.name()).on_hover_text(help).clicked() {
+                pick(ui, view, measure);
+            }
         }
     }
     ui.separator();
@@ -75,6 +90,17 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut View) {
         && matches!(view.measure, Measure::Cable(Quantity::Stress | Quantity::Strain))
     {
         ui.weak("Over time: tension, as there are several cables");
+    }
+}
+
+/// A click shows a measure alone; with shift, in a second graph or not any more.
+fn pick(ui: &Ui, view: &mut View, measure: Measure) {
+    if !ui.input(|i| i.modifiers.shift) {
+        (view.measure, view.second) = (measure, None);
+    } else if view.second == Some(measure) {
+        view.second = None;
+    } else if view.measure != measure {
+        view.second = Some(measure);
     }
 }
 

@@ -10,6 +10,9 @@ use super::measure::Measure;
 use super::series::{Series, thin};
 use super::{Graph, Touched, View, limits, show};
 
+/// The group of graphs along the cable.
+pub const GROUP: &str = "along";
+
 /// Draws it.
 pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, view: View, height: f32) -> Touched {
     let (quantity, follow) = (view.measure.quantity(), view.follow);
@@ -18,6 +21,7 @@ pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, view: View, height
     let line = |points| vec![Series { name: quantity.name().to_owned(), points, held: None }];
     let graph = Graph {
         title: "Along the cable",
+        group: GROUP,
         measure: Measure::Cable(quantity),
         across: ("Arc length", Unit::M),
         range: [0.0, cable.length_m],

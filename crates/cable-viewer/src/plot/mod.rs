@@ -62,6 +62,8 @@ const SWATCH: f32 = 16.0;
 pub struct View {
     /// What goes up.
     pub measure: Measure,
+    /// What goes up in a second graph over time.
+    pub second: Option<Measure>,
     /// The view follows the data.
     pub follow: bool,
     /// How much of the past is followed, s; None = all of it.
@@ -70,7 +72,7 @@ pub struct View {
 
 impl Default for View {
     fn default() -> Self {
-        Self { measure: Measure::Cable(Quantity::Tension), follow: true, window_s: Some(10.0) }
+        Self { measure: Measure::Cable(Quantity::Tension), second: None, follow: true, window_s: Some(10.0) }
     }
 }
 
@@ -78,6 +80,8 @@ impl Default for View {
 pub struct Graph<'a> {
     /// Names the graph to tests and screen readers.
     pub title: &'a str,
+    /// Graphs of one group have the same way right: their ends and their cursors are linked.
+    pub group: &'a str,
     /// What goes up, and its unit.
     pub measure: Measure,
     /// What goes right, its unit, and how many SI units that holds, such as `Time`, `s`, 1.
@@ -148,12 +152,14 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
     let follow = graph.follow;
     let top = ui.cursor().top();
     let (title, export) = legend(ui, graph, lines, high);
-    let mut cursors = Cursors::load(ui, graph.title);
+    let mut cursors = Cursors::load(ui, graph.group);
     let cursor_text = cursors.text([(across_symbol, x_si), (symbol, si)], lines.first());
     let height = (graph.height - (ui.cursor().top() - top)).max(LEAST_HEIGHT);
     let columns = f64::from(ui.available_width() / COLUMN).max(1.0);
     let rows = f64::from((height - 40.0) / ROW).max(1.0);
     let plot = Plot::new(graph.title)
+        .link_axis(Id::unique(("axis", graph.group.to_owned())), [!follow, false])
+        .link_cursor(Id::unique(("cursor", graph.group.to_owned())), [true, false])
         .height(height)
         .x_axis_label(format!("{across}, {across_symbol}"))
         .y_axis_label(format!("{}, {symbol}", graph.measure.name()))
@@ -190,9 +196,11 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
     let bounds = response.transform.bounds();
     let ends = [bounds.min()[0] * x_si, bounds.max()[0] * x_si];
     ui.data_mut(|d| d.insert_temp(Id::unique(("in view", graph.title)), ends));
+    let over = response.response.hover_pos().map(|p| response.transform.value_from_position(p).x * x_si);
+    ui.data_mut(|d| d.insert_temp(hovered_id(graph.group), over));
     let clicked = response.response.clicked().then(|| response.response.interact_pointer_pos()).flatten();
     if let Some(at) = clicked {
-        cursors.click(ui, graph.title, response.transform.value_from_position(at).x * x_si);
+        cursors.click(ui, graph.group, response.transform.value_from_position(at).x * x_si);
     }
     let last = lines.iter().filter_map(|l| Some((l, l.points.last()?)));
     let spoken: Vec<String> =
@@ -219,6 +227,16 @@ fn look(line: &Series, k: usize) -> (Color32, LineStyle) {
         Some(held) => (LINES[held % LINES.len()], LineStyle::dashed_loose()),
         None => (LINES[k % LINES.len()], LineStyle::Solid),
     }
+}
+
+fn hovered_id(group: &str) -> Id {
+    Id::unique(("hovered", group.to_owned()))
+}
+
+/// Where the pointer is in a graph of a group, SI.
+#[must_use]
+pub fn hovered(ctx: &egui::Context, group: &str) -> Option<f64> {
+    ctx.data(|d| d.get_temp::<Option<f64>>(hovered_id(group))).flatten()
 }
 
 /// Left and right end of what was last in view of a graph, SI.

@@ -16,8 +16,19 @@ const TITLE: &str = "Over time";
 /// Shortest time axis, s: the first frames would otherwise jump.
 const SHORTEST_S: f64 = 1.0;
 
-/// Draws it. Stress and strain follow from tension for a single cable only; with several, tension is shown.
+/// Draws the first one. Stress and strain follow from tension for a single cable only; with several, tension is shown.
 pub fn ui(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touched {
+    graph(ui, state, view, (TITLE, height))
+}
+
+/// Draws the second one, with time linked to the first.
+pub fn second(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touched {
+    let Some(measure) = view.second else { return Touched::default() };
+    let title = format!("{} over time", measure.name());
+    graph(ui, state, View { measure, ..view }, (&title, height))
+}
+
+fn graph(ui: &mut Ui, state: &AppState, view: View, (title, height): (&str, f32)) -> Touched {
     let scene = state.snapshot.scene.as_deref().unwrap_or(&state.scene);
     let Some(cable) = scene.cables.get(state.current_cable()) else { return Touched::default() };
     let measure = match view.measure {
@@ -29,12 +40,13 @@ pub fn ui(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touched {
     let left_s = view.window_s.map_or(first_s, |w| (now_s - w).max(first_s));
     let range = [left_s, now_s.max(left_s + view.window_s.unwrap_or(SHORTEST_S).max(SHORTEST_S))];
     // A zoomed graph shows what it showed in the frame before, and a little on each side.
-    let seen = if view.follow { None } else { in_view(ui, TITLE) }.unwrap_or(range);
+    let seen = if view.follow { None } else { in_view(ui, title) }.unwrap_or(range);
     let margin = 0.1 * (seen[1] - seen[0]);
     let seen = [seen[0] - margin, seen[1] + margin];
     let columns = ui.available_width().max(1.0) as usize;
     let graph = Graph {
-        title: TITLE,
+        title,
+        group: "time",
         measure,
         across: ("Time", Unit::S),
         range,

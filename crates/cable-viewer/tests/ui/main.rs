@@ -13,6 +13,7 @@ mod session;
 mod speed;
 mod stories;
 mod timing;
+mod wishes;
 
 use cable_core::scene::{Shape, catalog};
 use cable_viewer::ViewerApp;

@@ -146,3 +146,32 @@ fn speed_of_a_million_samples() {
          thinned to {seen} in {view:.0} µs, built once in {built:.0} ms"
     );
 }
+
+#[test]
+fn s12_two_graphs_over_time_have_their_cursors_linked() {
+    let mut harness = open(catalog::robot_drive());
+    play(&mut harness, 40);
+    harness.get_by_label("Energy").click_modifiers(egui::Modifiers::SHIFT);
+    harness.run_steps(3);
+    let plot = harness.get_by_label("Energy over time").rect();
+    let at = plot.left_center() + egui::vec2(80.0, 0.0);
+    harness.hover_at(at);
+    harness.step();
+    for pressed in [true, false] {
+        crate::press(&harness, at, pressed);
+        harness.step();
+    }
+    harness.run_steps(30);
+    let spoken = |h: &Harness<'_, ViewerApp>, label: &str| {
+        h.get_by_label(label).accesskit_node().description().unwrap_or_default()
+    };
+    let (first, second) = (spoken(&harness, "Over time"), spoken(&harness, "Energy over time"));
+    let place = |text: &str| {
+        text.split("; ").find_map(|t| t.strip_prefix("A ")).map(|t| t.split(':').next().unwrap_or_default().to_owned())
+    };
+    assert!(place(&first).is_some() && place(&first) == place(&second), "{first} / {second}");
+    // Alone again.
+    harness.get_by_label("Energy").click();
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Energy over time").is_none());
+}

@@ -68,8 +68,8 @@ fn print(what: &str, mut ms: Vec<f64>) {
 
 /// Drags the last support of a scene's first cable round a small circle: from each edit to the end of the first frame
 /// that shows it, frames being a 60th of a second apart as on a screen.
-fn timed_drag(name: &str, scene: Scene, (playing, radius_m): (bool, f64)) {
-    let mut harness = threaded(scene, 200);
+fn timed_drag(name: &str, (scene, segments): (Scene, usize), (playing, radius_m): (bool, f64)) {
+    let mut harness = threaded(scene, segments);
     let last = harness.state().state.scene.cables[0].supports.len() - 1;
     let item = Item::Support { cable: 0, support: last };
     let at: Point = harness.state().state.scene.cables[0].supports[last].at_m.expect("held");
@@ -97,28 +97,35 @@ fn timed_drag(name: &str, scene: Scene, (playing, radius_m): (bool, f64)) {
         let error = &harness.state().state.snapshot.error;
         assert_eq!(*error, None, "{name}, edit {k}");
     }
-    print(&format!("{name}, 200 segments, edit to picture"), delays);
-    print(&format!("{name}, 200 segments, solve           "), solves);
-    print(&format!("{name}, 200 segments, frame of the ui "), frames);
+    print(&format!("{name}, {segments} segments, edit to picture"), delays);
+    print(&format!("{name}, {segments} segments, solve           "), solves);
+    print(&format!("{name}, {segments} segments, frame of the ui "), frames);
 }
 
 #[test]
 fn timed_edits_at_200_segments() {
     for (name, scene) in [("tank", catalog::tank()), ("hanging span", catalog::hanging_span())] {
-        timed_drag(name, scene, (false, 0.4));
+        timed_drag(name, (scene, 200), (false, 0.4));
+    }
+}
+
+#[test]
+fn timed_edits_at_1000_segments() {
+    for (name, scene) in [("tank", catalog::tank()), ("hanging span", catalog::hanging_span())] {
+        timed_drag(name, (scene, 1000), (false, 0.4));
     }
 }
 
 /// Eight centimetres an edit: what a quick hand does in a frame.
 #[test]
 fn timed_edits_by_a_quick_hand() {
-    timed_drag("tank, quick", catalog::tank(), (false, 1.2));
+    timed_drag("tank, quick", (catalog::tank(), 200), (false, 1.2));
 }
 
 #[test]
 fn timed_edits_at_200_segments_while_time_runs() {
     for (name, scene) in [("tank, playing", catalog::tank()), ("hanging span, playing", catalog::hanging_span())] {
-        timed_drag(name, scene, (true, 0.4));
+        timed_drag(name, (scene, 200), (true, 0.4));
     }
 }
 
