@@ -13,6 +13,8 @@ mod slow;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cable_core::scene::{Obstacle, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::solution::{Solution, WarningKind};
@@ -141,16 +143,32 @@ fn ranks(csv: &str) -> Vec<(String, u8)> {
     csv.lines().skip(1).map(row).collect()
 }
 
+/// What every model does in every regime, by regime; each thread takes the next one that nobody has begun.
+fn verdicts(regimes: &[Regime]) -> Vec<Vec<Verdict>> {
+    let jobs: Vec<(usize, Model)> = (0..regimes.len()).flat_map(|r| Model::SOLVERS.map(|m| (r, m))).collect();
+    let (next, done) = (AtomicUsize::new(0), Mutex::new(vec![Vec::new(); regimes.len()]));
+    let work = || {
+        while let Some(&(r, model)) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let verdict = (regimes[r].judge)(model).unwrap_or_else(|e| Verdict::refused(&e));
+            done.lock().unwrap()[r].push((model, verdict));
+        }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
+    std::thread::scope(|s| (0..threads).for_each(|_| drop(s.spawn(work))));
+    let of = |found: &Vec<(Model, Verdict)>, m: Model| found.iter().find(|f| f.0 == m).unwrap().1.clone();
+    let done = done.into_inner().unwrap();
+    done.iter().map(|found| Model::SOLVERS.map(|m| of(found, m)).to_vec()).collect()
+}
+
 #[test]
 fn no_model_is_wrong_in_silence() {
     let regimes: Vec<Regime> = rest::regimes().into_iter().chain(slow::regimes()).chain(motion::regimes()).collect();
     let mut csv = "regime,model,verdict,error,said,figure\n".to_owned();
     let mut table = "# Stability atlas\n\nWhere methods are known to fail, and what each model does there. Written by `UPDATE_CHARTS=1 cargo test -p cable-tests --test stability_atlas`,\nwhich fails where a model is wrong without saying so. Figures are relative errors of what the last column names.\n\n| regime | catenary | spans | fem | mass-spring | figure |\n|---|---|---|---|---|---|\n".to_owned();
     let mut wrong = Vec::new();
-    for r in &regimes {
+    for (r, found) in regimes.iter().zip(verdicts(&regimes)) {
         let _ = write!(table, "| {} |", r.name);
-        for model in Model::SOLVERS {
-            let verdict = (r.judge)(model).unwrap_or_else(|e| Verdict::refused(&e));
+        for (model, verdict) in Model::SOLVERS.into_iter().zip(found) {
             let (error, said) = match verdict {
                 Verdict::Right(e) | Verdict::Wrong(e) => (format!("{e:.1e}"), String::new()),
                 Verdict::Said(e, said) => (format!("{e:.1e}"), format!("{said:.1e}")),
