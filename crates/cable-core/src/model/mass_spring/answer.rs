@@ -23,7 +23,7 @@ impl MassSpringModel {
             name: self.problem.cable.name.clone(),
             nodes: self.nodes(),
             supports: (0..self.node_of.len()).map(|k| self.reaction(k)).collect(),
-            error_estimate: self.least_certain().map(|(_, uncertain)| uncertain),
+            error_estimate: self.uncertain(),
             contacts: self.wraps().into_iter().map(|(contact, _)| contact).collect(),
             ..CableSolution::default()
         }

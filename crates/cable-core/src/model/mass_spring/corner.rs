@@ -16,6 +16,7 @@
 
 use super::MassSpringModel;
 use crate::energy::bending::turn;
+use crate::math::larger;
 use crate::solution::{ContactReport, Warning, WarningKind};
 
 /// Nodes that share the turn of a round at least: fewer is a corner to this mesh.
@@ -60,6 +61,13 @@ impl MassSpringModel {
     pub(super) fn least_certain(&self) -> Option<(ContactReport, f64)> {
         let worst = self.wraps().into_iter().reduce(|a, b| if b.1 > a.1 { b } else { a });
         worst.filter(|(_, uncertain)| *uncertain > self.settings.tolerance)
+    }
+
+    /// How uncertain tension is, by corners or by what the floor holds, if that is worse than the accuracy asked for.
+    pub(super) fn uncertain(&self) -> Option<f64> {
+        let corner = self.least_certain().map_or(0.0, |(_, uncertain)| uncertain);
+        let worst = larger(corner, self.held_by_floor());
+        (worst > self.settings.tolerance).then_some(worst)
     }
 
     /// Says beyond which contact tension is least certain.

@@ -10,7 +10,7 @@ use super::rest::System;
 use super::{Anchor, MassSpringModel, Touch};
 use crate::contact::friction;
 use crate::contact::pairs::Pair;
-use crate::math::{Mat2, Vec2, perp};
+use crate::math::{Mat2, Vec2, larger, perp};
 
 /// Gap at which a contact begins to push, m; the whole load on one contact closes it. Less is stiffer and takes more
 /// steps, more lifts the cable.
@@ -287,6 +287,20 @@ impl Rub {
 }
 
 impl MassSpringModel {
+    /// What a floor leaves open of tension, over the largest: where the cable does not slide on it, friction is whatever the
+    /// way there left, up to μ times what presses. 0 where nothing is remembered.
+    pub(super) fn held_by_floor(&self) -> f64 {
+        let Some((mu, normal)) = self.problem.floor_friction else { return 0.0 };
+        let on_floor = self.anchors.iter().take_while(|a| a.obstacle == FLOOR).count();
+        let top = self.tension.iter().copied().fold(0.0, larger);
+        if on_floor != self.x.len() || !(top > 0.0) {
+            return 0.0;
+        }
+        let sticks = |n: &usize| (self.x[*n] - self.anchors[*n].at).norm() < SLIPPING * SLIP;
+        let held: f64 = (0..on_floor).filter(sticks).map(|n| mu * normal * self.half_share(n)).sum();
+        held / top
+    }
+
     /// Element and fraction of a material point.
     fn material(&self, s: f64) -> (usize, f64) {
         let e = self.s.partition_point(|&v| v <= s).clamp(1, self.s.len() - 1) - 1;
