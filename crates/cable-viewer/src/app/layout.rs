@@ -25,6 +25,8 @@ const READ: &[Section] =
 
 /// Narrower windows (points) have one side panel instead of two: the canvas would be smaller than its labels.
 const WIDE: f32 = 1100.0;
+/// Lower windows (points) have no graphs: nothing would be left of the canvas.
+const LEAST_FOR_GRAPHS: f32 = 340.0;
 /// Lowest panel of graphs, points.
 const LEAST_GRAPHS: f32 = 130.0;
 
@@ -46,6 +48,10 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     } else {
         tabs(ui, state, commands);
     }
+    if height < LEAST_FOR_GRAPHS {
+        CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
+        return;
+    }
     let graphs = (0.3 * height).clamp(LEAST_GRAPHS, 240.0);
     Panel::bottom("plots").resizable(true).default_size(graphs).size_range(LEAST_GRAPHS..=500.0).show(ui, |ui| {
         // A panel takes the height of what is in it: without this it shrinks by a margin a frame.
@@ -62,7 +68,10 @@ fn side(ui: &mut Ui, id: &'static str, (sections, state, commands): (&[Section],
 
 /// One panel for both in a window that has no room for two.
 fn tabs(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    Panel::left("narrow").default_size(320.0).size_range(220.0..=420.0).show(ui, |ui| {
+    // A large scale on a small screen: half of it stays for the picture.
+    let most = 0.5 * ui.ctx().content_rect().width();
+    let range = most.min(220.0)..=most.min(420.0);
+    Panel::left("narrow").default_size(most.min(320.0)).size_range(range).show(ui, |ui| {
         let id = Id::unique("narrow tab");
         let mut read: bool = ui.data(|d| d.get_temp(id)).unwrap_or_default();
         ui.horizontal(|ui| {

@@ -92,7 +92,7 @@ fn readouts(ui: &mut Ui, r: &RobotReport) {
             },
             "Along the ground, of what is asked for",
         ),
-        ("Slope", format!("{:.1}°", r.pitch_deg), "Positive where it climbs to the right"),
+        ("Slope", format!("{:.1}°", r.pitch_deg).replace('-', "−"), "Positive where it climbs to the right"),
         (
             "Track force",
             format!("{}, {} of what holds", unit::force(r.thrust_n), unit::percent(share)),

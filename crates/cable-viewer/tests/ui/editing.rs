@@ -306,3 +306,40 @@ fn the_next_thing_is_picked_by_a_key_and_moved_by_arrows() {
     assert!(after.x < before.x - 3.0 && (after.y - before.y).abs() < 0.1, "{before} {after}");
     assert_eq!(state(&harness).snapshot.solution.as_ref().unwrap().time_s, 0.0, "it is no step in time");
 }
+
+#[test]
+fn safe_reach_is_found_beside_the_window_and_can_be_ended() {
+    use cable_viewer::reach::{Job, Order, Progress};
+    let mut scene = catalog::robot_drive();
+    scene.cables[0].segments = Some(24);
+    let mut harness = open(scene.clone());
+    harness.set_size(Vec2::new(1280.0, 1800.0));
+    harness.run_steps(3);
+    click(&mut harness, "Find safe reach");
+    assert!(matches!(state(&harness).reach, Progress::Running(_)), "{:?}", state(&harness).reach);
+    // The window goes on meanwhile.
+    harness.key_press(Key::ArrowRight);
+    harness.run_steps(3);
+    assert_eq!(state(&harness).snapshot.error, None);
+    click(&mut harness, "Cancel safe reach");
+    assert!(matches!(state(&harness).reach, Progress::None));
+
+    // A short search to its end.
+    let order = Order { scene: scene.clone(), settings: cable_core::Settings::default(), ends_m: [9.9, 10.1] };
+    let job = Job::start(order, || {});
+    let began = std::time::Instant::now();
+    let map = loop {
+        match job.progress() {
+            Progress::Done(map, of) => {
+                assert_eq!(*of, scene);
+                break map;
+            }
+            Progress::Failed(why) => panic!("{why}"),
+            Progress::None | Progress::Running(_) => {}
+        }
+        assert!(began.elapsed().as_secs() < 60, "{:?}", job.progress());
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    };
+    assert_eq!(map.places.len(), cable_viewer::reach::PLACES);
+    assert!(map.safe_m(map.service_n).is_some());
+}

@@ -44,7 +44,7 @@ fn controls(harness: &Harness<'_, ViewerApp>) -> Vec<(String, Role, Pos2)> {
 }
 
 #[test]
-fn every_control_has_a_name() {
+fn u11_every_control_has_a_name() {
     for scene in [catalog::robot_drive(), catalog::loads_wind_heat(), catalog::pulley_waypoints()] {
         let mut harness = open(scene);
         apply(&mut harness, Command::View(ViewCommand::Hold));
@@ -56,7 +56,7 @@ fn every_control_has_a_name() {
 }
 
 #[test]
-fn every_control_explains_itself_on_hover() {
+fn u11_every_control_explains_itself_on_hover() {
     let mut harness = open(catalog::robot_drive());
     apply(&mut harness, Command::View(ViewCommand::Hold));
     harness.ctx.all_styles_mut(|style| {
@@ -163,4 +163,20 @@ fn the_keyboard_alone_opens_edits_runs_and_reads() {
     }
     assert!(seen.len() >= 35, "{}", seen.len());
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
+}
+
+#[test]
+fn the_window_is_usable_at_scales_from_a_half_to_four() {
+    let mut harness = open_span();
+    for scale in [0.5, 1.0, 2.0, 4.0] {
+        harness.ctx.set_zoom_factor(scale);
+        harness.run_steps(4);
+        apply(&mut harness, Command::View(ViewCommand::Fit));
+        let canvas = harness.get_by_label("Canvas").rect();
+        assert!(canvas.is_positive(), "{scale}: {canvas}");
+        harness.get_by_label("Play");
+        harness.key_press(Key::ArrowRight);
+        harness.run_steps(2);
+        assert_eq!(state(&harness).snapshot.error, None, "{scale}");
+    }
 }
