@@ -42,11 +42,37 @@ fn entry(ui: &mut Ui, text: &str, shortcut: Option<&KeyboardShortcut>) -> bool {
     if let Some(shortcut) = shortcut {
         button = button.shortcut_text(ui.ctx().format_shortcut(shortcut));
     }
-    let clicked = ui.add(button).clicked();
+    let clicked = ui.add(button).on_hover_text(help(text)).on_disabled_hover_text(help(text)).clicked();
     if clicked {
         ui.close();
     }
     clicked
+}
+
+/// What an entry does, where its name leaves something open.
+fn help(text: &str) -> &'static str {
+    match text {
+        "Open…" => "A scene file; asks first if this one is not saved",
+        "Save" => "To where it came from; the old file stays whole if the disk refuses",
+        "Save as…" => "To another file",
+        "Import map…" => "Terrain and beams from a table or an SVG, added to the scene",
+        "Open run…" => "A folder with all that was recorded",
+        "Save run…" => "All that was recorded, as tables in a folder",
+        "Quit" => "Asks first if the scene is not saved",
+        "Undo" => "Back by one edit; a drag is one",
+        "Redo" => "Forward by one edit",
+        "Command palette…" => "Everything that can be done, by name",
+        "Copy" => "What is picked; other programs get its points as a table",
+        "Cut" => "Copies what is picked and takes it out",
+        "Paste" => "What was copied, at the pointer or a little beside where it was",
+        "Remove selected" => "Takes out what is picked; the ends of a cable become free",
+        "Add a cable" => "Like the present one, half a metre above it",
+        "Reset to start (R)" => "Back to the start, bit for bit",
+        "Restart the solver" => "The scene stays as it is",
+        "Fit scene (F)" => "All of it in view",
+        "Recentre on the cable (C)" => "Its middle in the middle, same scale",
+        _ => "Opens this scene; asks first if the present one is not saved",
+    }
 }
 
 fn file(ui: &mut Ui, commands: &mut Vec<Command>) {
@@ -117,12 +143,14 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     ui.separator();
     let mut layers = state.layers;
-    ui.checkbox(&mut layers.grid, "Grid");
-    ui.checkbox(&mut layers.labels, "Labels");
-    ui.checkbox(&mut layers.contacts, "Contacts");
-    ui.checkbox(&mut layers.forces, "Forces");
+    ui.checkbox(&mut layers.grid, "Grid").on_hover_text("Lines and numbered axes");
+    ui.checkbox(&mut layers.labels, "Labels").on_hover_text("Names, coordinates and figures");
+    ui.checkbox(&mut layers.contacts, "Contacts").on_hover_text(
+        "Where the cable touches: normal force and friction; filled where it holds, hollow where it slides",
+    );
+    ui.checkbox(&mut layers.forces, "Forces").on_hover_text("Loads, and what the cable does to its supports");
     ui.checkbox(&mut layers.components, "Parts of forces").on_hover_text("Of each force, to the right and upwards");
-    ui.checkbox(&mut layers.nodes, "Nodes");
+    ui.checkbox(&mut layers.nodes, "Nodes").on_hover_text("The points the model works with");
     ui.separator();
     ui.checkbox(&mut layers.snap, "Snap to grid").on_hover_text("Dragged points land on the finest grid lines shown");
     if layers != state.layers {
@@ -139,9 +167,10 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     ui.separator();
     let mut theme = state.theme;
-    ui.radio_value(&mut theme, egui::ThemePreference::System, "Theme of the system");
-    ui.radio_value(&mut theme, egui::ThemePreference::Light, "Light theme");
-    ui.radio_value(&mut theme, egui::ThemePreference::Dark, "Dark theme");
+    ui.radio_value(&mut theme, egui::ThemePreference::System, "Theme of the system")
+        .on_hover_text("Dark where it does not say");
+    ui.radio_value(&mut theme, egui::ThemePreference::Light, "Light theme").on_hover_text("Dark on light");
+    ui.radio_value(&mut theme, egui::ThemePreference::Dark, "Dark theme").on_hover_text("Light on dark");
     if theme != state.theme {
         commands.push(Command::View(ViewCommand::SetTheme(theme)));
     }
