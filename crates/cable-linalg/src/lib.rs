@@ -101,6 +101,19 @@ impl BandMatrix {
         self.values[k] += value;
     }
 
+    /// Adds a 2×2 block in rows i, i + 1 and columns j, j + 1 with i ≤ j and, by symmetry, its mirror; of a block on the
+    /// diagonal (i = j) the entry below it is not read.
+    pub fn add_block(&mut self, i: usize, j: usize, block: [[f64; 2]; 2]) {
+        for c in 0..2 {
+            let column = j + c;
+            let row = self.column_start(column) + i - column.saturating_sub(self.half_bandwidth);
+            self.values[row] += block[0][c];
+            if i < j || c == 1 {
+                self.values[row + 1] += block[1][c];
+            }
+        }
+    }
+
     /// Makes row and column `i` those of the identity: unknown `i` is prescribed.
     pub fn pin(&mut self, i: usize) {
         let b = self.half_bandwidth;
@@ -307,6 +320,19 @@ mod tests {
             let definite = factor.factor(&a).is_ok();
             prop_assert_eq!(definite, eigenvalues.iter().all(|&e| e > 0.0));
             prop_assert_eq!(factor.negative_pivots(), eigenvalues.iter().filter(|&&e| e < 0.0).count());
+        }
+    }
+
+    #[test]
+    fn a_block_is_its_entries() {
+        let block = [[1.0, 2.0], [3.0, 4.0]];
+        for (i, j) in [(0, 0), (0, 2), (2, 2), (2, 4), (6, 6), (4, 6)] {
+            let (mut a, mut b) = (BandMatrix::new(8, 3), BandMatrix::new(8, 3));
+            a.add_block(i, j, block);
+            for (r, c) in [(0, 0), (0, 1), (1, 0), (1, 1)].into_iter().filter(|&(r, c)| i < j || r <= c) {
+                b.add(i + r, j + c, block[r][c]);
+            }
+            assert_eq!(a.values, b.values, "{i}, {j}");
         }
     }
 

@@ -76,6 +76,15 @@ pub struct Corner {
     pub after: Option<Vec2>,
 }
 
+/// A piece of an obstacle that something can be near to: an edge (with the corners it answers for) or a circle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// Index of the body.
+    pub body: usize,
+    /// Index of the edge; None: the body is a circle.
+    pub edge: Option<usize>,
+}
+
 impl Corner {
     /// Whether the boundary turns away from the outside here (an open end counts).
     #[must_use]
@@ -283,6 +292,16 @@ impl Geometry {
     #[must_use]
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
+    }
+
+    /// All parts that a cable inside the box from `low` to `high` can come nearer than `reach` to (m), and some more.
+    pub fn parts(&self, low: Vec2, high: Vec2, reach: f64) -> impl Iterator<Item = Part> {
+        self.bodies.iter().enumerate().flat_map(move |(body, b)| {
+            let r = Vec2::repeat(reach + b.offset);
+            let circle = b.center.filter(|c| (0..2).all(|k| c[k] + r[k] >= low[k] && c[k] - r[k] <= high[k]));
+            let edges = b.candidates(low - r, high + r).map(move |k| Part { body, edge: Some(k) });
+            circle.map(|_| Part { body, edge: None }).into_iter().chain(edges)
+        })
     }
 
     /// The body that a feature belongs to.

@@ -8,9 +8,10 @@ pub mod barrier;
 pub mod distance;
 pub mod friction;
 pub mod geometry;
+pub mod near;
 pub mod own;
 pub mod pairs;
-mod sweep;
+pub mod sweep;
 #[cfg(test)]
 mod tests;
 

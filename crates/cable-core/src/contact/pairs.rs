@@ -12,7 +12,7 @@
 //! cancel are not emitted; what remains has weight +1 or, at a shallow concave corner, −1.
 
 use super::Gap;
-use super::geometry::{Body, Geometry};
+use super::geometry::{Body, Geometry, Part};
 use crate::math::Vec2;
 
 /// A contact pair with its sign.
@@ -35,19 +35,31 @@ impl Geometry {
         reach: f64,
         out: &mut impl FnMut(Pair),
     ) {
-        for body in self.bodies() {
-            let r = Vec2::repeat(reach + body.offset);
-            let (low, high) = (p - r, p + r);
-            if let Some(c) = body.center {
-                push_wedge(body, body.first + 1, c, [before, Some(p), after], reach, out);
-            }
-            for k in body.candidates(low, high) {
-                push_edge(body, k, p, reach, out);
-                for corner in body.corners_of(k) {
-                    push_corner(body, &corner, p, reach, out);
-                    if body.juts_out(&corner) {
-                        push_wedge(body, corner.feature, corner.at, [before, Some(p), after], reach, out);
-                    }
+        self.node_pairs_among(self.parts(p, p, reach), [before, Some(p), after], reach, out);
+    }
+
+    /// The same among `parts`, which hold all that are within reach. The chain is the node between its neighbours.
+    pub fn node_pairs_among(
+        &self,
+        parts: impl Iterator<Item = Part>,
+        chain: [Option<Vec2>; 3],
+        reach: f64,
+        out: &mut impl FnMut(Pair),
+    ) {
+        let Some(p) = chain[1] else { return };
+        for part in parts {
+            let Some(body) = self.bodies().get(part.body) else { continue };
+            let Some(k) = part.edge else {
+                if let Some(c) = body.center {
+                    push_wedge(body, body.first + 1, c, chain, reach, out);
+                }
+                continue;
+            };
+            push_edge(body, k, p, reach, out);
+            for corner in body.corners_of(k) {
+                push_corner(body, &corner, p, reach, out);
+                if body.juts_out(&corner) {
+                    push_wedge(body, corner.feature, corner.at, chain, reach, out);
                 }
             }
         }
@@ -55,14 +67,29 @@ impl Geometry {
 
     /// Pairs of the inside of one segment against corners and circles within `reach`.
     pub fn segment_pairs(&self, a: Vec2, b: Vec2, reach: f64, out: &mut impl FnMut(Pair)) {
-        for body in self.bodies() {
-            if let Some(c) = body.center {
-                push_segment(body, body.first + 1, c, [a, b], reach, out);
-            }
-            let r = Vec2::repeat(reach + body.offset);
-            for k in body.candidates(a.inf(&b) - r, a.sup(&b) + r) {
-                for corner in body.corners_of(k).filter(|c| body.juts_out(c)) {
-                    push_segment(body, corner.feature, corner.at, [a, b], reach, out);
+        self.segment_pairs_among(self.parts(a.inf(&b), a.sup(&b), reach), [a, b], reach, out);
+    }
+
+    /// The same among `parts`, which hold all that are within reach.
+    pub fn segment_pairs_among(
+        &self,
+        parts: impl Iterator<Item = Part>,
+        ends: [Vec2; 2],
+        reach: f64,
+        out: &mut impl FnMut(Pair),
+    ) {
+        for part in parts {
+            let Some(body) = self.bodies().get(part.body) else { continue };
+            match part.edge {
+                None => {
+                    if let Some(c) = body.center {
+                        push_segment(body, body.first + 1, c, ends, reach, out);
+                    }
+                }
+                Some(k) => {
+                    for corner in body.corners_of(k).filter(|c| body.juts_out(c)) {
+                        push_segment(body, corner.feature, corner.at, ends, reach, out);
+                    }
                 }
             }
         }

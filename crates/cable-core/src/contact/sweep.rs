@@ -6,7 +6,7 @@
 //! potential contact", ACM TOG 2021).
 
 use super::distance::{point_segment, segment_segment};
-use super::geometry::Geometry;
+use super::geometry::{Geometry, Part};
 use crate::math::Vec2;
 
 /// Steps of advancement per feature. Fewer return a shorter free way at glancing approach (still safe); the
@@ -38,47 +38,79 @@ impl Geometry {
     /// at one or both ends: near these only its other end can come too close.
     #[must_use]
     pub fn free_fraction_round(&self, from: [Vec2; 2], to: [Vec2; 2], keep: f64, round: [Option<usize>; 2]) -> f64 {
-        let [a, b] = from;
-        let (da, db) = (to[0] - a, to[1] - b);
-        let speed = if da.norm_squared() > db.norm_squared() { da.norm() } else { db.norm() };
+        let sweep = Sweep::new(from, to, keep);
+        self.free_fraction_among(self.parts(sweep.low, sweep.high, sweep.margin), &sweep, round)
+    }
+
+    /// The same among `parts`, which hold all within the sweep's margin of its box.
+    pub fn free_fraction_among(
+        &self,
+        parts: impl Iterator<Item = Part>,
+        sweep: &Sweep,
+        round: [Option<usize>; 2],
+    ) -> f64 {
+        let Sweep { from: [a, b], go: [da, db], .. } = *sweep;
         if !(da.norm_squared() + db.norm_squared()).is_finite() {
             return 0.0;
         }
-        if speed == 0.0 {
+        if sweep.speed == 0.0 {
             return 1.0;
         }
-        let keep = keep.clamp(0.0, MAX_KEEP);
-        let (low, high) = (a.inf(&b).inf(&to[0]).inf(&to[1]), a.sup(&b).sup(&to[0]).sup(&to[1]));
-        let noise = ULPS * f64::EPSILON * (low.abs().max() + high.abs().max());
-        // A feature farther from the swept box than this keeps its part of the gap by itself.
-        let margin = speed * keep / (1.0 - keep) + noise;
+        let way = [sweep.speed, sweep.keep, sweep.noise];
+        let (at_a, at_b) = (|t: f64| a + da * t, |t: f64| b + db * t);
         let mut free = 1.0;
-        for body in self.bodies() {
-            let r = Vec2::repeat(body.offset + margin);
-            if let Some(c) = body.center {
-                let way = [speed, keep, noise];
-                free = match round.map(|f| f == Some(body.first + 1)) {
-                    [false, false] => advance(|t| point_segment(c, a + da * t, b + db * t), body.offset, way, free),
-                    [true, false] => advance(|t| (b + db * t - c).norm(), body.offset, way, free),
-                    [false, true] => advance(|t| (a + da * t - c).norm(), body.offset, way, free),
-                    [true, true] => free,
-                };
-            }
-            for k in body.candidates(low - r, high + r) {
-                let e = &body.edges[k];
-                let beside = round.map(|f| f.is_some_and(|f| body.is_beside(k, f)));
-                let way = [speed, keep, noise];
-                free = match beside {
-                    [false, false] => {
-                        advance(|t| segment_segment(a + da * t, b + db * t, e.p, e.q), body.offset, way, free)
-                    }
-                    [true, false] => advance(|t| point_segment(b + db * t, e.p, e.q), body.offset, way, free),
-                    [false, true] => advance(|t| point_segment(a + da * t, e.p, e.q), body.offset, way, free),
-                    [true, true] => free,
-                };
-            }
+        for part in parts {
+            let Some(body) = self.bodies().get(part.body) else { continue };
+            let beside =
+                round.map(|f| f.is_some_and(|f| part.edge.map_or(f == body.first + 1, |k| body.is_beside(k, f))));
+            let edge = part.edge.and_then(|k| body.edges.get(k));
+            free = match (edge, body.center, beside) {
+                (_, _, [true, true]) | (None, None, _) => free,
+                (Some(e), _, [false, false]) => {
+                    advance(|t| segment_segment(at_a(t), at_b(t), e.p, e.q), body.offset, way, free)
+                }
+                (Some(e), _, [true, false]) => advance(|t| point_segment(at_b(t), e.p, e.q), body.offset, way, free),
+                (Some(e), _, [false, true]) => advance(|t| point_segment(at_a(t), e.p, e.q), body.offset, way, free),
+                (None, Some(c), [false, false]) => {
+                    advance(|t| point_segment(c, at_a(t), at_b(t)), body.offset, way, free)
+                }
+                (None, Some(c), [true, false]) => advance(|t| (at_b(t) - c).norm(), body.offset, way, free),
+                (None, Some(c), [false, true]) => advance(|t| (at_a(t) - c).norm(), body.offset, way, free),
+            };
         }
         free
+    }
+}
+
+/// A segment on its way.
+#[derive(Clone, Copy, Debug)]
+pub struct Sweep {
+    /// Its ends at the start, m.
+    pub from: [Vec2; 2],
+    /// How far they go, m.
+    pub go: [Vec2; 2],
+    /// Corners of the box that holds it all the way, m.
+    pub low: Vec2,
+    /// See `low`.
+    pub high: Vec2,
+    /// What is farther from the box than this keeps its part of the gap by itself, m.
+    pub margin: f64,
+    speed: f64,
+    keep: f64,
+    noise: f64,
+}
+
+impl Sweep {
+    /// The move `from` → `to` (m) that is to leave the part `keep` of each gap.
+    #[must_use]
+    pub fn new(from: [Vec2; 2], to: [Vec2; 2], keep: f64) -> Self {
+        let [a, b] = from;
+        let go = [to[0] - a, to[1] - b];
+        let keep = keep.clamp(0.0, MAX_KEEP);
+        let speed = if go[0].norm_squared() > go[1].norm_squared() { go[0].norm() } else { go[1].norm() };
+        let (low, high) = (a.inf(&b).inf(&to[0]).inf(&to[1]), a.sup(&b).sup(&to[0]).sup(&to[1]));
+        let noise = ULPS * f64::EPSILON * (low.abs().max() + high.abs().max());
+        Self { from, go, low, high, margin: speed * keep / (1.0 - keep) + noise, speed, keep, noise }
     }
 }
 

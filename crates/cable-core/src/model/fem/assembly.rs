@@ -105,6 +105,9 @@ impl Mesh {
     /// The way of bar `e`.
     #[must_use]
     pub fn path(&self, e: usize, x: &[Vec2]) -> Path {
+        if self.sliding[e].is_none() && self.sliding[e + 1].is_none() {
+            return Path::line(x[e], x[e + 1]);
+        }
         Path::between(&self.end(e, x), &self.end(e + 1, x))
     }
 
@@ -197,12 +200,11 @@ impl System {
     /// Adds a 2×2 block; a block on the diagonal (`i == j`) must be symmetric, and of a pair (i, j), (j, i) with
     /// `i != j` only one is to be added.
     pub fn add_block(&mut self, i: usize, j: usize, block: &Mat2) {
-        for r in 0..2 {
-            for c in 0..2 {
-                if i != j || c >= r {
-                    self.hessian.add(2 * i + r, 2 * j + c, block[(r, c)]);
-                }
-            }
+        let b = block;
+        if i <= j {
+            self.hessian.add_block(2 * i, 2 * j, [[b[(0, 0)], b[(0, 1)]], [b[(1, 0)], b[(1, 1)]]]);
+        } else {
+            self.hessian.add_block(2 * j, 2 * i, [[b[(0, 0)], b[(1, 0)]], [b[(0, 1)], b[(1, 1)]]]);
         }
     }
 

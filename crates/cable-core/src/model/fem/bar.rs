@@ -20,18 +20,46 @@ use crate::math::{Mat2, Vec2};
 /// pushing; with none, slack nodes are free to wander, with all of it a slack cable on the ground stays straight and pushes.
 pub const PUSH: f64 = 0.01;
 
+/// What is carried of a bar from one iteration to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carried {
+    /// Its pull, N.
+    pub pull: f64,
+    /// Whether it counts as stretched.
+    pub taut: bool,
+}
+
 /// Unstretched length of a bar at a pose, m.
 #[must_use]
 pub fn rest_length(mesh: &Mesh, e: usize, slide: &[f64]) -> f64 {
     mesh.rest_length[e] + mesh.thermal_stretch * (slide[e + 1] - slide[e])
 }
 
-/// Adds the bar `e`; returns its energy and the size of what was summed (its rounding counted in), J.
-pub fn add(s: &mut System, mesh: &Mesh, task: &Task, (e, pose): (usize, &Pose), curvature: Curvature) -> (f64, f64) {
+/// The pull at the present length P of a bar between nodes that move with the material, and its slope by P, N and N/m.
+#[must_use]
+pub fn pull(mesh: &Mesh, task: &Task, (e, taut): (usize, bool), p: f64) -> (f64, f64) {
+    let l = mesh.rest_length[e];
+    let stiffness = mesh.axial_stiffness * if taut { 1.0 } else { PUSH };
+    let c = task.damping / l;
+    (stiffness * (p / l - 1.0) + c * (p - task.predicted_length[e]), stiffness / l + c)
+}
+
+/// Adds the bar `e`; returns its energy and the size of what was summed (its rounding counted in), J. The stiffness across
+/// the bar is that of the pull `carried`, if there is one, not that of its present length.
+pub fn add(
+    s: &mut System,
+    (mesh, task): (&Mesh, &Task),
+    (e, pose): (usize, &Pose),
+    curvature: Curvature,
+    carried: Option<Carried>,
+) -> (f64, f64) {
     let path = mesh.path(e, &pose.x);
     let (p, l, scale) = (path.length, rest_length(mesh, e, &pose.slide), task.scale[e]);
     let strain = p / l - 1.0;
-    let stiffness = mesh.axial_stiffness * if strain < 0.0 { PUSH } else { 1.0 };
+    let slides = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
+    let carried = carried.filter(|_| slides == [false, false]);
+    let taut = carried.map_or(!(strain < 0.0), |c| c.taut);
+    let stiffness = mesh.axial_stiffness * if taut { 1.0 } else { PUSH };
     let tension = stiffness * strain;
     // Damping: ½ c (P − p̂ L)², c = EA τ a/L₀, p̂ the predicted ratio P/L.
     let c = task.damping / mesh.rest_length[e];
@@ -45,8 +73,8 @@ pub fn add(s: &mut System, mesh: &Mesh, task: &Task, (e, pose): (usize, &Pose), 
         scale * (stiffness * p * p / (l * l * l) + c * ratio * ratio),
     ];
     let t = path.direction;
-    let slides = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
-    let mut geometric = if path.straight > 0.0 { scale * pull / path.straight } else { 0.0 };
+    let across = carried.map_or(pull, |c| c.pull);
+    let mut geometric = if path.straight > 0.0 { scale * across / path.straight } else { 0.0 };
     if curvature == Curvature::Clipped && geometric < 0.0 {
         geometric = 0.0;
     }

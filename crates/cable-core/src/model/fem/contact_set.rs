@@ -4,6 +4,7 @@ use super::assembly::Mesh;
 use super::own::Own;
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
+use crate::contact::near::Near;
 use crate::contact::pairs::Pair;
 use crate::math::Vec2;
 use crate::problem::Problem;
@@ -14,6 +15,12 @@ pub const SLIDE: f64 = 1e-5;
 /// Steps for which a contact without load is remembered: fewer and trembling contacts creep; many more and a cable
 /// that was lifted and put back is held as if it had stayed.
 const REMEMBERED: usize = 8;
+
+/// Steps for which lists of what is near are made. Fewer: they are made more often; more: they are longer.
+const STEPS_AHEAD: f64 = 4.0;
+
+/// Move of a node (m) that lists of what is near allow beside the one expected.
+const SPARE_MOVE: f64 = 2e-3;
 
 /// One contact pair of the mesh: a node, or the inside of a segment (from `node` to `node + 1`).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,6 +113,8 @@ pub struct ContactSet {
     pub rubs: Vec<Rub>,
     memory: Vec<Memory>,
     scratch: Vec<Touch>,
+    /// What each bar can come near to in this step.
+    pub near: Near,
     /// Plan view: sliding of each node remembered, m.
     pub floor_slid: Vec<Vec2>,
     /// Contacts of the cable with itself.
@@ -121,6 +130,7 @@ impl ContactSet {
             rubs: Vec::new(),
             memory: Vec::new(),
             scratch: Vec::new(),
+            near: Near::default(),
             floor_slid: vec![Vec2::zeros(); nodes],
             own: Own::default(),
         }
@@ -128,7 +138,7 @@ impl ContactSet {
 
     /// Becomes a copy without new memory where there is room.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { barrier, rubs, memory, scratch: _, floor_slid, own } = other;
+        let Self { barrier, rubs, memory, scratch: _, near: _, floor_slid, own } = other;
         self.barrier = *barrier;
         self.rubs.clone_from(rubs);
         self.memory.clone_from(memory);
@@ -146,27 +156,76 @@ impl ContactSet {
 
     /// Finds the contacts of the mesh at `x` (m), in order of arc length. Held nodes push on nothing.
     pub fn find(&self, problem: &Problem, mesh: &Mesh, x: &[Vec2], out: &mut Vec<Touch>) {
+        self.find_within(problem, mesh, x, self.barrier.reach, out);
+    }
+
+    /// The same for contacts nearer than `reach` (m).
+    pub fn find_within(&self, problem: &Problem, mesh: &Mesh, x: &[Vec2], reach: f64, out: &mut Vec<Touch>) {
         out.clear();
         if problem.world.is_empty() {
             return;
         }
-        let (geometry, reach, last) = (problem.world.geometry(), self.barrier.reach, x.len().saturating_sub(1));
+        let (geometry, last) = (problem.world.geometry(), x.len().saturating_sub(1));
+        let mut before: Option<Vec2> = None;
         for node in 0..x.len() {
+            let ends = (node < last).then(|| mesh.straight(node, x));
+            let listed = match ends {
+                Some(ends) => self.near.of(node, [ends], reach),
+                None => last.checked_sub(1).and_then(|e| self.near.of(e, [mesh.straight(e, x)], reach)),
+            };
+            let chain = [before, Some(x[node]), ends.map(|e| e[1])];
+            before = ends.map(|e| e[0]);
+            if listed.is_some_and(<[_]>::is_empty) {
+                continue;
+            }
             if mesh.is_free(node) {
-                let before = node.checked_sub(1).map(|e| mesh.straight(e, x)[0]);
-                let after = (node < last).then(|| mesh.straight(node, x)[1]);
-                geometry.node_pairs(before, x[node], after, reach, &mut |pair| {
-                    out.push(Touch { node, on_segment: false, pair });
-                });
+                let mut keep = |pair| out.push(Touch { node, on_segment: false, pair });
+                match listed {
+                    Some(parts) => geometry.node_pairs_among(parts.iter().copied(), chain, reach, &mut keep),
+                    None => geometry.node_pairs(chain[0], x[node], chain[2], reach, &mut keep),
+                }
             }
-            if node < last && (mesh.is_free(node) || mesh.is_free(node + 1)) {
-                let ([a, b], rounds) = (mesh.straight(node, x), mesh.rounds(node));
-                geometry.segment_pairs(a, b, reach, &mut |pair| {
-                    if !rounds.contains(&Some(pair.gap.feature)) {
-                        out.push(Touch { node, on_segment: true, pair });
-                    }
-                });
+            let Some(ends) = ends.filter(|_| mesh.is_free(node) || mesh.is_free(node + 1)) else { continue };
+            let rounds = mesh.rounds(node);
+            let mut keep = |pair: Pair| {
+                if !rounds.contains(&Some(pair.gap.feature)) {
+                    out.push(Touch { node, on_segment: true, pair });
+                }
+            };
+            match listed {
+                Some(parts) => geometry.segment_pairs_among(parts.iter().copied(), ends, reach, &mut keep),
+                None => geometry.segment_pairs(ends[0], ends[1], reach, &mut keep),
             }
+        }
+    }
+
+    /// Whether all bars stay out of reach of everything on the way between places of the nodes (m).
+    pub fn out_of_reach(&self, mesh: &Mesh, [from, to]: [&[Vec2]; 2]) -> bool {
+        (0..mesh.rest_length.len()).all(|e| {
+            let ways = [mesh.straight(e, from), mesh.straight(e, to)];
+            self.near.of(e, ways, self.barrier.reach).is_some_and(<[_]>::is_empty)
+        })
+    }
+
+    /// Lists what each bar can come near to while its nodes move from `x` by no more than `most` says, with room to spare,
+    /// unless the lists at hand are good for that.
+    pub fn look_around(&mut self, problem: &Problem, mesh: &Mesh, x: &[Vec2], most: impl Fn(usize) -> f64) {
+        if problem.world.is_empty() {
+            return;
+        }
+        let move_of = |e: usize| if most(e) > most(e + 1) { most(e) } else { most(e + 1) };
+        let bars = mesh.rest_length.len();
+        let good = |e: usize| {
+            let need = self.barrier.reach + move_of(e) + SPARE_MOVE;
+            self.near.of(e, [mesh.straight(e, x)], need).is_some()
+        };
+        if self.near.len() == bars && (0..bars).all(good) {
+            return;
+        }
+        self.near.clear();
+        for e in 0..bars {
+            let within = self.barrier.reach + STEPS_AHEAD * move_of(e) + 2.0 * SPARE_MOVE;
+            self.near.push(problem.world.geometry(), mesh.straight(e, x), within);
         }
     }
 

@@ -9,12 +9,14 @@
 use super::assembly::{Mesh, System};
 use super::bar;
 use super::contact_set::{ContactSet, SLIDE, Touch};
+use super::foresee::Ahead;
 use super::own::{self, Coupling};
 use super::path::{End, Path};
 use super::task::{Done, Failure, Pose, Task};
 use super::touch::{add_pair, add_touch};
 use crate::contact::friction;
-use crate::contact::own::{Order, OwnPair, OwnShape};
+use crate::contact::own::{Order, OwnPair};
+use crate::contact::sweep::Sweep;
 use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger};
@@ -22,6 +24,9 @@ use crate::problem::Problem;
 
 /// Part of each gap that a Newton step leaves. Smaller: gaps shrink too fast for Newton; larger: more steps.
 const KEEP: f64 = 0.2;
+
+/// Part of a Newton step that may be free without looking for what is in its way.
+const FREE_ENOUGH: f64 = 0.99;
 
 /// Sufficient decrease (Armijo).
 const DECREASE: f64 = 1e-4;
@@ -55,18 +60,23 @@ const MAX_PUSHES: usize = 12;
 pub struct Workspace {
     system: System,
     factor: BandFactor,
-    direction: Vec<f64>,
-    trial: Pose,
-    touches: Vec<Touch>,
+    pub(super) direction: Vec<f64>,
+    pub(super) trial: Pose,
+    pub(super) touches: Vec<Touch>,
     magnitude: f64,
     /// Rounding of the largest contact force, N: a gap is known to the rounding of coordinates only.
-    noise: f64,
+    pub(super) noise: f64,
     /// Where held nodes go: their targets, or where they had to stop, m.
-    goal: Vec<Vec2>,
+    pub(super) goal: Vec<Vec2>,
     own_pairs: Vec<OwnPair>,
     order: Order,
     /// Entries of the Hessian outside its band, from contacts of the cable with itself.
     coupling: Coupling,
+    pub(super) ahead: Ahead,
+    /// Pulls carried as unknowns; empty: those of the present lengths.
+    pub(super) carried: Vec<bar::Carried>,
+    pub(super) begun: Pose,
+    pub(super) near_enough: bool,
 }
 
 impl Workspace {
@@ -87,6 +97,10 @@ impl Workspace {
             own_pairs: Vec::new(),
             order: Order::default(),
             coupling: Coupling::new(),
+            ahead: Ahead::default(),
+            carried: Vec::new(),
+            begun: Pose::default(),
+            near_enough: false,
             system,
             factor,
         })
@@ -123,7 +137,8 @@ impl Workspace {
         self.magnitude = 0.0;
         self.noise = 0.0;
         for e in 0..mesh.rest_length.len() {
-            let (energy, size) = bar::add(s, mesh, task, (e, pose), curvature);
+            let carried = self.carried.get(e).copied();
+            let (energy, size) = bar::add(s, (mesh, task), (e, pose), curvature, carried);
             value += energy;
             self.magnitude += size;
         }
@@ -195,7 +210,7 @@ impl Workspace {
     }
 
     /// Largest unbalanced force on a free node, and which.
-    fn residual(&self, mesh: &Mesh, task: &Task) -> (f64, usize) {
+    pub(super) fn residual(&self, mesh: &Mesh, task: &Task) -> (f64, usize) {
         let mut worst = (0.0, 0);
         for node in (0..mesh.nodes()).filter(|&k| !mesh.held[k]) {
             let r = match &mesh.sliding[node] {
@@ -211,7 +226,7 @@ impl Workspace {
     }
 
     /// Sets `direction` to the Newton step; false if the matrix is not positive definite.
-    fn solve(&mut self, mesh: &Mesh, task: &Task, (x, shift): (&[Vec2], f64)) -> bool {
+    pub(super) fn solve(&mut self, mesh: &Mesh, task: &Task, (x, shift): (&[Vec2], f64)) -> bool {
         let s = &mut self.system;
         for (d, g) in self.direction.iter_mut().zip(&s.gradient) {
             *d = -g;
@@ -255,6 +270,7 @@ impl Workspace {
         if self.factor.factor(&s.hessian).is_err() {
             return false;
         }
+        self.ahead.keep(&self.direction);
         self.factor.solve_in_place(&mut self.direction);
         self.direction.iter().all(|d| d.is_finite())
     }
@@ -270,10 +286,15 @@ impl Workspace {
         task: &Task,
         pose: &mut Pose,
     ) -> Result<Done, Failure> {
+        self.goal.clone_from(&task.target);
+        if task.moves
+            && let Some(done) = self.rush((problem, mesh), contacts, task, pose)
+        {
+            return Ok(done);
+        }
         let mut shift = task.shift;
         let mut pushes = 0;
         let mut done = Done::default();
-        self.goal.clone_from(&task.target);
         let mut value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Exact);
         loop {
             let (residual, node) = self.residual(mesh, task);
@@ -315,6 +336,7 @@ impl Workspace {
                     }
                 }
             }
+            self.look_ahead((problem, mesh), contacts, pose);
             let mut slope: f64 = self.direction.iter().zip(&self.system.gradient).map(|(d, g)| d * g).sum();
             if !(slope < 0.0) && !left {
                 slope = 0.0;
@@ -354,10 +376,36 @@ impl Workspace {
         }
     }
 
+    /// The part of the direction in which no node moves too far.
+    pub(super) fn whole(&self, task: &Task) -> f64 {
+        let mut largest = 0.0;
+        for d in self.direction.chunks_exact(2) {
+            largest = larger(largest, d[0].hypot(d[1]));
+        }
+        if largest > task.max_move { task.max_move / largest } else { 1.0 }
+    }
+
+    /// Finds the direction again if something is in its way; returns how much of it is free.
+    pub(super) fn look_ahead(&mut self, (problem, mesh): (&Problem, &Mesh), contacts: &ContactSet, pose: &Pose) -> f64 {
+        let free = self.free_way((problem, mesh), contacts, pose, 1.0);
+        if free >= FREE_ENOUGH || !self.coupling.is_empty() {
+            return free;
+        }
+        let equations = (&mut self.system, &mut self.factor);
+        self.ahead.solve(equations, (problem, mesh), (contacts, &pose.x), &mut self.direction);
+        self.free_way((problem, mesh), contacts, pose, 1.0)
+    }
+
     /// The largest part (at most `fraction`) of the direction that crosses nothing and leaves some cable between sliding
     /// nodes and their neighbours.
-    fn free_way(&mut self, problem: &Problem, mesh: &Mesh, (pose, own): (&Pose, OwnShape), fraction: f64) -> f64 {
-        let direction = &self.direction;
+    pub(super) fn free_way(
+        &mut self,
+        (problem, mesh): (&Problem, &Mesh),
+        contacts: &ContactSet,
+        pose: &Pose,
+        fraction: f64,
+    ) -> f64 {
+        let (direction, geometry) = (&self.direction, problem.world.geometry());
         let step = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]);
         let mut free = fraction;
         for e in 0..mesh.rest_length.len() {
@@ -383,10 +431,15 @@ impl Workspace {
                 let end = |k: usize| mesh.sliding[k].as_ref().map_or(End::point(x[k] + step(k) * free), |s| s.end);
                 Path::between(&end(e), &end(e + 1)).ends
             };
-            free *= problem.world.geometry().free_fraction_round(from, to, KEEP, mesh.rounds(e));
+            let sweep = Sweep::new(from, to, KEEP);
+            free *= match contacts.near.of(e, [from, to], sweep.margin) {
+                Some([]) => 1.0,
+                Some(parts) => geometry.free_fraction_among(parts.iter().copied(), &sweep, mesh.rounds(e)),
+                None => geometry.free_fraction_round(from, to, KEEP, mesh.rounds(e)),
+            };
         }
         let limits = [KEEP, free];
-        own.free_fraction((&pose.x, &mesh.arc_length), &step, limits, &mut self.order)
+        contacts.own.shape.free_fraction((&pose.x, &mesh.arc_length), &step, limits, &mut self.order)
     }
 
     /// Moves `pose` along the direction as far as is free and lowers Φ; None if nothing does. Returns Φ and the part of
@@ -399,13 +452,8 @@ impl Workspace {
         (pose, value, slope): (&mut Pose, f64, f64),
     ) -> Option<(f64, f64)> {
         let n = mesh.nodes();
-        let mut largest = 0.0;
-        for d in self.direction.chunks_exact(2) {
-            let m = d[0].hypot(d[1]);
-            largest = larger(largest, m);
-        }
-        let whole = if largest > task.max_move { task.max_move / largest } else { 1.0 };
-        let mut fraction = self.free_way(problem, mesh, (pose, contacts.own.shape), whole);
+        let whole = self.whole(task);
+        let mut fraction = self.free_way((problem, mesh), contacts, pose, whole);
         let noise = ENERGY_NOISE * (self.magnitude.abs() + value.abs());
         for _ in 0..MAX_HALVINGS {
             let mut trial = std::mem::take(&mut self.trial);

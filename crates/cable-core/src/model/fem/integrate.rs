@@ -81,6 +81,10 @@ impl Dynamics {
         let (now, past) = ((1.0 + omega) / alpha, omega * omega / (1.0 + omega) / alpha);
         let a = alpha / h;
         self.set_inertia([now, past, a]);
+        let (m, task, mesh) = (&self.motion, &self.task, &self.mesh);
+        self.contacts.look_around(&self.problem, mesh, &m.x, |k| {
+            if mesh.held[k] { (task.target[k] - m.x[k]).norm() } else { m.v[k].norm() * h }
+        });
         let (mut pose, exact) = (self.moving_pose(h), self.task.tolerance);
         self.contacts.prepare(&self.problem, &self.mesh, &pose.x, &self.motion.x);
         self.task.tolerance = self.rounded_tolerance();
@@ -137,17 +141,20 @@ impl Dynamics {
     /// by a factor of the step, and what it leaves is smaller and not always on the same side.
     fn moving_pose(&mut self, h: f64) -> Pose {
         let mut pose = self.still_pose();
-        if self.meets_nothing() {
-            for (k, (x, v)) in pose.x.iter_mut().zip(&self.motion.v).enumerate() {
-                if self.mesh.is_free(k) {
-                    *x += v * h;
-                } else if self.mesh.held[k] {
-                    // Short bars beside a support would have to turn by large angles if it stayed behind.
-                    *x = self.task.target[k];
-                }
+        for (k, (x, v)) in pose.x.iter_mut().zip(&self.motion.v).enumerate() {
+            if self.mesh.is_free(k) {
+                *x += v * h;
+            } else if self.mesh.held[k] {
+                // Short bars beside a support would have to turn by large angles if it stayed behind.
+                *x = self.task.target[k];
             }
         }
-        pose
+        if self.is_out_of_reach(&pose.x) {
+            pose
+        } else {
+            self.pose = pose;
+            self.still_pose()
+        }
     }
 
     /// Minimises until no sliding node changes its grip.
@@ -222,6 +229,7 @@ impl Dynamics {
                 task.inertia[*k] += s.mass * a * a;
             }
         }
+        task.moves = true;
         task.damping = self.problem.axial_stiffness * damping_time(&self.problem) * a;
         for e in 0..mesh.rest_length.len() {
             task.predicted_length[e] = if mesh.sliding[e].is_none() && mesh.sliding[e + 1].is_none() {

@@ -20,6 +20,7 @@ mod contact_tests;
 pub mod dynamics;
 pub mod element;
 mod estimate;
+mod foresee;
 mod free_step;
 mod handover;
 mod integrate;
@@ -32,6 +33,7 @@ mod path;
 mod prepare;
 mod remesh;
 mod rest;
+mod rush;
 mod sleep;
 mod sliding;
 #[cfg(test)]

@@ -58,6 +58,14 @@ pub fn angle_between(a: Vec2, b: Vec2) -> f64 {
 }
 
 impl Path {
+    /// The way between two points.
+    #[must_use]
+    pub fn line(a: Vec2, b: Vec2) -> Self {
+        let length = (b - a).norm();
+        let direction = if length > 0.0 { (b - a) / length } else { Vec2::x() };
+        Self { length, straight: length, direction, ends: [a, b], arcs: [0.0; 2] }
+    }
+
     /// The way between two ends.
     #[must_use]
     pub fn between(a: &End, b: &End) -> Self {

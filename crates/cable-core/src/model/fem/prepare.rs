@@ -99,6 +99,7 @@ impl Dynamics {
         task.may_lag = to > from;
         task.max_iterations = STEP_ITERATIONS;
         task.max_move = 2.0 * INNER_STEP * 100.0;
+        task.moves = false;
         task.shift = 0.0;
         task.damping = 0.0;
         task.inertia.clear();
@@ -150,22 +151,33 @@ impl Dynamics {
         (gripped, changed)
     }
 
-    /// Whether the cable is flexible and nothing but its supports can touch it.
-    fn moves_freely(&self) -> bool {
-        self.never_slides
-            && self.meets_nothing()
+    /// Whether the cable is flexible and nothing but its supports can touch it on the way to places `to` (m).
+    fn moves_freely(&self, to: &[Vec2]) -> bool {
+        let slides = !self.never_slides && self.mesh.sliding.iter().any(Option::is_some);
+        !slides
             && self.problem.floor_friction.is_none()
             && self.mesh.bending_stiffness == 0.0
+            && self.is_out_of_reach(to)
+    }
+
+    /// Whether nothing but supports can touch the cable on its way to places `to` (m).
+    pub(super) fn is_out_of_reach(&self, to: &[Vec2]) -> bool {
+        self.meets_nothing()
+            || (!self.contacts.own.shape.is_on() && self.contacts.out_of_reach(&self.mesh, [&self.task.start, to]))
     }
 
     pub(super) fn minimise(&mut self, pose: &mut Pose) -> Result<Done, Failure> {
-        if self.moves_freely()
+        if self.moves_freely(&pose.x)
             && let Some(done) = self.free.solve(&self.mesh, &self.task, pose)
         {
-            for (k, reaction) in self.reaction.iter_mut().enumerate() {
-                *reaction = -self.free.gradient_at(k);
+            if self.is_out_of_reach(&pose.x) {
+                for (k, reaction) in self.reaction.iter_mut().enumerate() {
+                    *reaction = -self.free.gradient_at(k);
+                }
+                return Ok(done);
             }
-            return Ok(done);
+            // It would have met something: from the start again, with contact.
+            *pose = self.still_pose();
         }
         let mut memory = match self.memory.0.take() {
             Some(m) if m.nodes() == self.mesh.nodes() => m,

@@ -65,6 +65,7 @@ impl Dynamics {
     fn lag(&mut self, pose: &mut Pose, rounds: usize) -> Result<Done, Failure> {
         let mut total = Done::default();
         for _ in 0..rounds {
+            self.contacts.look_around(&self.problem, &self.mesh, &pose.x, |_| 0.0);
             self.contacts.prepare(&self.problem, &self.mesh, &pose.x, &self.motion.x);
             self.task.shift = self.soft_shift();
             let done = self.minimise(pose)?;

@@ -1,0 +1,147 @@
+//! A step in contact, quickly: Newton with the pulls of the bars carried, and no line search.
+//!
+//! As in [`super::free_step`] a pull Q follows its linear equation, so that the stiffness across a bar is that of the tension to come
+//! and not of a bar stretched for a moment: the iterations no longer grow with the number of bars. The energy may rise on the
+//! way, so nothing is asked of it (a watchdog: R. Chamberlain, M. Powell, C. Lemarechal, H. Pedersen, "The watchdog
+//! technique for forcing convergence in algorithms for constrained optimization", Mathematical Programming Study 16, 1982). Only gaps
+//! are watched. What has not converged after a few iterations is left to the minimiser, from the same start.
+
+use super::assembly::Mesh;
+use super::bar;
+use super::contact_set::ContactSet;
+use super::contact_step::Workspace;
+use super::task::{Done, Pose, Task};
+use crate::energy::Curvature;
+use crate::math::Vec2;
+use crate::problem::Problem;
+
+/// Iterations before the minimiser is asked.
+const MAX_STEPS: usize = 24;
+
+/// Strain that counts as none.
+const ROUNDING: f64 = 1e-12;
+
+impl Workspace {
+    /// The pose at the end of a step; None (and the pose as it was) where this does not find it.
+    pub(super) fn rush(
+        &mut self,
+        (problem, mesh): (&Problem, &Mesh),
+        contacts: &ContactSet,
+        task: &Task,
+        pose: &mut Pose,
+    ) -> Option<Done> {
+        self.begun.x.clone_from(&pose.x);
+        self.begun.slide.clone_from(&pose.slide);
+        self.carry_pulls(mesh, pose);
+        let done = self.rush_on((problem, mesh), contacts, task, pose);
+        self.carried.clear();
+        if done.is_none() && !self.near_enough {
+            pose.x.clone_from(&self.begun.x);
+            pose.slide.clone_from(&self.begun.slide);
+        }
+        done
+    }
+
+    fn carry_pulls(&mut self, mesh: &Mesh, pose: &Pose) {
+        self.carried.clear();
+        for (e, l) in mesh.rest_length.iter().enumerate() {
+            let strain = (pose.x[e + 1] - pose.x[e]).norm() / l - 1.0;
+            let taut = strain >= 0.0;
+            let pull = mesh.axial_stiffness * if taut { strain } else { bar::PUSH * strain };
+            self.carried.push(bar::Carried { pull, taut });
+        }
+    }
+
+    /// Moves a pose that is still where the step began to where its speed carries it, as far as nothing is in the way.
+    fn move_on(&mut self, (problem, mesh): (&Problem, &Mesh), contacts: &ContactSet, task: &Task, pose: &mut Pose) {
+        if pose.x != task.start {
+            return;
+        }
+        for (k, d) in self.direction.chunks_exact_mut(2).enumerate() {
+            let to = match (mesh.held[k], mesh.is_free(k)) {
+                (true, _) => self.goal[k],
+                (_, true) => task.predicted[k],
+                _ => pose.x[k],
+            };
+            (d[0], d[1]) = (to.x - pose.x[k].x, to.y - pose.x[k].y);
+        }
+        self.ahead.stop((problem, mesh), (contacts, &pose.x), &mut self.direction);
+        let whole = self.whole(task);
+        let free = self.free_way((problem, mesh), contacts, pose, whole);
+        self.place(mesh, pose, free);
+    }
+
+    fn rush_on(
+        &mut self,
+        (problem, mesh): (&Problem, &Mesh),
+        contacts: &ContactSet,
+        task: &Task,
+        pose: &mut Pose,
+    ) -> Option<Done> {
+        self.move_on((problem, mesh), contacts, task, pose);
+        let mut first = f64::NAN;
+        self.near_enough = false;
+        for iterations in 0..=MAX_STEPS {
+            let value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Exact);
+            let (residual, _) = self.residual(mesh, task);
+            let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != pose.x[k]);
+            if iterations == 0 {
+                first = residual;
+            }
+            let tolerance = if self.noise > task.tolerance { self.noise } else { task.tolerance };
+            if residual <= tolerance && !left && self.flags_hold(mesh, &pose.x) {
+                return Some(Done { iterations, residual });
+            }
+            self.near_enough = residual < 1e-2 * first && value.is_finite();
+            if iterations == MAX_STEPS || !(value.is_finite() && residual.is_finite()) {
+                return None;
+            }
+            if !self.solve(mesh, task, (&pose.x, task.shift)) {
+                self.assemble(problem, mesh, contacts, (task, pose), Curvature::Clipped);
+                if !self.solve(mesh, task, (&pose.x, task.shift)) {
+                    return None;
+                }
+            }
+            let free = self.look_ahead((problem, mesh), contacts, pose);
+            let whole = self.whole(task);
+            self.walk(mesh, task, pose, if free < whole { free } else { whole });
+        }
+        None
+    }
+
+    /// Whether the bars that count as stretched are those that are.
+    fn flags_hold(&self, mesh: &Mesh, x: &[Vec2]) -> bool {
+        self.carried.iter().enumerate().all(|(e, carried)| {
+            let strain = (x[e + 1] - x[e]).norm() / mesh.rest_length[e] - 1.0;
+            carried.taut == (strain >= 0.0) || strain.abs() <= ROUNDING
+        })
+    }
+
+    /// Moves pose and pulls by a part of the direction.
+    fn walk(&mut self, mesh: &Mesh, task: &Task, pose: &mut Pose, part: f64) {
+        let direction = &self.direction;
+        let step = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]) * part;
+        for (e, carried) in self.carried.iter_mut().enumerate() {
+            let d = pose.x[e + 1] - pose.x[e];
+            let p = d.norm();
+            let (now, slope) = bar::pull(mesh, task, (e, carried.taut), p);
+            let along = if p > 0.0 { d.dot(&(step(e + 1) - step(e))) / p } else { 0.0 };
+            *carried = bar::Carried { pull: now + slope * along, taut: p + along >= mesh.rest_length[e] };
+        }
+        self.place(mesh, pose, part);
+    }
+
+    /// Moves a pose by a part of the direction.
+    fn place(&self, mesh: &Mesh, pose: &mut Pose, part: f64) {
+        for k in 0..mesh.nodes() {
+            let step = Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]) * part;
+            if mesh.sliding[k].is_some() {
+                pose.slide[k] += step.x;
+            } else if mesh.held[k] && part == 1.0 {
+                pose.x[k] = self.goal[k];
+            } else {
+                pose.x[k] += step;
+            }
+        }
+    }
+}
