@@ -72,6 +72,8 @@ pub struct Workspace {
     order: Order,
     /// Entries of the Hessian outside its band, from contacts of the cable with itself.
     coupling: Coupling,
+    /// Whether the last equations had such entries.
+    coupled: bool,
     pub(super) ahead: Ahead,
     /// Pulls carried as unknowns; empty: those of the present lengths.
     pub(super) carried: Vec<bar::Carried>,
@@ -97,6 +99,7 @@ impl Workspace {
             own_pairs: Vec::new(),
             order: Order::default(),
             coupling: Coupling::new(),
+            coupled: false,
             ahead: Ahead::default(),
             carried: Vec::new(),
             begun: Pose::default(),
@@ -262,7 +265,8 @@ impl Workspace {
                 }
             }
         }
-        if !self.coupling.is_empty() {
+        self.coupled = !self.coupling.is_empty();
+        if self.coupled {
             self.coupling.retain(|&(i, j, _)| !mesh.held[i / 2] && !mesh.held[j / 2]);
             return solve_coupled(&s.hessian, &self.coupling, &mut self.direction).is_ok()
                 && self.direction.iter().all(|d| d.is_finite());
@@ -279,7 +283,7 @@ impl Workspace {
     ///
     /// # Errors
     /// With the worst node and its unbalanced force.
-    pub fn minimise(
+    pub(super) fn descend(
         &mut self,
         (problem, mesh): (&Problem, &Mesh),
         contacts: &ContactSet,
@@ -287,11 +291,6 @@ impl Workspace {
         pose: &mut Pose,
     ) -> Result<Done, Failure> {
         self.goal.clone_from(&task.target);
-        if task.moves
-            && let Some(done) = self.rush((problem, mesh), contacts, task, pose)
-        {
-            return Ok(done);
-        }
         let mut shift = task.shift;
         let mut pushes = 0;
         let mut done = Done::default();
@@ -388,7 +387,7 @@ impl Workspace {
     /// Finds the direction again if something is in its way; returns how much of it is free.
     pub(super) fn look_ahead(&mut self, (problem, mesh): (&Problem, &Mesh), contacts: &ContactSet, pose: &Pose) -> f64 {
         let free = self.free_way((problem, mesh), contacts, pose, 1.0);
-        if free >= FREE_ENOUGH || !self.coupling.is_empty() {
+        if free >= FREE_ENOUGH || self.coupled {
             return free;
         }
         let equations = (&mut self.system, &mut self.factor);

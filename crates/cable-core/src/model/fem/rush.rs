@@ -4,13 +4,14 @@
 //! and not of a bar stretched for a moment: the iterations no longer grow with the number of bars. The energy may rise on the
 //! way, so nothing is asked of it (a watchdog: R. Chamberlain, M. Powell, C. Lemarechal, H. Pedersen, "The watchdog
 //! technique for forcing convergence in algorithms for constrained optimization", Mathematical Programming Study 16, 1982). Only gaps
-//! are watched. What has not converged after a few iterations is left to the minimiser, from the same start.
+//! are watched, and that none becomes so small that its force drowns in rounding: nothing else keeps a node from creeping up to an
+//! obstacle by a part of its gap in every iteration. What has not converged after a few iterations is left to the minimiser, from the same start.
 
 use super::assembly::Mesh;
 use super::bar;
 use super::contact_set::ContactSet;
 use super::contact_step::Workspace;
-use super::task::{Done, Pose, Task};
+use super::task::{Done, Failure, Pose, Task};
 use crate::energy::Curvature;
 use crate::math::Vec2;
 use crate::problem::Problem;
@@ -18,12 +19,42 @@ use crate::problem::Problem;
 /// Iterations before the minimiser is asked.
 const MAX_STEPS: usize = 24;
 
+/// Part of the first residual with which what was reached is handed on; with more the minimiser begins anew.
+const NEAR_ENOUGH: f64 = 1e-2;
+
 /// Strain that counts as none.
 const ROUNDING: f64 = 1e-12;
 
 impl Workspace {
-    /// The pose at the end of a step; None (and the pose as it was) where this does not find it.
-    pub(super) fn rush(
+    /// Minimises Φ from `pose`, which becomes the answer; on failure it is where it got to.
+    ///
+    /// # Errors
+    /// With the worst node and its unbalanced force.
+    pub fn minimise(
+        &mut self,
+        (problem, mesh): (&Problem, &Mesh),
+        contacts: &ContactSet,
+        task: &Task,
+        pose: &mut Pose,
+    ) -> Result<Done, Failure> {
+        // Contacts of the cable with itself are not foreseen: there a step in a hurry is halved more often.
+        if !task.moves || contacts.own.shape.is_on() {
+            return self.descend((problem, mesh), contacts, task, pose);
+        }
+        if let Some(done) = self.rush((problem, mesh), contacts, task, pose) {
+            return Ok(done);
+        }
+        let done = self.descend((problem, mesh), contacts, task, pose);
+        if done.is_ok() || !self.near_enough {
+            return done;
+        }
+        pose.x.clone_from(&self.begun.x);
+        pose.slide.clone_from(&self.begun.slide);
+        self.descend((problem, mesh), contacts, task, pose)
+    }
+
+    /// The pose at the end of a step; None where this does not find it, the pose then as it was or not far from it.
+    fn rush(
         &mut self,
         (problem, mesh): (&Problem, &Mesh),
         contacts: &ContactSet,
@@ -32,6 +63,7 @@ impl Workspace {
     ) -> Option<Done> {
         self.begun.x.clone_from(&pose.x);
         self.begun.slide.clone_from(&pose.slide);
+        self.goal.clone_from(&task.target);
         self.carry_pulls(mesh, pose);
         let done = self.rush_on((problem, mesh), contacts, task, pose);
         self.carried.clear();
@@ -88,12 +120,12 @@ impl Workspace {
             if iterations == 0 {
                 first = residual;
             }
-            let tolerance = if self.noise > task.tolerance { self.noise } else { task.tolerance };
-            if residual <= tolerance && !left && self.flags_hold(mesh, &pose.x) {
+            let sound = value.is_finite() && residual.is_finite() && self.noise <= task.tolerance;
+            if sound && residual <= task.tolerance && !left && self.flags_hold(mesh, &pose.x) {
                 return Some(Done { iterations, residual });
             }
-            self.near_enough = residual < 1e-2 * first && value.is_finite();
-            if iterations == MAX_STEPS || !(value.is_finite() && residual.is_finite()) {
+            self.near_enough = sound && residual < NEAR_ENOUGH * first;
+            if iterations == MAX_STEPS || !sound {
                 return None;
             }
             if !self.solve(mesh, task, (&pose.x, task.shift)) {
