@@ -335,7 +335,9 @@ impl Workspace {
                     }
                 }
             }
-            self.look_ahead((problem, mesh), contacts, pose);
+            if task.moves {
+                self.look_ahead((problem, mesh), contacts, pose);
+            }
             let mut slope: f64 = self.direction.iter().zip(&self.system.gradient).map(|(d, g)| d * g).sum();
             if !(slope < 0.0) && !left {
                 slope = 0.0;
