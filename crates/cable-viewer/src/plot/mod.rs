@@ -202,14 +202,8 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
     if let Some(at) = clicked {
         cursors.click(ui, graph.group, response.transform.value_from_position(at).x * x_si);
     }
-    let last = lines.iter().filter_map(|l| Some((l, l.points.last()?)));
-    let spoken: Vec<String> =
-        last.map(|(l, p)| format!("{} {} {symbol}", l.name, significant(p[1] / si, DIGITS))).collect();
     let figure = response.response.labelled_by(title);
-    figure.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Figure, true, graph.title));
-    field::name(&figure, graph.title);
-    let spoken = spoken.join(", ") + &cursor_text.map_or_else(String::new, |t| format!("; {}", t.replace('\n', "; ")));
-    ui.ctx().accesskit_node_builder(figure.id, |node| node.set_description(spoken.as_str()));
+    speak(&figure, graph.title, lines, ((symbol, si), cursor_text));
     let sheet = || Sheet {
         title: graph.title.to_owned(),
         across: [format!("{across}, {across_symbol}"), format!("{}_{column}", across.to_lowercase().replace(' ', "_"))],
@@ -219,6 +213,22 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
         lines: lines.to_vec(),
     };
     Touched { zoomed: response.inner, export: export.then(|| Box::new(sheet())) }
+}
+
+/// Says the last values of the lines, and what the cursors read.
+fn speak(
+    figure: &egui::Response,
+    title: &str,
+    lines: &[Series],
+    ((symbol, si), cursors): ((&str, f64), Option<String>),
+) {
+    figure.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Figure, true, title));
+    field::name(figure, title);
+    let last = lines.iter().filter_map(|l| Some((l, l.points.last()?)));
+    let values: Vec<String> =
+        last.map(|(l, p)| format!("{} {} {symbol}", l.name, significant(p[1] / si, DIGITS))).collect();
+    let spoken = values.join(", ") + &cursors.map_or_else(String::new, |t| format!("; {}", t.replace('\n', "; ")));
+    figure.ctx.accesskit_node_builder(figure.id, |node| node.set_description(spoken.as_str()));
 }
 
 /// Colour and style of the `k`-th line of a graph.
