@@ -33,8 +33,9 @@ const CLOSER: f64 = 0.7;
 #[derive(Clone, Debug, Default)]
 pub struct Ahead {
     touches: Vec<Touch>,
-    held: Vec<bool>,
+    added: Vec<bool>,
     right: Vec<f64>,
+    step: Vec<f64>,
 }
 
 impl Ahead {
@@ -70,46 +71,45 @@ impl Ahead {
     }
 
     /// Solves again, with contacts ahead as constraints; `system` is pinned, and `direction` the step that ran into them.
-    /// Returns whether it found a step (the old one is kept if not).
+    /// Where that fails `direction` stays as it is.
     pub fn solve(
         &mut self,
         (system, factor): (&mut System, &mut BandFactor),
         (problem, mesh): (&Problem, &Mesh),
         (contacts, x): (&ContactSet, &[Vec2]),
-        direction: &mut Vec<f64>,
-    ) -> bool {
+        direction: &mut [f64],
+    ) {
         let reach = contacts.barrier.reach;
         self.look((problem, mesh), (contacts, x), direction);
-        self.held.clear();
-        self.held.resize(self.touches.len(), false);
-        let mut step = direction.clone();
+        self.added.clear();
+        self.added.resize(self.touches.len(), false);
+        let Self { touches, added, right, step } = self;
+        step.clear();
+        step.extend_from_slice(direction);
         for _ in 0..MAX_ROUNDS {
-            let mut added = false;
-            for (touch, held) in self.touches.iter().zip(&mut self.held) {
+            let before = added.iter().filter(|a| **a).count();
+            for (touch, added) in touches.iter().zip(added.iter_mut()) {
                 let (n, gap) = (touch.pair.gap.normal, touch.pair.gap.gap_m);
                 let least = landing(touch, reach);
-                let closing = -n.dot(&moved(touch, &step));
-                if *held || !(touch.pair.weight > 0.0) || !(closing > gap - least) {
-                    continue;
+                let closing = -n.dot(&moved(touch, step));
+                if !*added && touch.pair.weight > 0.0 && closing > gap - least {
+                    *added = true;
+                    constrain(system, mesh, touch, (n, least - gap), step, right);
                 }
-                *held = true;
-                added = true;
-                constrain(system, mesh, touch, (n, least - gap), &step, &mut self.right);
             }
-            if !added {
+            if added.iter().filter(|a| **a).count() == before {
                 break;
             }
             if factor.factor(&system.hessian).is_err() {
-                return false;
+                return;
             }
-            step.copy_from_slice(&self.right);
-            factor.solve_in_place(&mut step);
+            step.copy_from_slice(right);
+            factor.solve_in_place(step);
             if !step.iter().all(|d| d.is_finite()) {
-                return false;
+                return;
             }
         }
-        direction.copy_from_slice(&step);
-        true
+        direction.copy_from_slice(step);
     }
 }
 
