@@ -10,7 +10,8 @@ const WIDTH: usize = 3 * BAND + 1;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Band {
     rows: Vec<[f64; WIDTH]>,
-    pivots: Vec<usize>,
+    /// Whether the determinant of what was factorised last is negative.
+    negative: bool,
 }
 
 impl Band {
@@ -38,10 +39,15 @@ impl Band {
         }
     }
 
+    /// Whether the determinant of what was solved last is negative.
+    pub fn is_negative(&self) -> bool {
+        self.negative
+    }
+
     /// Solves A x = b in place of b; false where A is singular or not finite.
     pub fn solve(&mut self, b: &mut [f64]) -> bool {
         let n = self.rows.len();
-        self.pivots.clear();
+        self.negative = false;
         for k in 0..n {
             let last = (k + BAND + 1).min(n);
             let (mut best, mut size) = (k, 0.0);
@@ -63,9 +69,10 @@ impl Band {
                     self.rows[best][j] = upper;
                 }
                 b.swap(k, best);
+                self.negative = !self.negative;
             }
-            self.pivots.push(best);
             let pivot_row = self.rows[k];
+            self.negative ^= pivot_row[BAND] < 0.0;
             for i in k + 1..last {
                 let row = &mut self.rows[i];
                 let factor = row[k + BAND - i] / pivot_row[BAND];

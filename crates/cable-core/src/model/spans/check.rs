@@ -130,7 +130,7 @@ fn contact(strand: &Strand, course: &Course, j: usize, greatest: f64) -> Result<
         return Err(Trouble::LoadLies { s: l.arc_length });
     }
     let mut past = c.history.clone();
-    past.commit(&track, e, c.mode, friction);
+    past.commit(&track, e, c.mode);
     let (mut p, mut t) = (e.p[0], past.at(&track, e.p[0]).0);
     for i in 1..=SAMPLES {
         let q = e.p[0] + (e.p[1] - e.p[0]) * i as f64 / SAMPLES as f64;

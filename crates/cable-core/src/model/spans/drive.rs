@@ -5,7 +5,7 @@ use super::events;
 use super::history::Mode;
 use super::instant::{Instant, Layout, place_ends};
 use super::lay;
-use super::newton::{Solved, Work};
+use super::newton::{self, Solved, Work};
 use super::pass;
 use super::strand::{Course, Strand};
 use super::trouble::Trouble;
@@ -42,17 +42,13 @@ impl Network {
     pub fn rest(layout: &Layout, instant: &Instant, work: &mut Work) -> Result<(Self, Taken), Trouble> {
         let curves = layout.curves();
         let course = layout.course(curves, instant);
-        // A cable held at both ends is laid where it needs no friction, if that can be; one with an end that is not held
-        // stays where friction holds it.
-        let held = layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
+        // As it is laid; else where it needs no friction; either may have to begin taut.
         let smooth = Instant { friction: 0.0, ..instant.clone() };
-        let ways: [(&Instant, bool); 4] = if held {
-            [(&smooth, false), (&smooth, true), (instant, false), (instant, true)]
-        } else {
-            [(instant, false), (instant, true), (&smooth, false), (&smooth, true)]
-        };
+        let ways = [(instant, false), (&smooth, false), (instant, true), (&smooth, true)];
+        // What is not held at both ends would run to where it needs no friction.
+        let held = layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
         let mut first = None;
-        for (begin, cooled) in ways {
+        for (begin, cooled) in ways.into_iter().filter(|(begin, _)| held || begin.friction > 0.0) {
             let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
             match network.laid(layout, begin, cooled, work).and_then(|taken| {
                 if begin.friction < instant.friction {
@@ -85,7 +81,19 @@ impl Network {
             came.push(way);
         }
         self.instant = begin.clone();
-        let taken = self.step_from(layout, &begin, &came, work)?;
+        let mut taken = self.step_from(layout, &begin, &came, work)?;
+        // What was met on the way rubs from now on.
+        let mut met = false;
+        for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts).filter(|c| c.smooth) {
+            c.smooth = false;
+            met = true;
+            if self.course.friction(c) > 0.0 {
+                c.mode = Mode::Hold;
+            }
+        }
+        if met {
+            taken = taken.and(self.step(layout, &begin, work)?);
+        }
         if !shrunk {
             return Ok(taken);
         }
@@ -131,9 +139,8 @@ impl Network {
             }
         }
         for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts) {
-            let friction = self.course.curves[c.curve].friction;
-            let track = super::law::Track { curve: &self.course.curves[c.curve], home: c.home, law: self.course.law };
-            c.history.commit(&track, &c.ends, c.mode, friction);
+            let track = self.course.track(c);
+            c.history.commit(&track, &c.ends, c.mode);
         }
         Ok(taken)
     }
@@ -176,6 +183,11 @@ impl Network {
             self.strands[k] = start;
         }
         found
+    }
+
+    /// Whether every strand is a rest and not a balance that runs away.
+    pub fn stable(&self, work: &mut Work) -> bool {
+        self.strands.iter().all(|s| newton::stable(s, &self.course, work))
     }
 
     /// To an instant, in steps of this part of the way at first, halved where one fails.
@@ -244,7 +256,8 @@ fn shrunk_thermal(layout: &Layout, goal: &Instant) -> f64 {
         (0..p.supports.len()).filter(|&k| p.supports[k].at.is_some()).map(|k| goal.places[k]).collect()
     };
     let way: f64 = points.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
-    let tension = TAUT * goal.load.norm() * p.length;
+    let drawn: f64 = goal.forces.iter().map(|f| f.norm()).sum();
+    let tension = TAUT * goal.load.norm() * p.length + drawn;
     let taut = way / (p.length * (1.0 + tension / p.axial_stiffness));
     if taut < goal.thermal && taut > 0.0 { taut } else { goal.thermal }
 }

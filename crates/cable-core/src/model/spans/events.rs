@@ -42,7 +42,7 @@ pub(super) fn solve(
         })?;
         sum.iterations += found.iterations;
         sum.residual = found.residual;
-        if release(strand, course)? || join(strand, course) || meet(strand, course, world)? {
+        if release(strand, course)? || join(strand, course) || meet(strand, course, world, came.is_some())? {
             continue;
         }
         match came {
@@ -123,7 +123,8 @@ fn join(strand: &mut Strand, course: &Course) -> bool {
             let b = strand.contacts.remove(j);
             strand.forces.remove(j);
             let a = &mut strand.contacts[j - 1];
-            a.history.append(&course.track(&b), &b.history, course.friction(&b));
+            a.history.append(&course.track(&b), &b.history);
+            a.smooth &= b.smooth;
             (a.ends.p[1], a.ends.s[1], a.ends.t[1]) = (b.ends.p[1], b.ends.s[1], b.ends.t[1]);
             if let (Mode::Slide(m), Mode::Hold) = (a.mode, b.mode)
                 && m != 0.0
@@ -137,7 +138,7 @@ fn join(strand: &mut Strand, course: &Course) -> bool {
 }
 
 /// P: meets the deepest obstacle of each span.
-fn meet(strand: &mut Strand, course: &Course, world: &World) -> Result<bool, Trouble> {
+fn meet(strand: &mut Strand, course: &Course, world: &World, resting: bool) -> Result<bool, Trouble> {
     if world.is_empty() {
         return Ok(false);
     }
@@ -149,7 +150,7 @@ fn meet(strand: &mut Strand, course: &Course, world: &World) -> Result<bool, Tro
             return Err(Trouble::EndLands { at });
         }
         if let Some(hit) = seek::deepest(strand, course, world, k, deep) {
-            touch(strand, course, k, &hit)?;
+            touch(strand, course, k, &hit, resting)?;
             any = true;
         }
     }
@@ -200,7 +201,7 @@ fn passed(strand: &mut Strand, course: &Course, world: &World, came: &[Vec2]) ->
         obstacle: 0,
         feature: corner.feature,
     };
-    touch(strand, course, k, &Hit { s, at: corner.at, tangent, gap, body: corner.body })?;
+    touch(strand, course, k, &Hit { s, at: corner.at, tangent, gap, body: corner.body }, true)?;
     Ok(true)
 }
 
@@ -208,7 +209,9 @@ fn passed(strand: &mut Strand, course: &Course, world: &World, came: &[Vec2]) ->
 const PASSED_POINTS: usize = 64;
 
 /// Lays span k down where it hit.
-fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit) -> Result<(), Trouble> {
+///
+/// `resting`: a rest is sought, and what is found on the way has not rubbed.
+fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit, resting: bool) -> Result<(), Trouble> {
     let no_seat = Trouble::NoSeat { s: hit.s, at: hit.at };
     let back = hit.gap.normal.dot(&perp(hit.tangent)) < 0.0;
     let curve_index = 2 * hit.body + usize::from(back);
@@ -238,10 +241,11 @@ fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit) -> Result<()
         curve: curve_index,
         home,
         ends: Ends { p: [p, p], s: [hit.s, hit.s], t: [force, force] },
-        mode: if curve.friction > 0.0 { Mode::Hold } else { Mode::Slide(0.0) },
+        mode: if curve.friction > 0.0 && !resting { Mode::Hold } else { Mode::Slide(0.0) },
         history: History::default(),
         wheel: None,
         flips: 0,
+        smooth: resting,
     };
     let track = course.track(&contact);
     let mut lies = [None, None];

@@ -11,8 +11,8 @@
 //! asks for wherever it slides. U₁ and L₂ follow m = +μ, L₁ and U₂ m = −μ, so whatever happens T stays a curve made of
 //! stretches with one m each: a knot where m changes is all there is to store, and nothing is ever interpolated.
 //! From each end T leaves its envelope at most once, at the *front*; between the fronts it sticks, and the material
-//! there is where it was. Material newly laid down beyond the old contact has the tension of its end, smoothly carried
-//! on (m = 0).
+//! there is where it was. Material newly laid down beyond the old contact has the tension of its end, as even as friction
+//! can keep it (m between −μ and μ on each edge).
 
 use super::law::{Step, Track};
 
@@ -85,17 +85,13 @@ impl History {
     }
 
     /// Material laid with an even tension from p₁ to p₂ as far as friction holds that on every slope.
-    pub fn laid(track: &Track<'_>, e: &Ends, friction: f64) -> Self {
+    pub fn laid(track: &Track<'_>, e: &Ends) -> Self {
         let mut out = Self::default();
         let (mut p, mut tension, mut s) = (e.p[0], e.t[0], e.s[0]);
         while p < e.p[1] {
             let next = track.next_border(p, e.p[1]);
-            let place = track.place(0.5 * (p + next));
-            let (along, out_of) = (track.law.load.dot(&place.tangent), track.law.load.dot(&place.normal));
-            // −b·t − m b·n = 0 keeps Θ even on an edge.
-            let m = if place.turn == 0.0 && out_of != 0.0 { (-along / out_of).clamp(-friction, friction) } else { 0.0 };
-            out.push(Knot { p, s, tension, m });
-            let way = track.slide(p, next, tension, m);
+            out.push(Knot { p, s, tension, m: track.even(0.5 * (p + next)) });
+            let way = track.lay(p, next, tension);
             (p, tension, s) = (next, way.tension, s + way.material);
         }
         out.push(Knot { p, s, tension, m: 0.0 });
@@ -109,7 +105,8 @@ impl History {
 
     /// Takes over what another contact, joined to this one at its end, remembers. Between the two, and on as far as it
     /// must, tension is brought within the cone by the least change.
-    pub fn append(&mut self, track: &Track<'_>, next: &Self, friction: f64) {
+    pub fn append(&mut self, track: &Track<'_>, next: &Self) {
+        let friction = track.friction;
         for knot in &next.knots {
             let mut knot = *knot;
             if let Some(last) = self.knots.last_mut() {
@@ -152,48 +149,61 @@ impl History {
         self.knots.push(k);
     }
 
-    /// The knot from which the tension at p follows, seen going on to the right or back to the left.
-    fn knot(&self, p: f64, right: bool) -> (Knot, f64) {
+    /// The knot from which the tension at p follows, seen going on to the right or back to the left, and whether it lies
+    /// beyond what was there.
+    fn knot(&self, p: f64, right: bool) -> (Knot, bool) {
         let k = self.knots.partition_point(|k| if right { k.p <= p } else { k.p < p });
         match k.checked_sub(1).and_then(|j| self.knots.get(j)) {
-            None => self.knots.first().map_or((Knot { p, s: 0.0, tension: 0.0, m: 0.0 }, 0.0), |k| (*k, 0.0)),
-            Some(knot) => (*knot, if k == self.knots.len() { 0.0 } else { knot.m }),
+            None => (self.knots.first().copied().unwrap_or(Knot { p, s: 0.0, tension: 0.0, m: 0.0 }), true),
+            Some(knot) => (*knot, k == self.knots.len()),
         }
     }
 
     /// Old tension and material at p.
     pub fn at(&self, track: &Track<'_>, p: f64) -> (f64, f64) {
-        let (knot, m) = self.knot(p, true);
-        let way = track.slide(knot.p, p, knot.tension, m);
+        let (knot, beyond) = self.knot(p, true);
+        let way = if beyond {
+            track.lay(knot.p, p, knot.tension)
+        } else {
+            track.slide(knot.p, p, knot.tension, knot.m)
+        };
         (way.tension, knot.s + way.material)
+    }
+
+    /// From p towards `to`: how far the old tension has one law there, and its m.
+    fn stretch(&self, track: &Track<'_>, p: f64, to: f64) -> (f64, f64) {
+        let right = to > p;
+        let (knot, beyond) = self.knot(p, right);
+        let k = self.knots.partition_point(|k| if right { k.p <= p } else { k.p < p });
+        let border = if right { self.knots.get(k) } else { k.checked_sub(1).and_then(|j| self.knots.get(j)) };
+        let mut next = track.next_border(p, to);
+        if let Some(b) = border
+            && (if right { b.p < next } else { b.p > next })
+        {
+            next = b.p;
+        }
+        (next, if beyond { track.even(0.5 * (p + next)) } else { knot.m })
     }
 
     /// dT/dp of the old tension at p.
     pub fn slope(&self, track: &Track<'_>, p: f64) -> f64 {
-        let (_, m) = self.knot(p, true);
+        let (knot, beyond) = self.knot(p, true);
+        let m = if beyond { track.even(p) } else { knot.m };
         track.law.slope(&track.place(p), self.at(track, p).0, m)
     }
 
     /// Slides from an end at p with tension `t` towards `to`, as far as the old tension lets it.
-    pub fn front(&self, track: &Track<'_>, (p, t): (f64, f64), to: f64, friction: f64) -> Front {
+    pub fn front(&self, track: &Track<'_>, (p, t): (f64, f64), to: f64) -> Front {
         let right = to > p;
         let (mut old, _) = self.at(track, p);
         let sign = if t < old { 1.0 } else { -1.0 };
-        let m = friction * sign * if right { 1.0 } else { -1.0 };
+        let m = track.friction * sign * if right { 1.0 } else { -1.0 };
         let (mut at, mut way) = (p, Step::none(t));
         if t == old {
             return Front { p, way, m, met: true };
         }
         while at != to {
-            let (_, old_m) = self.knot(at, right);
-            let mut next = track.next_border(at, to);
-            let k = self.knots.partition_point(|k| if right { k.p <= at } else { k.p < at });
-            let border = if right { self.knots.get(k) } else { k.checked_sub(1).and_then(|j| self.knots.get(j)) };
-            if let Some(b) = border
-                && (if right { b.p < next } else { b.p > next })
-            {
-                next = b.p;
-            }
+            let (next, old_m) = self.stretch(track, at, to);
             let here = track.slide(at, next, way.tension, m);
             let there = track.slide(at, next, old, old_m).tension;
             if (there - here.tension) * sign <= 0.0 {
@@ -210,11 +220,12 @@ impl History {
     }
 
     /// Where a contact sticks under its end tensions.
-    pub fn hold(&self, track: &Track<'_>, e: &Ends, friction: f64) -> Held {
+    pub fn hold(&self, track: &Track<'_>, e: &Ends) -> Held {
+        let friction = track.friction;
         let [p1, p2] = e.p;
         let [t1, t2] = e.t;
-        let left = self.front(track, (p1, t1), p2, friction);
-        let right = self.front(track, (p2, t2), p1, friction);
+        let left = self.front(track, (p1, t1), p2);
+        let right = self.front(track, (p2, t2), p1);
         if left.met && right.met && left.p <= right.p {
             return Held::Between([left, right]);
         }
@@ -240,7 +251,7 @@ impl History {
     }
 
     /// Takes what came of a step as the new past.
-    pub fn commit(&mut self, track: &Track<'_>, e: &Ends, mode: Mode, friction: f64) {
+    pub fn commit(&mut self, track: &Track<'_>, e: &Ends, mode: Mode) {
         let [first, last] = [0, 1].map(|k| Knot { p: e.p[k], s: e.s[k], tension: e.t[k], m: 0.0 });
         if last.p <= first.p {
             self.clear();
@@ -252,17 +263,19 @@ impl History {
                 self.clear();
                 self.knots.extend([Knot { m, ..first }, last]);
             }
-            Mode::Hold => match self.hold(track, e, friction) {
+            Mode::Hold => match self.hold(track, e) {
                 Held::Between([left, right]) => {
                     let old = self.clone();
                     self.clear();
                     if left.p > first.p {
                         self.push(Knot { m: left.m, ..first });
                     }
-                    let (tension, s) = old.at(track, left.p);
-                    self.push(Knot { p: left.p, s, tension, m: old.knot(left.p, true).1 });
-                    for k in old.knots.iter().filter(|k| k.p > left.p && k.p < right.p) {
-                        self.push(Knot { m: old.knot(k.p, true).1, ..*k });
+                    let mut p = left.p;
+                    while p < right.p {
+                        let (next, m) = old.stretch(track, p, right.p);
+                        let (tension, s) = old.at(track, p);
+                        self.push(Knot { p, s, tension, m });
+                        p = next;
                     }
                     if right.p < last.p {
                         let (tension, s) = old.at(track, right.p);

@@ -184,6 +184,8 @@ pub(super) struct Track<'a> {
     pub curve: &'a Curve,
     pub home: Home,
     pub law: Law,
+    /// μ.
+    pub friction: f64,
 }
 
 impl Track<'_> {
@@ -210,6 +212,27 @@ impl Track<'_> {
             i += if i < last { 1 } else { -1 };
             at = to;
         }
+    }
+
+    /// The m that keeps tension even where p is, as far as friction can: −b·t − m b·n = 0 on an edge; 0 on an arc.
+    pub fn even(&self, p: f64) -> f64 {
+        let place = self.place(p);
+        let out_of = self.law.load.dot(&place.normal);
+        if place.turn != 0.0 || out_of == 0.0 {
+            return 0.0;
+        }
+        (-self.law.load.dot(&place.tangent) / out_of).clamp(-self.friction, self.friction)
+    }
+
+    /// From p₀ to p₁ (either way) with the tension as even as friction can keep it: as cable is laid down.
+    pub fn lay(&self, p0: f64, p1: f64, t: f64) -> Step {
+        let (mut at, mut sum) = (p0, Step::none(t));
+        while at != p1 {
+            let next = self.next_border(at, p1);
+            sum = sum.then(self.slide(at, next, sum.tension, self.even(0.5 * (at + next))));
+            at = next;
+        }
+        sum
     }
 
     /// The next place from p towards `to` where the boundary changes from edge to arc or back; `to` if none lies between.

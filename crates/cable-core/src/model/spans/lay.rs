@@ -173,17 +173,28 @@ fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way:
             _ => true,
         })
     });
-    // Evenly along the route; from the end that is held, as it lies, where the other is free.
-    let loose = |side: usize| heads[side].is_some() && part.supports[side].is_none();
-    let way_per_s = course.law.thermal;
+    // Evenly along the route; from the end that is held, strained by what draws the other, where that is not held.
+    let loose = |side: usize| part.supports[side].is_none();
+    let drawn = |side: usize| match (&heads[side], ties[side]) {
+        (None, Tie::Hangs(force)) => (force + course.law.load * tail(part, instant, way, side)).norm(),
+        _ => 0.0,
+    };
+    let drawn = if loose(0) && (!loose(1) || drawn(0) < drawn(1)) { drawn(0) } else { drawn(1) };
+    let stretch = course.law.stretch(drawn);
     let at = |w: f64| match (loose(0), loose(1)) {
-        (true, false) => to - (total - w) / way_per_s,
-        (false, true) => from + w / way_per_s,
+        (true, false) => to - (total - w) / stretch,
+        (false, true) => from + w / stretch,
         _ => from + (to - from) * w / total,
     };
     let mut strand = Strand { from, to, ties, contacts: Vec::new(), forces: Vec::new() };
     let slack = total / ((to - from) * course.law.thermal) - 1.0;
-    let tension = if slack > 0.0 { slack * course.law.stiffness } else { 0.0 };
+    let tension = if loose(0) || loose(1) {
+        drawn
+    } else if slack > 0.0 {
+        slack * course.law.stiffness
+    } else {
+        0.0
+    };
     let least = LAID * course.law.load.norm() * (to - from);
     if let [Some(a), Some(b)] = &heads
         && (a.count + b.count > way.points.len() && a.curve == b.curve && a.home == b.home)
@@ -204,7 +215,7 @@ fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way:
         return Some(strand);
     }
     // A span from one lying stretch to the next needs some tension.
-    let tension = if tension > least { tension } else { least };
+    let tension = if tension > least || heads.iter().any(Option::is_none) { tension } else { least };
     let first = heads[0].as_ref().map_or(0, |h| h.count - 1);
     let last = way.points.len() - heads[1].as_ref().map_or(1, |h| h.count);
     if first > last {
@@ -282,6 +293,16 @@ fn bare(part: &Part, instant: &Instant) -> Option<Strand> {
     part.pulleys.is_empty().then(|| Strand { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()] })
 }
 
+/// Length of a route from an end that hangs to the highest of its points, about where it is first held, m.
+fn tail(part: &Part, instant: &Instant, way: &Way, side: usize) -> f64 {
+    let up = -instant.load;
+    let high = |k: &usize| way.points[*k].dot(&up);
+    let top = (0..way.points.len()).max_by(|a, b| high(a).total_cmp(&high(b))).unwrap_or(0);
+    let length = if side == 0 { way.along[top] } else { way.total() - way.along[top] };
+    let whole = part.material[1] - part.material[0];
+    if length < whole { length } else { whole }
+}
+
 /// An end that lies at p.
 fn end_tie(tie: Tie, p: f64) -> Tie {
     match tie {
@@ -313,18 +334,18 @@ fn spread(strand: &mut Strand, course: &Course) {
     }
     let loose = [0, 1].map(|side| matches!(strand.ties[side], Tie::Loose(_)));
     for (j, c) in strand.contacts.iter_mut().enumerate() {
-        let (track, friction) = (course.track(c), course.friction(c));
+        let track = course.track(c);
         if let (Tie::Loose(force), 0) = (strand.ties[0], j) {
             c.ends.t[0] = course.pull(c, 0, force);
         }
-        c.history = History::laid(&track, &c.ends, friction);
+        c.history = History::laid(&track, &c.ends);
         // A free end lies where the material ends.
         for side in (0..2).filter(|&side| loose[side] && j == side * (n - 1)) {
             for _ in 0..FITS {
                 let (tension, s) = c.history.at(&track, c.ends.p[1]);
                 let off = (s - c.ends.s[1]) * course.law.stretch(tension);
                 c.ends.p[side] += if side == 0 { off } else { -off };
-                c.history = History::laid(&track, &c.ends, friction);
+                c.history = History::laid(&track, &c.ends);
             }
         }
     }
@@ -340,6 +361,7 @@ fn contact(course: &Course, (curve, home): (usize, Home), (p, s): ([f64; 2], [f6
         history: History::new(knot(0), knot(1)),
         wheel: None,
         flips: 0,
+        smooth: false,
     }
 }
 

@@ -172,10 +172,16 @@ impl Mechanics for SpansModel {
                 taken
             }),
         };
+        let stable = self.network.as_ref().is_none_or(|n| n.stable(&mut work));
         self.work = work;
         let taken = found.map_err(|t| self.said(t))?;
         self.look();
         let mut report = self.report_of(taken);
+        if !stable {
+            let message = "This balance runs away at the least push: nothing rubs that would hold the cable in it";
+            let name = &self.layout.problem.cable.name;
+            report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
+        }
         if self.rubs() {
             let message = "With friction the resting place depends on how the cable was laid: this is the one laid along its way with the least sliding";
             let name = &self.layout.problem.cable.name;

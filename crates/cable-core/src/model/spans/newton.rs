@@ -11,6 +11,7 @@
 //! At a lying end the tension takes the place of p among the unknowns, and s = its material that of the tangency.
 
 use super::band::Band;
+use super::history::Mode;
 use super::rub::{self, Rows};
 use super::strand::{Course, Strand, Tie};
 use crate::math::{Vec2, cross, larger};
@@ -196,7 +197,7 @@ fn contact_rows(strand: &Strand, course: &Course, j: usize, (scale, r, mut band)
     let c = &strand.contacts[j];
     let track = course.track(c);
     let row = 6 * j + 2;
-    let rows: Rows = rub::rows(&track, &c.history, &c.ends, (c.mode, pinned(strand, j)), course.friction(c));
+    let rows: Rows = rub::rows(&track, &c.history, &c.ends, (c.mode, pinned(strand, j)));
     let tension = larger(larger(c.ends.t[0].abs(), c.ends.t[1].abs()), 1e-9 * course.law.load.norm());
     let size = rows.of_tension.map(|of| if of { 1.0 / tension } else { scale });
     for i in 0..2 {
@@ -349,12 +350,45 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
     }
 }
 
+/// Whether a balance without friction is a rest: what is pushed comes back.
+///
+/// A contact that sticks keeps its material, one that slides has T₂ − T₁ = 0 instead, which must rise with the material
+/// s that comes to it. By s₁ = s₂ = s the two rows are [−1, 1] and [−∂T₁, ∂T₂], of determinant −∂(T₂ − T₁)/∂s, in place of
+/// 1: each sliding contact that is stable turns the sign of the Jacobian's determinant once (one that lies to its start
+/// does not: there T₁ takes the place of s₁). An even number of unstable ways is not seen, and nothing is said of what
+/// friction holds: that came there by its own motion.
+pub(super) fn stable(strand: &Strand, course: &Course, work: &mut Work) -> bool {
+    let rubs = strand.contacts.iter().any(|c| course.friction(c) > 0.0);
+    if rubs || strand.contacts.is_empty() || strand.ties.iter().any(|t| matches!(t, Tie::Loose(_))) {
+        return true;
+    }
+    let count = (0..strand.contacts.len()).filter(|&j| !lies(strand, j, 0)).count();
+    let mut sign = |strand: &Strand| {
+        assemble(strand, course, &mut work.residual, Some(&mut work.band));
+        work.rhs.clear();
+        work.rhs.resize(work.residual.len(), 1.0);
+        work.band.scale(&mut work.rhs);
+        work.band.solve(&mut work.rhs).then(|| work.band.is_negative())
+    };
+    let found = sign(strand);
+    let mut stuck = strand.clone();
+    for c in &mut stuck.contacts {
+        let track = course.track(c);
+        c.history.commit(&track, &c.ends, c.mode);
+        c.mode = Mode::Hold;
+    }
+    match (found, sign(&stuck)) {
+        (Some(a), Some(b)) => (a != b) == (count % 2 == 1),
+        _ => false,
+    }
+}
+
 fn change_modes(strand: &mut Strand, course: &Course, most: u32) -> bool {
     let mut changed = false;
     for j in 0..strand.contacts.len() {
         let pinned = pinned(strand, j);
         let c = &mut strand.contacts[j];
-        let next = rub::next_mode(&course.track(c), &c.history, &c.ends, (c.mode, pinned), course.friction(c));
+        let next = rub::next_mode(&course.track(c), &c.history, &c.ends, (c.mode, pinned));
         if next != c.mode && c.flips < most {
             c.mode = next;
             c.flips += 1;

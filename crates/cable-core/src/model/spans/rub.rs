@@ -31,14 +31,13 @@ pub(super) fn rows(
     history: &History,
     e: &Ends,
     (mode, pinned): (Mode, [bool; 2]),
-    friction: f64,
 ) -> Rows {
     // Lifted (Newton looks there): a point without friction.
     let mode = if e.p[1] < e.p[0] { Mode::Slide(0.0) } else { mode };
     match mode {
         Mode::Slide(m) => sliding(track, e, m),
         Mode::Hold => {
-            let (mut out, fronts) = match history.hold(track, e, friction) {
+            let (mut out, fronts) = match history.hold(track, e) {
                 // Beyond its cone the rows of sticking go on smoothly: the mode is changed, not the rows.
                 Held::Between(fronts) | Held::Beyond(_, fronts) => (holding(track, history, e, fronts, false), fronts),
                 Held::Meet(fronts) => (holding(track, history, e, fronts, true), fronts),
@@ -84,7 +83,7 @@ fn pin(out: &mut Rows, (track, history, e): (&Track<'_>, &History, &Ends), side:
         out.of_tension[side] = false;
         if x == 0.0 {
             let nudged = old_t + NUDGE * (old_t.abs() + law.load.norm() * size) * target.signum();
-            let way = history.front(track, (e.p[side], nudged), e.p[1 - side], front.m.abs()).way;
+            let way = history.front(track, (e.p[side], nudged), e.p[1 - side]).way;
             out.by[side][3 * side + 2] = way.material_by_tension;
         }
         return;
@@ -171,13 +170,13 @@ pub(super) fn next_mode(
     history: &History,
     e: &Ends,
     (mode, pinned): (Mode, [bool; 2]),
-    friction: f64,
 ) -> Mode {
+    let friction = track.friction;
     if friction <= 0.0 || e.p[1] < e.p[0] {
         return if friction <= 0.0 { Mode::Slide(0.0) } else { mode };
     }
     match mode {
-        Mode::Hold => match history.hold(track, e, friction) {
+        Mode::Hold => match history.hold(track, e) {
             Held::Beyond(m, _) => {
                 // Rounding at the edge of the cone is not sliding.
                 let reached = track.slide(e.p[0], e.p[1], e.t[0], m).tension;
@@ -199,7 +198,7 @@ pub(super) fn next_mode(
             // least where the tension is what it was: before it the one stretch is the greater, after it the other.
             let (old, _) = history.at(track, e.p[0]);
             let least = if (old - e.t[0]) * m > 0.0 {
-                history.front(track, (e.p[0], e.t[0]), e.p[1], friction).p
+                history.front(track, (e.p[0], e.t[0]), e.p[1]).p
             } else {
                 e.p[0]
             };

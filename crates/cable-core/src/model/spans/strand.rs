@@ -54,6 +54,8 @@ pub(super) struct Contact {
     pub wheel: Option<usize>,
     /// Times the mode has changed in this solve.
     pub flips: u32,
+    /// Smooth for now: found while a rest is sought, where it has not rubbed yet.
+    pub smooth: bool,
 }
 
 /// A strand.
@@ -72,12 +74,12 @@ pub(super) struct Strand {
 impl Course {
     /// The chain a contact lies on.
     pub fn track(&self, c: &Contact) -> Track<'_> {
-        Track { curve: &self.curves[c.curve], home: c.home, law: self.law }
+        Track { curve: &self.curves[c.curve], home: c.home, law: self.law, friction: self.friction(c) }
     }
 
     /// Friction of a contact.
     pub fn friction(&self, c: &Contact) -> f64 {
-        self.curves[c.curve].friction
+        if c.smooth { 0.0 } else { self.curves[c.curve].friction }
     }
 
     /// Tension a dead force makes at an end that lies, N.
