@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use cable_core::scene::obstacle::{Obstacle, Shape};
 use cable_core::scene::{Motion, Scene, Support, SupportKind, catalog};
-use cable_core::solution::ContactReport;
+use cable_core::solution::{ContactReport, ContactState};
 use cable_core::{Model, Simulation, Solution, SolveError};
 use serde_json::Value;
 
@@ -233,9 +233,10 @@ fn capstans_multiply() {
     let mut worst = Worst(0.0, String::new());
     for (name, case) in family("capstan") {
         let (mu, turn) = (number(&case, "in", "mu"), number(&case, "in", "theta_deg").to_radians());
-        for pull in [0.1, -0.1] {
+        for pull in if number(&case, "out", "ratio") > 1e2 { vec![0.5] } else { vec![0.1, -0.1] } {
             // As light as a scene allows.
-            let c = round_a_post((1e-5, 1e7), 0.5, mu, 100.0, (-FRAC_PI_2, turn), pull);
+            let c = round_a_post((1e-5, 1e9), 0.5, mu, 100.0, (-FRAC_PI_2, turn), pull);
+            assert_eq!(c.state, ContactState::Slip, "{name}");
             let ratio = c.tension_after_n / c.tension_before_n;
             let turned = c.turn_deg.abs().to_radians();
             assert!((turned - turn).abs() < 1e-5, "{name}: turned by {turned} of {turn}");
@@ -268,10 +269,11 @@ fn heavy_capstans_follow_their_law() {
         worst.take(&name, "formula", table, number(&case, "out", "T2_max"), table, 1e-12);
         // … and what a scene of that post does between where the cable comes and where it leaves.
         for pull in [0.5, -0.5] {
-            if pull < 0.0 && number(&case, "out", "N_min") < 30.0 {
+            let c = round_a_post((of("w"), 1e10), of("R"), mu, of("T1"), (from, to - from), pull);
+            if pull < 0.0 && c.state == ContactState::Stick {
                 continue;
             }
-            let c = round_a_post((of("w"), 1e10), of("R"), mu, of("T1"), (from, to - from), pull);
+            assert_eq!(c.state, ContactState::Slip, "{name}");
             let m = mu * pull.signum();
             let middle = c.x_m.atan2(c.y_m);
             let middle = middle + TAU * ((0.5 * (from + to) - middle) / TAU).round();
@@ -284,7 +286,7 @@ fn heavy_capstans_follow_their_law() {
 }
 
 /// Whether two tails hanging over something hold each other.
-fn holds(tails: [f64; 2], shape: Option<Shape>, over: f64, mu: f64, route: &[[f64; 2]]) -> bool {
+fn holds(tails: [f64; 2], shape: Option<Shape>, over: f64, mu: f64, route: &[[f64; 2]]) -> Result<(), SolveError> {
     let length = tails[0] + over + tails[1];
     let (a, b) = (route[0], route[route.len() - 1]);
     let mut way = vec![[a[0], a[1] - tails[0]]];
@@ -298,7 +300,7 @@ fn holds(tails: [f64; 2], shape: Option<Shape>, over: f64, mu: f64, route: &[[f6
     let mut scene = cable(length, 20.0, 1e8, ends);
     scene.obstacles = shape.map(|s| obstacle(s, mu)).into_iter().collect();
     scene.cables[0].route_m = way;
-    settle(scene).is_ok()
+    settle(scene).map(|_| ())
 }
 
 #[test]
@@ -306,11 +308,11 @@ fn draped_cables_hold_to_the_limit() {
     for (name, case) in family("draped") {
         let of = |key: &str| number(&case, "in", key);
         let (mu, h1) = (of("mu"), of("h1"));
-        let holds: Box<dyn Fn(f64) -> bool> = if case["in"]["R"].as_f64().is_some_and(|r| r > 0.0) && mu.is_finite() {
+        let holds: Box<dyn Fn(f64) -> Result<(), SolveError>> = if case["in"]["R"].as_f64().is_some_and(|r| r > 0.0) && mu.is_finite() {
             let r = of("R") - THIN;
             Box::new(move |h2| {
-                let ring: Vec<[f64; 2]> = (0..=12)
-                    .map(|k| -FRAC_PI_2 + PI * f64::from(k) / 12.0)
+                let ring: Vec<[f64; 2]> = (0..=90)
+                    .map(|k| -FRAC_PI_2 + PI * f64::from(k) / 90.0)
                     .map(|phi| [(r + THIN) * phi.sin(), (r + THIN) * phi.cos()])
                     .collect();
                 let way: f64 = ring.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1])).sum();
@@ -332,11 +334,11 @@ fn draped_cables_hold_to_the_limit() {
             if limit < 0.05 {
                 continue;
             }
-            // The route of a polygon inside a round is this much shorter than its arc, which is no part of the tails.
-            let off = 2e-4;
+            // The route of a polygon inside a round is shorter than its arc, which takes as much off the tails.
+            let off = 1e-3;
             let (inside, outside) = if key == "h2_max" { (1.0 - off, 1.0 + off) } else { (1.0 + off, 1.0 - off) };
-            assert!(holds(limit * inside), "{name}: {key} {limit} does not hold just inside");
-            assert!(!holds(limit * outside), "{name}: {key} {limit} holds just outside");
+            holds(limit * inside).unwrap_or_else(|e| panic!("{name}: {key} {limit} does not hold just inside: {e}"));
+            assert!(holds(limit * outside).is_err(), "{name}: {key} {limit} holds just outside");
         }
     }
 }

@@ -15,6 +15,10 @@ const DEEPEST: f64 = 1e-6;
 const PUSHES: f64 = 1e-9;
 /// Points of a contact looked at.
 const SAMPLES: usize = 8;
+/// A span hangs in one line when the force across the load is below this part of its load.
+const FOLDED: f64 = 1e-12;
+/// Panels of a span far from its fold.
+const TAUT_PANELS: usize = 4;
 /// Panels of the quadrature of a span, in v; 5 Gauss points each leave 1e-12.
 const PANEL: f64 = 0.5;
 
@@ -83,12 +87,18 @@ fn way(strand: &Strand, course: &Course, k: usize, [from, to]: [f64; 2]) -> Vec2
     let force = |s: f64| start - course.law.load * (s - from);
     let b = course.law.load.norm();
     let across = if b > 0.0 { cross(start, course.law.load).abs() / b } else { 0.0 };
-    if !(across > 1e-12 * b * (to - from)) {
+    if !(across > FOLDED * b * (to - from)) {
         let fold = if b > 0.0 { (from + start.dot(&course.law.load) / (b * b)).clamp(from, to) } else { to };
         let straight = |a: f64, c: f64| if c > a { course.rate(force(0.5 * (a + c))) * (c - a) } else { Vec2::zeros() };
         return straight(from, fold) + straight(fold, to);
     }
     let middle = from + start.dot(&course.law.load) / (b * b);
+    if middle < 2.0 * from - to || middle > 2.0 * to - from {
+        // Far from the fold it is smooth as it is.
+        let h = (to - from) / TAUT_PANELS as f64;
+        let points = (0..TAUT_PANELS).flat_map(|j| GAUSS.map(|(u, weight)| (from + (j as f64 + u) * h, weight * h)));
+        return points.fold(Vec2::zeros(), |sum, (s, weight)| sum + course.rate(force(s)) * weight);
+    }
     let (v0, v1) = ((b * (from - middle) / across).asinh(), (b * (to - middle) / across).asinh());
     let panels = ((v1 - v0) / PANEL).ceil().max(1.0);
     let h = (v1 - v0) / panels;

@@ -245,6 +245,9 @@ fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way:
     }
     strand.forces = vec![Vec2::zeros(); contacts.len() + 1];
     strand.contacts = contacts;
+    if join == 0.0 && (loose(0) || loose(1)) {
+        measure(&mut strand, course, [loose(0), loose(1)], stretch);
+    }
     spread(&mut strand, course);
     for k in 0..strand.spans() {
         if strand.has_span(k) {
@@ -291,6 +294,37 @@ fn bare(part: &Part, instant: &Instant) -> Option<Strand> {
     let [from, to] = part.material;
     let ties = [Tie::Held(instant.places[a?]), Tie::Held(instant.places[b?])];
     part.pulleys.is_empty().then(|| Strand { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()] })
+}
+
+/// Material as it lies along the taut string, strained by `stretch`, from the end that is held; from the first contact as
+/// the route has it where none is.
+fn measure(strand: &mut Strand, course: &Course, loose: [bool; 2], stretch: f64) {
+    let n = strand.contacts.len();
+    let point = |strand: &Strand, k: usize, side: usize| strand.ends_of(course, k)[side];
+    let chord = |strand: &Strand, k: usize| match (point(strand, k, 0), point(strand, k, 1)) {
+        (Some(a), Some(b)) => (b - a).norm() / stretch,
+        _ => 0.0,
+    };
+    let own = |c: &Contact| course.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.home) / stretch;
+    if loose[1] {
+        let mut s = if loose[0] { strand.contacts.first().map_or(0.0, |c| c.ends.s[0]) } else { strand.from };
+        for j in 0..n {
+            s += if loose[0] && j == 0 { 0.0 } else { chord(strand, j) };
+            let length = own(&strand.contacts[j]);
+            let last = j + 1 == n && !strand.ties[1].has_span();
+            strand.contacts[j].ends.s = [s, if last { strand.to } else { s + length }];
+            s += length;
+        }
+    } else {
+        let mut s = strand.to;
+        for j in (0..n).rev() {
+            s -= chord(strand, j + 1);
+            let length = own(&strand.contacts[j]);
+            let first = j == 0 && !strand.ties[0].has_span();
+            strand.contacts[j].ends.s = [if first { strand.from } else { s - length }, s];
+            s -= length;
+        }
+    }
 }
 
 /// Length of a route from an end that hangs to the highest of its points, about where it is first held, m.

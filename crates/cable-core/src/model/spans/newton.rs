@@ -33,6 +33,13 @@ const ROUNDING: f64 = 20.0;
 const MOST_TURN: f64 = 0.7;
 /// A span keeps at least this part of its material in one iteration.
 const KEEP: f64 = 0.1;
+/// Residual below which modes are judged. Larger: a contact slides because an iterate has tensions it will not keep, and
+/// what is held at neither end slides away. Smaller: iterations spent on a mode that will not last.
+const SETTLED: f64 = 1e-3;
+/// Rounding that is let pass where modes cycle at the edge of the cone, in times of what is rounding.
+const PATIENT: f64 = 1e4;
+/// Iterations without progress after which modes are judged all the same.
+const PATIENCE: usize = 3;
 /// Changes of mode of one contact while iterating; after that only between converged states.
 const MOST_FLIPS: u32 = 6;
 
@@ -318,18 +325,23 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
     }
     let (mut best, mut stalled, mut iterations) = (f64::INFINITY, 0, 0);
     loop {
-        change_modes(strand, course, MOST_FLIPS);
         assemble(strand, course, &mut work.residual, Some(&mut work.band));
-        let (mut worst, at) = norm(&work.residual);
-        let stall = move |residual: f64| Stall { iterations, residual, at: at / 6 };
-        if worst <= tolerance(strand, course) {
-            if change_modes(strand, course, 4 * MOST_FLIPS) {
+        let (mut worst, mut at) = norm(&work.residual);
+        let done = worst <= tolerance(strand, course);
+        if worst <= SETTLED || stalled >= PATIENCE {
+            if change_modes(strand, course, if done { 4 * MOST_FLIPS } else { MOST_FLIPS }) {
                 assemble(strand, course, &mut work.residual, Some(&mut work.band));
-                worst = norm(&work.residual).0;
-            } else {
-                return Ok(Solved { iterations, residual: worst });
+                (worst, at) = norm(&work.residual);
+                (best, stalled) = (f64::INFINITY, 0);
+            } else if done {
+                return if agreed(strand, course) {
+                    Ok(Solved { iterations, residual: worst })
+                } else {
+                    Err(Stall { iterations, residual: worst, at: at / 6 })
+                };
             }
         }
+        let stall = move |residual: f64| Stall { iterations, residual, at: at / 6 };
         if worst < 0.5 * best {
             (best, stalled) = (worst, 0);
         } else {
@@ -340,8 +352,11 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
         }
         iterations += 1;
         if !step(strand, course, work) {
+            if change_modes(strand, course, MOST_FLIPS) {
+                continue;
+            }
             // Rounding: nothing is gained any more.
-            return if worst <= ROUNDING * tolerance(strand, course) {
+            return if worst <= ROUNDING * tolerance(strand, course) && agreed(strand, course) {
                 Ok(Solved { iterations, residual: worst })
             } else {
                 Err(stall(worst))
@@ -383,12 +398,20 @@ pub(super) fn stable(strand: &Strand, course: &Course, work: &mut Work) -> bool 
     }
 }
 
+/// Whether every contact is in the mode that its state asks for.
+fn agreed(strand: &Strand, course: &Course) -> bool {
+    (0..strand.contacts.len()).all(|j| {
+        let c = &strand.contacts[j];
+        rub::next_mode(&course.track(c), &c.history, &c.ends, (c.mode, pinned(strand, j)), PATIENT) == c.mode
+    })
+}
+
 fn change_modes(strand: &mut Strand, course: &Course, most: u32) -> bool {
     let mut changed = false;
     for j in 0..strand.contacts.len() {
         let pinned = pinned(strand, j);
         let c = &mut strand.contacts[j];
-        let next = rub::next_mode(&course.track(c), &c.history, &c.ends, (c.mode, pinned));
+        let next = rub::next_mode(&course.track(c), &c.history, &c.ends, (c.mode, pinned), if c.flips < MOST_FLIPS { 1.0 } else { PATIENT });
         if next != c.mode && c.flips < most {
             c.mode = next;
             c.flips += 1;

@@ -165,13 +165,17 @@ fn holding(track: &Track<'_>, history: &History, e: &Ends, fronts: [Front; 2], m
 }
 
 /// The mode to go on with: a contact that holds beyond its cone slides; one that would slide the wrong way holds.
+///
+/// `patience`: how many times rounding that is; 1 while it costs nothing to change.
 pub(super) fn next_mode(
     track: &Track<'_>,
     history: &History,
     e: &Ends,
     (mode, pinned): (Mode, [bool; 2]),
+    patience: f64,
 ) -> Mode {
     let friction = track.friction;
+    let (cone, stuck) = (CONE * patience, STUCK * patience);
     if friction <= 0.0 || e.p[1] < e.p[0] {
         return if friction <= 0.0 { Mode::Slide(0.0) } else { mode };
     }
@@ -180,7 +184,7 @@ pub(super) fn next_mode(
             Held::Beyond(m, _) => {
                 // Rounding at the edge of the cone is not sliding.
                 let reached = track.slide(e.p[0], e.p[1], e.t[0], m).tension;
-                if (e.t[1] - reached).abs() > CONE * e.t[1].abs() { Mode::Slide(m) } else { mode }
+                if (e.t[1] - reached).abs() > cone * e.t[1].abs() { Mode::Slide(m) } else { mode }
             }
             _ => mode,
         },
@@ -190,7 +194,7 @@ pub(super) fn next_mode(
                 if (e.s[side] - old_s).abs() <= UNMOVED * (e.s[0].abs() + e.s[1].abs()) {
                     // What does not move is drawn the more the more the rest slides away from it.
                     let drawn = (e.t[side] - old_t) * m * if side == 0 { 1.0 } else { -1.0 };
-                    let rounding = CONE * friction * larger(e.t[0].abs(), e.t[1].abs());
+                    let rounding = cone * friction * larger(e.t[0].abs(), e.t[1].abs());
                     return if drawn < -rounding { Mode::Hold } else { mode };
                 }
             }
@@ -204,7 +208,7 @@ pub(super) fn next_mode(
             };
             let s = e.s[0] + track.slide(e.p[0], least, e.t[0], m).material;
             let slid = s - history.at(track, least).1;
-            if m * slid > 0.0 && slid.abs() > STUCK * (s.abs() + e.s[1].abs()) { Mode::Hold } else { mode }
+            if m * slid > 0.0 && slid.abs() > stuck * (s.abs() + e.s[1].abs()) { Mode::Hold } else { mode }
         }
     }
 }
