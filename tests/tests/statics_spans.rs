@@ -202,7 +202,14 @@ fn drawn_over_flat_ground_and_held_on_a_slope() {
 
 /// A cable drawn round a post by a hand against a dead load: the post's contact, which slides. φ counts from the top along
 /// the cable; `from` where the load's tail comes up to it, `turn` how far it goes round.
-fn round_a_post((w, ea): (f64, f64), radius: f64, mu: f64, t1: f64, (from, turn): (f64, f64), pull: f64) -> ContactReport {
+fn round_a_post(
+    (w, ea): (f64, f64),
+    radius: f64,
+    mu: f64,
+    t1: f64,
+    (from, turn): (f64, f64),
+    pull: f64,
+) -> ContactReport {
     let r = radius + THIN;
     // The line of the load and of the hand, tangent to the post at φ: point r(sin φ, cos φ), direction (cos φ, −sin φ).
     let tangent = |phi: f64| ([r * phi.sin(), r * phi.cos()], [phi.cos(), -phi.sin()]);
@@ -308,27 +315,28 @@ fn draped_cables_hold_to_the_limit() {
     for (name, case) in family("draped") {
         let of = |key: &str| number(&case, "in", key);
         let (mu, h1) = (of("mu"), of("h1"));
-        let holds: Box<dyn Fn(f64) -> Result<(), SolveError>> = if case["in"]["R"].as_f64().is_some_and(|r| r > 0.0) && mu.is_finite() {
-            let r = of("R") - THIN;
-            Box::new(move |h2| {
-                let ring: Vec<[f64; 2]> = (0..=90)
-                    .map(|k| -FRAC_PI_2 + PI * f64::from(k) / 90.0)
-                    .map(|phi| [(r + THIN) * phi.sin(), (r + THIN) * phi.cos()])
-                    .collect();
-                let way: f64 = ring.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1])).sum();
-                let shape = Shape::Circle { center_m: [0.0, 0.0], radius_m: r };
-                holds([h1, h2], Some(shape), way, mu, &ring)
-            })
-        } else if let Some(b) = case["in"]["b"].as_f64() {
-            let half = 0.5 * b;
-            Box::new(move |h2| {
-                let points_m = vec![[-half, 0.0], [-half, -200.0], [half, -200.0], [half, 0.0]];
-                let (x, y) = (half + THIN, THIN);
-                holds([h1, h2], Some(Shape::Polygon { points_m }), 2.0 * x, mu, &[[-x, y], [x, y]])
-            })
-        } else {
-            continue;
-        };
+        let holds: Box<dyn Fn(f64) -> Result<(), SolveError>> =
+            if case["in"]["R"].as_f64().is_some_and(|r| r > 0.0) && mu.is_finite() {
+                let r = of("R") - THIN;
+                Box::new(move |h2| {
+                    let ring: Vec<[f64; 2]> = (0..=90)
+                        .map(|k| -FRAC_PI_2 + PI * f64::from(k) / 90.0)
+                        .map(|phi| [(r + THIN) * phi.sin(), (r + THIN) * phi.cos()])
+                        .collect();
+                    let way: f64 = ring.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1])).sum();
+                    let shape = Shape::Circle { center_m: [0.0, 0.0], radius_m: r };
+                    holds([h1, h2], Some(shape), way, mu, &ring)
+                })
+            } else if let Some(b) = case["in"]["b"].as_f64() {
+                let half = 0.5 * b;
+                Box::new(move |h2| {
+                    let points_m = vec![[-half, 0.0], [-half, -200.0], [half, -200.0], [half, 0.0]];
+                    let (x, y) = (half + THIN, THIN);
+                    holds([h1, h2], Some(Shape::Polygon { points_m }), 2.0 * x, mu, &[[-x, y], [x, y]])
+                })
+            } else {
+                continue;
+            };
         for key in ["h2_max", "h2_min"] {
             let limit = number(&case, "out", key);
             if limit < 0.05 {

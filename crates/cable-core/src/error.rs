@@ -96,6 +96,20 @@ pub enum SceneFault {
     },
 }
 
+/// How a cable loses its tension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum TensionLoss {
+    /// A free span hangs in one line and folds.
+    #[error("a span folds")]
+    Fold,
+    /// A free span has hardly any tension left.
+    #[error("a span goes slack")]
+    Span,
+    /// What lies on an obstacle would have to push.
+    #[error("what lies goes slack")]
+    Lay,
+}
+
 /// Why a model has no answer.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SolveError {
@@ -130,6 +144,18 @@ pub enum SolveError {
         model: Model,
         /// The node where the factorisation met a pivot ≤ 0.
         node: usize,
+    },
+    /// The cable has no tension somewhere, and the model needs some everywhere.
+    #[error("{model} follows a taut cable only: {loss} {arc_length_m:.3} m along it, at ({:.3} m, {:.3} m)", .at_m.x, .at_m.y)]
+    TensionLost {
+        /// The model.
+        model: Model,
+        /// In what way.
+        loss: TensionLoss,
+        /// Where on the cable, m.
+        arc_length_m: f64,
+        /// Where that is, m.
+        at_m: Vec2,
     },
     /// Nothing can hold the loads.
     #[error("there is no resting place: {why}")]

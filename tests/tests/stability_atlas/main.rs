@@ -68,6 +68,7 @@ impl Verdict {
         Self::Refused(match e {
             SolveError::NotConverged { .. } => "not converged",
             SolveError::Compressed { .. } => "compressed",
+            SolveError::TensionLost { .. } => "tension lost",
             SolveError::Indefinite { .. } => "not stable",
             SolveError::NoRestingPlace { .. } => "no resting place",
             SolveError::Unsupported { .. } => "not supported",

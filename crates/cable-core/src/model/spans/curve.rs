@@ -239,8 +239,9 @@ impl Curve {
         }
     }
 
-    /// The chain a piece belongs to; None if it cannot hold a cable.
-    pub fn chain(&self, i: i64, load: Vec2) -> Option<Home> {
+    /// The chain a piece belongs to and the number of the piece in it; None if it cannot hold a cable. A chain of a closed
+    /// boundary is always counted from the same turn.
+    pub fn chain(&self, i: i64, load: Vec2) -> Option<(i64, Home)> {
         if !self.holds(i, load) {
             return None;
         }
@@ -258,7 +259,8 @@ impl Curve {
         {
             last += 1;
         }
-        Some(Home { first, last })
+        let turn = first.rem_euclid(n) - first;
+        Some((i + turn, Home { first: first + turn, last: last + turn }))
     }
 
     /// The piece of one turn that stands for a feature of the obstacle, the nearest to a point where it has several.

@@ -217,14 +217,10 @@ fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit, resting: boo
     let curve_index = 2 * hit.body + usize::from(back);
     let Some(curve) = course.curves.get(curve_index) else { return Err(no_seat) };
     let load = course.law.load;
-    let Some(mut i) = curve.piece_of(hit.gap.feature, hit.at) else { return Err(no_seat) };
-    let Some(home) = curve.chain(i, load).or_else(|| {
-        // A wall or an underside: the cable goes round the corner of it that is nearer.
-        i = curve.corner_beside(i, hit.at)?;
-        curve.chain(i, load)
-    }) else {
-        return Err(no_seat);
-    };
+    let Some(i) = curve.piece_of(hit.gap.feature, hit.at) else { return Err(no_seat) };
+    // Of a wall or an underside the cable goes round the corner that is nearer.
+    let found = curve.chain(i, load).or_else(|| curve.chain(curve.corner_beside(i, hit.at)?, load));
+    let Some((i, home)) = found else { return Err(no_seat) };
     let edge = curve.place_on(i, 0.0).turn == 0.0;
     let p = if edge { curve.project(i, hit.at) } else { curve.with_tangent(i, hit.tangent) };
     let force = strand.force(course, k, hit.s).norm();

@@ -162,11 +162,8 @@ impl History {
     /// Old tension and material at p.
     pub fn at(&self, track: &Track<'_>, p: f64) -> (f64, f64) {
         let (knot, beyond) = self.knot(p, true);
-        let way = if beyond {
-            track.lay(knot.p, p, knot.tension)
-        } else {
-            track.slide(knot.p, p, knot.tension, knot.m)
-        };
+        let way =
+            if beyond { track.lay(knot.p, p, knot.tension) } else { track.slide(knot.p, p, knot.tension, knot.m) };
         (way.tension, knot.s + way.material)
     }
 

@@ -6,6 +6,7 @@ use super::history::{Ends, History, Knot, Mode};
 use super::instant::{Instant, Layout, Part, Pulley};
 use super::strand::{Contact, Course, Strand, Tie};
 use super::taut::{self, Bend};
+use super::way::{Way, way};
 use crate::contact::World;
 use crate::math::{Vec2, cross};
 
@@ -19,6 +20,9 @@ const LAID: f64 = 1e-3;
 const NEAR: f64 = 0.5;
 /// Part of a dead force that lifts an end off what it lies on.
 const LIFTS: f64 = 1e-9;
+/// How far along the route, in radii of a post, the cable may come up to it before or after the string does: less than half
+/// a turn, so that turns are not mistaken for each other.
+const ROUND: f64 = 2.5;
 /// Rounds of bringing a free end to where the material ends; each gains the digits of the strain.
 const FITS: usize = 6;
 /// A contact guessed keeps at least this part of the strand's material clear of the next.
@@ -36,114 +40,6 @@ struct Seat {
     way: [f64; 2],
     /// How far the string turns there, rad.
     turn: f64,
-}
-
-/// A route with the length along it.
-struct Way {
-    points: Vec<Vec2>,
-    along: Vec<f64>,
-}
-
-impl Way {
-    fn new(points: Vec<Vec2>) -> Self {
-        let mut along = vec![0.0; points.len()];
-        for k in 1..points.len() {
-            along[k] = along[k - 1] + (points[k] - points[k - 1]).norm();
-        }
-        Self { points, along }
-    }
-
-    fn total(&self) -> f64 {
-        self.along.last().copied().unwrap_or(0.0)
-    }
-
-    /// How far along it comes nearest to a point, not before `from`, up to the end of leg `last`.
-    fn nearest(&self, at: Vec2, from: f64, last: usize) -> f64 {
-        let (mut best, mut found) = (f64::INFINITY, from);
-        for k in 0..self.points.len().saturating_sub(1).min(last + 1) {
-            let d = self.points[k + 1] - self.points[k];
-            let l = d.norm();
-            if l == 0.0 || self.along[k + 1] < from {
-                continue;
-            }
-            let u = ((at - self.points[k]).dot(&d) / l).clamp(0.0, l);
-            let u = if self.along[k] + u < from { from - self.along[k] } else { u };
-            let distance = (self.points[k] + d * (u / l) - at).norm();
-            // Of equals the first, as a post is passed by several turns alike.
-            if distance < best * (1.0 - 1e-6) - 1e-12 {
-                (best, found) = (distance, self.along[k] + u);
-            }
-        }
-        found
-    }
-
-    /// Leg at a length along it.
-    fn leg(&self, w: f64) -> usize {
-        self.along.partition_point(|a| *a <= w).clamp(1, self.points.len().max(2) - 1) - 1
-    }
-}
-
-/// The route of a strand, and where its pulleys are on it.
-fn way(layout: &Layout, part: &Part, instant: &Instant) -> Way {
-    let p = &layout.problem;
-    let place = |k: usize| instant.places[k];
-    let ends = part.supports.map(|s| s.map(place));
-    let stops: Vec<Vec2> =
-        ends[0].into_iter().chain(part.pulleys.iter().map(|q| place(q.support))).chain(ends[1]).collect();
-    if p.route.len() > 1 {
-        let whole = Way::new(p.route.clone());
-        // The part of the route between the grips.
-        let a = ends[0].filter(|_| part.material[0] > 0.0).map_or(0.0, |at| whole.nearest(at, 0.0, usize::MAX - 1));
-        let b = ends[1]
-            .filter(|_| part.material[1] < p.length)
-            .map_or(whole.total(), |at| whole.nearest(at, a, usize::MAX - 1));
-        let mut points: Vec<Vec2> = Vec::with_capacity(whole.points.len() + 2);
-        points.extend(ends[0].or(whole.points.first().copied()));
-        for (k, q) in whole.points.iter().enumerate() {
-            if whole.along[k] > a && whole.along[k] < b {
-                points.push(*q);
-            }
-        }
-        points.extend(ends[1].or(whole.points.last().copied()));
-        return Way::new(points);
-    }
-    let mut points: Vec<Vec2> = Vec::new();
-    let used: f64 = stops.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
-    let spare = (part.material[1] - part.material[0] - used).max(0.05 * (part.material[1] - part.material[0]));
-    let loose = part.supports.iter().filter(|s| s.is_none()).count().max(1) as f64;
-    let tail = |side: usize| {
-        let force = layout.end_force(instant, part.material[side]) + instant.load * (0.5 * spare);
-        if force.norm() > 0.0 { force.normalize() * (spare / loose) } else { Vec2::zeros() }
-    };
-    if let (None, Some(first)) = (part.supports[0], stops.first()) {
-        points.push(first + tail(0));
-    }
-    for (k, at) in stops.iter().enumerate() {
-        if k > 0 {
-            points.extend(over(&p.world, stops[k - 1], *at));
-        }
-        points.push(*at);
-    }
-    if let (None, Some(last)) = (part.supports[1], stops.last()) {
-        points.push(last + tail(1));
-    }
-    Way::new(points)
-}
-
-/// Two points above everything between `a` and `b`, where the straight way is blocked.
-fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
-    if world.is_empty() || world.free_fraction([a, a], [b, b], 0.0) >= 1.0 {
-        return Vec::new();
-    }
-    let (low, high) = (a.x.min(b.x), a.x.max(b.x));
-    let mut top = a.y.max(b.y);
-    for body in world.geometry().bodies() {
-        let points = body.edges.iter().flat_map(|e| [e.p, e.q]).chain(body.center);
-        for q in points.filter(|q| q.x > low - body.offset && q.x < high + body.offset) {
-            top = top.max(q.y + 2.0 * body.offset + 1e-3);
-        }
-    }
-    vec![Vec2::new(a.x, top), Vec2::new(b.x, top)]
 }
 
 /// The strand at its route, and the route. None where the string of the route finds no end.
@@ -280,7 +176,12 @@ fn bends(
         let p2 = p2 + std::f64::consts::TAU * turns;
         let p2 = if p2 > p1 { p2 } else { p1 };
         let half = 0.5 * curve.length(p1, p2, seat.home) / course.law.stretch(tension);
-        let s = at(0.5 * (seat.way[0] + seat.way[1]));
+        // Round a post the string's points are not those of the cable: where it comes and goes on the route itself.
+        let seen = |p: f64, w: f64| {
+            let place = curve.place(p, seat.home);
+            if curve.is_round() && seat.wheel.is_none() { way.close(place.at, w, ROUND * place.stretch) } else { w }
+        };
+        let s = at(0.5 * (seen(p1, seat.way[0]) + seen(p2, seat.way[1])));
         let mut c = contact(course, (seat.curve, seat.home), ([p1, p2], [s - half, s + half]), tension);
         c.wheel = seat.wheel;
         contacts.push(c);
@@ -421,7 +322,7 @@ fn lying(course: &Course, world: &World, radius: f64, points: &[Vec2], side: usi
     let curve_index = 2 * body + usize::from(back);
     let curve = course.curves.get(curve_index)?;
     let i = curve.piece_of(gap.feature, point(0))?;
-    let home = curve.chain(i, course.law.load)?;
+    let (_, home) = curve.chain(i, course.law.load)?;
     let near = |k: usize| if k == 0 { within } else { NEAR * radius };
     let on: Vec<f64> = (0..n).map_while(|k| curve.on_chain(home, point(k), near(k))).collect();
     let (first, last) = (*on.first()?, *on.last()?);
@@ -480,7 +381,7 @@ fn push(out: &mut Vec<Seat>, course: &Course, b: &Bend, (w, turn): (f64, f64)) -
     let curve_index = 2 * b.corner.body + usize::from(b.sense < 0.0);
     let curve = course.curves.get(curve_index)?;
     let i = curve.piece_of(b.corner.feature, b.corner.at)?;
-    let home = curve.chain(i, course.law.load)?;
+    let (i, home) = curve.chain(i, course.law.load)?;
     if let Some(last) = out.last_mut()
         && last.wheel.is_none()
         && last.curve == curve_index

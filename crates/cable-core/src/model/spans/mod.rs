@@ -20,6 +20,7 @@ mod history;
 mod instant;
 mod law;
 mod lay;
+mod loss;
 mod newton;
 mod pass;
 mod report;
@@ -28,6 +29,7 @@ mod seek;
 mod strand;
 mod taut;
 mod trouble;
+mod way;
 
 use std::sync::Arc;
 
@@ -100,6 +102,11 @@ impl SpansModel {
     }
 
     fn said(&self, trouble: Trouble) -> SolveError {
+        if let Some(network) = &self.network
+            && let Some((loss, arc_length_m, at_m)) = loss::lost(&network.strands, &network.course, &trouble)
+        {
+            return SolveError::TensionLost { model: Model::Spans, loss, arc_length_m, at_m };
+        }
         said(&self.layout, trouble)
     }
 

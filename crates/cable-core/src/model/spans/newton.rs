@@ -411,7 +411,13 @@ fn change_modes(strand: &mut Strand, course: &Course, most: u32) -> bool {
     for j in 0..strand.contacts.len() {
         let pinned = pinned(strand, j);
         let c = &mut strand.contacts[j];
-        let next = rub::next_mode(&course.track(c), &c.history, &c.ends, (c.mode, pinned), if c.flips < MOST_FLIPS { 1.0 } else { PATIENT });
+        let next = rub::next_mode(
+            &course.track(c),
+            &c.history,
+            &c.ends,
+            (c.mode, pinned),
+            if c.flips < MOST_FLIPS { 1.0 } else { PATIENT },
+        );
         if next != c.mode && c.flips < most {
             c.mode = next;
             c.flips += 1;

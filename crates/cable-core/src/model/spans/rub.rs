@@ -26,12 +26,7 @@ pub(super) struct Rows {
 /// The rows of a contact in a mode.
 ///
 /// `pinned`: which ends are held on the boundary, so that their tension is unknown by itself.
-pub(super) fn rows(
-    track: &Track<'_>,
-    history: &History,
-    e: &Ends,
-    (mode, pinned): (Mode, [bool; 2]),
-) -> Rows {
+pub(super) fn rows(track: &Track<'_>, history: &History, e: &Ends, (mode, pinned): (Mode, [bool; 2])) -> Rows {
     // Lifted (Newton looks there): a point without friction.
     let mode = if e.p[1] < e.p[0] { Mode::Slide(0.0) } else { mode };
     match mode {
@@ -201,11 +196,8 @@ pub(super) fn next_mode(
             // With m = +μ material goes on along p, so there is less of it than was, s < s_old, at every p. The slip is
             // least where the tension is what it was: before it the one stretch is the greater, after it the other.
             let (old, _) = history.at(track, e.p[0]);
-            let least = if (old - e.t[0]) * m > 0.0 {
-                history.front(track, (e.p[0], e.t[0]), e.p[1]).p
-            } else {
-                e.p[0]
-            };
+            let least =
+                if (old - e.t[0]) * m > 0.0 { history.front(track, (e.p[0], e.t[0]), e.p[1]).p } else { e.p[0] };
             let s = e.s[0] + track.slide(e.p[0], least, e.t[0], m).material;
             let slid = s - history.at(track, least).1;
             if m * slid > 0.0 && slid.abs() > stuck * (s.abs() + e.s[1].abs()) { Mode::Hold } else { mode }

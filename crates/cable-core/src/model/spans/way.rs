@@ -1,0 +1,132 @@
+//! The route of a strand: as the scene gives it, or from support to support and over what is in the way.
+
+use super::instant::{Instant, Layout, Part};
+use crate::contact::World;
+use crate::math::Vec2;
+
+/// A route with the length along it.
+pub(super) struct Way {
+    pub points: Vec<Vec2>,
+    pub along: Vec<f64>,
+}
+
+impl Way {
+    fn new(points: Vec<Vec2>) -> Self {
+        let mut along = vec![0.0; points.len()];
+        for k in 1..points.len() {
+            along[k] = along[k - 1] + (points[k] - points[k - 1]).norm();
+        }
+        Self { points, along }
+    }
+
+    pub fn total(&self) -> f64 {
+        self.along.last().copied().unwrap_or(0.0)
+    }
+
+    /// How far along it comes nearest to a point, not before `from`, up to the end of leg `last`.
+    pub fn nearest(&self, at: Vec2, from: f64, last: usize) -> f64 {
+        let (mut best, mut found) = (f64::INFINITY, from);
+        for k in 0..self.points.len().saturating_sub(1).min(last + 1) {
+            let d = self.points[k + 1] - self.points[k];
+            let l = d.norm();
+            if l == 0.0 || self.along[k + 1] < from {
+                continue;
+            }
+            let u = ((at - self.points[k]).dot(&d) / l).clamp(0.0, l);
+            let u = if self.along[k] + u < from { from - self.along[k] } else { u };
+            let distance = (self.points[k] + d * (u / l) - at).norm();
+            // Of equals the first, as a post is passed by several turns alike.
+            if distance < best * (1.0 - 1e-6) - 1e-12 {
+                (best, found) = (distance, self.along[k] + u);
+            }
+        }
+        found
+    }
+
+    /// How far along it comes nearest to a point, within so much of `around`.
+    pub fn close(&self, at: Vec2, around: f64, within: f64) -> f64 {
+        let (mut best, mut found) = (f64::INFINITY, around);
+        for k in 0..self.points.len().saturating_sub(1) {
+            let d = self.points[k + 1] - self.points[k];
+            let l = d.norm();
+            let (low, high) = (self.along[k].max(around - within), self.along[k + 1].min(around + within));
+            if l == 0.0 || high <= low {
+                continue;
+            }
+            let w = (self.along[k] + (at - self.points[k]).dot(&d) / l).clamp(low, high);
+            let distance = (self.points[k] + d * ((w - self.along[k]) / l) - at).norm();
+            if distance < best {
+                (best, found) = (distance, w);
+            }
+        }
+        found
+    }
+
+    /// Leg at a length along it.
+    pub fn leg(&self, w: f64) -> usize {
+        self.along.partition_point(|a| *a <= w).clamp(1, self.points.len().max(2) - 1) - 1
+    }
+}
+
+/// The route of a strand, and where its pulleys are on it.
+pub(super) fn way(layout: &Layout, part: &Part, instant: &Instant) -> Way {
+    let p = &layout.problem;
+    let place = |k: usize| instant.places[k];
+    let ends = part.supports.map(|s| s.map(place));
+    let stops: Vec<Vec2> =
+        ends[0].into_iter().chain(part.pulleys.iter().map(|q| place(q.support))).chain(ends[1]).collect();
+    if p.route.len() > 1 {
+        let whole = Way::new(p.route.clone());
+        // The part of the route between the grips.
+        let a = ends[0].filter(|_| part.material[0] > 0.0).map_or(0.0, |at| whole.nearest(at, 0.0, usize::MAX - 1));
+        let b = ends[1]
+            .filter(|_| part.material[1] < p.length)
+            .map_or(whole.total(), |at| whole.nearest(at, a, usize::MAX - 1));
+        let mut points: Vec<Vec2> = Vec::with_capacity(whole.points.len() + 2);
+        points.extend(ends[0].or(whole.points.first().copied()));
+        for (k, q) in whole.points.iter().enumerate() {
+            if whole.along[k] > a && whole.along[k] < b {
+                points.push(*q);
+            }
+        }
+        points.extend(ends[1].or(whole.points.last().copied()));
+        return Way::new(points);
+    }
+    let mut points: Vec<Vec2> = Vec::new();
+    let used: f64 = stops.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+    let spare = (part.material[1] - part.material[0] - used).max(0.05 * (part.material[1] - part.material[0]));
+    let loose = part.supports.iter().filter(|s| s.is_none()).count().max(1) as f64;
+    let tail = |side: usize| {
+        let force = layout.end_force(instant, part.material[side]) + instant.load * (0.5 * spare);
+        if force.norm() > 0.0 { force.normalize() * (spare / loose) } else { Vec2::zeros() }
+    };
+    if let (None, Some(first)) = (part.supports[0], stops.first()) {
+        points.push(first + tail(0));
+    }
+    for (k, at) in stops.iter().enumerate() {
+        if k > 0 {
+            points.extend(over(&p.world, stops[k - 1], *at));
+        }
+        points.push(*at);
+    }
+    if let (None, Some(last)) = (part.supports[1], stops.last()) {
+        points.push(last + tail(1));
+    }
+    Way::new(points)
+}
+
+/// Two points above everything between `a` and `b`, where the straight way is blocked.
+fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
+    if world.is_empty() || world.free_fraction([a, a], [b, b], 0.0) >= 1.0 {
+        return Vec::new();
+    }
+    let (low, high) = (a.x.min(b.x), a.x.max(b.x));
+    let mut top = a.y.max(b.y);
+    for body in world.geometry().bodies() {
+        let points = body.edges.iter().flat_map(|e| [e.p, e.q]).chain(body.center);
+        for q in points.filter(|q| q.x > low - body.offset && q.x < high + body.offset) {
+            top = top.max(q.y + 2.0 * body.offset + 1e-3);
+        }
+    }
+    vec![Vec2::new(a.x, top), Vec2::new(b.x, top)]
+}
