@@ -81,8 +81,8 @@ fn scene(t: &Throw) -> (Scene, [f64; 2]) {
     (scene, b)
 }
 
-/// Steps taken, steps refused because the cable lost its tension or was not taut, other refusals.
-fn run(t: &Throw) -> [usize; 3] {
+/// Steps taken, steps refused because the cable lost its tension, steps refused otherwise, rests refused.
+fn run(t: &Throw) -> [usize; 4] {
     let (scene, b) = scene(t);
     let problem = cable_core::problem::problems(&scene).unwrap().remove(0);
     let mut sim = Simulation::new(scene, Model::Spans).unwrap();
@@ -90,9 +90,12 @@ fn run(t: &Throw) -> [usize; 3] {
         SolveError::TensionLost { .. } | SolveError::Compressed { .. } => 1,
         _ => 2,
     };
-    let mut counts = [0; 3];
+    let mut counts = [0; 4];
     if let Err(e) = sim.settle() {
-        counts[count(&e)] += 1;
+        if std::env::var_os("SPANS_FAILURES").is_some() {
+            println!("rest: {e}");
+        }
+        counts[3] += 1;
         return counts;
     }
     let mut at = Vec2::new(b[0], b[1]);
@@ -130,7 +133,7 @@ fn random_moves_over_random_scenes() {
         proptest::test_runner::Config { cases, failure_persistence: None, ..Default::default() },
         proptest::test_runner::TestRng::deterministic_rng(proptest::test_runner::RngAlgorithm::ChaCha),
     );
-    let sum = std::cell::RefCell::new([0usize; 3]);
+    let sum = std::cell::RefCell::new([0usize; 4]);
     runner
         .run(&throws(), |t| {
             for (s, n) in sum.borrow_mut().iter_mut().zip(run(&t)) {
@@ -139,7 +142,11 @@ fn random_moves_over_random_scenes() {
             Ok(())
         })
         .unwrap();
-    let [taken, lost, other] = sum.into_inner();
-    println!("{taken} steps taken, {lost} refused for lost tension, {other} for other reasons");
-    assert!(taken > 0);
+    let [taken, lost, other, rests] = sum.into_inner();
+    println!(
+        "{cases} scenes: {taken} steps taken, {lost} refused for lost tension, {other} otherwise; {rests} rests not found"
+    );
+    // What is reached today; less is a change for the worse.
+    assert!(4 * rests <= cases as usize, "{rests} rests not found of {cases}");
+    assert!(100 * other <= taken, "{other} steps refused of {taken}");
 }

@@ -67,9 +67,6 @@ impl Network {
     /// Lays it along the route as it is, or shrunk until it is taut and then let out again.
     fn laid(&mut self, layout: &Layout, goal: &Instant, shrunk: bool, work: &mut Work) -> Result<Taken, Trouble> {
         let mut begin = goal.clone();
-        if shrunk {
-            begin.thermal = shrunk_thermal(layout, goal);
-        }
         layout.give(&mut self.course, &begin);
         self.strands.clear();
         let mut came = Vec::new();
@@ -79,6 +76,15 @@ impl Network {
             let (strand, way) = laid.ok_or(no_way)?;
             self.strands.push(strand);
             came.push(way);
+        }
+        if shrunk {
+            begin.thermal = self.shrunk_thermal(layout, goal);
+            layout.give(&mut self.course, &begin);
+            for (strand, part) in self.strands.iter_mut().zip(&layout.strands) {
+                if part.supports.iter().all(Option::is_some) {
+                    lay::tighten(strand, &self.course);
+                }
+            }
         }
         self.instant = begin.clone();
         let mut taken = self.step_from(layout, &begin, &came, work)?;
@@ -98,6 +104,22 @@ impl Network {
             return Ok(taken);
         }
         Ok(taken.and(self.travel(layout, goal, FIRST_STEP, work)?))
+    }
+
+    /// The factor on lengths at which the cable is taut along the string of its route.
+    fn shrunk_thermal(&self, layout: &Layout, goal: &Instant) -> f64 {
+        let p = &layout.problem;
+        let drawn: f64 = goal.forces.iter().map(|f| f.norm()).sum();
+        let tension = TAUT * goal.load.norm() * p.length + drawn;
+        let mut least = goal.thermal;
+        for s in &self.strands {
+            let way = lay::taut_length(s, &self.course);
+            let taut = way / ((s.to - s.from) * (1.0 + tension / p.axial_stiffness));
+            if taut < least && taut > 0.0 {
+                least = taut;
+            }
+        }
+        least
     }
 
     /// Friction acts from now on; what rests without it rests with it.
@@ -245,19 +267,4 @@ impl Solved {
             residual: if more.residual > self.residual { more.residual } else { self.residual },
         }
     }
-}
-
-/// The factor on lengths at which the cable is taut along its route.
-fn shrunk_thermal(layout: &Layout, goal: &Instant) -> f64 {
-    let p = &layout.problem;
-    let points: Vec<_> = if p.route.len() > 1 {
-        p.route.clone()
-    } else {
-        (0..p.supports.len()).filter(|&k| p.supports[k].at.is_some()).map(|k| goal.places[k]).collect()
-    };
-    let way: f64 = points.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
-    let drawn: f64 = goal.forces.iter().map(|f| f.norm()).sum();
-    let tension = TAUT * goal.load.norm() * p.length + drawn;
-    let taut = way / (p.length * (1.0 + tension / p.axial_stiffness));
-    if taut < goal.thermal && taut > 0.0 { taut } else { goal.thermal }
 }

@@ -197,6 +197,36 @@ fn bare(part: &Part, instant: &Instant) -> Option<Strand> {
     part.pulleys.is_empty().then(|| Strand { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()] })
 }
 
+/// Length of the taut string through what it touches, m.
+pub(super) fn taut_length(strand: &Strand, course: &Course) -> f64 {
+    let own = |c: &Contact| course.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.home);
+    let spans: f64 = (0..strand.spans())
+        .filter_map(|k| match strand.ends_of(course, k) {
+            [Some(a), Some(b)] => Some((b - a).norm()),
+            _ => None,
+        })
+        .sum();
+    spans + strand.contacts.iter().map(own).sum::<f64>()
+}
+
+/// Spreads the material of a strand that is held at both ends evenly along its taut string.
+pub(super) fn tighten(strand: &mut Strand, course: &Course) {
+    let stretch = taut_length(strand, course) / (strand.to - strand.from);
+    if !(stretch > 0.0) {
+        return;
+    }
+    measure(strand, course, [false, true], stretch);
+    spread(strand, course);
+    for k in 0..strand.spans() {
+        if strand.has_span(k)
+            && let Some(g) = strand.solve_span(course, k)
+        {
+            strand.forces[k] = g;
+        }
+    }
+    strand.take_tensions(course);
+}
+
 /// Material as it lies along the taut string, strained by `stretch`, from the end that is held; from the first contact as
 /// the route has it where none is.
 fn measure(strand: &mut Strand, course: &Course, loose: [bool; 2], stretch: f64) {
