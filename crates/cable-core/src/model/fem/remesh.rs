@@ -36,6 +36,10 @@ const SLACK: f64 = 2.0;
 /// tangents would lie inside the obstacle.
 const WRONG_TURN: f64 = 0.02;
 
+/// How far over an edge of its corner, in radii of the round, the cable may meet that. Less: cables that sag a little onto the edge
+/// between two corners leave them; more: a cable that folded back at a corner runs through the edge.
+const OVER_AN_EDGE: f64 = 0.5;
+
 /// Half of the turn (rad) up to which a slack cable may leave a round with one node.
 const MOST_BEND: f64 = 1.0;
 
@@ -154,10 +158,20 @@ impl Dynamics {
         self.contacts.floor_slid[k] = Vec2::zeros();
     }
 
+    /// Takes a sliding node off its corner: it becomes one that moves with its material, or goes, if nothing is in the way of that.
+    pub(super) fn leave(&mut self, k: usize) -> bool {
+        let left = self.settle_down(k);
+        if !left && self.clear_without(k) {
+            self.remove(k);
+            return true;
+        }
+        left
+    }
+
     /// A sliding node becomes one that moves with its material: something else is in the way of a bar in its place.
     ///
     /// It goes where its two tangents meet, 1/cos(φ/2) radii from the centre, so that the bars lie where they lay.
-    pub(super) fn settle_down(&mut self, k: usize) -> bool {
+    fn settle_down(&mut self, k: usize) -> bool {
         let half = (0.5 * self.turn(k)).abs();
         let out = 1.0 / if half < SHARPEST { half.cos() } else { SHARPEST.cos() };
         let Some(end) = self.mesh.sliding[k].map(|s| s.end) else { return false };
@@ -200,7 +214,10 @@ impl Dynamics {
         }
         let Some(load) = self.load(k) else { return false };
         let (turn, tension) = (self.turn(k), 0.5 * (load.tension[0] + load.tension[1]));
-        load.normal < 0.0 || turn < 0.0 || (tension < SLACK * self.bar_weight && turn < 2.0 * MOST_BEND)
+        load.normal < 0.0
+            || turn < 0.0
+            || self.beyond_its_corner(k, &self.motion.x)
+            || (tension < SLACK * self.bar_weight && turn < 2.0 * MOST_BEND)
     }
 
     /// Angle through which the bars beside node `k` turn, in the sense of a sliding node, rad.
@@ -214,9 +231,27 @@ impl Dynamics {
         (1..self.mesh.nodes().saturating_sub(1)).find(|&k| {
             self.mesh.sliding[k].is_some_and(|node| {
                 let shared = |j: usize| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
-                node.feature().is_some() && !shared(k - 1) && !shared(k + 1) && self.turn_at(k, x) < -WRONG_TURN
+                let wrong = || self.turn_at(k, x) < -WRONG_TURN || self.beyond_its_corner(k, x);
+                node.feature().is_some() && !shared(k - 1) && !shared(k + 1) && wrong()
             })
         })
+    }
+
+    /// Whether the cable meets or leaves the round of a corner where that is over one of the corner's edges: it has folded back
+    /// and would run through the edge.
+    fn beyond_its_corner(&self, k: usize, x: &[Vec2]) -> bool {
+        let Some(node) = self.mesh.sliding[k] else { return false };
+        let geometry = self.problem.world.geometry();
+        let body = node.feature().and_then(|f| Some((f, geometry.body_of(f)?)));
+        let Some(corner) = body.filter(|b| b.1.center.is_none()).and_then(|(f, b)| b.corner((f - b.first) / 2)) else {
+            return false;
+        };
+        let meets = [self.mesh.path(k - 1, x).ends[1], self.mesh.path(k, x).ends[0]];
+        let into = [corner.before.map(|t| -t), corner.after];
+        let over = |p: Vec2, edge: Option<Vec2>| {
+            edge.is_some_and(|t| (p - node.end.center).dot(&t) > OVER_AN_EDGE * node.end.radius)
+        };
+        meets.into_iter().any(|p| into.into_iter().any(|edge| over(p, edge)))
     }
 
     fn turn_at(&self, k: usize, x: &[Vec2]) -> f64 {

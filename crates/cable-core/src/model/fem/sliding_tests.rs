@@ -230,3 +230,15 @@ fn a_pose_that_turns_a_corner_the_wrong_way_is_noticed() {
     }
     assert_eq!(d.pulled(&x), Some(first));
 }
+
+#[test]
+fn a_cable_that_folds_back_at_a_corner_does_not_run_through_its_edge() {
+    let mut d = build(&over_a_beam(0.3, 42, 0.3));
+    d.settle(&[]).unwrap();
+    let k = d.mesh.sliding.iter().position(Option::is_some).unwrap();
+    let mut x = d.motion.x.clone();
+    assert_eq!(d.pulled(&x), None);
+    // It comes up the left side of the beam, and now goes back there: round the corner and through the top.
+    x[k + 1] = d.mesh.sliding[k].unwrap().end.center - crate::math::Vec2::new(0.5, 0.5);
+    assert_eq!(d.pulled(&x), Some(k));
+}
