@@ -411,7 +411,7 @@ impl Dynamics {
                     let f = other.err().unwrap_or(Failure { node: 0, residual: f64::NAN, cause: "not finite" });
 
                     self.restore();
-                    if f.cause == PULLED && self.leave(f.node) {
+                    if f.cause == PULLED && self.settle_down(f.node) {
                         self.renew_task();
                         continue;
                     }

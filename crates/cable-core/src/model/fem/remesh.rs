@@ -158,20 +158,10 @@ impl Dynamics {
         self.contacts.floor_slid[k] = Vec2::zeros();
     }
 
-    /// Takes a sliding node off its corner: it becomes one that moves with its material, or goes, if nothing is in the way of that.
-    pub(super) fn leave(&mut self, k: usize) -> bool {
-        let left = self.settle_down(k);
-        if !left && self.clear_without(k) {
-            self.remove(k);
-            return true;
-        }
-        left
-    }
-
     /// A sliding node becomes one that moves with its material: something else is in the way of a bar in its place.
     ///
     /// It goes where its two tangents meet, 1/cos(φ/2) radii from the centre, so that the bars lie where they lay.
-    fn settle_down(&mut self, k: usize) -> bool {
+    pub(super) fn settle_down(&mut self, k: usize) -> bool {
         let half = (0.5 * self.turn(k)).abs();
         let out = 1.0 / if half < SHARPEST { half.cos() } else { SHARPEST.cos() };
         let Some(end) = self.mesh.sliding[k].map(|s| s.end) else { return false };
