@@ -7,6 +7,15 @@ pub type Mat2 = nalgebra::Matrix2<f64>;
 /// A point as a scene file writes it: `[x, y]`.
 pub type Point = [f64; 2];
 
+/// Nodes and weights of 5-point Gauss–Legendre quadrature on [0, 1].
+pub(crate) const GAUSS: [(f64, f64); 5] = [
+    (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
+    (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
+    (0.5, 0.284_444_444_444_444_44),
+    (0.769_234_655_052_841_5, 0.239_314_335_249_683_23),
+    (0.953_089_922_969_332, 0.118_463_442_528_094_54),
+];
+
 /// A file's point as a vector.
 #[must_use]
 pub fn vec2(p: Point) -> Vec2 {

@@ -364,7 +364,7 @@ impl Simulation {
     /// # Errors
     /// As [`Self::adopt`].
     pub fn resume(&mut self, answer: &Solution) -> Result<(), SolveError> {
-        let states: Vec<State> = answer.cables.iter().map(|c| State::of_answer(c, answer.time_s)).collect();
+        let states: Vec<State> = answer.cables.iter().map(|c| State::of_nodes(&c.nodes, answer.time_s)).collect();
         self.adopt(&states)?;
         if let (Some(vehicle), Some(then)) = (&mut self.vehicle, &answer.robot) {
             vehicle.resume(then);

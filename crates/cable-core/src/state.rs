@@ -1,7 +1,7 @@
 //! Where a cable is at an instant, in a form every model can give and take.
 
 use crate::math::Vec2;
-use crate::solution::CableSolution;
+use crate::solution::Node;
 
 /// Part of its radius by which a point on a round may be off it.
 const ON_ROUND: f64 = 1e-6;
@@ -20,16 +20,18 @@ pub struct State {
 }
 
 impl State {
-    /// That of a whole cable as an answer has it.
+    /// That of a whole cable as an answer has its nodes; one node where the tension jumps and the answer has two.
     #[must_use]
-    pub fn of_answer(cable: &CableSolution, time_s: f64) -> Self {
-        let nodes = || cable.nodes.iter();
-        Self {
-            time_s,
-            arc_length_m: nodes().map(|n| n.arc_length_m).collect(),
-            position_m: nodes().map(|n| Vec2::new(n.x_m, n.y_m)).collect(),
-            velocity_m_per_s: nodes().map(|n| Vec2::new(n.vx_m_per_s, n.vy_m_per_s)).collect(),
+    pub fn of_nodes(nodes: &[Node], time_s: f64) -> Self {
+        let mut state = Self { time_s, ..Self::default() };
+        for n in nodes {
+            if state.arc_length_m.last().is_none_or(|s| n.arc_length_m > *s) {
+                state.arc_length_m.push(n.arc_length_m);
+                state.position_m.push(Vec2::new(n.x_m, n.y_m));
+                state.velocity_m_per_s.push(Vec2::new(n.vx_m_per_s, n.vy_m_per_s));
+            }
         }
+        state
     }
 
     /// The first node with a number that is not finite.

@@ -15,6 +15,8 @@
 //! argument r says how far the piece is from taut (r → 0) or folded (r → 1). Nothing divides by w when r is
 //! small, so a weightless piece needs no case of its own.
 
+use crate::math::GAUSS;
+
 /// Above this r the area tangent loses digits to 1 − r and logarithms are used. At 0.3 the logarithms would
 /// lose as many to their difference; anything between 0.5 and 0.9 gives the same results to 2e-16.
 const LOG_FORM: f64 = 0.7;
@@ -25,15 +27,6 @@ const GAUSS_FORM: f64 = 0.3;
 const SERIES_FORM: f64 = 1e-3;
 /// Smallest force taken apart from zero (relative to the caller's unit): keeps logarithms finite at a fold.
 const TINY: f64 = 1e-300;
-
-/// Nodes and weights of 5-point Gauss–Legendre quadrature on [0, 1].
-const GAUSS: [(f64, f64); 5] = [
-    (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
-    (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
-    (0.5, 0.284_444_444_444_444_44),
-    (0.769_234_655_052_841_5, 0.239_314_335_249_683_23),
-    (0.953_089_922_969_332, 0.118_463_442_528_094_54),
-];
 
 /// The piece: load per length, length, 1/EA, in any consistent units.
 #[derive(Clone, Copy, Debug)]

@@ -5,7 +5,7 @@ use super::seek;
 use super::strand::{Course, Strand, Tie};
 use super::trouble::Trouble;
 use crate::contact::World;
-use crate::math::{Vec2, cross};
+use crate::math::{GAUSS, Vec2, cross};
 
 /// Equations must hold to this part of the length, the tension, the angle. The solver stops at 1e-11.
 const HOLDS: f64 = 1e-7;
@@ -21,14 +21,6 @@ const FOLDED: f64 = 1e-12;
 const TAUT_PANELS: usize = 4;
 /// Panels of the quadrature of a span, in v; 5 Gauss points each leave 1e-12.
 const PANEL: f64 = 0.5;
-
-const GAUSS: [(f64, f64); 5] = [
-    (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
-    (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
-    (0.5, 0.284_444_444_444_444_44),
-    (0.769_234_655_052_841_5, 0.239_314_335_249_683_23),
-    (0.953_089_922_969_332, 0.118_463_442_528_094_54),
-];
 
 /// Whether an answer is one.
 pub(super) fn sound(strand: &Strand, course: &Course, world: &World) -> Result<(), Trouble> {

@@ -21,19 +21,10 @@
 //! small part; what this leaves out is of the order of its square over T. Material is c ∫ dψ/λ. Both by Gauss.
 
 use super::curve::{Curve, Form, Home, Place};
-use crate::math::Vec2;
+use crate::math::{GAUSS, Vec2};
 
 /// Longest stretch of an arc taken by one rule of 5 Gauss points, rad. At 0.8 a full turn at μ = 0.5 is exact to 1e-13.
 const PANEL: f64 = 0.8;
-
-/// Nodes and weights of 5-point Gauss–Legendre quadrature on [0, 1].
-const GAUSS: [(f64, f64); 5] = [
-    (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
-    (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
-    (0.5, 0.284_444_444_444_444_44),
-    (0.769_234_655_052_841_5, 0.239_314_335_249_683_23),
-    (0.953_089_922_969_332, 0.118_463_442_528_094_54),
-];
 
 /// Load and stiffness of a cable at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]

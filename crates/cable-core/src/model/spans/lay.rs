@@ -95,20 +95,7 @@ fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way:
     if let [Some(a), Some(b)] = &heads
         && (a.count + b.count > way.points.len() && a.curve == b.curve && a.home == b.home)
     {
-        let mut c = contact(course, (a.curve, a.home), ([a.p[0], b.p[1]], [from, to]), tension);
-        c.wheel = None;
-        strand.ties = [0, 1].map(|side| end_tie(ties[side], if side == 0 { a.p[0] } else { b.p[1] }));
-        strand.contacts.push(c);
-        strand.forces = vec![Vec2::zeros(); 2];
-        spread(&mut strand, course);
-        for side in 0..2 {
-            if matches!(strand.ties[side], Tie::Lies(_)) {
-                let c = &mut strand.contacts[0];
-                let track = course.track(c);
-                c.ends.t[side] = c.history.at(&track, c.ends.p[side]).0;
-            }
-        }
-        return Some(strand);
+        return Some(lies_whole(strand, course, [a, b], tension));
     }
     // A span from one lying stretch to the next needs some tension.
     let tension = if tension > least || heads.iter().any(Option::is_none) { tension } else { least };
@@ -118,26 +105,17 @@ fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way:
         return None;
     }
     let mut contacts = bends(layout, part, (course, instant), (way, first, last), (&at, tension))?;
-    // Two stretches that meet at a kink of δ are joined by a span of length Tδ/w.
-    let join = match &heads {
-        [Some(a), Some(b)] if first == last => {
-            let (u, v) = (course.curves[a.curve].place(a.p[1], a.home), course.curves[b.curve].place(b.p[0], b.home));
-            let turn = cross(u.tangent, v.tangent).atan2(u.tangent.dot(&v.tangent)).abs();
-            0.5 * tension * turn / course.law.load.norm()
-        }
-        _ => 0.0,
-    };
-    for side in 0..2 {
-        if let Some(h) = &heads[side] {
-            let way_at = |k: usize| at(way.along[k]);
-            let room = 0.5 * (h.p[1] - h.p[0]);
-            let join = if join < room { join } else { room };
-            let s = if side == 0 { [from, way_at(first) - join] } else { [way_at(last) + join, to] };
-            let p = if side == 0 { [h.p[0], h.p[1] - join] } else { [h.p[0] + join, h.p[1]] };
-            let c = contact(course, (h.curve, h.home), (p, s), tension);
-            contacts.insert(if side == 0 { 0 } else { contacts.len() }, c);
-            strand.ties[side] = end_tie(ties[side], h.p[side]);
-        }
+    let join = joint(course, &heads, (first == last, tension));
+    for (side, h) in heads.iter().enumerate() {
+        let Some(h) = h else { continue };
+        let way_at = |k: usize| at(way.along[k]);
+        let room = 0.5 * (h.p[1] - h.p[0]);
+        let join = if join < room { join } else { room };
+        let s = if side == 0 { [from, way_at(first) - join] } else { [way_at(last) + join, to] };
+        let p = if side == 0 { [h.p[0], h.p[1] - join] } else { [h.p[0] + join, h.p[1]] };
+        let c = contact(course, (h.curve, h.home), (p, s), tension);
+        contacts.insert(if side == 0 { 0 } else { contacts.len() }, c);
+        strand.ties[side] = end_tie(ties[side], h.p[side]);
     }
     strand.forces = vec![Vec2::zeros(); contacts.len() + 1];
     strand.contacts = contacts;
@@ -152,6 +130,36 @@ fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way:
     }
     strand.take_tensions(course);
     Some(strand)
+}
+
+/// A strand that lies on one boundary from end to end.
+fn lies_whole(mut strand: Strand, course: &Course, [a, b]: [&Head; 2], tension: f64) -> Strand {
+    let mut c = contact(course, (a.curve, a.home), ([a.p[0], b.p[1]], [strand.from, strand.to]), tension);
+    c.wheel = None;
+    strand.ties = [0, 1].map(|side| end_tie(strand.ties[side], if side == 0 { a.p[0] } else { b.p[1] }));
+    strand.contacts.push(c);
+    strand.forces = vec![Vec2::zeros(); 2];
+    spread(&mut strand, course);
+    for side in 0..2 {
+        if matches!(strand.ties[side], Tie::Lies(_)) {
+            let c = &mut strand.contacts[0];
+            let track = course.track(c);
+            c.ends.t[side] = c.history.at(&track, c.ends.p[side]).0;
+        }
+    }
+    strand
+}
+
+/// Two stretches that meet at a kink of δ are joined by a span of length Tδ/w: half of it, m; 0 where they do not meet.
+fn joint(course: &Course, heads: &[Option<Head>; 2], (meet, tension): (bool, f64)) -> f64 {
+    match heads {
+        [Some(a), Some(b)] if meet => {
+            let (u, v) = (course.curves[a.curve].place(a.p[1], a.home), course.curves[b.curve].place(b.p[0], b.home));
+            let turn = cross(u.tangent, v.tangent).atan2(u.tangent.dot(&v.tangent)).abs();
+            0.5 * tension * turn / course.law.load.norm()
+        }
+        _ => 0.0,
+    }
 }
 
 /// Contacts where the taut string of the route bends, `at` the material at a length along the way (m), laid with a tension.

@@ -255,16 +255,7 @@ impl Mechanics for SpansModel {
     }
 
     fn state(&self) -> State {
-        let mut state = State { time_s: self.time_s, ..State::default() };
-        for n in &self.report.nodes {
-            // One node where the tension jumps.
-            if state.arc_length_m.last().is_none_or(|s| n.arc_length_m > *s) {
-                state.arc_length_m.push(n.arc_length_m);
-                state.position_m.push(Vec2::new(n.x_m, n.y_m));
-                state.velocity_m_per_s.push(Vec2::zeros());
-            }
-        }
-        state
+        State::of_nodes(&self.report.nodes, self.time_s)
     }
 
     fn adopt(&mut self, state: &State) -> Result<(), SolveError> {

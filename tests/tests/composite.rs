@@ -1,6 +1,6 @@
-//! Whole scenes of `data/composite.json` that `spans` answers, at rest and in slow motion: floors and corners, beams, posts,
-//! pulleys, stick bands, reversals, drags, loads and wind. The same checks as the program's acceptance run, through the
-//! library, held to a part of the stated tolerance.
+//! Whole scenes of `data/composite.json` that the models without a mesh answer, at rest and in slow motion: `spans` floors and
+//! corners, beams, posts, pulleys, stick bands, reversals, drags, loads and wind; `catenary` pulleys, loads and wind. The same
+//! checks as the program's acceptance run, through the library, held to a part of the stated tolerance.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -8,8 +8,11 @@ use cable_core::solution::{CableSolution, ContactReport, ContactState, Node, Sol
 use cable_core::{Model, Scene, Simulation};
 use serde_json::Value;
 
-/// Steps a second of motion.
+/// Steps a second of motion of `spans`.
 const STEPS: f64 = 20.0;
+
+/// Steps of a whole motion of `catenary`.
+const CATENARY_STEPS: f64 = 60.0;
 
 fn cases(group: &str) -> Vec<Value> {
     let all: Value = serde_json::from_str(include_str!("../data/composite.json")).unwrap();
@@ -76,16 +79,17 @@ fn number(run: &Run, path: &str) -> f64 {
 }
 
 /// None where there is no resting place.
-fn answer(scene: &str, command: &str) -> Option<Run> {
+fn answer(model: Model, scene: &str, command: &str) -> Option<Run> {
     let scene = Scene::from_toml(scene).expect("a scene");
-    let mut simulation = Simulation::new(scene, Model::Spans).expect("a model");
+    let mut simulation = Simulation::new(scene, model).expect("a model");
     let mut last = simulation.settle().ok()?;
     let mut seconds = vec![last.clone()];
     if let Some(time) = command.strip_prefix("run --quasi-static --for ") {
         let time: f64 = time.trim_end_matches('s').parse().expect("a time");
-        for k in 1..=(time * STEPS) as usize {
-            simulation.step_quasi_static(1.0 / STEPS).unwrap_or_else(|e| panic!("{command}, step {k}: {e}"));
-            if k % STEPS as usize == 0 {
+        let rate = if model == Model::Catenary { CATENARY_STEPS / time } else { STEPS };
+        for k in 1..=(time * rate).round() as usize {
+            simulation.step_quasi_static(1.0 / rate).unwrap_or_else(|e| panic!("{command}, step {k}: {e}"));
+            if k % rate as usize == 0 {
                 seconds.push(simulation.solution());
             }
         }
@@ -95,7 +99,7 @@ fn answer(scene: &str, command: &str) -> Option<Run> {
 }
 
 /// Every check of a group, held to a part of the stated tolerance.
-fn group(name: &str, part: f64) {
+fn group(model: Model, name: &str, part: f64) {
     let cases = cases(name);
     assert!(cases.len() >= 3);
     let (mut worst, mut checks) = ((0.0, String::new()), 0);
@@ -106,7 +110,7 @@ fn group(name: &str, part: f64) {
             if command.starts_with("run --for") {
                 continue;
             }
-            let got = answer(case["scene"].as_str().unwrap(), command);
+            let got = answer(model, case["scene"].as_str().unwrap(), command);
             for check in run["checks"].as_array().unwrap() {
                 let path = check["path"].as_str().unwrap();
                 checks += 1;
@@ -139,40 +143,50 @@ fn group(name: &str, part: f64) {
 
 #[test]
 fn floors_and_corners_hold() {
-    group("floor-corner", 0.02);
+    group(Model::Spans, "floor-corner", 0.02);
 }
 
 #[test]
 fn beams_hold() {
-    group("beams", 0.02);
+    group(Model::Spans, "beams", 0.02);
 }
 
 #[test]
 fn posts_hold() {
-    group("post", 0.02);
+    group(Model::Spans, "post", 0.02);
 }
 
 #[test]
 fn pulleys_hold() {
-    group("pulleys", 0.02);
+    group(Model::Spans, "pulleys", 0.02);
 }
 
 #[test]
 fn stick_bands_hold() {
-    group("stick-band", 0.2);
+    group(Model::Spans, "stick-band", 0.2);
 }
 
 #[test]
 fn reversals_hold() {
-    group("reversal", 0.02);
+    group(Model::Spans, "reversal", 0.02);
 }
 
 #[test]
 fn drags_hold() {
-    group("drag", 0.02);
+    group(Model::Spans, "drag", 0.02);
 }
 
 #[test]
 fn loads_wind_and_temperature_hold() {
-    group("loads-wind-thermal", 0.02);
+    group(Model::Spans, "loads-wind-thermal", 0.02);
+}
+
+#[test]
+fn catenary_pulleys_hold() {
+    group(Model::Catenary, "pulleys", 0.01);
+}
+
+#[test]
+fn catenary_loads_wind_and_temperature_hold() {
+    group(Model::Catenary, "loads-wind-thermal", 0.01);
 }
