@@ -29,6 +29,7 @@ pub mod error;
 pub mod files;
 pub mod math;
 pub mod model;
+pub mod origin;
 pub mod problem;
 pub mod record;
 pub mod robot;

@@ -177,12 +177,43 @@ pub struct ContactReport {
     pub friction_n: f64,
     /// Holds or slides.
     pub state: ContactState,
-    /// Wrap: how far the cable turns, °.
+    /// Wrap: how far the cable turns on its way along growing arc length, °: positive anticlockwise (to the left), negative
+    /// clockwise, whole turns counted. A cable that goes over a post to the right and down on its far side has about −180.
     pub turn_deg: f64,
     /// Tension before the contact (smaller arc length), N.
     pub tension_before_n: f64,
     /// Tension after the contact (greater arc length), N.
     pub tension_after_n: f64,
+    /// Arc length where it begins, m; its middle for a point.
+    #[serde(default)]
+    pub begins_m: f64,
+    /// Arc length where it ends, m; its middle for a point.
+    #[serde(default)]
+    pub ends_m: f64,
+    /// Its stretches where one holds while another has slid, in order: slip fronts are where they meet. Empty where all of it
+    /// does what `state` says, and where the model does not know.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<ContactPart>,
+}
+
+/// A stretch of a contact that holds or has slid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContactPart {
+    /// Arc length where it begins, m.
+    pub begins_m: f64,
+    /// Arc length where it ends, m.
+    pub ends_m: f64,
+    /// Slip: friction is at its limit there, and a little more pull moves it on.
+    pub state: ContactState,
+}
+
+impl ContactReport {
+    /// Where on the cable it begins and ends, m: never empty of its middle.
+    #[must_use]
+    pub fn extent_m(&self) -> [f64; 2] {
+        let middle = self.arc_length_m;
+        if self.begins_m <= middle && middle <= self.ends_m { [self.begins_m, self.ends_m] } else { [middle; 2] }
+    }
 }
 
 /// What a solve or step took. The core has no clock: wall time is the caller's to measure.

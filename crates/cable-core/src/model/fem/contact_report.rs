@@ -252,9 +252,16 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
             turn += load.turn;
             r.friction_n += a - b;
             slips &= !node.sticks();
+            // The round's own arc on either side of the node is of the contact.
+            let lap = |e: usize, side: usize| {
+                let stretch = d.mesh.thermal_stretch * (1.0 + load.tension[side] / d.problem.axial_stiffness);
+                node.end.radius * d.mesh.path(e, x).arcs[1 - side] / stretch
+            };
             if j == first {
                 r.tension_before_n = a;
+                r.begins_m = d.mesh.arc_length[j] - lap(j - 1, 0);
             }
+            r.ends_m = d.mesh.arc_length[j] + lap(j, 1);
             r.tension_after_n = b;
         }
         let normal = if push.norm() > 0.0 { push.normalize() } else { node.end.mark };
@@ -316,5 +323,8 @@ fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> Conta
         turn_deg: turned.to_degrees(),
         tension_before_n: tension[before],
         tension_after_n: tension[after],
+        begins_m: arc(first),
+        ends_m: arc(last),
+        parts: Vec::new(),
     }
 }

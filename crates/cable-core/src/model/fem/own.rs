@@ -216,11 +216,13 @@ impl Dynamics {
                     normal: [pair.normal.x, pair.normal.y],
                     state: ContactState::Stick,
                     tension_before_n: tension[around[0]],
+                    begins_m: self.mesh.arc_length[k],
                     ..ContactReport::default()
                 });
             }
             if let Some(report) = out.last_mut() {
                 report.normal_n += load;
+                report.ends_m = self.mesh.arc_length[k];
                 report.friction_n -= rubbing * pair.tangent().dot(&along);
                 report.tension_after_n = tension[k.min(tension.len().saturating_sub(1))];
                 if rubbing.abs() >= rub.limit {

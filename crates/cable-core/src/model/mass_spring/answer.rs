@@ -255,10 +255,11 @@ impl MassSpringModel {
         }
         let finish = |(mut r, range, mu): (ContactReport, [usize; 2], f64)| {
             let wrap = self.wrap(range, mu);
-            r.turn_deg = wrap.turn.to_degrees().abs();
+            r.turn_deg = wrap.turn.to_degrees();
             let at = self.s.partition_point(|&s| s <= r.arc_length_m).clamp(1, self.x.len() - 1) - 1;
             let p = self.x[at] + (self.x[at + 1] - self.x[at]) * ((r.arc_length_m - self.s[at]) / self.span[at]);
             (r.x_m, r.y_m) = (p.x, p.y);
+            [r.begins_m, r.ends_m] = range.map(|i| self.s.get(i).copied().unwrap_or(r.arc_length_m));
             (r, wrap.uncertain)
         };
         out.into_iter().map(finish).collect()

@@ -77,7 +77,12 @@ impl MassSpringModel {
         let by = if uncertain < 1.0 { format!("{:.0} %", (100.0 * uncertain).ceil()) } else { "any factor".to_owned() };
         let message = format!(
             "tension of `{name}` beyond `{}` at {:.3} m ({:.3} m, {:.3} m) is uncertain by {by}: it turns {:.0}° there over elements of {:.3} m, and a chain of springs jerks at every node; use fem, which slides through, or shorter elements on a round",
-            contact.obstacle, contact.arc_length_m, contact.x_m, contact.y_m, contact.turn_deg, self.even
+            contact.obstacle,
+            contact.arc_length_m,
+            contact.x_m,
+            contact.y_m,
+            contact.turn_deg.abs(),
+            self.even
         );
         let values = [uncertain, self.settings.tolerance];
         let warning = Warning::new(WarningKind::Accuracy, name, contact.arc_length_m, values, message);

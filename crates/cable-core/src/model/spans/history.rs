@@ -167,6 +167,12 @@ impl History {
         (way.tension, knot.s + way.material)
     }
 
+    /// The friction coefficient called upon at p.
+    pub fn called(&self, track: &Track<'_>, p: f64) -> f64 {
+        let (knot, beyond) = self.knot(p, true);
+        if beyond { track.even(p) } else { knot.m }
+    }
+
     /// From p towards `to`: how far the old tension has one law there, and its m.
     fn stretch(&self, track: &Track<'_>, p: f64, to: f64) -> (f64, f64) {
         let right = to > p;
@@ -184,9 +190,7 @@ impl History {
 
     /// dT/dp of the old tension at p.
     pub fn slope(&self, track: &Track<'_>, p: f64) -> f64 {
-        let (knot, beyond) = self.knot(p, true);
-        let m = if beyond { track.even(p) } else { knot.m };
-        track.law.slope(&track.place(p), self.at(track, p).0, m)
+        track.law.slope(&track.place(p), self.at(track, p).0, self.called(track, p))
     }
 
     /// Slides from an end at p with tension `t` towards `to`, as far as the old tension lets it.

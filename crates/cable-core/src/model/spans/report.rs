@@ -9,7 +9,7 @@ use super::strand::{Contact, Strand, Tie};
 use crate::catenary::PointForce;
 use crate::math::Vec2;
 use crate::model::catenary::report::{Nodes, Point};
-use crate::solution::{ContactReport, ContactState, Node, SupportReaction};
+use crate::solution::{ContactPart, ContactReport, ContactState, Node, SupportReaction};
 
 /// Nodes on a contact: one at least every so many radians of an arc …
 const ARC_STEP: f64 = 0.13;
@@ -146,7 +146,27 @@ fn contact(track: &Track<'_>, c: &Contact, name: &str, friction: f64) -> Contact
         turn_deg: turned.to_degrees(),
         tension_before_n: t1,
         tension_after_n: t2,
+        begins_m: c.ends.s[0],
+        ends_m: c.ends.s[1],
+        parts: if slips { Vec::new() } else { parts(track, c, friction) },
     }
+}
+
+/// Stretches that stick and stretches at the limit of friction, neighbours alike joined; none where all is alike.
+fn parts(track: &Track<'_>, c: &Contact, friction: f64) -> Vec<ContactPart> {
+    /// What is called upon of friction counts as all of it from this share on: rounding.
+    const LIMIT: f64 = 1.0 - 1e-9;
+    let mut out: Vec<ContactPart> = Vec::new();
+    for [a, b] in stretches(track, &c.history, c.ends.p) {
+        let slid = c.history.called(track, 0.5 * (a + b)).abs() >= LIMIT * friction;
+        let state = if slid { ContactState::Slip } else { ContactState::Stick };
+        let [begins_m, ends_m] = [a, b].map(|p| c.history.at(track, p).1);
+        match out.last_mut() {
+            Some(last) if last.state == state => last.ends_m = ends_m,
+            _ => out.push(ContactPart { begins_m, ends_m, state }),
+        }
+    }
+    if out.len() > 1 { out } else { Vec::new() }
 }
 
 /// Force of the cable at an end of a strand (pulling along growing arc length), N.
