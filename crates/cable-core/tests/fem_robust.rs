@@ -215,6 +215,14 @@ fn ends_thrown_about_do_not_cross_the_cable_itself() {
 }
 
 #[test]
+fn what_couples_distant_nodes_is_not_solved_with_the_right_side_of_a_step_before() {
+    // The step was then halved (or lost) in frame 69.
+    let count = throw_about([84], 70, 1.0 / 60.0, true);
+    println!("{} steps, {} halved", count.steps, count.halved);
+    assert!(count.failed.is_empty() && count.halved == 0, "{} {:#?}", count.halved, count.failed);
+}
+
+#[test]
 #[ignore = "takes minutes: cargo test -p cable-core --test fem_robust -- --ignored --nocapture"]
 fn ends_thrown_about_ten_thousand_times_do_not_cross_the_cable_itself() {
     let count = throw_about(0..100, 100, 1.0 / 60.0, true);

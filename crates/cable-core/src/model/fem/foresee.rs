@@ -155,3 +155,50 @@ fn constrain(system: &mut System, mesh: &Mesh, touch: &Touch, (n, way): (Vec2, f
         system.add_block(nodes[0], nodes[1], &(block * (k * shares[0] * shares[1])));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::contact_step::Workspace;
+    use super::super::dynamics::{Dynamics, REACH};
+    use crate::math::Vec2;
+    use crate::model::{Inertia, Settings};
+    use crate::problem::problems;
+    use crate::scene::{Obstacle, Shape, Support, catalog};
+
+    const STEP: f64 = 1.0 / 240.0;
+
+    /// A loose cable of 10 m and 100 bars in the air, in a slight wave above a floor, at 5 m/s downwards: it lands all along
+    /// its length in the next step, here sooner and there later.
+    fn about_to_land() -> Dynamics {
+        let mut scene = catalog::hanging_span();
+        let shape = Shape::Terrain { points_m: vec![[-5.0, 0.0], [15.0, 0.0]] };
+        scene.obstacles = vec![Obstacle { name: "floor".to_owned(), shape, friction: Some(0.5) }];
+        let c = &mut scene.cables[0];
+        (c.length_m, c.bending_stiffness_n_m2) = (10.0, 0.0);
+        let hook = |name: &str, x| Support { release_s: Some(0.5 * STEP), ..Support::fixed(name, [x, 0.6]) };
+        c.supports = vec![hook("a", 0.0), hook("b", 9.95)];
+        let radius = 0.5 * c.diameter_m;
+        let settings = Settings { segments: Some(100), ..Settings::default() };
+        let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings).unwrap();
+        d.settle(&[]).unwrap();
+        d.advance(STEP, Inertia::Dynamic, &[]).unwrap();
+        for (k, (x, v)) in d.motion.x.iter_mut().zip(&mut d.motion.v).enumerate() {
+            let gap = 5.0 * REACH + 8e-3 * (1.0 + (0.13 * k as f64).sin());
+            (*x, *v) = (Vec2::new(0.1 * k as f64, radius + gap), Vec2::new(0.0, -5.0));
+        }
+        d.forget_history();
+        d
+    }
+
+    #[test]
+    fn a_cable_that_lands_all_along_its_length_in_one_step_takes_few_iterations() {
+        let mut d = about_to_land();
+        d.begin_step(STEP, &[]);
+        let mut pose = d.still_pose();
+        let mut memory = Workspace::new(&d.mesh).unwrap();
+        let done = memory.descend((&d.problem, &d.mesh), &d.contacts, &d.task, &mut pose).unwrap();
+        let landed = memory.touches.len();
+        println!("{} iterations, {landed} nodes landed", done.iterations);
+        assert!(landed > 90 && done.iterations <= 12, "{landed} {}", done.iterations);
+    }
+}

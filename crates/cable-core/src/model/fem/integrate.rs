@@ -63,7 +63,8 @@ impl Dynamics {
         }
     }
 
-    pub(super) fn dynamic_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Result<Done, Failure> {
+    /// Sets the task of a step of `h` (s); returns the weights of the history and what turns lengths into speeds (1/s).
+    pub(super) fn begin_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> [f64; 3] {
         for (k, target) in dragged.iter().enumerate() {
             if let (Some(target), Some(at)) = (target, self.support_position(k)) {
                 let mut f = self.motion.followers[k].unwrap_or_else(|| Follower::at_rest(at));
@@ -85,6 +86,11 @@ impl Dynamics {
         self.contacts.look_around(&self.problem, mesh, &m.x, |k| {
             if mesh.held[k] { (task.target[k] - m.x[k]).norm() } else { m.v[k].norm() * h }
         });
+        [now, past, a]
+    }
+
+    pub(super) fn dynamic_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Result<Done, Failure> {
+        let [now, past, a] = self.begin_step(h, dragged);
         let (mut pose, exact) = (self.moving_pose(h), self.task.tolerance);
         self.contacts.prepare(&self.problem, &self.mesh, &pose.x, &self.motion.x);
         self.task.tolerance = self.rounded_tolerance();

@@ -177,3 +177,67 @@ impl Workspace {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::dynamics::Dynamics;
+    use super::*;
+    use crate::math::larger;
+    use crate::model::{Inertia, Settings};
+    use crate::problem::problems;
+    use crate::scene::{Obstacle, Shape, Support, catalog};
+    use proptest::prelude::*;
+
+    const STEP: f64 = 1.0 / 240.0;
+
+    /// A cable of 6 m let go `tilt` (m) askew above rough ground, thrown down and about.
+    fn falling(tilt: f64, waves: &[f64]) -> Dynamics {
+        let mut scene = catalog::hanging_span();
+        let points_m = (0..=40).map(|k| [-4.0 + 0.4 * f64::from(k), 0.05 * f64::from(k * 7 % 5)]).collect();
+        let shape = Shape::Terrain { points_m };
+        scene.obstacles = vec![Obstacle { name: "ground".to_owned(), shape, friction: Some(0.5) }];
+        let c = &mut scene.cables[0];
+        (c.length_m, c.axial_stiffness_n, c.bending_stiffness_n_m2) = (6.0, 1e6, 0.0);
+        let hook = |name: &str, at| Support { release_s: Some(0.5 * STEP), ..Support::fixed(name, at) };
+        c.supports = vec![hook("a", [0.0, 0.9]), hook("b", [5.9, 0.9 + tilt])];
+        let settings = Settings { segments: Some(40), ..Settings::default() };
+        let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings).unwrap();
+        d.settle(&[]).unwrap();
+        let n = d.mesh.nodes() - 1;
+        for (k, v) in d.motion.v.iter_mut().enumerate() {
+            let s = std::f64::consts::PI * k as f64 / n as f64;
+            *v = Vec2::new(waves[0] * s.sin(), waves[1] * s.sin() + waves[2] * (3.0 * s).sin() - 3.0);
+        }
+        d.forget_history();
+        d
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(8))]
+        /// The equations are those of the minimiser: so is the answer, wherever both have one.
+        #[test]
+        fn the_pose_is_that_of_the_minimiser(tilt in -0.5f64..0.5, waves in prop::collection::vec(-1.0f64..1.0, 3)) {
+            let mut d = falling(tilt, &waves);
+            let (mut compared, mut touching, mut worst) = (0, 0, 0.0);
+            for _ in 0..80 {
+                let mut trial = d.clone();
+                trial.begin_step(STEP, &[]);
+                let mut expected = trial.still_pose();
+                trial.contacts.prepare(&trial.problem, &trial.mesh, &expected.x, &trial.motion.x);
+                let mut memory = Workspace::new(&trial.mesh).unwrap();
+                let (setting, mut found) = ((&*trial.problem, &trial.mesh), expected.clone());
+                let rushed = memory.rush(setting, &trial.contacts, &trial.task, &mut found).is_some();
+                if rushed && memory.descend(setting, &trial.contacts, &trial.task, &mut expected).is_ok() {
+                    let off = found.x.iter().zip(&expected.x).map(|(a, b)| (a - b).norm());
+                    worst = off.fold(worst, larger);
+                    compared += 1;
+                    touching += usize::from(memory.touches.len() > 2);
+                }
+                d.advance(STEP, Inertia::Dynamic, &[]).unwrap();
+            }
+            println!("{compared} compared, {touching} of them in contact, {worst:e} m off");
+            // A hundred times the tolerance would be 1e-7 m off.
+            prop_assert!(worst < 2e-8 && compared >= 60 && touching >= 15, "{} {} {}", compared, touching, worst);
+        }
+    }
+}
