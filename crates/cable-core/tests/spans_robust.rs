@@ -218,14 +218,14 @@ struct Table {
 }
 
 /// What an answer must be, seen from outside.
-fn sound(model: &SpansModel, problem: &Problem) {
+fn sound(number: u64, model: &SpansModel, problem: &Problem) {
     let answer = model.solution();
     let greatest = answer.nodes.iter().fold(0.0f64, |m, n| m.max(n.tension_n));
     for n in &answer.nodes {
         assert!(n.x_m.is_finite() && n.y_m.is_finite() && n.tension_n.is_finite());
-        assert!(n.tension_n >= -1e-6 * greatest - 1e-9, "pushes: {}", n.tension_n);
+        assert!(n.tension_n >= -1e-6 * greatest - 1e-9, "{number} pushes: {}", n.tension_n);
         let gap = problem.world.signed_gap(Vec2::new(n.x_m, n.y_m), 1.0);
-        assert!(gap.is_none_or(|g| g.gap_m > -1e-6), "inside by {gap:?}");
+        assert!(gap.is_none_or(|g| g.gap_m > -1e-6), "{number}: {} m along it inside by {gap:?}", n.arc_length_m);
     }
     let length = answer.nodes.last().unwrap().arc_length_m;
     assert!((length - problem.length).abs() <= 1e-12 * problem.length);
@@ -244,7 +244,7 @@ fn run(number: u64, table: &mut Table) {
         *table.cold.entry(class(&e)).or_default() += 1;
         return;
     }
-    sound(&model, &problem);
+    sound(number, &model, &problem);
     for (k, ends) in case.moves.iter().enumerate() {
         model.drag_support(0, ends[0]);
         model.drag_support(1, ends[1]);
@@ -252,7 +252,7 @@ fn run(number: u64, table: &mut Table) {
             Ok(report) => {
                 table.steps += 1;
                 table.halved += report.cost.halved_steps;
-                sound(&model, &problem);
+                sound(number, &model, &problem);
             }
             Err(e) => {
                 let to = if is_lost(&e) { &mut table.lost } else { &mut table.refused };
@@ -275,6 +275,7 @@ fn random_moves_over_random_scenes() {
     let (first, cases) = (number("SPANS_FIRST", 0), number("SPANS_CASES", 40));
     let mut table = Table::default();
     for k in first..first + cases {
+        if std::env::var_os("DBG").is_some() { let c = case(k); let p = problems(&c.scene).unwrap().remove(0); let t0=std::time::Instant::now(); let mut m = SpansModel::new(p, Settings::default()).unwrap(); let r=m.settle(); println!("{k}: mu {:.2} EA {:.1e} L {:.3} bodies {} corners? {:?} {:?}", c.scene.cables[0].friction, c.scene.cables[0].axial_stiffness_n, c.scene.cables[0].length_m, c.scene.obstacles.len()-1, r.err(), t0.elapsed()); continue; }
         run(k, &mut table);
     }
     let Table { rests, steps, halved, lost, refused, cold } = table;

@@ -13,6 +13,8 @@ const HOLDS: f64 = 1e-7;
 const DEEPEST: f64 = 1e-6;
 /// Compression that is rounding, of the greatest tension.
 const PUSHES: f64 = 1e-9;
+/// A contact may end so far beyond its chain, m or rad: rounding.
+const BEYOND: f64 = 1e-9;
 /// Points of a contact looked at.
 const SAMPLES: usize = 8;
 /// A span hangs in one line when the force across the load is below this part of its load.
@@ -110,11 +112,19 @@ fn contact(strand: &Strand, course: &Course, j: usize, greatest: f64) -> Result<
     let (track, friction) = (course.track(c), course.friction(c));
     let e = &c.ends;
     let unsound = |what: &'static str, p: f64, s: f64| Trouble::Unsound { what, s, at: track.place(p).at };
+    let (first, last) = (track.curve.origin(c.home.first), track.curve.end(c.home.last));
+    if !(track.curve.is_round() || e.p[0] >= first - BEYOND && e.p[1] <= last + BEYOND) {
+        return Err(unsound("a contact goes on beyond what it lies on", e.p[0], e.s[0]));
+    }
     for side in 0..2 {
         if let Some(force) = strand.force_at_contact(course, j, side) {
             let tangent = track.place(e.p[side]).tangent;
             if !(cross(force, tangent).abs() <= HOLDS * force.norm() && force.dot(&tangent) > 0.0) {
                 return Err(unsound("a span is not tangent to what it leaves", e.p[side], e.s[side]));
+            }
+        } else if strand.in_pocket(j, side) {
+            if e.t[side] != 0.0 {
+                return Err(unsound("slack has tension", e.p[side], e.s[side]));
             }
         } else if let Tie::Loose(force) = strand.ties[side] {
             let lifts = force.dot(&track.place(e.p[side]).normal);

@@ -170,6 +170,11 @@ impl Curve {
         self.starts[i.rem_euclid(n) as usize] + if turns == 0 { 0.0 } else { turns as f64 * self.period.unwrap_or(0.0) }
     }
 
+    /// Where a piece ends in p.
+    pub fn end(&self, i: i64) -> f64 {
+        self.origin(i) + self.piece(i).extent
+    }
+
     /// The piece at p, of those of a chain: its first or last beyond their ends.
     pub fn locate(&self, p: f64, home: Home) -> i64 {
         if home.first == home.last {

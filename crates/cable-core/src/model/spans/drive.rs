@@ -7,15 +7,21 @@ use super::instant::{Instant, Layout, place_ends};
 use super::lay;
 use super::newton::{self, Solved, Work};
 use super::pass;
+use super::pocket;
 use super::strand::{Course, Strand};
 use super::trouble::Trouble;
 use crate::math::Vec2;
 
 /// Halvings of a step at most: 2⁻¹² of a step of 1 % of the cable is a hair's breadth.
 const MAX_HALVINGS: u32 = 12;
+/// Spans that are tried as pockets in one step. More: dearer failures, each halving tries again.
+const MOST_POCKETS: usize = 3;
 /// Tension at which a rest is first sought, of the weight of the cable: so taut that it touches only what it is led
 /// round. Less: it lies on more than the string of the route. More: nothing gained.
 const TAUT: f64 = 4.0;
+/// Part of the load that acts at first. More: a long span sags into what is below it before it can be met step by step.
+/// Less: nothing gained.
+const LIGHT: f64 = 1e-3;
 /// First step of the way from taut to what it is.
 const FIRST_STEP: f64 = 0.05;
 
@@ -38,16 +44,16 @@ impl Network {
     /// The rest of a cable laid along its route.
     ///
     /// # Errors
-    /// Why none was found.
-    pub fn rest(layout: &Layout, instant: &Instant, work: &mut Work) -> Result<(Self, Taken), Trouble> {
+    /// Why none was found, and how far the cable was let out where that stopped the search.
+    pub fn rest(layout: &Layout, instant: &Instant, work: &mut Work) -> Result<(Self, Taken), (Trouble, Option<Self>)> {
         let curves = layout.curves();
         let course = layout.course(curves, instant);
         // As it is laid; else where it needs no friction; either may have to begin taut.
         let smooth = Instant { friction: 0.0, ..instant.clone() };
-        let ways = [(instant, false), (&smooth, false), (instant, true), (&smooth, true)];
+        let ways = [(instant, false), (&smooth, false), (&smooth, true), (instant, true)];
         // What is not held at both ends would run to where it needs no friction.
         let held = layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
-        let mut first = None;
+        let (mut first, mut stopped) = (None, None);
         for (begin, cooled) in ways.into_iter().filter(|(begin, _)| held || begin.friction > 0.0) {
             let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
             match network.laid(layout, begin, cooled, work).and_then(|taken| {
@@ -58,10 +64,15 @@ impl Network {
                 }
             }) {
                 Ok(taken) => return Ok((network, taken)),
-                Err(trouble) => first = first.or(Some(trouble)),
+                Err(trouble) => {
+                    if cooled && stopped.is_none() {
+                        stopped = Some((trouble.clone(), Some(network)));
+                    }
+                    first = first.or(Some((trouble, None)));
+                }
             }
         }
-        Err(first.unwrap_or(Trouble::Restless { s: 0.0 }))
+        Err(stopped.or(first).unwrap_or((Trouble::Restless { s: 0.0 }, None)))
     }
 
     /// Lays it along the route as it is, or shrunk until it is taut and then let out again.
@@ -79,6 +90,8 @@ impl Network {
         }
         if shrunk {
             begin.thermal = self.shrunk_thermal(layout, goal);
+            begin.load *= LIGHT;
+            begin.forces.iter_mut().for_each(|f| *f *= LIGHT);
             layout.give(&mut self.course, &begin);
             for (strand, part) in self.strands.iter_mut().zip(&layout.strands) {
                 if part.supports.iter().all(Option::is_some) {
@@ -103,6 +116,8 @@ impl Network {
         if !shrunk {
             return Ok(taken);
         }
+        let heavy = Instant { thermal: begin.thermal, ..goal.clone() };
+        taken = taken.and(self.travel(layout, &heavy, FIRST_STEP, work)?);
         Ok(taken.and(self.travel(layout, goal, FIRST_STEP, work)?))
     }
 
@@ -180,7 +195,7 @@ impl Network {
         let mut found = events::solve(strand, &mut self.course, world, came, work);
         if found.is_err() {
             // From where each span by itself would be.
-            *strand = moved;
+            *strand = moved.clone();
             for j in 0..strand.spans() {
                 if strand.has_span(j)
                     && let Some(g) = strand.solve_span(&self.course, j)
@@ -189,6 +204,21 @@ impl Network {
                 }
             }
             found = events::solve(strand, &mut self.course, world, came, work);
+        }
+        if found.is_err() {
+            // What has hardly any tension left may have lost it: the least, the two least …
+            let mut loose = Vec::new();
+            pocket::candidates(&start, &self.course, &mut loose);
+            for n in 1..=loose.len().min(MOST_POCKETS) {
+                *strand = moved.clone();
+                for (_, k) in &loose[..n] {
+                    pocket::fill(strand, &self.course, *k);
+                }
+                found = events::solve(strand, &mut self.course, world, came, work);
+                if found.is_ok() {
+                    break;
+                }
+            }
         }
         let found = found.and_then(|solved| {
             check::sound(&self.strands[k], &self.course, world)?;

@@ -7,6 +7,7 @@
 use super::history::{Ends, History, Knot, Mode};
 use super::newton::{self, Solved, Work};
 use super::pass;
+use super::pocket;
 use super::seek::{self, Hit};
 use super::strand::{Contact, Course, Strand, Tie};
 use super::trouble::Trouble;
@@ -42,7 +43,10 @@ pub(super) fn solve(
         })?;
         sum.iterations += found.iterations;
         sum.residual = found.residual;
-        if release(strand, course)? || join(strand, course) || meet(strand, course, world, came.is_some())? {
+        if release(strand, course)?
+            || join(strand, course)
+            || pocket::open(strand, course)
+            || meet(strand, course, world, came.is_some())? {
             continue;
         }
         match came {
@@ -65,6 +69,9 @@ fn release(strand: &mut Strand, course: &mut Course) -> Result<bool, Trouble> {
     }
     let contact = strand.contacts.remove(j);
     let m = strand.contacts.len();
+    if let Some(before) = j.checked_sub(1).and_then(|i| strand.contacts.get_mut(i)) {
+        before.pocket = false;
+    }
     // What lay is held in the air now, or hangs.
     for side in 0..2 {
         let outer = if side == 0 { j == 0 } else { j == m };
@@ -125,6 +132,7 @@ fn join(strand: &mut Strand, course: &Course) -> bool {
             let a = &mut strand.contacts[j - 1];
             a.history.append(&course.track(&b), &b.history);
             a.smooth &= b.smooth;
+            a.pocket = b.pocket;
             (a.ends.p[1], a.ends.s[1], a.ends.t[1]) = (b.ends.p[1], b.ends.s[1], b.ends.t[1]);
             if let (Mode::Slide(m), Mode::Hold) = (a.mode, b.mode)
                 && m != 0.0
@@ -241,6 +249,7 @@ fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit, resting: boo
         history: History::default(),
         wheel: None,
         flips: 0,
+        pocket: false,
         smooth: resting,
     };
     let track = course.track(&contact);

@@ -23,6 +23,7 @@ mod lay;
 mod loss;
 mod newton;
 mod pass;
+mod pocket;
 mod report;
 mod rub;
 mod seek;
@@ -101,8 +102,9 @@ impl SpansModel {
         from.places.iter().zip(&to.places).map(|(a, b)| (b - a).norm()).fold(0.0, |m, d| if d > m { d } else { m })
     }
 
-    fn said(&self, trouble: Trouble) -> SolveError {
-        if let Some(network) = &self.network
+    /// A trouble as an error: a loss of tension where the last state found, `stopped` or the present one, shows one.
+    fn said(&self, stopped: Option<&Network>, trouble: Trouble) -> SolveError {
+        if let Some(network) = stopped.or(self.network.as_ref())
             && let Some((loss, arc_length_m, at_m)) = loss::lost(&network.strands, &network.course, &trouble)
         {
             return SolveError::TensionLost { model: Model::Spans, loss, arc_length_m, at_m };
@@ -173,7 +175,7 @@ impl Mechanics for SpansModel {
         let instant = self.layout.instant(&self.dragged, self.time_s);
         let mut work = std::mem::take(&mut self.work);
         let found = match &mut self.network {
-            Some(network) => network.travel(&self.layout, &instant, 1.0, &mut work).map_err(|t| t.0),
+            Some(network) => network.travel(&self.layout, &instant, 1.0, &mut work).map_err(|t| (t.0, None)),
             None => Network::rest(&self.layout, &instant, &mut work).map(|(network, taken)| {
                 self.network = Some(network);
                 taken
@@ -181,7 +183,7 @@ impl Mechanics for SpansModel {
         };
         let stable = self.network.as_ref().is_none_or(|n| n.stable(&mut work));
         self.work = work;
-        let taken = found.map_err(|t| self.said(t))?;
+        let taken = found.map_err(|(trouble, stopped)| self.said(stopped.as_ref(), trouble))?;
         self.look();
         let mut report = self.report_of(taken);
         if !stable {
@@ -245,7 +247,7 @@ impl Mechanics for SpansModel {
         self.work = work;
         self.look();
         match failed {
-            Some(trouble) => Err(self.said(trouble)),
+            Some(trouble) => Err(self.said(None, trouble)),
             None => Ok(sum),
         }
     }

@@ -214,6 +214,16 @@ fn contact_rows(strand: &Strand, course: &Course, j: usize, (scale, r, mut band)
         let tangency = row + 3 * side;
         let (p_column, s_column) = (row + 2 * side, row + 2 * side + 1);
         let by = |i: usize, of: usize| rows.by[i][3 * side + of] * size[i];
+        if strand.in_pocket(j, side) {
+            // Held in the kink without tension: its material is what follows.
+            if let Some(b) = band.as_deref_mut() {
+                b.add(tangency, p_column, 1.0);
+                for i in 0..2 {
+                    b.add(row + 1 + i, s_column, by(i, 1));
+                }
+            }
+            continue;
+        }
         if is_end(strand, j, side) {
             let s = if side == 0 { strand.from } else { strand.to };
             r[tangency] = (c.ends.s[side] - s) * scale;
@@ -374,7 +384,8 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
 /// friction holds: that came there by its own motion.
 pub(super) fn stable(strand: &Strand, course: &Course, work: &mut Work) -> bool {
     let rubs = strand.contacts.iter().any(|c| course.friction(c) > 0.0);
-    if rubs || strand.contacts.is_empty() || strand.ties.iter().any(|t| matches!(t, Tie::Loose(_))) {
+    let pockets = strand.contacts.iter().any(|c| c.pocket);
+    if rubs || pockets || strand.contacts.is_empty() || strand.ties.iter().any(|t| matches!(t, Tie::Loose(_))) {
         return true;
     }
     let count = (0..strand.contacts.len()).filter(|&j| !lies(strand, j, 0)).count();

@@ -54,6 +54,8 @@ pub(super) struct Contact {
     pub wheel: Option<usize>,
     /// Times the mode has changed in this solve.
     pub flips: u32,
+    /// Whether it ends in a kink without tension, as the next begins there: no span between them, see `pocket`.
+    pub pocket: bool,
     /// Smooth for now: found while a rest is sought, where it has not rubbed yet.
     pub smooth: bool,
 }
@@ -120,7 +122,13 @@ impl Strand {
 
     /// Whether span k is there.
     pub fn has_span(&self, k: usize) -> bool {
-        (k > 0 || self.ties[0].has_span()) && (k < self.contacts.len() || self.ties[1].has_span())
+        let pocket = k.checked_sub(1).and_then(|j| self.contacts.get(j)).is_some_and(|c| c.pocket);
+        !pocket && (k > 0 || self.ties[0].has_span()) && (k < self.contacts.len() || self.ties[1].has_span())
+    }
+
+    /// Whether contact j ends in a pocket on a side.
+    pub fn in_pocket(&self, j: usize, side: usize) -> bool {
+        (j + side).checked_sub(1).and_then(|i| self.contacts.get(i)).is_some_and(|c| c.pocket)
     }
 
     /// Material at both ends of span k, m.
@@ -182,6 +190,8 @@ impl Strand {
             for side in 0..2 {
                 if let Some(force) = self.force_at_contact(course, j, side) {
                     self.contacts[j].ends.t[side] = force.norm();
+                } else if self.in_pocket(j, side) {
+                    self.contacts[j].ends.t[side] = 0.0;
                 } else if let Tie::Loose(force) = self.ties[side] {
                     self.contacts[j].ends.t[side] = course.pull(&self.contacts[j], side, force);
                 }
