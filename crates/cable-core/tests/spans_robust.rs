@@ -167,10 +167,7 @@ fn case(number: u64) -> Case {
     (c.service_tension_n, c.breaking_tension_n, c.friction) = (1e15, 1e15, friction);
     c.route_m = route.iter().map(|p| [p.x, p.y]).collect();
     c.length_m = way * (1.0 + dice.log(1e-4, 1.0));
-    c.supports = vec![
-        Support::fixed("A", [ends[0].x, ends[0].y]),
-        Support::fixed("B", [ends[1].x, ends[1].y]),
-    ];
+    c.supports = vec![Support::fixed("A", [ends[0].x, ends[0].y]), Support::fixed("B", [ends[1].x, ends[1].y])];
     // Each end stays on its side, clear of the ground.
     let both = dice.unit() < 0.3;
     let mut now = [a, b];
@@ -275,7 +272,23 @@ fn random_moves_over_random_scenes() {
     let (first, cases) = (number("SPANS_FIRST", 0), number("SPANS_CASES", 40));
     let mut table = Table::default();
     for k in first..first + cases {
-        if std::env::var_os("DBG").is_some() { let c = case(k); let p = problems(&c.scene).unwrap().remove(0); let t0=std::time::Instant::now(); let mut m = SpansModel::new(p, Settings::default()).unwrap(); let r=m.settle(); println!("{k}: mu {:.2} EA {:.1e} L {:.3} bodies {} corners? {:?} {:?}", c.scene.cables[0].friction, c.scene.cables[0].axial_stiffness_n, c.scene.cables[0].length_m, c.scene.obstacles.len()-1, r.err(), t0.elapsed()); continue; }
+        if std::env::var_os("DBG").is_some() {
+            let c = case(k);
+            let p = problems(&c.scene).unwrap().remove(0);
+            let t0 = std::time::Instant::now();
+            let mut m = SpansModel::new(p, Settings::default()).unwrap();
+            let r = m.settle();
+            println!(
+                "{k}: mu {:.2} EA {:.1e} L {:.3} bodies {} corners? {:?} {:?}",
+                c.scene.cables[0].friction,
+                c.scene.cables[0].axial_stiffness_n,
+                c.scene.cables[0].length_m,
+                c.scene.obstacles.len() - 1,
+                r.err(),
+                t0.elapsed()
+            );
+            continue;
+        }
         run(k, &mut table);
     }
     let Table { rests, steps, halved, lost, refused, cold } = table;

@@ -46,7 +46,8 @@ pub(super) fn solve(
         if release(strand, course)?
             || join(strand, course)
             || pocket::open(strand, course)
-            || meet(strand, course, world, came.is_some())? {
+            || meet(strand, course, world, came.is_some())?
+        {
             continue;
         }
         match came {
