@@ -25,14 +25,14 @@ struct Arguments {
     /// Colours of the window or picture.
     #[arg(long, value_enum, default_value_t = Theme::System)]
     theme: Theme,
-    /// Model to solve with: auto, catenary, fem or mass-spring.
+    /// Model to solve with: auto, catenary, spans, fem or mass-spring.
     #[arg(long, default_value = "auto", value_parser = parse_model)]
     model: Model,
 }
 
 /// A model by its name on the command line.
 fn parse_model(text: &str) -> Result<Model, String> {
-    Model::from_name(text).ok_or_else(|| "one of auto, catenary, fem, mass-spring".to_owned())
+    Model::from_name(text).ok_or_else(|| "one of auto, catenary, spans, fem, mass-spring".to_owned())
 }
 
 /// Colours of the window.

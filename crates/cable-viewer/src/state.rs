@@ -37,6 +37,8 @@ pub struct AppState {
     pub frame_m: Option<[Point; 2]>,
     /// What was copied.
     pub clipboard: Clipboard,
+    /// Where on a cable it is shown where the tension comes from.
+    pub probe: Option<Probe>,
     /// What the pointer is over.
     pub hovered: Option<Item>,
     /// What is being dragged.
@@ -133,6 +135,17 @@ pub enum Item {
     Robot,
     /// Where a leg of the robot's path ends.
     Leg(usize),
+}
+
+/// A place on a cable whose tension is taken apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Probe {
+    /// Index of the cable.
+    pub cable: usize,
+    /// Where on it, m.
+    pub arc_length_m: f64,
+    /// The end the sum begins at.
+    pub from: cable_core::origin::From,
 }
 
 /// A thing being dragged.
@@ -251,6 +264,7 @@ impl AppState {
             also: Vec::new(),
             frame_m: None,
             clipboard: Clipboard::default(),
+            probe: None,
             hovered: None,
             grabbed: None,
             cursor_m: None,

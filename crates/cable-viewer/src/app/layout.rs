@@ -20,8 +20,12 @@ const EDIT: &[Section] = &[
     ("Solver", panels::solver::ui),
 ];
 /// What is read off.
-const READ: &[Section] =
-    &[("Warnings", panels::warnings::ui), ("Readouts", panels::readouts::ui), ("Compare", panels::compare::ui)];
+const READ: &[Section] = &[
+    ("Warnings", panels::warnings::ui),
+    ("Readouts", panels::readouts::ui),
+    ("Tension at a place", panels::origin::ui),
+    ("Compare", panels::compare::ui),
+];
 
 /// Narrower windows (points) have one side panel instead of two: the canvas would be smaller than its labels.
 const WIDE: f32 = 1100.0;
@@ -76,7 +80,8 @@ fn tabs(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let mut read: bool = ui.data(|d| d.get_temp(id)).unwrap_or_default();
         ui.horizontal(|ui| {
             ui.selectable_value(&mut read, false, "Edit").on_hover_text("Scene, robot, cable, environment, solver");
-            ui.selectable_value(&mut read, true, "Read").on_hover_text("Warnings, readouts, compare");
+            ui.selectable_value(&mut read, true, "Read")
+                .on_hover_text("Warnings, readouts, tension at a place, compare");
             let warnings = state.snapshot.solution.as_ref().map_or(0, |s| s.warnings.len());
             if state.scene_fault.is_some() || state.snapshot.error.is_some() || warnings > 0 {
                 ui.colored_label(ui.visuals().warn_fg_color, "Warnings: see Read");

@@ -146,7 +146,7 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.checkbox(&mut layers.grid, "Grid").on_hover_text("Lines and numbered axes");
     ui.checkbox(&mut layers.labels, "Labels").on_hover_text("Names, coordinates and figures");
     ui.checkbox(&mut layers.contacts, "Contacts").on_hover_text(
-        "Where the cable touches: normal force and friction; filled where it holds, hollow where it slides",
+        "Where the cable touches: normal force and friction; filled and blue where it holds, hollow and orange where it slides",
     );
     ui.checkbox(&mut layers.forces, "Forces").on_hover_text("Loads, and what the cable does to its supports");
     ui.checkbox(&mut layers.components, "Parts of forces").on_hover_text("Of each force, to the right and upwards");

@@ -50,8 +50,8 @@ fn entries() -> Vec<(String, Command)> {
         ("Quit", Command::File(FileCommand::Quit)),
     ];
     let colour = |quantity| Command::View(ViewCommand::SetColour(ColourScale { quantity, ..ColourScale::default() }));
-    let models = [Model::Auto, Model::Catenary, Model::Fem, Model::MassSpring];
     let mut all: Vec<(String, Command)> = fixed.map(|(name, command)| (name.to_owned(), command)).into();
+    let models = [Model::Auto].into_iter().chain(Model::SOLVERS);
     all.extend(models.map(|m| (format!("Solve with {m}"), Command::SetModel(m))));
     all.extend(Quantity::ALL.map(|q| (format!("Colour by {}", q.name().to_lowercase()), colour(q))));
     all.extend(catalog::all().into_iter().map(|(id, scene)| {

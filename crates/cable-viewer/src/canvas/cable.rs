@@ -9,7 +9,7 @@ use crate::plot;
 use crate::state::{AppState, Item};
 
 /// Thinnest ribbon, points: the true diameter is drawn only where it is wider.
-const LEAST_WIDTH: f32 = 4.5;
+pub const LEAST_WIDTH: f32 = 4.5;
 /// Nodes nearer to each other than this are drawn as one, points: a ribbon of pieces shorter than it is smooth costs as much as a
 /// screen full of text.
 const APART: f32 = 1.5;
@@ -74,7 +74,7 @@ fn grey(c: Color32) -> Color32 {
 
 /// The nodes that can be told apart on screen: the ends, those at least [`APART`] from the one before, and those where the risk
 /// begins or ends.
-fn seen(view: &View<'_>, nodes: &[Node], service: f64) -> Vec<Node> {
+pub(super) fn seen(view: &View<'_>, nodes: &[Node], service: f64) -> Vec<Node> {
     let mut out: Vec<Node> = Vec::with_capacity(nodes.len());
     let mut last: Option<(Pos2, bool)> = None;
     let end = nodes.len().saturating_sub(1);
@@ -89,14 +89,14 @@ fn seen(view: &View<'_>, nodes: &[Node], service: f64) -> Vec<Node> {
 }
 
 /// A polyline on screen with the direction to widen it at each point.
-struct Ribbon {
+pub(super) struct Ribbon {
     points: Vec<Pos2>,
     /// Half-width vectors for width 2.
     offsets: Vec<Vec2>,
 }
 
 impl Ribbon {
-    fn new(view: &View<'_>, nodes: &[Node]) -> Self {
+    pub fn new(view: &View<'_>, nodes: &[Node]) -> Self {
         let points: Vec<Pos2> = nodes.iter().map(|n| view.at([n.x_m, n.y_m])).collect();
         let normal = |a: Pos2, b: Pos2| {
             let d = b - a;
@@ -124,7 +124,7 @@ impl Ribbon {
     }
 
     /// Adds the ribbon in the colours of its points; where a point has none, the ribbon is broken.
-    fn add(&self, mesh: &mut Mesh, width: f32, colour: impl Fn(usize) -> Option<Color32>) {
+    pub fn add(&self, mesh: &mut Mesh, width: f32, colour: impl Fn(usize) -> Option<Color32>) {
         let half = width / 2.0;
         let soft = (half + FEATHER) / half;
         let mut before: Option<u32> = None;

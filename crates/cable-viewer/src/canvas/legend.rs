@@ -57,6 +57,26 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
     view.taken.push(plate);
 }
 
+/// What the bands along the cable mean, below the colours, where there are some.
+pub fn contacts(view: &mut View<'_>, state: &AppState) {
+    let stretches = state.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
+    let any = stretches.into_iter().any(|c| c.ends_m > c.begins_m);
+    let top = view.rect.min.y + 10.0 + BAR[1] + 44.0 + 6.0;
+    let plate = Rect::from_min_size(pos2(view.rect.max.x - 118.0, top), vec2(108.0, 42.0));
+    if !any || !state.layers.contacts || plate.min.x < view.rect.min.x + 60.0 || plate.max.y > view.rect.max.y - 30.0 {
+        return;
+    }
+    let line = Stroke::new(1.0, view.palette.plate_line);
+    view.painter.rect(plate, 4.0, view.palette.plate, line, StrokeKind::Inside);
+    for (k, text) in ["holds", "slides"].into_iter().enumerate() {
+        let y = plate.min.y + 12.0 + 18.0 * k as f32;
+        let bar = Rect::from_center_size(pos2(plate.min.x + 24.0, y), vec2(28.0, 9.0));
+        super::contact::sample(view, bar, k == 0);
+        view.text(pos2(bar.max.x + 9.0, y), Align2::LEFT_CENTER, text, 11.0, view.palette.text);
+    }
+    view.taken.push(plate);
+}
+
 /// A red mark where the first cable's service tension lies.
 fn service(view: &View<'_>, state: &AppState, bar: Rect, range: [f64; 2]) {
     let Some(cable) = state.scene.cables.first() else { return };

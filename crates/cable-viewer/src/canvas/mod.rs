@@ -2,6 +2,7 @@
 
 pub mod bounds;
 mod cable;
+mod contact;
 pub mod forces;
 pub mod grid;
 mod held;
@@ -12,6 +13,7 @@ mod path;
 pub mod pick;
 pub mod place;
 mod pointer;
+mod probe;
 mod reach;
 pub mod robot;
 pub mod supports;
@@ -63,11 +65,13 @@ fn draw(view: &mut View<'_>, state: &AppState) {
     obstacles::draw(view, state);
     robot::draw(view, state);
     held::draw(view, state);
+    contact::draw(view, state);
     cable::draw(view, state);
     let mut figures = Vec::new();
     forces::draw(view, state, &mut figures);
     reach::draw(view, state, &mut figures);
     supports::draw(view, state);
+    probe::draw(view, state, &mut figures);
     path::draw(view, state, &mut figures);
     pointer::frame(view, state);
     if state.layers.grid {
@@ -75,6 +79,7 @@ fn draw(view: &mut View<'_>, state: &AppState) {
         grid::scale_bar(view);
     }
     legend::draw(view, state);
+    legend::contacts(view, state);
     legend::banner(view, state);
     if state.layers.labels {
         supports::labels(view, state, figures);

@@ -1,13 +1,17 @@
 //! What a screen reader, and the tests, find on the canvas: a name for each thing where it is painted, and the scene in words.
 
 use cable_core::math::Point;
+use cable_core::solution::ContactState;
 use egui::{Rect, Role, Sense, Ui, WidgetInfo, vec2};
 
-use super::{forces, path, place, supports};
+use super::{contact, forces, path, place, supports};
 use crate::panels::unit;
 use crate::state::{AppState, Item};
 
-/// Names everything that can be picked.
+/// Most contacts of a cable that are named: what lies on rubble has one a stone.
+const MOST_CONTACTS: usize = 40;
+
+/// Names everything that can be picked, and where the cable lies on something.
 pub fn ui(ui: &Ui, canvas: Rect, state: &AppState) {
     let name = |at: Point, id: (&str, usize, usize), text: String| {
         let spot = Rect::from_center_size(state.camera.to_screen(canvas, at), vec2(20.0, 20.0));
@@ -30,6 +34,7 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState) {
             name(at, ("obstacle", k, 0), format!("Obstacle {}", o.name));
         }
     }
+    contacts(state, &name);
     for k in 0..scene.loads.len() {
         if let Some((at, _)) = forces::load_at(state, k) {
             name(at, ("load", k, 0), format!("Load {}", k + 1));
@@ -43,6 +48,29 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState) {
     }
     if let Some(at) = place::of(state, Item::Robot) {
         name(at, ("robot", 0, 0), "Robot on the canvas".to_owned());
+    }
+}
+
+/// Stretches of contact, what each does, and slip fronts.
+fn contacts(state: &AppState, name: &impl Fn(Point, (&str, usize, usize), String)) {
+    let Some(solution) = state.snapshot.solution.as_ref().filter(|_| state.layers.contacts) else { return };
+    for answer in &solution.cables {
+        for (k, c) in answer.contacts.iter().enumerate().take(MOST_CONTACTS) {
+            for (j, part) in contact::parts(c).into_iter().enumerate().filter(|(_, p)| p.ends_m > p.begins_m) {
+                let does = if part.state == ContactState::Stick { "holds" } else { "slides" };
+                let [from, to] = [part.begins_m, part.ends_m].map(|s| unit::Unit::COORDINATE.text(s));
+                if let Some(n) = contact::at(answer, 0.5 * (part.begins_m + part.ends_m)) {
+                    let text = format!("Contact of {} with {}: {does} from {from} to {to}", answer.name, c.obstacle);
+                    name([n.x_m, n.y_m], ("contact", k, j), text);
+                }
+            }
+            for (j, s) in contact::fronts(c).enumerate() {
+                if let Some(n) = contact::at(answer, s) {
+                    let text = format!("Slip front of {} at {}", answer.name, unit::Unit::COORDINATE.text(s));
+                    name([n.x_m, n.y_m], ("front", k, j), text);
+                }
+            }
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use egui::{CursorIcon, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, 
 use super::view::View;
 use super::{grid, pick, place};
 use crate::command::{Command, SceneCommand, ViewCommand};
-use crate::state::{AppState, Grab, Item};
+use crate::state::{AppState, Grab, Item, Probe};
 
 /// How near to the cable a double-click adds a waypoint, points.
 const WAYPOINT_REACH: f32 = 14.0;
@@ -26,6 +26,12 @@ pub fn read(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<C
         && let Some(p) = response.interact_pointer_pos()
     {
         let item = pick::item_at(state, canvas, p);
+        if matches!(item, Some(Item::Cable(_)))
+            && let Some((cable, arc_length_m, _)) = pick::cable_at(state, canvas, p, WAYPOINT_REACH)
+        {
+            let from = state.probe.map(|p| p.from).unwrap_or_default();
+            commands.push(Command::View(ViewCommand::Probe(Some(Probe { cable, arc_length_m, from }))));
+        }
         commands.push(Command::View(match item {
             Some(item) if adds(ui) => ViewCommand::Toggle(item),
             item => ViewCommand::Select(item),

@@ -169,7 +169,7 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
     state.document = fresh.document;
     state.undo = fresh.undo;
     (state.selected, state.also) = (None, Vec::new());
-    state.hovered = None;
+    (state.hovered, state.probe) = (None, None);
     state.playback.paused = true;
     state.robot_order = None;
     state.reopened = Vec::new();

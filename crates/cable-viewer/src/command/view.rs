@@ -10,7 +10,7 @@ use crate::guide;
 use crate::panels::system::System;
 use crate::reach::{Order, Progress};
 use crate::run::Run;
-use crate::state::{AppState, Grab, Held, Item, Layers};
+use crate::state::{AppState, Grab, Held, Item, Layers, Probe};
 
 /// Changes what is shown.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +21,8 @@ pub enum ViewCommand {
     Toggle(Item),
     /// Picks several things.
     SelectAll(Vec<Item>),
+    /// Takes the tension at a place of a cable apart, or not any more.
+    Probe(Option<Probe>),
     /// Draws a frame round things to pick, between two corners, m.
     Frame(Option<[Point; 2]>),
     /// The pointer is over a thing, or over nothing, at a point of the world (m).
@@ -78,6 +80,7 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             select_all(state, picks);
         }
         ViewCommand::SelectAll(items) => select_all(state, items),
+        ViewCommand::Probe(probe) => state.probe = probe,
         ViewCommand::Frame(corners) => state.frame_m = corners,
         ViewCommand::Hover(item, at_m) => {
             state.hovered = item;

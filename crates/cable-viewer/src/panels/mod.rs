@@ -6,6 +6,7 @@ pub mod environment;
 pub mod fault;
 pub mod field;
 pub mod icon;
+pub mod origin;
 pub mod playback;
 pub mod plots;
 pub mod property;

@@ -7,6 +7,7 @@ use super::property::{Known, Quantity, row};
 use super::unit::{self, Unit};
 use crate::command::Command;
 use crate::state::{AppState, WorkerStatus};
+use crate::worker;
 
 const TOLERANCE: Quantity = Quantity {
     name: "Tolerance",
@@ -23,12 +24,18 @@ const SEGMENTS: Quantity = Quantity {
     help: "Elements every cable is cut into; overrides the cables' own numbers. More: finer and slower.",
 };
 
-const MODELS: [(Model, &str, &str); 4] = [
+const MODELS: [(Model, &str, &str); 5] = [
     (Model::Auto, "Automatic", "The cheapest model that can answer the scene; the reason stands below"),
     (
         Model::Catenary,
         "Catenary",
-        "Closed form between supports: no discretisation error. No contact, no bending stiffness, no motion",
+        "Closed form between supports: no discretisation error. No contact, no bending stiffness; time runs without inertia",
+    ),
+    (
+        Model::Spans,
+        "Spans",
+        "Exact spans between contacts that are intervals of an obstacle's surface: friction without a mesh. No bending \
+         stiffness; time runs without inertia",
     ),
     (Model::Fem, "FEM", "Finite elements with contact, friction, bending and dynamics"),
     (
@@ -55,6 +62,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if let Some(answer) = answer {
         let why = if state.model == Model::Auto { format!(": {}", answer.reason) } else { String::new() };
         ui.label(format!("Solved with {}{why}", model_name(answer.model)));
+    }
+    if worker::engine::slow(state.model) {
+        ui.weak("Time runs without inertia: supports and loads move, friction remembers, nothing swings");
     }
     mesh(ui, state, commands);
     cost(ui, state, answer);

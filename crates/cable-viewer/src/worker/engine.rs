@@ -256,6 +256,10 @@ impl Engine {
         let (true, Some(old)) = (self.drafts && same && self.solve_s > DRAFT_AFTER_S, &self.simulation) else {
             return false;
         };
+        if slow(old.model()) {
+            // There are no fewer segments to have.
+            return false;
+        }
         let falls = draft::falling(edit, old);
         self.falling = falls.is_some();
         let draft = falls.or_else(|| Some(self.rebuild(&draft::coarse(edit, old), Some(old)).ok()?.0));
@@ -423,8 +427,10 @@ impl Engine {
             return Ok(());
         };
         simulation.command_robot(self.robot_order);
-        match simulation.step(dt_s) {
-            Err(SolveError::Unsupported { .. }) if self.edit.as_ref().is_some_and(|e| e.model == Model::Auto) => {
+        let asked = self.edit.as_ref().map_or(Model::Auto, |e| e.model);
+        let result = if slow(asked) { simulation.step_quasi_static(dt_s) } else { simulation.step(dt_s) };
+        match result {
+            Err(SolveError::Unsupported { .. }) if asked == Model::Auto => {
                 let moving =
                     take_over(simulation, dt_s, self.edit.as_ref().map_or_else(Settings::default, |e| e.settings))?;
                 self.before_motion = self.simulation.replace(moving);
@@ -475,6 +481,12 @@ impl Engine {
             paused_itself,
         }
     }
+}
+
+/// Whether a model that was asked for by name lets time run without inertia: it has none.
+#[must_use]
+pub fn slow(model: Model) -> bool {
+    matches!(model, Model::Catenary | Model::Spans)
 }
 
 /// A simulation that moves takes over from the one that `auto` chose for rest, and takes its first step.

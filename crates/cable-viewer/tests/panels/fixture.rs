@@ -250,3 +250,33 @@ pub fn bench(state: AppState, panel: PanelUi, size: [f32; 2]) -> Harness<'static
         Bench { state, commands: Vec::new() },
     )
 }
+
+/// Up a slope, over a post with friction and down on its far side, in figures that add up by hand.
+pub fn wrapped() -> AppState {
+    let mut state = state();
+    let w = state.scene.cables[0].linear_density_kg_per_m * 9.80665;
+    let mut answer = (**state.snapshot.solution.as_ref().unwrap()).clone();
+    let node =
+        |s: f64, x_m: f64, y_m: f64, tension_n: f64| Node { arc_length_m: s, x_m, y_m, tension_n, ..Node::default() };
+    let (rise, fall, rubbed) = (5.0 * w, -2.0 * w, 150.0);
+    let nodes = vec![
+        node(0.0, 0.0, 0.0, 200.0),
+        node(6.0, 3.0, 5.0, 200.0 + rise),
+        node(6.5, 3.5, 5.0, 200.0 + rise + rubbed),
+        node(12.0, 9.0, 3.0, 200.0 + rise + rubbed + fall),
+    ];
+    let cable = &mut answer.cables[0];
+    cable.contacts = vec![ContactReport {
+        obstacle: "post".to_owned(),
+        arc_length_m: 6.25,
+        begins_m: 6.0,
+        ends_m: 6.5,
+        turn_deg: -79.0,
+        tension_before_n: nodes[1].tension_n,
+        tension_after_n: nodes[2].tension_n,
+        ..ContactReport::default()
+    }];
+    cable.nodes = nodes;
+    state.snapshot.solution = Some(Arc::new(answer));
+    state
+}

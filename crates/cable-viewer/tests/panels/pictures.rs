@@ -5,7 +5,7 @@ use cable_viewer::panels;
 use cable_viewer::state::{AppState, Item};
 use egui_kittest::{SnapshotOptions, SnapshotResults};
 
-use crate::fixture::{PanelUi, bench, compared, driven, recorded, state, warn, with_pulley};
+use crate::fixture::{PanelUi, bench, compared, driven, recorded, state, warn, with_pulley, wrapped};
 
 /// Differences of a rounding here and there between drivers are let pass.
 const MOST_DIFFERENT_PIXELS: usize = 80;
@@ -110,6 +110,17 @@ fn warnings() {
         state
     };
     picture("warnings", warned, panels::warnings::ui, [320.0, 600.0]);
+}
+
+#[test]
+fn origin() {
+    let probed = || {
+        let mut state = wrapped();
+        let from = cable_core::origin::From::Start;
+        state.probe = Some(cable_viewer::state::Probe { cable: 0, arc_length_m: 12.0, from });
+        state
+    };
+    picture("origin", probed, panels::origin::ui, [320.0, 260.0]);
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod recovery;
 mod rows;
 mod runs;
 mod session;
+mod spans;
 mod speed;
 mod stories;
 mod timing;

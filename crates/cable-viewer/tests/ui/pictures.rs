@@ -29,8 +29,12 @@ fn compare(name: &str, state: AppState, theme: Theme) {
 }
 
 fn solved(scene: cable_core::Scene) -> AppState {
+    solved_with(scene, Model::Fem)
+}
+
+fn solved_with(scene: cable_core::Scene, model: Model) -> AppState {
     let mut harness = crate::open(scene);
-    crate::apply(&mut harness, Command::SetModel(Model::Fem));
+    crate::apply(&mut harness, Command::SetModel(model));
     let mut state = harness.into_state().state;
     assert_eq!(state.snapshot.error, None);
     state.camera.fit_wanted = true;
@@ -47,6 +51,15 @@ fn waypoints_dark() {
 #[test]
 fn loads_and_wind_light() {
     compare("loads_and_wind_light", solved(catalog::loads_wind_heat()), Theme::Light);
+}
+
+#[test]
+fn slip_front_and_place_light() {
+    let mut state = solved_with(catalog::draped_slipping(), Model::Spans);
+    state.scene.obstacles.truncate(1);
+    let from = cable_core::origin::From::Slacker;
+    state.probe = Some(cable_viewer::state::Probe { cable: 0, arc_length_m: 6.0, from });
+    compare("slip_front_and_place_light", state, Theme::Light);
 }
 
 #[test]

@@ -171,6 +171,8 @@ fn u12_every_model_answers_what_it_can_and_refuses_the_rest_in_words() {
         (Model::Auto, ends_only(catalog::hanging_span()), true),
         (Model::Catenary, ends_only(catalog::hanging_span()), true),
         (Model::Catenary, catalog::tank(), false),
+        (Model::Spans, catalog::round_post(), true),
+        (Model::Spans, catalog::plan_posts(), false),
         (Model::Fem, catalog::over_beam(), true),
         (Model::MassSpring, catalog::hanging_span(), true),
         (Model::MassSpring, catalog::pulley_waypoints(), true),

@@ -1,0 +1,156 @@
+//! The `spans` model in the window: contacts as stretches, slip fronts, where a tension comes from, drags without a sawtooth.
+
+use cable_core::origin::{Cause, From, origin};
+use cable_core::scene::{Obstacle, Shape, Support, SupportKind, catalog};
+use cable_core::solution::ContactState;
+use cable_core::{Model, Scene};
+use cable_viewer::command::{Command, PlaybackCommand, SceneCommand};
+use cable_viewer::state::Item;
+use egui::{Key, Role, Vec2};
+use egui_kittest::kittest::{NodeT, Queryable};
+
+use crate::rows::{answer, click, play, state};
+use crate::{apply, open, press};
+
+/// A hand to the left above a beam, tilted by 10° so that a weight hangs free of its right side.
+fn corner() -> Scene {
+    let mut scene = catalog::cable_alone([6.0, 0.5, 1e6], Vec::new());
+    let mut weight = Support::fixed("weight", [0.0; 2]);
+    (weight.kind, weight.at_m, weight.force_n) = (SupportKind::Load, None, Some([0.0, -100.0]));
+    scene.cables[0].supports = vec![Support::fixed("hand", [-2.0, 0.8]), weight];
+    scene.cables[0].route_m = vec![[-2.0, 0.8], [0.0, 0.02], [0.02, -3.8]];
+    scene.cables[0].diameter_m = 0.02;
+    let (sin, cos) = (-10.0_f64).to_radians().sin_cos();
+    let corners = [[0.0, 0.0], [-2.0, 0.0], [-2.0, -2.0], [0.0, -2.0]];
+    scene.obstacles.push(Obstacle {
+        name: "beam".to_owned(),
+        shape: Shape::Polygon {
+            points_m: corners.map(|[x, y]: [f64; 2]| [x * cos - y * sin, x * sin + y * cos]).to_vec(),
+        },
+        friction: Some(0.3),
+    });
+    scene
+}
+
+#[test]
+fn spans_is_offered_wherever_models_are() {
+    let mut harness = open(catalog::round_post());
+    harness.set_size(Vec2::new(1280.0, 1800.0));
+    harness.run_steps(3);
+    click(&mut harness, "Spans");
+    assert_eq!(state(&harness).model, Model::Spans);
+    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(answer(&harness).model, Model::Spans);
+    harness.get_by_label_contains("Time runs without inertia");
+    // By keys alone.
+    apply(&mut harness, Command::SetModel(Model::Fem));
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::P);
+    harness.run_steps(2);
+    harness.get_by_label("Command").type_text("solve spans");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert_eq!(state(&harness).model, Model::Spans);
+}
+
+#[test]
+fn stretches_of_contact_and_slip_fronts_are_named_on_the_canvas_and_move() {
+    let mut harness = open(catalog::draped_slipping());
+    apply(&mut harness, Command::SetModel(Model::Spans));
+    assert_eq!(state(&harness).snapshot.error, None);
+    harness.get_all_by_label_contains("Contact of cable with pipe: ").next().expect("a stretch");
+    harness.get_all_by_label_contains("Slip front of cable at ").next().expect("a front on the canvas");
+    play(&mut harness, 120);
+    assert_eq!(state(&harness).snapshot.error, None);
+    let contacts = state(&harness).recording.answers().iter().filter_map(|a| a.cables[0].contacts.first());
+    let seen: Vec<f64> = contacts.flat_map(|c| c.parts.windows(2).map(|p| p[1].begins_m)).collect();
+    assert!(seen.windows(2).any(|w| (w[1] - w[0]).abs() > 1e-6), "a front moves: {seen:?}");
+    let slides = answer(&harness).cables[0].contacts.iter().any(|c| c.state == ContactState::Slip);
+    assert!(slides, "in the end all of it slides");
+    harness.get_all_by_label_contains("with pipe: slides").next().expect("said so");
+}
+
+#[test]
+fn a_click_on_the_cable_shows_where_its_tension_comes_from() {
+    let mut harness = open(corner());
+    apply(&mut harness, Command::SetModel(Model::Spans));
+    assert_eq!(state(&harness).snapshot.error, None);
+    harness.set_size(Vec2::new(1280.0, 1800.0));
+    harness.run_steps(5);
+    apply(&mut harness, Command::View(cable_viewer::command::ViewCommand::Fit));
+    let nodes = answer(&harness).cables[0].nodes.clone();
+    let near_hand = nodes.iter().find(|n| n.arc_length_m > 0.7).unwrap();
+    let canvas = harness.get_by_label("Canvas").rect();
+    let at = state(&harness).camera.to_screen(canvas, [near_hand.x_m, near_hand.y_m]);
+    harness.hover_at(at);
+    harness.step();
+    for pressed in [true, false] {
+        press(&harness, at, pressed);
+        harness.step();
+    }
+    harness.run_steps(2);
+    let probe = state(&harness).probe.expect("a place");
+    assert!((probe.arc_length_m - near_hand.arc_length_m).abs() < 0.1, "{probe:?}");
+    let found = origin(&state(&harness).scene, &answer(&harness), (0, probe.arc_length_m), probe.from).unwrap();
+    let sum: f64 = found.terms.iter().map(|t| t.tension_n).sum();
+    assert!((sum - found.tension_n).abs() < 1e-6);
+    let contact = found.terms.iter().find(|t| matches!(t.cause, Cause::Contact(_))).expect("the beam's friction");
+    assert!(contact.tension_n.abs() > 1.0 && contact.factor.is_some(), "{contact:?}");
+    let words = |h: &egui_kittest::Harness<'_, cable_viewer::ViewerApp>| {
+        let figure = h.get_by_role_and_label(Role::Figure, "Where the tension comes from");
+        figure.accesskit_node().description().unwrap_or_default()
+    };
+    let said = words(&harness);
+    assert!(said.starts_with(&cable_viewer::panels::unit::force(found.tension_n)), "{said}");
+    assert!(said.contains("Friction on beam") && said.contains("Weight") && said.contains("Pull at the end"), "{said}");
+    harness.get_by_label("Friction on beam");
+    // The other end, and another place, without the pointer on the canvas.
+    click(&mut harness, "From hand");
+    assert_eq!(state(&harness).probe.map(|p| p.from), Some(From::Start));
+    assert!(!words(&harness).contains("Friction on beam"), "the beam is not between the hand and the place");
+    click(&mut harness, "At the largest");
+    let most = answer(&harness).max_tension();
+    assert_eq!(state(&harness).probe.map(|p| p.arc_length_m), Some(most.arc_length_m));
+    click(&mut harness, "Unmark");
+    assert!(state(&harness).probe.is_none());
+}
+
+/// Greatest fourth difference of evenly spaced values over their size: what is smooth has next to none, a sawtooth 16 of its
+/// height.
+fn ripple(values: &[f64]) -> f64 {
+    let size = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    let fourth = values.windows(5).map(|w| (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).abs());
+    fourth.fold(0.0, f64::max) / (16.0 * size)
+}
+
+#[test]
+fn a_recorded_drag_over_a_right_angle_has_no_sawtooth() {
+    let mut harness = open(corner());
+    apply(&mut harness, Command::SetModel(Model::Spans));
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    for k in 1..=160 {
+        let to_m = [-2.0 - 0.005 * f64::from(k), 0.8];
+        let item = Item::Support { cable: 0, support: 0 };
+        let ctx = harness.ctx.clone();
+        harness.state_mut().apply(&ctx, vec![Command::Scene(SceneCommand::Move { item, to_m })]);
+        harness.step();
+        assert_eq!(state(&harness).snapshot.error, None, "at {to_m:?}");
+    }
+    let recorded = state(&harness).recording.answers();
+    let wrap = |a: &cable_core::Solution| a.cables[0].contacts.first().cloned().unwrap();
+    let sliding: Vec<_> = recorded.iter().map(wrap).filter(|c| c.state == ContactState::Slip).collect();
+    assert!(sliding.len() > 100, "{} of {}", sliding.len(), recorded.len());
+    // The last hundred: every frame of the drag slides by then.
+    let pulls: Vec<f64> = sliding[sliding.len() - 100..].iter().map(|c| c.tension_before_n).collect();
+    let most = ripple(&pulls);
+    println!("ripple of the pull over a right angle: {most:.1e}");
+    assert!(most < 1e-6, "{most}");
+    // The measure would see one of a hundred-thousandth.
+    let sawn: Vec<f64> = pulls.iter().enumerate().map(|(k, p)| p * (1.0 + 1e-5 * (k % 2) as f64)).collect();
+    assert!(ripple(&sawn) > 1e-6);
+    // It follows the capstan: a heavy cable on a round of its own radius, to what its weight there can do.
+    let last = sliding.last().unwrap();
+    let exact = (0.3 * last.turn_deg.abs().to_radians()).exp();
+    let found = last.tension_before_n / last.tension_after_n;
+    assert!((found / exact - 1.0).abs() < 2e-3, "{found} against {exact}");
+}
