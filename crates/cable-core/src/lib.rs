@@ -36,6 +36,7 @@ pub mod robot;
 pub mod scene;
 pub mod simulation;
 pub mod solution;
+pub mod spread;
 pub mod state;
 mod strand;
 mod watch;

@@ -5,6 +5,7 @@
 
 pub mod app;
 pub mod autosave;
+pub mod background;
 pub mod camera;
 pub mod canvas;
 pub mod colour;
@@ -20,6 +21,7 @@ pub mod run;
 pub mod scene_file;
 pub mod screenshot;
 pub mod software;
+pub mod spread;
 pub mod state;
 pub mod theme;
 pub mod undo;

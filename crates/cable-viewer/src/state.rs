@@ -16,6 +16,7 @@ use crate::panels::system::System;
 use crate::reach::Progress;
 use crate::recording::Recording;
 use crate::run::Run;
+use crate::spread;
 use crate::undo::Undo;
 
 /// Everything the window shows.
@@ -73,6 +74,8 @@ pub struct AppState {
     pub robot_speed: Option<f64>,
     /// Where the robot can go.
     pub reach: Progress,
+    /// What less and more friction does.
+    pub spread: spread::View,
     /// The guided scene that is on.
     pub guide: Option<guide::Place>,
     /// How the solver thread is doing.
@@ -290,6 +293,7 @@ impl AppState {
             robot_order: None,
             robot_speed: None,
             reach: Progress::None,
+            spread: spread::View::default(),
             guide: None,
             worker: WorkerStatus::Idle,
             history: History::default(),

@@ -19,13 +19,18 @@ const EDIT: &[Section] = &[
     ("Environment", panels::environment::ui),
     ("Solver", panels::solver::ui),
 ];
-/// What is read off.
+/// What is read off. Where a place on the cable is marked its tension stands above the readouts, else at the end.
 const READ: &[Section] = &[
     ("Warnings", panels::warnings::ui),
+    (MARKED, panels::origin::ui),
     ("Readouts", panels::readouts::ui),
-    ("Tension at a place", panels::origin::ui),
     ("Compare", panels::compare::ui),
+    (UNMARKED, panels::origin::ui),
+    ("Friction range", panels::spread::ui),
 ];
+
+const MARKED: &str = "Tension at the marked place";
+const UNMARKED: &str = "Tension at a place";
 
 /// Narrower windows (points) have one side panel instead of two: the canvas would be smaller than its labels.
 const WIDE: f32 = 1100.0;
@@ -96,7 +101,13 @@ fn tabs(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 fn scroll(ui: &mut Ui, id: &str, (sections, state, commands): (&[Section], &AppState, &mut Vec<Command>)) {
     ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| {
         for (title, panel) in sections {
-            if *title == "Robot" && state.scene.robot.is_none() {
+            let hidden = match *title {
+                "Robot" => state.scene.robot.is_none(),
+                MARKED => state.probe.is_none(),
+                UNMARKED => state.probe.is_some(),
+                _ => false,
+            };
+            if hidden {
                 continue;
             }
             CollapsingHeader::new(*title).default_open(true).show_unindented(ui, |ui| panel(ui, state, commands));

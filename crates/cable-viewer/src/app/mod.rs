@@ -19,6 +19,7 @@ use crate::dialog::Dialog;
 use crate::history::Sample;
 use crate::panels::system;
 use crate::reach;
+use crate::spread;
 use crate::state::{AppState, WorkerStatus};
 use crate::theme;
 use crate::worker::Worker;
@@ -41,6 +42,8 @@ pub struct ViewerApp {
     asked: VecDeque<(u64, Instant)>,
     /// The map of where the robot can go, while it is computed.
     reach: Option<reach::Job>,
+    /// The ribbon of less and more friction, computed or being computed.
+    spread: Option<spread::Job>,
 }
 
 impl ViewerApp {
@@ -67,6 +70,7 @@ impl ViewerApp {
             autosave: None,
             asked: VecDeque::new(),
             reach: None,
+            spread: None,
         };
         let mut effects = Effects::default();
         command::submit_scene(&mut app.state, true, &mut effects);
@@ -123,7 +127,7 @@ impl ViewerApp {
         }
         if let Some(order) = effects.reach {
             let shown = ctx.clone();
-            self.reach = order.map(|o| reach::Job::start(*o, move || shown.request_repaint()));
+            self.reach = order.map(|o| reach::start(*o, move || shown.request_repaint()));
         }
         if effects.restart_worker {
             self.worker = new_worker(ctx, self.threaded);
@@ -154,6 +158,7 @@ impl ViewerApp {
                 self.reach = None;
             }
         }
+        self.keep_spread(ctx);
         self.state.worker = self.worker.status();
         if !self.threaded && !self.state.playback.paused {
             ctx.request_repaint();
@@ -163,6 +168,21 @@ impl ViewerApp {
             self.state.snapshot.stale = true;
             self.asked.clear();
         }
+    }
+
+    /// Looks after the ribbon of less and more friction: one of another question ends, a missing one begins.
+    fn keep_spread(&mut self, ctx: &egui::Context) {
+        let state = &mut self.state;
+        if self.spread.as_ref().is_some_and(|job| !state.spread.on || !spread::fits(state, job.ask())) {
+            self.spread = None;
+        }
+        if self.spread.is_none()
+            && let Some(ask) = spread::asked(state)
+        {
+            let shown = ctx.clone();
+            self.spread = Some(spread::Job::start(ask, move || shown.request_repaint()));
+        }
+        state.spread.progress = self.spread.as_ref().map_or(spread::Progress::None, spread::Job::progress);
     }
 
     /// Lets what was recorded go on while it is replayed.

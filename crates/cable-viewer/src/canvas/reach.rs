@@ -14,7 +14,7 @@ const BAND: f32 = 9.0;
 
 /// Draws it; its ends go to `figures` for the labels to place.
 pub fn draw(view: &View<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
-    let Progress::Done(map, _) = &state.reach else { return };
+    let Progress::Done((map, _)) = &state.reach else { return };
     let mut mesh = Mesh::default();
     for pair in map.places.windows(2) {
         let base = mesh.vertices.len() as u32;

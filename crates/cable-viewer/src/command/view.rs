@@ -52,6 +52,8 @@ pub enum ViewCommand {
     SetTheme(egui::ThemePreference),
     /// Looks for where the robot can go, or ends that and forgets it.
     Reach(bool),
+    /// Shows what less and more friction does, or not any more; least and greatest friction over that of the scene.
+    Spread(bool, [f64; 2]),
     /// Leads to a step of a guided scene, or not any more.
     Guide(Option<guide::Place>),
     /// SI or US units; files stay SI.
@@ -108,6 +110,13 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             let [low, high] = crate::canvas::bounds::ground(state);
             let order = Order { scene: state.scene.clone(), settings: state.settings, ends_m: [low, high] };
             effects.reach = Some(Some(Box::new(order)));
+        }
+        ViewCommand::Spread(on, [low, high]) => {
+            state.spread.on = on;
+            if low >= 0.0 && high.is_finite() {
+                // The scene's own friction lies in between.
+                state.spread.factors = [low.min(1.0), high.max(1.0)];
+            }
         }
         ViewCommand::Guide(place) => state.guide = place.filter(|p| p.step().is_some()),
         ViewCommand::SetUnits(units) => state.units = units,

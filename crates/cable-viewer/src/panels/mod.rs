@@ -15,6 +15,7 @@ pub mod readouts;
 pub mod robot;
 pub mod scene;
 pub mod solver;
+pub mod spread;
 pub mod system;
 pub mod timeline;
 pub mod unit;

@@ -8,6 +8,7 @@ use crate::command::{Command, FileCommand};
 use crate::dialog::Dialog;
 use crate::plot::measure::Measure;
 use crate::plot::{Touched, View, along, time};
+use crate::spread;
 use crate::state::AppState;
 
 /// Below this width the graphs stand one under the other, points.
@@ -109,7 +110,13 @@ fn along_cable(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touche
     let scene = state.snapshot.scene.as_deref().unwrap_or(&state.scene);
     let answer = state.snapshot.solution.as_deref().and_then(|s| s.cables.get(index));
     match (scene.cables.get(index), answer) {
-        (Some(cable), Some(solved)) => along::ui(ui, cable, solved, view, height),
+        (Some(cable), Some(solved)) => {
+            // The ribbon is of the end of the run.
+            let present = state.snapshot.solution.as_ref().map(|s| s.time_s);
+            let found = spread::shown(state).filter(|(_, ask)| present == Some(ask.span_s));
+            let ribbon = found.and_then(|(s, _)| s.along.get(index)).map_or(&[][..], Vec::as_slice);
+            along::ui(ui, cable, (solved, ribbon), view, height)
+        }
         _ => {
             ui.weak("Nothing solved yet");
             Touched::default()

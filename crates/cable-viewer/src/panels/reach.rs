@@ -40,7 +40,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
     });
     match &state.reach {
-        Progress::Done(map, scene) => {
+        Progress::Done((map, scene)) => {
             if **scene != state.scene {
                 ui.colored_label(ui.visuals().warn_fg_color, "Of the scene before the last edits");
             }

@@ -2,19 +2,20 @@
 
 use cable_core::Cable;
 use cable_core::solution::CableSolution;
+use cable_core::spread::Band;
 use egui::Ui;
 
 use crate::panels::unit::Unit;
 
 use super::measure::Measure;
 use super::series::{Series, thin};
-use super::{Graph, Touched, View, limits, show};
+use super::{Graph, Touched, View, limits, per_newton, show};
 
 /// The group of graphs along the cable.
 pub const GROUP: &str = "along";
 
 /// Draws it.
-pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, view: View, height: f32) -> Touched {
+pub fn ui(ui: &mut Ui, cable: &Cable, (solved, ribbon): (&CableSolution, &[Band]), view: View, height: f32) -> Touched {
     let (quantity, follow) = (view.measure.quantity(), view.follow);
     let columns = ui.available_width().max(1.0) as usize;
     let all = || solved.nodes.iter().map(|n| [n.arc_length_m, quantity.of(n)]);
@@ -28,6 +29,10 @@ pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, view: View, height
         limits: limits(quantity, cable),
         follow,
         height,
+        ribbon: {
+            let scale = per_newton(quantity, cable);
+            ribbon.iter().map(|b| [b.at, b.low_n * scale, b.high_n * scale]).collect()
+        },
         mark: None,
     };
     let mut touched = show(ui, &graph, &line(thin(all(), columns)));

@@ -94,6 +94,8 @@ pub struct Graph<'a> {
     pub follow: bool,
     /// Height, points.
     pub height: f32,
+    /// Least and greatest value with less and more friction at places across, SI; empty where it is not known.
+    pub ribbon: Vec<[f64; 3]>,
     /// A time to mark, where one is shown that is not the present.
     pub mark: Option<f64>,
 }
@@ -125,8 +127,11 @@ pub fn per_newton(quantity: Quantity, cable: &Cable) -> f64 {
 }
 
 /// Lowest and highest value in view, SI.
-fn vertical_range(lines: &[Series], limits: [f64; 2]) -> [f64; 2] {
-    let values = || lines.iter().flat_map(|l| &l.points).map(|p| p[1]).filter(|v| v.is_finite());
+fn vertical_range(lines: &[Series], ribbon: &[[f64; 3]], limits: [f64; 2]) -> [f64; 2] {
+    let values = || {
+        let lines = lines.iter().flat_map(|l| &l.points).map(|p| p[1]);
+        lines.chain(ribbon.iter().flat_map(|r| [r[1], r[2]])).filter(|v| v.is_finite())
+    };
     let low = values().fold(0.0, f64::min);
     let greatest = values().fold(0.0, f64::max);
     let high = limits.into_iter().filter(|limit| greatest > NEAR * limit).fold(greatest, f64::max);
@@ -136,7 +141,7 @@ fn vertical_range(lines: &[Series], limits: [f64; 2]) -> [f64; 2] {
 
 /// Draws lines (SI values) with their limits.
 pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
-    let [low, high] = vertical_range(lines, graph.limits);
+    let [low, high] = vertical_range(lines, &graph.ribbon, graph.limits);
     let (symbol, si) = graph.measure.unit(high);
     let (across, unit) = graph.across;
     let (Unit { symbol: across_symbol, si: x_si, .. }, column) = (unit.shown(), unit.symbol);
@@ -183,6 +188,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
             let [left, right] = graph.range.map(|x| x / x_si);
             plot.set_plot_bounds(PlotBounds::from_min_max([left, low / si], [right, high / si]));
         }
+        draw_ribbon(plot, &graph.ribbon, [x_si, si]);
         for (k, line) in lines.iter().enumerate() {
             let (colour, style) = look(line, k);
             let points: Vec<[f64; 2]> = line.points.iter().map(|p| [p[0] / x_si, p[1] / si]).collect();
@@ -203,7 +209,8 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
         cursors.click(ui, graph.group, response.transform.value_from_position(at).x * x_si);
     }
     let figure = response.response.labelled_by(title);
-    speak(&figure, graph.title, lines, ((symbol, si), cursor_text));
+    let ribbon = graph.ribbon.last().map(|r| r.map(|v| v / si));
+    speak(&figure, (graph.title, ribbon), lines, ((symbol, si), cursor_text));
     let sheet = || Sheet {
         title: graph.title.to_owned(),
         across: [format!("{across}, {across_symbol}"), format!("{}_{column}", across.to_lowercase().replace(' ', "_"))],
@@ -218,7 +225,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
 /// Says the last values of the lines, and what the cursors read.
 fn speak(
     figure: &egui::Response,
-    title: &str,
+    (title, ribbon): (&str, Option<[f64; 3]>),
     lines: &[Series],
     ((symbol, si), cursors): ((&str, f64), Option<String>),
 ) {
@@ -227,8 +234,30 @@ fn speak(
     let last = lines.iter().filter_map(|l| Some((l, l.points.last()?)));
     let values: Vec<String> =
         last.map(|(l, p)| format!("{} {} {symbol}", l.name, significant(p[1] / si, DIGITS))).collect();
-    let spoken = values.join(", ") + &cursors.map_or_else(String::new, |t| format!("; {}", t.replace('\n', "; ")));
+    let ribbon = ribbon.map_or_else(String::new, |[_, low, high]| {
+        format!("; {RIBBON} {} to {} {symbol}", significant(low, DIGITS), significant(high, DIGITS))
+    });
+    let spoken =
+        values.join(", ") + &ribbon + &cursors.map_or_else(String::new, |t| format!("; {}", t.replace('\n', "; ")));
     figure.ctx.accesskit_node_builder(figure.id, |node| node.set_description(spoken.as_str()));
+}
+
+/// What the ribbon is called.
+const RIBBON: &str = "with less and more friction";
+
+/// The ribbon of less and more friction, behind the lines.
+fn draw_ribbon(plot: &mut PlotUi<'_>, ribbon: &[[f64; 3]], [x_si, si]: [f64; 2]) {
+    let known: Vec<[f64; 3]> = ribbon
+        .iter()
+        .map(|r| [r[0] / x_si, r[1] / si, r[2] / si])
+        .filter(|r| r.iter().all(|v| v.is_finite()))
+        .collect();
+    if known.len() < 2 {
+        return;
+    }
+    let [xs, low, high] = [0, 1, 2].map(|k| known.iter().map(|r| r[k]).collect::<Vec<f64>>());
+    let colour = LINES[0].gamma_multiply(0.28);
+    plot.add(egui_plot::FilledArea::new(RIBBON, &xs, &low, &high).fill_color(colour).allow_hover(false));
 }
 
 /// Colour and style of the `k`-th line of a graph.
@@ -315,6 +344,9 @@ fn tick(mark: GridMark) -> String {
 fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series], high: f64) -> (Id, bool) {
     let mut entries: Vec<(String, Color32, bool)> =
         lines.iter().enumerate().map(|(k, l)| (l.name.clone(), look(l, k).0, l.held.is_some())).collect();
+    if graph.ribbon.len() >= 2 {
+        entries.push((RIBBON.to_owned(), LINES[0].gamma_multiply(0.5), false));
+    }
     for (name, limit, colour) in named_limits(graph.limits) {
         if limit <= high {
             let value = graph.measure.text(limit);
@@ -386,11 +418,13 @@ mod tests {
 
     #[test]
     fn far_limits_do_not_press_the_data_flat() {
-        let far = vertical_range(&[line(&[10.0, 80.0])], [800.0, 10_000.0]);
+        let far = vertical_range(&[line(&[10.0, 80.0])], &[], [800.0, 10_000.0]);
         assert_eq!(far[0], 0.0);
         assert!(far[1] > 80.0 && far[1] < 100.0, "{far:?}");
-        let near = vertical_range(&[line(&[10.0, 500.0])], [800.0, 10_000.0]);
+        let near = vertical_range(&[line(&[10.0, 500.0])], &[], [800.0, 10_000.0]);
         assert!(near[1] > 800.0 && near[1] < 1000.0, "{near:?}");
+        let wide = vertical_range(&[line(&[10.0, 80.0])], &[[0.0, 5.0, 200.0]], [800.0, 10_000.0]);
+        assert!(wide[1] > 200.0, "the ribbon is in view: {wide:?}");
     }
 
     #[test]
@@ -406,7 +440,7 @@ mod tests {
     #[test]
     fn nothing_and_nonsense_still_give_a_range() {
         for lines in [vec![], vec![line(&[])], vec![line(&[f64::NAN, f64::INFINITY])], vec![line(&[0.0])]] {
-            let [low, high] = vertical_range(&lines, [800.0, 1e4]);
+            let [low, high] = vertical_range(&lines, &[], [800.0, 1e4]);
             assert!(low.is_finite() && high > low);
         }
     }

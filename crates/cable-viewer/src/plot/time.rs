@@ -1,6 +1,6 @@
 //! The largest tension and the pulls at both ends, the robot and energies against time.
 
-use cable_core::Scene;
+use cable_core::{Cable, Scene};
 use egui::Ui;
 
 use super::measure::Measure;
@@ -9,6 +9,7 @@ use super::{Graph, Touched, View, in_view, per_newton, show};
 use crate::colour::Quantity;
 use crate::history::Sample;
 use crate::panels::unit::Unit;
+use crate::spread;
 use crate::state::AppState;
 
 /// Names the graph.
@@ -53,6 +54,7 @@ fn graph(ui: &mut Ui, state: &AppState, view: View, (title, height): (&str, f32)
         limits: measure.limits(cable),
         follow: view.follow,
         height,
+        ribbon: ribbon(state, cable, measure),
         mark: state.recording.shown_s,
     };
     let mut touched = show(ui, &graph, &lines(state, scene, measure, (seen, Some(columns))));
@@ -61,6 +63,13 @@ fn graph(ui: &mut Ui, state: &AppState, view: View, (title, height): (&str, f32)
         sheet.lines = lines(state, scene, measure, ([f64::NEG_INFINITY, f64::INFINITY], None));
     }
     touched
+}
+
+/// The largest tension with less and more friction, and what follows from it.
+fn ribbon(state: &AppState, cable: &Cable, measure: Measure) -> Vec<[f64; 3]> {
+    let (Measure::Cable(quantity), Some((found, _))) = (measure, spread::shown(state)) else { return Vec::new() };
+    let scale = per_newton(quantity, cable);
+    found.over_time.iter().map(|b| [b.at, b.low_n * scale, b.high_n * scale]).collect()
 }
 
 /// The lines of a measure, SI, between two times: thinned to `columns` of the screen if there are any; then those of held runs.

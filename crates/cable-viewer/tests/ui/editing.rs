@@ -309,7 +309,7 @@ fn the_next_thing_is_picked_by_a_key_and_moved_by_arrows() {
 
 #[test]
 fn safe_reach_is_found_beside_the_window_and_can_be_ended() {
-    use cable_viewer::reach::{Job, Order, Progress};
+    use cable_viewer::reach::{Order, Progress, start};
     let mut scene = catalog::robot_drive();
     scene.cables[0].segments = Some(24);
     let mut harness = open(scene.clone());
@@ -326,11 +326,11 @@ fn safe_reach_is_found_beside_the_window_and_can_be_ended() {
 
     // A short search to its end.
     let order = Order { scene: scene.clone(), settings: cable_core::Settings::default(), ends_m: [9.9, 10.1] };
-    let job = Job::start(order, || {});
+    let job = start(order, || {});
     let began = std::time::Instant::now();
     let map = loop {
         match job.progress() {
-            Progress::Done(map, of) => {
+            Progress::Done((map, of)) => {
                 assert_eq!(*of, scene);
                 break map;
             }

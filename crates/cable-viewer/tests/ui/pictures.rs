@@ -155,7 +155,7 @@ fn safe_reach_and_path_dark() {
     };
     let map = Map { places: (0..41).map(place).collect(), start_x_m: 10.0, service_n: 800.0, breaking_n: 1e4 };
     let scene = std::sync::Arc::new(state.scene.clone());
-    state.reach = cable_viewer::reach::Progress::Done(std::sync::Arc::new(map), scene);
+    state.reach = cable_viewer::reach::Progress::Done((std::sync::Arc::new(map), scene));
     state.selected = Some(Item::Leg(2));
     compare("safe_reach_and_path_dark", state, Theme::Dark);
 }

@@ -154,3 +154,55 @@ fn a_recorded_drag_over_a_right_angle_has_no_sawtooth() {
     let found = last.tension_before_n / last.tension_after_n;
     assert!((found / exact - 1.0).abs() < 2e-3, "{found} against {exact}");
 }
+
+/// Least, likely and most friction: a ribbon in both graphs, which the answer lies in, and figures.
+#[test]
+fn friction_that_is_not_known_well_is_a_ribbon_of_tension() {
+    use cable_viewer::background::Progress;
+    let mut harness = open(catalog::draped_slipping());
+    apply(&mut harness, Command::SetModel(Model::Spans));
+    harness.set_size(Vec2::new(1400.0, 1800.0));
+    play(&mut harness, 110);
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
+    click(&mut harness, "Show less and more friction");
+    let wait = |harness: &mut egui_kittest::Harness<'_, cable_viewer::ViewerApp>| {
+        for _ in 0..2000 {
+            harness.run_steps(1);
+            match &state(harness).spread.progress {
+                Progress::Done((found, _)) => return found.clone(),
+                Progress::Failed(why) => panic!("{why}"),
+                _ => std::thread::sleep(std::time::Duration::from_millis(5)),
+            }
+        }
+        panic!("no ribbon in ten seconds");
+    };
+    let found = wait(&mut harness);
+    harness.run_steps(2);
+    let [low, likely, high] = found.most_n;
+    assert!(
+        (likely / answer(&harness).max_tension().tension_n - 1.0).abs() < 1e-9,
+        "the middle one is what is on screen"
+    );
+    assert!(low < 0.9 * likely && high > 1.1 * likely, "{:?}", found.most_n);
+    for (title, [low, high]) in [
+        ("Over time", [low, high]),
+        ("Along the cable", {
+            let last = found.along[0].last().unwrap();
+            [last.low_n, last.high_n]
+        }),
+    ] {
+        let figure = harness.get_by_role_and_label(Role::Figure, title);
+        let said = figure.accesskit_node().description().unwrap_or_default();
+        let figures = [low, high].map(|v| cable_viewer::panels::unit::significant(v, 4));
+        let expected = format!("with less and more friction {} to {} N", figures[0], figures[1]);
+        assert!(said.contains(&expected), "{title}: {said}, not {expected}");
+    }
+    harness.get_by_label(&cable_viewer::panels::unit::force(high));
+    // It follows what is edited, and goes.
+    apply(&mut harness, Command::View(cable_viewer::command::ViewCommand::Spread(true, [1.0, 1.0])));
+    let found = wait(&mut harness);
+    assert!((found.most_n[0] / found.most_n[2] - 1.0).abs() < 1e-12, "{:?}", found.most_n);
+    click(&mut harness, "Show less and more friction");
+    let figure = harness.get_by_role_and_label(Role::Figure, "Over time");
+    assert!(!figure.accesskit_node().description().unwrap_or_default().contains("friction"));
+}
