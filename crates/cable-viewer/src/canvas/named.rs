@@ -5,7 +5,7 @@ use cable_core::solution::ContactState;
 use egui::{Rect, Role, Sense, Ui, WidgetInfo, vec2};
 
 use super::{contact, forces, path, place, supports};
-use crate::panels::unit;
+use crate::panels::{translate, unit};
 use crate::state::{AppState, Item};
 
 /// Most contacts of a cable that are named: what lies on rubble has one a stone.
@@ -109,7 +109,7 @@ pub fn summary(state: &AppState) -> String {
         }
     }
     if let Some(error) = &state.snapshot.error {
-        out.push(format!("no answer: {error}"));
+        out.push(format!("no answer: {}", translate::shown(error)));
     }
     if let Some(item) = state.selected {
         out.push(format!("picked: {}", title(state, item)));

@@ -5,6 +5,7 @@ use egui::Ui;
 
 use super::cable::labelled;
 use super::property::{Known, Quantity, row};
+use super::times::{self, Knots, Table};
 use super::unit::Unit;
 use super::{fault, field};
 use crate::command::{Command, SceneCommand};
@@ -89,10 +90,35 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let path = format!("environment.{key}{}", if wind { component } else { "" });
         fault::inline(ui, state, &path, commands);
     }
-    if !environment.winds_n_per_m.is_empty() {
-        let count = environment.winds_n_per_m.len();
-        ui.weak(format!("Wind changes with time: {count} values in the scene file"))
-            .on_hover_text("Edit wind_times_s and winds_n_per_m in the scene file");
+    wind(ui, state, commands);
+}
+
+/// Wind that changes with time, or does from now on.
+fn wind(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    /// Time over which it changes at first, s.
+    const FIRST_SPAN_S: f64 = 5.0;
+    let environment = &state.scene.environment;
+    let knots = Knots::of(&environment.wind_times_s, &environment.winds_n_per_m);
+    let on = !environment.winds_n_per_m.is_empty();
+    let (mut faults, mut changed) = (Vec::new(), None);
+    let help = "A wind at each of several times, linear in between";
+    if let Some(on) = times::toggle(ui, "Wind changes with time", on, help) {
+        let steady = Knots::steady(environment.wind_n_per_m, FIRST_SPAN_S);
+        changed = Some(if on { steady } else { Knots::default() });
+    } else if on {
+        let table = Table { of: "wind", columns: ["Right", "Up"], unit: Unit::N_PER_M, least: 1 };
+        changed = times::ui(ui, &table, &knots, &mut faults);
+    }
+    if let Some(Knots { times_s, values }) = changed {
+        let environment = Environment { wind_times_s: times_s, winds_n_per_m: values, ..environment.clone() };
+        commands.push(Command::Scene(SceneCommand::SetEnvironment(environment)));
+        commands.push(Command::Scene(SceneCommand::EditDone));
+    }
+    for text in faults {
+        field::fault(ui, &text);
+    }
+    for path in ["environment.wind_times_s", "environment.winds_n_per_m"] {
+        fault::inline(ui, state, path, commands);
     }
 }
 

@@ -5,8 +5,8 @@ use cable_core::scene::SupportKind;
 use cable_core::{Cable, SceneError};
 use egui::Ui;
 
-use super::field;
 use super::unit::Unit;
+use super::{field, translate};
 use crate::command::{Command, SceneCommand};
 use crate::state::AppState;
 
@@ -39,7 +39,7 @@ pub fn sentence(fault: &SceneFault) -> String {
             super::unit::force(*needed_n),
             super::unit::force(*breaking_n)
         ),
-        other => other.to_string(),
+        other => translate::shown(&other.to_string()).into_owned(),
     }
 }
 

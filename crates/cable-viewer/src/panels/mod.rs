@@ -18,5 +18,7 @@ pub mod solver;
 pub mod spread;
 pub mod system;
 pub mod timeline;
+pub mod times;
+pub mod translate;
 pub mod unit;
 pub mod warnings;

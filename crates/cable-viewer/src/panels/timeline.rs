@@ -4,7 +4,7 @@ use cable_core::solution::WarningKind;
 use egui::{Color32, Rect, Sense, Slider, Stroke, Ui, pos2, vec2};
 
 use super::field;
-use super::unit;
+use super::{translate, unit};
 use crate::command::{Command, PlaybackCommand};
 use crate::state::AppState;
 
@@ -97,7 +97,7 @@ fn marks(ui: &mut Ui, state: &AppState, rail: Rect, [first, last]: [f64; 2]) {
     }
     let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|p| rail.expand(NEAR).contains(*p)) else { return };
     let near = state.recording.events().iter().filter(|e| (x(e.time_s) - pointer.x).abs() < NEAR);
-    let text: Vec<String> = near.take(4).map(|e| format!("{:.2} s: {}", e.time_s, e.text)).collect();
+    let text: Vec<String> = near.take(4).map(|e| format!("{:.2} s: {}", e.time_s, translate::shown(&e.text))).collect();
     if !text.is_empty() {
         let spot = Rect::from_center_size(pointer, vec2(1.0, 1.0));
         ui.interact(spot, ui.scope_id().with("event"), Sense::hover()).on_hover_text(text.join("\n"));

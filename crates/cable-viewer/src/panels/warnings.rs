@@ -7,7 +7,7 @@ use egui::{Color32, Frame, RichText, Ui};
 
 use super::fault::{self, Fix};
 use super::icon::{self, Icon};
-use super::unit;
+use super::{translate, unit};
 use crate::command::{Command, FileCommand, SceneCommand, ViewCommand};
 use crate::state::{AppState, Item, WorkerStatus};
 
@@ -60,7 +60,8 @@ fn entries(state: &AppState) -> Vec<Entry> {
     list.extend(dead_worker(state));
     list.extend(scene_fault(state));
     if let (Some(error), None) = (&state.snapshot.error, &state.scene_fault) {
-        let text = format!("{}. The picture and the figures are of the last scene that was solved.", capital(error));
+        let error = capital(&translate::shown(error));
+        let text = format!("{error}. The picture and the figures are of the last scene that was solved.");
         list.push(Entry { title: "No answer".to_owned(), ..entry(Severity::Stop, text) });
     }
     if let Some(answer) = state.snapshot.solution.as_deref() {
@@ -125,7 +126,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
     Entry {
         severity,
         title: format!("{title}: {place}{figures}"),
-        text: warning.message.clone(),
+        text: translate::shown(&warning.message).into_owned(),
         at_m: position(answer, warning),
         item: index.map(Item::Cable),
         fix: remedy(state, answer, warning, index),

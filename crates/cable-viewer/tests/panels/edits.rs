@@ -342,3 +342,78 @@ fn the_graphs_switch_quantity_and_say_their_last_values() {
     click(&mut harness, "All");
     assert_eq!(harness.state().commands, vec![]);
 }
+
+#[test]
+fn a_load_that_changes_with_time_is_a_table() {
+    let mut state = state();
+    state.selected = Some(Item::Load(0));
+    let mut harness = open_with(state, panels::scene::ui);
+    let load = |h: &Harness<'static, Bench>| h.state().state.scene.loads[0].clone();
+    let before = load(&harness);
+    click(&mut harness, "load 1 changes with time");
+    assert_eq!((load(&harness).times_s, load(&harness).forces_n), (vec![0.0, 5.0], vec![[0.0, -50.0]; 2]));
+    enter(&mut harness, "Up 2 of load 1", "-90");
+    enter(&mut harness, "Time 2 of load 1", "8");
+    click(&mut harness, "Add a time after 1 of load 1");
+    assert_eq!(load(&harness).times_s, [0.0, 4.0, 8.0]);
+    assert_eq!(load(&harness).forces_n, [[0.0, -50.0], [0.0, -70.0], [0.0, -90.0]]);
+    assert_eq!(harness.state().state.scene_fault, None);
+    // Times that do not increase are said where they are typed.
+    enter(&mut harness, "Time 2 of load 1", "9");
+    assert!(harness.state().state.scene_fault.as_ref().is_some_and(|f| f.path.starts_with("loads[0].times_s")));
+    click(&mut harness, "Remove time 2 of load 1");
+    assert_eq!(harness.state().state.scene_fault, None);
+    click(&mut harness, "load 1 changes with time");
+    assert_eq!(load(&harness), before);
+}
+
+#[test]
+fn wind_that_changes_with_time_is_a_table() {
+    let mut harness = open(panels::environment::ui);
+    let wind = |h: &Harness<'static, Bench>| h.state().state.scene.environment.clone();
+    let before = wind(&harness);
+    click(&mut harness, "Wind changes with time");
+    enter(&mut harness, "Right 2 of wind", "12");
+    assert_eq!(wind(&harness).winds_n_per_m, [[0.0, 0.0], [12.0, 0.0]]);
+    assert_eq!(wind(&harness).wind_times_s, [0.0, 5.0]);
+    assert_eq!(harness.state().state.scene_fault, None);
+    enter(&mut harness, "Time 2 of wind", "-1");
+    assert!(harness.state().state.scene_fault.is_some());
+    harness.get_by_label_contains("times must increase");
+    click(&mut harness, "Wind changes with time");
+    assert_eq!(wind(&harness), before);
+}
+
+#[test]
+fn a_support_moves_lets_go_and_pulls_by_times() {
+    let mut state = state();
+    state.selected = Some(Item::Support { cable: 0, support: 1 });
+    let mut harness = open_with(state, panels::scene::ui);
+    let right = |h: &Harness<'static, Bench>| h.state().state.scene.cables[0].supports[1].clone();
+    let at_m = right(&harness).at_m.unwrap();
+    click(&mut harness, "Moves with time");
+    enter(&mut harness, "x 2 of right", "11");
+    let motion = right(&harness).motion.expect("a motion");
+    assert_eq!((motion.times_s, motion.points_m), (vec![0.0, 5.0], vec![at_m, [11.0, at_m[1]]]));
+    // Where it begins is where it stands.
+    enter(&mut harness, "y 1 of right", "4.5");
+    assert_eq!(right(&harness).at_m, Some([at_m[0], 4.5]));
+    assert_eq!(harness.state().state.scene_fault, None);
+    click(&mut harness, "Moves with time");
+    assert_eq!(right(&harness).motion, None);
+    click(&mut harness, "Lets go");
+    enter(&mut harness, "Lets go at", "2.5");
+    assert_eq!(right(&harness).release_s, Some(2.5));
+    assert_eq!(harness.state().state.scene_fault, None);
+    click(&mut harness, "Lets go");
+    assert_eq!(right(&harness).release_s, None);
+    // A dead load of a support.
+    let support = &mut harness.state_mut().state.scene.cables[0].supports[1];
+    (support.kind, support.at_m, support.force_n) = (SupportKind::Load, None, Some([0.0, -40.0]));
+    harness.run();
+    click(&mut harness, "Force changes with time");
+    enter(&mut harness, "Up 2 of right", "-80");
+    assert_eq!((right(&harness).force_n, right(&harness).forces_n), (None, vec![[0.0, -40.0], [0.0, -80.0]]));
+    click(&mut harness, "Force changes with time");
+    assert_eq!((right(&harness).force_n, right(&harness).times_s), (Some([0.0, -40.0]), vec![]));
+}

@@ -14,6 +14,7 @@ mod spans;
 mod speed;
 mod stories;
 mod timing;
+mod units;
 mod wishes;
 
 use cable_core::scene::{Shape, catalog};

@@ -6,12 +6,16 @@ use egui::{ComboBox, Ui};
 use super::{GAP, KIND_WIDTH, NAME_WIDTH, NUMBER_WIDTH, components, headings, remove, selectable_name, show_faults};
 use crate::command::{Command, SceneCommand};
 use crate::panels::property::{Known, Quantity, row};
+use crate::panels::times::{self, Knots, Table};
 use crate::panels::unit::Unit;
 use crate::panels::{fault, field};
 use crate::state::{AppState, Item};
 
 /// Force of a new load, N.
 const FIRST_LOAD_N: [f64; 2] = [0.0, -100.0];
+
+/// Time over which what begins to change with time does so at first, s.
+pub const FIRST_SPAN_S: f64 = 5.0;
 
 const STRENGTH: Quantity = Quantity {
     name: "Load force",
@@ -72,15 +76,20 @@ fn line(ui: &mut Ui, state: &AppState, k: usize, load: &Load, commands: &mut Vec
                 }
             }
             None => {
-                ui.weak("changes with time").on_hover_text("Edit times_s and forces_n in the scene file");
+                ui.weak("changes with time").on_hover_text("Select it to see and edit its times");
             }
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             remove(ui, item, &name, "Takes it off", commands);
         });
     });
-    if let (Some(force_n), true) = (load.force_n, state.selected == Some(item)) {
-        strength(ui, load, (k, force_n), commands);
+    if state.selected == Some(item) {
+        if let Some(force_n) = load.force_n {
+            strength(ui, load, (k, force_n), commands);
+        }
+        if let Some(value) = timed(ui, (&name, load), &mut faults) {
+            set(value, commands);
+        }
     }
     if state.scene.cables.len() > 1 {
         ui.horizontal(|ui| {
@@ -96,6 +105,25 @@ fn line(ui: &mut Ui, state: &AppState, k: usize, load: &Load, commands: &mut Vec
         });
     }
     show_faults(ui, &faults);
+}
+
+/// A force that changes with time, or does from now on.
+fn timed(ui: &mut Ui, (name, load): (&str, &Load), faults: &mut Vec<String>) -> Option<Load> {
+    let knots = Knots::of(&load.times_s, &load.forces_n);
+    let on = load.force_n.is_none();
+    let help = "A force at each of several times, linear in between";
+    if let Some(on) = times::toggle(ui, &format!("{name} changes with time"), on, help) {
+        let force_n = load.force_n.or(knots.values.first().copied()).unwrap_or(FIRST_LOAD_N);
+        let knots = if on { Knots::steady(force_n, FIRST_SPAN_S) } else { Knots::default() };
+        return Some(with(load, (!on).then_some(force_n), knots));
+    }
+    let table = Table { of: name, columns: ["Right", "Up"], unit: Unit::N, least: 1 };
+    let changed = if on { times::ui(ui, &table, &knots, faults) } else { None };
+    changed.map(|knots| with(load, None, knots))
+}
+
+fn with(load: &Load, force_n: Option<[f64; 2]>, knots: Knots) -> Load {
+    Load { force_n, times_s: knots.times_s, forces_n: knots.values, ..load.clone() }
 }
 
 /// The slider of a selected load: how much, in the direction it has.

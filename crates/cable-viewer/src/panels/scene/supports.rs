@@ -1,10 +1,11 @@
 //! The supports of a cable in order: kind, place, and everything else of the selected one.
 
 use cable_core::math::Point;
-use cable_core::scene::{PulleySide, SupportKind};
+use cable_core::scene::{Motion, PulleySide, SupportKind};
 use cable_core::{Cable, Support};
 use egui::{ComboBox, Frame, Ui};
 
+use super::loads::FIRST_SPAN_S;
 use super::support_kind::{KINDS, of_kind, refusal};
 use super::{
     GAP, KIND_WIDTH, NAME_WIDTH, NUMBER_WIDTH, cell, components, coordinates, headings, optional, remove,
@@ -12,6 +13,7 @@ use super::{
 };
 use crate::command::{Command, SceneCommand};
 use crate::panels::cable::labelled;
+use crate::panels::times::{self, Knots, Table};
 use crate::panels::unit::Unit;
 use crate::panels::{fault, field};
 use crate::state::{AppState, Item};
@@ -186,17 +188,50 @@ fn details(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>) {
             row.changed(commands, |s| s.mass_kg = (v != 0.0).then_some(v));
         }
     }
+    release(ui, row, commands, &mut faults);
+    motion(ui, row, commands, &mut faults);
+    show_faults(ui, &faults);
+}
+
+/// A support that holds may let go.
+fn release(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Vec<String>) {
+    let s = row.value;
+    if matches!(s.kind, SupportKind::Load | SupportKind::Free) {
+        return;
+    }
+    let help = "From a time on it does not hold the cable any more";
+    if let Some(on) = times::toggle(ui, "Lets go", s.release_s.is_some(), help) {
+        row.changed(commands, |s| s.release_s = on.then_some(1.0));
+    }
     if s.release_s.is_some() {
         let text = ["Lets go at", "Time at which it lets go"];
-        if let Some(v) = optional(ui, text, Unit::S, s.release_s, &mut faults) {
+        if let Some(v) = optional(ui, text, Unit::S, s.release_s, faults) {
             row.changed(commands, |s| s.release_s = Some(v));
         }
     }
-    if let Some(motion) = &s.motion {
-        let text = format!("Moves through {} points, see the scene file", motion.points_m.len());
-        ui.weak(text).on_hover_text("Its first point moves along when the support is moved");
+}
+
+/// A support that is held somewhere may move.
+fn motion(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Vec<String>) {
+    let s = row.value;
+    let Some(at_m) = s.at_m else { return };
+    let help = "It follows points at times, smoothly, and stays at the last; all of them move along when it is moved";
+    if let Some(on) = times::toggle(ui, "Moves with time", s.motion.is_some(), help) {
+        let Knots { times_s, values } = Knots::steady(at_m, FIRST_SPAN_S);
+        row.changed(commands, |s| s.motion = on.then_some(Motion { times_s, points_m: values }));
+        return;
     }
-    show_faults(ui, &faults);
+    let Some(motion) = &s.motion else { return };
+    let table = Table { of: &s.name, columns: ["x", "y"], unit: Unit::COORDINATE, least: 1 };
+    let knots = Knots::of(&motion.times_s, &motion.points_m);
+    if let Some(Knots { times_s, values }) = times::ui(ui, &table, &knots, faults) {
+        row.changed(commands, |s| {
+            let motion = Motion { times_s, points_m: values };
+            // It stands where its motion has it at the start.
+            let start = motion.at(0.0).0;
+            (s.at_m, s.motion) = (Some([start.x, start.y]), Some(motion));
+        });
+    }
 }
 
 fn pulley(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Vec<String>) {
@@ -223,8 +258,23 @@ fn pulley(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut 
 }
 
 fn load(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Vec<String>) {
-    let Some(force_n) = row.value.force_n else {
-        ui.weak("Its force changes with time, see the scene file");
+    let s = row.value;
+    let knots = Knots::of(&s.times_s, &s.forces_n);
+    let help = "A force at each of several times, linear in between";
+    if let Some(on) = times::toggle(ui, "Force changes with time", s.force_n.is_none(), help) {
+        let force_n = s.force_n.or(knots.values.first().copied()).unwrap_or_default();
+        let knots = if on { Knots::steady(force_n, FIRST_SPAN_S) } else { Knots::default() };
+        row.changed(commands, |s| {
+            s.force_n = (!on).then_some(force_n);
+            (s.times_s, s.forces_n) = (knots.times_s, knots.values);
+        });
+        return;
+    }
+    let Some(force_n) = s.force_n else {
+        let table = Table { of: &s.name, columns: ["Right", "Up"], unit: Unit::N, least: 1 };
+        if let Some(Knots { times_s, values }) = times::ui(ui, &table, &knots, faults) {
+            row.changed(commands, |s| (s.times_s, s.forces_n) = (times_s, values));
+        }
         return;
     };
     ui.horizontal(|ui| {
