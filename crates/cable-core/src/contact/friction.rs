@@ -26,6 +26,53 @@ pub fn at(y: f64, limit_force: f64, epsilon: f64) -> (f64, f64, f64) {
     }
 }
 
+/// Which branch of the law a contact is taken to be on, wherever it slides to while that is being found out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Branch {
+    /// It holds.
+    Stick,
+    /// It slides forwards.
+    Forwards,
+    /// It slides backwards.
+    Backwards,
+}
+
+impl Branch {
+    /// The branch at a sliding y.
+    #[must_use]
+    pub fn at(y: f64, epsilon: f64) -> Self {
+        match y {
+            y if y >= epsilon => Self::Forwards,
+            y if y <= -epsilon => Self::Backwards,
+            _ => Self::Stick,
+        }
+    }
+
+    /// The branch to try next where this one led to a sliding y. From sliding to sliding the other way leads through holding:
+    /// else a contact that holds is thrown from one side to the other for ever, each time by its whole force.
+    #[must_use]
+    pub fn next(self, y: f64, epsilon: f64) -> Self {
+        match (self, Self::at(y, epsilon)) {
+            (Self::Forwards, Self::Backwards) | (Self::Backwards, Self::Forwards) => Self::Stick,
+            (_, now) => now,
+        }
+    }
+
+    /// D' (N) and D'' (N/m) of this branch, carried on beyond its end: a holding contact by a spring of R/ε.
+    #[must_use]
+    pub fn force(self, y: f64, limit_force: f64, epsilon: f64) -> (f64, f64) {
+        match self {
+            Self::Forwards => (limit_force, 0.0),
+            Self::Backwards => (-limit_force, 0.0),
+            Self::Stick if y.abs() < epsilon => {
+                let (_, slope, bend) = at(y, limit_force, epsilon);
+                (slope, bend)
+            }
+            Self::Stick => (limit_force * y / epsilon, limit_force / epsilon),
+        }
+    }
+}
+
 /// The same in the plane, isotropic: value, gradient, Hessian by the sliding vector.
 #[must_use]
 pub fn at_plane(y: Vec2, limit_force: f64, epsilon: f64) -> (f64, Vec2, Mat2) {
@@ -84,5 +131,42 @@ mod tests {
         assert_eq!(at(return_map(1.0, epsilon), 3.0, epsilon).1, 3.0);
         assert!((return_map_plane(Vec2::new(3.0, 4.0), epsilon) - Vec2::new(0.6e-5, 0.8e-5)).norm() < 1e-20);
         assert!(at(f64::NAN, 1.0, epsilon).1.is_nan());
+    }
+
+    #[test]
+    fn branches_are_the_law_where_they_hold_and_never_jump_from_one_side_to_the_other() {
+        let (limit, epsilon) = (3.0, 1e-5);
+        let all = [Branch::Stick, Branch::Forwards, Branch::Backwards];
+        for k in -30..=30 {
+            let y = 0.1e-5 * f64::from(k);
+            let (slope, bend) = Branch::at(y, epsilon).force(y, limit, epsilon);
+            let (_, expected, curvature) = at(y, limit, epsilon);
+            assert!((slope - expected).abs() < 1e-12 && (bend - curvature).abs() < 1e-9 * limit / epsilon);
+            for branch in all {
+                let next = branch.next(y, epsilon);
+                assert!(branch == Branch::Stick || next == branch || next == Branch::Stick);
+            }
+        }
+        assert!(Branch::Stick.force(f64::NAN, limit, epsilon).0.is_nan());
+    }
+
+    /// A spring k that draws a contact to f/k: Newton on the law itself is thrown from side to side.
+    #[test]
+    fn one_contact_on_a_spring_is_found_in_a_few_iterations() {
+        let (limit, epsilon) = (3.0, 1e-5);
+        for (stiffness, force) in [(1.0, 0.5), (1e3, -2.9), (1e3, 3.1), (1e4, 40.0), (10.0, -1e3), (1e5, 0.0)] {
+            for start in [-0.02, -1e-6, 0.0, 3e-5, 0.5] {
+                let (mut y, mut branch) = (start, Branch::at(start, epsilon));
+                let residual = |y: f64| stiffness * y + at(y, limit, epsilon).1 - force;
+                let mut iterations = 0;
+                while residual(y).abs() > 1e-9 {
+                    let (slope, bend) = branch.force(y, limit, epsilon);
+                    y -= (stiffness * y + slope - force) / (stiffness + bend);
+                    branch = branch.next(y, epsilon);
+                    iterations += 1;
+                    assert!(iterations <= 8, "{stiffness} {force} {start}: {y} {branch:?}");
+                }
+            }
+        }
     }
 }

@@ -77,8 +77,12 @@ pub struct Workspace {
     pub(super) ahead: Ahead,
     /// Pulls carried as unknowns; empty: those of the present lengths.
     pub(super) carried: Vec<bar::Carried>,
+    /// Branches of the friction of `rubs`, where that is being found out; empty: those of the present pose.
+    pub(super) branches: Vec<friction::Branch>,
     pub(super) begun: Pose,
     pub(super) near_enough: bool,
+    /// Iterations in a hurry of this step.
+    pub(super) hurried: usize,
 }
 
 impl Workspace {
@@ -102,8 +106,10 @@ impl Workspace {
             coupled: false,
             ahead: Ahead::default(),
             carried: Vec::new(),
+            branches: Vec::new(),
             begun: Pose::default(),
             near_enough: false,
+            hurried: 0,
             system,
             factor,
         })
@@ -173,9 +179,13 @@ impl Workspace {
             let stiffness = contacts.barrier.at(touch.pair.gap.gap_m).curvature;
             self.noise = larger(self.noise, stiffness * GAP_ROUNDING * x[touch.node].norm());
         }
-        for rub in &contacts.rubs {
+        for (k, rub) in contacts.rubs.iter().enumerate() {
             let scale = task.scale.get(rub.touch.node).copied().unwrap_or(node_scale(task, rub.touch.node));
-            let (d, slope, bend) = friction::at(rub.sliding(x), rub.limit, SLIDE);
+            let y = rub.sliding(x);
+            let (d, mut slope, mut bend) = friction::at(y, rub.limit, SLIDE);
+            if let Some(branch) = self.branches.get(k) {
+                (slope, bend) = branch.force(y, rub.limit, SLIDE);
+            }
             value += d * scale;
             let block = rub.tangent * rub.tangent.transpose() * (bend * scale);
             add_pair(s, mesh, &rub.touch, rub.tangent * (slope * scale), &block);
