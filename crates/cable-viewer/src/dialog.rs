@@ -53,6 +53,13 @@ pub enum Dialog {
         /// What was typed so far.
         text: String,
     },
+    /// What the user thinks.
+    Feedback {
+        /// So far.
+        answers: crate::feedback::Answers,
+        /// Where to keep it, as typed so far.
+        path: String,
+    },
     /// What was validated and what was not.
     About,
     /// A window that did not close has left unsaved changes.

@@ -11,6 +11,7 @@ pub mod canvas;
 pub mod colour;
 pub mod command;
 pub mod dialog;
+pub mod feedback;
 pub mod guide;
 pub mod history;
 pub mod panels;

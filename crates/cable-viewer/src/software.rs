@@ -2,7 +2,9 @@
 //!
 //! egui's own shader asks, for every pixel, whether it is to dither and whether it is to filter the font by hand. A GPU skips what
 //! is not asked for; Mesa's software Vulkan works out everything and throws it away: 93 ns a pixel, 150 ms a screen of 1280×800.
-//! Where the adapter is software, what egui would draw is drawn by a shader that only multiplies colour and font.
+//! Where the adapter is software, what egui would draw is drawn by a shader that only multiplies colour and font; large pieces of
+//! one opaque colour (backgrounds, panels, the ground) by one that asks nothing and reads nothing back: whole tiles of the screen
+//! are then filled at once, and what lay below them is not drawn at all.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -21,6 +23,11 @@ struct Corner { @builtin(position) at: vec4f, @location(0) uv: vec2f, @location(
 }
 @fragment fn pixel(c: Corner) -> @location(0) vec4f { return c.colour * textureSample(font, smooth_sampler, c.uv); }
 @fragment fn plain(c: Corner) -> @location(0) vec4f { return c.colour; }
+struct Solid { @builtin(position) at: vec4f, @location(0) @interpolate(flat) colour: vec4f };
+@vertex fn solid_corner(@location(0) p: vec2f, @location(2) colour: vec4f) -> Solid {
+    return Solid(vec4f(2.0 * p.x / screen.x - 1.0, 1.0 - 2.0 * p.y / screen.y, 0.0, 1.0), colour);
+}
+@fragment fn solid(c: Solid) -> @location(0) vec4f { return c.colour; }
 ";
 
 /// Twice the area, points², from which a triangle of one colour is drawn without asking the font. Smaller: changing the shader
@@ -82,8 +89,18 @@ struct Part {
     clip: Rect,
     /// Their end in the list of indices.
     end: u32,
-    /// Nothing of the font is in them.
-    plain: bool,
+    fill: Fill,
+}
+
+/// What a triangle is filled with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Fill {
+    /// Colours and the font.
+    Font,
+    /// Colours.
+    Plain,
+    /// One opaque colour.
+    Solid,
 }
 
 /// A frame.
@@ -122,7 +139,7 @@ impl Picture {
         for (clip, mesh) in meshes() {
             picture.corners.extend_from_slice(bytemuck::cast_slice(&mesh.vertices));
             for triangle in mesh.indices.chunks_exact(3) {
-                picture.add(clip, is_plain(mesh, triangle), triangle.iter().map(|i| first + i));
+                picture.add(clip, fill(mesh, triangle), triangle.iter().map(|i| first + i));
             }
             first += mesh.vertices.len() as u32;
         }
@@ -130,12 +147,12 @@ impl Picture {
     }
 
     /// A triangle, in order: in the last part if it is drawn alike.
-    fn add(&mut self, clip: Rect, plain: bool, indices: impl Iterator<Item = u32>) {
+    fn add(&mut self, clip: Rect, fill: Fill, indices: impl Iterator<Item = u32>) {
         self.indices.extend(indices);
         let end = self.indices.len() as u32;
         match self.parts.last_mut() {
-            Some(part) if part.clip == clip && part.plain == plain => part.end = end,
-            _ => self.parts.push(Part { clip, end, plain }),
+            Some(part) if part.clip == clip && part.fill == fill => part.end = end,
+            _ => self.parts.push(Part { clip, end, fill }),
         }
     }
 
@@ -186,12 +203,16 @@ impl CallbackTrait for Picture {
         pass.set_bind_group(0, &own.bound, &[]);
         pass.set_vertex_buffer(0, own.corners.slice(..));
         pass.set_index_buffer(own.indices.slice(..), wgpu::IndexFormat::Uint32);
-        let (mut first, mut plain) = (0, None);
+        let (mut first, mut fill) = (0, None);
         for part in &self.parts {
             if let Some([x, y, w, h]) = Self::scissor(part.clip, info.pixels_per_point, info.screen_size_px) {
-                if plain != Some(part.plain) {
-                    pass.set_pipeline(if part.plain { &own.plain } else { &own.pipeline });
-                    plain = Some(part.plain);
+                if fill != Some(part.fill) {
+                    pass.set_pipeline(match part.fill {
+                        Fill::Font => &own.pipeline,
+                        Fill::Plain => &own.plain,
+                        Fill::Solid => &own.solid,
+                    });
+                    fill = Some(part.fill);
                 }
                 pass.set_scissor_rect(x, y, w, h);
                 pass.draw_indexed(first..part.end, 0, 0..1);
@@ -201,18 +222,24 @@ impl CallbackTrait for Picture {
     }
 }
 
-/// A large triangle with nothing of the font in it.
-fn is_plain(mesh: &Mesh, triangle: &[u32]) -> bool {
+/// How a triangle can be drawn; small ones all alike.
+fn fill(mesh: &Mesh, triangle: &[u32]) -> Fill {
     let corner = |k: usize| triangle.get(k).and_then(|i| mesh.vertices.get(*i as usize));
-    let (Some(a), Some(b), Some(c)) = (corner(0), corner(1), corner(2)) else { return false };
+    let (Some(a), Some(b), Some(c)) = (corner(0), corner(1), corner(2)) else { return Fill::Font };
     let (u, v) = (b.pos - a.pos, c.pos - a.pos);
-    [a, b, c].iter().all(|p| p.uv == WHITE_UV) && (u.x * v.y - u.y * v.x).abs() > PLAIN
+    let large = (u.x * v.y - u.y * v.x).abs() > PLAIN;
+    match large && [a, b, c].iter().all(|p| p.uv == WHITE_UV) {
+        true if a.color.is_opaque() && a.color == b.color && a.color == c.color => Fill::Solid,
+        true => Fill::Plain,
+        false => Fill::Font,
+    }
 }
 
 /// What stays on the device.
 struct Device {
     pipeline: wgpu::RenderPipeline,
     plain: wgpu::RenderPipeline,
+    solid: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
     screen: wgpu::Buffer,
@@ -252,8 +279,9 @@ impl Device {
         let font = font_of(device, [1, 1]);
         let bound = bind(device, &layout, (&screen, &font, &sampler));
         Self {
-            pipeline: pipeline(device, format, (&layout, "pixel")),
-            plain: pipeline(device, format, (&layout, "plain")),
+            pipeline: pipeline(device, format, (&layout, ["corner", "pixel"])),
+            plain: pipeline(device, format, (&layout, ["corner", "plain"])),
+            solid: pipeline(device, format, (&layout, ["solid_corner", "solid"])),
             corners: buffer_of(device, 1 << 20, wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST),
             indices: buffer_of(device, 1 << 20, wgpu::BufferUsages::INDEX | wgpu::BufferUsages::COPY_DST),
             layout,
@@ -336,7 +364,7 @@ fn bind(
 fn pipeline(
     device: &wgpu::Device,
     format: wgpu::TextureFormat,
-    (layout, fragment): (&wgpu::BindGroupLayout, &str),
+    (layout, [vertex, fragment]): (&wgpu::BindGroupLayout, [&str; 2]),
 ) -> wgpu::RenderPipeline {
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("software drawing"),
@@ -354,12 +382,14 @@ fn pipeline(
         color: part(wgpu::BlendFactor::One, wgpu::BlendFactor::OneMinusSrcAlpha),
         alpha: part(wgpu::BlendFactor::OneMinusDstAlpha, wgpu::BlendFactor::One),
     };
+    // What is opaque covers what is below it: nothing is read back.
+    let blend = (fragment != "solid").then_some(blend);
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("software drawing"),
         layout: Some(&layout),
         vertex: wgpu::VertexState {
             module: &module,
-            entry_point: Some("corner"),
+            entry_point: Some(vertex),
             buffers: &[Some(wgpu::VertexBufferLayout {
                 array_stride: CORNER_BYTES,
                 step_mode: wgpu::VertexStepMode::Vertex,
@@ -370,7 +400,7 @@ fn pipeline(
         fragment: Some(wgpu::FragmentState {
             module: &module,
             entry_point: Some(fragment),
-            targets: &[Some(wgpu::ColorTargetState { format, blend: Some(blend), write_mask: wgpu::ColorWrites::ALL })],
+            targets: &[Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL })],
             compilation_options: wgpu::PipelineCompilationOptions::default(),
         }),
         primitive: wgpu::PrimitiveState::default(),

@@ -38,6 +38,7 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
                     commands.push(Command::File(command));
                 }
             }
+            Dialog::Feedback { answers, path } => super::feedback::ui(ui, answers, path, commands),
             Dialog::About => about(ui, commands),
             Dialog::Palette { text } => super::palette::ui(ui, text, commands),
             Dialog::ImportMap { path, text, unit_m } => import_map(ui, [path, text, unit_m], commands),
@@ -65,6 +66,13 @@ fn message(ui: &mut Ui, title: &str, text: &str, commands: &mut Vec<Command>) {
     }
 }
 
+/// A dialog that asks for a path is typed into without a click first.
+fn typed_at_once(ui: &Ui, field: &egui::Response) {
+    if ui.memory(|m| m.focused().is_none()) && !field.lost_focus() {
+        field.request_focus();
+    }
+}
+
 /// A path to type; some once it is entered.
 fn ask(
     ui: &mut Ui,
@@ -80,6 +88,7 @@ fn ask(
         let label = ui.label("Path");
         let field = egui::TextEdit::singleline(path).desired_width(320.0).hint_text(hint);
         let field = ui.add(field).labelled_by(label.id).on_hover_text(hint);
+        typed_at_once(ui, &field);
         done |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
     });
     ui.weak(note);
@@ -182,6 +191,7 @@ fn ask_path(ui: &mut Ui, title: &str, path: &mut String, saving: bool, commands:
     ui.horizontal(|ui| {
         let label = ui.label("Path");
         let field = ui.add(egui::TextEdit::singleline(path).desired_width(320.0)).labelled_by(label.id);
+        typed_at_once(ui, &field);
         done |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         if ui.button("Browse…").on_hover_text("The system's file dialog; needs a desktop portal").clicked() {
             let dialog = rfd::FileDialog::new().add_filter("scene", &["toml"]);

@@ -25,9 +25,18 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         if ui.button("About").on_hover_text("What was checked and what was not").clicked() {
             commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::About))));
         }
+        if ui.button("Feedback").on_hover_text("Four questions, kept in a table of yours").clicked() {
+            commands.push(Command::File(feedback()));
+        }
         ui.separator();
         ui.strong(title(state));
     });
+}
+
+/// Asks what the user thinks.
+pub fn feedback() -> FileCommand {
+    let (answers, path) = (crate::feedback::Answers::default(), "feedback.csv".to_owned());
+    FileCommand::SetDialog(Some(Dialog::Feedback { answers, path }))
 }
 
 /// The scene's name, and whether it is saved.

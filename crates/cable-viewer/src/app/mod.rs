@@ -1,6 +1,7 @@
 //! The window: takes in the worker's answers, lays out panels and canvas, applies what they push.
 
 mod dialogs;
+mod feedback;
 mod guide;
 mod keys;
 mod layout;

@@ -46,6 +46,7 @@ fn entries() -> Vec<(String, Command)> {
         ("Go on from the time shown", Command::Playback(PlaybackCommand::GoOn)),
         ("Restart the solver", Command::File(FileCommand::RestartWorker)),
         ("Help: pointer and keys", file(Dialog::Help)),
+        ("Give feedback…", Command::File(super::menu::feedback())),
         ("About: what was checked", file(Dialog::About)),
         ("Quit", Command::File(FileCommand::Quit)),
     ];

@@ -8,6 +8,7 @@ use cable_core::{Scene, files};
 
 use super::{Command, Effects, SceneCommand, import, submit_scene};
 use crate::dialog::Dialog;
+use crate::feedback::{self, Answers};
 use crate::guide::{GUIDES, Place};
 use crate::history::Sample;
 use crate::plot::export::{self, Sheet};
@@ -43,6 +44,8 @@ pub enum FileCommand {
         /// Length of a unit of it, m.
         unit_m: f64,
     },
+    /// Adds what the user thinks to a table.
+    SaveFeedback(PathBuf, Answers),
     /// Writes everything recorded as a run folder.
     SaveRun(PathBuf),
     /// Opens the folder of a run: its scene, and all it recorded.
@@ -109,6 +112,10 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
                 Err(text) => complain(state, "The map was not imported", text),
             }
         }
+        FileCommand::SaveFeedback(path, answers) => match feedback::save(&path, &answers, state) {
+            Ok(()) => state.dialog = None,
+            Err(text) => complain(state, &format!("“{}” was not written", path.display()), text),
+        },
         FileCommand::SaveRun(path) => match save_run(state, &path) {
             Ok(()) => state.dialog = None,
             Err(text) => complain(state, &format!("The run was not written to “{}”", path.display()), text),

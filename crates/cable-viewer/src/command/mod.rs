@@ -6,6 +6,7 @@ pub mod file;
 mod import;
 mod items;
 pub mod playback;
+mod route;
 pub mod scene;
 pub mod view;
 

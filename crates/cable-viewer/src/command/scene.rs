@@ -5,7 +5,7 @@ use cable_core::scene::{Environment, RobotTask, Support};
 use cable_core::{Cable, Load, Obstacle, Robot, Scene};
 
 use super::items::{drop_lost_selection, hitched, move_item, remove_all, set_robot};
-use super::{Effects, clipboard, next_number, submit_scene};
+use super::{Effects, clipboard, next_number, route, submit_scene};
 use crate::state::{AppState, Item};
 use crate::undo::EditKind;
 use crate::worker::request::{Drag, Request};
@@ -145,7 +145,12 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
         _ => None,
     };
     let robot_moves = matches!(command, SceneCommand::Move { item: Item::Robot, .. });
+    let new_obstacles =
+        matches!(command, SceneCommand::SetScene(_) | SceneCommand::AddObstacle(_) | SceneCommand::Paste { .. });
     change(state, command);
+    if new_obstacles && state.scene.obstacles != before.obstacles {
+        route::forget_buried(&mut state.scene);
+    }
     let dragged = if robot_moves { hitched(&state.scene) } else { dragged };
     if state.scene == before {
         return;

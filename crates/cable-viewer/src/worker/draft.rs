@@ -4,6 +4,7 @@
 //! a frame of time pass, so it costs the same however far the hand jumped. Relaxing it took 60 to 800 ms where the hand
 //! moved 8 cm an edit on the tank; a frame of motion takes 3 ms. The time shown stands still meanwhile.
 
+use cable_core::contact::World;
 use cable_core::math::vec2;
 use cable_core::{Error, Model, Simulation, SolveError};
 
@@ -26,7 +27,7 @@ const UNBREAKABLE_N: f64 = 1e15;
 
 /// A draft of `edit` that goes on where `old` is; None where this kind of draft does not apply or fails.
 pub fn falling(edit: &Edit, old: &Simulation) -> Option<Simulation> {
-    if old.model() != Model::Fem || !same_cables(edit, old) {
+    if old.model() != Model::Fem || !same_cables(edit, old) || buried(edit, old) {
         return None;
     }
     let mut settings = edit.settings;
@@ -116,6 +117,27 @@ fn carry(draft: &mut Simulation, old: &Simulation) -> Result<(), SolveError> {
         v.x += WAKE_M_PER_S;
     }
     draft.adopt(&states)
+}
+
+/// How far round a point obstacles are asked for, m: what lies deeper than this inside something is in a scene out of all size.
+const FAR_M: f64 = 1e3;
+
+/// Whether a cable that was carried over would lie inside an obstacle that was not there, or not there, before: contact begins at a
+/// surface, so it would stay inside. It is laid anew instead.
+#[must_use]
+pub fn buried(edit: &Edit, old: &Simulation) -> bool {
+    let obstacles = &edit.scene.obstacles;
+    if *obstacles == old.scene().obstacles {
+        return false;
+    }
+    edit.scene.cables.iter().zip(old.states()).any(|(cable, state)| {
+        let radius = 0.5 * cable.diameter_m;
+        let world = World::new(obstacles, cable.friction, radius);
+        // Ends are where their supports are.
+        let inner = state.position_m.len().saturating_sub(2);
+        let mut points = state.position_m.iter().skip(1).take(inner);
+        points.any(|&p| world.signed_gap(p, FAR_M).is_some_and(|gap| gap.gap_m < -radius))
+    })
 }
 
 /// Whether the cables are the same ones, so that where they are can be carried over.

@@ -330,6 +330,7 @@ impl Engine {
         let mut fresh = Simulation::for_question(edit.scene.clone(), edit.model, edit.settings, question)?;
         if let Some(old) = old
             && draft::same_cables(edit, old)
+            && !draft::buried(edit, old)
         {
             let mut carried = fresh.clone();
             if carried.carry(old).is_ok() {

@@ -255,3 +255,84 @@ fn software_drawing_looks_the_same() {
     let share = |least: u8| differences.iter().filter(|d| **d > least).count() as f64 / differences.len() as f64;
     assert!(share(2) < 1e-3 && share(40) == 0.0, "{} of the pixels differ, {} much", share(2), share(40));
 }
+
+/// A window whose graphs show all of a million samples of a held run and of a history that is full, printed and not asserted: a
+/// 60th of a second is 16.7 ms.
+#[test]
+fn speed_of_graphs() {
+    use cable_viewer::history::{History, Sample};
+    use cable_viewer::run::Run;
+    let sample = |k: u32| {
+        let t = f64::from(k) / 240.0;
+        let pull = 500.0 + 80.0 * (0.7 * t).sin() + 20.0 * (31.0 * t).sin();
+        Sample {
+            time_s: t,
+            max_tension_n: pull,
+            energy_j: [pull, 2.0, 3.0, 4.0],
+            robot: None,
+            reactions_n: vec![[pull, 20.0], [-0.9 * pull, 30.0]],
+        }
+    };
+    let renderer = match Screen::new() {
+        Ok(renderer) => renderer,
+        Err(why) => return eprintln!("not measured, {why}"),
+    };
+    let software = Software::of(&renderer.state);
+    let mut harness = Harness::builder()
+        .with_size(Vec2::new(1280.0, 800.0))
+        .with_step_dt(1.0 / 60.0)
+        .with_render_cursor(false)
+        .with_accessibility_check(false)
+        .allow_missing_glyphs()
+        .renderer(renderer)
+        .build_eframe(|cc| {
+            software.into_iter().for_each(|s| cc.egui_ctx.add_plugin(s));
+            ViewerApp::inline(&cc.egui_ctx, catalog::hanging_span(), None)
+        });
+    harness.run_steps(4);
+    let all = cable_viewer::plot::View { window_s: None, ..cable_viewer::plot::View::default() };
+    harness.ctx.data_mut(|d| d.insert_temp(egui::Id::unique("plot view"), all));
+    for (name, held, live) in
+        [("empty graphs", 0, 2), ("a million held", 1_000_000, 2), ("a million held, history full", 1_000_000, 400_000)]
+    {
+        let state = &mut harness.state_mut().state;
+        let solution = state.snapshot.solution.clone().expect("an answer");
+        (state.held, state.history) = (Vec::new(), History::default());
+        (0..live).for_each(|k| state.history.push(sample(k)));
+        if held > 0 {
+            let samples: Vec<Sample> = (0..held).map(sample).collect();
+            let run = Run::of(samples.iter(), &[(*solution).clone(), (*solution).clone()], 0).map(std::sync::Arc::new);
+            assert_eq!(
+                run.as_ref()
+                    .map(|r| r.line(cable_viewer::plot::measure::Measure::ALL[0]).map_or(0, |l| l.points().len())),
+                Some(held as usize)
+            );
+            let scene = state.snapshot.scene.clone().expect("a scene");
+            state.held.push(cable_viewer::state::Held { name: "held".to_owned(), scene, solution, wall_s: 0.0, run });
+        }
+        harness.run_steps(3);
+        harness.render().unwrap();
+        let (mut laid, mut whole) = (Vec::new(), Vec::new());
+        let cpu = cpu_s();
+        for _ in 0..5 * FRAMES {
+            let from = Instant::now();
+            harness.step();
+            let jobs = harness.ctx.tessellate(harness.output().shapes.clone(), 1.0);
+            laid.push(from.elapsed().as_secs_f64() * 1e3);
+            assert!(!jobs.is_empty());
+        }
+        let work = cpu_s().zip(cpu).map_or(f64::NAN, |(after, before)| (after - before) * 1e3 / laid.len() as f64);
+        for _ in 0..FRAMES {
+            let from = Instant::now();
+            harness.step();
+            harness.render().unwrap();
+            whole.push(from.elapsed().as_secs_f64() * 1e3);
+        }
+        let samples = harness.state().state.history.samples.len();
+        println!(
+            "graphs, {name} ({samples} samples live): laid out and cut into triangles {}, {work:.1} ms of CPU; drawn as well {}",
+            figures(laid),
+            figures(whole)
+        );
+    }
+}

@@ -242,6 +242,49 @@ fn t04_fast_moves_of_the_camera_neither_lose_it_nor_touch_the_scene() {
     assert_eq!(state(&harness).scene, scene);
 }
 
+/// Sunny: four good marks are kept. Rainy: a low mark is not taken without what confused, and that is kept with what was on
+/// screen.
+#[test]
+fn t05_marks_are_kept_and_a_low_one_with_what_confused() {
+    use cable_viewer::feedback::QUESTIONS;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("feedback.csv");
+    let mut harness = open(catalog::round_post());
+    let mark = |harness: &mut egui_kittest::Harness<'_, cable_viewer::ViewerApp>, marks: [u8; 4]| {
+        click(harness, "Feedback");
+        harness.run_steps(3);
+        for ((_, question), k) in QUESTIONS.iter().zip(marks) {
+            click(harness, &format!("{question}: {k}"));
+        }
+        let Some(cable_viewer::dialog::Dialog::Feedback { path: typed, .. }) = &mut harness.state_mut().state.dialog
+        else {
+            panic!("no dialog");
+        };
+        *typed = path.display().to_string();
+        harness.run_steps(2);
+    };
+    mark(&mut harness, [5, 4, 5, 4]);
+    click(&mut harness, "Keep");
+    assert!(state(&harness).dialog.is_none());
+    mark(&mut harness, [4, 2, 5, 4]);
+    click(&mut harness, "Keep");
+    assert!(state(&harness).dialog.is_some(), "a low mark without words is not taken");
+    harness.get_by_label_contains("please say what confused you");
+    harness.get_by_label("What confused you, or should be otherwise").focus();
+    harness.run_steps(2);
+    harness.get_by_label("What confused you, or should be otherwise").type_text("which end, \"left\"?");
+    harness.run_steps(2);
+    click(&mut harness, "Keep");
+    assert!(state(&harness).dialog.is_none());
+    let text = std::fs::read_to_string(&path).unwrap();
+    let rows: Vec<&str> = text.lines().collect();
+    assert_eq!(rows.len(), 3, "{text}");
+    assert!(rows[0].starts_with("useful,clear,realistic,easy,confused_by,scene,model"), "{text}");
+    assert!(rows[1].starts_with("5,4,5,4,\"\","), "{text}");
+    let scene = &state(&harness).scene.name;
+    assert!(rows[2].starts_with(&format!("4,2,5,4,\"which end, \"\"left\"\"?\",\"{scene}\",")), "{text}");
+}
+
 #[test]
 fn t05_what_is_picked_is_said_and_shown() {
     let mut harness = open(catalog::tank());

@@ -1,0 +1,60 @@
+//! A robot that has run its cable taut: the tension swings on because the cable does, as a string in its first mode, and not
+//! because vehicle and cable feel each other with a delay.
+
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
+use cable_core::model::Inertia;
+use cable_core::model::auto::Question;
+use cable_core::scene::{RobotTask, catalog};
+use cable_core::{Model, Settings, Simulation};
+
+/// Driven out until it can no further; the pull on the hitch from 9 s on, N, at each step.
+fn pulls(dt_s: f64, segments: usize) -> Vec<f64> {
+    let mut scene = catalog::robot_drive();
+    let robot = scene.robot.as_mut().unwrap();
+    robot.path = vec![RobotTask::Drive { to_x_m: 18.0, speed_m_per_s: 0.6 }];
+    robot.repeat = false;
+    let settings = Settings { segments: Some(segments), ..Settings::default() };
+    let question = Question::History(Inertia::Dynamic);
+    let mut run = Simulation::for_question(scene, Model::Auto, settings, question).unwrap();
+    run.settle().unwrap();
+    let mut out = Vec::new();
+    while run.time_s() < 14.0 {
+        run.step(dt_s).unwrap();
+        if run.time_s() > 9.0 {
+            let hitch = run.solution().cables[0].supports[1].clone();
+            out.push(hitch.reaction_x_n.hypot(hitch.reaction_y_n));
+        }
+    }
+    out
+}
+
+/// Mean, greatest above it in the first and in the last half, and frequency by crossings of the mean, Hz.
+fn swing(pulls: &[f64], dt_s: f64) -> [f64; 4] {
+    let mean = pulls.iter().sum::<f64>() / pulls.len() as f64;
+    let most = |part: &[f64]| part.iter().fold(0.0, |m: f64, p| m.max(p - mean));
+    let (first, last) = pulls.split_at(pulls.len() / 2);
+    let crossings = pulls.windows(2).filter(|w| (w[0] - mean) * (w[1] - mean) < 0.0).count();
+    [mean, most(first), most(last), 0.5 * crossings as f64 / (pulls.len() as f64 * dt_s)]
+}
+
+#[test]
+fn a_robot_on_a_taut_cable_swings_as_its_cable_does_at_any_step_and_mesh() {
+    let coarse = swing(&pulls(1.0 / 120.0, 80), 1.0 / 120.0);
+    let [mean, first, last, hertz] = coarse;
+    // H. M. Irvine, "Cable Structures", MIT Press, 1981: ω² = (π/L)² T/m · (1 + 8 λ²/π⁴) for small λ² = (wL/T)² EA/T.
+    let cable = &catalog::robot_drive().cables[0];
+    let (length, m) = (cable.length_m, cable.linear_density_kg_per_m);
+    let lambda2 = (m * 9.80665 * length / mean).powi(2) * cable.axial_stiffness_n / mean;
+    let pi4 = std::f64::consts::PI.powi(4);
+    let exact = 0.5 / length * (mean / m * (1.0 + 8.0 * lambda2 / pi4)).sqrt();
+    assert!((hertz / exact - 1.0).abs() < 0.06, "{hertz} Hz, a string's {exact} Hz");
+    assert!(last < first, "it dies down: {coarse:?}");
+    // The delay of vehicle and cable is that of a step: were it what feeds the swing, half of it would halve the growth.
+    for (dt_s, segments) in [(1.0 / 240.0, 80), (1.0 / 120.0, 160)] {
+        let other = swing(&pulls(dt_s, segments), dt_s);
+        assert!((other[0] / mean - 1.0).abs() < 0.01, "{coarse:?} {other:?}");
+        assert!((other[2] / last - 1.0).abs() < 0.15 && other[2] < other[1], "{coarse:?} {other:?}");
+        assert!((other[3] / hertz - 1.0).abs() < 0.03, "{coarse:?} {other:?}");
+    }
+}

@@ -1,0 +1,89 @@
+//! What a user thinks of the window, as a row of a table in a file of the user's: nothing is sent anywhere.
+
+use std::path::Path;
+
+use cable_core::files;
+
+use crate::state::AppState;
+
+/// What is asked, and the word a column has.
+pub const QUESTIONS: [(&str, &str); 4] = [
+    ("useful", "It is useful for my work"),
+    ("clear", "It is clear what I see"),
+    ("realistic", "What the cable does looks real"),
+    ("easy", "It is easy to use"),
+];
+/// Answers below this are low: what confused is asked for.
+pub const GOOD: u8 = 4;
+/// Best answer; the worst is 1.
+pub const BEST: u8 = 5;
+
+/// Largest file that is added to, bytes: more is not a table of answers.
+const MOST_BYTES: u64 = 16 << 20;
+
+/// The answers so far.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Answers {
+    /// 1 to 5; None: not answered yet.
+    pub marks: [Option<u8>; QUESTIONS.len()],
+    /// What confused.
+    pub words: String,
+}
+
+impl Answers {
+    /// Something was marked low, and what confused is not said yet.
+    #[must_use]
+    pub fn wants_words(&self) -> bool {
+        self.marks.iter().flatten().any(|m| *m < GOOD) && self.words.trim().is_empty()
+    }
+
+    /// It can be saved.
+    #[must_use]
+    pub fn complete(&self) -> bool {
+        self.marks.iter().all(Option::is_some) && !self.wants_words()
+    }
+
+    /// A row: the marks, the words, and what was on screen while they were given.
+    #[must_use]
+    fn row(&self, state: &AppState) -> String {
+        let mut cells: Vec<String> = self.marks.iter().map(|m| m.map_or_else(String::new, |m| m.to_string())).collect();
+        let answer = state.snapshot.solution.as_deref();
+        let warnings = answer.map_or(&[][..], |a| &a.warnings);
+        let mut kinds: Vec<&str> = warnings.iter().map(|w| w.kind.name()).collect();
+        kinds.dedup();
+        cells.push(quoted(&self.words));
+        cells.push(quoted(&state.scene.name));
+        cells.push(answer.map_or_else(String::new, |a| a.model.to_string()));
+        cells.push(quoted(state.snapshot.error.as_deref().unwrap_or_default()));
+        cells.push(quoted(&kinds.join(" ")));
+        cells.join(",")
+    }
+}
+
+/// A cell of a table, whatever is in it.
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.trim().replace('"', "\"\"").replace(['\n', '\r'], " "))
+}
+
+/// Adds the answers to a table, which is begun where there is none.
+///
+/// # Errors
+/// In words: it is not complete, or the file refuses.
+pub fn save(path: &Path, answers: &Answers, state: &AppState) -> Result<(), String> {
+    if !answers.complete() {
+        return Err("every question needs a mark, and a low one a few words on what confused".to_owned());
+    }
+    let mut text = if path.exists() {
+        let bytes = files::read_limited(path, MOST_BYTES).map_err(|e| e.to_string())?;
+        String::from_utf8(bytes).map_err(|_| "it is no table of answers".to_owned())?
+    } else {
+        let columns: Vec<&str> = QUESTIONS.iter().map(|(column, _)| *column).collect();
+        format!("{},confused_by,scene,model,refusal,warnings\n", columns.join(","))
+    };
+    if !text.ends_with('\n') {
+        text.push('\n');
+    }
+    text += &answers.row(state);
+    text.push('\n');
+    files::write_atomic(path, text.as_bytes()).map_err(|e| e.to_string())
+}
