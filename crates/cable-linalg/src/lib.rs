@@ -107,6 +107,23 @@ impl BandMatrix {
         }
     }
 
+    /// Adds the 2×2 block [xx, xy; xy, yy] in rows i, i + 1 and again in rows i + 2, i + 3 on the diagonal, and its negative
+    /// between them: a spring between two neighbouring nodes.
+    pub fn add_spring(&mut self, i: usize, [xx, xy, yy]: [f64; 3]) {
+        let b = self.half_bandwidth;
+        let Some(w) = self.values.get_mut((i + 1) * b + i..).and_then(|w| w.get_mut(..3 * b + 4)) else { return };
+        w[0] += xx;
+        w[b] += xy;
+        w[b + 1] += yy;
+        w[2 * b] -= xx;
+        w[2 * b + 1] -= xy;
+        w[2 * b + 2] += xx;
+        w[3 * b] -= xy;
+        w[3 * b + 1] -= yy;
+        w[3 * b + 2] += xy;
+        w[3 * b + 3] += yy;
+    }
+
     /// Makes row and column `i` those of the identity: unknown `i` is prescribed.
     pub fn pin(&mut self, i: usize) {
         let b = self.half_bandwidth;
@@ -375,6 +392,21 @@ mod tests {
                 b.add(i + r, j + c, block[r][c]);
             }
             assert_eq!(a.values, b.values, "{i}, {j}");
+        }
+    }
+
+    #[test]
+    fn a_spring_is_its_blocks() {
+        let [xx, xy, yy] = [2.0, 0.3, 5.0];
+        for band in [3, 5] {
+            for i in [0, 2, 4] {
+                let (mut a, mut b) = (BandMatrix::new(8, band), BandMatrix::new(8, band));
+                a.add_spring(i, [xx, xy, yy]);
+                b.add_block(i, i, [[xx, xy], [xy, yy]]);
+                b.add_block(i + 2, i + 2, [[xx, xy], [xy, yy]]);
+                b.add_block(i, i + 2, [[-xx, -xy], [-xy, -yy]]);
+                assert_eq!(a.values, b.values, "{band}, {i}");
+            }
         }
     }
 

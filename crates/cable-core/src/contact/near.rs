@@ -33,6 +33,12 @@ impl Near {
         self.parts.clear();
     }
 
+    /// Makes room for so many lists of one part each.
+    pub fn reserve(&mut self, lists: usize) {
+        self.entries.reserve(lists);
+        self.parts.reserve(lists);
+    }
+
     /// Number of lists.
     #[must_use]
     pub fn len(&self) -> usize {

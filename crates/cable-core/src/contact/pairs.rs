@@ -15,6 +15,9 @@ use super::Gap;
 use super::geometry::{Body, Geometry, Part};
 use crate::math::Vec2;
 
+/// What is passed over because it is too far is this many times too far: no rounding decides what touches.
+const ROUNDED_UP: f64 = 1.0 + 1e-9;
+
 /// A contact pair with its sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
@@ -55,7 +58,16 @@ impl Geometry {
                 }
                 continue;
             };
+            let (e, within) = (&body.edges[k], ROUNDED_UP * (reach + body.offset));
+            // Nothing of an edge is nearer than the line it lies on.
+            if (p - e.p).dot(&e.normal()).abs() > within {
+                continue;
+            }
             push_edge(body, k, p, reach, out);
+            let far = |at: Vec2| (p - at).norm_squared() > within * within;
+            if far(e.p) && far(e.q) {
+                continue;
+            }
             for corner in body.corners_of(k) {
                 push_corner(body, &corner, p, reach, out);
                 if body.juts_out(&corner) {
@@ -78,6 +90,7 @@ impl Geometry {
         reach: f64,
         out: &mut impl FnMut(Pair),
     ) {
+        let (low, high) = (ends[0].inf(&ends[1]), ends[0].sup(&ends[1]));
         for part in parts {
             let Some(body) = self.bodies().get(part.body) else { continue };
             match part.edge {
@@ -87,6 +100,16 @@ impl Geometry {
                     }
                 }
                 Some(k) => {
+                    let (e, within) = (&body.edges[k], ROUNDED_UP * (reach + body.offset));
+                    let far = |at: Vec2| {
+                        at.x < low.x - within
+                            || at.x > high.x + within
+                            || at.y < low.y - within
+                            || at.y > high.y + within
+                    };
+                    if far(e.p) && far(e.q) {
+                        continue;
+                    }
                     for corner in body.corners_of(k).filter(|c| body.juts_out(c)) {
                         push_segment(body, corner.feature, corner.at, ends, reach, out);
                     }

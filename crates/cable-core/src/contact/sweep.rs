@@ -7,7 +7,7 @@
 
 use super::distance::{point_segment, segment_segment};
 use super::geometry::{Geometry, Part};
-use crate::math::Vec2;
+use crate::math::{Vec2, larger, smaller};
 
 /// Steps of advancement per feature. Fewer return a shorter free way at glancing approach (still safe); the
 /// distance left shrinks geometrically, and 1e5 random sweeps never used more than 40.
@@ -66,6 +66,10 @@ impl Geometry {
             let edge = part.edge.and_then(|k| body.edges.get(k));
             free = match (edge, body.center, beside) {
                 (_, _, [true, true]) | (None, None, _) => free,
+                // Both ends on one side of its line and far enough from that: the edge cannot be met.
+                (Some(e), _, [false, false]) if way_off([a, b], e.p, e.normal()) - body.offset > sweep.clear(free) => {
+                    free
+                }
                 (Some(e), _, [false, false]) => {
                     advance(|t| segment_segment(at_a(t), at_b(t), e.p, e.q), body.offset, way, free)
                 }
@@ -107,10 +111,30 @@ impl Sweep {
         let [a, b] = from;
         let go = [to[0] - a, to[1] - b];
         let keep = keep.clamp(0.0, MAX_KEEP);
-        let speed = if go[0].norm_squared() > go[1].norm_squared() { go[0].norm() } else { go[1].norm() };
+        let squares = [go[0].norm_squared(), go[1].norm_squared()];
+        let speed = if squares[0] > squares[1] { squares[0].sqrt() } else { squares[1].sqrt() };
         let (low, high) = (a.inf(&b).inf(&to[0]).inf(&to[1]), a.sup(&b).sup(&to[0]).sup(&to[1]));
         let noise = ULPS * f64::EPSILON * (low.abs().max() + high.abs().max());
         Self { from, go, low, high, margin: speed * keep / (1.0 - keep) + noise, speed, keep, noise }
+    }
+}
+
+impl Sweep {
+    /// The gap (m) beyond which the part `limit` of the way is free whatever the direction.
+    fn clear(&self, limit: f64) -> f64 {
+        (self.speed * limit + 2.0 * self.noise + TOUCHING) / (1.0 - self.keep)
+    }
+}
+
+/// Least distance of a segment from a line through `p` of unit normal `n`, m; 0 where it crosses.
+fn way_off([a, b]: [Vec2; 2], p: Vec2, n: Vec2) -> f64 {
+    let (a, b) = ((a - p).dot(&n), (b - p).dot(&n));
+    if a > 0.0 && b > 0.0 {
+        smaller(a, b)
+    } else if a < 0.0 && b < 0.0 {
+        -larger(a, b)
+    } else {
+        0.0
     }
 }
 

@@ -53,13 +53,42 @@ pub fn add(
     curvature: Curvature,
     carried: Option<Carried>,
 ) -> (f64, f64) {
+    if mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
+        return add_sliding(s, (mesh, task), (e, pose), curvature);
+    }
+    let d = pose.x[e + 1] - pose.x[e];
+    let (p, l, scale) = (d.norm(), mesh.rest_length[e], task.scale[e]);
+    let t = if p > 0.0 { d / p } else { Vec2::x() };
+    let taut = carried.map_or(!(p < l), |c| c.taut);
+    let stiffness = mesh.axial_stiffness * if taut { 1.0 } else { PUSH } / l;
+    let c = task.damping / l;
+    let late = p - task.predicted_length[e];
+    let pull = stiffness * (p - l) + c * late;
+    let across = carried.map_or(pull, |c| c.pull);
+    let clip = curvature == Curvature::Clipped && across < 0.0;
+    let geometric = if p > 0.0 && !clip { scale * across / p } else { 0.0 };
+    let along = scale * (stiffness + c) - geometric;
+    s.add_gradient(e, -t * (pull * scale));
+    s.add_gradient(e + 1, t * (pull * scale));
+    s.hessian.add_spring(2 * e, [along * t.x * t.x + geometric, along * t.x * t.y, along * t.y * t.y + geometric]);
+    let energy = 0.5 * scale * (stiffness * (p - l) * (p - l) + c * late * late);
+    // In a hurry nobody asks how well the energy is known.
+    let rounding = if carried.is_some() { 0.0 } else { scale * ROUNDED * pull.abs() * pose.x[e].norm() };
+    (energy, energy + rounding)
+}
+
+/// The same for a bar that has a sliding node at one end or both.
+fn add_sliding(
+    s: &mut System,
+    (mesh, task): (&Mesh, &Task),
+    (e, pose): (usize, &Pose),
+    curvature: Curvature,
+) -> (f64, f64) {
     let path = mesh.path(e, &pose.x);
     let (p, l, scale) = (path.length, rest_length(mesh, e, &pose.slide), task.scale[e]);
     let strain = p / l - 1.0;
     let slides = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
-    let carried = carried.filter(|_| slides == [false, false]);
-    let taut = carried.map_or(!(strain < 0.0), |c| c.taut);
-    let stiffness = mesh.axial_stiffness * if taut { 1.0 } else { PUSH };
+    let stiffness = mesh.axial_stiffness * if strain < 0.0 { PUSH } else { 1.0 };
     let tension = stiffness * strain;
     // Damping: ½ c (P − p̂ L)², c = EA τ a/L₀, p̂ the predicted ratio P/L.
     let c = task.damping / mesh.rest_length[e];
@@ -73,24 +102,13 @@ pub fn add(
         scale * (stiffness * p * p / (l * l * l) + c * ratio * ratio),
     ];
     let t = path.direction;
-    let across = carried.map_or(pull, |c| c.pull);
-    let mut geometric = if path.straight > 0.0 { scale * across / path.straight } else { 0.0 };
+    let mut geometric = if path.straight > 0.0 { scale * pull / path.straight } else { 0.0 };
     if curvature == Curvature::Clipped && geometric < 0.0 {
         geometric = 0.0;
     }
     let elastic = 0.5 * stiffness * l * strain * strain;
     let viscous = 0.5 * c * late * late;
     let rounding = ROUNDED * pull.abs() * pose.x[e].norm();
-    if slides == [false, false] {
-        let along = t * t.transpose();
-        let block = along * h[0] + (Mat2::identity() - along) * geometric;
-        s.add_gradient(e, -t * (pull * scale));
-        s.add_gradient(e + 1, t * (pull * scale));
-        s.add_block(e, e, &block);
-        s.add_block(e + 1, e + 1, &block);
-        s.add_block(e, e + 1, &-block);
-        return (scale * (elastic + viscous), scale * (elastic.abs() + viscous + rounding));
-    }
     let carried = mesh.thermal_stretch;
     let middle = (pose.x[e] + pose.x[e + 1]) * 0.5;
     let sign = [-1.0, 1.0];

@@ -111,7 +111,10 @@ pub struct ContactSet {
     pub barrier: Barrier,
     /// Friction of the present step.
     pub rubs: Vec<Rub>,
+    /// By node; of one node the newest first.
     memory: Vec<Memory>,
+    /// Room for the next memory.
+    spare: Vec<Memory>,
     scratch: Vec<Touch>,
     /// What each bar can come near to in this step.
     pub near: Near,
@@ -127,9 +130,10 @@ impl ContactSet {
     pub fn new(barrier: Barrier, nodes: usize) -> Self {
         Self {
             barrier,
-            rubs: Vec::new(),
-            memory: Vec::new(),
-            scratch: Vec::new(),
+            rubs: Vec::with_capacity(nodes),
+            memory: Vec::with_capacity(2 * nodes),
+            spare: Vec::with_capacity(2 * nodes),
+            scratch: Vec::with_capacity(nodes),
             near: Near::default(),
             floor_slid: vec![Vec2::zeros(); nodes],
             own: Own::default(),
@@ -138,10 +142,15 @@ impl ContactSet {
 
     /// Becomes a copy without new memory where there is room.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { barrier, rubs, memory, scratch: _, near: _, floor_slid, own } = other;
+        let Self { barrier, rubs, memory, spare: _, scratch: _, near: _, floor_slid, own } = other;
         self.barrier = *barrier;
-        self.rubs.clone_from(rubs);
-        self.memory.clone_from(memory);
+        // With room for as many, so that a front of contact that runs on asks for none.
+        self.rubs.clear();
+        self.rubs.reserve(rubs.capacity());
+        self.rubs.extend_from_slice(rubs);
+        self.memory.clear();
+        self.memory.reserve(memory.capacity());
+        self.memory.extend_from_slice(memory);
         self.floor_slid.clone_from(floor_slid);
         self.own.copy_from(own);
     }
@@ -223,6 +232,7 @@ impl ContactSet {
             return;
         }
         self.near.clear();
+        self.near.reserve(bars);
         for e in 0..bars {
             let within = self.barrier.reach + STEPS_AHEAD * move_of(e) + 2.0 * SPARE_MOVE;
             self.near.push(problem.world.geometry(), mesh.straight(e, x), within);
@@ -273,10 +283,12 @@ impl ContactSet {
         self.prepare(problem, mesh, end, start);
         self.own.commit(end);
         // A contact that trembles loses its load now and then: forgetting it each time would let it creep by ε a step.
-        let old = std::mem::take(&mut self.memory);
+        let mut old = std::mem::take(&mut self.memory);
+        let mut all = std::mem::take(&mut self.spare);
+        all.clear();
         for rub in &self.rubs {
             let gap = &rub.touch.pair.gap;
-            self.memory.push(Memory {
+            all.push(Memory {
                 node: rub.touch.node,
                 on_segment: rub.touch.on_segment,
                 feature: gap.feature,
@@ -285,14 +297,17 @@ impl ContactSet {
                 age: 0,
             });
         }
-        let now = self.memory.len();
+        let now = all.len();
         for m in old.iter().filter(|m| m.age < REMEMBERED) {
             let same = |n: &Memory| (n.node, n.on_segment, n.feature) == (m.node, m.on_segment, m.feature);
-            let low = self.memory[..now].partition_point(|n| n.node < m.node);
-            if !self.memory[low..now].iter().take_while(|n| n.node == m.node).any(same) {
-                self.memory.push(Memory { age: m.age + 1, ..*m });
+            let low = all[..now].partition_point(|n| n.node < m.node);
+            if !all[low..now].iter().take_while(|n| n.node == m.node).any(same) {
+                all.push(Memory { age: m.age + 1, ..*m });
             }
         }
+        old.clear();
+        merge(all.split_at(now), &mut old);
+        (self.memory, self.spare) = (old, all);
         if problem.floor_friction.is_some() {
             for (k, (slid, (e, s))) in self.floor_slid.iter_mut().zip(end.iter().zip(start)).enumerate() {
                 let by = if mesh.sliding[k].is_some() { Vec2::new(slide[k], 0.0) } else { e - s };
@@ -300,11 +315,21 @@ impl ContactSet {
             }
         }
         // What is left in `rubs` now tells of the state reached: nothing slides further from here.
-        for (rub, memory) in self.rubs.iter_mut().zip(&self.memory) {
+        for (rub, memory) in self.rubs.iter_mut().zip(&self.spare) {
             rub.slid = memory.slid;
             rub.origin = rub.touch.interpolate(end);
         }
-        // Stable: of equals the newest stays first.
-        self.memory.sort_by_key(|m| m.node);
     }
+}
+
+/// Merges two lists, each by node, into one: of one node those of the first list come first.
+fn merge((first, second): (&[Memory], &[Memory]), out: &mut Vec<Memory>) {
+    let mut rest = second.iter().peekable();
+    for m in first {
+        while let Some(n) = rest.next_if(|n| n.node < m.node) {
+            out.push(*n);
+        }
+        out.push(*m);
+    }
+    out.extend(rest);
 }

@@ -8,12 +8,12 @@
 
 use super::assembly::{Mesh, System};
 use super::bar;
-use super::contact_set::{ContactSet, SLIDE, Touch};
+use super::contact_set::{ContactSet, Touch};
 use super::foresee::Ahead;
 use super::own::{self, Coupling};
 use super::path::{End, Path};
 use super::task::{Done, Failure, Pose, Task};
-use super::touch::{add_pair, add_touch};
+use super::touch::{add_floor, add_rubs, add_touch};
 use crate::contact::friction;
 use crate::contact::own::{Order, OwnPair};
 use crate::contact::sweep::Sweep;
@@ -96,7 +96,7 @@ impl Workspace {
         Ok(Self {
             direction: vec![0.0; 2 * mesh.nodes()],
             trial: Pose { x: vec![Vec2::zeros(); mesh.nodes()], slide: vec![0.0; mesh.nodes()] },
-            touches: Vec::new(),
+            touches: Vec::with_capacity(mesh.nodes()),
             magnitude: 0.0,
             noise: 0.0,
             goal: Vec::new(),
@@ -104,9 +104,9 @@ impl Workspace {
             order: Order::default(),
             coupling: Coupling::new(),
             coupled: false,
-            ahead: Ahead::default(),
-            carried: Vec::new(),
-            branches: Vec::new(),
+            ahead: Ahead::new(mesh.nodes()),
+            carried: Vec::with_capacity(mesh.nodes()),
+            branches: Vec::with_capacity(mesh.nodes()),
             begun: Pose::default(),
             near_enough: false,
             hurried: 0,
@@ -145,6 +145,8 @@ impl Workspace {
         let mut value = 0.0;
         self.magnitude = 0.0;
         self.noise = 0.0;
+        // In a hurry nobody asks how well the energy is known.
+        let measured = self.carried.is_empty();
         for e in 0..mesh.rest_length.len() {
             let carried = self.carried.get(e).copied();
             let (energy, size) = bar::add(s, (mesh, task), (e, pose), curvature, carried);
@@ -164,9 +166,12 @@ impl Workspace {
                 (0.5 * k * away * away, 0.0)
             } else {
                 let away = x[i] - task.predicted[i];
-                self.magnitude += scale * ROUNDED * (k * away.norm() + task.force[i].norm()) * x[i].norm();
+                if measured {
+                    self.magnitude += scale * ROUNDED * (k * away.norm() + task.force[i].norm()) * x[i].norm();
+                }
                 s.add_gradient(i, (away * k - task.force[i]) * scale);
-                s.add_block(i, i, &(Mat2::identity() * (k * scale)));
+                s.hessian.add(2 * i, 2 * i, k * scale);
+                s.hessian.add(2 * i + 1, 2 * i + 1, k * scale);
                 // Work is measured from the start of the step, so that its size is that of the change.
                 (0.5 * k * away.norm_squared(), task.force[i].dot(&(x[i] - task.start[i])))
             };
@@ -175,36 +180,12 @@ impl Workspace {
         }
         for touch in &touches {
             let scale = task.scale.get(touch.node).copied().unwrap_or(node_scale(task, touch.node));
-            value += add_touch(s, mesh, (touch, scale), contacts, x, curvature);
-            let stiffness = contacts.barrier.at(touch.pair.gap.gap_m).curvature;
+            let (energy, stiffness) = add_touch(s, mesh, (touch, scale), contacts, x, curvature);
+            value += energy;
             self.noise = larger(self.noise, stiffness * GAP_ROUNDING * x[touch.node].norm());
         }
-        for (k, rub) in contacts.rubs.iter().enumerate() {
-            let scale = task.scale.get(rub.touch.node).copied().unwrap_or(node_scale(task, rub.touch.node));
-            let y = rub.sliding(x);
-            let (d, mut slope, mut bend) = friction::at(y, rub.limit, SLIDE);
-            if let Some(branch) = self.branches.get(k) {
-                (slope, bend) = branch.force(y, rub.limit, SLIDE);
-            }
-            value += d * scale;
-            let block = rub.tangent * rub.tangent.transpose() * (bend * scale);
-            add_pair(s, mesh, &rub.touch, rub.tangent * (slope * scale), &block);
-        }
-        for (i, &limit) in task.floor_limit.iter().enumerate() {
-            let scale = node_scale(task, i);
-            if mesh.sliding[i].is_some() {
-                let (d, slope, bend) = friction::at(contacts.floor_slid[i].x + pose.slide[i], limit, SLIDE);
-                value += d * scale;
-                s.gradient[2 * i] += slope * scale;
-                s.hessian.add(2 * i, 2 * i, bend * scale);
-            } else {
-                let slid = contacts.floor_slid[i] + (x[i] - task.start[i]);
-                let (d, slope, bend) = friction::at_plane(slid, limit, SLIDE);
-                value += d * scale;
-                s.add_gradient(i, slope * scale);
-                s.add_block(i, i, &(bend * scale));
-            }
-        }
+        value += add_rubs(s, (mesh, task), contacts, &self.branches, x);
+        value += add_floor(s, (mesh, task), contacts, pose);
         self.touches = touches;
         if contacts.own.shape.is_on() {
             let place = (x.as_slice(), mesh.arc_length.as_slice());
@@ -391,8 +372,9 @@ impl Workspace {
     pub(super) fn whole(&self, task: &Task) -> f64 {
         let mut largest = 0.0;
         for d in self.direction.chunks_exact(2) {
-            largest = larger(largest, d[0].hypot(d[1]));
+            largest = larger(largest, d[0] * d[0] + d[1] * d[1]);
         }
+        let largest = largest.sqrt();
         if largest > task.max_move { task.max_move / largest } else { 1.0 }
     }
 
@@ -496,7 +478,7 @@ impl Workspace {
 }
 
 /// Factor of the equations of a node.
-fn node_scale(task: &Task, node: usize) -> f64 {
+pub(super) fn node_scale(task: &Task, node: usize) -> f64 {
     task.scale.get(node.saturating_sub(1)).copied().unwrap_or(1.0)
 }
 

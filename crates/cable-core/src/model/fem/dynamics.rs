@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::assembly::Mesh;
-use super::contact_set::ContactSet;
+use super::contact_set::{ContactSet, Touch};
 use super::contact_start::{lay, push_out, way};
 use super::contact_step::Workspace;
 use super::free_step::FreeStep;
@@ -137,6 +137,8 @@ pub struct Dynamics {
     pub(super) sleep: Sleep,
     pub(super) rested: bool,
     pub(super) held_back: Vec<usize>,
+    /// Room for the contacts among which corners are looked for.
+    pub(super) touches: Vec<Touch>,
 }
 
 impl Dynamics {
@@ -196,6 +198,7 @@ impl Dynamics {
             sleep: Sleep::default(),
             rested: false,
             held_back: Vec::new(),
+            touches: Vec::with_capacity(n),
             support_node,
             loads,
             mesh,
@@ -409,7 +412,6 @@ impl Dynamics {
                 }
                 other => {
                     let f = other.err().unwrap_or(Failure { node: 0, residual: f64::NAN, cause: "not finite" });
-
                     self.restore();
                     if f.cause == PULLED && self.settle_down(f.node) {
                         self.renew_task();

@@ -30,7 +30,7 @@ const LANDING: f64 = 0.5;
 const CLOSER: f64 = 0.7;
 
 /// What a step is about to touch.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Ahead {
     touches: Vec<Touch>,
     added: Vec<bool>,
@@ -39,6 +39,17 @@ pub struct Ahead {
 }
 
 impl Ahead {
+    /// Room for a mesh of so many nodes that each touch one thing.
+    #[must_use]
+    pub fn new(nodes: usize) -> Self {
+        Self {
+            touches: Vec::with_capacity(nodes),
+            added: Vec::with_capacity(nodes),
+            right: Vec::with_capacity(2 * nodes),
+            step: Vec::with_capacity(2 * nodes),
+        }
+    }
+
     /// Keeps the right side of the equations before they are solved in place.
     pub fn keep(&mut self, right: &[f64]) {
         self.right.clear();
@@ -66,7 +77,7 @@ impl Ahead {
 
     /// Finds all that a step of this size could touch.
     fn look(&mut self, (problem, mesh): (&Problem, &Mesh), (contacts, x): (&ContactSet, &[Vec2]), step: &[f64]) {
-        let longest = step.chunks_exact(2).map(|d| d[0].hypot(d[1])).fold(0.0, larger);
+        let longest = step.chunks_exact(2).map(|d| d[0] * d[0] + d[1] * d[1]).fold(0.0, larger).sqrt();
         contacts.find_within(problem, mesh, x, contacts.barrier.reach + longest, &mut self.touches);
     }
 

@@ -266,7 +266,7 @@ impl Dynamics {
         if self.problem.world.is_empty() || !self.slides {
             return false;
         }
-        let mut touches = Vec::new();
+        let mut touches = std::mem::take(&mut self.touches);
         let mut changed = false;
         for _ in 0..MAX_CHANGES {
             self.contacts.find(&self.problem, &self.mesh, &self.motion.x, &mut touches);
@@ -290,6 +290,7 @@ impl Dynamics {
             self.clear_around(node.unwrap_or(bar + 1));
             changed = true;
         }
+        self.touches = touches;
         changed
     }
 

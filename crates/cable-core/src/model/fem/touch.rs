@@ -1,7 +1,10 @@
-//! What one contact with an obstacle adds to the equations of a step.
+//! What contacts with obstacles add to the equations of a step.
 
 use super::assembly::{Mesh, System};
-use super::contact_set::{ContactSet, Touch};
+use super::contact_set::{ContactSet, SLIDE, Touch};
+use super::contact_step::node_scale;
+use super::task::{Pose, Task};
+use crate::contact::friction::{self, Branch};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 
@@ -22,7 +25,7 @@ pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &Touch, gradient: Vec2, bloc
     }
 }
 
-/// The barrier of one touch. Its distance d from the corner has curvature (θ the turn of the segment, u its
+/// The barrier of one touch; returns its energy (J) and its stiffness where it weighs one (N/m). Its distance d from the corner has curvature (θ the turn of the segment, u its
 /// direction, c the touching point, all linear in the nodes):
 /// ```text
 /// node:     ∇²d = (I − n nᵀ)/d  at a corner, 0 at an edge
@@ -35,7 +38,7 @@ pub fn add_touch(
     contacts: &ContactSet,
     x: &[Vec2],
     curvature: Curvature,
-) -> f64 {
+) -> (f64, f64) {
     let (gap, weight) = (&touch.pair.gap, touch.pair.weight * scale);
     let b = contacts.barrier.at(gap.gap_m);
     let (slope, bend) = (b.slope * weight, b.curvature * weight);
@@ -44,7 +47,7 @@ pub fn add_touch(
     let bend = if definite && bend < 0.0 { 0.0 } else { bend };
     add_pair(s, mesh, touch, n * slope, &(n * n.transpose() * bend));
     if definite {
-        return b.value * weight;
+        return (b.value * weight, b.curvature);
     }
     if !touch.on_segment {
         let distance = (x[touch.node] - gap.point).norm();
@@ -52,7 +55,7 @@ pub fn add_touch(
         if gap.feature % 2 == 1 && distance > 0.0 {
             s.add_block(touch.node, touch.node, &((Mat2::identity() - n * n.transpose()) * (slope / distance)));
         }
-        return b.value * weight;
+        return (b.value * weight, b.curvature);
     }
     let (i, shares) = (touch.node, touch.shares());
     let [from, to] = mesh.straight(i, x);
@@ -72,5 +75,49 @@ pub fn add_touch(
     if moves == [true, true] {
         s.add_block(i, i + 1, &block(0, 1));
     }
-    b.value * weight
+    (b.value * weight, b.curvature)
+}
+
+/// Friction of the contacts with obstacles, on these branches or, where there are none, where it is; returns its energy, J.
+pub fn add_rubs(
+    s: &mut System,
+    (mesh, task): (&Mesh, &Task),
+    contacts: &ContactSet,
+    branches: &[Branch],
+    x: &[Vec2],
+) -> f64 {
+    let mut value = 0.0;
+    for (k, rub) in contacts.rubs.iter().enumerate() {
+        let scale = task.scale.get(rub.touch.node).copied().unwrap_or(node_scale(task, rub.touch.node));
+        let y = rub.sliding(x);
+        let (d, mut slope, mut bend) = friction::at(y, rub.limit, SLIDE);
+        if let Some(branch) = branches.get(k) {
+            (slope, bend) = branch.force(y, rub.limit, SLIDE);
+        }
+        value += d * scale;
+        let block = rub.tangent * rub.tangent.transpose() * (bend * scale);
+        add_pair(s, mesh, &rub.touch, rub.tangent * (slope * scale), &block);
+    }
+    value
+}
+
+/// Plan view: friction of every node on the floor; returns its energy, J.
+pub fn add_floor(s: &mut System, (mesh, task): (&Mesh, &Task), contacts: &ContactSet, pose: &Pose) -> f64 {
+    let mut value = 0.0;
+    for (i, &limit) in task.floor_limit.iter().enumerate() {
+        let scale = node_scale(task, i);
+        if mesh.sliding[i].is_some() {
+            let (d, slope, bend) = friction::at(contacts.floor_slid[i].x + pose.slide[i], limit, SLIDE);
+            value += d * scale;
+            s.gradient[2 * i] += slope * scale;
+            s.hessian.add(2 * i, 2 * i, bend * scale);
+        } else {
+            let slid = contacts.floor_slid[i] + (pose.x[i] - task.start[i]);
+            let (d, slope, bend) = friction::at_plane(slid, limit, SLIDE);
+            value += d * scale;
+            s.add_gradient(i, slope * scale);
+            s.add_block(i, i, &(bend * scale));
+        }
+    }
+    value
 }
