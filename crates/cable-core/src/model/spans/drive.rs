@@ -192,7 +192,7 @@ impl Network {
         let strand = &mut self.strands[k];
         place_ends(layout, k, strand, &self.course, &self.instant)?;
         let moved = strand.clone();
-        let mut found = events::solve(strand, &mut self.course, world, came, work);
+        let mut found = events::solve(strand, &mut self.course, (world, &layout.corners), came, work);
         if found.is_err() {
             // From where each span by itself would be.
             *strand = moved.clone();
@@ -203,7 +203,7 @@ impl Network {
                     strand.forces[j] = g;
                 }
             }
-            found = events::solve(strand, &mut self.course, world, came, work);
+            found = events::solve(strand, &mut self.course, (world, &layout.corners), came, work);
         }
         if found.is_err() {
             // What has hardly any tension left may have lost it: the least, the two least …
@@ -214,7 +214,7 @@ impl Network {
                 for (_, k) in &loose[..n] {
                     pocket::fill(strand, &self.course, *k);
                 }
-                found = events::solve(strand, &mut self.course, world, came, work);
+                found = events::solve(strand, &mut self.course, (world, &layout.corners), came, work);
                 if found.is_ok() {
                     break;
                 }
@@ -225,7 +225,7 @@ impl Network {
             if !world.is_empty() && came.is_none() {
                 let mut new = Vec::new();
                 pass::shape(&self.strands[k], &self.course, &mut new);
-                if let Some(corner) = pass::through(world, &old, &new) {
+                if let Some(corner) = pass::through(&layout.corners, &old, &new, &mut work.turns) {
                     return Err(Trouble::Passed { at: corner.at });
                 }
             }

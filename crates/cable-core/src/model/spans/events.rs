@@ -10,6 +10,7 @@ use super::pass;
 use super::pocket;
 use super::seek::{self, Hit};
 use super::strand::{Contact, Course, Strand, Tie};
+use super::taut::Corner;
 use super::trouble::Trouble;
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, perp};
@@ -30,7 +31,7 @@ pub(super) const ON: f64 = 1e-9;
 pub(super) fn solve(
     strand: &mut Strand,
     course: &mut Course,
-    world: &World,
+    (world, corners): (&World, &[Corner]),
     came: Option<&[Vec2]>,
     work: &mut Work,
 ) -> Result<Solved, Trouble> {
@@ -51,7 +52,7 @@ pub(super) fn solve(
             continue;
         }
         match came {
-            Some(came) if passed(strand, course, world, came)? => {}
+            Some(came) if passed(strand, course, (corners, came), work)? => {}
             _ => return Ok(sum),
         }
     }
@@ -180,10 +181,15 @@ fn landed(strand: &Strand, course: &Course, world: &World, k: usize, deep: f64) 
 }
 
 /// Lays the cable on a corner it has passed through on its way.
-fn passed(strand: &mut Strand, course: &Course, world: &World, came: &[Vec2]) -> Result<bool, Trouble> {
+fn passed(
+    strand: &mut Strand,
+    course: &Course,
+    (corners, came): (&[Corner], &[Vec2]),
+    work: &mut Work,
+) -> Result<bool, Trouble> {
     let mut shape = Vec::new();
     pass::shape(strand, course, &mut shape);
-    let Some(corner) = pass::through(world, came, &shape) else { return Ok(false) };
+    let Some(corner) = pass::through(corners, came, &shape, &mut work.turns) else { return Ok(false) };
     let mut best: Option<(f64, usize, f64, Vec2, Vec2)> = None;
     for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
         seek::shapes(strand, course, k, |s0, at, c| {

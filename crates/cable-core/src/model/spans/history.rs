@@ -18,8 +18,12 @@ use super::law::{Step, Track};
 
 /// Fronts and meeting points are found to this part of the interval searched: rounding.
 const ROOT: f64 = 1e-15;
-/// Halvings of such a search at most.
-const MAX_HALVINGS: usize = 200;
+/// Differences of tension that are rounding, of the tension.
+const FLOOR: f64 = 4e-16;
+/// Rounds of such a search at most: halving alone takes 52.
+const MAX_ROUNDS: usize = 100;
+/// Part of the friction coefficient by which it is changed to see what that moves.
+const NUDGE: f64 = 1e-6;
 
 /// A point from which the tension follows the law with m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,7 +124,10 @@ impl History {
                 } else if knot.tension <= low {
                     (last.m, knot.tension) = (-friction, low);
                 } else {
-                    last.m = crossing(-friction, friction, |m| knot.tension - reach(m));
+                    let by = NUDGE * friction;
+                    last.m = crossing((-friction, friction), FLOOR * knot.tension.abs(), |m| {
+                        (knot.tension - reach(m), (reach(m - by) - reach(m + by)) / (2.0 * by))
+                    });
                 }
             }
             self.knots.push(knot);
@@ -208,8 +215,12 @@ impl History {
             let here = track.slide(at, next, way.tension, m);
             let there = track.slide(at, next, old, old_m).tension;
             if (there - here.tension) * sign <= 0.0 {
-                let x = crossing(at, next, |x| {
-                    (track.slide(at, x, old, old_m).tension - track.slide(at, x, way.tension, m).tension) * sign
+                let x = crossing((at, next), FLOOR * old.abs(), |x| {
+                    let (was, now) =
+                        (track.slide(at, x, old, old_m).tension, track.slide(at, x, way.tension, m).tension);
+                    let place = track.place(x);
+                    let slope = track.law.slope(&place, was, old_m) - track.law.slope(&place, now, m);
+                    ((was - now) * sign, slope * sign)
                 });
                 return Front { p: x, way: way.then(track.slide(at, x, way.tension, m)), m, met: true };
             }
@@ -242,10 +253,12 @@ impl History {
             return beyond(-friction);
         }
         // … or they slide towards or away from each other.
-        let up = left.m > 0.0;
-        let meet = crossing(p1, p2, |x| {
-            let d = track.slide(p2, x, t2, right.m).tension - track.slide(p1, x, t1, left.m).tension;
-            if up { d } else { -d }
+        let sign = if left.m > 0.0 { 1.0 } else { -1.0 };
+        let meet = crossing((p1, p2), FLOOR * (t1.abs() + t2.abs()), |x| {
+            let (r, l) = (track.slide(p2, x, t2, right.m).tension, track.slide(p1, x, t1, left.m).tension);
+            let place = track.place(x);
+            let slope = track.law.slope(&place, r, right.m) - track.law.slope(&place, l, left.m);
+            ((r - l) * sign, slope * sign)
         });
         let front = |p: f64, t: f64, m: f64| Front { p: meet, way: track.slide(p, meet, t, m), m, met: true };
         Held::Meet([front(p1, t1, left.m), front(p2, t2, right.m)])
@@ -300,40 +313,38 @@ impl History {
     }
 }
 
-/// Where f falls from above zero at `a` to zero or below at `b` (Illinois' rule; M. Dowell and P. Jarratt, "A modified
-/// regula falsi method for computing the root of an equation", BIT 11, 1971).
-fn crossing(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
+/// Where f falls from above zero at `a` to zero or below at `b`: Newton's method from the secant, kept inside what brackets
+/// the root. `f`: value and slope; `floor`: a value that is rounding.
+fn crossing((a, b): (f64, f64), floor: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
     let (mut x0, mut x1) = (a, b);
-    let (mut f0, mut f1) = (f(a), f(b));
+    let (f0, f1) = (f(a).0, f(b).0);
     if !(f0 > 0.0) {
         return a;
     }
     if f1 == 0.0 {
         return b;
     }
-    let mut side = 0;
-    for k in 0..MAX_HALVINGS {
-        if (x1 - x0).abs() <= ROOT * (a.abs() + b.abs()) {
-            break;
-        }
-        let x = if k % 3 == 2 { 0.5 * (x0 + x1) } else { x0 + (x1 - x0) * (f0 / (f0 - f1)) };
-        let fx = f(x);
-        if fx == 0.0 {
+    let rounding = ROOT * (a.abs() + b.abs());
+    let (mut x, mut before) = (a + (b - a) * (f0 / (f0 - f1)), f64::INFINITY);
+    for _ in 0..MAX_ROUNDS {
+        let (value, slope) = f(x);
+        if value.abs() <= floor || (x1 - x0).abs() <= rounding {
             return x;
         }
-        if fx > 0.0 {
-            (x0, f0) = (x, fx);
-            if side == 1 {
-                f1 *= 0.5;
-            }
-            side = 1;
+        if value > 0.0 {
+            x0 = x;
         } else {
-            (x1, f1) = (x, fx);
-            if side == -1 {
-                f0 *= 0.5;
-            }
-            side = -1;
+            x1 = x;
         }
+        let next = x - value / slope;
+        let inside = (next - x0) * (next - x1) < 0.0;
+        // What does not halve is not near enough for Newton.
+        let step = if inside && value.abs() < 0.5 * before { next } else { 0.5 * (x0 + x1) };
+        before = value.abs();
+        if (step - x).abs() <= rounding {
+            return step;
+        }
+        x = step;
     }
-    0.5 * (x0 + x1)
+    x
 }

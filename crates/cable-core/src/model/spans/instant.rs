@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use super::curve::Curve;
 use super::law::Law;
+use super::pass;
 use super::strand::{Course, Strand, Tie};
+use super::taut::Corner;
 use super::trouble::Trouble;
 use crate::catenary::PointForce;
 use crate::error::SolveError;
@@ -52,6 +54,8 @@ pub(super) struct Pulley {
 pub(super) struct Layout {
     pub problem: Arc<Problem>,
     loads: Vec<Load>,
+    /// Where it must not pass, in order of x.
+    pub corners: Vec<Corner>,
     /// Strands: material from, to (m) and the support at each end; None = free or dead load.
     pub strands: Vec<Part>,
 }
@@ -125,7 +129,8 @@ impl Layout {
             return Err(SolveError::NoRestingPlace { why: "nothing holds the cable".to_owned() });
         }
         loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
-        let mut layout = Self { problem: problem.clone(), loads, strands };
+        let corners = pass::corners(&problem.world);
+        let mut layout = Self { problem: problem.clone(), loads, corners, strands };
         layout.face_wheels();
         Ok(layout)
     }

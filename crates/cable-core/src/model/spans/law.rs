@@ -127,22 +127,29 @@ impl Law {
         let g = c / stretch0;
         let (alpha, beta) = (2.0 * g * m / (1.0 + m * m), g * (m * m - 1.0) / (1.0 + m * m));
         let own = t - alpha * bt - beta * bn;
-        // b·t, b·n and T⁰ after ψ: t turns by −n, n by t.
-        let at = |psi: f64| {
-            let (sin, cos) = psi.sin_cos();
+        // b·t, b·n, e^{mψ} and T⁰ after a turn of which (sin ψ, cos ψ, e^{mψ}) is given: t turns by −n, n by t.
+        let at = |(sin, cos, grown): (f64, f64, f64)| {
             let (bt, bn) = (bt * cos - bn * sin, bn * cos + bt * sin);
-            let grown = (m * psi).exp();
             (bt, bn, grown, alpha * bt + beta * bn + own * grown)
         };
+        // The nodes lie alike on both sides of the middle: three turns by themselves make all of them, and the end.
+        let turn = |psi: f64| {
+            let (sin, cos) = psi.sin_cos();
+            (sin, cos, if m == 0.0 { 1.0 } else { (m * psi).exp() })
+        };
+        let on = |a: (f64, f64, f64), b: (f64, f64, f64)| (a.0 * b.1 + a.1 * b.0, a.1 * b.1 - a.0 * b.0, a.2 * b.2);
+        let back = |a: (f64, f64, f64)| (-a.0, a.1, 1.0 / a.2);
+        let (middle, far, near) = (turn(0.5 * h), turn((0.5 - GAUSS[0].0) * h), turn((0.5 - GAUSS[1].0) * h));
+        let turns = [on(middle, back(far)), on(middle, back(near)), middle, on(middle, near), on(middle, far)];
         let (mut correction, mut material, mut by) = (0.0, 0.0, 0.0);
-        for (u, weight) in GAUSS {
-            let (bt, bn, grown, t0) = at(u * h);
+        for (turn, (_, weight)) in turns.into_iter().zip(GAUSS) {
+            let (bt, bn, grown, t0) = at(turn);
             let stretch = self.stretch(t0);
             correction += weight * (bt + m * bn) / grown * (1.0 / stretch - 1.0 / stretch0);
             material += weight / stretch;
             by += weight * grown / (stretch * stretch);
         }
-        let (_, _, grown, t0) = at(h);
+        let (_, _, grown, t0) = at(on(middle, middle));
         Step {
             tension: t0 - c * h * grown * correction,
             material: c * h * material,

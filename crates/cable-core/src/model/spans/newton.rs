@@ -51,6 +51,8 @@ pub(super) struct Work {
     residual: Vec<f64>,
     saved: Vec<f64>,
     best: Vec<f64>,
+    /// What the search for corners passed through counts with.
+    pub turns: Vec<i32>,
 }
 
 /// Newton did not converge.

@@ -30,48 +30,52 @@ pub(super) fn shape(strand: &Strand, course: &Course, out: &mut Vec<Vec2>) {
     }
 }
 
-/// A corner that lies between the old shape and the new one, the farthest from the new one.
-pub(super) fn through(world: &World, old: &[Vec2], new: &[Vec2]) -> Option<Corner> {
-    let (Some(&first), false) = (old.first(), world.is_empty()) else { return None };
-    let (mut low, mut high) = (first, first);
-    for p in old.iter().chain(new) {
-        (low, high) = (low.inf(p), high.sup(p));
+/// Convex corners and the middles of posts, in order of x.
+pub(super) fn corners(world: &World) -> Vec<Corner> {
+    let mut out = Vec::new();
+    for (body, b) in world.geometry().bodies().iter().enumerate() {
+        out.extend(b.center.map(|at| Corner { at, body, feature: b.first + 1 }));
+        let jutting = (0..=b.edges.len()).filter_map(|k| b.corner(k)).filter(|c| b.juts_out(c));
+        out.extend(jutting.map(|c| Corner { at: c.at, body, feature: c.feature }));
     }
-    let mut best: Option<(f64, Corner)> = None;
-    let mut look = |at: Vec2, body: usize, feature: usize| {
-        let inside = at.x > low.x && at.x < high.x && at.y > low.y && at.y < high.y;
-        if inside && winding(at, old.iter().chain(new.iter().rev())) != 0 {
-            let far = new.iter().map(|p| (p - at).norm()).fold(f64::INFINITY, |a, b| if b < a { b } else { a });
-            if best.is_none_or(|b| far > b.0) {
-                best = Some((far, Corner { at, body, feature }));
+    out.sort_by(|a, b| a.at.x.total_cmp(&b.at.x));
+    out
+}
+
+/// A corner that lies between the old shape and the new one, the farthest from the new one. `turns`: memory.
+///
+/// How often the closed way goes round a corner is how often it passes above it to the right, less to the left.
+pub(super) fn through(corners: &[Corner], old: &[Vec2], new: &[Vec2], turns: &mut Vec<i32>) -> Option<Corner> {
+    let (low, high) = old.iter().chain(new).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
+        (if p.x < low { p.x } else { low }, if p.x > high { p.x } else { high })
+    });
+    let first = corners.partition_point(|c| c.at.x < low);
+    let corners = corners.get(first..corners.partition_point(|c| c.at.x <= high))?;
+    turns.clear();
+    turns.resize(corners.len(), 0);
+    let mut pass = |a: Vec2, b: Vec2| {
+        let (left, right, sign) = if a.x <= b.x { (a, b, 1) } else { (b, a, -1) };
+        let from = corners.partition_point(|c| c.at.x < left.x);
+        for (c, turns) in corners.iter().zip(turns.iter_mut()).skip(from).take_while(|(c, _)| c.at.x < right.x) {
+            if cross(right - left, c.at - left) < 0.0 {
+                *turns += sign;
             }
         }
     };
-    for (index, body) in world.geometry().bodies().iter().enumerate() {
-        if let Some(center) = body.center {
-            look(center, index, body.first + 1);
-        }
-        for k in body.candidates(low, high) {
-            for c in body.corners_of(k).filter(|c| body.juts_out(c)) {
-                look(c.at, index, c.feature);
-            }
+    let (Some(&start), Some(&end)) = (old.first(), old.last()) else { return None };
+    old.windows(2).for_each(|w| pass(w[0], w[1]));
+    new.windows(2).for_each(|w| pass(w[1], w[0]));
+    // The ends, where they moved.
+    if let (Some(&a), Some(&b)) = (new.first(), new.last()) {
+        pass(end, b);
+        pass(a, start);
+    }
+    let mut best: Option<(f64, Corner)> = None;
+    for (c, _) in corners.iter().zip(turns.iter()).filter(|(_, t)| **t != 0) {
+        let far = new.iter().map(|p| (p - c.at).norm()).fold(f64::INFINITY, |a, b| if b < a { b } else { a });
+        if best.is_none_or(|b| far > b.0) {
+            best = Some((far, *c));
         }
     }
     best.map(|b| b.1)
-}
-
-/// How often a closed way goes round a point (D. Sunday's crossings: up left of it, down right of it).
-fn winding<'a>(at: Vec2, way: impl Iterator<Item = &'a Vec2> + Clone) -> i32 {
-    let mut turns = 0;
-    let mut last = way.clone().last().copied().unwrap_or(at);
-    for &p in way {
-        let side = cross(p - last, at - last);
-        if last.y <= at.y && p.y > at.y && side > 0.0 {
-            turns += 1;
-        } else if last.y > at.y && p.y <= at.y && side < 0.0 {
-            turns -= 1;
-        }
-        last = p;
-    }
-    turns
 }
