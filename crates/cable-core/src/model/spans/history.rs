@@ -15,13 +15,8 @@
 //! can keep it (m between −μ and μ on each edge).
 
 use super::law::{Step, Track};
+use super::root::{FLOOR, crossing};
 
-/// Fronts and meeting points are found to this part of the interval searched: rounding.
-const ROOT: f64 = 1e-15;
-/// Differences of tension that are rounding, of the tension.
-const FLOOR: f64 = 4e-16;
-/// Rounds of such a search at most: halving alone takes 52.
-const MAX_ROUNDS: usize = 100;
 /// Part of the friction coefficient by which it is changed to see what that moves.
 const NUDGE: f64 = 1e-6;
 
@@ -125,7 +120,7 @@ impl History {
                     (last.m, knot.tension) = (-friction, low);
                 } else {
                     let by = NUDGE * friction;
-                    last.m = crossing((-friction, friction), FLOOR * knot.tension.abs(), |m| {
+                    last.m = crossing((-friction, friction), FLOOR * knot.tension.abs(), None, |m| {
                         (knot.tension - reach(m), (reach(m - by) - reach(m + by)) / (2.0 * by))
                     });
                 }
@@ -212,17 +207,11 @@ impl History {
         }
         while at != to {
             let (next, old_m) = self.stretch(track, at, to);
-            let here = track.slide(at, next, way.tension, m);
-            let there = track.slide(at, next, old, old_m).tension;
+            let piece = track.on(at, next);
+            let (here, there) = (piece.slide(next, way.tension, m), piece.slide(next, old, old_m).tension);
             if (there - here.tension) * sign <= 0.0 {
-                let x = crossing((at, next), FLOOR * old.abs(), |x| {
-                    let (was, now) =
-                        (track.slide(at, x, old, old_m).tension, track.slide(at, x, way.tension, m).tension);
-                    let place = track.place(x);
-                    let slope = track.law.slope(&place, was, old_m) - track.law.slope(&place, now, m);
-                    ((was - now) * sign, slope * sign)
-                });
-                return Front { p: x, way: way.then(track.slide(at, x, way.tension, m)), m, met: true };
+                let x = piece.crossing(next, [(old, old_m), (way.tension, m)]);
+                return Front { p: x, way: way.then(piece.slide(x, way.tension, m)), m, met: true };
             }
             way = way.then(here);
             old = there;
@@ -254,7 +243,7 @@ impl History {
         }
         // … or they slide towards or away from each other.
         let sign = if left.m > 0.0 { 1.0 } else { -1.0 };
-        let meet = crossing((p1, p2), FLOOR * (t1.abs() + t2.abs()), |x| {
+        let meet = crossing((p1, p2), FLOOR * (t1.abs() + t2.abs()), None, |x| {
             let (r, l) = (track.slide(p2, x, t2, right.m).tension, track.slide(p1, x, t1, left.m).tension);
             let place = track.place(x);
             let slope = track.law.slope(&place, r, right.m) - track.law.slope(&place, l, left.m);
@@ -311,40 +300,4 @@ impl History {
             },
         }
     }
-}
-
-/// Where f falls from above zero at `a` to zero or below at `b`: Newton's method from the secant, kept inside what brackets
-/// the root. `f`: value and slope; `floor`: a value that is rounding.
-fn crossing((a, b): (f64, f64), floor: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
-    let (mut x0, mut x1) = (a, b);
-    let (f0, f1) = (f(a).0, f(b).0);
-    if !(f0 > 0.0) {
-        return a;
-    }
-    if f1 == 0.0 {
-        return b;
-    }
-    let rounding = ROOT * (a.abs() + b.abs());
-    let (mut x, mut before) = (a + (b - a) * (f0 / (f0 - f1)), f64::INFINITY);
-    for _ in 0..MAX_ROUNDS {
-        let (value, slope) = f(x);
-        if value.abs() <= floor || (x1 - x0).abs() <= rounding {
-            return x;
-        }
-        if value > 0.0 {
-            x0 = x;
-        } else {
-            x1 = x;
-        }
-        let next = x - value / slope;
-        let inside = (next - x0) * (next - x1) < 0.0;
-        // What does not halve is not near enough for Newton.
-        let step = if inside && value.abs() < 0.5 * before { next } else { 0.5 * (x0 + x1) };
-        before = value.abs();
-        if (step - x).abs() <= rounding {
-            return step;
-        }
-        x = step;
-    }
-    x
 }

@@ -21,6 +21,7 @@
 //! small part; what this leaves out is of the order of its square over T. Material is c ∫ dψ/λ. Both by Gauss.
 
 use super::curve::{Curve, Form, Home, Place};
+use super::root::{FLOOR, crossing};
 use crate::math::{GAUSS, Vec2};
 
 /// Longest stretch of an arc taken by one rule of 5 Gauss points, rad. At 0.8 a full turn at μ = 0.5 is exact to 1e-13.
@@ -192,6 +193,12 @@ impl Track<'_> {
         self.curve.place(p, self.home)
     }
 
+    /// The piece between p₀ and p₁, which lie on one.
+    pub fn on(&self, p0: f64, p1: f64) -> OnPiece<'_> {
+        let i = self.curve.locate(0.5 * (p0 + p1), self.home);
+        OnPiece { track: self, i, origin: self.curve.origin(i), p0 }
+    }
+
     /// Slides with m from p₀, where the tension is `t`, to p₁ (either way).
     pub fn slide(&self, p0: f64, p1: f64, t: f64, m: f64) -> Step {
         let (mut i, last) = (self.curve.locate(p0, self.home), self.curve.locate(p1, self.home));
@@ -261,5 +268,48 @@ impl Track<'_> {
             }
         }
         to
+    }
+}
+
+/// One piece of a track, from a point on it.
+pub(super) struct OnPiece<'a> {
+    track: &'a Track<'a>,
+    i: i64,
+    origin: f64,
+    p0: f64,
+}
+
+impl OnPiece<'_> {
+    /// Slides with m from its point, where the tension is `t`, to p.
+    pub fn slide(&self, p: f64, t: f64, m: f64) -> Step {
+        self.track.law.on_piece(self.track.curve, self.i, (self.p0 - self.origin, p - self.origin), t, m)
+    }
+
+    /// Where on the way to p₁ two tensions, each with its m, that differ at its point come to be one: on an edge both Θ are
+    /// linear, round a sharp corner both T are exponential.
+    pub fn crossing(&self, p1: f64, [(t, m), (u, n)]: [(f64, f64); 2]) -> f64 {
+        let law = &self.track.law;
+        let within = |x: f64| {
+            let way = (p1 - self.p0).abs();
+            // Parallel: anywhere.
+            let x = if x.is_finite() { x } else { p1 - self.p0 };
+            self.p0 + if x.abs() < way { x } else { p1 - self.p0 }
+        };
+        match self.track.curve.piece(self.i).form {
+            Form::Edge { .. } => {
+                let place = self.track.curve.place_on(self.i, self.p0 - self.origin);
+                within((law.theta(u) - law.theta(t)) / (law.edge_rate(&place, m) - law.edge_rate(&place, n)))
+            }
+            Form::Arc { radius: 0.0, .. } if t * u > 0.0 => within((u / t).ln() / (m - n)),
+            Form::Arc { .. } => {
+                let sign = (t - u).signum();
+                let end = (self.slide(p1, t, m).tension - self.slide(p1, u, n).tension) * sign;
+                crossing((self.p0, p1), FLOOR * t.abs(), Some(((t - u) * sign, end)), |x| {
+                    let (a, b) = (self.slide(x, t, m).tension, self.slide(x, u, n).tension);
+                    let place = self.track.curve.place_on(self.i, x - self.origin);
+                    ((a - b) * sign, (law.slope(&place, a, m) - law.slope(&place, b, n)) * sign)
+                })
+            }
+        }
     }
 }

@@ -25,6 +25,7 @@ mod newton;
 mod pass;
 mod pocket;
 mod report;
+mod root;
 mod rub;
 mod seek;
 mod strand;
