@@ -272,23 +272,6 @@ fn random_moves_over_random_scenes() {
     let (first, cases) = (number("SPANS_FIRST", 0), number("SPANS_CASES", 40));
     let mut table = Table::default();
     for k in first..first + cases {
-        if std::env::var_os("DBG").is_some() {
-            let c = case(k);
-            let p = problems(&c.scene).unwrap().remove(0);
-            let t0 = std::time::Instant::now();
-            let mut m = SpansModel::new(p, Settings::default()).unwrap();
-            let r = m.settle();
-            println!(
-                "{k}: mu {:.2} EA {:.1e} L {:.3} bodies {} corners? {:?} {:?}",
-                c.scene.cables[0].friction,
-                c.scene.cables[0].axial_stiffness_n,
-                c.scene.cables[0].length_m,
-                c.scene.obstacles.len() - 1,
-                r.err(),
-                t0.elapsed()
-            );
-            continue;
-        }
         run(k, &mut table);
     }
     let Table { rests, steps, halved, lost, refused, cold } = table;

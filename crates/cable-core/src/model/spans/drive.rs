@@ -214,8 +214,9 @@ impl Network {
                 for (_, k) in &loose[..n] {
                     pocket::fill(strand, &self.course, *k);
                 }
-                found = events::solve(strand, &mut self.course, (world, &layout.corners), came, work);
-                if found.is_ok() {
+                let again = events::solve(strand, &mut self.course, (world, &layout.corners), came, work);
+                if again.is_ok() {
+                    found = again;
                     break;
                 }
             }
@@ -269,6 +270,14 @@ impl Network {
                     step *= 0.5;
                     taken.halved += 1;
                     if halvings > MAX_HALVINGS {
+                        if std::env::var_os("DBG").is_some() { eprintln!("    travel stops ({trouble:?}) at {done} of thermal {} .. {}: {} contacts", from.thermal, to.thermal, self.strands[0].contacts.len());
+                            let st=&self.strands[0]; let b=self.course.law.load.norm(); let l=st.to-st.from;
+                            let mut worst=(f64::INFINITY,0,0.0,0.0); let mut hair=(f64::INFINITY,0,0.0,0.0);
+                            for k in 0..st.spans() { if !st.has_span(k) {continue;} let (f,t)=st.material(k); let ff=st.force(&self.course,k,f); let h=crate::math::cross(ff,self.course.law.load).abs()/b; let tm=ff.norm().min(st.force(&self.course,k,t).norm()); 
+                              if tm/(b*l)<worst.0 {worst=(tm/(b*l),k,(t-f)/l, h/(b*(t-f)));} if h/(b*(t-f))<hair.0 {hair=(h/(b*(t-f)),k,(t-f)/l,tm/(b*l));} }
+                            eprintln!("      least T/wL {worst:?}; least H/wl {hair:?} {}", st.to/l);
+                            if std::env::var_os("DBG").is_some_and(|v| v=="2") { for c in &st.contacts { eprintln!("         curve {} home {:?} p {:?} s {:?} t {:?} {:?}", c.curve, c.home, c.ends.p, c.ends.s, c.ends.t, c.mode);} }
+                        }
                         return Err((trouble, done));
                     }
                 }

@@ -33,6 +33,8 @@ const ROUNDING: f64 = 20.0;
 const MOST_TURN: f64 = 0.7;
 /// A span keeps at least this part of its material in one iteration.
 const KEEP: f64 = 0.1;
+/// A step to the end of a piece of boundary goes beyond it by this part of p: more than rounding, less than matters.
+const BEYOND: f64 = 1e-9;
 /// Residual below which modes are judged. Larger: a contact slides because an iterate has tensions it will not keep, and
 /// what is held at neither end slides away. Smaller: iterations spent on a mode that will not last.
 const SETTLED: f64 = 1e-3;
@@ -329,6 +331,32 @@ fn room(strand: &Strand, course: &Course, x: &[f64], d: &[f64]) -> f64 {
     alpha
 }
 
+/// Parts of a step after which each end of a contact is just beyond the piece of boundary it was on: (index, part) for each
+/// that comes so far.
+///
+/// Round an arc the direction turns by one per rad, along an edge the cable leaves it by w/T per metre: a step that is right
+/// on one of them says nothing of the other, and half of it less.
+fn borders(strand: &Strand, course: &Course, x: &[f64], d: &[f64], mut each: impl FnMut(usize, f64)) {
+    for (k, c) in strand.contacts.iter().enumerate() {
+        let track = course.track(c);
+        for side in 0..2 {
+            let index = 6 * k + 2 + 2 * side;
+            let (p, dp) = (x[index], d[index]);
+            if lies(strand, k, side) || dp == 0.0 {
+                continue;
+            }
+            let i = track.curve.locate(p, c.home);
+            let beyond = BEYOND * (1.0 + p.abs());
+            let way = match dp > 0.0 {
+                true if i < c.home.last => track.curve.end(i) - p + beyond,
+                false if i > c.home.first => track.curve.origin(i) - p - beyond,
+                _ => continue,
+            };
+            each(index, way / dp);
+        }
+    }
+}
+
 /// Solves a strand from where it is. On an error it is left wherever the iteration was.
 pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Result<Solved, Stall> {
     strand.take_tensions(course);
@@ -450,16 +478,30 @@ fn step(strand: &mut Strand, course: &Course, work: &mut Work) -> bool {
     if !work.band.solve(&mut work.rhs) {
         return false;
     }
-    let mut alpha = room(strand, course, &work.saved, &work.rhs);
-    for _ in 0..MAX_HALVINGS {
+    let (mut alpha, mut first) = (room(strand, course, &work.saved, &work.rhs), f64::INFINITY);
+    for round in 0..MAX_HALVINGS {
+        if round > 1 {
+            alpha = if first < alpha { first } else { 0.5 * alpha };
+        }
         work.best.clear();
         work.best.extend(work.saved.iter().zip(&work.rhs).map(|(x, d)| x + alpha * d));
+        if round == 1 {
+            // At first only what changes its piece of boundary stops there; after that everything does.
+            borders(strand, course, &work.saved, &work.rhs, |index, part| {
+                if part > 0.0 && part < alpha {
+                    first = if part < first { part } else { first };
+                    work.best[index] = work.saved[index] + part * work.rhs[index];
+                }
+            });
+            if first == f64::INFINITY {
+                continue;
+            }
+        }
         scatter(strand, course, &work.best);
         assemble(strand, course, &mut work.residual, None);
         if squares(&work.residual) < (1.0 - 1e-4 * alpha) * before {
             return true;
         }
-        alpha *= 0.5;
     }
     scatter(strand, course, &work.saved);
     false
