@@ -3,12 +3,12 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+use cable_core::Vec2;
 use cable_core::model::spans::SpansModel;
 use cable_core::model::{Inertia, Mechanics, Settings};
 use cable_core::problem::problems;
 use cable_core::scene::obstacle::{Obstacle, Shape};
 use cable_core::scene::{Load, Scene, Support, catalog};
-use cable_core::Vec2;
 use cable_core::solution::CableSolution;
 
 /// A flexible cable from a to b along a route over shapes.
@@ -100,7 +100,7 @@ fn tension_does_not_jump_where_contacts_come_and_go() {
         assert!(continuous(&scene(vec![post], route, (10.2, friction)), Vec2::new(0.0, 2.0), 40) >= 1);
         let hills = ground(&[[-5.0, 0.0], [3.0, 0.0], [4.0, 0.4], [5.0, 0.5], [6.0, 0.4], [7.0, 0.0], [15.0, 0.0]]);
         let route = vec![[0.0, 2.0], [10.0, 2.0]];
-        assert!(continuous(&scene(vec![hills], route, (10.7, friction)), Vec2::new(-0.3, -0.8), 40) >= 1);
+        assert!(continuous(&scene(vec![hills], route, (10.7, friction)), Vec2::new(0.0, -1.6), 40) >= 1);
     }
 }
 
@@ -166,7 +166,8 @@ fn both_supports_may_move() {
 /// A rope led under a beam is pulled up against its underside: its corners hold it, the edge between them does not.
 #[test]
 fn an_underside_is_held_by_its_corners() {
-    let s = scene(vec![beam([4.0, 6.0], [1.0, 1.3])], vec![[0.0, 3.0], [3.9, 0.8], [6.1, 0.8], [10.0, 3.0]], (11.2, 0.0));
+    let s =
+        scene(vec![beam([4.0, 6.0], [1.0, 1.3])], vec![[0.0, 3.0], [3.9, 0.8], [6.1, 0.8], [10.0, 3.0]], (11.2, 0.0));
     let mut m = model(&s);
     for x in [10.2, 10.4, 10.6, 10.8] {
         m.drag_support(1, Vec2::new(x, 3.0));

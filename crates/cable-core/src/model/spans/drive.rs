@@ -14,6 +14,15 @@ use crate::math::Vec2;
 
 /// Halvings of a step at most: 2⁻¹² of a step of 1 % of the cable is a hair's breadth.
 const MAX_HALVINGS: u32 = 12;
+/// Part of a step over which a cable that runs away is followed at least.
+const RUN: f64 = 1e-3;
+/// Drag with which it is followed at first, of the load per metre. Less: steps fail where it runs fast. More: more of them.
+const DRAG: f64 = 10.0;
+/// It has come to rest when it needs no more than this part of that drag.
+const LEAST_DRAG: f64 = 1e-3;
+/// Steps it is followed for at most, and times in a row the drag is raised.
+const MOST_DRAGGED: usize = 200;
+const MOST_RAISED: usize = 5;
 /// Spans that are tried as pockets in one step. More: dearer failures, each halving tries again.
 const MOST_POCKETS: usize = 3;
 /// Tension at which a rest is first sought, of the weight of the cable: so taut that it touches only what it is led
@@ -38,6 +47,8 @@ pub(super) struct Network {
 pub(super) struct Taken {
     pub solved: Solved,
     pub halved: usize,
+    /// Times it ran away from where it was to another place that holds it.
+    pub ran: usize,
 }
 
 impl Network {
@@ -238,6 +249,44 @@ impl Network {
         found
     }
 
+    /// To an instant that no balance near by leads to: the cable slides under a drag that is taken away as it comes to rest.
+    ///
+    /// Each step is one of implicit Euler of η ds/dt = T₂ − T₁, which falls in energy; η is lowered as far as it goes
+    /// (pseudo-transient continuation: C. T. Kelley and D. E. Keyes, SIAM J. Numer. Anal. 35, 1998).
+    fn follow(&mut self, layout: &Layout, to: &Instant, work: &mut Work) -> Result<Taken, Trouble> {
+        let (before, old) = (self.strands.clone(), self.instant.clone());
+        let size = to.load.norm();
+        let (mut drag, mut taken, mut raised) = (DRAG * size, Taken::default(), 0);
+        for _ in 0..MOST_DRAGGED {
+            self.course.drag = drag;
+            let result = self.step(layout, to, work);
+            self.course.drag = 0.0;
+            match result {
+                Ok(t) => {
+                    taken = taken.and(t);
+                    drag *= if raised > 0 { 0.5 } else { 0.25 };
+                    raised = 0;
+                    if drag < DRAG * LEAST_DRAG * size
+                        && let Ok(t) = self.step(layout, to, work)
+                    {
+                        return Ok(taken.and(t));
+                    }
+                }
+                Err(_) => {
+                    drag *= 8.0;
+                    raised += 1;
+                }
+            }
+            if raised > MOST_RAISED {
+                break;
+            }
+        }
+        self.strands = before;
+        layout.give(&mut self.course, &old);
+        self.instant = old;
+        Err(Trouble::Restless { s: 0.0 })
+    }
+
     /// Whether every strand is a rest and not a balance that runs away.
     pub fn stable(&self, work: &mut Work) -> bool {
         self.strands.iter().all(|s| newton::stable(s, &self.course, work))
@@ -270,13 +319,12 @@ impl Network {
                     step *= 0.5;
                     taken.halved += 1;
                     if halvings > MAX_HALVINGS {
-                        if std::env::var_os("DBG").is_some() { eprintln!("    travel stops ({trouble:?}) at {done} of thermal {} .. {}: {} contacts", from.thermal, to.thermal, self.strands[0].contacts.len());
-                            let st=&self.strands[0]; let b=self.course.law.load.norm(); let l=st.to-st.from;
-                            let mut worst=(f64::INFINITY,0,0.0,0.0); let mut hair=(f64::INFINITY,0,0.0,0.0);
-                            for k in 0..st.spans() { if !st.has_span(k) {continue;} let (f,t)=st.material(k); let ff=st.force(&self.course,k,f); let h=crate::math::cross(ff,self.course.law.load).abs()/b; let tm=ff.norm().min(st.force(&self.course,k,t).norm()); 
-                              if tm/(b*l)<worst.0 {worst=(tm/(b*l),k,(t-f)/l, h/(b*(t-f)));} if h/(b*(t-f))<hair.0 {hair=(h/(b*(t-f)),k,(t-f)/l,tm/(b*l));} }
-                            eprintln!("      least T/wL {worst:?}; least H/wl {hair:?} {}", st.to/l);
-                            if std::env::var_os("DBG").is_some_and(|v| v=="2") { for c in &st.contacts { eprintln!("         curve {} home {:?} p {:?} s {:?} t {:?} {:?}", c.curve, c.home, c.ends.p, c.ends.s, c.ends.t, c.mode);} }
+                        // Where nothing near by holds the cable it runs away, to the next place that does.
+                        let next = if done + RUN < 1.0 { done + RUN } else { 1.0 };
+                        if let Ok(t) = self.follow(layout, &from.towards(to, next), work) {
+                            (taken, done, halvings, step) = (taken.and(t), next, 0, RUN);
+                            taken.ran += 1;
+                            continue;
                         }
                         return Err((trouble, done));
                     }
@@ -295,7 +343,7 @@ impl From<(Trouble, f64)> for Trouble {
 
 impl Taken {
     fn and(self, more: Self) -> Self {
-        Self { solved: self.solved.and(more.solved), halved: self.halved + more.halved }
+        Self { solved: self.solved.and(more.solved), halved: self.halved + more.halved, ran: self.ran + more.ran }
     }
 }
 

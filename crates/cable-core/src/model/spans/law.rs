@@ -185,6 +185,8 @@ pub(super) struct Track<'a> {
     pub law: Law,
     /// μ.
     pub friction: f64,
+    /// See [`Course`](super::strand::Course).
+    pub drag: f64,
 }
 
 impl Track<'_> {

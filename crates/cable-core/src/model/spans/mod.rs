@@ -218,7 +218,7 @@ impl Mechanics for SpansModel {
         let mut work = std::mem::take(&mut self.work);
         let mut sum = StepReport::default();
         let first = network.instant.clone();
-        let mut failed = None;
+        let (mut failed, mut ran) = (None, 0);
         for k in 1..=pieces as usize {
             let f = k as f64 / pieces;
             let time_s = if k == pieces as usize { end } else { start + dt_s * f };
@@ -235,6 +235,7 @@ impl Mechanics for SpansModel {
                     sum.cost.iterations += one.iterations;
                     sum.cost.halved_steps += one.halved_steps;
                     sum.cost.residual_n = one.residual_n;
+                    ran += taken.ran;
                     self.time_s = time_s;
                 }
                 Err((trouble, done)) => {
@@ -249,7 +250,14 @@ impl Mechanics for SpansModel {
         self.look();
         match failed {
             Some(trouble) => Err(self.said(None, trouble)),
-            None => Ok(sum),
+            None => {
+                if ran > 0 {
+                    let message = "Nothing held the cable where it was: it slid to the next place that does. How it moved there is not shown";
+                    let name = &self.layout.problem.cable.name;
+                    sum.warnings.push(Warning::new(WarningKind::Stabilised, name, 0.0, [0.0; 2], message.to_owned()));
+                }
+                Ok(sum)
+            }
         }
     }
 

@@ -30,7 +30,7 @@ pub(super) fn rows(track: &Track<'_>, history: &History, e: &Ends, (mode, pinned
     // Lifted (Newton looks there): a point without friction.
     let mode = if e.p[1] < e.p[0] { Mode::Slide(0.0) } else { mode };
     match mode {
-        Mode::Slide(m) => sliding(track, e, m),
+        Mode::Slide(m) => sliding(track, history, e, m),
         Mode::Hold => {
             let (mut out, fronts) = match history.hold(track, e) {
                 // Beyond its cone the rows of sticking go on smoothly: the mode is changed, not the rows.
@@ -103,12 +103,19 @@ fn pin(out: &mut Rows, (track, history, e): (&Track<'_>, &History, &Ends), side:
     }
 }
 
-fn sliding(track: &Track<'_>, e: &Ends, m: f64) -> Rows {
+/// Where a cable runs away it is followed with a drag η: T₂ less what the law makes of T₁ is η (s_old(p₁) − s₁), the slip.
+fn sliding(track: &Track<'_>, history: &History, e: &Ends, m: f64) -> Rows {
     let way = track.slide(e.p[0], e.p[1], e.t[0], m);
     let (a, b) = (track.place(e.p[0]), track.place(e.p[1]));
     let slope = track.law.slope(&a, e.t[0], m);
+    let (mut held, mut held_by) = (0.0, 0.0);
+    if track.drag > 0.0 {
+        let (t, s) = history.at(track, e.p[0]);
+        held = track.drag * (s - e.s[0]);
+        held_by = track.drag * a.stretch / track.law.stretch(t);
+    }
     Rows {
-        residual: [e.s[1] - e.s[0] - way.material, e.t[1] - way.tension],
+        residual: [e.s[1] - e.s[0] - way.material, e.t[1] - way.tension - held],
         by: [
             [
                 a.stretch / track.law.stretch(e.t[0]) + way.material_by_tension * slope,
@@ -118,7 +125,14 @@ fn sliding(track: &Track<'_>, e: &Ends, m: f64) -> Rows {
                 1.0,
                 0.0,
             ],
-            [way.by_tension * slope, 0.0, -way.by_tension, -track.law.slope(&b, way.tension, m), 0.0, 1.0],
+            [
+                way.by_tension * slope - held_by,
+                track.drag,
+                -way.by_tension,
+                -track.law.slope(&b, way.tension, m),
+                0.0,
+                1.0,
+            ],
         ],
         of_tension: [false, true],
     }

@@ -17,6 +17,8 @@ pub(super) struct Course {
     /// Boundaries: both senses of each body, then both of each wheel.
     pub curves: Vec<Curve>,
     pub law: Law,
+    /// What sliding is resisted with besides friction while a cable that runs away is followed, N per m of slip; else 0.
+    pub drag: f64,
     /// Dead loads inside the cable, in order, N.
     pub loads: Vec<PointForce>,
 }
@@ -76,7 +78,8 @@ pub(super) struct Strand {
 impl Course {
     /// The chain a contact lies on.
     pub fn track(&self, c: &Contact) -> Track<'_> {
-        Track { curve: &self.curves[c.curve], home: c.home, law: self.law, friction: self.friction(c) }
+        let curve = &self.curves[c.curve];
+        Track { curve, home: c.home, law: self.law, friction: self.friction(c), drag: self.drag }
     }
 
     /// Friction of a contact.
