@@ -3,8 +3,10 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use allocation_counter::measure;
+use cable_core::Vec2;
 use cable_core::model::fem::FemModel;
 use cable_core::model::mass_spring::MassSpringModel;
+use cable_core::model::spans::SpansModel;
 use cable_core::model::{Inertia, Mechanics, Settings};
 use cable_core::problem::{Problem, problems};
 use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};
@@ -86,4 +88,24 @@ fn a_step_of_fem_that_lands_takes_no_memory() {
         model.advance(1.0 / 240.0, Inertia::Dynamic).unwrap();
     }
     assert_eq!(warm_steps(&mut model, 1.0 / 240.0), 0);
+}
+
+/// Over a beam with friction, an end to and fro: neither unknowns, histories nor shapes take memory anew.
+#[test]
+fn a_warm_step_of_spans_takes_no_memory() {
+    let mut scene = catalog::over_beam();
+    scene.cables[0].bending_stiffness_n_m2 = 0.0;
+    let problem = problem(&scene);
+    let mut model = SpansModel::new(problem.clone(), Settings::default()).unwrap();
+    model.settle().unwrap();
+    let last = problem.supports.len() - 1;
+    let (at, _) = problem.supports[last].position_at(0.0).unwrap();
+    let mut step = |k: u32| {
+        let side = if k % 2 == 0 { 1.0 } else { -1.0 };
+        model.drag_support(last, at + Vec2::new(0.0, 0.01 * side));
+        model.advance(1.0 / 60.0, Inertia::QuasiStatic).unwrap();
+    };
+    (0..24).for_each(&mut step);
+    let count = measure(|| (0..24).for_each(&mut step)).count_total;
+    assert_eq!(count, 0);
 }

@@ -28,6 +28,12 @@ impl Band {
         }
     }
 
+    /// An entry as it was added.
+    #[cfg(test)]
+    pub fn entry(&self, row: usize, column: usize) -> f64 {
+        self.rows[row].get((column + BAND).wrapping_sub(row)).copied().unwrap_or(0.0)
+    }
+
     /// Divides a row and its right-hand side by its largest entry.
     pub fn scale(&mut self, rhs: &mut [f64]) {
         for (row, r) in self.rows.iter_mut().zip(rhs) {

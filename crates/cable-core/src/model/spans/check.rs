@@ -1,6 +1,7 @@
 //! The check of an answer that does not use the solver: lengths by quadrature of the law of the free cable, balance of
 //! each contact from its ends, the cone of friction along it, gaps by the obstacles' own distance.
 
+use super::history::History;
 use super::seek;
 use super::strand::{Course, Strand, Tie};
 use super::trouble::Trouble;
@@ -25,7 +26,7 @@ const TAUT_PANELS: usize = 4;
 const PANEL: f64 = 0.5;
 
 /// Whether an answer is one.
-pub(super) fn sound(strand: &Strand, course: &Course, world: &World) -> Result<(), Trouble> {
+pub(super) fn sound(strand: &Strand, course: &Course, world: &World, pasts: &mut [History; 2]) -> Result<(), Trouble> {
     let mut before = strand.from;
     let greatest = strand
         .contacts
@@ -47,7 +48,7 @@ pub(super) fn sound(strand: &Strand, course: &Course, world: &World) -> Result<(
             span(strand, course, world, k)?;
         }
         if k < strand.contacts.len() {
-            contact(strand, course, k, greatest)?;
+            contact(strand, course, (k, greatest), pasts)?;
         }
     }
     Ok(())
@@ -57,10 +58,12 @@ pub(super) fn sound(strand: &Strand, course: &Course, world: &World) -> Result<(
 fn span(strand: &Strand, course: &Course, world: &World, k: usize) -> Result<(), Trouble> {
     let (from, to) = strand.material(k);
     if let [Some(a), Some(b)] = strand.ends_of(course, k) {
-        let mut knots = vec![from];
-        knots.extend(course.loads.iter().map(|l| l.arc_length).filter(|s| *s > from && *s < to));
-        knots.push(to);
-        let at = knots.windows(2).fold(a, |at, w| at + way(strand, course, k, [w[0], w[1]]));
+        let (mut at, mut before) = (a, from);
+        let loads = course.loads.iter().map(|l| l.arc_length).filter(|s| *s > from && *s < to);
+        for next in loads.chain(std::iter::once(to)) {
+            at += way(strand, course, k, [before, next]);
+            before = next;
+        }
         if !((at - b).norm() <= HOLDS * (strand.to - strand.from)) {
             return Err(Trouble::Unsound { what: "a span does not close", s: from, at });
         }
@@ -107,7 +110,12 @@ fn way(strand: &Strand, course: &Course, k: usize, [from, to]: [f64; 2]) -> Vec2
 }
 
 /// A contact presses, does not push along itself, keeps the cone, and the spans leave it along its tangent.
-fn contact(strand: &Strand, course: &Course, j: usize, greatest: f64) -> Result<(), Trouble> {
+fn contact(
+    strand: &Strand,
+    course: &Course,
+    (j, greatest): (usize, f64),
+    [past, memory]: &mut [History; 2],
+) -> Result<(), Trouble> {
     let c = &strand.contacts[j];
     let (track, friction) = (course.track(c), course.friction(c));
     let e = &c.ends;
@@ -141,8 +149,8 @@ fn contact(strand: &Strand, course: &Course, j: usize, greatest: f64) -> Result<
     {
         return Err(Trouble::LoadLies { s: l.arc_length });
     }
-    let mut past = c.history.clone();
-    past.commit(&track, e, c.mode);
+    past.clone_from(&c.history);
+    past.commit(&track, e, c.mode, memory);
     let (mut p, mut t) = (e.p[0], past.at(&track, e.p[0]).0);
     for i in 1..=SAMPLES {
         let q = e.p[0] + (e.p[1] - e.p[0]) * i as f64 / SAMPLES as f64;

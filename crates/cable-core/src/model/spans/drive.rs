@@ -173,40 +173,58 @@ impl Network {
         work: &mut Work,
     ) -> Result<Taken, Trouble> {
         let mut taken = Taken::default();
-        let before = self.strands.clone();
-        let old = std::mem::replace(&mut self.instant, to.clone());
+        work.before.clone_from(&self.strands);
+        work.instants[0].clone_from(&self.instant);
+        self.instant.clone_from(to);
         layout.give(&mut self.course, to);
         for k in 0..self.strands.len() {
             if let Err(trouble) =
                 self.solve(layout, k, came.get(k).map(Vec::as_slice), work).map(|s| taken.solved = taken.solved.and(s))
             {
-                self.strands = before;
-                layout.give(&mut self.course, &old);
-                self.instant = old;
+                self.strands.clone_from(&work.before);
+                self.instant.clone_from(&work.instants[0]);
+                layout.give(&mut self.course, &self.instant);
                 return Err(trouble);
             }
         }
         for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts) {
             let track = self.course.track(c);
-            c.history.commit(&track, &c.ends, c.mode);
+            c.history.commit(&track, &c.ends, c.mode, &mut work.pasts[1]);
         }
         Ok(taken)
     }
 
     fn solve(&mut self, layout: &Layout, k: usize, came: Option<&[Vec2]>, work: &mut Work) -> Result<Solved, Trouble> {
         let world = &layout.problem.world;
-        let start = self.strands[k].clone();
-        let mut old = Vec::new();
+        let [mut start, mut moved] = std::mem::take(&mut work.strands);
+        start.clone_from(&self.strands[k]);
         if came.is_none() && !world.is_empty() {
-            pass::shape(&start, &self.course, &mut old);
+            pass::shape(&start, &self.course, &mut work.shapes[0]);
         }
+        let found = self.solve_from(layout, k, came, ([&mut start, &mut moved], work));
+        if found.is_err() {
+            self.strands[k].clone_from(&start);
+        }
+        work.strands = [start, moved];
+        found
+    }
+
+    /// As [`Self::solve`]; on an error the strand is anywhere.
+    fn solve_from(
+        &mut self,
+        layout: &Layout,
+        k: usize,
+        came: Option<&[Vec2]>,
+        ([start, moved], work): ([&mut Strand; 2], &mut Work),
+    ) -> Result<Solved, Trouble> {
+        let world = &layout.problem.world;
         let strand = &mut self.strands[k];
         place_ends(layout, k, strand, &self.course, &self.instant)?;
-        let moved = strand.clone();
+        moved.clone_from(strand);
         let mut found = events::solve(strand, &mut self.course, (world, &layout.corners), came, work);
         if found.is_err() {
             // From where each span by itself would be.
-            *strand = moved.clone();
+            strand.clone_from(moved);
             for j in 0..strand.spans() {
                 if strand.has_span(j)
                     && let Some(g) = strand.solve_span(&self.course, j)
@@ -219,9 +237,9 @@ impl Network {
         if found.is_err() {
             // What has hardly any tension left may have lost it: the least, the two least …
             let mut loose = Vec::new();
-            pocket::candidates(&start, &self.course, &mut loose);
+            pocket::candidates(start, &self.course, &mut loose);
             for n in 1..=loose.len().min(MOST_POCKETS) {
-                *strand = moved.clone();
+                strand.clone_from(moved);
                 for (_, k) in &loose[..n] {
                     pocket::fill(strand, &self.course, *k);
                 }
@@ -232,21 +250,16 @@ impl Network {
                 }
             }
         }
-        let found = found.and_then(|solved| {
-            check::sound(&self.strands[k], &self.course, world)?;
-            if !world.is_empty() && came.is_none() {
-                let mut new = Vec::new();
-                pass::shape(&self.strands[k], &self.course, &mut new);
-                if let Some(corner) = pass::through(&layout.corners, &old, &new, &mut work.turns) {
-                    return Err(Trouble::Passed { at: corner.at });
-                }
+        let solved = found?;
+        check::sound(&self.strands[k], &self.course, world, &mut work.pasts)?;
+        if !world.is_empty() && came.is_none() {
+            let [old, new] = &mut work.shapes;
+            pass::shape(&self.strands[k], &self.course, new);
+            if let Some(corner) = pass::through(&layout.corners, old, new, &mut work.turns) {
+                return Err(Trouble::Passed { at: corner.at });
             }
-            Ok(solved)
-        });
-        if found.is_err() {
-            self.strands[k] = start;
         }
-        found
+        Ok(solved)
     }
 
     /// To an instant that no balance near by leads to: the cable slides under a drag that is taken away as it comes to rest.
@@ -300,12 +313,28 @@ impl Network {
         first: f64,
         work: &mut Work,
     ) -> Result<Taken, (Trouble, f64)> {
-        let from = self.instant.clone();
+        let [old, mut from, mut at] = std::mem::take(&mut work.instants);
+        work.instants[0] = old;
+        from.clone_from(&self.instant);
+        let found = self.travel_from(layout, (&from, to, &mut at), first, work);
+        let old = std::mem::take(&mut work.instants[0]);
+        work.instants = [old, from, at];
+        found
+    }
+
+    fn travel_from(
+        &mut self,
+        layout: &Layout,
+        (from, to, at): (&Instant, &Instant, &mut Instant),
+        first: f64,
+        work: &mut Work,
+    ) -> Result<Taken, (Trouble, f64)> {
         let (mut done, mut step, mut taken) = (0.0, first, Taken::default());
         let mut halvings = 0;
         while done < 1.0 {
             let next = if done + 1.000_001 * step >= 1.0 { 1.0 } else { done + step };
-            match self.step(layout, &from.towards(to, next), work) {
+            at.between(from, to, next);
+            let trouble = match self.step(layout, at, work) {
                 Ok(t) => {
                     taken = taken.and(t);
                     done = next;
@@ -313,22 +342,20 @@ impl Network {
                         halvings -= 1;
                         step *= 2.0;
                     }
+                    continue;
                 }
-                Err(trouble) => {
-                    halvings += 1;
-                    step *= 0.5;
-                    taken.halved += 1;
-                    if halvings > MAX_HALVINGS {
-                        // Where nothing near by holds the cable it runs away, to the next place that does.
-                        let next = if done + RUN < 1.0 { done + RUN } else { 1.0 };
-                        if let Ok(t) = self.follow(layout, &from.towards(to, next), work) {
-                            (taken, done, halvings, step) = (taken.and(t), next, 0, RUN);
-                            taken.ran += 1;
-                            continue;
-                        }
-                        return Err((trouble, done));
-                    }
-                }
+                Err(trouble) => trouble,
+            };
+            halvings += 1;
+            step *= 0.5;
+            taken.halved += 1;
+            if halvings > MAX_HALVINGS {
+                // Where nothing near by holds the cable it runs away, to the next place that does.
+                let next = if done + RUN < 1.0 { done + RUN } else { 1.0 };
+                at.between(from, to, next);
+                let Ok(t) = self.follow(layout, at, work) else { return Err((trouble, done)) };
+                (taken, done, halvings, step) = (taken.and(t), next, 0, RUN);
+                taken.ran += 1;
             }
         }
         Ok(taken)

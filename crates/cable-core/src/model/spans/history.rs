@@ -33,7 +33,7 @@ pub(super) struct Knot {
 }
 
 /// Tension and material along a contact as they were last.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default, PartialEq)]
 pub(super) struct History {
     knots: Vec<Knot>,
 }
@@ -75,6 +75,16 @@ pub(super) enum Held {
     Meet([Front; 2]),
     /// The end tensions are too far apart: it slides with this m. The fronts have passed each other.
     Beyond(f64, [Front; 2]),
+}
+
+impl Clone for History {
+    fn clone(&self) -> Self {
+        Self { knots: self.knots.clone() }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        self.knots.clone_from(&other.knots);
+    }
 }
 
 impl History {
@@ -253,8 +263,8 @@ impl History {
         Held::Meet([front(p1, t1, left.m), front(p2, t2, right.m)])
     }
 
-    /// Takes what came of a step as the new past.
-    pub fn commit(&mut self, track: &Track<'_>, e: &Ends, mode: Mode) {
+    /// Takes what came of a step as the new past. `old`: memory.
+    pub fn commit(&mut self, track: &Track<'_>, e: &Ends, mode: Mode, old: &mut Self) {
         let [first, last] = [0, 1].map(|k| Knot { p: e.p[k], s: e.s[k], tension: e.t[k], m: 0.0 });
         if last.p <= first.p {
             self.clear();
@@ -268,7 +278,7 @@ impl History {
             }
             Mode::Hold => match self.hold(track, e) {
                 Held::Between([left, right]) => {
-                    let old = self.clone();
+                    old.clone_from(self);
                     self.clear();
                     if left.p > first.p {
                         self.push(Knot { m: left.m, ..first });

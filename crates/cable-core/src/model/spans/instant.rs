@@ -16,7 +16,7 @@ use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 
 /// Supports, loads and temperature at an instant; two of them can be mixed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, Default, PartialEq)]
 pub(super) struct Instant {
     /// Place of each support, m (unused where it has none).
     pub places: Vec<Vec2>,
@@ -167,7 +167,7 @@ impl Layout {
     }
 
     /// What is given at a time, with supports dragged by hand where they are.
-    pub fn instant(&self, dragged: &[Option<Vec2>], time_s: f64) -> Instant {
+    pub fn instant(&self, dragged: &[Option<Vec2>], time_s: f64, out: &mut Instant) {
         let p = &self.problem;
         let gravity = if p.linear_density > 0.0 { p.weight / p.linear_density } else { Vec2::zeros() };
         let place = |(k, s): (usize, &crate::problem::SupportPoint)| {
@@ -178,13 +178,11 @@ impl Layout {
             Some(s) => s.force.at(time_s) + gravity * s.mass,
             None => p.loads.get(l.load).map_or(Vec2::zeros(), |l| l.force.at(time_s)),
         };
-        Instant {
-            places: p.supports.iter().enumerate().map(place).collect(),
-            load: p.body_force(time_s),
-            thermal: p.thermal_stretch,
-            forces: self.loads.iter().map(force).collect(),
-            friction: 1.0,
-        }
+        out.places.clear();
+        out.places.extend(p.supports.iter().enumerate().map(place));
+        out.forces.clear();
+        out.forces.extend(self.loads.iter().map(force));
+        (out.load, out.thermal, out.friction) = (p.body_force(time_s), p.thermal_stretch, 1.0);
     }
 
     /// The course at an instant; the boundaries are those of `self.curves()`.
@@ -208,10 +206,10 @@ impl Layout {
                 curve.shift = instant.places[pulley.support];
             }
         }
-        let own: Vec<f64> = self.problem.world.geometry().bodies().iter().map(|b| b.friction).collect();
+        let bodies = self.problem.world.geometry().bodies();
         for (k, curve) in course.curves.iter_mut().enumerate() {
-            if let Some(own) = own.get(k / 2) {
-                curve.friction = own * instant.friction;
+            if let Some(body) = bodies.get(k / 2) {
+                curve.friction = body.friction * instant.friction;
             }
         }
         for pulley in self.strands.iter().flat_map(|s| &s.pulleys) {
@@ -228,20 +226,35 @@ impl Layout {
     }
 }
 
+impl Clone for Instant {
+    fn clone(&self) -> Self {
+        Self { places: self.places.clone(), forces: self.forces.clone(), ..*self }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        self.places.clone_from(&other.places);
+        self.forces.clone_from(&other.forces);
+        (self.load, self.thermal, self.friction) = (other.load, other.thermal, other.friction);
+    }
+}
+
 impl Instant {
-    /// Part f of the way from this one to another.
-    pub fn towards(&self, other: &Self, f: f64) -> Self {
+    /// Becomes part f of the way from `from` to `to`.
+    pub fn between(&mut self, from: &Self, to: &Self, f: f64) {
+        self.clone_from(to);
         if f >= 1.0 {
-            return other.clone();
+            return;
         }
-        let mix = |a: &[Vec2], b: &[Vec2]| a.iter().zip(b).map(|(a, b)| a + (b - a) * f).collect();
-        Self {
-            places: mix(&self.places, &other.places),
-            load: self.load + (other.load - self.load) * f,
-            thermal: self.thermal + (other.thermal - self.thermal) * f,
-            forces: mix(&self.forces, &other.forces),
-            friction: self.friction + (other.friction - self.friction) * f,
-        }
+        let mix = |out: &mut [Vec2], from: &[Vec2]| {
+            for (b, a) in out.iter_mut().zip(from) {
+                *b = a + (*b - a) * f;
+            }
+        };
+        mix(&mut self.places, &from.places);
+        mix(&mut self.forces, &from.forces);
+        self.load = from.load + (to.load - from.load) * f;
+        self.thermal = from.thermal + (to.thermal - from.thermal) * f;
+        self.friction = from.friction + (to.friction - from.friction) * f;
     }
 }
 

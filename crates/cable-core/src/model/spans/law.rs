@@ -315,3 +315,6 @@ impl OnPiece<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

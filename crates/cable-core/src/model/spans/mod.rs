@@ -61,7 +61,10 @@ pub struct SpansModel {
     dragged: Vec<Option<Vec2>>,
     network: Option<Network>,
     work: Work,
-    report: Report,
+    /// Where a step starts, where it goes, and a piece of it.
+    instants: [Instant; 3],
+    /// What is shown while there is no network.
+    shown: Report,
 }
 
 impl SpansModel {
@@ -88,13 +91,16 @@ impl SpansModel {
             ..Node::default()
         };
         let nodes = points.iter().enumerate().map(node).collect();
-        let report = Report { nodes, ..Report::default() };
-        Ok(Self { layout, time_s: 0.0, dragged: vec![None; n], network: None, work: Work::default(), report })
+        let shown = Report { nodes, ..Report::default() };
+        let (work, instants) = (Work::default(), <[Instant; 3]>::default());
+        Ok(Self { layout, time_s: 0.0, dragged: vec![None; n], network: None, work, instants, shown })
     }
 
-    fn look(&mut self) {
-        if let Some(network) = &self.network {
-            self.report = report::report(&self.layout, network);
+    /// What there is to show now.
+    fn look(&self) -> Report {
+        match &self.network {
+            Some(network) => report::report(&self.layout, network),
+            None => self.shown.clone(),
         }
     }
 
@@ -173,7 +179,8 @@ impl Mechanics for SpansModel {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        let instant = self.layout.instant(&self.dragged, self.time_s);
+        let mut instant = Instant::default();
+        self.layout.instant(&self.dragged, self.time_s, &mut instant);
         let mut work = std::mem::take(&mut self.work);
         let found = match &mut self.network {
             Some(network) => network.travel(&self.layout, &instant, 1.0, &mut work).map_err(|t| (t.0, None)),
@@ -185,7 +192,6 @@ impl Mechanics for SpansModel {
         let stable = self.network.as_ref().is_none_or(|n| n.stable(&mut work));
         self.work = work;
         let taken = found.map_err(|(trouble, stopped)| self.said(stopped.as_ref(), trouble))?;
-        self.look();
         let mut report = self.report_of(taken);
         if !stable {
             let message = "This balance runs away at the least push: nothing rubs that would hold the cable in it";
@@ -211,19 +217,20 @@ impl Mechanics for SpansModel {
             self.settle()?;
         }
         let (start, end) = (self.time_s, self.time_s + dt_s);
-        let last = self.layout.instant(&self.dragged, end);
         let Some(mut network) = self.network.take() else { return Ok(StepReport::default()) };
         let length = self.layout.problem.length;
+        let [mut first, mut last, mut instant] = std::mem::take(&mut self.instants);
+        self.layout.instant(&self.dragged, end, &mut last);
         let pieces = (Self::travel(&network.instant, &last) / (STEP * length)).ceil().clamp(1.0, 1000.0);
         let mut work = std::mem::take(&mut self.work);
         let mut sum = StepReport::default();
-        let first = network.instant.clone();
+        first.clone_from(&network.instant);
         let (mut failed, mut ran) = (None, 0);
         for k in 1..=pieces as usize {
             let f = k as f64 / pieces;
             let time_s = if k == pieces as usize { end } else { start + dt_s * f };
             // Where a hand drags a support it goes there straight, others follow their motion.
-            let mut instant = self.layout.instant(&self.dragged, time_s);
+            self.layout.instant(&self.dragged, time_s, &mut instant);
             for (i, dragged) in self.dragged.iter().enumerate() {
                 if dragged.is_some() {
                     instant.places[i] = first.places[i] + (last.places[i] - first.places[i]) * f;
@@ -246,8 +253,7 @@ impl Mechanics for SpansModel {
             }
         }
         self.network = Some(network);
-        self.work = work;
-        self.look();
+        (self.work, self.instants) = (work, [first, last, instant]);
         match failed {
             Some(trouble) => Err(self.said(None, trouble)),
             None => {
@@ -266,7 +272,7 @@ impl Mechanics for SpansModel {
     }
 
     fn state(&self) -> State {
-        State::of_nodes(&self.report.nodes, self.time_s)
+        State::of_nodes(&self.look().nodes, self.time_s)
     }
 
     fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
@@ -274,6 +280,7 @@ impl Mechanics for SpansModel {
             return Err(SolveError::NonFinite { quantity: "position", node, time_s: state.time_s });
         }
         self.time_s = state.time_s;
+        self.shown = self.look();
         self.network = None;
         Ok(())
     }
@@ -285,11 +292,12 @@ impl Mechanics for SpansModel {
     }
 
     fn solution(&self) -> CableSolution {
+        let Report { nodes, supports, contacts } = self.look();
         CableSolution {
             name: self.layout.problem.cable.name.clone(),
-            nodes: self.report.nodes.clone(),
-            supports: self.report.supports.clone(),
-            contacts: self.report.contacts.clone(),
+            nodes,
+            supports,
+            contacts,
             error_estimate: Some(0.0),
             ..CableSolution::default()
         }

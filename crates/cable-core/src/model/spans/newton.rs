@@ -11,7 +11,8 @@
 //! At a lying end the tension takes the place of p among the unknowns, and s = its material that of the tangency.
 
 use super::band::Band;
-use super::history::Mode;
+use super::history::{History, Mode};
+use super::instant::Instant;
 use super::rub::{self, Rows};
 use super::strand::{Course, Strand, Tie};
 use crate::math::{Vec2, cross, larger};
@@ -55,6 +56,16 @@ pub(super) struct Work {
     best: Vec<f64>,
     /// What the search for corners passed through counts with.
     pub turns: Vec<i32>,
+    /// The shape before and after a step.
+    pub shapes: [Vec<Vec2>; 2],
+    /// A strand before a step, and with its ends moved.
+    pub strands: [Strand; 2],
+    /// All of them before a step.
+    pub before: Vec<Strand>,
+    /// Instants: before a step; where a way begins; where a step goes.
+    pub instants: [Instant; 3],
+    /// A contact's past as it would be, and as it was.
+    pub pasts: [History; 2],
 }
 
 /// Newton did not converge.
@@ -430,7 +441,7 @@ pub(super) fn stable(strand: &Strand, course: &Course, work: &mut Work) -> bool 
     let mut stuck = strand.clone();
     for c in &mut stuck.contacts {
         let track = course.track(c);
-        c.history.commit(&track, &c.ends, c.mode);
+        c.history.commit(&track, &c.ends, c.mode, &mut work.pasts[1]);
         c.mode = Mode::Hold;
     }
     match (found, sign(&stuck)) {
@@ -506,3 +517,6 @@ fn step(strand: &mut Strand, course: &Course, work: &mut Work) -> bool {
     scatter(strand, course, &work.saved);
     false
 }
+
+#[cfg(test)]
+mod tests;

@@ -44,7 +44,7 @@ impl Tie {
 }
 
 /// A contact.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub(super) struct Contact {
     /// Index of the boundary.
     pub curve: usize,
@@ -63,7 +63,7 @@ pub(super) struct Contact {
 }
 
 /// A strand.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, Default, PartialEq)]
 pub(super) struct Strand {
     /// Material at both ends, m.
     pub from: f64,
@@ -73,6 +73,37 @@ pub(super) struct Strand {
     pub contacts: Vec<Contact>,
     /// G of each span, N; one more than contacts.
     pub forces: Vec<Vec2>,
+}
+
+impl Default for Tie {
+    fn default() -> Self {
+        Self::Held(Vec2::zeros())
+    }
+}
+
+// By hand, so that what is copied over keeps its memory.
+impl Clone for Contact {
+    fn clone(&self) -> Self {
+        Self { history: self.history.clone(), ..*self }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        let mut history = std::mem::take(&mut self.history);
+        history.clone_from(&other.history);
+        *self = Self { history, ..*other };
+    }
+}
+
+impl Clone for Strand {
+    fn clone(&self) -> Self {
+        Self { contacts: self.contacts.clone(), forces: self.forces.clone(), ..*self }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        (self.from, self.to, self.ties) = (other.from, other.to, other.ties);
+        self.contacts.clone_from(&other.contacts);
+        self.forces.clone_from(&other.forces);
+    }
 }
 
 impl Course {

@@ -1,0 +1,101 @@
+use super::*;
+use crate::model::spans::drive::Network;
+use crate::model::spans::instant::{Instant, Layout};
+use crate::problem::problems;
+use crate::scene::obstacle::{Obstacle, Shape};
+use crate::scene::{Support, catalog};
+
+/// Part of the largest entry of a row by which an entry may be off: what differences leave.
+const CLOSE: f64 = 1e-4;
+
+/// A flexible cable over shapes, at rest, then moved.
+fn strand(shapes: Vec<Shape>, route_m: Vec<[f64; 2]>, (length, friction): (f64, f64), moved: Vec2) -> (Strand, Course) {
+    let mut scene = catalog::hanging_span();
+    scene.loads.clear();
+    let named = |(k, shape)| Obstacle { name: format!("obstacle {k}"), shape, friction: None };
+    scene.obstacles = shapes.into_iter().enumerate().map(named).collect();
+    let c = &mut scene.cables[0];
+    (c.bending_stiffness_n_m2, c.axial_stiffness_n, c.diameter_m) = (0.0, 1e5, 0.04);
+    (c.service_tension_n, c.breaking_tension_n) = (1e15, 1e15);
+    (c.length_m, c.friction) = (length, friction);
+    c.supports = vec![Support::fixed("A", route_m[0]), Support::fixed("B", *route_m.last().unwrap())];
+    c.route_m = route_m;
+    let layout = Layout::new(&problems(&scene).unwrap().remove(0)).unwrap();
+    let mut instant = Instant::default();
+    layout.instant(&[None, None], 0.0, &mut instant);
+    let mut work = Work::default();
+    let (mut network, _) = Network::rest(&layout, &instant, &mut work).map_err(|e| e.0).unwrap();
+    instant.places[1] += moved;
+    network.travel(&layout, &instant, 0.1, &mut work).unwrap();
+    (network.strands.remove(0), network.course)
+}
+
+/// Numbers in −1 … 1 that are the same each time.
+fn noise(k: usize) -> f64 {
+    ((k as f64 + 1.0) * 12.9898).sin() * 43758.5453 % 1.0
+}
+
+/// Every entry of the Jacobian beside a difference of residuals, at a state a little off the answer.
+fn compare(strand: &Strand, course: &Course, seed: usize) {
+    let mut x = Vec::new();
+    gather(strand, &mut x);
+    let force = strand.forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
+    // Two forces, then place and material at both ends of a contact.
+    let size = |i: usize| if i % 6 < 2 { force } else { 1.0 };
+    for (i, v) in x.iter_mut().enumerate() {
+        *v += 1e-7 * size(i) * noise(97 * seed + i);
+    }
+    let at = |x: &[f64]| {
+        let mut moved = strand.clone();
+        scatter(&mut moved, course, x);
+        moved
+    };
+    let residual = |x: &[f64]| {
+        let mut r = Vec::new();
+        assemble(&at(x), course, &mut r, None);
+        r
+    };
+    let (mut r, mut band) = (Vec::new(), Band::default());
+    assemble(&at(&x), course, &mut r, Some(&mut band));
+    let n = x.len();
+    let largest: Vec<f64> =
+        (0..n).map(|i| (0..n).map(|j| band.entry(i, j).abs() * size(j)).fold(0.0, f64::max)).collect();
+    for j in 0..n {
+        let h = 1e-8 * size(j);
+        let (mut up, mut down) = (x.clone(), x.clone());
+        up[j] += h;
+        down[j] -= h;
+        let (up, down) = (residual(&up), residual(&down));
+        for i in 0..n {
+            let exact = band.entry(i, j) * size(j);
+            // At a kink (a front at a corner) either side will do.
+            let ways = [(up[i] - down[i]) / (2.0 * h), (up[i] - r[i]) / h, (r[i] - down[i]) / h];
+            let off = ways.iter().map(|d| (d * size(j) - exact).abs()).fold(f64::INFINITY, f64::min);
+            assert!(off <= CLOSE * largest[i], "row {i}, unknown {j} of {n}: {exact} and {ways:?} times {}", size(j));
+        }
+    }
+}
+
+#[test]
+fn the_jacobian_is_that_of_differences() {
+    let hills = || Shape::Terrain {
+        points_m: vec![[-5.0, 0.0], [3.0, 0.0], [4.0, 0.4], [5.0, 0.5], [6.0, 0.4], [7.0, 0.0], [15.0, 0.0]],
+    };
+    let posts = || {
+        let post = |x: f64, y: f64| Shape::Circle { center_m: [x, y], radius_m: 0.3 };
+        vec![post(3.0, 2.0), post(6.0, 2.4)]
+    };
+    let valley = || Shape::Terrain { points_m: vec![[-5.0, 0.5], [0.5, 0.5], [4.0, 0.0], [7.5, 0.5], [15.0, 0.5]] };
+    for (seed, friction) in [0.0, 0.1, 0.3, 0.8].into_iter().enumerate() {
+        for moved in [Vec2::new(0.05, 0.1), Vec2::new(0.02, -0.2), Vec2::new(0.1, 0.3)] {
+            let (s, c) = strand(vec![hills()], vec![[0.0, 1.0], [10.0, 1.0]], (10.7, friction), moved);
+            compare(&s, &c, seed);
+            let (s, c) = strand(posts(), vec![[0.0, 2.0], [3.0, 3.0], [6.0, 3.0], [9.0, 2.0]], (9.8, friction), moved);
+            compare(&s, &c, seed + 7);
+        }
+        // With slack in the kink.
+        let (s, c) = strand(vec![valley()], vec![[0.0, 1.0], [8.0, 1.0]], (8.5, friction), Vec2::new(-0.05, 0.0));
+        assert!(s.contacts.iter().any(|c| c.pocket));
+        compare(&s, &c, seed + 13);
+    }
+}
