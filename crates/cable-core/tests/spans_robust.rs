@@ -269,7 +269,7 @@ fn number(name: &str, otherwise: u64) -> u64 {
 
 #[test]
 fn random_moves_over_random_scenes() {
-    let (first, cases) = (number("SPANS_FIRST", 0), number("SPANS_CASES", 40));
+    let (first, cases) = (number("SPANS_FIRST", 0), number("SPANS_CASES", 24));
     let mut table = Table::default();
     for k in first..first + cases {
         run(k, &mut table);
@@ -279,6 +279,8 @@ fn random_moves_over_random_scenes() {
     println!("rests refused: {cold:#?}\nsteps that lost tension: {lost:#?}\nsteps refused: {refused:#?}");
     let sum = |of: &BTreeMap<String, usize>| of.values().sum::<usize>();
     // What is reached today; less is a change for the worse.
-    assert!(4 * sum(&cold) <= rests, "{} rests not found of {rests}", sum(&cold));
-    assert!(100 * sum(&refused) <= steps, "{} steps refused of {steps}", sum(&refused));
+    let unfound: usize = sum(&cold)
+        - ["end span folds", "span goes slack", "lay goes slack"].iter().filter_map(|c| cold.get(*c)).sum::<usize>();
+    assert!(20 * unfound <= rests, "{unfound} rests not found of {rests}");
+    assert!(1000 * sum(&refused) <= steps, "{} steps refused of {steps}", sum(&refused));
 }

@@ -42,6 +42,9 @@ pub(super) struct Network {
     pub instant: Instant,
 }
 
+/// Why no rest was found, and how far the cable was let out.
+pub(super) type Unfound = (Trouble, Option<Box<Network>>);
+
 /// What a step took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Taken {
@@ -56,7 +59,7 @@ impl Network {
     ///
     /// # Errors
     /// Why none was found, and how far the cable was let out where that stopped the search.
-    pub fn rest(layout: &Layout, instant: &Instant, work: &mut Work) -> Result<(Self, Taken), (Trouble, Option<Self>)> {
+    pub fn rest(layout: &Layout, instant: &Instant, work: &mut Work) -> Result<(Self, Taken), Unfound> {
         let curves = layout.curves();
         let course = layout.course(curves, instant);
         // As it is laid; else where it needs no friction; either may have to begin taut.
@@ -77,7 +80,7 @@ impl Network {
                 Ok(taken) => return Ok((network, taken)),
                 Err(trouble) => {
                     if cooled && stopped.is_none() {
-                        stopped = Some((trouble.clone(), Some(network)));
+                        stopped = Some((trouble.clone(), Some(Box::new(network))));
                     }
                     first = first.or(Some((trouble, None)));
                 }

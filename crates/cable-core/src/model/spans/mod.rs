@@ -191,7 +191,7 @@ impl Mechanics for SpansModel {
         };
         let stable = self.network.as_ref().is_none_or(|n| n.stable(&mut work));
         self.work = work;
-        let taken = found.map_err(|(trouble, stopped)| self.said(stopped.as_ref(), trouble))?;
+        let taken = found.map_err(|(trouble, stopped)| self.said(stopped.as_deref(), trouble))?;
         let mut report = self.report_of(taken);
         if !stable {
             let message = "This balance runs away at the least push: nothing rubs that would hold the cable in it";
