@@ -16,7 +16,7 @@ mod tests;
 
 pub(super) use self::stable::stable;
 use super::band::Band;
-use super::history::{History, Mode};
+use super::history::History;
 use super::instant::Instant;
 use super::rub::{self, Rows};
 use super::strand::{Course, Strand, Tie};
