@@ -27,7 +27,9 @@ const UNBREAKABLE_N: f64 = 1e15;
 
 /// A draft of `edit` that goes on where `old` is; None where this kind of draft does not apply or fails.
 pub fn falling(edit: &Edit, old: &Simulation) -> Option<Simulation> {
-    if old.model() != Model::Fem || !same_cables(edit, old) || buried(edit, old) {
+    // An answer without a mesh is drafted with one: laying the cable anew takes as long however it is asked.
+    let shaped = matches!(old.model(), Model::Fem | Model::Spans);
+    if !shaped || !same_cables(edit, old) || buried(edit, old) {
         return None;
     }
     let mut settings = edit.settings;

@@ -256,13 +256,11 @@ impl Engine {
         let (true, Some(old)) = (self.drafts && same && self.solve_s > DRAFT_AFTER_S, &self.simulation) else {
             return false;
         };
-        if slow(old.model()) {
-            // There are no fewer segments to have.
-            return false;
-        }
         let falls = draft::falling(edit, old);
         self.falling = falls.is_some();
-        let draft = falls.or_else(|| Some(self.rebuild(&draft::coarse(edit, old), Some(old)).ok()?.0));
+        // Models without a mesh have no fewer segments to be asked with.
+        let coarse = || Some(self.rebuild(&draft::coarse(edit, old), Some(old)).ok()?.0);
+        let draft = if slow(old.model()) { falls } else { falls.or_else(coarse) };
         let Some(draft) = draft else { return false };
         self.simulation = Some(draft);
         self.before_motion = None;

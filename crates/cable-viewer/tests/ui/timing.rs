@@ -68,8 +68,11 @@ fn print(what: &str, mut ms: Vec<f64>) {
 
 /// Drags the last support of a scene's first cable round a small circle: from each edit to the end of the first frame
 /// that shows it, frames being a 60th of a second apart as on a screen.
-fn timed_drag(name: &str, (scene, segments): (Scene, usize), (playing, radius_m): (bool, f64)) {
-    let mut harness = threaded(scene, segments);
+fn timed_drag(name: &str, (scene, segments): (Scene, usize), how: (bool, f64)) {
+    timed(name, (threaded(scene, segments), segments), how);
+}
+
+fn timed(name: &str, (mut harness, segments): (Harness<'static, ViewerApp>, usize), (playing, radius_m): (bool, f64)) {
     let last = harness.state().state.scene.cables[0].supports.len() - 1;
     let item = Item::Support { cable: 0, support: last };
     let at: Point = harness.state().state.scene.cables[0].supports[last].at_m.expect("held");
@@ -106,6 +109,17 @@ fn timed_drag(name: &str, (scene, segments): (Scene, usize), (playing, radius_m)
 fn timed_edits_at_200_segments() {
     for (name, scene) in [("tank", catalog::tank()), ("hanging span", catalog::hanging_span())] {
         timed_drag(name, (scene, 200), (false, 0.4));
+    }
+}
+
+/// Without a mesh: each edit lays the cable anew.
+#[test]
+fn timed_edits_of_spans() {
+    for (name, scene) in [("tank, spans", catalog::tank()), ("over a beam, spans", catalog::over_beam())] {
+        let mut harness = threaded(scene, 200);
+        submit(&mut harness, Command::SetModel(cable_core::Model::Spans));
+        wait(&mut harness);
+        timed(name, (harness, 200), (false, 0.05));
     }
 }
 
@@ -148,22 +162,27 @@ fn a_flood_of_edits_ends_at_the_last() {
 
 #[test]
 fn a_drag_of_a_slow_scene_ends_at_the_answer_and_not_at_a_draft() {
-    let mut harness = threaded(catalog::tank(), 200);
-    let item = Item::Support { cable: 0, support: 1 };
-    let at: Point = harness.state().state.scene.cables[0].supports[1].at_m.expect("held");
-    for k in 1..=10 {
-        let to_m = [at[0] - 0.02 * f64::from(k), at[1]];
-        submit(&mut harness, Command::Scene(SceneCommand::Move { item, to_m }));
+    for model in [Model::Fem, Model::Spans] {
+        let mut harness = threaded(catalog::tank(), 200);
+        submit(&mut harness, Command::SetModel(model));
         wait(&mut harness);
+        let item = Item::Support { cable: 0, support: 1 };
+        let at: Point = harness.state().state.scene.cables[0].supports[1].at_m.expect("held");
+        for k in 1..=10 {
+            let to_m = [at[0] - 0.02 * f64::from(k), at[1]];
+            submit(&mut harness, Command::Scene(SceneCommand::Move { item, to_m }));
+            wait(&mut harness);
+        }
+        let began = Instant::now();
+        while harness.state().state.snapshot.draft {
+            assert!(began.elapsed() < PATIENCE, "the draft stays");
+            harness.step();
+        }
+        let state = &harness.state().state;
+        assert_eq!(state.snapshot.error, None);
+        let answer = state.snapshot.solution.as_ref().unwrap();
+        assert_eq!(answer.model, model);
+        assert!(answer.cables[0].nodes.len() > if model == Model::Fem { 150 } else { 1 });
+        assert_eq!(state.snapshot.scene.as_deref(), Some(&state.scene));
     }
-    let began = Instant::now();
-    while harness.state().state.snapshot.draft {
-        assert!(began.elapsed() < PATIENCE, "the draft stays");
-        harness.step();
-    }
-    let state = &harness.state().state;
-    assert_eq!(state.snapshot.error, None);
-    let nodes = &state.snapshot.solution.as_ref().unwrap().cables[0].nodes;
-    assert!(nodes.len() > 150, "{}", nodes.len());
-    assert_eq!(state.snapshot.scene.as_deref(), Some(&state.scene));
 }
