@@ -3,7 +3,7 @@
 //! In the plane nobody can tell which strand of a crossing lies on top, so a knot cannot be told from a loop: crossings are
 //! named, knots are not.
 
-use crate::math::{Vec2, cross};
+use crate::math::{Vec2, angle};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Node, Warning, WarningKind};
 
@@ -76,7 +76,7 @@ pub(super) fn turns(nodes: &[Node]) -> Vec<f64> {
         let way = at(&nodes[k]) - at(&nodes[k - 1]);
         if way.norm_squared() > 0.0 {
             if let Some(b) = before {
-                out[k - 1] = cross(b, way).atan2(b.dot(&way));
+                out[k - 1] = angle(b, way);
             }
             before = Some(way);
         }
@@ -93,6 +93,10 @@ fn curl(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
     for piece in answer.pieces() {
         let turns = turns(piece);
         for sign in [1.0, -1.0] {
+            let all: f64 = turns.iter().map(|t| sign * t).filter(|t| *t > 0.0).sum();
+            if all < CURL_TURN {
+                continue;
+            }
             let found =
                 shortest(piece, |k| sign * turns[k]).filter(|f| f.0 <= longest && best.is_none_or(|b| f.0 < b.0));
             if let Some((length, i, j)) = found {

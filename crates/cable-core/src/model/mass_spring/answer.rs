@@ -4,7 +4,7 @@ use super::collide::SKIN;
 use super::pulley::Pulley;
 use super::{MassSpringModel, Touch};
 use crate::energy::bending::turn;
-use crate::math::{Vec2, cross, perp};
+use crate::math::{Vec2, angle, perp};
 use crate::solution::{CableSolution, ContactReport, ContactState, Node, SupportReaction};
 use crate::state::State;
 
@@ -143,7 +143,7 @@ impl MassSpringModel {
         let curvature_per_m = match (i.checked_sub(1), self.x.get(i + 1)) {
             (Some(e), Some(next)) => {
                 let (a, b) = (self.x[i] - self.x[e], next - self.x[i]);
-                cross(a, b).atan2(a.dot(&b)) / (0.5 * (self.span[e] + self.span[i]))
+                angle(a, b) / (0.5 * (self.span[e] + self.span[i]))
             }
             (None, Some(next)) => self.clamp_curvature(i, 0, *next - self.x[i]),
             (Some(e), None) => -self.clamp_curvature(i, e, self.x[i] - self.x[e]),
