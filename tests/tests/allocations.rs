@@ -101,7 +101,7 @@ fn a_warm_step_of_spans_takes_no_memory() {
     let last = problem.supports.len() - 1;
     let (at, _) = problem.supports[last].position_at(0.0).unwrap();
     let mut step = |k: u32| {
-        let side = if k % 2 == 0 { 1.0 } else { -1.0 };
+        let side = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
         model.drag_support(last, at + Vec2::new(0.0, 0.01 * side));
         model.advance(1.0 / 60.0, Inertia::QuasiStatic).unwrap();
     };
