@@ -19,6 +19,9 @@ pub const MAX_FRAME_S: f64 = 0.1;
 #[derive(Clone)]
 pub struct Simulation {
     scene: Scene,
+    /// As it was built: `Auto` where two models may take turns.
+    built: Model,
+    /// The one in use: of several cables the highest rung.
     model: Model,
     reason: String,
     cables: Vec<Strand>,
@@ -64,23 +67,26 @@ impl Simulation {
             (chosen, reason) = problems
                 .iter()
                 .map(|p| auto::choose(p, question))
-                .max_by_key(|(m, _)| *m == Model::Fem)
+                .max_by_key(|(m, _)| rung(*m))
                 .unwrap_or((Model::Catenary, String::new()));
         }
-        let mut cables = build_all(chosen);
+        let mut built = if model == Model::Auto && chosen == Model::Spans { Model::Auto } else { chosen };
+        let mut cables = build_all(built);
         if model == Model::Auto
             && chosen != Model::Fem
             && let Err(SolveError::Unsupported { feature, .. }) = &cables
         {
             reason = format!("{chosen} cannot answer this scene: {feature}");
             chosen = Model::Fem;
-            cables = build_all(chosen);
+            built = Model::Fem;
+            cables = build_all(built);
         }
         let cables = cables?;
         let answers = cables.iter().map(Strand::answer).collect();
         Ok(Self {
             vehicle: Vehicle::of(&scene),
             scene,
+            built,
             model: chosen,
             reason,
             cables,
@@ -96,6 +102,7 @@ impl Simulation {
     /// Reads the present instant: answers, and what is to be said of them.
     fn look(&mut self, moving: bool) {
         self.answers = self.cables.iter().map(Strand::answer).collect();
+        self.model = self.cables.iter().map(Strand::model).max_by_key(|m| rung(*m)).unwrap_or(self.model);
         for (strand, answer) in self.cables.iter().zip(&mut self.answers) {
             let bends = Bends::of(strand.problem(), answer);
             (answer.tightest_bend, answer.sidewall_pressure) = (bends.tightest(), bends.pressure);
@@ -133,7 +140,7 @@ impl Simulation {
     /// Why that model.
     #[must_use]
     pub fn reason(&self) -> &str {
-        &self.reason
+        self.cables.iter().find_map(Strand::reason).unwrap_or(&self.reason)
     }
 
     /// Time reached, s.
@@ -252,7 +259,7 @@ impl Simulation {
     /// # Errors
     /// What is wrong with the new scene; the old simulation is untouched.
     pub fn with_scene(&self, scene: Scene, settings: Settings) -> Result<Self, Error> {
-        let mut next = Self::with_settings(scene, self.model, settings)?;
+        let mut next = Self::with_settings(scene, self.built, settings)?;
         next.reason.clone_from(&self.reason);
         next.carry(self)?;
         Ok(next)
@@ -297,7 +304,7 @@ impl Simulation {
         Solution {
             time_s: self.time_s(),
             model: self.model,
-            reason: self.reason.clone(),
+            reason: self.reason().to_owned(),
             cables: self.answers.clone(),
             warnings,
             cost: self.cost,
@@ -371,6 +378,11 @@ impl Simulation {
         }
         Ok(())
     }
+}
+
+/// How much a model takes on.
+fn rung(model: Model) -> usize {
+    Model::SOLVERS.iter().position(|m| *m == model).unwrap_or(0)
 }
 
 impl std::fmt::Debug for Simulation {

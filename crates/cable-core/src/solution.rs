@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::math::Vec2;
 use crate::model::Model;
 use crate::robot::RobotReport;
 
@@ -122,6 +123,14 @@ pub struct Node {
     pub stress_pa: f64,
     /// d(angle)/d(unstretched length), 1/m.
     pub curvature_per_m: f64,
+}
+
+impl Node {
+    /// Position, m.
+    #[must_use]
+    pub fn at(&self) -> Vec2 {
+        Vec2::new(self.x_m, self.y_m)
+    }
 }
 
 /// What the cable does to a support.

@@ -19,10 +19,12 @@ pub fn choose(problem: &Problem, question: Question) -> (Model, String) {
         (Model::Fem, "masses move".to_owned())
     } else if problem.bending_stiffness > 0.0 {
         (Model::Fem, "the cable has bending stiffness".to_owned())
-    } else if !problem.world.is_empty() || problem.floor_friction.is_some() {
-        (Model::Fem, "the scene has obstacles the cable can touch".to_owned())
     } else if problem.cable.self_contact {
         (Model::Fem, "the cable can touch itself".to_owned())
+    } else if problem.floor_friction.is_some() {
+        (Model::Fem, "in plan view the floor rubs everywhere".to_owned())
+    } else if !problem.world.is_empty() {
+        (Model::Spans, "a taut cable among obstacles: contacts as intervals have no discretisation error".to_owned())
     } else {
         (Model::Catenary, "supports only: the elastic catenary has no discretisation error".to_owned())
     }

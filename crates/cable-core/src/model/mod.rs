@@ -10,6 +10,7 @@ pub mod conformance;
 pub mod drive;
 pub mod fem;
 pub mod mass_spring;
+pub mod relay;
 pub mod spans;
 
 use std::sync::Arc;
@@ -110,6 +111,11 @@ pub trait Mechanics: Send {
     /// Which model this is.
     fn model(&self) -> Model;
 
+    /// Why it is this model, where that changed on the way.
+    fn reason(&self) -> Option<&str> {
+        None
+    }
+
     /// Finds the resting place at the present time from the present state (after `new`: from the route)
     /// and sets velocities to zero.
     ///
@@ -138,6 +144,15 @@ pub trait Mechanics: Send {
     /// When a number is not finite or the state does not fit the cable.
     fn adopt(&mut self, state: &State) -> Result<(), SolveError>;
 
+    /// Goes on from an answer of the same cable, by this model or another: as [`Self::adopt`], and where the model can,
+    /// what friction held is still held.
+    ///
+    /// # Errors
+    /// As [`Self::adopt`].
+    fn take_over(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+        self.adopt(&State::of_nodes(&answer.nodes, time_s))
+    }
+
     /// From now on a support follows `target_m` (smoothly and with capped speed in `Dynamic` steps; at the
     /// next `settle` or quasi-static step it is there) instead of its `motion`.
     fn drag_support(&mut self, support: usize, target_m: Vec2);
@@ -152,7 +167,8 @@ pub trait Mechanics: Send {
     fn boxed_clone(&self) -> Box<dyn Mechanics>;
 }
 
-/// Builds the mechanics of one cable. `Auto` must have been resolved (see [`auto::choose`]).
+/// Builds the mechanics of one cable. `Auto` is resolved for rest (see [`auto::choose`]); where it chooses `spans`, `fem`
+/// stands behind it ([`relay::Relay`]).
 ///
 /// # Errors
 /// `Unsupported` when the model lacks what the scene needs.
@@ -162,6 +178,9 @@ pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<
         Model::Spans => Ok(Box::new(spans::SpansModel::new(problem, settings)?)),
         Model::Fem => Ok(Box::new(fem::FemModel::new(problem, settings)?)),
         Model::MassSpring => Ok(Box::new(mass_spring::MassSpringModel::new(problem, settings)?)),
-        Model::Auto => build(auto::choose(&problem, auto::Question::Rest).0, problem, settings),
+        Model::Auto => match auto::choose(&problem, auto::Question::Rest).0 {
+            Model::Spans => Ok(Box::new(relay::Relay::new(problem, settings)?)),
+            chosen => build(chosen, problem, settings),
+        },
     }
 }

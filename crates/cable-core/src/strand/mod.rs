@@ -70,6 +70,8 @@ pub(crate) struct Break {
 /// One cable of a scene.
 pub(crate) struct Strand {
     problem: Arc<Problem>,
+    /// What was asked for: pieces of a broken cable are built by it.
+    asked: Model,
     settings: Settings,
     pieces: Vec<Piece>,
     breaks: Vec<Break>,
@@ -100,7 +102,17 @@ impl Strand {
         let mechanics = model::build(model, problem.clone(), settings)?;
         let piece = Piece::new(mechanics, Deal::whole(&problem));
         let dragged = vec![None; problem.supports.len()];
-        Ok(Self { problem, settings, pieces: vec![piece], breaks: Vec::new(), dragged })
+        Ok(Self { problem, asked: model, settings, pieces: vec![piece], breaks: Vec::new(), dragged })
+    }
+
+    /// The model in use: of several pieces that of the first.
+    pub fn model(&self) -> Model {
+        self.pieces.first().map_or(self.asked, |p| p.mechanics.model())
+    }
+
+    /// Why it is that model, where that changed on the way.
+    pub fn reason(&self) -> Option<&str> {
+        self.pieces.iter().find_map(|p| p.mechanics.reason())
     }
 
     /// The whole cable's problem.
@@ -180,7 +192,7 @@ impl Strand {
             at: state.position_at(node.arc_length_m).unwrap_or_default(),
             torn_off: torn.and_then(|k| self.problem.supports.get(k)).map(|s| s.name.clone()),
         };
-        let (from, model) = (piece.deal.from, piece.mechanics.model());
+        let from = piece.deal.from;
         let mut parts = Vec::with_capacity(2);
         for deal in deals {
             let mut own = rupture::part(state, deal.from - from, deal.to - from);
@@ -189,7 +201,7 @@ impl Strand {
             }
             let there_and_back_s =
                 2.0 * deal.length() * (self.problem.linear_density / self.problem.axial_stiffness).sqrt();
-            let mut part = self.build(model, deal, &own)?;
+            let mut part = self.build(deal, &own)?;
             part.quiet = QUIET_STEPS;
             part.quiet_until_s = time_s + there_and_back_s;
             parts.push(part);
@@ -200,9 +212,9 @@ impl Strand {
     }
 
     /// A piece from where it is; `state` in its own arc lengths.
-    fn build(&self, model: Model, deal: Deal, state: &State) -> Result<Piece, SolveError> {
+    fn build(&self, deal: Deal, state: &State) -> Result<Piece, SolveError> {
         let problem = Arc::new(deal.problem(&self.problem, state));
-        let mut mechanics = model::build(model, problem, Settings { segments: None, ..self.settings })?;
+        let mut mechanics = model::build(self.asked, problem, Settings { segments: None, ..self.settings })?;
         for (own, k) in deal.supports.iter().enumerate() {
             if let Some(target) = k.and_then(|k| self.dragged.get(k).copied().flatten()) {
                 mechanics.drag_support(own, target);
@@ -225,7 +237,7 @@ impl Strand {
                 if inertia == Inertia::Dynamic {
                     wake(&mut state);
                 }
-                let next = self.build(piece.mechanics.model(), piece.deal.without(support), &state)?;
+                let next = self.build(piece.deal.without(support), &state)?;
                 if let Some(piece) = self.pieces.get_mut(k) {
                     *piece = next;
                 }
@@ -282,7 +294,7 @@ impl Strand {
         self.dragged.clone_from(&old.dragged);
         let mut pieces = Vec::with_capacity(old.pieces.len());
         for p in &old.pieces {
-            pieces.push(self.build(model, p.deal.clone(), &p.mechanics.state())?);
+            pieces.push(self.build(p.deal.clone(), &p.mechanics.state())?);
         }
         self.pieces = pieces;
         self.breaks.clone_from(&old.breaks);
@@ -416,6 +428,7 @@ impl Clone for Strand {
     fn clone(&self) -> Self {
         Self {
             problem: self.problem.clone(),
+            asked: self.asked,
             settings: self.settings,
             pieces: self.pieces.clone(),
             breaks: self.breaks.clone(),

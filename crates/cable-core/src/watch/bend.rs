@@ -61,9 +61,12 @@ impl Bends {
                 {
                     continue;
                 }
-                // A corner between two nodes is shared by them.
-                let shared = (own + turn(k.checked_sub(1))).abs().max((own + turn(Some(k + 1))).abs());
-                this.add(problem, n, lead(problem, answer, start + k), shared);
+                // A corner between two nodes is shared by them, a round by all that lie on it.
+                let pair = (own + turn(k.checked_sub(1))).abs().max((own + turn(Some(k + 1))).abs());
+                let lead = lead(problem, answer, start + k);
+                let shared =
+                    if let Lead::Round(radius, _) = lead { pair.max(round(piece, &turns, k, radius)) } else { pair };
+                this.add(problem, n, lead, shared);
             }
             start += piece.len();
         }
@@ -106,6 +109,15 @@ impl Bends {
             });
         }
     }
+}
+
+/// How far the nodes beside node `k` turn that are within a quarter of a round of a radius (m), rad.
+fn round(piece: &[Node], turns: &[f64], k: usize, radius: f64) -> f64 {
+    let far = std::f64::consts::FRAC_PI_2 * radius;
+    let near = |n: &Node| piece.get(k).is_some_and(|at| (n.arc_length_m - at.arc_length_m).abs() <= far);
+    let first = piece[..k].iter().rposition(|n| !near(n)).map_or(0, |i| i + 1);
+    let count = piece[first..].iter().take_while(|n| near(n)).count();
+    turns.get(first..first + count).unwrap_or_default().iter().sum::<f64>().abs()
 }
 
 /// What leads the cable at a node of its answer.

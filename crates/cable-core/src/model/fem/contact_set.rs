@@ -163,6 +163,14 @@ impl ContactSet {
         self.own.forget();
     }
 
+    /// A contact is to have slid by so much, m.
+    pub fn remember(&mut self, touch: &Touch, slid: f64) {
+        let gap = &touch.pair.gap;
+        let (node, on_segment) = (touch.node, touch.on_segment);
+        self.memory.push(Memory { node, on_segment, feature: gap.feature, obstacle: gap.obstacle, slid, age: 0 });
+        self.memory.sort_by_key(|m| m.node);
+    }
+
     /// Finds the contacts of the mesh at `x` (m), in order of arc length. Held nodes push on nothing.
     pub fn find(&self, problem: &Problem, mesh: &Mesh, x: &[Vec2], out: &mut Vec<Touch>) {
         self.find_within(problem, mesh, x, self.barrier.reach, out);

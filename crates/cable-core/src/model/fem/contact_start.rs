@@ -163,7 +163,9 @@ pub fn push_out(problem: &Problem, mesh: &Mesh, x: &mut [Vec2], clear: f64) {
         for e in 0..x.len().saturating_sub(1) {
             gaps.clear();
             problem.world.segment_gaps(x[e], x[e + 1], clear, &mut gaps);
-            for g in gaps.iter().filter(|g| g.fraction > 0.0 && g.fraction < 1.0) {
+            let rounds = mesh.rounds(e);
+            let inside = |g: &&Gap| g.fraction > 0.0 && g.fraction < 1.0 && !rounds.contains(&Some(g.feature));
+            for g in gaps.iter().filter(inside) {
                 let inside = problem.world.geometry().outward_of(g).is_some_and(|o| o.dot(&g.normal) < 0.0);
                 let distance = (x[e] + (x[e + 1] - x[e]) * g.fraction - g.point).norm();
                 // A segment that has cut a corner off is nearest to it from inside.

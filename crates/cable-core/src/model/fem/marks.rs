@@ -10,10 +10,10 @@ use crate::math::Vec2;
 const STILL: f64 = 1e-9;
 
 /// An arc of more than this (rad) from the tangent to the first mark gets another mark.
-const WIDE: f64 = 0.8;
+pub(super) const WIDE: f64 = 0.8;
 
 /// Rounds with less than this part of an even bar on them keep one mark.
-const SMALL: f64 = 0.3;
+pub(super) const SMALL: f64 = 0.3;
 
 /// Angle (rad) between marks of one round.
 const SPACING: f64 = 0.4;
@@ -104,7 +104,7 @@ impl Dynamics {
 }
 
 /// A vector turned by an angle (rad), counter-clockwise.
-fn rotate(v: Vec2, angle: f64) -> Vec2 {
+pub(super) fn rotate(v: Vec2, angle: f64) -> Vec2 {
     let (sin, cos) = angle.sin_cos();
     Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
 }

@@ -40,6 +40,7 @@ mod sliding;
 mod sliding_tests;
 mod span;
 pub mod statics;
+mod take_over;
 mod task;
 mod touch;
 mod wheel;
@@ -156,6 +157,13 @@ impl Mechanics for FemModel {
         match self.present {
             Part::Statics => self.statics.adopt(state),
             Part::Dynamics => self.dynamics.adopt(state),
+        }
+    }
+
+    fn take_over(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+        match self.present {
+            Part::Statics => self.adopt(&State::of_nodes(&answer.nodes, time_s)),
+            Part::Dynamics => self.dynamics.take_over(answer, time_s, &self.dragged),
         }
     }
 

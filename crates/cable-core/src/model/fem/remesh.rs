@@ -15,7 +15,7 @@ use super::sliding::{Grip, Load, Seat, Sliding, round_of};
 use crate::math::{Vec2, perp};
 
 /// Corners that turn by less (rad) are left to the barrier: there a chain jerks by less than 1e-3 of its tension.
-const LEAST_TURN: f64 = 0.05;
+pub(super) const LEAST_TURN: f64 = 0.05;
 
 /// Bars beside sliding nodes are kept between these parts of an even bar. Tighter: nodes come and go all the time;
 /// wider: the bars beside a corner are coarse.

@@ -9,8 +9,10 @@ use super::newton::{self, Solved, Work};
 use super::pass;
 use super::pocket;
 use super::strand::{Course, Strand};
+use super::take;
 use super::trouble::Trouble;
 use crate::math::Vec2;
+use crate::solution::Node;
 
 /// Halvings of a step at most: 2⁻¹² of a step of 1 % of the cable is a hair's breadth.
 const MAX_HALVINGS: u32 = 12;
@@ -33,6 +35,10 @@ const TAUT: f64 = 4.0;
 const LIGHT: f64 = 1e-3;
 /// First step of the way from taut to what it is.
 const FIRST_STEP: f64 = 0.05;
+
+/// Parts of the cone of friction that a cable taken over may use: along the very edge of the cone sliding from an end would
+/// stop anywhere, and Newton stalls. The first changes nothing that shows, the second holds a little first.
+const WITHIN: [f64; 2] = [1.0 - 1e-5, 0.99];
 
 /// All strands of a cable at an instant.
 #[derive(Clone, Debug)]
@@ -87,6 +93,25 @@ impl Network {
             }
         }
         Err(stopped.or(first).unwrap_or((Trouble::Restless { s: 0.0 }, None)))
+    }
+
+    /// As an answer of another model has it.
+    ///
+    /// # Errors
+    /// Why it does not hold there.
+    pub fn taken(layout: &Layout, instant: &Instant, nodes: &[Node], work: &mut Work) -> Result<Self, Trouble> {
+        let mut first = None;
+        for within in WITHIN {
+            let course = layout.course(layout.curves(), instant);
+            let Some(strands) = take::take(layout, &course, instant, (nodes, within)) else { continue };
+            let mut network = Self { strands, course, instant: instant.clone() };
+            match network.step(layout, instant, work) {
+                Ok(_) => return Ok(network),
+                Err(trouble) => first = first.or(Some(trouble)),
+            }
+        }
+        let at = nodes.first().map_or(Vec2::zeros(), Node::at);
+        Err(first.unwrap_or(Trouble::NoSeat { s: 0.0, at }))
     }
 
     /// Lays it along the route as it is, or shrunk until it is taut and then let out again.

@@ -93,6 +93,14 @@ impl History {
         Self { knots: if end.p > start.p { vec![start, end] } else { vec![start] } }
     }
 
+    /// Through these knots, as near as a part of the cone of friction allows.
+    pub fn through(track: &Track<'_>, knots: &[Knot], within: f64) -> Self {
+        let track = &Track { friction: track.friction * within, ..*track };
+        let mut out = Self { knots: knots.first().copied().into_iter().collect() };
+        out.append(track, &Self { knots: knots.get(1..).unwrap_or_default().to_vec() });
+        out
+    }
+
     /// Material laid with an even tension from p₁ to p₂ as far as friction holds that on every slope.
     pub fn laid(track: &Track<'_>, e: &Ends) -> Self {
         let mut out = Self::default();

@@ -29,6 +29,7 @@ mod root;
 mod rub;
 mod seek;
 mod strand;
+mod take;
 mod taut;
 mod trouble;
 mod way;
@@ -94,6 +95,11 @@ impl SpansModel {
         let shown = Report { nodes, ..Report::default() };
         let (work, instants) = (Work::default(), <[Instant; 3]>::default());
         Ok(Self { layout, time_s: 0.0, dragged: vec![None; n], network: None, work, instants, shown })
+    }
+
+    /// Whether a resting place has been found.
+    pub(super) fn stands(&self) -> bool {
+        self.network.is_some()
     }
 
     /// What there is to show now.
@@ -282,6 +288,17 @@ impl Mechanics for SpansModel {
         self.time_s = state.time_s;
         self.shown = self.look();
         self.network = None;
+        Ok(())
+    }
+
+    fn take_over(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+        let mut instant = Instant::default();
+        self.layout.instant(&self.dragged, time_s, &mut instant);
+        let mut work = std::mem::take(&mut self.work);
+        let taken = Network::taken(&self.layout, &instant, &answer.nodes, &mut work);
+        self.work = work;
+        self.network = Some(taken.map_err(|t| said(&self.layout, t))?);
+        self.time_s = time_s;
         Ok(())
     }
 

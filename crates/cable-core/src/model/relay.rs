@@ -1,0 +1,247 @@
+//! What `auto` builds where a cable can touch something: `spans` while it is taut and slow, `fem` while it is not.
+//!
+//! `spans` goes first. Where it loses the tension, meets what it cannot lay, or finds no answer, `fem` goes on from the last
+//! state, with the friction that acts there ([`Mechanics::take_over`]); with inertia it is always `fem`. From time to time an
+//! answer of `fem` without inertia is offered back; `spans` takes it where its own answer there is the same to the eye.
+
+use std::sync::Arc;
+
+use super::fem::FemModel;
+use super::spans::SpansModel;
+use super::{Inertia, Mechanics, Model, Settings, StepReport};
+use crate::error::SolveError;
+use crate::math::Vec2;
+use crate::problem::Problem;
+use crate::solution::{CableSolution, Node};
+use crate::state::State;
+
+/// Greatest move of the cable when it is handed back, m, or part of its length, whichever is more: not seen.
+const SEEN: (f64, f64) = (1e-3, 1e-4);
+/// Greatest change of tension when it is handed back, of the greatest tension.
+const FELT: f64 = 1e-2;
+/// Answers of `fem` between two offers at first; each offer doubles it …
+const FIRST_WAIT: usize = 1;
+/// … up to this.
+const LONGEST_WAIT: usize = 8;
+
+/// Two models of one cable, one at a time.
+#[derive(Clone, Debug)]
+pub struct Relay {
+    settings: Settings,
+    spans: SpansModel,
+    /// Holds the present state where it is there.
+    fem: Option<FemModel>,
+    /// Where the cable was put, until it is known to rest or to move.
+    adopted: Option<State>,
+    dragged: Vec<Option<Vec2>>,
+    reason: Option<String>,
+    /// Answers until the next offer, and after that.
+    wait: [usize; 2],
+}
+
+impl Relay {
+    /// Builds it at the route.
+    ///
+    /// # Errors
+    /// `Unsupported` when the scene needs what `spans` never has.
+    pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
+        let dragged = vec![None; problem.supports.len()];
+        let spans = SpansModel::new(problem, settings)?;
+        Ok(Self { settings, spans, fem: None, adopted: None, dragged, reason: None, wait: [FIRST_WAIT; 2] })
+    }
+
+    /// `fem`, which holds the present state from now on.
+    fn fem(&mut self, why: String) -> Result<&mut FemModel, SolveError> {
+        if self.fem.is_none() {
+            let fem = self.handed_over()?;
+            self.reason = Some(why);
+            self.wait[0] = self.wait[1];
+            return Ok(self.fem.insert(fem));
+        }
+        self.fem.as_mut().ok_or_else(|| SolveError::NoRestingPlace { why })
+    }
+
+    fn handed_over(&self) -> Result<FemModel, SolveError> {
+        let mut fem = FemModel::new(self.spans.problem().clone(), self.settings)?;
+        let answer = self.spans.solution();
+        if let Some(state) = &self.adopted {
+            fem.adopt(state)?;
+        } else if self.spans.stands() {
+            // Dragged supports are where they came to, not yet where they are drawn.
+            for (k, at) in answer.supports.iter().enumerate().filter(|(k, _)| self.is_dragged(*k)) {
+                fem.drag_support(k, Vec2::new(at.x_m, at.y_m));
+            }
+            fem.take_over(&answer, self.spans.time_s())?;
+        } else if self.spans.time_s() > 0.0 {
+            fem.adopt(&self.spans.state())?;
+        }
+        for (k, target) in self.dragged.iter().enumerate() {
+            if let Some(target) = target {
+                fem.drag_support(k, *target);
+            }
+        }
+        Ok(fem)
+    }
+
+    fn is_dragged(&self, support: usize) -> bool {
+        self.dragged.get(support).is_some_and(Option::is_some)
+    }
+
+    /// Offers an answer of `fem` to `spans`.
+    fn offer(&mut self) {
+        let Some(fem) = &self.fem else { return };
+        self.wait[0] = self.wait[0].saturating_sub(1);
+        if self.wait[0] > 0 {
+            return;
+        }
+        let answer = fem.solution();
+        let before = self.spans.clone();
+        let taken = self.spans.take_over(&answer, fem.time_s()).is_ok();
+        if taken && alike(self.spans.problem(), &answer, &self.spans.solution()) {
+            self.fem = None;
+            self.reason = None;
+            self.wait[1] = (2 * self.wait[1]).min(LONGEST_WAIT);
+        } else {
+            self.spans = before;
+            self.wait = [self.wait[1], (2 * self.wait[1]).min(LONGEST_WAIT)];
+        }
+    }
+}
+
+/// Whether two answers of a cable are the same to the eye.
+fn alike(problem: &Problem, a: &CableSolution, b: &CableSolution) -> bool {
+    let greatest = a.nodes.iter().map(|n| n.tension_n).fold(0.0, |m, t| if t > m { t } else { m });
+    let seen = SEEN.0.max(SEEN.1 * problem.length);
+    let same = |n: &Node| {
+        let k = b.nodes.partition_point(|m| m.arc_length_m < n.arc_length_m).clamp(1, b.nodes.len().max(2) - 1);
+        let (Some(p), Some(q)) = (b.nodes.get(k - 1), b.nodes.get(k)) else { return false };
+        let d = q.arc_length_m - p.arc_length_m;
+        let f = if d > 0.0 { (n.arc_length_m - p.arc_length_m) / d } else { 0.0 };
+        let sag = 0.125 * d * d * p.curvature_per_m.abs().max(q.curvature_per_m.abs());
+        let far = (p.at() + (q.at() - p.at()) * f - n.at()).norm();
+        // At a corner a chain of bars has one tension before it and one after.
+        let (low, high) = (p.tension_n.min(q.tension_n), p.tension_n.max(q.tension_n));
+        let off = if n.tension_n < low { low - n.tension_n } else { n.tension_n - high };
+        far <= seen + sag && off <= FELT * greatest
+    };
+    a.nodes.iter().all(same)
+}
+
+impl Mechanics for Relay {
+    fn model(&self) -> Model {
+        if self.fem.is_some() { Model::Fem } else { Model::Spans }
+    }
+
+    fn reason(&self) -> Option<&str> {
+        self.reason.as_deref()
+    }
+
+    fn settle(&mut self) -> Result<StepReport, SolveError> {
+        let mut why = String::new();
+        if self.fem.is_none() {
+            match self.spans.settle() {
+                Ok(report) => {
+                    self.adopted = None;
+                    return Ok(report);
+                }
+                Err(error) => why = error.to_string(),
+            }
+        }
+        let first = self.fem.is_none();
+        let found = self.fem(why)?.settle();
+        match &found {
+            Ok(_) => {
+                self.adopted = None;
+                self.offer();
+            }
+            Err(_) if first => self.fem = None,
+            Err(_) => {}
+        }
+        found
+    }
+
+    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+        if !(dt_s > 0.0 && dt_s.is_finite()) {
+            return Err(SolveError::TimeStep { dt_s, allowed: "more than 0 s" });
+        }
+        if inertia == Inertia::Dynamic {
+            return self.fem("masses move".to_owned())?.advance(dt_s, inertia);
+        }
+        let end_s = self.time_s() + dt_s;
+        let mut why = String::new();
+        if self.fem.is_none() {
+            match self.spans.advance(dt_s, inertia) {
+                Ok(report) => {
+                    self.adopted = None;
+                    return Ok(report);
+                }
+                Err(error @ SolveError::TimeStep { .. }) => return Err(error),
+                Err(error) => why = error.to_string(),
+            }
+        }
+        let fem = self.fem(why)?;
+        let rest_s = end_s - fem.time_s();
+        let report = if rest_s > 0.0 { fem.advance(rest_s, inertia)? } else { StepReport::default() };
+        self.adopted = None;
+        self.offer();
+        Ok(report)
+    }
+
+    fn state(&self) -> State {
+        self.fem.as_ref().map_or_else(|| self.spans.state(), Mechanics::state)
+    }
+
+    fn time_s(&self) -> f64 {
+        self.fem.as_ref().map_or_else(|| self.spans.time_s(), Mechanics::time_s)
+    }
+
+    fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+        self.spans.adopt(state)?;
+        let moves = state.velocity_m_per_s.iter().any(|v| v.norm() > 0.0);
+        self.adopted = Some(state.clone());
+        self.fem = None;
+        if moves {
+            self.fem("masses move".to_owned())?;
+        }
+        Ok(())
+    }
+
+    fn take_over(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+        self.adopted = None;
+        self.fem = None;
+        if let Err(error) = self.spans.take_over(answer, time_s) {
+            let mut fem = FemModel::new(self.spans.problem().clone(), self.settings)?;
+            for (k, target) in self.dragged.iter().enumerate() {
+                if let Some(target) = target {
+                    fem.drag_support(k, *target);
+                }
+            }
+            fem.take_over(answer, time_s)?;
+            self.reason = Some(error.to_string());
+            self.fem = Some(fem);
+        }
+        Ok(())
+    }
+
+    fn drag_support(&mut self, support: usize, target_m: Vec2) {
+        if let Some(d) = self.dragged.get_mut(support) {
+            *d = Some(target_m);
+        }
+        self.spans.drag_support(support, target_m);
+        if let Some(fem) = &mut self.fem {
+            fem.drag_support(support, target_m);
+        }
+    }
+
+    fn solution(&self) -> CableSolution {
+        self.fem.as_ref().map_or_else(|| self.spans.solution(), Mechanics::solution)
+    }
+
+    fn problem(&self) -> &Arc<Problem> {
+        self.spans.problem()
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Mechanics> {
+        Box::new(self.clone())
+    }
+}
