@@ -58,7 +58,7 @@ impl Relay {
             self.wait[0] = self.wait[1];
             return Ok(self.fem.insert(fem));
         }
-        self.fem.as_mut().ok_or_else(|| SolveError::NoRestingPlace { why })
+        self.fem.as_mut().ok_or(SolveError::NoRestingPlace { why })
     }
 
     fn handed_over(&self) -> Result<FemModel, SolveError> {
