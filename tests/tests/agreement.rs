@@ -132,4 +132,6 @@ fn fem_with_more_elements_tends_to_spans() {
         near(1e-2)
     );
     assert!(4 * all.len() >= 3 * cases, "{} of {cases}", all.len());
+    // Now and then a corner of `fem` slips on some mesh where a contact goes: 8 of 198 then are off by more than 1e-3.
+    assert!(10 * near(1e-3) >= 9 * all.len() && mean(2) < 0.5 * mean(0) && mean(2) < 1e-4, "{:?}", all);
 }

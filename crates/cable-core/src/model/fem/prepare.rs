@@ -125,7 +125,9 @@ impl Dynamics {
     }
 
     /// Reads turn and grip of every sliding node off a pose; returns whether a grip changed, and whether a factor did.
-    pub(super) fn update_grips(&mut self, pose: &Pose) -> (bool, bool) {
+    ///
+    /// What slid the wrong way until its grip was seen to be wrong has not slid at all.
+    pub(super) fn update_grips(&mut self, pose: &mut Pose) -> (bool, bool) {
         if self.never_slides {
             return (false, false);
         }
@@ -143,6 +145,9 @@ impl Dynamics {
             let slack = self.task.tolerance + EVEN_FORCE * (load.pull[0] + load.pull[1]);
             next.grip = load.grip(&next, pose.slide[k], inertia, slack);
             next.factor = load.factor(next.grip, next.exponent, self.mesh.axial_stiffness);
+            if next.sticks() && !node.sticks() {
+                pose.slide[k] = 0.0;
+            }
             gripped |= next.grip != node.grip;
             changed |= !((next.factor / node.factor - 1.0).abs() <= SAME_FACTOR);
             self.mesh.sliding[k] = Some(next);
