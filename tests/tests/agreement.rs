@@ -20,6 +20,9 @@ use std::sync::Arc;
 /// Elements of `fem`, coarse to fine.
 const ELEMENTS: [usize; 3] = [60, 120, 240];
 
+/// Scenes looked at whatever the number: an end is drawn back after both corners of a beam slid, and they must hold at once.
+const DRAWN_BACK: [usize; 3] = [64, 81, 95];
+
 /// Steps in which the end goes from one corner of its way to the next.
 const STEPS: usize = 10;
 
@@ -92,8 +95,13 @@ fn fem_with_more_elements_tends_to_spans() {
     let cases = std::env::var("AGREE_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
     let mut runner = TestRunner::deterministic();
     let (mut all, mut refused, mut failed) = (Vec::new(), 0, 0);
-    for case in 0..cases {
+    let last = DRAWN_BACK.into_iter().fold(cases, |last, k| last.max(k + 1));
+    for case in 0..last {
         let dice = dice().new_tree(&mut runner).unwrap().current();
+        let drawn_back = DRAWN_BACK.contains(&case);
+        if case >= cases && !drawn_back {
+            continue;
+        }
         let problem = problems(&scene(&dice)).unwrap().remove(0);
         let mut spans = model(&problem, Model::Spans, None);
         if spans.settle().is_err() {
@@ -115,7 +123,10 @@ fn fem_with_more_elements_tends_to_spans() {
             .collect();
         println!("{case}: mu {:.2} EA {:.0e}: {off:?}", dice.2, problem.axial_stiffness);
         match <[f64; 3]>::try_from(off) {
-            Ok(off) => all.push(off),
+            Ok(off) => {
+                assert!(!drawn_back || off.iter().all(|o| *o < 2e-3), "scene {case}: {off:?}");
+                all.push(off);
+            }
             Err(_) => failed += 1,
         }
     }

@@ -52,13 +52,16 @@ impl Relay {
 
     /// `fem`, which holds the present state from now on.
     fn fem(&mut self, why: String) -> Result<&mut FemModel, SolveError> {
-        if self.fem.is_none() {
-            let fem = self.handed_over()?;
-            self.reason = Some(why);
-            self.wait[0] = self.wait[1];
-            return Ok(self.fem.insert(fem));
-        }
-        self.fem.as_mut().ok_or(SolveError::NoRestingPlace { why })
+        let fem = match self.fem.take() {
+            Some(fem) => fem,
+            None => {
+                let fem = self.handed_over()?;
+                self.reason = Some(why);
+                self.wait[0] = self.wait[1];
+                fem
+            }
+        };
+        Ok(self.fem.insert(fem))
     }
 
     fn handed_over(&self) -> Result<FemModel, SolveError> {
@@ -154,7 +157,10 @@ impl Mechanics for Relay {
                 self.adopted = None;
                 self.offer();
             }
-            Err(_) if first => self.fem = None,
+            Err(_) if first => {
+                self.fem = None;
+                self.reason = None;
+            }
             Err(_) => {}
         }
         found
@@ -200,6 +206,7 @@ impl Mechanics for Relay {
         let moves = state.velocity_m_per_s.iter().any(|v| v.norm() > 0.0);
         self.adopted = Some(state.clone());
         self.fem = None;
+        self.reason = None;
         if moves {
             self.fem("masses move".to_owned())?;
         }
@@ -209,6 +216,7 @@ impl Mechanics for Relay {
     fn take_over(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         self.adopted = None;
         self.fem = None;
+        self.reason = None;
         if let Err(error) = self.spans.take_over(answer, time_s) {
             let mut fem = FemModel::new(self.spans.problem().clone(), self.settings)?;
             for (k, target) in self.dragged.iter().enumerate() {

@@ -51,8 +51,7 @@ impl Workspace {
         let in_a_hurry = self.hurried;
         let mut done = self.descend((problem, mesh), contacts, task, pose);
         if done.is_err() && self.near_enough {
-            pose.x.clone_from(&self.begun.x);
-            pose.slide.clone_from(&self.begun.slide);
+            self.go_back(pose);
             done = self.descend((problem, mesh), contacts, task, pose);
         }
         done.map(|d| Done { iterations: d.iterations + in_a_hurry, ..d })
@@ -74,10 +73,15 @@ impl Workspace {
         self.carried.clear();
         self.branches.clear();
         if done.is_none() && !self.near_enough {
-            pose.x.clone_from(&self.begun.x);
-            pose.slide.clone_from(&self.begun.slide);
+            self.go_back(pose);
         }
         done
+    }
+
+    /// To where the step began.
+    fn go_back(&self, pose: &mut Pose) {
+        pose.x.clone_from(&self.begun.x);
+        pose.slide.clone_from(&self.begun.slide);
     }
 
     fn carry_pulls(&mut self, mesh: &Mesh, pose: &Pose) {
