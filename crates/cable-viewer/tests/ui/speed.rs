@@ -114,15 +114,9 @@ fn cpu_s() -> Option<f64> {
     Some((next()? + next()?) / 100.0)
 }
 
-fn draw(name: &str, mut scene: Scene, taken_over: bool) {
-    // The ground is only drawn: what is measured is not how the cable was found.
-    let ground = std::mem::take(&mut scene.obstacles);
-    let renderer = match Screen::new() {
-        Ok(renderer) => renderer,
-        Err(why) => return eprintln!("{name}: not measured, {why}"),
-    };
-    let software = Software::of(&renderer.state).filter(|_| taken_over);
-    let mut harness = Harness::builder()
+/// The whole program in a window of 1280×800.
+fn window(renderer: Screen, software: Option<Software>, scene: Scene) -> Harness<'static, ViewerApp> {
+    Harness::builder()
         .with_size(Vec2::new(1280.0, 800.0))
         .with_step_dt(1.0 / 60.0)
         .with_render_cursor(false)
@@ -131,10 +125,21 @@ fn draw(name: &str, mut scene: Scene, taken_over: bool) {
         .renderer(renderer)
         .build_eframe(|cc| {
             software.into_iter().for_each(|s| cc.egui_ctx.add_plugin(s));
-            let mut app = ViewerApp::inline(&cc.egui_ctx, scene, None);
-            app.apply(&cc.egui_ctx, vec![Command::SetModel(Model::Fem)]);
-            app
-        });
+            ViewerApp::inline(&cc.egui_ctx, scene, None)
+        })
+}
+
+fn draw(name: &str, mut scene: Scene, taken_over: bool) {
+    // The ground is only drawn: what is measured is not how the cable was found.
+    let ground = std::mem::take(&mut scene.obstacles);
+    let renderer = match Screen::new() {
+        Ok(renderer) => renderer,
+        Err(why) => return eprintln!("{name}: not measured, {why}"),
+    };
+    let software = Software::of(&renderer.state).filter(|_| taken_over);
+    let mut harness = window(renderer, software, scene);
+    let ctx = harness.ctx.clone();
+    harness.state_mut().apply(&ctx, vec![Command::SetModel(Model::Fem)]);
     harness.run_steps(4);
     assert_eq!(harness.state().state.snapshot.error, None);
     harness.state_mut().state.scene.obstacles = ground;
@@ -278,17 +283,7 @@ fn speed_of_graphs() {
         Err(why) => return eprintln!("not measured, {why}"),
     };
     let software = Software::of(&renderer.state);
-    let mut harness = Harness::builder()
-        .with_size(Vec2::new(1280.0, 800.0))
-        .with_step_dt(1.0 / 60.0)
-        .with_render_cursor(false)
-        .with_accessibility_check(false)
-        .allow_missing_glyphs()
-        .renderer(renderer)
-        .build_eframe(|cc| {
-            software.into_iter().for_each(|s| cc.egui_ctx.add_plugin(s));
-            ViewerApp::inline(&cc.egui_ctx, catalog::hanging_span(), None)
-        });
+    let mut harness = window(renderer, software, catalog::hanging_span());
     harness.run_steps(4);
     let all = cable_viewer::plot::View { window_s: None, ..cable_viewer::plot::View::default() };
     harness.ctx.data_mut(|d| d.insert_temp(egui::Id::unique("plot view"), all));
