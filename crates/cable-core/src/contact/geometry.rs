@@ -13,7 +13,7 @@ use std::ops::Range;
 
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::math::Vector;
-use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy};
+use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 
 use super::Gap;
 use super::distance::nearest_fraction;
@@ -201,18 +201,7 @@ impl Body {
             let gap = self.gap(self.first + 1, (p - c).norm(), unit_or(p - c, Vec2::y()), c);
             return (gap.gap_m <= reach).then_some(gap);
         }
-        let r = Vec2::repeat(reach + self.offset);
-        let mut best: Option<(f64, usize, f64)> = None;
-        for k in self.candidates(p - r, p + r) {
-            let e = &self.edges[k];
-            let f = nearest_fraction(p, e.p, e.q);
-            let d = (p - (e.p + (e.q - e.p) * f)).norm();
-            // Ties (a shared corner) go to the lower edge, whatever the order of the tree.
-            if best.is_none_or(|(b, j, _)| d < b || (d == b && k < j)) {
-                best = Some((d, k, f));
-            }
-        }
-        let (d, k, f) = best?;
+        let (d, k, f) = self.nearest(p, reach + self.offset)?;
         let e = self.edges[k];
         let at = e.p + (e.q - e.p) * f;
         let corner = if f == 0.0 {
@@ -233,7 +222,37 @@ impl Body {
         };
         let normal = unit_or((p - at) * side, e.normal());
         let gap = self.gap(corner.map_or(self.first + 2 * k, |c| c.feature), d * side, normal, at);
-        (d <= reach + self.offset).then_some(gap)
+        Some(gap)
+    }
+
+    /// The edge nearest to a point and not further than `most`: how far, which, and where along it.
+    fn nearest(&self, p: Vec2, most: f64) -> Option<(f64, usize, f64)> {
+        let to_box = |node: &BvhNode, _: f64| {
+            let (low, high) = (node.mins(), node.maxs());
+            let out = |x: f64, low: f64, high: f64| {
+                if x < low {
+                    low - x
+                } else if x > high {
+                    x - high
+                } else {
+                    0.0
+                }
+            };
+            out(p.x, low.x, high.x).hypot(out(p.y, low.y, high.y))
+        };
+        let to_edge = |k: u32, _: f64| {
+            let e = self.edges.get(k as usize)?;
+            let f = nearest_fraction(p, e.p, e.q);
+            Some(((p - (e.p + (e.q - e.p) * f)).norm(), f))
+        };
+        let (k, (d, f)) = self.bvh.find_best(most.next_up(), to_box, to_edge)?;
+        // Of two edges that share the nearest corner the lower one, whatever the order of the tree.
+        let k = k as usize;
+        Some(match f {
+            0.0 if k > 0 => (d, k - 1, 1.0),
+            1.0 if self.closed && k + 1 == self.edges.len() => (d, 0, 0.0),
+            _ => (d, k, f),
+        })
     }
 }
 

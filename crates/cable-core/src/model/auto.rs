@@ -12,14 +12,6 @@ pub enum Question {
     History(Inertia),
 }
 
-/// Corners of all obstacles up to which `spans` is chosen: it reads the boundary of all of them before it finds a first rest,
-/// some 15 µs a corner in a debug build. More: a scanned map of a million points opens in ten seconds and not in two.
-const MOST_CORNERS: usize = 20_000;
-
-fn corners(problem: &Problem) -> usize {
-    problem.world.geometry().bodies().iter().map(|b| b.edges.len()).sum()
-}
-
 /// The model for a question, and the reason in one sentence.
 #[must_use]
 pub fn choose(problem: &Problem, question: Question) -> (Model, String) {
@@ -31,8 +23,6 @@ pub fn choose(problem: &Problem, question: Question) -> (Model, String) {
         (Model::Fem, "the cable can touch itself".to_owned())
     } else if problem.floor_friction.is_some() {
         (Model::Fem, "in plan view the floor rubs everywhere".to_owned())
-    } else if corners(problem) > MOST_CORNERS {
-        (Model::Fem, "the obstacles have more corners than spans reads quickly".to_owned())
     } else if !problem.world.is_empty() {
         (Model::Spans, "a taut cable among obstacles: contacts as intervals have no discretisation error".to_owned())
     } else {

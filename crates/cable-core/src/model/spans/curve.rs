@@ -15,6 +15,8 @@
 //! between two breaks is a chain; a contact never leaves its chain. Beyond the ends of its chain the curve goes on
 //! straight or round, so that Newton may look there; what that would cut is found by the search for penetration.
 
+use std::sync::Arc;
+
 use crate::contact::geometry::{Body, Edge};
 use crate::math::{Vec2, cross, perp};
 
@@ -66,8 +68,9 @@ pub(super) struct Curve {
     pub sense: f64,
     /// How far it has been moved, m (a wheel that travels).
     pub shift: Vec2,
-    pieces: Vec<Piece>,
-    starts: Vec<f64>,
+    /// Shared by all copies: scanned ground has a million.
+    pieces: Arc<[Piece]>,
+    starts: Arc<[f64]>,
     /// One turn of a closed boundary in p.
     period: Option<f64>,
 }
@@ -129,6 +132,7 @@ impl Curve {
             sum += p.extent;
         }
         let period = closed.then_some(sum);
+        let (pieces, starts) = (pieces.into(), starts.into());
         Self { obstacle, friction, sense, shift: Vec2::zeros(), pieces, starts, period }
     }
 

@@ -55,7 +55,7 @@ pub(super) struct Layout {
     pub problem: Arc<Problem>,
     loads: Vec<Load>,
     /// Where it must not pass, in order of x.
-    pub corners: Vec<Corner>,
+    pub corners: Arc<[Corner]>,
     /// Strands: material from, to (m) and the support at each end; None = free or dead load.
     pub strands: Vec<Part>,
 }
@@ -129,7 +129,7 @@ impl Layout {
             return Err(SolveError::NoRestingPlace { why: "nothing holds the cable".to_owned() });
         }
         loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
-        let corners = pass::corners(&problem.world);
+        let corners = pass::corners(&problem.world).into();
         let mut layout = Self { problem: problem.clone(), loads, corners, strands };
         layout.face_wheels();
         Ok(layout)
