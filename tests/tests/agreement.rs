@@ -24,7 +24,9 @@ const ELEMENTS: [usize; 3] = [60, 120, 240];
 const DRAWN_BACK: [usize; 3] = [64, 81, 95];
 
 /// Steps in which the end goes from one corner of its way to the next.
-const STEPS: usize = 10;
+fn steps() -> usize {
+    std::env::var("AGREE_STEPS").ok().and_then(|n| n.parse().ok()).unwrap_or(10)
+}
 
 /// What varies: heights of the ground, the beam, friction, log₁₀ EA, slack, where the end goes.
 type Dice = (Vec<f64>, (bool, f64, f64), f64, f64, f64, Vec<(f64, f64)>);
@@ -71,8 +73,8 @@ fn drawn(model: &mut dyn Mechanics, ways: &[(f64, f64)], from: Vec2) -> Option<C
     let mut at = from;
     for &(x, y) in ways {
         let next = from + Vec2::new(x, y);
-        for k in 1..=STEPS {
-            model.drag_support(1, at + (next - at) * (k as f64 / STEPS as f64));
+        for k in 1..=steps() {
+            model.drag_support(1, at + (next - at) * (k as f64 / steps() as f64));
             model.advance(0.1, Inertia::QuasiStatic).ok()?;
         }
         at = next;

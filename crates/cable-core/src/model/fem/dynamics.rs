@@ -389,7 +389,10 @@ impl Dynamics {
             let to = start + piece;
             let tried = match inertia {
                 Inertia::Dynamic => self.dynamic_step(piece, dragged),
-                Inertia::QuasiStatic => self.rest_step(to, dragged).or_else(|_| {
+                Inertia::QuasiStatic => self.quiet_step(to, dragged).or_else(|failure| {
+                    if failure.cause == PULLED {
+                        return Err(failure);
+                    }
                     self.restore();
                     self.save();
                     self.motion.time = start;

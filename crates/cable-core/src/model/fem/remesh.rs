@@ -218,11 +218,16 @@ impl Dynamics {
     /// The sliding nodes of obstacles that the cable, at positions `x` (m), turns round the wrong way: there a corner would
     /// have to pull.
     pub(super) fn pulled(&self, x: &[Vec2]) -> Option<usize> {
+        self.pulled_by(x, WRONG_TURN)
+    }
+
+    /// See `pulled`; `wrong`: the turn (rad) the wrong way from which it counts.
+    pub(super) fn pulled_by(&self, x: &[Vec2], wrong: f64) -> Option<usize> {
         (1..self.mesh.nodes().saturating_sub(1)).find(|&k| {
             self.mesh.sliding[k].is_some_and(|node| {
                 let shared = |j: usize| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
-                let wrong = || self.turn_at(k, x) < -WRONG_TURN || self.beyond_its_corner(k, x);
-                node.feature().is_some() && !shared(k - 1) && !shared(k + 1) && wrong()
+                let is_wrong = || self.turn_at(k, x) < -wrong || self.beyond_its_corner(k, x);
+                node.feature().is_some() && !shared(k - 1) && !shared(k + 1) && is_wrong()
             })
         })
     }

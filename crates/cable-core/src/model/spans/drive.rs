@@ -58,6 +58,8 @@ pub(super) struct Taken {
     pub halved: usize,
     /// Times it ran away from where it was to another place that holds it.
     pub ran: usize,
+    /// Whether the rest was found without friction, which held it from then on.
+    pub eased: bool,
 }
 
 impl Network {
@@ -78,7 +80,7 @@ impl Network {
             let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
             match network.laid(layout, begin, cooled, work).and_then(|taken| {
                 if begin.friction < instant.friction {
-                    network.rub(layout, instant, work).map(|more| taken.and(more))
+                    network.rub(layout, instant, work).map(|more| Taken { eased: true, ..taken.and(more) })
                 } else {
                     Ok(taken)
                 }
@@ -398,7 +400,12 @@ impl From<(Trouble, f64)> for Trouble {
 
 impl Taken {
     fn and(self, more: Self) -> Self {
-        Self { solved: self.solved.and(more.solved), halved: self.halved + more.halved, ran: self.ran + more.ran }
+        Self {
+            solved: self.solved.and(more.solved),
+            halved: self.halved + more.halved,
+            ran: self.ran + more.ran,
+            eased: self.eased || more.eased,
+        }
     }
 }
 

@@ -205,7 +205,11 @@ impl Mechanics for SpansModel {
             report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
         }
         if self.rubs() {
-            let message = "With friction the resting place depends on how the cable was laid: this is the one laid along its way with the least sliding";
+            let message = if taken.eased {
+                "With friction the resting place depends on how the cable was laid. None was found by laying it along its way: this is the one it finds without friction, which friction then holds"
+            } else {
+                "With friction the resting place depends on how the cable was laid: this is the one laid along its way with the least sliding"
+            };
             let name = &self.layout.problem.cable.name;
             report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
         }
