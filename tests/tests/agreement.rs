@@ -23,10 +23,11 @@ const ELEMENTS: [usize; 3] = [60, 120, 240];
 /// Scenes looked at whatever the number: an end is drawn back after both corners of a beam slid, and they must hold at once.
 const DRAWN_BACK: [usize; 3] = [64, 81, 95];
 
+/// The same: the cable is let down, so that a front of contact runs over the ground, or a contact goes while corners hold.
+const LET_DOWN: [usize; 5] = [1, 71, 135, 173, 194];
+
 /// Steps in which the end goes from one corner of its way to the next.
-fn steps() -> usize {
-    std::env::var("AGREE_STEPS").ok().and_then(|n| n.parse().ok()).unwrap_or(10)
-}
+const STEPS: usize = 10;
 
 /// What varies: heights of the ground, the beam, friction, log₁₀ EA, slack, where the end goes.
 type Dice = (Vec<f64>, (bool, f64, f64), f64, f64, f64, Vec<(f64, f64)>);
@@ -73,8 +74,8 @@ fn drawn(model: &mut dyn Mechanics, ways: &[(f64, f64)], from: Vec2) -> Option<C
     let mut at = from;
     for &(x, y) in ways {
         let next = from + Vec2::new(x, y);
-        for k in 1..=steps() {
-            model.drag_support(1, at + (next - at) * (k as f64 / steps() as f64));
+        for k in 1..=STEPS {
+            model.drag_support(1, at + (next - at) * (k as f64 / STEPS as f64));
             model.advance(0.1, Inertia::QuasiStatic).ok()?;
         }
         at = next;
@@ -97,11 +98,11 @@ fn fem_with_more_elements_tends_to_spans() {
     let cases = std::env::var("AGREE_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
     let mut runner = TestRunner::deterministic();
     let (mut all, mut refused, mut failed) = (Vec::new(), 0, 0);
-    let last = DRAWN_BACK.into_iter().fold(cases, |last, k| last.max(k + 1));
+    let always = || DRAWN_BACK.into_iter().chain(LET_DOWN);
+    let last = always().fold(cases, |last, k| last.max(k + 1));
     for case in 0..last {
         let dice = dice().new_tree(&mut runner).unwrap().current();
-        let drawn_back = DRAWN_BACK.contains(&case);
-        if case >= cases && !drawn_back {
+        if case >= cases && always().all(|k| k != case) {
             continue;
         }
         let problem = problems(&scene(&dice)).unwrap().remove(0);
@@ -126,7 +127,8 @@ fn fem_with_more_elements_tends_to_spans() {
         println!("{case}: mu {:.2} EA {:.0e}: {off:?}", dice.2, problem.axial_stiffness);
         match <[f64; 3]>::try_from(off) {
             Ok(off) => {
-                assert!(!drawn_back || off.iter().all(|o| *o < 2e-3), "scene {case}: {off:?}");
+                assert!(!DRAWN_BACK.contains(&case) || off.iter().all(|o| *o < 2e-3), "scene {case}: {off:?}");
+                assert!(!LET_DOWN.contains(&case) || off[2] < 1e-3, "scene {case}: {off:?}");
                 all.push(off);
             }
             Err(_) => failed += 1,
@@ -145,6 +147,6 @@ fn fem_with_more_elements_tends_to_spans() {
         near(1e-2)
     );
     assert!(4 * all.len() >= 3 * cases, "{} of {cases}", all.len());
-    // Now and then a corner of `fem` slips on some mesh where a contact goes: 8 of 198 then are off by more than 1e-3.
-    assert!(10 * near(1e-3) >= 9 * all.len() && mean(2) < 0.5 * mean(0) && mean(2) < 1e-4, "{:?}", all);
+    // Two of 198 are off by more: one by 1.6e-3; one lies slack without friction, any way it likes.
+    assert!(50 * (all.len() - near(1e-3)) <= all.len() && mean(2) < 0.5 * mean(0) && mean(2) < 1e-4, "{:?}", all);
 }

@@ -144,12 +144,12 @@ impl ContactSet {
     pub fn copy_from(&mut self, other: &Self) {
         let Self { barrier, rubs, memory, spare: _, scratch: _, near: _, floor_slid, own } = other;
         self.barrier = *barrier;
-        // With room for as many, so that a front of contact that runs on asks for none.
+        // With room for as many, so that a front of contact that runs on asks for none; and no more, or each copy would double it.
         self.rubs.clear();
-        self.rubs.reserve(rubs.capacity());
+        self.rubs.reserve_exact(rubs.capacity());
         self.rubs.extend_from_slice(rubs);
         self.memory.clear();
-        self.memory.reserve(memory.capacity());
+        self.memory.reserve_exact(memory.capacity());
         self.memory.extend_from_slice(memory);
         self.floor_slid.clone_from(floor_slid);
         self.own.copy_from(own);
