@@ -49,9 +49,12 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> [Vec2; 2] {
         let middle = d.mesh.path(e, x).direction * tension[e];
         let half = d.mesh.share(node);
         let body = d.problem.body_force(d.time()) * half;
-        let ground =
-            if ground.is_some() { ground_force(d, next, x) * (half / d.mesh.share(next)) } else { Vec2::zeros() };
-        middle + (body + ground) * sign
+        let Some(ground) = ground else { return middle + body * sign };
+        let force = middle + (body + ground_force(d, next, x) * (half / d.mesh.share(next))) * sign;
+        // What lies on an edge up to its end presses on the edge alone; the barrier's width would tilt the last bar.
+        let beyond = d.problem.world.signed_gap(x[next], 3.0 * d.contacts.barrier.reach);
+        let along = ground.feature % 2 == 0 && beyond.is_some_and(|g| g.feature == ground.feature);
+        if along { force - ground.normal * ground.normal.dot(&force) } else { force }
     };
     if n < 3 {
         return [Vec2::zeros(); 2];
