@@ -28,6 +28,13 @@ impl Band {
         }
     }
 
+    /// Makes a row zero.
+    pub fn clear(&mut self, row: usize) {
+        if let Some(row) = self.rows.get_mut(row) {
+            *row = [0.0; WIDTH];
+        }
+    }
+
     /// An entry as it was added.
     #[cfg(test)]
     pub fn entry(&self, row: usize, column: usize) -> f64 {

@@ -150,7 +150,7 @@ fn contact(
         return Err(Trouble::LoadLies { s: l.arc_length });
     }
     past.clone_from(&c.history);
-    past.commit(&track, e, c.mode, memory);
+    past.commit(&track, e, (c.mode, c.held), memory);
     let (mut p, mut t) = (e.p[0], past.at(&track, e.p[0]).0);
     for i in 1..=SAMPLES {
         let q = e.p[0] + (e.p[1] - e.p[0]) * i as f64 / SAMPLES as f64;

@@ -18,7 +18,7 @@
 use std::sync::Arc;
 
 use crate::contact::geometry::{Body, Edge};
-use crate::math::{Vec2, cross, perp};
+use crate::math::{Vec2, cross, perp, sin_cos};
 
 /// An edge holds the cable if the load presses on it with more than this part of itself. Smaller: a wall that rounding
 /// tilts would hold a cable that hangs beside it. Larger: floors steeper than 89.99° would not hold.
@@ -40,8 +40,8 @@ pub(super) enum Form {
         center: Vec2,
         /// Radius of the centre line, m; 0 = a point.
         radius: f64,
-        /// Angle of the tangent at its start, rad.
-        from: f64,
+        /// Direction of the tangent at its start, a unit vector.
+        from: Vec2,
     },
 }
 
@@ -95,9 +95,14 @@ pub(super) struct Place {
 }
 
 /// The direction of an angle.
-pub(super) fn direction(angle: f64) -> Vec2 {
-    let (sin, cos) = angle.sin_cos();
-    Vec2::new(cos, sin)
+fn direction(angle: f64) -> Vec2 {
+    turned(Vec2::x(), angle)
+}
+
+/// A vector turned by an angle, rad.
+fn turned(v: Vec2, angle: f64) -> Vec2 {
+    let (sin, cos) = sin_cos(angle);
+    Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
 }
 
 impl Curve {
@@ -106,7 +111,7 @@ impl Curve {
         let c = body.offset;
         let (pieces, closed) = match body.center {
             Some(center) => {
-                let arc = Form::Arc { center, radius: c, from: 0.0 };
+                let arc = Form::Arc { center, radius: c, from: Vec2::x() };
                 let extent = f64::INFINITY;
                 (vec![Piece { form: arc, extent, kink_before: false, feature: body.first + 1 }], false)
             }
@@ -119,7 +124,7 @@ impl Curve {
 
     /// A wheel of a radius (of the centre line, m) about the origin; shift it to its place.
     pub fn wheel(radius: f64, friction: f64, sense: f64) -> Self {
-        let form = Form::Arc { center: Vec2::zeros(), radius, from: 0.0 };
+        let form = Form::Arc { center: Vec2::zeros(), radius, from: Vec2::x() };
         let piece = Piece { form, extent: f64::INFINITY, kink_before: false, feature: usize::MAX };
         Self::new(vec![piece], false, (None, friction, sense))
     }
@@ -145,7 +150,7 @@ impl Curve {
                 Form::Edge { from, tangent } => Form::Edge { from: from + tangent * p.extent, tangent: -tangent },
                 Form::Arc { center, radius, from } if p.extent.is_infinite() => Form::Arc { center, radius, from },
                 Form::Arc { center, radius, from } => {
-                    Form::Arc { center, radius, from: from - self.sense * p.extent + std::f64::consts::PI }
+                    Form::Arc { center, radius, from: -turned(from, -self.sense * p.extent) }
                 }
             };
             // What was the kink after a piece is the kink before it now.
@@ -162,13 +167,21 @@ impl Curve {
     }
 
     /// The piece of a number that counts on over the turns.
-    pub fn piece(&self, i: i64) -> Piece {
-        let n = self.pieces.len() as i64;
-        self.pieces[i.rem_euclid(n) as usize]
+    pub fn piece(&self, i: i64) -> &Piece {
+        // Without a division in the first turn.
+        let k = i as usize;
+        if k < self.pieces.len() {
+            &self.pieces[k]
+        } else {
+            &self.pieces[i.rem_euclid(self.pieces.len() as i64) as usize]
+        }
     }
 
     /// Where a piece starts in p.
     pub fn origin(&self, i: i64) -> f64 {
+        if let Some(start) = self.starts.get(i as usize) {
+            return *start;
+        }
         let n = self.pieces.len() as i64;
         let turns = i.div_euclid(n);
         self.starts[i.rem_euclid(n) as usize] + if turns == 0 { 0.0 } else { turns as f64 * self.period.unwrap_or(0.0) }
@@ -181,19 +194,16 @@ impl Curve {
 
     /// The piece at p, of those of a chain: its first or last beyond their ends.
     pub fn locate(&self, p: f64, home: Home) -> i64 {
-        if home.first == home.last {
-            return home.first;
-        }
-        let n = self.pieces.len() as i64;
-        let (turns, local) = match self.period {
-            Some(period) if period > 0.0 => {
-                let turns = (p / period).floor();
-                (turns as i64, p - turns * period)
+        let (mut i, mut last) = (home.first, home.last);
+        while i < last {
+            let middle = i + (last - i + 1) / 2;
+            if self.origin(middle) <= p {
+                i = middle;
+            } else {
+                last = middle - 1;
             }
-            _ => (0, p),
-        };
-        let k = self.starts.partition_point(|&s| s <= local).max(1) as i64 - 1;
-        (turns * n + k).clamp(home.first, home.last)
+        }
+        i
     }
 
     /// The point at p.
@@ -213,7 +223,7 @@ impl Curve {
                 turn: 0.0,
             },
             Form::Arc { center, radius, from } => {
-                let tangent = direction(from - self.sense * x);
+                let tangent = turned(from, -self.sense * x);
                 let normal = perp(tangent) * self.sense;
                 Place { at: self.shift + center + normal * radius, tangent, normal, stretch: radius, turn: -self.sense }
             }
@@ -327,8 +337,7 @@ impl Curve {
         self.origin(i) + x
     }
 
-    fn arc_at(&self, from: f64, extent: f64, tangent: Vec2) -> f64 {
-        let start = direction(from);
+    fn arc_at(&self, start: Vec2, extent: f64, tangent: Vec2) -> f64 {
         let x = -self.sense * cross(start, tangent).atan2(start.dot(&tangent));
         if extent.is_infinite() {
             x
@@ -373,7 +382,7 @@ fn boundary(body: &Body, c: f64) -> (Vec<Piece>, bool) {
         let kink_before = kink(k) > 0.0;
         let first = out.len();
         if arc > 0.0 {
-            let form = Form::Arc { center: e.p, radius: c, from: arc_from };
+            let form = Form::Arc { center: e.p, radius: c, from: direction(arc_from) };
             out.push(Piece { form, extent: arc, kink_before, feature: corner_feature(k) });
         }
         // A kink takes c tan(δ/2) of both its edges.
@@ -384,7 +393,7 @@ fn boundary(body: &Body, c: f64) -> (Vec<Piece>, bool) {
         let kink_before = kink_before && out.len() == first;
         out.push(Piece { form, extent, kink_before, feature: body.first + 2 * index });
         if !closed && k + 1 == n && angle > -up {
-            let form = Form::Arc { center: e.q, radius: c, from: angle };
+            let form = Form::Arc { center: e.q, radius: c, from: direction(angle) };
             out.push(Piece { form, extent: angle + up, kink_before: false, feature: body.first + 2 * n + 1 });
         }
     }

@@ -219,7 +219,7 @@ impl Network {
         }
         for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts) {
             let track = self.course.track(c);
-            c.history.commit(&track, &c.ends, c.mode, &mut work.pasts[1]);
+            c.history.commit(&track, &c.ends, (c.mode, c.held), &mut work.pasts[1]);
         }
         Ok(taken)
     }

@@ -256,6 +256,7 @@ fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit, resting: boo
         history: History::default(),
         wheel: None,
         flips: 0,
+        held: None,
         pocket: false,
         smooth: resting,
     };

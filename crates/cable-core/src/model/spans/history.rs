@@ -64,6 +64,8 @@ pub(super) struct Front {
     pub m: f64,
     /// Whether the old tension stopped it; else it came to the other end.
     pub met: bool,
+    /// Old material at p, m.
+    pub old: f64,
 }
 
 /// A contact that holds.
@@ -138,7 +140,7 @@ impl History {
                     (last.m, knot.tension) = (-friction, low);
                 } else {
                     let by = NUDGE * friction;
-                    last.m = crossing((-friction, friction), FLOOR * knot.tension.abs(), None, |m| {
+                    last.m = crossing((-friction, friction), FLOOR * knot.tension.abs(), (None, None), |m| {
                         (knot.tension - reach(m), (reach(m - by) - reach(m + by)) / (2.0 * by))
                     });
                 }
@@ -216,26 +218,28 @@ impl History {
     /// Slides from an end at p with tension `t` towards `to`, as far as the old tension lets it.
     pub fn front(&self, track: &Track<'_>, (p, t): (f64, f64), to: f64) -> Front {
         let right = to > p;
-        let (mut old, _) = self.at(track, p);
+        let (mut old, mut s) = self.at(track, p);
         let sign = if t < old { 1.0 } else { -1.0 };
         let m = track.friction * sign * if right { 1.0 } else { -1.0 };
         let (mut at, mut way) = (p, Step::none(t));
         if t == old {
-            return Front { p, way, m, met: true };
+            return Front { p, way, m, met: true, old: s };
         }
         while at != to {
             let (next, old_m) = self.stretch(track, at, to);
             let piece = track.on(at, next);
-            let (here, there) = (piece.slide(next, way.tension, m), piece.slide(next, old, old_m).tension);
-            if (there - here.tension) * sign <= 0.0 {
-                let x = piece.crossing(next, [(old, old_m), (way.tension, m)]);
-                return Front { p: x, way: way.then(piece.slide(x, way.tension, m)), m, met: true };
+            if let Some((x, [there, here])) = piece.crossing(next, [(old, old_m), (way.tension, m)]) {
+                return Front { p: x, way: way.then(here), m, met: true, old: s + there.material };
             }
+            let (here, there) = (piece.slide(next, way.tension, m), piece.slide(next, old, old_m));
             way = way.then(here);
-            old = there;
+            (old, s) = (there.tension, s + there.material);
             at = next;
+            if (old - way.tension) * sign <= 0.0 {
+                return Front { p: at, way, m, met: true, old: s };
+            }
         }
-        Front { p: to, way, m, met: false }
+        Front { p: to, way, m, met: false, old: s }
     }
 
     /// Where a contact sticks under its end tensions.
@@ -261,18 +265,19 @@ impl History {
         }
         // … or they slide towards or away from each other.
         let sign = if left.m > 0.0 { 1.0 } else { -1.0 };
-        let meet = crossing((p1, p2), FLOOR * (t1.abs() + t2.abs()), None, |x| {
+        let meet = crossing((p1, p2), FLOOR * (t1.abs() + t2.abs()), (None, None), |x| {
             let (r, l) = (track.slide(p2, x, t2, right.m).tension, track.slide(p1, x, t1, left.m).tension);
             let place = track.place(x);
             let slope = track.law.slope(&place, r, right.m) - track.law.slope(&place, l, left.m);
             ((r - l) * sign, slope * sign)
         });
-        let front = |p: f64, t: f64, m: f64| Front { p: meet, way: track.slide(p, meet, t, m), m, met: true };
+        let old = self.at(track, meet).1;
+        let front = |p: f64, t: f64, m: f64| Front { p: meet, way: track.slide(p, meet, t, m), m, met: true, old };
         Held::Meet([front(p1, t1, left.m), front(p2, t2, right.m)])
     }
 
-    /// Takes what came of a step as the new past. `old`: memory.
-    pub fn commit(&mut self, track: &Track<'_>, e: &Ends, mode: Mode, old: &mut Self) {
+    /// Takes what came of a step as the new past. `held`: where it sticks, where that is known; `old`: memory.
+    pub fn commit(&mut self, track: &Track<'_>, e: &Ends, (mode, held): (Mode, Option<Held>), old: &mut Self) {
         let [first, last] = [0, 1].map(|k| Knot { p: e.p[k], s: e.s[k], tension: e.t[k], m: 0.0 });
         if last.p <= first.p {
             self.clear();
@@ -284,7 +289,7 @@ impl History {
                 self.clear();
                 self.knots.extend([Knot { m, ..first }, last]);
             }
-            Mode::Hold => match self.hold(track, e) {
+            Mode::Hold => match held.unwrap_or_else(|| self.hold(track, e)) {
                 Held::Between([left, right]) => {
                     old.clone_from(self);
                     self.clear();

@@ -20,12 +20,34 @@
 //! and the exact T differs by −c ∫ e^{m(ψ−ξ)} (b·t + m b·n)(1/λ(T⁰) − 1/λ₀) dξ, a small part (of order cb·ΔT/EA) of a
 //! small part; what this leaves out is of the order of its square over T. Material is c ∫ dψ/λ. Both by Gauss.
 
-use super::curve::{Curve, Form, Home, Place};
+use std::cell::Cell;
+
+use super::curve::{Curve, Home, Place};
 use super::root::{FLOOR, crossing};
-use crate::math::{GAUSS, Vec2};
+use crate::math::{GAUSS, Vec2, sin_cos};
 
 /// Longest stretch of an arc taken by one rule of 5 Gauss points, rad. At 0.8 a full turn at μ = 0.5 is exact to 1e-13.
 const PANEL: f64 = 0.8;
+
+/// Longest stretch of an arc for which 3 points will do, rad: they leave 4e-10 of the change of 1/λ along it, which is of the
+/// order of T/EA.
+const SHORT: f64 = 0.3;
+
+/// Where two tensions are about one before this part of a piece it is not asked whether they are so on it. Larger: asked after
+/// all more often.
+const WELL: f64 = 0.9;
+/// Two tensions have met when they differ by less than this part: more than rounding, less than where they have not.
+const CLOSED: f64 = 1e-12;
+
+/// A rule of Gauss: weight of the middle, distance of a pair from there as part of the whole and weight of each.
+struct Rule {
+    middle: f64,
+    pairs: &'static [(f64, f64)],
+}
+
+const THREE: Rule = Rule { middle: 4.0 / 9.0, pairs: &[(0.387_298_334_620_741_7, 5.0 / 18.0)] };
+const FIVE: Rule =
+    Rule { middle: GAUSS[2].1, pairs: &[(0.5 - GAUSS[0].0, GAUSS[0].1), (0.5 - GAUSS[1].0, GAUSS[1].1)] };
 
 /// Load and stiffness of a cable at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,28 +109,29 @@ impl Law {
         turned - self.load.dot(&place.normal) * place.stretch / self.stretch(t)
     }
 
-    /// From x₀ on a piece, with tension `t`, to x₁.
-    pub fn on_piece(&self, curve: &Curve, i: i64, (x0, x1): (f64, f64), t: f64, m: f64) -> Step {
-        match curve.piece(i).form {
-            Form::Edge { .. } => {
-                let place = curve.place_on(i, x0);
-                self.on_edge(self.edge_rate(&place, m), x1 - x0, t)
-            }
-            Form::Arc { radius: 0.0, .. } => {
-                let grown = (m * (x1 - x0)).exp();
-                Step { tension: t * grown, material: 0.0, by_tension: grown, material_by_tension: 0.0 }
-            }
-            Form::Arc { .. } => {
-                let panels = ((x1 - x0).abs() / PANEL).ceil().max(1.0);
-                let h = (x1 - x0) / panels;
-                let mut sum = Step { tension: t, material: 0.0, by_tension: 1.0, material_by_tension: 0.0 };
-                for k in 0..panels as usize {
-                    let from = curve.place_on(i, x0 + k as f64 * h);
-                    sum = sum.then(self.on_arc(&from, h, sum.tension, m));
-                }
-                sum
-            }
+    /// From a place, with tension `t`, so far (`way`) along the piece it lies on.
+    pub fn along(&self, from: &Place, way: f64, t: f64, m: f64) -> Step {
+        if from.turn == 0.0 {
+            return self.on_edge(self.edge_rate(from, m), way, t);
         }
+        if from.stretch == 0.0 {
+            let grown = (m * way).exp();
+            return Step { tension: t * grown, material: 0.0, by_tension: grown, material_by_tension: 0.0 };
+        }
+        // Load along and out of the arc: t turns by −n, n by t.
+        let mut load = (self.load.dot(&from.tangent), self.load.dot(&from.normal));
+        if way.abs() <= SHORT {
+            return self.on_arc((from.stretch, load), (way, &THREE), t, m);
+        }
+        let panels = (way.abs() / PANEL).ceil().max(1.0);
+        let h = way / panels;
+        let (sin, cos) = sin_cos(h);
+        let mut sum = Step::none(t);
+        for _ in 0..panels as usize {
+            sum = sum.then(self.on_arc((from.stretch, load), (h, &FIVE), sum.tension, m));
+            load = (load.0 * cos - load.1 * sin, load.1 * cos + load.0 * sin);
+        }
+        sum
     }
 
     fn on_edge(&self, rate: f64, x: f64, t: f64) -> Step {
@@ -121,34 +144,38 @@ impl Law {
         Step { tension, material, by_tension, material_by_tension }
     }
 
-    fn on_arc(&self, from: &Place, h: f64, t: f64, m: f64) -> Step {
-        let c = from.stretch;
-        let (bt, bn) = (self.load.dot(&from.tangent), self.load.dot(&from.normal));
+    /// Along a stretch h of an arc of radius c, with (b·t, b·n) at its start.
+    fn on_arc(&self, (c, (bt, bn)): (f64, (f64, f64)), (h, rule): (f64, &Rule), t: f64, m: f64) -> Step {
         let stretch0 = self.stretch(t);
         let g = c / stretch0;
-        let (alpha, beta) = (2.0 * g * m / (1.0 + m * m), g * (m * m - 1.0) / (1.0 + m * m));
+        let divided = g / (1.0 + m * m);
+        let (alpha, beta) = (2.0 * divided * m, divided * (m * m - 1.0));
         let own = t - alpha * bt - beta * bn;
-        // b·t, b·n, e^{mψ} and T⁰ after a turn of which (sin ψ, cos ψ, e^{mψ}) is given: t turns by −n, n by t.
+        // b·t, b·n, e^{mψ} and T⁰ after a turn of which (sin ψ, cos ψ, e^{mψ}) is given.
         let at = |(sin, cos, grown): (f64, f64, f64)| {
             let (bt, bn) = (bt * cos - bn * sin, bn * cos + bt * sin);
             (bt, bn, grown, alpha * bt + beta * bn + own * grown)
         };
-        // The nodes lie alike on both sides of the middle: three turns by themselves make all of them, and the end.
         let turn = |psi: f64| {
-            let (sin, cos) = psi.sin_cos();
+            let (sin, cos) = sin_cos(psi);
             (sin, cos, if m == 0.0 { 1.0 } else { (m * psi).exp() })
         };
         let on = |a: (f64, f64, f64), b: (f64, f64, f64)| (a.0 * b.1 + a.1 * b.0, a.1 * b.1 - a.0 * b.0, a.2 * b.2);
-        let back = |a: (f64, f64, f64)| (-a.0, a.1, 1.0 / a.2);
-        let (middle, far, near) = (turn(0.5 * h), turn((0.5 - GAUSS[0].0) * h), turn((0.5 - GAUSS[1].0) * h));
-        let turns = [on(middle, back(far)), on(middle, back(near)), middle, on(middle, near), on(middle, far)];
         let (mut correction, mut material, mut by) = (0.0, 0.0, 0.0);
-        for (turn, (_, weight)) in turns.into_iter().zip(GAUSS) {
+        let mut node = |turn: (f64, f64, f64), weight: f64| {
             let (bt, bn, grown, t0) = at(turn);
-            let stretch = self.stretch(t0);
-            correction += weight * (bt + m * bn) / grown * (1.0 / stretch - 1.0 / stretch0);
-            material += weight / stretch;
-            by += weight * grown / (stretch * stretch);
+            let inverse = 1.0 / self.stretch(t0);
+            correction += weight * (bt + m * bn) / grown * (inverse - 1.0 / stretch0);
+            material += weight * inverse;
+            by += weight * grown * inverse * inverse;
+        };
+        // The nodes lie alike on both sides of the middle, and the end is as far from there as the start.
+        let middle = turn(0.5 * h);
+        node(middle, rule.middle);
+        for (off, weight) in rule.pairs {
+            let off = turn(off * h);
+            node(on(middle, off), *weight);
+            node(on(middle, (-off.0, off.1, 1.0 / off.2)), *weight);
         }
         let (_, _, grown, t0) = at(on(middle, middle));
         Step {
@@ -198,7 +225,7 @@ impl Track<'_> {
     /// The piece between p₀ and p₁, which lie on one.
     pub fn on(&self, p0: f64, p1: f64) -> OnPiece<'_> {
         let i = self.curve.locate(0.5 * (p0 + p1), self.home);
-        OnPiece { track: self, i, origin: self.curve.origin(i), p0 }
+        OnPiece { law: &self.law, from: self.curve.place_on(i, p0 - self.curve.origin(i)), p0 }
     }
 
     /// Slides with m from p₀, where the tension is `t`, to p₁ (either way).
@@ -212,7 +239,8 @@ impl Track<'_> {
                 std::cmp::Ordering::Less => self.curve.origin(i + 1),
                 std::cmp::Ordering::Greater => origin,
             };
-            sum = sum.then(self.law.on_piece(self.curve, i, (at - origin, to - origin), sum.tension, m));
+            let from = self.curve.place_on(i, at - origin);
+            sum = sum.then(self.law.along(&from, to - at, sum.tension, m));
             if i == last {
                 return sum;
             }
@@ -275,44 +303,77 @@ impl Track<'_> {
 
 /// One piece of a track, from a point on it.
 pub(super) struct OnPiece<'a> {
-    track: &'a Track<'a>,
-    i: i64,
-    origin: f64,
+    law: &'a Law,
+    from: Place,
     p0: f64,
 }
 
 impl OnPiece<'_> {
     /// Slides with m from its point, where the tension is `t`, to p.
     pub fn slide(&self, p: f64, t: f64, m: f64) -> Step {
-        self.track.law.on_piece(self.track.curve, self.i, (self.p0 - self.origin, p - self.origin), t, m)
+        self.law.along(&self.from, p - self.p0, t, m)
     }
 
-    /// Where on the way to p₁ two tensions, each with its m, that differ at its point come to be one: on an edge both Θ are
-    /// linear, round a sharp corner both T are exponential.
-    pub fn crossing(&self, p1: f64, [(t, m), (u, n)]: [(f64, f64); 2]) -> f64 {
-        let law = &self.track.law;
-        let within = |x: f64| {
-            let way = (p1 - self.p0).abs();
-            // Parallel: anywhere.
-            let x = if x.is_finite() { x } else { p1 - self.p0 };
-            self.p0 + if x.abs() < way { x } else { p1 - self.p0 }
+    /// dT/dp so far on, where the tension is `t`.
+    fn slope(&self, way: f64, t: f64, m: f64) -> f64 {
+        let (sin, cos) = if self.from.turn == 0.0 { (0.0, 1.0) } else { sin_cos(way) };
+        let (tangent, normal) = (self.from.tangent, self.from.normal);
+        let place = Place { tangent: tangent * cos - normal * sin, normal: normal * cos + tangent * sin, ..self.from };
+        self.law.slope(&place, t, m)
+    }
+
+    /// Where before p₁ two tensions, each with its m, that differ at its point come to be one, and both ways there; None
+    /// where that is not before p₁. On an edge both Θ are linear, round a sharp corner both T are exponential, else about.
+    pub fn crossing(&self, p1: f64, [(t, m), (u, n)]: [(f64, f64); 2]) -> Option<(f64, [Step; 2])> {
+        let law = self.law;
+        let whole = p1 - self.p0;
+        let both = |p: f64| [self.slide(p, t, m), self.slide(p, u, n)];
+        let about = if self.from.turn == 0.0 {
+            (law.theta(u) - law.theta(t)) / (law.edge_rate(&self.from, m) - law.edge_rate(&self.from, n))
+        } else {
+            // As if the load were that of its start all along.
+            let held = |t: f64, m: f64| {
+                let g = self.from.stretch / (law.stretch(t) * (1.0 + m * m));
+                let (bt, bn) = (law.load.dot(&self.from.tangent), law.load.dot(&self.from.normal));
+                t - g * (2.0 * m * bt + (m * m - 1.0) * bn)
+            };
+            (held(u, n) / held(t, m)).ln() / (m - n)
         };
-        match self.track.curve.piece(self.i).form {
-            Form::Edge { .. } => {
-                let place = self.track.curve.place_on(self.i, self.p0 - self.origin);
-                within((law.theta(u) - law.theta(t)) / (law.edge_rate(&place, m) - law.edge_rate(&place, n)))
-            }
-            Form::Arc { radius: 0.0, .. } if t * u > 0.0 => within((u / t).ln() / (m - n)),
-            Form::Arc { .. } => {
-                let sign = (t - u).signum();
-                let end = (self.slide(p1, t, m).tension - self.slide(p1, u, n).tension) * sign;
-                crossing((self.p0, p1), FLOOR * t.abs(), Some(((t - u) * sign, end)), |x| {
-                    let (a, b) = (self.slide(x, t, m).tension, self.slide(x, u, n).tension);
-                    let place = self.track.curve.place_on(self.i, x - self.origin);
-                    ((a - b) * sign, (law.slope(&place, a, m) - law.slope(&place, b, n)) * sign)
-                })
+        // Parallel: nowhere. NaN is not inside either.
+        let part = about / whole;
+        let exact = self.from.turn == 0.0 || self.from.stretch == 0.0;
+        if exact {
+            let inside = part >= 0.0 && part <= 1.0;
+            return inside.then(|| (self.p0 + about, both(self.p0 + about)));
+        }
+        let sign = (t - u).signum();
+        let near = (part > 0.0 && part < WELL).then(|| self.p0 + about);
+        if let Some(near) = near {
+            let found = self.meeting(p1, [(t, m), (u, n)], (-1.0, Some(near)));
+            let [a, b] = found.1;
+            if (a.tension - b.tension).abs() <= CLOSED * t.abs() {
+                return Some(found);
             }
         }
+        let [a, b] = both(p1);
+        let end = (a.tension - b.tension) * sign;
+        (end <= 0.0).then(|| self.meeting(p1, [(t, m), (u, n)], (end, None)))
+    }
+
+    /// As [`Self::crossing`] round an arc; `end`: the difference at p₁, `near`: about where.
+    fn meeting(&self, p1: f64, [(t, m), (u, n)]: [(f64, f64); 2], (end, near): (f64, Option<f64>)) -> (f64, [Step; 2]) {
+        let sign = (t - u).signum();
+        let both = |p: f64| [self.slide(p, t, m), self.slide(p, u, n)];
+        let last = Cell::new((f64::NAN, [Step::none(t); 2]));
+        let ends = ((t - u) * sign, end);
+        let x = crossing((self.p0, p1), FLOOR * t.abs(), (Some(ends), near), |x| {
+            let [a, b] = both(x);
+            last.set((x, [a, b]));
+            let way = x - self.p0;
+            ((a.tension - b.tension) * sign, (self.slope(way, a.tension, m) - self.slope(way, b.tension, n)) * sign)
+        });
+        let (at, ways) = last.get();
+        (x, if at == x { ways } else { both(x) })
     }
 }
 

@@ -334,6 +334,7 @@ fn contact(course: &Course, (curve, home): (usize, Home), (p, s): ([f64; 2], [f6
         history: History::new(knot(0), knot(1)),
         wheel: None,
         flips: 0,
+        held: None,
         pocket: false,
         smooth: false,
     }

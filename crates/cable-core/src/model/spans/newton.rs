@@ -10,17 +10,18 @@
 //!
 //! At a lying end the tension takes the place of p among the unknowns, and s = its material that of the tangency.
 
+mod sheet;
 mod stable;
 #[cfg(test)]
 mod tests;
 
+use self::sheet::{Sheet, assemble, gather, lies, pinned, renew, scatter};
 pub(super) use self::stable::stable;
-use super::band::Band;
-use super::history::History;
+use super::history::{History, Mode};
 use super::instant::Instant;
-use super::rub::{self, Rows};
-use super::strand::{Course, Strand, Tie};
-use crate::math::{Vec2, cross, larger};
+use super::rub;
+use super::strand::{Course, Strand};
+use crate::math::{Vec2, larger};
 
 /// Iterations at most. A failure is not cured by more; steps are halved instead.
 const MAX_ITERATIONS: usize = 60;
@@ -54,9 +55,8 @@ const MOST_FLIPS: u32 = 6;
 /// Memory of a solve, kept between steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Work {
-    band: Band,
+    sheet: Sheet,
     rhs: Vec<f64>,
-    residual: Vec<f64>,
     saved: Vec<f64>,
     best: Vec<f64>,
     /// What the search for corners passed through counts with.
@@ -88,199 +88,6 @@ pub(super) struct Stall {
 pub(super) struct Solved {
     pub iterations: usize,
     pub residual: f64,
-}
-
-fn count(strand: &Strand) -> usize {
-    6 * strand.contacts.len() + 2
-}
-
-fn gather(strand: &Strand, out: &mut Vec<f64>) {
-    out.clear();
-    for k in 0..strand.spans() {
-        out.extend([strand.forces[k].x, strand.forces[k].y]);
-        if let Some(c) = strand.contacts.get(k) {
-            let e = &c.ends;
-            out.extend([slot(strand, k, 0), e.s[0], slot(strand, k, 1), e.s[1]]);
-        }
-    }
-}
-
-/// Whether the tension of that side of contact j is an unknown of its own.
-fn lies(strand: &Strand, j: usize, side: usize) -> bool {
-    let outer = if side == 0 { j == 0 } else { j + 1 == strand.contacts.len() };
-    outer && matches!(strand.ties[side], Tie::Lies(_))
-}
-
-/// Which ends of contact j are held on the boundary.
-fn pinned(strand: &Strand, j: usize) -> [bool; 2] {
-    [lies(strand, j, 0), lies(strand, j, 1)]
-}
-
-/// Whether that side of contact j is an end of the strand that lies.
-fn is_end(strand: &Strand, j: usize, side: usize) -> bool {
-    let outer = if side == 0 { j == 0 } else { j + 1 == strand.contacts.len() };
-    outer && !strand.ties[side].has_span()
-}
-
-fn slot(strand: &Strand, j: usize, side: usize) -> f64 {
-    let e = &strand.contacts[j].ends;
-    if lies(strand, j, side) { e.t[side] } else { e.p[side] }
-}
-
-fn scatter(strand: &mut Strand, course: &Course, x: &[f64]) {
-    for k in 0..strand.spans() {
-        let x = &x[6 * k..];
-        strand.forces[k] = Vec2::new(x[0], x[1]);
-        if k < strand.contacts.len() {
-            for side in 0..2 {
-                let (slot, s) = (x[2 + 2 * side], x[3 + 2 * side]);
-                let own = lies(strand, k, side);
-                let e = &mut strand.contacts[k].ends;
-                e.s[side] = s;
-                if own {
-                    e.t[side] = slot;
-                } else {
-                    e.p[side] = slot;
-                }
-            }
-        }
-    }
-    strand.take_tensions(course);
-}
-
-/// Residuals of a strand; with `band` also the Jacobian.
-fn assemble(strand: &Strand, course: &Course, r: &mut Vec<f64>, mut band: Option<&mut Band>) {
-    let n = count(strand);
-    r.clear();
-    r.resize(n, 0.0);
-    if let Some(b) = band.as_deref_mut() {
-        b.reset(n);
-    }
-    let scale = 100.0 / (strand.to - strand.from);
-    for k in 0..strand.spans() {
-        span_rows(strand, course, k, (scale, &mut *r, band.as_deref_mut()));
-        if k < strand.contacts.len() {
-            contact_rows(strand, course, k, (scale, &mut *r, band.as_deref_mut()));
-        }
-    }
-}
-
-type Out<'a> = (f64, &'a mut Vec<f64>, Option<&'a mut Band>);
-
-fn span_rows(strand: &Strand, course: &Course, k: usize, (scale, r, band): Out<'_>) {
-    let row = 6 * k;
-    let m = strand.contacts.len();
-    let known = if !strand.has_span(k) {
-        Some(strand.forces[k])
-    } else if k == 0 && matches!(strand.ties[0], Tie::Hangs(_)) {
-        strand.hanging(course, 0)
-    } else if k == m && matches!(strand.ties[1], Tie::Hangs(_)) {
-        strand.hanging(course, 1)
-    } else {
-        None
-    };
-    if let Some(g) = known {
-        let d = strand.forces[k] - g;
-        let size = 1.0 / (g.norm() + course.law.load.norm() * (strand.to - strand.from)).max(f64::MIN_POSITIVE);
-        (r[row], r[row + 1]) = (d.x * size, d.y * size);
-        if let Some(b) = band {
-            b.add(row, row, size);
-            b.add(row + 1, row + 1, size);
-        }
-        return;
-    }
-    let [Some(a), Some(b)] = strand.ends_of(course, k) else { return };
-    let (from, to) = strand.material(k);
-    let (start, end) = (strand.force(course, k, from), strand.force(course, k, to));
-    let (way, compliance) = course.chain(from, to).reach(start);
-    let d = (way - (b - a)) * scale;
-    (r[row], r[row + 1]) = (d.x, d.y);
-    let Some(band) = band else { return };
-    for i in 0..2 {
-        for j in 0..2 {
-            band.add(row + i, row + j, compliance[(i, j)] * scale);
-        }
-    }
-    let mut add = |column: usize, v: Vec2| {
-        band.add(row, column, v.x * scale);
-        band.add(row + 1, column, v.y * scale);
-    };
-    if k > 0 {
-        let c = &strand.contacts[k - 1];
-        let place = course.track(c).place(c.ends.p[1]);
-        if !lies(strand, k - 1, 1) {
-            add(row - 2, place.tangent * place.stretch);
-        }
-        add(row - 1, -course.rate(start));
-    }
-    if let Some(c) = strand.contacts.get(k) {
-        let place = course.track(c).place(c.ends.p[0]);
-        add(row + 2, -place.tangent * place.stretch);
-        add(row + 3, course.rate(end));
-    }
-}
-
-fn contact_rows(strand: &Strand, course: &Course, j: usize, (scale, r, mut band): Out<'_>) {
-    let c = &strand.contacts[j];
-    let track = course.track(c);
-    let row = 6 * j + 2;
-    let rows: Rows = rub::rows(&track, &c.history, &c.ends, (c.mode, pinned(strand, j)));
-    let tension = larger(larger(c.ends.t[0].abs(), c.ends.t[1].abs()), 1e-9 * course.law.load.norm());
-    let size = rows.of_tension.map(|of| if of { 1.0 / tension } else { scale });
-    for i in 0..2 {
-        r[row + 1 + i] = rows.residual[i] * size[i];
-    }
-    for side in 0..2 {
-        let tangency = row + 3 * side;
-        let (p_column, s_column) = (row + 2 * side, row + 2 * side + 1);
-        let by = |i: usize, of: usize| rows.by[i][3 * side + of] * size[i];
-        if strand.in_pocket(j, side) {
-            // Held in the kink without tension: its material is what follows.
-            if let Some(b) = band.as_deref_mut() {
-                b.add(tangency, p_column, 1.0);
-                for i in 0..2 {
-                    b.add(row + 1 + i, s_column, by(i, 1));
-                }
-            }
-            continue;
-        }
-        if is_end(strand, j, side) {
-            let s = if side == 0 { strand.from } else { strand.to };
-            r[tangency] = (c.ends.s[side] - s) * scale;
-            if let Some(b) = band.as_deref_mut() {
-                b.add(tangency, s_column, scale);
-                // A free end has no tension and finds its place; a held one has a place and finds its tension.
-                let of = if lies(strand, j, side) { 2 } else { 0 };
-                for i in 0..2 {
-                    b.add(row + 1 + i, p_column, by(i, of));
-                    b.add(row + 1 + i, s_column, by(i, 1));
-                }
-            }
-            continue;
-        }
-        let Some(force) = strand.force_at_contact(course, j, side) else { continue };
-        let place = track.place(c.ends.p[side]);
-        let t = force.norm();
-        r[tangency] = cross(force, place.tangent) / t;
-        // Pointing back is not tangent: keep Newton from it.
-        if force.dot(&place.tangent) < 0.0 {
-            r[tangency] += 2.0 * r[tangency].signum();
-        }
-        let Some(b) = band.as_deref_mut() else { continue };
-        let (load, u, g) = (course.law.load, force / t, 6 * (j + side));
-        // d(F × t)/T with F's own size held.
-        let across = Vec2::new(place.tangent.y, -place.tangent.x) / t;
-        b.add(tangency, g, across.x);
-        b.add(tangency, g + 1, across.y);
-        b.add(tangency, s_column, -across.dot(&load));
-        b.add(tangency, p_column, place.turn * u.dot(&place.tangent));
-        for i in 0..2 {
-            b.add(row + 1 + i, p_column, by(i, 0));
-            b.add(row + 1 + i, s_column, by(i, 1) - by(i, 2) * u.dot(&load));
-            b.add(row + 1 + i, g, by(i, 2) * u.x);
-            b.add(row + 1 + i, g + 1, by(i, 2) * u.y);
-        }
-    }
 }
 
 fn norm(r: &[f64]) -> (f64, usize) {
@@ -380,14 +187,13 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
         c.flips = 0;
     }
     let (mut best, mut stalled, mut iterations) = (f64::INFINITY, 0, 0);
+    assemble(strand, course, &mut work.sheet);
     loop {
-        assemble(strand, course, &mut work.residual, Some(&mut work.band));
-        let (mut worst, mut at) = norm(&work.residual);
+        let (mut worst, mut at) = norm(&work.sheet.residual);
         let done = worst <= tolerance(strand, course);
         if worst <= SETTLED || stalled >= PATIENCE {
-            if change_modes(strand, course, if done { 4 * MOST_FLIPS } else { MOST_FLIPS }) {
-                assemble(strand, course, &mut work.residual, Some(&mut work.band));
-                (worst, at) = norm(&work.residual);
+            if change_modes(strand, course, if done { 4 * MOST_FLIPS } else { MOST_FLIPS }, &mut work.sheet) {
+                (worst, at) = norm(&work.sheet.residual);
                 (best, stalled) = (f64::INFINITY, 0);
             } else if done {
                 return if agreed(strand, course) {
@@ -408,7 +214,7 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
         }
         iterations += 1;
         if !step(strand, course, work) {
-            if change_modes(strand, course, MOST_FLIPS) {
+            if change_modes(strand, course, MOST_FLIPS, &mut work.sheet) {
                 continue;
             }
             // Rounding: nothing is gained any more.
@@ -421,45 +227,50 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
     }
 }
 
-/// Whether every contact is in the mode that its state asks for.
-fn agreed(strand: &Strand, course: &Course) -> bool {
-    (0..strand.contacts.len()).all(|j| {
-        let c = &strand.contacts[j];
-        rub::next_mode(&course.track(c), &c.history, &c.ends, (c.mode, pinned(strand, j)), PATIENT) == c.mode
-    })
+/// The mode that the state of contact j asks for.
+fn asked(strand: &Strand, course: &Course, j: usize, patience: f64) -> Mode {
+    let c = &strand.contacts[j];
+    rub::next_mode(&course.track(c), (&c.history, &c.ends), c.held, (c.mode, pinned(strand, j)), patience)
 }
 
-fn change_modes(strand: &mut Strand, course: &Course, most: u32) -> bool {
+/// Whether every contact is in the mode that its state asks for.
+fn agreed(strand: &Strand, course: &Course) -> bool {
+    (0..strand.contacts.len()).all(|j| asked(strand, course, j, PATIENT) == strand.contacts[j].mode)
+}
+
+fn change_modes(strand: &mut Strand, course: &Course, most: u32, sheet: &mut Sheet) -> bool {
     let mut changed = false;
     for j in 0..strand.contacts.len() {
-        let pinned = pinned(strand, j);
+        let flips = strand.contacts[j].flips;
+        let next = asked(strand, course, j, if flips < MOST_FLIPS { 1.0 } else { PATIENT });
         let c = &mut strand.contacts[j];
-        let next = rub::next_mode(
-            &course.track(c),
-            &c.history,
-            &c.ends,
-            (c.mode, pinned),
-            if c.flips < MOST_FLIPS { 1.0 } else { PATIENT },
-        );
         if next != c.mode && c.flips < most {
             c.mode = next;
             c.flips += 1;
             changed = true;
+            renew(strand, course, j, sheet);
         }
     }
     changed
 }
 
-/// One Newton step with a line search on the sum of squares; false where none makes it smaller.
+/// One Newton step with a line search on the sum of squares; false where none makes it smaller. The sheet is that of where
+/// the strand then is.
 fn step(strand: &mut Strand, course: &Course, work: &mut Work) -> bool {
     gather(strand, &mut work.saved);
-    let before = squares(&work.residual);
+    let before = squares(&work.sheet.residual);
     work.rhs.clear();
-    work.rhs.extend(work.residual.iter().map(|v| -v));
-    work.band.scale(&mut work.rhs);
-    if !work.band.solve(&mut work.rhs) {
-        return false;
+    work.rhs.extend(work.sheet.residual.iter().map(|v| -v));
+    work.sheet.band.scale(&mut work.rhs);
+    if work.sheet.band.solve(&mut work.rhs) && search(strand, course, before, work) {
+        return true;
     }
+    scatter(strand, course, &work.saved);
+    assemble(strand, course, &mut work.sheet);
+    false
+}
+
+fn search(strand: &mut Strand, course: &Course, before: f64, work: &mut Work) -> bool {
     let (mut alpha, mut first) = (room(strand, course, &work.saved, &work.rhs), f64::INFINITY);
     for round in 0..MAX_HALVINGS {
         if round > 1 {
@@ -480,11 +291,10 @@ fn step(strand: &mut Strand, course: &Course, work: &mut Work) -> bool {
             }
         }
         scatter(strand, course, &work.best);
-        assemble(strand, course, &mut work.residual, None);
-        if squares(&work.residual) < (1.0 - 1e-4 * alpha) * before {
+        assemble(strand, course, &mut work.sheet);
+        if squares(&work.sheet.residual) < (1.0 - 1e-4 * alpha) * before {
             return true;
         }
     }
-    scatter(strand, course, &work.saved);
     false
 }

@@ -10,6 +10,7 @@
 //! same end tension is the same as a tension there changed by −T'(p) dp, so every derivative by p follows from the one by
 //! tension. At a front both stretches have the same tension, so that moving it changes nothing.
 
+use super::curve::Place;
 use super::history::{Ends, Front, Held, History, Mode};
 use super::law::Track;
 use crate::math::larger;
@@ -23,26 +24,36 @@ pub(super) struct Rows {
     pub of_tension: [bool; 2],
 }
 
-/// The rows of a contact in a mode.
+/// The rows of a contact in a mode, and where it sticks if it does.
 ///
-/// `pinned`: which ends are held on the boundary, so that their tension is unknown by itself.
-pub(super) fn rows(track: &Track<'_>, history: &History, e: &Ends, (mode, pinned): (Mode, [bool; 2])) -> Rows {
+/// `pinned`: which ends are held on the boundary, so that their tension is unknown by itself; `spots`: the places of its ends.
+pub(super) fn rows(
+    track: &Track<'_>,
+    (history, e): (&History, &Ends),
+    spots: &[Place; 2],
+    (mode, pinned): (Mode, [bool; 2]),
+) -> (Rows, Option<Held>) {
     // Lifted (Newton looks there): a point without friction.
     let mode = if e.p[1] < e.p[0] { Mode::Slide(0.0) } else { mode };
     match mode {
-        Mode::Slide(m) => sliding(track, history, e, m),
+        Mode::Slide(m) => (sliding(track, (history, e), spots, m), None),
         Mode::Hold => {
-            let (mut out, fronts) = match history.hold(track, e) {
+            let held = history.hold(track, e);
+            let (mut out, fronts) = match held {
                 // Beyond its cone the rows of sticking go on smoothly: the mode is changed, not the rows.
-                Held::Between(fronts) | Held::Beyond(_, fronts) => (holding(track, history, e, fronts, false), fronts),
-                Held::Meet(fronts) => (holding(track, history, e, fronts, true), fronts),
+                Held::Between(fronts) | Held::Beyond(_, fronts) => (holding(track, e, spots, &fronts), fronts),
+                Held::Meet(fronts) => {
+                    let mut out = holding(track, e, spots, &fronts);
+                    meeting(&mut out, (track, history, e), spots, &fronts);
+                    (out, fronts)
+                }
             };
             for side in 0..2 {
                 if pinned[side] {
                     pin(&mut out, (track, history, e), side, &fronts[side]);
                 }
             }
-            out
+            (out, Some(held))
         }
     }
 }
@@ -104,10 +115,9 @@ fn pin(out: &mut Rows, (track, history, e): (&Track<'_>, &History, &Ends), side:
 }
 
 /// Where a cable runs away it is followed with a drag η: T₂ less what the law makes of T₁ is η (s_old(p₁) − s₁), the slip.
-fn sliding(track: &Track<'_>, history: &History, e: &Ends, m: f64) -> Rows {
+fn sliding(track: &Track<'_>, (history, e): (&History, &Ends), [a, b]: &[Place; 2], m: f64) -> Rows {
     let way = track.slide(e.p[0], e.p[1], e.t[0], m);
-    let (a, b) = (track.place(e.p[0]), track.place(e.p[1]));
-    let slope = track.law.slope(&a, e.t[0], m);
+    let slope = track.law.slope(a, e.t[0], m);
     let (mut held, mut held_by) = (0.0, 0.0);
     if track.drag > 0.0 {
         let (t, s) = history.at(track, e.p[0]);
@@ -129,7 +139,7 @@ fn sliding(track: &Track<'_>, history: &History, e: &Ends, m: f64) -> Rows {
                 way.by_tension * slope - held_by,
                 track.drag,
                 -way.by_tension,
-                -track.law.slope(&b, way.tension, m),
+                -track.law.slope(b, way.tension, m),
                 0.0,
                 1.0,
             ],
@@ -138,48 +148,56 @@ fn sliding(track: &Track<'_>, history: &History, e: &Ends, m: f64) -> Rows {
     }
 }
 
-fn holding(track: &Track<'_>, history: &History, e: &Ends, fronts: [Front; 2], meet: bool) -> Rows {
+fn holding(track: &Track<'_>, e: &Ends, spots: &[Place; 2], fronts: &[Front; 2]) -> Rows {
     let law = &track.law;
     let mut out = Rows::default();
     for k in 0..2 {
-        let (f, place) = (fronts[k], track.place(e.p[k]));
-        let old = history.at(track, f.p).1;
-        out.residual[k] = e.s[k] + f.way.material - old;
-        let slope = law.slope(&place, e.t[k], f.m);
+        let (f, place) = (&fronts[k], &spots[k]);
+        out.residual[k] = e.s[k] + f.way.material - f.old;
+        let slope = law.slope(place, e.t[k], f.m);
         let by_t = f.way.material_by_tension;
         out.by[k][3 * k] = -place.stretch / law.stretch(e.t[k]) - by_t * slope;
         out.by[k][3 * k + 1] = 1.0;
         out.by[k][3 * k + 2] = by_t;
     }
-    if meet {
-        // The meeting point moves with both tensions; there the old tension differs from the new one.
-        let place = track.place(fronts[0].p);
-        let t = fronts[0].way.tension;
-        let old = history.at(track, fronts[0].p).0;
-        let gain = place.stretch * (1.0 / law.stretch(t) - 1.0 / law.stretch(old));
-        let closing = law.slope(&place, t, fronts[0].m) - law.slope(&place, t, fronts[1].m);
-        if closing != 0.0 {
-            for k in 0..2 {
-                let sign = if k == 0 { -1.0 } else { 1.0 };
-                let moved = gain * sign * fronts[k].way.by_tension / closing;
-                let slope = law.slope(&track.place(e.p[k]), e.t[k], fronts[k].m);
-                for row in &mut out.by {
-                    row[3 * k + 2] += moved;
-                    row[3 * k] -= moved * slope;
-                }
-            }
+    out
+}
+
+/// What is added where the fronts meet: the meeting point moves with both tensions, and the old tension there differs from
+/// the new one.
+fn meeting(
+    out: &mut Rows,
+    (track, history, e): (&Track<'_>, &History, &Ends),
+    spots: &[Place; 2],
+    fronts: &[Front; 2],
+) {
+    let law = &track.law;
+    let place = track.place(fronts[0].p);
+    let t = fronts[0].way.tension;
+    let old = history.at(track, fronts[0].p).0;
+    let gain = place.stretch * (1.0 / law.stretch(t) - 1.0 / law.stretch(old));
+    let closing = law.slope(&place, t, fronts[0].m) - law.slope(&place, t, fronts[1].m);
+    if closing == 0.0 {
+        return;
+    }
+    for k in 0..2 {
+        let sign = if k == 0 { -1.0 } else { 1.0 };
+        let moved = gain * sign * fronts[k].way.by_tension / closing;
+        let slope = law.slope(&spots[k], e.t[k], fronts[k].m);
+        for row in &mut out.by {
+            row[3 * k + 2] += moved;
+            row[3 * k] -= moved * slope;
         }
     }
-    out
 }
 
 /// The mode to go on with: a contact that holds beyond its cone slides; one that would slide the wrong way holds.
 ///
-/// `patience`: how many times rounding that is; 1 while it costs nothing to change.
+/// `held`: where it sticks; `patience`: how many times rounding that is; 1 while it costs nothing to change.
 pub(super) fn next_mode(
     track: &Track<'_>,
-    history: &History,
-    e: &Ends,
+    (history, e): (&History, &Ends),
+    held: Option<Held>,
     (mode, pinned): (Mode, [bool; 2]),
     patience: f64,
 ) -> Mode {
@@ -189,7 +207,7 @@ pub(super) fn next_mode(
         return if friction <= 0.0 { Mode::Slide(0.0) } else { mode };
     }
     match mode {
-        Mode::Hold => match history.hold(track, e) {
+        Mode::Hold => match held.unwrap_or_else(|| history.hold(track, e)) {
             Held::Beyond(m, _) => {
                 // Rounding at the edge of the cone is not sliding.
                 let reached = track.slide(e.p[0], e.p[1], e.t[0], m).tension;

@@ -6,7 +6,7 @@
 //! D. K. Pai, "Large-scale dynamic simulation of highly constrained strands", ACM Transactions on Graphics 30 (2011) 39.
 
 use super::curve::{Curve, Home};
-use super::history::{Ends, History, Mode};
+use super::history::{Ends, Held, History, Mode};
 use super::law::{Law, Track};
 use crate::catenary::{Chain, PointForce};
 use crate::math::Vec2;
@@ -51,6 +51,8 @@ pub(super) struct Contact {
     pub home: Home,
     pub ends: Ends,
     pub mode: Mode,
+    /// Where it sticks under the tensions it has, where that was worked out.
+    pub held: Option<Held>,
     pub history: History,
     /// The pulley it is, by its support.
     pub wheel: Option<usize>,

@@ -203,6 +203,7 @@ impl Run<'_> {
             history: History::default(),
             wheel: stations[self.first].wheel,
             flips: 0,
+            held: None,
             smooth: false,
             pocket: false,
         };

@@ -18,21 +18,21 @@ pub(in crate::model::spans) fn stable(strand: &Strand, course: &Course, work: &m
         return true;
     }
     let count = (0..strand.contacts.len()).filter(|&j| !lies(strand, j, 0)).count();
-    let mut sign = |strand: &Strand| {
-        assemble(strand, course, &mut work.residual, Some(&mut work.band));
+    let mut sign = |strand: &mut Strand| {
+        assemble(strand, course, &mut work.sheet);
         work.rhs.clear();
-        work.rhs.resize(work.residual.len(), 1.0);
-        work.band.scale(&mut work.rhs);
-        work.band.solve(&mut work.rhs).then(|| work.band.is_negative())
+        work.rhs.resize(work.sheet.residual.len(), 1.0);
+        work.sheet.band.scale(&mut work.rhs);
+        work.sheet.band.solve(&mut work.rhs).then(|| work.sheet.band.is_negative())
     };
-    let found = sign(strand);
     let mut stuck = strand.clone();
+    let found = sign(&mut stuck);
     for c in &mut stuck.contacts {
         let track = course.track(c);
-        c.history.commit(&track, &c.ends, c.mode, &mut work.pasts[1]);
+        c.history.commit(&track, &c.ends, (c.mode, c.held), &mut work.pasts[1]);
         c.mode = Mode::Hold;
     }
-    match (found, sign(&stuck)) {
+    match (found, sign(&mut stuck)) {
         (Some(a), Some(b)) => (a != b) == (count % 2 == 1),
         _ => false,
     }

@@ -51,12 +51,13 @@ fn compare(strand: &Strand, course: &Course, seed: usize) {
         moved
     };
     let residual = |x: &[f64]| {
-        let mut r = Vec::new();
-        assemble(&at(x), course, &mut r, None);
-        r
+        let mut sheet = Sheet::default();
+        assemble(&mut at(x), course, &mut sheet);
+        sheet.residual
     };
-    let (mut r, mut band) = (Vec::new(), Band::default());
-    assemble(&at(&x), course, &mut r, Some(&mut band));
+    let mut sheet = Sheet::default();
+    assemble(&mut at(&x), course, &mut sheet);
+    let (r, band) = (sheet.residual, sheet.band);
     let n = x.len();
     let largest: Vec<f64> =
         (0..n).map(|i| (0..n).map(|j| band.entry(i, j).abs() * size(j)).fold(0.0, f64::max)).collect();

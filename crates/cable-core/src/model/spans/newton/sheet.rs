@@ -1,0 +1,224 @@
+//! Unknowns and equations of a strand, and the equations' derivatives.
+
+use super::super::band::Band;
+use super::super::curve::Place;
+use super::super::rub;
+use super::super::strand::{Course, Strand, Tie};
+use crate::math::{Vec2, cross, larger};
+
+fn count(strand: &Strand) -> usize {
+    6 * strand.contacts.len() + 2
+}
+
+pub(super) fn gather(strand: &Strand, out: &mut Vec<f64>) {
+    out.clear();
+    for k in 0..strand.spans() {
+        out.extend([strand.forces[k].x, strand.forces[k].y]);
+        if let Some(c) = strand.contacts.get(k) {
+            let e = &c.ends;
+            out.extend([slot(strand, k, 0), e.s[0], slot(strand, k, 1), e.s[1]]);
+        }
+    }
+}
+
+/// Whether the tension of that side of contact j is an unknown of its own.
+pub(super) fn lies(strand: &Strand, j: usize, side: usize) -> bool {
+    let outer = if side == 0 { j == 0 } else { j + 1 == strand.contacts.len() };
+    outer && matches!(strand.ties[side], Tie::Lies(_))
+}
+
+/// Which ends of contact j are held on the boundary.
+pub(super) fn pinned(strand: &Strand, j: usize) -> [bool; 2] {
+    [lies(strand, j, 0), lies(strand, j, 1)]
+}
+
+/// Whether that side of contact j is an end of the strand that lies.
+fn is_end(strand: &Strand, j: usize, side: usize) -> bool {
+    let outer = if side == 0 { j == 0 } else { j + 1 == strand.contacts.len() };
+    outer && !strand.ties[side].has_span()
+}
+
+fn slot(strand: &Strand, j: usize, side: usize) -> f64 {
+    let e = &strand.contacts[j].ends;
+    if lies(strand, j, side) { e.t[side] } else { e.p[side] }
+}
+
+pub(super) fn scatter(strand: &mut Strand, course: &Course, x: &[f64]) {
+    for k in 0..strand.spans() {
+        let x = &x[6 * k..];
+        strand.forces[k] = Vec2::new(x[0], x[1]);
+        if k < strand.contacts.len() {
+            for side in 0..2 {
+                let (slot, s) = (x[2 + 2 * side], x[3 + 2 * side]);
+                let own = lies(strand, k, side);
+                let e = &mut strand.contacts[k].ends;
+                e.s[side] = s;
+                if own {
+                    e.t[side] = slot;
+                } else {
+                    e.p[side] = slot;
+                }
+            }
+        }
+    }
+    strand.take_tensions(course);
+}
+
+/// The equations of a strand at a state.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sheet {
+    pub residual: Vec<f64>,
+    /// The Jacobian.
+    pub band: Band,
+    /// The places of both ends of each contact.
+    spots: Vec<[Place; 2]>,
+}
+
+/// Works out the equations of a strand where it is, and where each of its contacts sticks.
+pub(super) fn assemble(strand: &mut Strand, course: &Course, sheet: &mut Sheet) {
+    let n = count(strand);
+    sheet.residual.clear();
+    sheet.residual.resize(n, 0.0);
+    sheet.band.reset(n);
+    sheet.spots.clear();
+    sheet.spots.extend(strand.contacts.iter().map(|c| {
+        let track = course.track(c);
+        c.ends.p.map(|p| track.place(p))
+    }));
+    for k in 0..strand.spans() {
+        span_rows(strand, course, k, sheet);
+        if k < strand.contacts.len() {
+            contact_rows(strand, course, k, sheet);
+        }
+    }
+}
+
+/// As [`assemble`], where nothing but the mode of contact j has changed since.
+pub(super) fn renew(strand: &mut Strand, course: &Course, j: usize, sheet: &mut Sheet) {
+    for row in 6 * j + 2..6 * j + 6 {
+        sheet.residual[row] = 0.0;
+        sheet.band.clear(row);
+    }
+    contact_rows(strand, course, j, sheet);
+}
+
+/// Lengths in hundredths of the strand.
+fn scale(strand: &Strand) -> f64 {
+    100.0 / (strand.to - strand.from)
+}
+
+fn span_rows(strand: &Strand, course: &Course, k: usize, sheet: &mut Sheet) {
+    let (row, scale) = (6 * k, scale(strand));
+    let (r, band) = (&mut sheet.residual, &mut sheet.band);
+    let m = strand.contacts.len();
+    let known = if !strand.has_span(k) {
+        Some(strand.forces[k])
+    } else if k == 0 && matches!(strand.ties[0], Tie::Hangs(_)) {
+        strand.hanging(course, 0)
+    } else if k == m && matches!(strand.ties[1], Tie::Hangs(_)) {
+        strand.hanging(course, 1)
+    } else {
+        None
+    };
+    if let Some(g) = known {
+        let d = strand.forces[k] - g;
+        let size = 1.0 / (g.norm() + course.law.load.norm() * (strand.to - strand.from)).max(f64::MIN_POSITIVE);
+        (r[row], r[row + 1]) = (d.x * size, d.y * size);
+        band.add(row, row, size);
+        band.add(row + 1, row + 1, size);
+        return;
+    }
+    let before = k.checked_sub(1).map(|j| &sheet.spots[j][1]);
+    let after = sheet.spots.get(k).map(|s| &s[0]);
+    let held = |t: &Tie| if let Tie::Held(at) = t { Some(*at) } else { None };
+    let ends = (
+        before.map_or_else(|| held(&strand.ties[0]), |s| Some(s.at)),
+        after.map_or_else(|| held(&strand.ties[1]), |s| Some(s.at)),
+    );
+    let (Some(a), Some(b)) = ends else { return };
+    let (from, to) = strand.material(k);
+    let (start, end) = (strand.force(course, k, from), strand.force(course, k, to));
+    let (way, compliance) = course.chain(from, to).reach(start);
+    let d = (way - (b - a)) * scale;
+    (r[row], r[row + 1]) = (d.x, d.y);
+    for i in 0..2 {
+        for j in 0..2 {
+            band.add(row + i, row + j, compliance[(i, j)] * scale);
+        }
+    }
+    let mut add = |column: usize, v: Vec2| {
+        band.add(row, column, v.x * scale);
+        band.add(row + 1, column, v.y * scale);
+    };
+    if let Some(place) = before {
+        if !lies(strand, k - 1, 1) {
+            add(row - 2, place.tangent * place.stretch);
+        }
+        add(row - 1, -course.rate(start));
+    }
+    if let Some(place) = after {
+        add(row + 2, -place.tangent * place.stretch);
+        add(row + 3, course.rate(end));
+    }
+}
+
+fn contact_rows(strand: &mut Strand, course: &Course, j: usize, sheet: &mut Sheet) {
+    let (r, b, spots, scale) = (&mut sheet.residual, &mut sheet.band, &sheet.spots[j], scale(strand));
+    let c = &strand.contacts[j];
+    let track = course.track(c);
+    let row = 6 * j + 2;
+    let (rows, held) = rub::rows(&track, (&c.history, &c.ends), spots, (c.mode, pinned(strand, j)));
+    strand.contacts[j].held = held;
+    let c = &strand.contacts[j];
+    let tension = larger(larger(c.ends.t[0].abs(), c.ends.t[1].abs()), 1e-9 * course.law.load.norm());
+    let size = rows.of_tension.map(|of| if of { 1.0 / tension } else { scale });
+    for i in 0..2 {
+        r[row + 1 + i] = rows.residual[i] * size[i];
+    }
+    for side in 0..2 {
+        let tangency = row + 3 * side;
+        let (p_column, s_column) = (row + 2 * side, row + 2 * side + 1);
+        let by = |i: usize, of: usize| rows.by[i][3 * side + of] * size[i];
+        if strand.in_pocket(j, side) {
+            // Held in the kink without tension: its material is what follows.
+            b.add(tangency, p_column, 1.0);
+            for i in 0..2 {
+                b.add(row + 1 + i, s_column, by(i, 1));
+            }
+            continue;
+        }
+        if is_end(strand, j, side) {
+            let s = if side == 0 { strand.from } else { strand.to };
+            r[tangency] = (c.ends.s[side] - s) * scale;
+            b.add(tangency, s_column, scale);
+            // A free end has no tension and finds its place; a held one has a place and finds its tension.
+            let of = if lies(strand, j, side) { 2 } else { 0 };
+            for i in 0..2 {
+                b.add(row + 1 + i, p_column, by(i, of));
+                b.add(row + 1 + i, s_column, by(i, 1));
+            }
+            continue;
+        }
+        let Some(force) = strand.force_at_contact(course, j, side) else { continue };
+        let place = &spots[side];
+        let t = force.norm();
+        r[tangency] = cross(force, place.tangent) / t;
+        // Pointing back is not tangent: keep Newton from it.
+        if force.dot(&place.tangent) < 0.0 {
+            r[tangency] += 2.0 * r[tangency].signum();
+        }
+        let (load, u, g) = (course.law.load, force / t, 6 * (j + side));
+        // d(F × t)/T with F's own size held.
+        let across = Vec2::new(place.tangent.y, -place.tangent.x) / t;
+        b.add(tangency, g, across.x);
+        b.add(tangency, g + 1, across.y);
+        b.add(tangency, s_column, -across.dot(&load));
+        b.add(tangency, p_column, place.turn * u.dot(&place.tangent));
+        for i in 0..2 {
+            b.add(row + 1 + i, p_column, by(i, 0));
+            b.add(row + 1 + i, s_column, by(i, 1) - by(i, 2) * u.dot(&load));
+            b.add(row + 1 + i, g, by(i, 2) * u.x);
+            b.add(row + 1 + i, g + 1, by(i, 2) * u.y);
+        }
+    }
+}
