@@ -1,11 +1,11 @@
 //! Temporary shape.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic, missing_docs)]
 
+use cable_core::Vec2;
 use cable_core::model::spans::SpansModel;
 use cable_core::model::{Inertia, Mechanics, Settings};
 use cable_core::problem::problems;
 use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};
-use cable_core::Vec2;
 
 fn over(points_m: Vec<[f64; 2]>, (a, b): ([f64; 2], [f64; 2]), length_m: f64) -> Scene {
     let mut scene = catalog::hanging_span();
@@ -48,7 +48,9 @@ fn counts() {
     for (id, count, fine) in
         [("1 corner", 1, 1), ("10 corners", 10, 1), ("36 corners", 36, 1), ("10 corners, 1000 in the ground", 10, 110)]
     {
-        if std::env::var("ONLY").is_ok_and(|o| o != id) { continue; }
+        if std::env::var("ONLY").is_ok_and(|o| o != id) {
+            continue;
+        }
         let scene = ridges(count, fine);
         let last = scene.cables[0].supports[1].at_m.expect("a place");
         let at = Vec2::new(last[0], last[1]);
@@ -58,8 +60,15 @@ fn counts() {
         let settled = model.settle();
         let rest = begun.elapsed().as_secs_f64() * 1e6;
         match settled {
-            Err(e) => { println!("{id}: {rest:.0} µs {e}"); continue; }
-            Ok(r) => println!("{id}: rest {rest:.0} µs {} iterations {} contacts", r.cost.iterations, model.solution().contacts.len()),
+            Err(e) => {
+                println!("{id}: {rest:.0} µs {e}");
+                continue;
+            }
+            Ok(r) => println!(
+                "{id}: rest {rest:.0} µs {} iterations {} contacts",
+                r.cost.iterations,
+                model.solution().contacts.len()
+            ),
         }
         let most = std::env::var("STEPS").map_or(300u64, |s| s.parse().unwrap());
         let (mut sum, mut least) = (0, f64::INFINITY);
@@ -69,7 +78,9 @@ fn counts() {
             let begun = std::time::Instant::now();
             let r = model.advance(0.1, Inertia::QuasiStatic).expect("a step");
             least = least.min(begun.elapsed().as_secs_f64() * 1e6);
-            if k <= 3 { println!("  {} iterations, {} halved", r.cost.iterations, r.cost.halved_steps); }
+            if k <= 3 {
+                println!("  {} iterations, {} halved", r.cost.iterations, r.cost.halved_steps);
+            }
             sum += r.cost.iterations;
         }
         println!("  mean {:.2} iterations, best {least:.1} µs", sum as f64 / most as f64);

@@ -46,8 +46,9 @@ impl Band {
         for (row, r) in self.rows.iter_mut().zip(rhs) {
             let largest = row.iter().fold(0.0f64, |m, v| if v.abs() > m { v.abs() } else { m });
             if largest > 0.0 {
-                row.iter_mut().for_each(|v| *v /= largest);
-                *r /= largest;
+                let inverse = 1.0 / largest;
+                row.iter_mut().for_each(|v| *v *= inverse);
+                *r *= inverse;
             }
         }
     }
@@ -75,35 +76,32 @@ impl Band {
             }
             if best != k {
                 // Both rows in the columns k … k + 2 BAND, each at its own place.
-                for c in k..(k + 2 * BAND + 1).min(n) {
-                    let (i, j) = (c + BAND - k, c + BAND - best);
-                    let upper = self.rows[k][i];
-                    self.rows[k][i] = self.rows[best][j];
-                    self.rows[best][j] = upper;
-                }
+                let (upper, lower) = self.rows.split_at_mut(best);
+                let (own, other) = (&mut upper[k][BAND..], &mut lower[0][k + BAND - best..]);
+                own.iter_mut().zip(other).for_each(|(a, b)| std::mem::swap(a, b));
                 b.swap(k, best);
                 self.negative = !self.negative;
             }
             let pivot_row = self.rows[k];
             self.negative ^= pivot_row[BAND] < 0.0;
-            for i in k + 1..last {
-                let row = &mut self.rows[i];
-                let factor = row[k + BAND - i] / pivot_row[BAND];
+            let (inverse, right) = (1.0 / pivot_row[BAND], b[k]);
+            for (d, row) in self.rows[k + 1..last].iter_mut().enumerate() {
+                let first = BAND - 1 - d;
+                let factor = row[first] * inverse;
                 if factor == 0.0 {
                     continue;
                 }
-                for c in k + 1..(k + 2 * BAND + 1).min(n) {
-                    row[c + BAND - i] -= factor * pivot_row[c + BAND - k];
+                // The columns k + 1 … k + 2 BAND; those beyond the matrix hold zeros.
+                for (v, p) in row[first + 1..first + 1 + 2 * BAND].iter_mut().zip(&pivot_row[BAND + 1..]) {
+                    *v -= factor * p;
                 }
-                b[i] -= factor * b[k];
+                b[k + 1 + d] -= factor * right;
             }
         }
         for k in (0..n).rev() {
-            let mut sum = b[k];
-            for c in k + 1..(k + 2 * BAND + 1).min(n) {
-                sum -= self.rows[k][c + BAND - k] * b[c];
-            }
-            b[k] = sum / self.rows[k][BAND];
+            let row = &self.rows[k];
+            let known = row[BAND + 1..].iter().zip(&b[k + 1..]).fold(b[k], |sum, (a, x)| sum - a * x);
+            b[k] = known / row[BAND];
         }
         b.iter().all(|v| v.is_finite())
     }

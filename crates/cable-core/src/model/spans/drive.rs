@@ -2,6 +2,7 @@
 
 use super::check;
 use super::events;
+use super::foresee::foresee;
 use super::history::Mode;
 use super::instant::{Instant, Layout, place_ends};
 use super::lay;
@@ -251,6 +252,9 @@ impl Network {
         let strand = &mut self.strands[k];
         place_ends(layout, k, strand, &self.course, &self.instant)?;
         moved.clone_from(strand);
+        if came.is_none() {
+            foresee(strand, &self.course, &mut work.foresight);
+        }
         let mut found = events::solve(strand, &mut self.course, (world, &layout.corners), came, work);
         if found.is_err() {
             // From where each span by itself would be.

@@ -16,6 +16,7 @@ mod curve;
 mod drive;
 mod ends;
 mod events;
+mod foresee;
 mod history;
 mod instant;
 mod law;

@@ -17,6 +17,7 @@ mod tests;
 
 use self::sheet::{Sheet, assemble, gather, lies, pinned, renew, scatter};
 pub(super) use self::stable::stable;
+use super::foresee::Foresight;
 use super::history::{History, Mode};
 use super::instant::Instant;
 use super::rub;
@@ -69,6 +70,8 @@ pub(super) struct Work {
     pub before: Vec<Strand>,
     /// Instants: before a step; where a way begins; where a step goes.
     pub instants: [Instant; 3],
+    /// What a guess at the modes is made with.
+    pub foresight: Foresight,
     /// A contact's past as it would be, and as it was.
     pub pasts: [History; 2],
 }
