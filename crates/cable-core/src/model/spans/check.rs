@@ -16,8 +16,6 @@ const DEEPEST: f64 = 1e-6;
 const PUSHES: f64 = 1e-9;
 /// A contact may end so far beyond its chain, m or rad: rounding.
 const BEYOND: f64 = 1e-9;
-/// Points of a contact looked at.
-const SAMPLES: usize = 8;
 /// A span hangs in one line when the force across the load is below this part of its load.
 const FOLDED: f64 = 1e-12;
 /// Panels of a span far from its fold.
@@ -117,7 +115,7 @@ fn contact(
     [past, memory]: &mut [History; 2],
 ) -> Result<(), Trouble> {
     let c = &strand.contacts[j];
-    let (track, friction) = (course.track(c), course.friction(c));
+    let track = course.track(c);
     let e = &c.ends;
     let unsound = |what: &'static str, p: f64, s: f64| Trouble::Unsound { what, s, at: track.place(p).at };
     let (first, last) = (track.curve.origin(c.home.first), track.curve.end(c.home.last));
@@ -151,27 +149,47 @@ fn contact(
     }
     past.clone_from(&c.history);
     past.commit(&track, e, (c.mode, c.held), memory);
-    let (mut p, mut t) = (e.p[0], past.at(&track, e.p[0]).0);
-    for i in 1..=SAMPLES {
-        let q = e.p[0] + (e.p[1] - e.p[0]) * i as f64 / SAMPLES as f64;
-        let (next, s) = past.at(&track, q);
-        let place = track.place(q);
-        if !(next >= -PUSHES * greatest - 1e-9) {
-            return Err(Trouble::Compressed { s, at: place.at, tension: next });
+    along(strand, course, (j, greatest), past)
+}
+
+/// Along a contact friction keeps its cone, nothing pushes along it and nothing pulls it off. On each stretch between two knots
+/// one part of friction is called upon: what holds for that and at the next knot holds all along.
+fn along(strand: &Strand, course: &Course, (j, greatest): (usize, f64), past: &History) -> Result<(), Trouble> {
+    let c = &strand.contacts[j];
+    let (track, friction) = (course.track(c), course.friction(c));
+    let room = HOLDS * (greatest + 1e-9);
+    for pair in past.knots().windows(2) {
+        let (knot, next) = (&pair[0], &pair[1]);
+        let (mut p, mut t, mut s) = (knot.p, knot.tension, knot.s);
+        let unsound = |what: &'static str| Err(Trouble::Unsound { what, s: knot.s, at: track.place(knot.p).at });
+        while p < next.p {
+            let q = track.next_border(p, next.p);
+            let (half, whole) = (track.slide(p, 0.5 * (p + q), t, knot.m), track.slide(p, q, t, knot.m));
+            for (x, way) in [(0.5 * (p + q), half), (q, whole)] {
+                let place = track.place(x);
+                if !(way.tension >= -PUSHES * greatest - 1e-9) {
+                    return Err(Trouble::Compressed { s: s + way.material, at: place.at, tension: way.tension });
+                }
+                if !(track.law.press(&place, way.tension) >= -room) {
+                    return unsound("a contact pulls");
+                }
+            }
+            (p, t, s) = (q, whole.tension, s + whole.material);
         }
-        if !(track.law.press(&place, next) >= -HOLDS * (greatest + 1e-9)) {
-            return Err(unsound("a contact pulls", q, s));
-        }
-        let (low, high) = (track.slide(p, q, t, -friction).tension, track.slide(p, q, t, friction).tension);
-        let room = HOLDS * (greatest + 1e-9);
         // On its way under a drag it is no answer yet.
-        if course.drag == 0.0 && !(next >= low - room && next <= high + room) {
-            return Err(unsound("friction beyond its cone", q, s));
+        if course.drag > 0.0 {
+            continue;
         }
-        (p, t) = (q, next);
-    }
-    if course.drag == 0.0 && !((t - e.t[1]).abs() <= HOLDS * (greatest + 1e-9)) {
-        return Err(unsound("tension jumps at the end of a contact", e.p[1], e.s[1]));
+        if !(knot.m.abs() <= friction * (1.0 + HOLDS)) {
+            return unsound("friction beyond its cone");
+        }
+        // The load may have changed since: what sticks has changed by less than friction takes up.
+        let reach = |m: f64| track.slide(knot.p, next.p, knot.tension, m).tension;
+        if !((t - next.tension).abs() <= room)
+            && !(next.tension >= reach(-friction) - room && next.tension <= reach(friction) + room)
+        {
+            return unsound("tension jumps in a contact");
+        }
     }
     Ok(())
 }

@@ -226,12 +226,8 @@ impl Network {
     }
 
     fn solve(&mut self, layout: &Layout, k: usize, came: Option<&[Vec2]>, work: &mut Work) -> Result<Solved, Trouble> {
-        let world = &layout.problem.world;
         let [mut start, mut moved] = std::mem::take(&mut work.strands);
         start.clone_from(&self.strands[k]);
-        if came.is_none() && !world.is_empty() {
-            pass::shape(&start, &self.course, &mut work.shapes[0]);
-        }
         let found = self.solve_from(layout, k, came, ([&mut start, &mut moved], work));
         if found.is_err() {
             self.strands[k].clone_from(&start);
@@ -286,8 +282,10 @@ impl Network {
         }
         let solved = found?;
         check::sound(&self.strands[k], &self.course, world, &mut work.pasts)?;
-        if !world.is_empty() && came.is_none() {
+        let clear = || pass::clear(start, &self.strands[k], &self.course, &layout.corners);
+        if !world.is_empty() && came.is_none() && !clear() {
             let [old, new] = &mut work.shapes;
+            pass::shape(start, &self.course, old);
             pass::shape(&self.strands[k], &self.course, new);
             if let Some(corner) = pass::through(&layout.corners, old, new, &mut work.turns) {
                 return Err(Trouble::Passed { at: corner.at });

@@ -18,6 +18,10 @@ const MAX_HALVINGS: usize = 60;
 /// Roots are found to this part of the catenary.
 const ROOT: f64 = 1e-12;
 
+/// A cable whose tangent makes less than this angle with its load hangs along it. Smaller: rounding says which side of the
+/// tangent it is on. Larger: steep spans are looked at more closely than they must be.
+const ALONG: f64 = 1e-6;
+
 /// A point of a span inside an obstacle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Hit {
@@ -32,15 +36,50 @@ pub(super) struct Hit {
     pub body: usize,
 }
 
+/// A line with the side of it (a unit vector) on which the cable is.
+type Side = (Vec2, Vec2);
+
 /// One catenary at its place.
 struct Arc<'a> {
     s0: f64,
     at: Vec2,
     shape: &'a Catenary,
     load: Vec2,
+    /// Its tangents at both ends: it bends away from the load, and so lies beyond each of them. None where it hangs along the
+    /// load.
+    sides: [Option<Side>; 2],
 }
 
-impl Arc<'_> {
+/// The tangent of a cable at a point where its force is known.
+pub(super) fn tangent(at: Vec2, force: Vec2, load: Vec2) -> Option<Side> {
+    let normal = perp(force) * -perp(force).dot(&load).signum() / force.norm();
+    (normal.dot(&load) < -ALONG * load.norm()).then_some((at, normal))
+}
+
+impl<'a> Arc<'a> {
+    fn new((s0, at, shape): (f64, Vec2, &'a Catenary), load: Vec2) -> Self {
+        let (start, end) = (shape.start_force(), shape.end_force());
+        let sides = [tangent(at, start, load), tangent(at + shape.span().chord, end, load)];
+        Self { s0, at, shape, load, sides }
+    }
+
+    /// Whether a point is at least so far from it, seen from the tangents at its ends.
+    fn misses(&self, v: Vec2, by: f64) -> bool {
+        self.sides.iter().flatten().any(|(at, normal)| (at - v).dot(normal) >= by)
+    }
+
+    /// Whether all of edge k and of the one before it face it from at least so far, seen from one of those tangents.
+    fn misses_edges(&self, body: &Body, k: usize, by: f64) -> bool {
+        let before = k.checked_sub(1).or(body.edges.len().checked_sub(1));
+        let edges = [Some(k), before].map(|k| k.and_then(|k| body.edges.get(k)));
+        self.sides.iter().flatten().any(|(at, normal)| {
+            edges.iter().flatten().all(|e| {
+                let far = |v: Vec2| (at - v).dot(normal) >= by;
+                far(e.p) && far(e.q) && perp(e.tangent).dot(normal) > 0.0
+            })
+        })
+    }
+
     fn length(&self) -> f64 {
         self.shape.span().length
     }
@@ -108,7 +147,7 @@ pub(super) fn deepest(strand: &Strand, course: &Course, world: &World, k: usize,
     }
     let mut best: Option<Hit> = None;
     shapes(strand, course, k, |s0, at, shape| {
-        let arc = Arc { s0, at, shape, load: course.law.load };
+        let arc = Arc::new((s0, at, shape), course.law.load);
         let (low, high) = arc.bounds();
         for (index, body) in world.geometry().bodies().iter().enumerate() {
             search(&arc, body, (low, high), tolerance, |s| {
@@ -146,6 +185,9 @@ pub(super) fn shapes(strand: &Strand, course: &Course, k: usize, mut each: impl 
 /// Calls back with the points of a catenary that may be deepest in a body.
 fn search(arc: &Arc<'_>, body: &Body, (low, high): (Vec2, Vec2), tolerance: f64, mut found: impl FnMut(f64)) {
     if let Some(center) = body.center {
+        if arc.misses(center, body.offset - tolerance) {
+            return;
+        }
         let near = |p: Vec2| (p - center).norm() < body.offset - tolerance;
         let clear = Vec2::repeat(body.offset);
         if (low - clear).iter().zip(center.iter()).all(|(a, b)| a < b)
@@ -162,6 +204,9 @@ fn search(arc: &Arc<'_>, body: &Body, (low, high): (Vec2, Vec2), tolerance: f64,
     let r = Vec2::repeat(body.offset);
     for k in body.candidates(low - r, high + r) {
         let Some(e) = body.edges.get(k) else { continue };
+        if arc.misses_edges(body, k, body.offset - tolerance) {
+            continue;
+        }
         if let Some(s) = arc.along(e.tangent) {
             let d = arc.point(s) - e.p;
             let (x, height) = (d.dot(&e.tangent), d.dot(&perp(e.tangent)));
