@@ -14,6 +14,9 @@ use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};
 use cable_core::{Model, Simulation, Vec2};
 use criterion::{Criterion, criterion_group, criterion_main};
 
+/// Height at which the route passes over all ridges, m.
+const ABOVE_M: f64 = 9.0;
+
 /// A flexible cable with friction over ground.
 fn over(points_m: Vec<[f64; 2]>, (a, b): ([f64; 2], [f64; 2]), length_m: f64) -> Scene {
     let mut scene = catalog::hanging_span();
@@ -23,7 +26,7 @@ fn over(points_m: Vec<[f64; 2]>, (a, b): ([f64; 2], [f64; 2]), length_m: f64) ->
     let c = &mut scene.cables[0];
     (c.bending_stiffness_n_m2, c.axial_stiffness_n, c.diameter_m) = (0.0, 1e6, 0.02);
     (c.service_tension_n, c.breaking_tension_n, c.length_m) = (1e15, 1e15, length_m);
-    c.route_m = vec![a, [a[0], 6.0], [b[0], 6.0], b];
+    c.route_m = vec![a, [a[0], ABOVE_M], [b[0], ABOVE_M], b];
     c.supports = vec![Support::fixed("A", a), Support::fixed("B", b)];
     scene
 }

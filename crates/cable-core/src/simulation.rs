@@ -103,14 +103,16 @@ impl Simulation {
     fn look(&mut self, moving: bool) {
         self.answers = self.cables.iter().map(Strand::answer).collect();
         self.model = self.cables.iter().map(Strand::model).max_by_key(|m| rung(*m)).unwrap_or(self.model);
+        let mut bends = Vec::with_capacity(self.cables.len());
         for (strand, answer) in self.cables.iter().zip(&mut self.answers) {
-            let bends = Bends::of(strand.problem(), answer);
-            (answer.tightest_bend, answer.sidewall_pressure) = (bends.tightest(), bends.pressure);
+            let found = Bends::of(strand.problem(), answer);
+            (answer.tightest_bend, answer.sidewall_pressure) = (found.tightest(), found.pressure);
+            bends.push(found);
         }
         let time_s = self.time_s();
         self.energy = self.cables.iter().zip(&self.answers).map(|(c, a)| Energy::of(c.problem(), a)).sum();
-        let subjects: Vec<Subject<'_>> = (self.cables.iter().zip(&self.answers))
-            .map(|(c, answer)| Subject { problem: c.problem(), answer, breaks: c.breaks() })
+        let subjects: Vec<Subject<'_>> = (self.cables.iter().zip(&self.answers).zip(bends))
+            .map(|((c, answer), bends)| Subject { problem: c.problem(), answer, bends, breaks: c.breaks() })
             .collect();
         if moving { self.watch.moving(&subjects, time_s) } else { self.watch.at_rest(&subjects, time_s) }
     }

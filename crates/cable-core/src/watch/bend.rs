@@ -162,9 +162,8 @@ pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Le
 }
 
 /// Appends bends sharper than the cable stands, free and led, and pressure beyond its limit.
-pub(super) fn warn(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
+pub(super) fn warn(problem: &Problem, bends: &Bends, out: &mut Vec<Warning>) {
     let cable = &problem.cable;
-    let bends = Bends::of(problem, answer);
     let stated = cable.min_bend_radius_m;
     let kink = if stated > 0.0 { stated } else { KINK_DIAMETERS * cable.diameter_m };
     let mut say = |kind, b: Bend, limit: f64, what: &str| {

@@ -35,6 +35,8 @@ pub(crate) struct Subject<'a> {
     pub problem: &'a Problem,
     /// Its answer.
     pub answer: &'a CableSolution,
+    /// Its bends.
+    pub bends: Bends,
     /// Its breaks.
     pub breaks: &'a [Break],
 }
@@ -126,11 +128,11 @@ impl Watch {
 
 /// What one answer shows by itself.
 fn look(subject: &Subject<'_>) -> Vec<Warning> {
-    let Subject { problem, answer, breaks } = *subject;
+    let Subject { problem, answer, bends, breaks } = *subject;
     let mut out = Vec::new();
     tension::broken(&problem.cable, breaks, &mut out);
     tension::limits(&problem.cable, answer, &mut out);
-    bend::warn(problem, answer, &mut out);
+    bend::warn(problem, &bends, &mut out);
     tension::slack(problem, answer, &mut out);
     tangle::warn(problem, answer, &mut out);
     out

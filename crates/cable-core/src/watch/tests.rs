@@ -1,3 +1,4 @@
+use super::Bends;
 use super::crossing::{crossings, meet};
 use super::{HOLD_S, Subject, Watch};
 use crate::math::{Point, Vec2};
@@ -47,7 +48,7 @@ fn arc(center: Point, radius: f64, from: f64, to: f64, count: usize) -> Vec<Poin
 }
 
 fn found(problem: &Problem, answer: &CableSolution) -> Vec<Warning> {
-    super::look(&Subject { problem, answer, breaks: &[] })
+    super::look(&Subject { problem, answer, bends: Bends::of(problem, answer), breaks: &[] })
 }
 
 fn kinds(problem: &Problem, answer: &CableSolution) -> Vec<WarningKind> {
@@ -192,7 +193,7 @@ fn toggles(watch: &mut Watch, p: &Problem, tension: impl Fn(f64) -> f64, kind: W
     for k in 0..(for_s * 240.0) as usize {
         let t = k as f64 / 240.0;
         let answer = along(&[[0.0, 5.0], [6.0, 5.0]], tension(t));
-        watch.moving(&[Subject { problem: p, answer: &answer, breaks: &[] }], t);
+        watch.moving(&[Subject { problem: p, answer: &answer, bends: Bends::of(p, &answer), breaks: &[] }], t);
         let now = watch.warnings().any(|w| w.kind == kind);
         if now != on {
             out.push(t);
@@ -244,7 +245,7 @@ fn at_rest_the_past_does_not_count_and_times_are_kept_in_motion() {
     let mut watch = Watch::default();
     let see = |watch: &mut Watch, tension: f64, t: f64| {
         let answer = along(&[[0.0, 5.0], [6.0, 5.0]], tension);
-        watch.moving(&[Subject { problem: &p, answer: &answer, breaks: &[] }], t);
+        watch.moving(&[Subject { problem: &p, answer: &answer, bends: Bends::of(&p, &answer), breaks: &[] }], t);
     };
     for k in 0..10 {
         see(&mut watch, 900.0 + f64::from(k), 0.1 * f64::from(k + 1));
@@ -252,7 +253,7 @@ fn at_rest_the_past_does_not_count_and_times_are_kept_in_motion() {
     let w: Vec<_> = watch.warnings().cloned().collect();
     assert_eq!((w.len(), w[0].since_s, w[0].value), (1, Some(0.1), 909.0));
     let calm = along(&[[0.0, 5.0], [6.0, 5.0]], 100.0);
-    watch.at_rest(&[Subject { problem: &p, answer: &calm, breaks: &[] }], 1.1);
+    watch.at_rest(&[Subject { problem: &p, answer: &calm, bends: Bends::of(&p, &calm), breaks: &[] }], 1.1);
     assert_eq!(watch.warnings().count(), 0);
 }
 
@@ -274,7 +275,7 @@ fn a_contact_that_holds_against_a_growing_pull_is_a_snag() {
                 tension_after_n: after(t),
                 ..ContactReport::default()
             }];
-            watch.moving(&[Subject { problem: &p, answer: &answer, breaks: &[] }], t);
+            watch.moving(&[Subject { problem: &p, answer: &answer, bends: Bends::of(&p, &answer), breaks: &[] }], t);
         }
         watch.warnings().find(|w| w.kind == WarningKind::Snag).cloned()
     };

@@ -20,6 +20,10 @@ use super::root::{FLOOR, crossing};
 /// Part of the friction coefficient by which it is changed to see what that moves.
 const NUDGE: f64 = 1e-6;
 
+/// A stretch of no more than this (m or rad) is none. Smaller: where friction goes to and fro over the same stretch rounding
+/// leaves a knot more each time. Larger: tension is off by as much times the slope of tension.
+const SLIVER: f64 = 1e-12;
+
 /// A point from which the tension follows the law with m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Knot {
@@ -156,7 +160,7 @@ impl History {
 
     fn push(&mut self, k: Knot) {
         if let Some(last) = self.knots.last_mut() {
-            if k.p <= last.p {
+            if k.p - last.p <= SLIVER {
                 // A stretch of no extent.
                 last.m = k.m;
                 return;
