@@ -343,11 +343,11 @@ impl OnPiece<'_> {
         let part = about / whole;
         let exact = self.from.turn == 0.0 || self.from.stretch == 0.0;
         if exact {
-            let inside = part >= 0.0 && part <= 1.0;
+            let inside = (0.0..=1.0).contains(&part);
             return inside.then(|| (self.p0 + about, both(self.p0 + about)));
         }
         let sign = (t - u).signum();
-        let near = (part > 0.0 && part < WELL).then(|| self.p0 + about);
+        let near = (part > 0.0 && part < WELL).then_some(self.p0 + about);
         if let Some(near) = near {
             let found = self.meeting(p1, [(t, m), (u, n)], (-1.0, Some(near)));
             let [a, b] = found.1;
