@@ -212,12 +212,10 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
         } else {
             stalled += 1;
         }
-        if !worst.is_finite() || iterations == MAX_ITERATIONS || stalled > MAX_STALLED {
-            return Err(stall(worst));
-        }
-        iterations += 1;
-        if !step(strand, course, work) {
-            if change_modes(strand, course, MOST_FLIPS, &mut work.sheet) {
+        let over = !worst.is_finite() || iterations == MAX_ITERATIONS || stalled > MAX_STALLED;
+        iterations += usize::from(!over);
+        if over || !step(strand, course, work) {
+            if !over && change_modes(strand, course, MOST_FLIPS, &mut work.sheet) {
                 continue;
             }
             // Rounding: nothing is gained any more.
