@@ -6,6 +6,7 @@
 use std::sync::Arc;
 
 use crate::contact::World;
+use crate::contact::outline::Outline;
 use crate::error::SceneError;
 use crate::math::{Vec2, vec2};
 use crate::scene::{Cable, Motion, PulleySide, Scene, SupportKind, View};
@@ -37,8 +38,10 @@ pub struct Problem {
     pub supports: Vec<SupportPoint>,
     /// Point loads in order along the cable (those of load supports are in `supports`).
     pub loads: Vec<PointLoad>,
-    /// What it can touch.
+    /// What it can touch and stays where it is.
     pub world: Arc<World>,
+    /// What it can touch and moves: the robot.
+    pub outline: Option<Arc<Outline>>,
     /// Plan view: friction coefficient with the floor and normal force per metre, N/m.
     pub floor_friction: Option<(f64, f64)>,
     /// The way it is first laid, m (empty: straight from support to support, lifted over what is in the way).
@@ -228,6 +231,7 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
         supports,
         loads,
         world: Arc::new(World::new(&scene.obstacles, cable.friction, radius)),
+        outline: scene.robot_outline(cable.friction).map(Arc::new),
         floor_friction,
         route: cable.route_m.iter().map(|p| vec2(*p)).collect(),
         cable: cable.clone(),
@@ -243,6 +247,15 @@ fn force_series(force: Option<[f64; 2]>, times: &[f64], forces: &[[f64; 2]]) -> 
 }
 
 impl Problem {
+    /// The same for a model that knows nothing of obstacles that move.
+    #[must_use]
+    pub fn without_outline(this: Arc<Self>) -> Arc<Self> {
+        if this.outline.is_none() {
+            return this;
+        }
+        Arc::new(Self { outline: None, ..Self::clone(&this) })
+    }
+
     /// Distributed force per metre of arc length at a time, N/m: weight + wind.
     #[must_use]
     pub fn body_force(&self, time_s: f64) -> Vec2 {

@@ -1,13 +1,13 @@
 //! A scene, a model and its state: the object users hold.
 
 use crate::error::{Error, SolveError};
-use crate::math::{Vec2, larger};
+use crate::math::{Vec2, larger, smaller};
 use crate::model::auto::{self, Question};
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::problems;
 use crate::robot::{self, Vehicle};
 use crate::scene::{Scene, SupportKind};
-use crate::solution::{CableSolution, Cost, Energy, Solution, Warning};
+use crate::solution::{CableSolution, Cost, Energy, Node, Solution, Warning, WarningKind};
 use crate::state::State;
 use crate::strand::Strand;
 use crate::watch::{Bends, Subject, Watch};
@@ -115,6 +115,22 @@ impl Simulation {
             .map(|((c, answer), bends)| Subject { problem: c.problem(), answer, bends, breaks: c.breaks() })
             .collect();
         if moving { self.watch.moving(&subjects, time_s) } else { self.watch.at_rest(&subjects, time_s) }
+        self.look_for_robot();
+    }
+
+    /// Says where an answer lies through the robot: models other than `fem` know nothing of it.
+    fn look_for_robot(&mut self) {
+        self.warnings.retain(|w| w.kind != WarningKind::ThroughRobot);
+        let Some(at) = self.vehicle.as_ref().map(|v| v.pose().placement()) else { return };
+        for (strand, answer) in self.cables.iter().zip(&self.answers) {
+            let problem = strand.problem();
+            let Some(outline) = problem.outline.as_ref().filter(|_| strand.outline().is_none()) else { continue };
+            if !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius) {
+                let message = format!("`{}` lies through the robot: {} knows nothing of it", answer.name, strand.model());
+                let kind = WarningKind::ThroughRobot;
+                self.warnings.push(Warning::new(kind, &answer.name, problem.length, [0.0, 0.0], message));
+            }
+        }
     }
 
     #[cfg(test)]
@@ -206,13 +222,21 @@ impl Simulation {
                 let at = self.answers.get(cable).and_then(|a| a.supports.get(support));
                 sum + at.map_or_else(Vec2::zeros, |s| Vec2::new(s.reaction_x_n, s.reaction_y_n))
             });
+            let push = self.cables.iter().filter_map(Strand::outline).map(|o| o.force_n).sum();
             let Some(vehicle) = &mut self.vehicle else { break };
-            vehicle.advance(h, pull);
+            vehicle.advance(h, pull, push);
             let target = vehicle.hitch_target();
             for (cable, support) in hitches {
                 self.drag_support(cable, support, target);
             }
+            self.lead_outline();
             self.each(|c| c.advance(h, inertia))?;
+            let made = self.cables.iter().filter_map(Strand::outline).map(|o| o.made).fold(1.0, smaller);
+            if made < 1.0
+                && let Some(vehicle) = &mut self.vehicle
+            {
+                vehicle.hold_back(made);
+            }
             cost = Cost {
                 iterations: cost.iterations + self.cost.iterations,
                 halved_steps: cost.halved_steps + self.cost.halved_steps,
@@ -223,6 +247,14 @@ impl Simulation {
         warnings.dedup_by(|a, b| (a.kind, &a.cable) == (b.kind, &b.cable));
         (self.cost, self.warnings) = (cost, warnings);
         Ok(())
+    }
+
+    /// Tells the cables where the robot stands.
+    fn lead_outline(&mut self) {
+        let Some(to) = self.vehicle.as_ref().map(|v| v.pose().placement()) else { return };
+        for cable in &mut self.cables {
+            cable.lead_outline(to);
+        }
     }
 
     /// Cable and support of everything that hangs on the robot.
@@ -344,11 +376,12 @@ impl Simulation {
     /// # Errors
     /// When a state does not fit its cable.
     pub fn carry(&mut self, old: &Self) -> Result<(), SolveError> {
-        for (new, old) in self.cables.iter_mut().zip(&old.cables) {
-            new.carry(old)?;
-        }
         if let (Some(new), Some(old), true) = (&mut self.vehicle, &old.vehicle, old.time_s() > 0.0) {
             new.carry(old);
+        }
+        self.lead_outline();
+        for (new, old) in self.cables.iter_mut().zip(&old.cables) {
+            new.carry(old)?;
         }
         self.look(false);
         Ok(())
@@ -374,11 +407,11 @@ impl Simulation {
     /// As [`Self::adopt`].
     pub fn resume(&mut self, answer: &Solution) -> Result<(), SolveError> {
         let states: Vec<State> = answer.cables.iter().map(|c| State::of_nodes(&c.nodes, answer.time_s)).collect();
-        self.adopt(&states)?;
         if let (Some(vehicle), Some(then)) = (&mut self.vehicle, &answer.robot) {
             vehicle.resume(then);
         }
-        Ok(())
+        self.lead_outline();
+        self.adopt(&states)
     }
 }
 

@@ -299,6 +299,8 @@ pub enum WarningKind {
     NotUnique,
     /// A support was stopped by an obstacle, or its speed was capped.
     SupportHeld,
+    /// It lies through the robot, of which the model knows nothing.
+    ThroughRobot,
     /// Damping or velocity was raised to keep the motion stable.
     Stabilised,
     /// The mesh is too coarse for the asked accuracy.
@@ -307,7 +309,7 @@ pub enum WarningKind {
 
 impl WarningKind {
     /// Every kind.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::ServiceTension,
         Self::BreakingTension,
         Self::Broken,
@@ -321,6 +323,7 @@ impl WarningKind {
         Self::Snag,
         Self::NotUnique,
         Self::SupportHeld,
+        Self::ThroughRobot,
         Self::Stabilised,
         Self::Accuracy,
     ];
@@ -342,6 +345,7 @@ impl WarningKind {
             Self::Snag => "snag",
             Self::NotUnique => "not-unique",
             Self::SupportHeld => "support-held",
+            Self::ThroughRobot => "through-robot",
             Self::Stabilised => "stabilised",
             Self::Accuracy => "accuracy",
         }

@@ -10,6 +10,7 @@
 //! "Signed distance computation using the angle weighted pseudonormal", IEEE TVCG 2005, says the same in 2D.)
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::math::Vector;
@@ -17,6 +18,7 @@ use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 
 use super::Gap;
 use super::distance::nearest_fraction;
+use super::outline::{Outline, Placement};
 use crate::math::{Point, Vec2, cross, perp, vec2};
 use crate::scene::{Obstacle, Shape};
 
@@ -40,8 +42,8 @@ pub struct Body {
     pub friction: f64,
     /// Distance of the cable's centre line from the edges when it touches, m.
     pub offset: f64,
-    /// Edges, in order; empty for a circle.
-    pub edges: Vec<Edge>,
+    /// Edges, in order; empty for a circle. Shared by all copies: maps are large.
+    pub edges: Arc<Vec<Edge>>,
     /// Centre of a circle; `offset` then includes its radius.
     pub center: Option<Vec2>,
     /// Number of this body's first feature: edge k is feature first + 2k, the corner at its start
@@ -49,7 +51,8 @@ pub struct Body {
     pub first: usize,
     solid: bool,
     closed: bool,
-    bvh: Bvh,
+    /// None: it moves, and its few edges are all looked at.
+    bvh: Option<Arc<Bvh>>,
 }
 
 /// A straight piece of a boundary; outside is left of it.
@@ -115,6 +118,12 @@ impl Corner {
 }
 
 impl Edge {
+    /// The edge between two points that are not the same, m.
+    #[must_use]
+    pub fn between(p: Vec2, q: Vec2) -> Self {
+        Self { p, q, tangent: (q - p) / (q - p).norm() }
+    }
+
     /// Outward unit normal.
     #[must_use]
     pub fn normal(&self) -> Vec2 {
@@ -132,13 +141,19 @@ impl Body {
     /// Edge indices whose boxes meet the given box.
     pub fn candidates(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = usize> {
         let query = Aabb::new(Vector::new(low.x, low.y), Vector::new(high.x, high.y));
-        self.bvh
-            .leaves(move |node| {
+        let listed = self.bvh.iter().flat_map(move |bvh| {
+            bvh.leaves(move |node| {
                 let (n, x) = (node.mins(), node.maxs());
                 n.x <= query.maxs.x && n.y <= query.maxs.y && x.x >= query.mins.x && x.y >= query.mins.y
             })
-            .map(|leaf| leaf as usize)
-            .filter(|&k| k < self.edges.len())
+        });
+        let meets = move |e: &Edge| {
+            let (n, x) = (e.p.inf(&e.q), e.p.sup(&e.q));
+            n.x <= high.x && n.y <= high.y && x.x >= low.x && x.y >= low.y
+        };
+        let all = if self.bvh.is_none() { self.edges.as_slice() } else { &[] };
+        let moving = all.iter().enumerate().filter(move |(_, e)| meets(e)).map(|(k, _)| k);
+        listed.map(|leaf| leaf as usize).filter(|&k| k < self.edges.len()).chain(moving)
     }
 
     /// The corner at the start of edge `k`; `k` = number of edges asks for the end of an open line.
@@ -168,6 +183,12 @@ impl Body {
         let n = self.edges.len();
         let Some(local) = feature.checked_sub(self.first).map(|f| f / 2).filter(|&k| k <= n) else { return false };
         local == edge || local == edge + 1 || (self.closed && local == 0 && edge + 1 == n)
+    }
+
+    /// Whether it is an outline that moves.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        self.bvh.is_none()
     }
 
     /// Whether it is ground: solid below an open line, so that nothing can go round it.
@@ -284,13 +305,13 @@ impl Geometry {
                 let (low, high) = (e.p.inf(&e.q), e.p.sup(&e.q));
                 Aabb::new(Vector::new(low.x, low.y), Vector::new(high.x, high.y))
             });
-            let bvh = Bvh::from_iter(BvhBuildStrategy::Binned, leaves.enumerate());
+            let bvh = Some(Arc::new(Bvh::from_iter(BvhBuildStrategy::Binned, leaves.enumerate())));
             bodies.push(Body {
                 obstacle,
                 name: o.name.clone(),
                 friction: o.friction.unwrap_or(cable_friction),
                 offset: cable_radius + grow,
-                edges,
+                edges: Arc::new(edges),
                 center,
                 first,
                 solid,
@@ -299,6 +320,30 @@ impl Geometry {
             });
         }
         Self { bodies }
+    }
+
+    /// Adds an outline that can be moved, for a cable of this radius (m); it is the body with the number `obstacle`.
+    pub fn add_outline(&mut self, outline: &Outline, obstacle: usize, cable_radius: f64) {
+        self.bodies.push(Body {
+            obstacle,
+            name: outline.name.clone(),
+            friction: outline.friction,
+            offset: cable_radius,
+            edges: Arc::new(outline.edges(outline.placement).map(|[p, q]| Edge::between(p, q)).collect()),
+            center: None,
+            first: self.bodies.last().map_or(0, |b| b.features().end),
+            solid: true,
+            closed: true,
+            bvh: None,
+        });
+    }
+
+    /// Puts the outline that was added last where it is now.
+    pub fn place_outline(&mut self, outline: &Outline, placement: Placement) {
+        let Some(body) = self.bodies.last_mut().filter(|b| b.moves()) else { return };
+        for (edge, [p, q]) in Arc::make_mut(&mut body.edges).iter_mut().zip(outline.edges(placement)) {
+            *edge = Edge::between(p, q);
+        }
     }
 
     /// Whether there is no feature.
@@ -404,7 +449,7 @@ fn edges_of(points: &[Vec2], closed: bool) -> Vec<Edge> {
     (0..count)
         .map(|i| {
             let (p, q) = (points[i], points[(i + 1) % n]);
-            Edge { p, q, tangent: (q - p) / (q - p).norm() }
+            Edge::between(p, q)
         })
         .collect()
 }

@@ -9,6 +9,7 @@ pub mod distance;
 pub mod friction;
 pub mod geometry;
 pub mod near;
+pub mod outline;
 pub mod own;
 pub mod pairs;
 pub mod sweep;
@@ -48,6 +49,20 @@ impl World {
     #[must_use]
     pub fn new(obstacles: &[Obstacle], cable_friction: f64, cable_radius: f64) -> Self {
         Self { geometry: geometry::Geometry::new(obstacles, cable_friction, cable_radius) }
+    }
+
+    /// The same obstacles and an outline that can be moved, for a cable of this radius (m).
+    #[must_use]
+    pub fn with_outline(&self, outline: &outline::Outline, cable_radius: f64) -> Self {
+        let mut geometry = self.geometry.clone();
+        let obstacle = geometry.bodies().iter().map(|b| b.obstacle + 1).max().unwrap_or(0);
+        geometry.add_outline(outline, obstacle, cable_radius);
+        Self { geometry }
+    }
+
+    /// Puts the outline where it is now.
+    pub fn place_outline(&mut self, outline: &outline::Outline, placement: outline::Placement) {
+        self.geometry.place_outline(outline, placement);
     }
 
     /// Whether there is nothing to touch.

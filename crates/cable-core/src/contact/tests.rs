@@ -175,7 +175,7 @@ fn the_nearest_pair_is_the_gap_of_the_segment() {
         world.segment_gaps(a, b, 0.3, &mut out);
         let mut nearest = f64::INFINITY;
         for body in world.geometry().bodies() {
-            for e in &body.edges {
+            for e in body.edges.iter() {
                 nearest = nearest.min(distance::segment_segment(a, b, e.p, e.q) - body.offset);
             }
             if let Some(c) = body.center {
@@ -278,7 +278,7 @@ fn sweeps_never_cross_anything() {
         assert!((0.0..=1.0).contains(&f));
         let end = [from[0] + (to[0] - from[0]) * f, from[1] + (to[1] - from[1]) * f];
         for body in world.geometry().bodies() {
-            for e in &body.edges {
+            for e in body.edges.iter() {
                 let before = distance::segment_segment(from[0], from[1], e.p, e.q);
                 let after = distance::segment_segment(end[0], end[1], e.p, e.q);
                 if before <= 0.0 {

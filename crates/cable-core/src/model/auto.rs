@@ -23,7 +23,7 @@ pub fn choose(problem: &Problem, question: Question) -> (Model, String) {
         (Model::Fem, "the cable can touch itself".to_owned())
     } else if problem.floor_friction.is_some() {
         (Model::Fem, "in plan view the floor rubs everywhere".to_owned())
-    } else if !problem.world.is_empty() {
+    } else if !problem.world.is_empty() || problem.outline.is_some() {
         (Model::Spans, "a taut cable among obstacles: contacts as intervals have no discretisation error".to_owned())
     } else {
         (Model::Catenary, "supports only: the elastic catenary has no discretisation error".to_owned())

@@ -18,6 +18,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use self::mass_spring::Stepping;
+use crate::contact::outline::Placement;
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::problem::Problem;
@@ -106,6 +107,15 @@ pub struct StepReport {
     pub warnings: Vec<Warning>,
 }
 
+/// What a cable does to the outline of the robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutlineReport {
+    /// Its force on it, N.
+    pub force_n: Vec2,
+    /// Part of the way it was led that it came in the last advance: 1 unless the cable was in its way.
+    pub made: f64,
+}
+
 /// What every model does. One cable; time and positions in SI units.
 pub trait Mechanics: Send {
     /// Which model this is.
@@ -157,6 +167,15 @@ pub trait Mechanics: Send {
     /// next `settle` or quasi-static step it is there) instead of its `motion`.
     fn drag_support(&mut self, support: usize, target_m: Vec2);
 
+    /// The outline of the robot goes there in the next advance; what is put somewhere ([`Self::adopt`]) finds it there at once.
+    /// Models that know nothing of it leave it out.
+    fn lead_outline(&mut self, _to: Placement) {}
+
+    /// What the cable does to the outline of the robot; None where the model leaves it out, or there is none.
+    fn outline(&self) -> Option<OutlineReport> {
+        None
+    }
+
     /// The answer at this instant.
     fn solution(&self) -> CableSolution;
 
@@ -174,10 +193,10 @@ pub trait Mechanics: Send {
 /// `Unsupported` when the model lacks what the scene needs.
 pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Box<dyn Mechanics>, SolveError> {
     match model {
-        Model::Catenary => Ok(Box::new(catenary::CatenaryModel::new(problem, settings)?)),
-        Model::Spans => Ok(Box::new(spans::SpansModel::new(problem, settings)?)),
+        Model::Catenary => Ok(Box::new(catenary::CatenaryModel::new(Problem::without_outline(problem), settings)?)),
+        Model::Spans => Ok(Box::new(spans::SpansModel::new(Problem::without_outline(problem), settings)?)),
         Model::Fem => Ok(Box::new(fem::FemModel::new(problem, settings)?)),
-        Model::MassSpring => Ok(Box::new(mass_spring::MassSpringModel::new(problem, settings)?)),
+        Model::MassSpring => Ok(Box::new(mass_spring::MassSpringModel::new(Problem::without_outline(problem), settings)?)),
         Model::Auto => match auto::choose(&problem, auto::Question::Rest).0 {
             Model::Spans => Ok(Box::new(relay::Relay::new(problem, settings)?)),
             chosen => build(chosen, problem, settings),

@@ -8,7 +8,8 @@ use std::sync::Arc;
 
 use super::fem::FemModel;
 use super::spans::SpansModel;
-use super::{Inertia, Mechanics, Model, Settings, StepReport};
+use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
+use crate::contact::outline::Placement;
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::problem::Problem;
@@ -23,17 +24,25 @@ const FELT: f64 = 1e-2;
 const FIRST_WAIT: usize = 1;
 /// … up to this.
 const LONGEST_WAIT: usize = 8;
+/// A cable this near to the robot is answered by the model that knows of it, m. Less: a step passes it unseen.
+const ROOM_M: f64 = 0.02;
+/// Why it is then that model.
+const TOUCHES: &str = "the cable touches the robot, which moves";
 
 /// Two models of one cable, one at a time.
 #[derive(Clone, Debug)]
 pub struct Relay {
     settings: Settings,
+    /// With the outline of the robot, of which `spans` knows nothing.
+    problem: Arc<Problem>,
     spans: SpansModel,
     /// Holds the present state where it is there.
     fem: Option<FemModel>,
     /// Where the cable was put, until it is known to rest or to move.
     adopted: Option<State>,
     dragged: Vec<Option<Vec2>>,
+    /// Where the outline of the robot was led.
+    led: Option<Placement>,
     reason: Option<String>,
     /// Answers until the next offer, and after that.
     wait: [usize; 2],
@@ -46,8 +55,18 @@ impl Relay {
     /// `Unsupported` when the scene needs what `spans` never has.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
         let dragged = vec![None; problem.supports.len()];
-        let spans = SpansModel::new(problem, settings)?;
-        Ok(Self { settings, spans, fem: None, adopted: None, dragged, reason: None, wait: [FIRST_WAIT; 2] })
+        let spans = SpansModel::new(Problem::without_outline(problem.clone()), settings)?;
+        Ok(Self {
+            settings,
+            led: problem.outline.as_ref().map(|o| o.placement),
+            problem,
+            spans,
+            fem: None,
+            adopted: None,
+            dragged,
+            reason: None,
+            wait: [FIRST_WAIT; 2],
+        })
     }
 
     /// `fem`, which holds the present state from now on.
@@ -65,9 +84,11 @@ impl Relay {
     }
 
     fn handed_over(&self) -> Result<FemModel, SolveError> {
-        let mut fem = FemModel::new(self.spans.problem().clone(), self.settings)?;
+        let mut fem = self.new_fem()?;
         let answer = self.spans.solution();
-        if let Some(state) = &self.adopted {
+        if self.meets_robot(&answer) {
+            // Found without knowing of the robot: laid anew.
+        } else if let Some(state) = &self.adopted {
             fem.adopt(state)?;
         } else if self.spans.stands() {
             // Dragged supports are where they came to, not yet where they are drawn.
@@ -86,6 +107,21 @@ impl Relay {
         Ok(fem)
     }
 
+    /// `fem` at the route, the robot where it is.
+    fn new_fem(&self) -> Result<FemModel, SolveError> {
+        let mut fem = FemModel::new(self.problem.clone(), self.settings)?;
+        if let Some(led) = self.led {
+            fem.lead_outline(led);
+        }
+        Ok(fem)
+    }
+
+    /// Whether the cable is in touch with the robot, or in its place.
+    fn meets_robot(&self, answer: &CableSolution) -> bool {
+        let (Some(outline), Some(at)) = (&self.problem.outline, self.led) else { return false };
+        !outline.is_clear(at, answer.nodes.iter().map(Node::at), self.problem.radius + ROOM_M)
+    }
+
     fn is_dragged(&self, support: usize) -> bool {
         self.dragged.get(support).is_some_and(Option::is_some)
     }
@@ -98,6 +134,10 @@ impl Relay {
             return;
         }
         let answer = fem.solution();
+        if self.meets_robot(&answer) {
+            self.wait[0] = self.wait[1];
+            return;
+        }
         let before = self.spans.clone();
         let taken = self.spans.take_over(&answer, fem.time_s()).is_ok();
         if taken && alike(self.spans.problem(), &answer, &self.spans.solution()) {
@@ -143,6 +183,7 @@ impl Mechanics for Relay {
         let mut why = String::new();
         if self.fem.is_none() {
             match self.spans.settle() {
+                Ok(_) if self.meets_robot(&self.spans.solution()) => TOUCHES.clone_into(&mut why),
                 Ok(report) => {
                     self.adopted = None;
                     return Ok(report);
@@ -176,7 +217,12 @@ impl Mechanics for Relay {
         let end_s = self.time_s() + dt_s;
         let mut why = String::new();
         if self.fem.is_none() {
+            let before = self.led.map(|_| self.spans.clone());
             match self.spans.advance(dt_s, inertia) {
+                Ok(_) if self.meets_robot(&self.spans.solution()) => {
+                    TOUCHES.clone_into(&mut why);
+                    self.spans = before.unwrap_or_else(|| self.spans.clone());
+                }
                 Ok(report) => {
                     self.adopted = None;
                     return Ok(report);
@@ -217,15 +263,19 @@ impl Mechanics for Relay {
         self.adopted = None;
         self.fem = None;
         self.reason = None;
-        if let Err(error) = self.spans.take_over(answer, time_s) {
-            let mut fem = FemModel::new(self.spans.problem().clone(), self.settings)?;
+        let taken = match self.meets_robot(answer) {
+            true => Err(TOUCHES.to_owned()),
+            false => self.spans.take_over(answer, time_s).map_err(|e| e.to_string()),
+        };
+        if let Err(why) = taken {
+            let mut fem = self.new_fem()?;
             for (k, target) in self.dragged.iter().enumerate() {
                 if let Some(target) = target {
                     fem.drag_support(k, *target);
                 }
             }
             fem.take_over(answer, time_s)?;
-            self.reason = Some(error.to_string());
+            self.reason = Some(why);
             self.fem = Some(fem);
         }
         Ok(())
@@ -241,12 +291,23 @@ impl Mechanics for Relay {
         }
     }
 
+    fn lead_outline(&mut self, to: Placement) {
+        self.led = self.led.map(|_| to);
+        if let Some(fem) = &mut self.fem {
+            fem.lead_outline(to);
+        }
+    }
+
+    fn outline(&self) -> Option<OutlineReport> {
+        self.fem.as_ref().and_then(Mechanics::outline)
+    }
+
     fn solution(&self) -> CableSolution {
         self.fem.as_ref().map_or_else(|| self.spans.solution(), Mechanics::solution)
     }
 
     fn problem(&self) -> &Arc<Problem> {
-        self.spans.problem()
+        &self.problem
     }
 
     fn boxed_clone(&self) -> Box<dyn Mechanics> {

@@ -73,6 +73,8 @@ pub enum Going {
     Dragged,
     /// The ground ends or is too steep.
     Blocked,
+    /// Its own cable is in its way and cannot get out of it.
+    Jammed,
 }
 
 impl Going {
@@ -87,6 +89,7 @@ impl Going {
             Self::Slipping => "slipping: the tracks find no hold",
             Self::Dragged => "dragged by the cable",
             Self::Blocked => "blocked: too steep, or the ground ends",
+            Self::Jammed => "jammed: the cable is in its way",
         }
     }
 }
@@ -114,6 +117,12 @@ pub struct RobotReport {
     pub hitch_x_n: f64,
     /// Force of the cable on its hitch, N.
     pub hitch_y_n: f64,
+    /// Force of the cable on its outline, N.
+    #[serde(default)]
+    pub push_x_n: f64,
+    /// Force of the cable on its outline, N.
+    #[serde(default)]
+    pub push_y_n: f64,
     /// Why it is as fast as it is.
     pub going: Going,
     /// The leg of its path it is on; None by hand or at the end.
@@ -131,6 +140,8 @@ pub struct Vehicle {
     track_friction: f64,
     rolling: f64,
     pose: Pose,
+    /// How it stood before the last step.
+    before: Pose,
     /// Along the ground, positive to the right, m/s.
     speed: f64,
     /// Speed by hand, m/s; None: the path.
@@ -162,6 +173,7 @@ impl Vehicle {
             preset,
             ground,
             pose,
+            before: pose,
             speed: 0.0,
             by_hand: None,
             leg: 0,
@@ -171,7 +183,7 @@ impl Vehicle {
         };
         let (sin, cos) = pose.pitch.sin_cos();
         let forces = Forces { normal: vehicle.weight * cos, thrust: vehicle.weight * sin };
-        vehicle.tell(Vec2::zeros(), forces, (0.0, Going::Standing));
+        vehicle.tell([Vec2::zeros(); 2], forces, (0.0, Going::Standing));
         Some(vehicle)
     }
 
@@ -191,7 +203,8 @@ impl Vehicle {
             (self.leg, self.waited, self.felt) = (old.leg.min(legs), old.waited, old.felt);
             let forces = Forces { normal: old.report.normal_n, thrust: old.report.thrust_n };
             let hitch = Vec2::new(old.report.hitch_x_n, old.report.hitch_y_n);
-            self.tell(hitch, forces, (old.report.commanded_m_per_s, old.report.going));
+            let push = Vec2::new(old.report.push_x_n, old.report.push_y_n);
+            self.tell([hitch, push], forces, (old.report.commanded_m_per_s, old.report.going));
         }
     }
 
@@ -202,7 +215,8 @@ impl Vehicle {
             (self.leg, self.waited) = (then.leg.unwrap_or(self.robot.path.len()), 0.0);
             let forces = Forces { normal: then.normal_n, thrust: then.thrust_n };
             let hitch = Vec2::new(then.hitch_x_n, then.hitch_y_n);
-            self.tell(hitch, forces, (then.commanded_m_per_s, then.going));
+            let push = Vec2::new(then.push_x_n, then.push_y_n);
+            self.tell([hitch, push], forces, (then.commanded_m_per_s, then.going));
         }
     }
 
@@ -225,15 +239,27 @@ impl Vehicle {
         vec2(self.pose.hitch_m(self.preset)) + along * (self.speed * TRAILING_S)
     }
 
-    /// Moves on by `dt` (s, at most [`STEP_S`] for accuracy) under the force of the cable on its hitch, N.
-    pub fn advance(&mut self, dt: f64, hitch: Vec2) {
+    /// It came only this part of its last step (0 to 1): the cable was in its way.
+    pub fn hold_back(&mut self, made: f64) {
+        let placement = self.before.placement().towards(&self.pose.placement(), made);
+        self.pose = Pose { at_m: [placement.at.x, placement.at.y], pitch: placement.angle, ..self.pose };
+        self.speed = 0.0;
+        (self.report.x_m, self.report.y_m) = (placement.at.x, placement.at.y);
+        self.report.pitch_deg = placement.angle.to_degrees();
+        (self.report.speed_m_per_s, self.report.going) = (0.0, Going::Jammed);
+    }
+
+    /// Moves on by `dt` (s, at most [`STEP_S`] for accuracy) under the forces of the cable on its hitch and on its outline, N.
+    pub fn advance(&mut self, dt: f64, hitch: Vec2, outline: Vec2) {
+        self.before = self.pose;
         let wanted = self.wanted(dt);
         let (sin, cos) = self.pose.pitch.sin_cos();
-        let lift = hitch.y * cos - hitch.x * sin;
+        let felt = hitch + self.bearable(outline, dt);
+        let lift = felt.y * cos - felt.x * sin;
         let normal = self.weight * cos - lift;
         // Lifted off the ground its tracks find no hold at all.
         let normal = if normal > 0.0 { normal } else { 0.0 };
-        let pull = hitch.x * cos + hitch.y * sin - self.weight * sin;
+        let pull = felt.x * cos + felt.y * sin - self.weight * sin;
         self.felt += (pull - self.felt) * (dt / FELT_S).min(1.0);
         // Held, it starts again when the cable lets it on the whole, not at every swing.
         let held = self.speed == 0.0 && wanted != 0.0 && self.felt * wanted < pull * wanted;
@@ -249,7 +275,15 @@ impl Vehicle {
             _ => (0.0, Going::Blocked),
         };
         self.speed = speed;
-        self.tell(hitch, Forces { normal, thrust }, (wanted, going));
+        self.tell([hitch, outline], Forces { normal, thrust }, (wanted, going));
+    }
+
+    /// The force on its outline that it feels, N: at most what stops it in this step against its full drive. What is squeezed
+    /// between it and a wall presses as hard as the stiffness of the squeeze, a step late, and would throw it back.
+    fn bearable(&self, outline: Vec2, dt: f64) -> Vec2 {
+        let most = self.preset.mass_kg.value * self.speed.abs() / dt + self.preset.drive_pull_n.value;
+        let size = outline.norm();
+        if size > most { outline * (most / size) } else { outline }
     }
 
     /// New speed (m/s), force of the tracks (N) and why, from the speed wanted and the forces across and along the ground.
@@ -330,7 +364,7 @@ impl Vehicle {
         0.0
     }
 
-    fn tell(&mut self, hitch: Vec2, forces: Forces, (commanded, going): (f64, Going)) {
+    fn tell(&mut self, [hitch, push]: [Vec2; 2], forces: Forces, (commanded, going): (f64, Going)) {
         self.report = RobotReport {
             x_m: self.pose.at_m[0],
             y_m: self.pose.at_m[1],
@@ -342,6 +376,8 @@ impl Vehicle {
             traction_n: self.track_friction * forces.normal,
             hitch_x_n: hitch.x,
             hitch_y_n: hitch.y,
+            push_x_n: push.x,
+            push_y_n: push.y,
             going,
             leg: (self.by_hand.is_none() && self.leg < self.robot.path.len()).then_some(self.leg),
         };

@@ -14,9 +14,10 @@ use std::sync::Arc;
 
 use deal::{Cut, Deal};
 
+use crate::contact::outline::Placement;
 use crate::error::SolveError;
-use crate::math::{Vec2, larger};
-use crate::model::{self, Inertia, Mechanics, Model, Settings, StepReport};
+use crate::math::{Vec2, larger, smaller};
+use crate::model::{self, Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost};
@@ -76,6 +77,8 @@ pub(crate) struct Strand {
     pieces: Vec<Piece>,
     breaks: Vec<Break>,
     dragged: Vec<Option<Vec2>>,
+    /// Where the outline of the robot was led.
+    led: Option<Placement>,
 }
 
 /// A part of the cable that holds together.
@@ -102,7 +105,7 @@ impl Strand {
         let mechanics = model::build(model, problem.clone(), settings)?;
         let piece = Piece::new(mechanics, Deal::whole(&problem));
         let dragged = vec![None; problem.supports.len()];
-        Ok(Self { problem, asked: model, settings, pieces: vec![piece], breaks: Vec::new(), dragged })
+        Ok(Self { problem, asked: model, settings, pieces: vec![piece], breaks: Vec::new(), dragged, led: None })
     }
 
     /// The model in use: of several pieces that of the first.
@@ -220,6 +223,9 @@ impl Strand {
                 mechanics.drag_support(own, target);
             }
         }
+        if let Some(led) = self.led {
+            mechanics.lead_outline(led);
+        }
         mechanics.adopt(state)?;
         Ok(Piece::new(mechanics, deal))
     }
@@ -258,6 +264,22 @@ impl Strand {
                 piece.mechanics.drag_support(own, target_m);
             }
         }
+    }
+
+    /// Leads the outline of the robot: it goes there in the next advance.
+    pub fn lead_outline(&mut self, to: Placement) {
+        self.led = Some(to);
+        for piece in &mut self.pieces {
+            piece.mechanics.lead_outline(to);
+        }
+    }
+
+    /// What the cable does to the outline of the robot, all pieces together; None where no model knows of it.
+    pub fn outline(&self) -> Option<OutlineReport> {
+        self.pieces.iter().filter_map(|p| p.mechanics.outline()).reduce(|a, b| OutlineReport {
+            force_n: a.force_n + b.force_n,
+            made: smaller(a.made, b.made),
+        })
     }
 
     /// Takes over a state of the whole cable.
@@ -433,6 +455,7 @@ impl Clone for Strand {
             pieces: self.pieces.clone(),
             breaks: self.breaks.clone(),
             dragged: self.dragged.clone(),
+            led: self.led,
         }
     }
 }

@@ -104,6 +104,11 @@ fn readouts(ui: &mut Ui, r: &RobotReport) {
             unit::force(r.hitch_x_n.hypot(r.hitch_y_n)),
             "On its hitch; it slows the robot by the balance of forces",
         ),
+        (
+            "Press of the cable",
+            unit::force(r.push_x_n.hypot(r.push_y_n)),
+            "On its outline, where the cable lies on it or is pushed along",
+        ),
     ];
     Grid::new("robot readouts").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
         for (name, value, help) in rows {

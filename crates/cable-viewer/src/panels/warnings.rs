@@ -115,6 +115,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
         WarningKind::BendRadius => (Severity::Caution, "Bent too tightly"),
         WarningKind::Accuracy => (Severity::Caution, "Less accurate than asked"),
         WarningKind::SupportHeld => (Severity::Caution, "A support was held back"),
+        WarningKind::ThroughRobot => (Severity::Caution, "Lies through the robot"),
         WarningKind::Stabilised => (Severity::Caution, "The motion was stabilised"),
         WarningKind::NotUnique => (Severity::Note, "One of several resting places"),
     };
@@ -151,7 +152,7 @@ fn figures(warning: &Warning) -> Option<String> {
         WarningKind::Snag => Some(format!("tension ratio {value:.2}")),
         WarningKind::Loop => None,
         WarningKind::Accuracy => Some(format!("{} of {}", unit::percent(value), unit::percent(limit))),
-        WarningKind::NotUnique | WarningKind::SupportHeld | WarningKind::Stabilised => None,
+        WarningKind::NotUnique | WarningKind::SupportHeld | WarningKind::ThroughRobot | WarningKind::Stabilised => None,
     }
 }
 

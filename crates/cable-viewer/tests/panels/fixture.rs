@@ -217,6 +217,7 @@ pub fn driven() -> AppState {
         hitch_y_n: 212.0,
         going: Going::Slowed,
         leg: Some(0),
+        ..RobotReport::default()
     });
     state.snapshot.solution = Some(Arc::new(answer));
     state

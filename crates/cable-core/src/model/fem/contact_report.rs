@@ -81,7 +81,7 @@ fn ground_force(d: &Dynamics, node: usize, x: &[Vec2]) -> Vec2 {
 }
 
 /// Friction force on the cable, N.
-fn rub_force(rub: &Rub, x: &[Vec2]) -> Vec2 {
+pub(super) fn rub_force(rub: &Rub, x: &[Vec2]) -> Vec2 {
     -rub.tangent * friction::at(rub.sliding(x), rub.limit, SLIDE).1
 }
 

@@ -1,6 +1,7 @@
 //! The contacts of a mesh at an instant, and the friction each carries.
 
 use super::assembly::Mesh;
+use super::carry::Carriage;
 use super::own::Own;
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
@@ -122,6 +123,8 @@ pub struct ContactSet {
     pub floor_slid: Vec<Vec2>,
     /// Contacts of the cable with itself.
     pub own: Own,
+    /// How the outline of the robot moved in this step.
+    pub carriage: Option<Carriage>,
 }
 
 impl ContactSet {
@@ -137,12 +140,13 @@ impl ContactSet {
             near: Near::default(),
             floor_slid: vec![Vec2::zeros(); nodes],
             own: Own::default(),
+            carriage: None,
         }
     }
 
     /// Becomes a copy without new memory where there is room.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { barrier, rubs, memory, spare: _, scratch: _, near: _, floor_slid, own } = other;
+        let Self { barrier, rubs, memory, spare: _, scratch: _, near: _, floor_slid, own, carriage } = other;
         self.barrier = *barrier;
         // With room for as many, so that a front of contact that runs on asks for none; and no more, or each copy would double it.
         self.rubs.clear();
@@ -153,6 +157,7 @@ impl ContactSet {
         self.memory.extend_from_slice(memory);
         self.floor_slid.clone_from(floor_slid);
         self.own.copy_from(own);
+        self.carriage = *carriage;
     }
 
     /// Forgets all friction.
@@ -257,7 +262,9 @@ impl ContactSet {
             let limit = touch.pair.gap.friction * touch.load(&self.barrier);
             if limit > 0.0 {
                 let slid = self.remembered(touch);
-                let origin = touch.interpolate(start);
+                let was = touch.interpolate(start);
+                let carried = self.carriage.filter(|c| c.obstacle == touch.pair.gap.obstacle);
+                let origin = carried.map_or(was, |c| c.carried(was));
                 self.rubs.push(Rub { touch: *touch, tangent: touch.tangent(), limit, slid, origin });
             }
         }

@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use super::assembly::Mesh;
+use super::carry::Rider;
 use super::contact_set::{ContactSet, Touch};
 use super::contact_start::{lay, push_out, way};
 use super::contact_step::Workspace;
 use super::free_step::FreeStep;
 use super::integrate::PULLED;
+use super::motion::Motion;
 use super::prepare::{load_scale, tolerance};
 use super::sleep::Sleep;
 use super::sliding::Seat;
@@ -15,7 +17,6 @@ use super::task::{Done, Failure, Pose, Task};
 use crate::contact::barrier::Barrier;
 use crate::error::SolveError;
 use crate::math::Vec2;
-use crate::model::drive::Follower;
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::{Problem, Series};
 use crate::scene::SupportKind;
@@ -47,6 +48,9 @@ pub(super) const STIFFNESS_CHANGE: [f64; 2] = [2.0, 0.8];
 /// keep that (1 to 3 % of the tension in 4 of 200 scenes); more: cables that need it take longer.
 const QUIET_DEPTH: usize = 4;
 
+/// A step is halved this often before the robot has to wait for the cable. Less: it jerks; more: it costs.
+const PATIENCE: usize = 3;
+
 /// A step is halved at most this often.
 const MAX_DEPTH: usize = 10;
 
@@ -65,24 +69,6 @@ impl Clone for Memory {
     }
 }
 
-/// What a step may change, kept to go back to.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Motion {
-    pub(super) x: Vec<Vec2>,
-    pub(super) v: Vec<Vec2>,
-    pub(super) x_before: Vec<Vec2>,
-    pub(super) v_before: Vec<Vec2>,
-    /// Arc length at sliding nodes one step ago, m.
-    pub(super) s_before: Vec<f64>,
-    /// Rate of the arc length at sliding nodes, m/s.
-    pub(super) w: Vec<f64>,
-    pub(super) w_before: Vec<f64>,
-    /// Last step, s; 0 = no history, the next step is implicit Euler.
-    pub(super) step_before: f64,
-    pub(super) followers: Vec<Option<Follower>>,
-    pub(super) time: f64,
-}
-
 /// A state to go back to.
 #[derive(Clone, Debug)]
 struct Saved {
@@ -93,22 +79,6 @@ struct Saved {
     /// Nodes of the loads; their number never changes.
     load_node: Vec<usize>,
     reaction: Vec<Vec2>,
-}
-
-impl Motion {
-    /// Becomes a copy without new memory where there is room.
-    fn copy_from(&mut self, other: &Self) {
-        let Self { x, v, x_before, v_before, s_before, w, w_before, step_before, followers, time } = other;
-        self.x.clone_from(x);
-        self.v.clone_from(v);
-        self.x_before.clone_from(x_before);
-        self.v_before.clone_from(v_before);
-        self.s_before.clone_from(s_before);
-        self.w.clone_from(w);
-        self.w_before.clone_from(w_before);
-        self.followers.clone_from(followers);
-        (self.step_before, self.time) = (*step_before, *time);
-    }
 }
 
 /// The moving cable, or the resting one where it can touch something.
@@ -143,6 +113,8 @@ pub struct Dynamics {
     pub(super) held_back: Vec<usize>,
     /// Room for where hands draw supports in a part of a step.
     aims: Vec<Option<Vec2>>,
+    /// The outline of the robot, if there is one.
+    pub(super) rider: Option<Rider>,
     /// Room for the contacts among which corners are looked for.
     pub(super) touches: Vec<Touch>,
 }
@@ -153,6 +125,7 @@ impl Dynamics {
     /// # Errors
     /// None today: what it cannot do is refused when asked for.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
+        let (rider, problem) = Rider::of(problem);
         let way = way(&problem);
         let segments = segments(&problem, settings);
         let even = problem.length / segments as f64;
@@ -189,6 +162,7 @@ impl Dynamics {
                 w: vec![0.0; n],
                 w_before: vec![0.0; n],
                 followers: vec![None; problem.supports.len()],
+                placement: problem.outline.as_ref().map(|o| o.placement),
                 ..Motion::default()
             },
             saved: None,
@@ -205,6 +179,7 @@ impl Dynamics {
             rested: false,
             held_back: Vec::new(),
             aims: Vec::new(),
+            rider,
             touches: Vec::with_capacity(n),
             support_node,
             loads,
@@ -290,6 +265,7 @@ impl Dynamics {
         }
         self.held_back.clear();
         let end = self.motion.time + dt_s;
+        self.begin_way(end);
         if inertia == Inertia::Dynamic && self.sleeps_until(end, dragged) {
             self.motion.time = end;
             return Ok(self.report(Done::default(), 0, 0.0));
@@ -351,6 +327,7 @@ impl Dynamics {
                 load.0 = node;
             }
             self.can_restore = false;
+            self.place_outline();
             self.renew_task();
         }
     }
@@ -441,6 +418,11 @@ impl Dynamics {
                     self.restore();
                     if f.cause == PULLED && self.settle_down(f.node) {
                         self.renew_task();
+                        continue;
+                    }
+                    // A cable that cannot get out of the way of the robot holds it.
+                    if depth >= PATIENCE && self.outline_waits() {
+                        (depth, size) = (0, left);
                         continue;
                     }
                     // The barrier may be too soft for what this step does.

@@ -54,7 +54,8 @@ impl Dynamics {
             return Ok(());
         }
         self.wake();
-        let same = state.arc_length_m == self.mesh.arc_length;
+        let led = self.put_outline();
+        let same = state.arc_length_m == self.mesh.arc_length && !led;
         if !same {
             self.unthread();
         }

@@ -42,7 +42,9 @@ impl Dynamics {
         let m = &mut self.motion;
         for rub in &self.contacts.rubs {
             let (touch, n) = (&rub.touch, rub.touch.pair.gap.normal);
-            let speed = touch.interpolate(&m.v).dot(&n);
+            let carried = self.contacts.carriage.filter(|c| c.obstacle == touch.pair.gap.obstacle);
+            let of_it = carried.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(&m.x)) / h);
+            let speed = (touch.interpolate(&m.v) - of_it).dot(&n);
             if speed.abs() < QUIET {
                 continue;
             }
@@ -74,7 +76,7 @@ impl Dynamics {
                 self.motion.followers[k] = Some(f);
             }
         }
-        self.prepare_step([self.motion.time, self.motion.time + h], Some(dragged));
+        self.prepare_way([self.motion.time, self.motion.time + h], Some(dragged));
         self.adapt_reach();
         self.adapt_stiffness(STIFFNESS_CHANGE, 1.0);
         let omega = if self.motion.step_before > 0.0 { h / self.motion.step_before } else { 0.0 };
@@ -122,6 +124,7 @@ impl Dynamics {
         self.motion.time += h;
         self.land(h);
         self.land_on_itself(QUIET, h);
+        self.contacts.carriage = None;
         if !self.never_slides {
             self.remesh();
         }
@@ -250,7 +253,8 @@ impl Dynamics {
     /// The present pose.
     pub(super) fn still_pose(&mut self) -> Pose {
         let mut pose = std::mem::take(&mut self.pose);
-        pose.x.clone_from(&self.task.start);
+        pose.x.clear();
+        pose.x.extend_from_slice(self.task.begins());
         pose.slide.clear();
         pose.slide.resize(self.mesh.nodes(), 0.0);
         pose

@@ -11,6 +11,7 @@ mod bar;
 mod beam;
 mod beam_answer;
 mod beam_mesh;
+mod carry;
 pub mod contact_report;
 pub mod contact_set;
 pub mod contact_start;
@@ -27,6 +28,7 @@ mod integrate;
 mod layout;
 mod marks;
 mod mesh_edit;
+mod motion;
 mod network;
 mod own;
 mod path;
@@ -47,7 +49,8 @@ mod wheel;
 
 use std::sync::Arc;
 
-use super::{Inertia, Mechanics, Model, Settings, StepReport};
+use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
+use crate::contact::outline::Placement;
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::problem::Problem;
@@ -110,7 +113,9 @@ impl FemModel {
 
 /// Whether the cable can touch nothing but its supports.
 fn touches_nothing(problem: &Problem) -> bool {
-    problem.world.is_empty() && problem.floor_friction.is_none() && !problem.cable.self_contact
+    problem.world.is_empty()
+        && problem.outline.is_none()
+        && problem.floor_friction.is_none() && !problem.cable.self_contact
 }
 
 impl Mechanics for FemModel {
@@ -171,6 +176,14 @@ impl Mechanics for FemModel {
         if let Some(d) = self.dragged.get_mut(support) {
             *d = Some(target_m);
         }
+    }
+
+    fn lead_outline(&mut self, to: Placement) {
+        self.dynamics.lead_outline(to);
+    }
+
+    fn outline(&self) -> Option<OutlineReport> {
+        self.dynamics.outline_report()
     }
 
     fn solution(&self) -> CableSolution {

@@ -47,6 +47,7 @@ impl Dynamics {
         }
         task.start.clone_from(&self.motion.x);
         task.target.clone_from(&self.motion.x);
+        task.laid.clear();
         mesh.held.fill(false);
         mesh.clamps.clear();
         for (k, (s, node)) in problem.supports.iter().zip(&self.support_node).enumerate() {

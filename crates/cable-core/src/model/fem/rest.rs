@@ -1,11 +1,13 @@
 //! Resting places and slow motion in contact.
 
+use super::carry::Rider;
+use super::contact_start::push_out;
 use super::dynamics::{Dynamics, REACH};
 use super::integrate::PULLED;
 use super::prepare::load_scale;
 use super::task::{Done, Failure, Pose};
 use crate::error::SolveError;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 use crate::model::{Model, StepReport};
 
 /// Newton iterations of a step without inertia.
@@ -48,7 +50,7 @@ impl Dynamics {
     fn rest_rounds(&mut self, to: f64, dragged: &[Option<Vec2>], pull: f64) -> Result<Done, Failure> {
         let mut total = Done::default();
         for round in 0..CORNER_ROUNDS {
-            self.prepare_task(to, Some(dragged));
+            self.prepare_way([to, to], Some(dragged));
             self.set_reach(REACH);
             self.adapt_stiffness([f64::INFINITY, 0.0], 1.0);
             self.task.max_iterations = REST_ITERATIONS;
@@ -107,6 +109,7 @@ impl Dynamics {
     /// Takes a pose as the state at rest at the time `to`; returns whether what the cable runs over changed.
     fn accept_rest(&mut self, pose: &Pose, to: f64) -> bool {
         self.contacts.commit(&self.problem, &self.mesh, &pose.x, &self.motion.x, &pose.slide);
+        self.contacts.carriage = None;
         self.motion.x.clone_from(&pose.x);
         self.motion.v.fill(Vec2::zeros());
         self.motion.w.fill(0.0);
@@ -131,6 +134,10 @@ impl Dynamics {
 
     /// Follows the way down with ever weaker viscous resistance, then finds the resting place itself.
     pub(super) fn relax(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Done, Failure> {
+        // What the outline moves into goes out of its way before anything slides.
+        self.prepare_way([to, to], Some(dragged));
+        self.motion.x.clone_from_slice(self.task.begins());
+        self.contacts.carriage = None;
         let mut resistance = self.first_resistance();
         let (full, floor) = (resistance, 1e-5 * resistance);
         // Set where Newton without resistance has failed: then steps are solved exactly, until what resists is nothing.
@@ -199,6 +206,12 @@ impl Dynamics {
         self.held_back.clear();
         self.save();
         self.motion.followers.fill(None);
+        if !self.rested && self.put_outline() {
+            let mut x = std::mem::take(&mut self.motion.x);
+            push_out(&self.problem, &self.mesh, &mut x, 0.9 * REACH);
+            self.motion.x = x;
+            self.forget_history();
+        }
         match self.find_rest(dragged)? {
             Ok(done) => {
                 self.rested = true;
@@ -257,6 +270,7 @@ impl Dynamics {
                 most = most.max((at - now).norm());
             }
         }
-        (most / (0.5 * even)).ceil().clamp(1.0, 1e4)
+        let carried = self.rider.as_ref().map_or(0.0, Rider::pieces);
+        larger(most / (0.5 * even), carried).ceil().clamp(1.0, 1e4)
     }
 }

@@ -96,7 +96,7 @@ impl Workspace {
 
     /// Moves a pose that is still where the step began to where its speed carries it, as far as nothing is in the way.
     fn move_on(&mut self, (problem, mesh): (&Problem, &Mesh), contacts: &ContactSet, task: &Task, pose: &mut Pose) {
-        if pose.x != task.start {
+        if pose.x != task.begins() {
             return;
         }
         for (k, d) in self.direction.chunks_exact_mut(2).enumerate() {

@@ -63,6 +63,9 @@ impl Dynamics {
 
     /// Whether the cable sleeps on until the time `to` (s), supports dragged by hand to `dragged` (m).
     pub(super) fn sleeps_until(&mut self, to: f64, dragged: &[Option<Vec2>]) -> bool {
+        if self.outline_moves() {
+            self.sleep.asleep = false;
+        }
         if !self.sleep.asleep {
             return false;
         }

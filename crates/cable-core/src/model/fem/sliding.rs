@@ -154,7 +154,8 @@ impl Load {
 /// convex corner that turns by more than `least` (rad).
 #[must_use]
 pub fn round_of(geometry: &Geometry, feature: usize, clear: f64, least: f64) -> Option<(Vec2, f64)> {
-    let body = geometry.body_of(feature)?;
+    // On what moves a sliding node would come and go all the time; the barrier carries a cable there as well.
+    let body = geometry.body_of(feature).filter(|b| !b.moves())?;
     if let Some(center) = body.center {
         return Some((center, body.offset + clear));
     }

@@ -36,6 +36,8 @@ pub struct Task {
     pub may_lag: bool,
     /// Where the step began, m.
     pub start: Vec<Vec2>,
+    /// Where the iteration begins, m, where that is not where the step begins: an outline moved; else empty.
+    pub laid: Vec<Vec2>,
     /// Plan view: largest friction force of each node, N (empty otherwise).
     pub floor_limit: Vec<f64>,
     /// Unbalanced force to reach, N.
@@ -48,6 +50,14 @@ pub struct Task {
     pub moves: bool,
     /// Regularisation to begin with, N/m.
     pub shift: f64,
+}
+
+impl Task {
+    /// Where the iteration begins, m.
+    #[must_use]
+    pub fn begins(&self) -> &[Vec2] {
+        if self.laid.is_empty() { &self.start } else { &self.laid }
+    }
 }
 
 /// Why a step failed.

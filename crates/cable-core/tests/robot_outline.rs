@@ -1,0 +1,175 @@
+//! The outline of the robot is an obstacle for its cable: pushed, lain upon, never crossed.
+
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic, missing_docs)] // a failing test is meant to panic
+
+use cable_core::contact::distance::cross_properly;
+use cable_core::contact::outline::Outline;
+use cable_core::record::Fingerprint;
+use cable_core::robot::{Going, RobotReport};
+use cable_core::scene::{Shape, catalog};
+use cable_core::solution::{ContactReport, WarningKind};
+use cable_core::{Model, Obstacle, Scene, Simulation, Vec2};
+
+/// Time between two looks, s.
+const FRAME_S: f64 = 1.0 / 60.0;
+
+fn scene(length_m: f64, ground: &[[f64; 2]]) -> Scene {
+    let mut scene = catalog::robot_drive();
+    scene.cables[0].length_m = length_m;
+    if let Shape::Terrain { points_m } = &mut scene.obstacles[0].shape {
+        *points_m = ground.to_vec();
+    }
+    if let Some(robot) = &mut scene.robot {
+        robot.path.clear();
+    }
+    scene
+}
+
+fn robot(simulation: &Simulation) -> RobotReport {
+    simulation.solution().robot.unwrap()
+}
+
+/// Whether the cable crosses the outline, or has a node in it: by polygons alone, not by what the solver uses.
+fn crosses(simulation: &Simulation) -> Option<String> {
+    let outline: Outline = simulation.scene().robot_outline(0.5).unwrap();
+    let r = robot(simulation);
+    let mut placement = outline.placement;
+    (placement.at, placement.angle) = (Vec2::new(r.x_m, r.y_m), r.pitch_deg.to_radians());
+    let edges: Vec<[Vec2; 2]> = outline.edges(placement).collect();
+    let inside = |p: Vec2| edges.iter().filter(|[a, b]| cross_properly(p, Vec2::new(1e3, 777.0), *a, *b)).count() % 2 == 1;
+    for cable in &simulation.solution().cables {
+        for pair in cable.nodes.windows(2) {
+            let (a, b) = (pair[0].at(), pair[1].at());
+            if inside(a) || edges.iter().any(|[p, q]| cross_properly(a, b, *p, *q)) {
+                return Some(format!("t {:.3} s: {a:?} {b:?} robot {r:?}", simulation.time_s()));
+            }
+        }
+    }
+    None
+}
+
+/// Drives by hand; nothing is crossed on the way.
+fn drive(simulation: &mut Simulation, speed: f64, for_s: f64) {
+    simulation.command_robot(Some(speed));
+    for _ in 0..(for_s / FRAME_S).round() as usize {
+        simulation.step(FRAME_S).unwrap();
+        assert_eq!(crosses(simulation), None);
+        assert!(simulation.solution().cables[0].nodes.iter().all(|n| n.at().norm() < 100.0));
+    }
+}
+
+fn pushed(simulation: &Simulation) -> f64 {
+    let of_robot = |c: &&ContactReport| c.obstacle == "robot";
+    simulation.solution().cables[0].contacts.iter().filter(of_robot).map(|c| c.normal_n).sum()
+}
+
+
+const LEVEL: [[f64; 2]; 2] = [[-4.0, 0.0], [20.0, 0.0]];
+
+fn start(scene: Scene) -> Simulation {
+    let mut s = Simulation::new(scene, Model::Auto).unwrap();
+    s.settle().unwrap();
+    assert_eq!(crosses(&s), None);
+    s
+}
+
+#[test]
+fn backing_over_its_own_slack_cable_it_pushes_it_along() {
+    // At rest nothing touches the robot: answered without a mesh.
+    assert_eq!(start(scene(12.5, &LEVEL)).model(), Model::Spans);
+    let mut s = start(scene(15.5, &LEVEL));
+    drive(&mut s, -0.6, 5.0);
+    let r = robot(&s);
+    // As fast as on free ground, where it gets up to speed in 0.6 s; the heap rubs on the ground before it.
+    assert!((r.x_m - (10.0 - 0.6 * 5.0 + 0.18)).abs() < 0.02, "{r:?}");
+    assert!(r.push_x_n > 5.0 && pushed(&s) > 5.0, "{r:?}");
+    // Standing it holds what leans on it.
+    drive(&mut s, 0.0, 1.5);
+    assert!(robot(&s).speed_m_per_s == 0.0);
+}
+
+#[test]
+fn the_same_log_gives_the_same_hash() {
+    let hash = || {
+        let mut s = start(scene(15.5, &LEVEL));
+        let mut print = Fingerprint::default();
+        for speed in [-0.6, -0.8, 0.3] {
+            s.command_robot(Some(speed));
+            for _ in 0..60 {
+                s.step(FRAME_S).unwrap();
+                print.push(&s.solution());
+            }
+        }
+        assert!(s.solution().cables[0].nodes.len() > 10);
+        print
+    };
+    assert_eq!(hash(), hash());
+}
+
+/// Over bumps, up and down slopes, back and forth, with every slack.
+#[test]
+fn whatever_the_ground_it_never_crosses_the_robot() {
+    let rough: Vec<[f64; 2]> =
+        (0..60).map(|k| [-4.0 + 0.4 * f64::from(k), 0.06 * f64::from(k * 7 % 5) + 0.04 * f64::from(k * 3 % 4)]).collect();
+    let valley = [[-4.0, 1.0], [4.0, 0.6], [7.5, 0.0], [9.0, 0.0], [13.0, 1.2], [20.0, 1.4]];
+    for (length_m, ground) in [(13.0, rough.as_slice()), (16.0, &rough), (15.0, &valley), (13.5, &valley)] {
+        let mut s = start(scene(length_m, ground));
+        for (speed, for_s) in [(-0.8, 2.5), (0.8, 1.5), (-0.5, 2.0), (0.0, 0.3)] {
+            drive(&mut s, speed, for_s);
+        }
+    }
+}
+
+/// Its cable comes from before it and lies over its deck: what presses on the deck, pulls at the hitch and at the riser and what
+/// the ground carries is its weight.
+#[test]
+fn lying_over_the_robot_the_forces_balance() {
+    let mut over = scene(11.5, &LEVEL);
+    over.cables[0].supports[0].at_m = Some([18.0, 3.0]);
+    let mut s = start(over);
+    assert_eq!(s.model(), Model::Fem);
+    assert!(s.reason().contains("robot"), "{}", s.reason());
+    drive(&mut s, 0.0, 6.0);
+    let (answer, r) = (s.solution(), robot(&s));
+    let cable = &answer.cables[0];
+    let sum = |of: fn(&cable_core::solution::SupportReaction) -> f64| cable.supports.iter().map(of).sum::<f64>();
+    let ground: Vec2 = (cable.contacts.iter().filter(|c| c.obstacle == "floor"))
+        .map(|c| Vec2::new(c.friction_n.abs(), -c.normal_n))
+        .sum();
+    let weight = 11.5 * s.scene().cables[0].linear_density_kg_per_m * 9.80665;
+    let left = sum(|s| s.reaction_y_n) + r.push_y_n + ground.y + weight;
+    assert!(left.abs() < 2e-3 * weight, "{left} of {weight}: {r:?} {:?}", cable.contacts);
+    assert!(r.push_y_n < -0.05 * weight, "{r:?}");
+    let sideways = sum(|s| s.reaction_x_n) + r.push_x_n;
+    assert!(sideways.abs() <= ground.x + 2e-3 * weight, "{sideways}: {r:?} {:?}", cable.contacts);
+    // The robot drives on under it and back.
+    drive(&mut s, 0.6, 2.0);
+    drive(&mut s, -0.6, 4.0);
+}
+
+/// A cable squeezed between the robot and a wall is not cut through: the robot comes to a stand.
+#[test]
+fn squeezed_against_a_wall_it_jams() {
+    let mut walled = scene(16.0, &LEVEL);
+    let points_m = vec![[6.6, -0.2], [7.0, -0.2], [7.0, 0.7], [6.6, 0.7]];
+    walled.obstacles.push(Obstacle { name: "wall".into(), shape: Shape::Polygon { points_m }, friction: None });
+    let mut s = start(walled);
+    drive(&mut s, -0.6, 6.0);
+    let r = robot(&s);
+    // Its rear is 0.8 m behind its middle; not nearer to the wall than the cable is thick.
+    let left = r.x_m - 0.8 - 7.0;
+    assert!(left > 0.02 && left < 0.6, "{left}: {r:?}");
+    assert!(matches!(r.going, Going::Jammed | Going::Stalled | Going::Slipping), "{r:?}");
+    // And it comes away again.
+    drive(&mut s, 0.6, 2.0);
+    assert!(robot(&s).x_m > r.x_m + 0.8, "{:?}", robot(&s));
+}
+
+#[test]
+fn a_model_that_knows_nothing_of_it_says_so() {
+    let mut over = scene(11.5, &LEVEL);
+    over.cables[0].supports[0].at_m = Some([18.0, 3.0]);
+    let mut s = Simulation::new(over, Model::Spans).unwrap();
+    let answer = s.settle().unwrap();
+    assert!(answer.warnings.iter().any(|w| w.kind == WarningKind::ThroughRobot), "{:?}", answer.warnings);
+}
