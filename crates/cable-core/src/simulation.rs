@@ -114,7 +114,11 @@ impl Simulation {
         let subjects: Vec<Subject<'_>> = (self.cables.iter().zip(&self.answers).zip(bends))
             .map(|((c, answer), bends)| Subject { problem: c.problem(), answer, bends, breaks: c.breaks() })
             .collect();
-        if moving { self.watch.moving(&subjects, time_s) } else { self.watch.at_rest(&subjects, time_s) }
+        if moving {
+            self.watch.moving(&subjects, time_s)
+        } else {
+            self.watch.at_rest(&subjects, time_s)
+        }
         self.look_for_robot();
     }
 
@@ -126,7 +130,8 @@ impl Simulation {
             let problem = strand.problem();
             let Some(outline) = problem.outline.as_ref().filter(|_| strand.outline().is_none()) else { continue };
             if !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius) {
-                let message = format!("`{}` lies through the robot: {} knows nothing of it", answer.name, strand.model());
+                let message =
+                    format!("`{}` lies through the robot: {} knows nothing of it", answer.name, strand.model());
                 let kind = WarningKind::ThroughRobot;
                 self.warnings.push(Warning::new(kind, &answer.name, problem.length, [0.0, 0.0], message));
             }

@@ -36,7 +36,8 @@ fn crosses(simulation: &Simulation) -> Option<String> {
     let mut placement = outline.placement;
     (placement.at, placement.angle) = (Vec2::new(r.x_m, r.y_m), r.pitch_deg.to_radians());
     let edges: Vec<[Vec2; 2]> = outline.edges(placement).collect();
-    let inside = |p: Vec2| edges.iter().filter(|[a, b]| cross_properly(p, Vec2::new(1e3, 777.0), *a, *b)).count() % 2 == 1;
+    let inside =
+        |p: Vec2| edges.iter().filter(|[a, b]| cross_properly(p, Vec2::new(1e3, 777.0), *a, *b)).count() % 2 == 1;
     for cable in &simulation.solution().cables {
         for pair in cable.nodes.windows(2) {
             let (a, b) = (pair[0].at(), pair[1].at());
@@ -62,7 +63,6 @@ fn pushed(simulation: &Simulation) -> f64 {
     let of_robot = |c: &&ContactReport| c.obstacle == "robot";
     simulation.solution().cables[0].contacts.iter().filter(of_robot).map(|c| c.normal_n).sum()
 }
-
 
 const LEVEL: [[f64; 2]; 2] = [[-4.0, 0.0], [20.0, 0.0]];
 
@@ -109,8 +109,9 @@ fn the_same_log_gives_the_same_hash() {
 /// Over bumps, up and down slopes, back and forth, with every slack.
 #[test]
 fn whatever_the_ground_it_never_crosses_the_robot() {
-    let rough: Vec<[f64; 2]> =
-        (0..60).map(|k| [-4.0 + 0.4 * f64::from(k), 0.06 * f64::from(k * 7 % 5) + 0.04 * f64::from(k * 3 % 4)]).collect();
+    let rough: Vec<[f64; 2]> = (0..60)
+        .map(|k| [-4.0 + 0.4 * f64::from(k), 0.06 * f64::from(k * 7 % 5) + 0.04 * f64::from(k * 3 % 4)])
+        .collect();
     let valley = [[-4.0, 1.0], [4.0, 0.6], [7.5, 0.0], [9.0, 0.0], [13.0, 1.2], [20.0, 1.4]];
     for (length_m, ground) in [(13.0, rough.as_slice()), (16.0, &rough), (15.0, &valley), (13.5, &valley)] {
         let mut s = start(scene(length_m, ground));

@@ -266,7 +266,12 @@ impl Body {
             let f = nearest_fraction(p, e.p, e.q);
             Some(((p - (e.p + (e.q - e.p) * f)).norm(), f))
         };
-        let (k, (d, f)) = self.bvh.find_best(most.next_up(), to_box, to_edge)?;
+        let Some(bvh) = &self.bvh else {
+            let of = |k: usize| to_edge(u32::try_from(k).ok()?, 0.0).map(|(d, f)| (d, k, f));
+            let nearer = |a: (f64, usize, f64), b: (f64, usize, f64)| if b.0 < a.0 { b } else { a };
+            return (0..self.edges.len()).filter_map(of).reduce(nearer).filter(|(d, ..)| *d <= most);
+        };
+        let (k, (d, f)) = bvh.find_best(most.next_up(), to_box, to_edge)?;
         // Of two edges that share the nearest corner the lower one, whatever the order of the tree.
         let k = k as usize;
         Some(match f {

@@ -120,10 +120,8 @@ mod tests {
 
     #[test]
     fn it_comes_back_to_where_it_was() {
-        let (a, b) = (
-            Placement { at: Vec2::new(3.0, -1.0), angle: 0.4 },
-            Placement { at: Vec2::new(3.5, -1.2), angle: -0.1 },
-        );
+        let (a, b) =
+            (Placement { at: Vec2::new(3.0, -1.0), angle: 0.4 }, Placement { at: Vec2::new(3.5, -1.2), angle: -0.1 });
         let p = Vec2::new(0.7, 2.0);
         assert!((a.own(a.place(p)) - p).norm() < 1e-15);
         assert!((b.carried(&a, a.carried(&b, p)) - p).norm() < 1e-14);

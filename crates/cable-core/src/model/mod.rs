@@ -196,7 +196,9 @@ pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<
         Model::Catenary => Ok(Box::new(catenary::CatenaryModel::new(Problem::without_outline(problem), settings)?)),
         Model::Spans => Ok(Box::new(spans::SpansModel::new(Problem::without_outline(problem), settings)?)),
         Model::Fem => Ok(Box::new(fem::FemModel::new(problem, settings)?)),
-        Model::MassSpring => Ok(Box::new(mass_spring::MassSpringModel::new(Problem::without_outline(problem), settings)?)),
+        Model::MassSpring => {
+            Ok(Box::new(mass_spring::MassSpringModel::new(Problem::without_outline(problem), settings)?))
+        }
         Model::Auto => match auto::choose(&problem, auto::Question::Rest).0 {
             Model::Spans => Ok(Box::new(relay::Relay::new(problem, settings)?)),
             chosen => build(chosen, problem, settings),

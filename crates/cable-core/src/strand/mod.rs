@@ -276,10 +276,10 @@ impl Strand {
 
     /// What the cable does to the outline of the robot, all pieces together; None where no model knows of it.
     pub fn outline(&self) -> Option<OutlineReport> {
-        self.pieces.iter().filter_map(|p| p.mechanics.outline()).reduce(|a, b| OutlineReport {
-            force_n: a.force_n + b.force_n,
-            made: smaller(a.made, b.made),
-        })
+        self.pieces
+            .iter()
+            .filter_map(|p| p.mechanics.outline())
+            .reduce(|a, b| OutlineReport { force_n: a.force_n + b.force_n, made: smaller(a.made, b.made) })
     }
 
     /// Takes over a state of the whole cable.

@@ -245,17 +245,13 @@ impl Dynamics {
     fn laid(&self, carriage: &Carriage, ends: &[[Vec2; 2]]) -> Option<Vec<Vec2>> {
         let Some(rider) = &self.rider else { return Some(Vec::new()) };
         let way = rider.shape.way(&carriage.from, &carriage.to);
-        let near: Vec<bool> = ends
-            .iter()
-            .map(|e| self.is_near(e.map(|p| carriage.carried(p)), GOES_ALONG_M + 4.0 * way))
-            .collect();
+        let near: Vec<bool> =
+            ends.iter().map(|e| self.is_near(e.map(|p| carriage.carried(p)), GOES_ALONG_M + 4.0 * way)).collect();
         if !near.contains(&true) {
             return Some(Vec::new());
         }
         let start = &self.task.start;
-        let goes = |k: usize| {
-            (k > 0 && near.get(k - 1) == Some(&true)) || near.get(k) == Some(&true)
-        };
+        let goes = |k: usize| (k > 0 && near.get(k - 1) == Some(&true)) || near.get(k) == Some(&true);
         let mut x = start.clone();
         for (k, p) in x.iter_mut().enumerate().filter(|(k, _)| goes(*k)) {
             if self.mesh.is_free(k) {
@@ -275,9 +271,8 @@ impl Dynamics {
         let Some(body) = geometry.bodies().last() else { return false };
         let r = Vec2::repeat(within + body.offset);
         let reach = within + body.offset;
-        body.candidates(a.inf(&b) - r, a.sup(&b) + r).any(|k| {
-            body.edges.get(k).is_some_and(|e| segment_segment(a, b, e.p, e.q) < reach)
-        })
+        body.candidates(a.inf(&b) - r, a.sup(&b) + r)
+            .any(|k| body.edges.get(k).is_some_and(|e| segment_segment(a, b, e.p, e.q) < reach))
     }
 
     /// Gives back the gaps that were lost; see the module.

@@ -115,7 +115,8 @@ impl FemModel {
 fn touches_nothing(problem: &Problem) -> bool {
     problem.world.is_empty()
         && problem.outline.is_none()
-        && problem.floor_friction.is_none() && !problem.cable.self_contact
+        && problem.floor_friction.is_none()
+        && !problem.cable.self_contact
 }
 
 impl Mechanics for FemModel {

@@ -25,11 +25,9 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-
     /// Becomes a copy without new memory where there is room.
     pub(super) fn copy_from(&mut self, other: &Self) {
-        let Self { x, v, x_before, v_before, s_before, w, w_before, step_before, followers, time, placement } =
-            other;
+        let Self { x, v, x_before, v_before, s_before, w, w_before, step_before, followers, time, placement } = other;
         self.x.clone_from(x);
         self.v.clone_from(v);
         self.x_before.clone_from(x_before);
