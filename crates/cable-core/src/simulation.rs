@@ -1,7 +1,7 @@
 //! A scene, a model and its state: the object users hold.
 
 use crate::error::{Error, SolveError};
-use crate::math::{Vec2, larger, smaller};
+use crate::math::{Vec2, larger};
 use crate::model::auto::{self, Question};
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::problems;
@@ -236,11 +236,10 @@ impl Simulation {
             }
             self.lead_outline();
             self.each(|c| c.advance(h, inertia))?;
-            let made = self.cables.iter().filter_map(Strand::outline).map(|o| o.made).fold(1.0, smaller);
-            if made < 1.0
-                && let Some(vehicle) = &mut self.vehicle
-            {
-                vehicle.hold_back(made);
+            let outlines = self.cables.iter().filter_map(Strand::outline);
+            let last = outlines.reduce(|a, b| if b.left_m > a.left_m { b } else { a }).filter(|o| o.left_m > 0.0);
+            if let (Some(vehicle), Some(last)) = (&mut self.vehicle, last) {
+                vehicle.hold_back(last.placement);
             }
             cost = Cost {
                 iterations: cost.iterations + self.cost.iterations,

@@ -112,12 +112,24 @@ fn whatever_the_ground_it_never_crosses_the_robot() {
     let rough: Vec<[f64; 2]> = (0..60)
         .map(|k| [-4.0 + 0.4 * f64::from(k), 0.06 * f64::from(k * 7 % 5) + 0.04 * f64::from(k * 3 % 4)])
         .collect();
+    for length_m in [13.0, 16.0] {
+        back_and_forth(length_m, &rough);
+    }
+}
+
+/// Where the ground rises before it, its rear leans over the cable behind it.
+#[test]
+fn in_a_valley_it_never_crosses_the_robot() {
     let valley = [[-4.0, 1.0], [4.0, 0.6], [7.5, 0.0], [9.0, 0.0], [13.0, 1.2], [20.0, 1.4]];
-    for (length_m, ground) in [(13.0, rough.as_slice()), (16.0, &rough), (15.0, &valley), (13.5, &valley)] {
-        let mut s = start(scene(length_m, ground));
-        for (speed, for_s) in [(-0.8, 2.5), (0.8, 1.5), (-0.5, 2.0), (0.0, 0.3)] {
-            drive(&mut s, speed, for_s);
-        }
+    for length_m in [15.0, 13.5] {
+        back_and_forth(length_m, &valley);
+    }
+}
+
+fn back_and_forth(length_m: f64, ground: &[[f64; 2]]) {
+    let mut s = start(scene(length_m, ground));
+    for (speed, for_s) in [(-0.8, 2.5), (0.8, 1.5), (-0.5, 2.0), (0.0, 0.3)] {
+        drive(&mut s, speed, for_s);
     }
 }
 

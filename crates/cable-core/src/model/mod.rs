@@ -112,8 +112,10 @@ pub struct StepReport {
 pub struct OutlineReport {
     /// Its force on it, N.
     pub force_n: Vec2,
-    /// Part of the way it was led that it came in the last advance: 1 unless the cable was in its way.
-    pub made: f64,
+    /// Where it is: where it was led unless the cable was in its way.
+    pub placement: Placement,
+    /// How far that is from where it was led, m.
+    pub left_m: f64,
 }
 
 /// What every model does. One cable; time and positions in SI units.

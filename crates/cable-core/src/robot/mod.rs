@@ -18,6 +18,7 @@ pub mod reach;
 
 use serde::{Deserialize, Serialize};
 
+use crate::contact::outline::Placement;
 use crate::math::{Vec2, vec2};
 use crate::model::drive::TRAILING_S;
 use crate::scene::ground::Ground;
@@ -140,8 +141,6 @@ pub struct Vehicle {
     track_friction: f64,
     rolling: f64,
     pose: Pose,
-    /// How it stood before the last step.
-    before: Pose,
     /// Along the ground, positive to the right, m/s.
     speed: f64,
     /// Speed by hand, m/s; None: the path.
@@ -173,7 +172,6 @@ impl Vehicle {
             preset,
             ground,
             pose,
-            before: pose,
             speed: 0.0,
             by_hand: None,
             leg: 0,
@@ -239,9 +237,8 @@ impl Vehicle {
         vec2(self.pose.hitch_m(self.preset)) + along * (self.speed * TRAILING_S)
     }
 
-    /// It came only this part of its last step (0 to 1): the cable was in its way.
-    pub fn hold_back(&mut self, made: f64) {
-        let placement = self.before.placement().towards(&self.pose.placement(), made);
+    /// It came only there in its last step: the cable was in its way.
+    pub fn hold_back(&mut self, placement: Placement) {
         self.pose = Pose { at_m: [placement.at.x, placement.at.y], pitch: placement.angle, ..self.pose };
         self.speed = 0.0;
         (self.report.x_m, self.report.y_m) = (placement.at.x, placement.at.y);
@@ -251,7 +248,6 @@ impl Vehicle {
 
     /// Moves on by `dt` (s, at most [`STEP_S`] for accuracy) under the forces of the cable on its hitch and on its outline, N.
     pub fn advance(&mut self, dt: f64, hitch: Vec2, outline: Vec2) {
-        self.before = self.pose;
         let wanted = self.wanted(dt);
         let (sin, cos) = self.pose.pitch.sin_cos();
         let felt = hitch + self.bearable(outline, dt);

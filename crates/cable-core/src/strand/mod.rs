@@ -16,7 +16,7 @@ use deal::{Cut, Deal};
 
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
-use crate::math::{Vec2, larger, smaller};
+use crate::math::{Vec2, larger};
 use crate::model::{self, Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
@@ -279,7 +279,7 @@ impl Strand {
         self.pieces
             .iter()
             .filter_map(|p| p.mechanics.outline())
-            .reduce(|a, b| OutlineReport { force_n: a.force_n + b.force_n, made: smaller(a.made, b.made) })
+            .reduce(|a, b| OutlineReport { force_n: a.force_n + b.force_n, ..if b.left_m > a.left_m { b } else { a } })
     }
 
     /// Takes over a state of the whole cable.

@@ -194,6 +194,7 @@ impl Dynamics {
         let (Some(rider), Some(from)) = (&self.rider, self.motion.placement) else { return };
         let (goal, obstacle) = (rider.goal(times[1]), rider.obstacle);
         if rider.waits || !(rider.shape.way(&from, &goal) > STANDS_M) {
+            self.hitch_on(&Carriage { obstacle, from, to: from });
             return;
         }
         let ends: Vec<[Vec2; 2]> =
@@ -339,10 +340,9 @@ impl Dynamics {
     /// What the cable does to the outline, and how far that came of the way it was led.
     pub(super) fn outline_report(&self) -> Option<OutlineReport> {
         let (rider, at) = (self.rider.as_ref()?, self.motion.placement?);
-        let whole = rider.shape.way(&rider.from.1, &rider.to.1);
-        let came = rider.shape.way(&rider.from.1, &at);
-        let made = if rider.shape.way(&at, &rider.to.1) > STANDS_M && whole > 0.0 { came / whole } else { 1.0 };
-        Some(OutlineReport { force_n: self.force_on(rider.obstacle), made })
+        let left = rider.shape.way(&at, &rider.to.1);
+        let left_m = if left > STANDS_M { left } else { 0.0 };
+        Some(OutlineReport { force_n: self.force_on(rider.obstacle), placement: at, left_m })
     }
 
     /// Force of the cable on an obstacle, N.

@@ -9,7 +9,7 @@ use super::contact_start::{lay, push_out, way};
 use super::contact_step::Workspace;
 use super::free_step::FreeStep;
 use super::integrate::PULLED;
-use super::motion::Motion;
+use super::motion::{Motion, Saved};
 use super::prepare::{load_scale, tolerance};
 use super::sleep::Sleep;
 use super::sliding::Seat;
@@ -69,18 +69,6 @@ impl Clone for Memory {
     }
 }
 
-/// A state to go back to.
-#[derive(Clone, Debug)]
-struct Saved {
-    motion: Motion,
-    mesh: Mesh,
-    contacts: ContactSet,
-    support_node: Vec<Option<usize>>,
-    /// Nodes of the loads; their number never changes.
-    load_node: Vec<usize>,
-    reaction: Vec<Vec2>,
-}
-
 /// The moving cable, or the resting one where it can touch something.
 #[derive(Clone, Debug)]
 pub struct Dynamics {
@@ -91,8 +79,8 @@ pub struct Dynamics {
     /// Force of the cable on each node that is held, N.
     pub(super) reaction: Vec<Vec2>,
     pub(super) motion: Motion,
-    saved: Option<Box<Saved>>,
-    can_restore: bool,
+    pub(super) saved: Option<Box<Saved>>,
+    pub(super) can_restore: bool,
     /// Memory of the pose of a step.
     pub(super) pose: Pose,
     /// Whether corners and posts get sliding nodes.
@@ -287,49 +275,6 @@ impl Dynamics {
             self.wake();
         }
         Ok(self.report(total, halved, h))
-    }
-
-    /// Keeps the present state to go back to, in the memory of the one kept before.
-    pub(super) fn save(&mut self) {
-        match &mut self.saved {
-            Some(s) => {
-                s.motion.copy_from(&self.motion);
-                s.mesh.copy_from(&self.mesh, !self.never_slides);
-                s.contacts.copy_from(&self.contacts);
-                s.support_node.clone_from(&self.support_node);
-                s.reaction.clone_from(&self.reaction);
-                s.load_node.clear();
-                s.load_node.extend(self.loads.iter().map(|l| l.0));
-            }
-            None => {
-                self.saved = Some(Box::new(Saved {
-                    motion: self.motion.clone(),
-                    mesh: self.mesh.clone(),
-                    contacts: self.contacts.clone(),
-                    support_node: self.support_node.clone(),
-                    load_node: self.loads.iter().map(|l| l.0).collect(),
-                    reaction: self.reaction.clone(),
-                }));
-            }
-        }
-        self.can_restore = true;
-    }
-
-    /// Goes back to the state kept, once.
-    pub(super) fn restore(&mut self) {
-        if let Some(s) = self.saved.as_ref().filter(|_| self.can_restore) {
-            self.motion.copy_from(&s.motion);
-            self.mesh.copy_from(&s.mesh, !self.never_slides);
-            self.contacts.copy_from(&s.contacts);
-            self.support_node.clone_from(&s.support_node);
-            self.reaction.clone_from(&s.reaction);
-            for (load, &node) in self.loads.iter_mut().zip(&s.load_node) {
-                load.0 = node;
-            }
-            self.can_restore = false;
-            self.place_outline();
-            self.renew_task();
-        }
     }
 
     /// The barrier's stiffness follows the greatest tension; `change` bounds by how much, up and down;

@@ -1,5 +1,8 @@
-//! Where the cable is and how it moves: all that a step changes beside its mesh and contacts.
+//! Where the cable is and how it moves, and the state that a step which fails goes back to.
 
+use super::assembly::Mesh;
+use super::contact_set::ContactSet;
+use super::dynamics::Dynamics;
 use crate::contact::outline::Placement;
 use crate::math::Vec2;
 use crate::model::drive::Follower;
@@ -37,5 +40,62 @@ impl Motion {
         self.w_before.clone_from(w_before);
         self.followers.clone_from(followers);
         (self.step_before, self.time, self.placement) = (*step_before, *time, *placement);
+    }
+}
+
+/// A state to go back to.
+#[derive(Clone, Debug)]
+pub(super) struct Saved {
+    motion: Motion,
+    mesh: Mesh,
+    contacts: ContactSet,
+    support_node: Vec<Option<usize>>,
+    /// Nodes of the loads; their number never changes.
+    load_node: Vec<usize>,
+    reaction: Vec<Vec2>,
+}
+
+impl Dynamics {
+    /// Keeps the present state to go back to, in the memory of the one kept before.
+    pub(super) fn save(&mut self) {
+        match &mut self.saved {
+            Some(s) => {
+                s.motion.copy_from(&self.motion);
+                s.mesh.copy_from(&self.mesh, !self.never_slides);
+                s.contacts.copy_from(&self.contacts);
+                s.support_node.clone_from(&self.support_node);
+                s.reaction.clone_from(&self.reaction);
+                s.load_node.clear();
+                s.load_node.extend(self.loads.iter().map(|l| l.0));
+            }
+            None => {
+                self.saved = Some(Box::new(Saved {
+                    motion: self.motion.clone(),
+                    mesh: self.mesh.clone(),
+                    contacts: self.contacts.clone(),
+                    support_node: self.support_node.clone(),
+                    load_node: self.loads.iter().map(|l| l.0).collect(),
+                    reaction: self.reaction.clone(),
+                }));
+            }
+        }
+        self.can_restore = true;
+    }
+
+    /// Goes back to the state kept, once.
+    pub(super) fn restore(&mut self) {
+        if let Some(s) = self.saved.as_ref().filter(|_| self.can_restore) {
+            self.motion.copy_from(&s.motion);
+            self.mesh.copy_from(&s.mesh, !self.never_slides);
+            self.contacts.copy_from(&s.contacts);
+            self.support_node.clone_from(&s.support_node);
+            self.reaction.clone_from(&s.reaction);
+            for (load, &node) in self.loads.iter_mut().zip(&s.load_node) {
+                load.0 = node;
+            }
+            self.can_restore = false;
+            self.place_outline();
+            self.renew_task();
+        }
     }
 }
