@@ -181,6 +181,22 @@ pub enum SolveError {
         /// Time, s.
         time_s: f64,
     },
+    /// The place to go on from lies inside an obstacle.
+    #[error(
+        "{model} cannot go on from where the cable runs through `{obstacle}`: {depth_m:.4} m inside at {arc_length_m:.3} m along it, at ({:.3} m, {:.3} m)", .at_m.x, .at_m.y
+    )]
+    Buried {
+        /// The model.
+        model: Model,
+        /// Name of the obstacle.
+        obstacle: String,
+        /// How deep, m; 0 where only the way between two nodes runs through it.
+        depth_m: f64,
+        /// Where on the cable, m.
+        arc_length_m: f64,
+        /// Where that is, m.
+        at_m: Vec2,
+    },
     /// A time step that cannot be taken.
     #[error("a time step of {dt_s} s cannot be taken: it must lie in {allowed}")]
     TimeStep {

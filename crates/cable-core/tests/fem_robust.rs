@@ -7,7 +7,7 @@ use cable_core::contact::World;
 use cable_core::contact::own::OwnShape;
 use cable_core::math::Vec2;
 use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};
-use cable_core::{Model, Simulation};
+use cable_core::{Model, Simulation, SolveError};
 use proptest::prelude::{Strategy, any};
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
@@ -184,14 +184,15 @@ fn thirty_metres_of_any_stiffness_drop_on_rubble() {
         let count = drop_all(&[1e5, 1e6, 1e7, 1e8], 200, 4.0, dt);
         println!("frames of {dt:.4} s: {} steps, {} halved", count.steps, count.halved);
         assert!(count.failed.is_empty(), "{:#?}", count.failed);
-        assert!(count.halved * 500 <= count.steps, "{} of {} steps halved", count.halved, count.steps);
+        assert!(count.halved * 1000 <= count.steps, "{} of {} steps halved", count.halved, count.steps);
     }
 }
 
 #[test]
 fn ends_thrown_about_cross_nothing() {
-    // Scenes that each found a fault: no rest, a support squeezed against a post, a corner taken hold of through another.
-    let count = throw_about([17, 45, 73, 98], 60, 1.0 / 60.0, false);
+    // Scenes that each found a fault: no rest, a support squeezed against a post, a corner taken hold of through another, a node
+    // beside a corner taken out so that the cable ran 10 mm inside the corner's edge.
+    let count = throw_about([17, 45, 73, 97, 98], 60, 1.0 / 60.0, false);
     println!("{} steps, {} halved", count.steps, count.halved);
     assert!(count.failed.is_empty(), "{:#?}", count.failed);
 }
@@ -202,8 +203,7 @@ fn ends_thrown_about_ten_thousand_times_cross_nothing() {
     let count = throw_about(0..100, 100, 1.0 / 60.0, false);
     println!("{} steps, {} halved", count.steps, count.halved);
     assert!(count.failed.is_empty(), "{:#?}", count.failed);
-    // 50 of 40 000 when this was written: the hand jumps up to 10 m and a cable of EA up to 1e7 N does not break.
-    assert!(count.halved * 500 <= count.steps, "{} of {} steps halved", count.halved, count.steps);
+    assert!(count.halved * 1000 <= count.steps, "{} of {} steps halved", count.halved, count.steps);
 }
 
 #[test]
@@ -228,4 +228,35 @@ fn ends_thrown_about_ten_thousand_times_do_not_cross_the_cable_itself() {
     let count = throw_about(0..100, 100, 1.0 / 60.0, true);
     println!("{} steps, {} halved", count.steps, count.halved);
     assert!(count.failed.is_empty(), "{:#?}", count.failed);
+    assert!(count.halved * 1000 <= count.steps, "{} of {} steps halved", count.halved, count.steps);
+}
+
+#[test]
+fn a_state_inside_an_obstacle_is_refused() {
+    let mut scene = catalog::hanging_span();
+    let shape = Shape::Terrain { points_m: vec![[-20.0, -3.0], [20.0, -3.0]] };
+    scene.obstacles = vec![Obstacle { name: "ground".to_owned(), shape, friction: Some(0.5) }];
+    let c = &mut scene.cables[0];
+    (c.length_m, c.segments) = (9.0, Some(40));
+    c.supports = vec![Support::fixed("left", [-4.0, 0.0]), Support::fixed("right", [4.0, 0.0])];
+    let mut sim = Simulation::new(scene, Model::Fem).unwrap();
+    sim.settle().unwrap();
+    let before = sim.states();
+    let lowered = |by: f64| {
+        let mut states = before.clone();
+        for p in &mut states[0].position_m[1..40] {
+            p.y = if p.y - by < -3.0 - by { -3.0 - by } else { p.y - by };
+        }
+        states
+    };
+    // A millimetre deep it is pushed out, deeper than it reaches it is refused, and is where it was.
+    sim.adopt(&lowered(1e-3)).unwrap();
+    sim.step(1.0 / 60.0).unwrap();
+    sim.adopt(&before).unwrap();
+    let refused = sim.adopt(&lowered(4.0)).unwrap_err();
+    println!("{refused}");
+    assert!(
+        matches!(refused, SolveError::Buried { ref obstacle, depth_m, .. } if obstacle == "ground" && depth_m > 0.5)
+    );
+    assert_eq!(sim.states(), before);
 }

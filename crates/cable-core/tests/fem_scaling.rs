@@ -5,7 +5,7 @@
 use cable_core::model::fem::FemModel;
 use cable_core::model::{Inertia, Mechanics, Settings};
 use cable_core::problem::problems;
-use cable_core::scene::catalog;
+use cable_core::scene::{Obstacle, Shape, Support, catalog};
 
 /// A flexible hanging span whose far support goes to and fro, at rest.
 fn swinging(bars: usize) -> FemModel {
@@ -47,4 +47,39 @@ fn iterations_of_a_swinging_span_do_not_grow_with_the_mesh() {
         );
         assert!(whole <= 5 * steps && most <= 8 && halved == 0, "{bars} bars: {whole} in {steps}, {most}, {halved}");
     }
+}
+
+/// A cable of 10 m let go at both ends 1 m above a floor: iterations of `steps` steps and how many were halved.
+fn dropped(bars: usize, steps: usize) -> (usize, usize) {
+    let mut scene = catalog::hanging_span();
+    let shape = Shape::Terrain { points_m: vec![[-5.0, 0.0], [15.0, 0.0]] };
+    scene.obstacles = vec![Obstacle { name: "floor".to_owned(), shape, friction: Some(0.5) }];
+    let c = &mut scene.cables[0];
+    (c.length_m, c.bending_stiffness_n_m2) = (10.0, 0.0);
+    let hook = |name: &str, x| Support { release_s: Some(0.5 / 240.0), ..Support::fixed(name, [x, 1.0]) };
+    c.supports = vec![hook("a", 0.0), hook("b", 9.95)];
+    let settings = Settings { segments: Some(bars), ..Settings::default() };
+    let mut model = FemModel::new(problems(&scene).unwrap().remove(0), settings).unwrap();
+    model.settle().unwrap();
+    (0..steps).fold((0, 0), |(iterations, halved), _| {
+        let cost = model.advance(1.0 / 240.0, Inertia::Dynamic).unwrap().cost;
+        (iterations + cost.iterations, halved + cost.halved_steps)
+    })
+}
+
+#[test]
+fn a_dropped_cable_takes_few_iterations() {
+    for (bars, most) in [(100, 650), (400, 1350)] {
+        let (iterations, halved) = dropped(bars, 336);
+        println!("{bars} bars: {iterations} iterations, {halved} halved");
+        assert!(iterations <= most && halved == 0, "{bars} bars: {iterations}, {halved} halved");
+    }
+}
+
+#[test]
+#[ignore = "takes seconds: cargo test -p cable-core --test fem_scaling -- --ignored --nocapture"]
+fn a_dropped_cable_of_a_thousand_bars_takes_few_iterations() {
+    let (iterations, halved) = dropped(1000, 336);
+    println!("1000 bars: {iterations} iterations, {halved} halved");
+    assert!(iterations <= 2100 && halved == 0, "{iterations}, {halved} halved");
 }

@@ -1,6 +1,6 @@
 //! Distances between points and segments, unsigned, robust for degenerate input.
 
-use crate::math::{Vec2, cross, smaller};
+use crate::math::{Vec2, cross};
 
 /// Position (0 to 1) along the segment `a`–`b` of the point nearest to `p`; 0 for a segment of no length.
 #[must_use]
@@ -11,24 +11,41 @@ pub fn nearest_fraction(p: Vec2, a: Vec2, b: Vec2) -> f64 {
     if dd == 0.0 { 0.0 } else { ((p - a).dot(&d) / dd).clamp(0.0, 1.0) }
 }
 
+/// The way to a point from the nearest point of a segment, m.
+#[must_use]
+pub fn from_segment(p: Vec2, a: Vec2, b: Vec2) -> Vec2 {
+    p - (a + (b - a) * nearest_fraction(p, a, b))
+}
+
 /// Distance of a point from a segment, m.
 #[must_use]
 pub fn point_segment(p: Vec2, a: Vec2, b: Vec2) -> f64 {
-    (p - (a + (b - a) * nearest_fraction(p, a, b))).norm()
+    from_segment(p, a, b).norm()
+}
+
+/// The shortest way to the segment `a`–`b` from the segment `p`–`q`, m; none when they cross or touch.
+#[must_use]
+pub fn between_segments(a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> Vec2 {
+    if cross_properly(a, b, p, q) {
+        return Vec2::zeros();
+    }
+    // Segments that do not cross are nearest at an end of one of them.
+    let mut way = from_segment(a, p, q);
+    let mut least = way.norm_squared();
+    for other in [from_segment(b, p, q), -from_segment(p, a, b), -from_segment(q, a, b)] {
+        let square = other.norm_squared();
+        // What is not a number stays.
+        if !(square >= least) && !least.is_nan() {
+            (way, least) = (other, square);
+        }
+    }
+    way
 }
 
 /// Distance between two segments, m; 0 when they cross or touch.
 #[must_use]
 pub fn segment_segment(a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> f64 {
-    if cross_properly(a, b, p, q) {
-        return 0.0;
-    }
-    // Segments that do not cross are nearest at an end of one of them.
-    let mut d = point_segment(a, p, q);
-    for other in [point_segment(b, p, q), point_segment(p, a, b), point_segment(q, a, b)] {
-        d = smaller(d, other);
-    }
-    d
+    between_segments(a, b, p, q).norm()
 }
 
 /// Whether the open segments `a`–`b` and `p`–`q` cross in one point.

@@ -7,7 +7,7 @@
 //! Gaps are distances of centre lines less one diameter. What lies nearer along the cable than the cable can be bent back
 //! is no contact: two legs of a bend of the diameter d touch after π d/2 of arc length.
 
-use super::distance::nearest_fraction;
+use super::distance::{from_segment, nearest_fraction};
 use super::sweep::advance;
 use crate::math::Vec2;
 
@@ -189,13 +189,11 @@ impl OwnShape {
                 if x[p].y < low.y - near || x[p].y > high.y + near || !self.apart(arc, p, e) {
                     continue;
                 }
+                // Seen from the node, which stands still then, the segment moves.
                 let c = step(p);
-                let speed = c.norm() + if a.norm() > b.norm() { a.norm() } else { b.norm() };
-                if speed > 0.0 {
-                    let distance =
-                        |t: f64| super::distance::point_segment(x[p] + c * t, x[e] + a * t, x[e + 1] + b * t);
-                    free = advance(distance, self.diameter, [speed, keep, noise], free);
-                }
+                let moving = [(x[e] - x[p], a - c), (x[e + 1] - x[p], b - c)];
+                let way = |[a, b]: [Vec2; 2]| -from_segment(Vec2::zeros(), a, b);
+                free = advance(moving, (way, |_| 0.0), self.diameter, [keep, noise], free);
             }
         }
         free
@@ -261,6 +259,20 @@ mod tests {
         shape.pairs((&x, &arc(&x)), 0.01, &mut Order::default(), &mut pairs);
         assert!(pairs.is_empty());
         assert!(!OwnShape::default().is_on());
+    }
+
+    #[test]
+    fn strands_that_move_together_or_along_each_other_do_not_stop_each_other() {
+        let shape = OwnShape { diameter: 0.02 };
+        let x = bight(0.02 + 1e-6, 1.0);
+        let s = arc(&x);
+        let free =
+            |step: &dyn Fn(usize) -> Vec2| shape.free_fraction((&x, &s), step, [0.5, 1.0], &mut Order::default());
+        assert_eq!(free(&|_| Vec2::new(0.3, -0.4)), 1.0);
+        // The strand below slides by its own length.
+        assert_eq!(free(&|k| if k <= 20 { Vec2::new(-0.1, 0.0) } else { Vec2::zeros() }), 1.0);
+        let towards = free(&|k| if k <= 20 { Vec2::new(-0.1, 1e-6) } else { Vec2::zeros() });
+        assert!((towards - 0.5).abs() < 1e-6, "{towards}");
     }
 
     proptest! {

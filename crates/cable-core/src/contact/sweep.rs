@@ -1,11 +1,16 @@
 //! Conservative advancement: how far a moving segment can go and cross nothing.
 //!
-//! For each feature the distance D(t) of the moving segment falls no faster than v = max(|Δa|, |Δb|) per unit
-//! of t, so t may grow by (D − D_keep)/v again and again without D passing D_keep (Mirtich, "Impulse-based
-//! dynamic simulation of rigid body systems", 1996; additive form of Li et al., "Codimensional incremental
-//! potential contact", ACM TOG 2021).
+//! Let n be the unit vector along the shortest way from a feature F to the moving segment (a, b) at t. Both are convex, so for
+//! every later t′
+//! ```text
+//! D(t′) ≥ min(n·a(t′), n·b(t′)) − max over F of n·x,      with equality at t′ = t
+//! ```
+//! and the right side is linear in t′: t may grow to where it passes D_keep, again and again from there (Mirtich, "Impulse-based
+//! dynamic simulation of rigid body systems", 1996, with the directed bound of Zhang, Lee, Kim, "Interactive continuous
+//! collision detection for non-convex polyhedra", The Visual Computer 22, 2006; D_keep as in Li et al., "Codimensional
+//! incremental potential contact", ACM TOG 2021). What slides along an edge is not stopped by it, however near it is.
 
-use super::distance::{point_segment, segment_segment};
+use super::distance::{between_segments, from_segment, point_segment, segment_segment};
 use super::geometry::{Geometry, Part};
 use crate::math::{Vec2, larger, smaller};
 
@@ -56,31 +61,33 @@ impl Geometry {
         if sweep.speed == 0.0 {
             return 1.0;
         }
-        let way = [sweep.speed, sweep.keep, sweep.noise];
-        let (at_a, at_b) = (|t: f64| a + da * t, |t: f64| b + db * t);
+        let how = [sweep.keep, sweep.noise];
+        let (whole, first, last) = ([(a, da), (b, db)], [(a, da); 2], [(b, db); 2]);
         let mut free = 1.0;
         for part in parts {
             let Some(body) = self.bodies().get(part.body) else { continue };
             let beside =
                 round.map(|f| f.is_some_and(|f| part.edge.map_or(f == body.first + 1, |k| body.is_beside(k, f))));
-            let edge = part.edge.and_then(|k| body.edges.get(k));
-            free = match (edge, body.center, beside) {
-                (_, _, [true, true]) | (None, None, _) => free,
-                // Both ends on one side of its line and far enough from that: the edge cannot be met.
-                (Some(e), _, [false, false]) if way_off([a, b], e.p, e.normal()) - body.offset > sweep.clear(free) => {
-                    free
-                }
-                (Some(e), _, [false, false]) => {
-                    advance(|t| segment_segment(at_a(t), at_b(t), e.p, e.q), body.offset, way, free)
-                }
-                (Some(e), _, [true, false]) => advance(|t| point_segment(at_b(t), e.p, e.q), body.offset, way, free),
-                (Some(e), _, [false, true]) => advance(|t| point_segment(at_a(t), e.p, e.q), body.offset, way, free),
-                (None, Some(c), [false, false]) => {
-                    advance(|t| point_segment(c, at_a(t), at_b(t)), body.offset, way, free)
-                }
-                (None, Some(c), [true, false]) => advance(|t| (at_b(t) - c).norm(), body.offset, way, free),
-                (None, Some(c), [false, true]) => advance(|t| (at_a(t) - c).norm(), body.offset, way, free),
+            let moving = match beside {
+                [false, false] => whole,
+                [true, false] => last,
+                [false, true] => first,
+                [true, true] => continue,
             };
+            match (part.edge.and_then(|k| body.edges.get(k)), body.center) {
+                // Both ends on one side of its line and far enough from that: the edge cannot be met.
+                (Some(e), _) if way_off([a, b], e.p, e.normal()) - body.offset > sweep.clear(free) => {}
+                (Some(e), _) => {
+                    let farthest = |n: Vec2| larger(n.dot(&e.p), n.dot(&e.q));
+                    let way = |[a, b]: [Vec2; 2]| between_segments(a, b, e.p, e.q);
+                    free = advance(moving, (way, farthest), body.offset, how, free);
+                }
+                (None, Some(c)) => {
+                    let way = |[a, b]: [Vec2; 2]| -from_segment(c, a, b);
+                    free = advance(moving, (way, |n: Vec2| n.dot(&c)), body.offset, how, free);
+                }
+                (None, None) => {}
+            }
         }
         free
     }
@@ -167,30 +174,52 @@ impl Geometry {
     }
 }
 
-/// The free way up to `limit` against one feature.
-pub(super) fn advance(distance: impl Fn(f64) -> f64, offset: f64, [speed, keep, noise]: [f64; 3], limit: f64) -> f64 {
-    let d0 = distance(0.0);
+/// The free way up to `limit` of a segment whose ends are given with how far they go, against one feature: `way` is the
+/// shortest from the feature to where the ends are, `farthest` how far the feature reaches in a direction.
+pub(super) fn advance(
+    moving: [(Vec2, Vec2); 2],
+    (way, farthest): (impl Fn([Vec2; 2]) -> Vec2, impl Fn(Vec2) -> f64),
+    offset: f64,
+    [keep, noise]: [f64; 2],
+    limit: f64,
+) -> f64 {
+    let at = |t: f64| moving.map(|(p, go)| p + go * t);
+    let mut away = way(at(0.0));
+    let mut d = away.norm();
     // A cable already overlapping (not this model's doing) still must not be crossed by its centre line; a centre
     // line already across cannot be crossed again, and holding it there would trap it.
-    if d0 <= 0.0 {
+    if d <= 0.0 {
         return limit;
     }
-    let surface = if d0 - offset > noise + TOUCHING { offset } else { 0.0 };
-    let gap = d0 - surface;
+    let surface = if d - offset > noise + TOUCHING { offset } else { 0.0 };
+    let gap = d - surface;
     let floor = surface + keep * gap + noise;
     let close = CLOSE_ENOUGH * gap;
-    let (mut t, mut d) = (0.0, d0);
+    let mut t = 0.0;
     for _ in 0..MAX_ADVANCES {
         let room = d - floor;
         if !(room > 0.0) {
             return t;
         }
-        let next = t + room / speed;
+        let n = away / d;
+        let least = farthest(n) + floor;
+        let mut next = limit;
+        for (p, go) in moving {
+            let (height, rate) = (n.dot(&p), n.dot(&go));
+            // So written that what is not a number ends here.
+            if !(height + rate * next >= least) {
+                next = (least - height) / rate;
+            }
+        }
         if next >= limit {
             return limit;
         }
+        if !(next > t) {
+            return t;
+        }
         t = next;
-        d = distance(t);
+        away = way(at(t));
+        d = away.norm();
         if room <= close {
             return t;
         }

@@ -308,6 +308,13 @@ fn advancement_gives_most_of_the_free_way() {
     // Up or along: free. No move: free.
     assert_eq!(world.free_fraction([a, b], [a - down, b - down], 0.2), 1.0);
     assert_eq!(world.free_fraction([a, b], [a, b], 0.2), 1.0);
+    // A micrometre above the ground as well; and where it comes down on the way, as far as that allows.
+    let low = |p: Vec2| Vec2::new(p.x, RADIUS + 1e-6);
+    let along = Vec2::new(3.0, 0.0);
+    assert_eq!(world.free_fraction([low(a), low(b)], [low(a) + along, low(b) + along], 0.2), 1.0);
+    let slanting = along + Vec2::new(0.0, -1e-6);
+    let free = world.free_fraction([low(a), low(b)], [low(a) + slanting, low(b) + slanting], 0.2);
+    assert!((free - 0.8).abs() < 1e-6, "{free}");
     // NaN never passes.
     assert_eq!(world.free_fraction([a, b], [a * f64::NAN, b], 0.2), 0.0);
 }

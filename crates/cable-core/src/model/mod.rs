@@ -153,7 +153,7 @@ pub trait Mechanics: Send {
     /// Takes over a state of the same cable, resampled on this model's mesh (after an edit, or from another model).
     ///
     /// # Errors
-    /// When a number is not finite or the state does not fit the cable.
+    /// When a number is not finite or the state does not fit the cable; `Buried` when the model cannot go on from inside an obstacle.
     fn adopt(&mut self, state: &State) -> Result<(), SolveError>;
 
     /// Goes on from an answer of the same cable, by this model or another: as [`Self::adopt`], and where the model can,

@@ -45,7 +45,7 @@ impl Dynamics {
     /// Takes over a state (from statics: at rest).
     ///
     /// # Errors
-    /// When a number is not finite or the state does not fit the cable.
+    /// When a number is not finite, and `Buried` when it is so far inside an obstacle that nodes cannot be pushed out.
     pub fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
         if let Some(node) = state.first_non_finite() {
             return Err(SolveError::NonFinite { quantity: "position", node, time_s: state.time_s });
@@ -53,6 +53,15 @@ impl Dynamics {
         if state.arc_length_m.len() < 2 || state.position_m.len() != state.arc_length_m.len() {
             return Ok(());
         }
+        self.save();
+        let taken = self.take(state);
+        if taken.is_err() {
+            self.restore();
+        }
+        taken
+    }
+
+    fn take(&mut self, state: &State) -> Result<(), SolveError> {
         self.wake();
         let led = self.put_outline();
         let same = state.arc_length_m == self.mesh.arc_length && !led;
@@ -73,10 +82,13 @@ impl Dynamics {
         self.contacts.forget();
         if !same {
             self.thread_pulleys(Some(state));
+        }
+        if !same || self.refuse_buried().is_err() {
             let mut x = std::mem::take(&mut self.motion.x);
             push_out(&self.problem, &self.mesh, &mut x, 0.9 * REACH);
             self.motion.x = x;
         }
+        self.refuse_buried()?;
         self.forget_history();
         // A state at rest on another mesh is brought to rest on this one before it moves.
         let still = self.motion.v.iter().all(|v| v.norm() == 0.0);

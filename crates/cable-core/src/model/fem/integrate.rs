@@ -127,6 +127,9 @@ impl Dynamics {
         self.contacts.carriage = None;
         if !self.never_slides {
             self.remesh();
+            if let Some(node) = self.crossing() {
+                return Err(Failure { node, residual: done.residual, cause: "the cable would run through a corner" });
+            }
         }
         Ok(done)
     }

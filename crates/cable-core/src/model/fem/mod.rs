@@ -12,6 +12,7 @@ mod beam;
 mod beam_answer;
 mod beam_mesh;
 mod carry;
+mod clear;
 pub mod contact_report;
 pub mod contact_set;
 pub mod contact_start;

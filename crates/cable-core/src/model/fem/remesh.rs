@@ -36,10 +36,6 @@ const SLACK: f64 = 2.0;
 /// tangents would lie inside the obstacle.
 const WRONG_TURN: f64 = 0.02;
 
-/// How far over an edge of its corner, in radii of the round, the cable may meet that. Less: cables that sag a little onto the edge
-/// between two corners leave them; more: a cable that folded back at a corner runs through the edge.
-const OVER_AN_EDGE: f64 = 0.5;
-
 /// Half of the turn (rad) up to which a slack cable may leave a round with one node.
 const MOST_BEND: f64 = 1.0;
 
@@ -54,9 +50,6 @@ const SPARE: f64 = 1.3;
 
 /// Length of the sum of the directions before and after a node below which the cable counts as folded there.
 const FOLDED: f64 = 0.2;
-
-/// Gap (parts of the barrier's reach) that a bar must have when a node is taken out: less, and the barrier throws it.
-const LEAST_GAP: f64 = 0.05;
 
 /// Most changes of one kind after one step.
 pub(super) const MAX_CHANGES: usize = 400;
@@ -184,12 +177,6 @@ impl Dynamics {
         true
     }
 
-    /// Whether a bar meets nothing.
-    fn is_clear(&self, e: usize) -> bool {
-        let (ends, rounds) = (self.mesh.straight(e, &self.motion.x), self.mesh.rounds(e));
-        self.problem.world.geometry().is_clear(ends, LEAST_GAP * self.contacts.barrier.reach, rounds)
-    }
-
     /// Whether a sliding node on an obstacle is pulled away from it, or is in the way of a node that has to pass.
     fn lifts_off(&self, k: usize) -> bool {
         let Some(node) = self.mesh.sliding[k] else { return false };
@@ -230,23 +217,6 @@ impl Dynamics {
                 node.feature().is_some() && !shared(k - 1) && !shared(k + 1) && is_wrong()
             })
         })
-    }
-
-    /// Whether the cable meets or leaves the round of a corner where that is over one of the corner's edges: it has folded back
-    /// and would run through the edge.
-    fn beyond_its_corner(&self, k: usize, x: &[Vec2]) -> bool {
-        let Some(node) = self.mesh.sliding[k] else { return false };
-        let geometry = self.problem.world.geometry();
-        let body = node.feature().and_then(|f| Some((f, geometry.body_of(f)?)));
-        let Some(corner) = body.filter(|b| b.1.center.is_none()).and_then(|(f, b)| b.corner((f - b.first) / 2)) else {
-            return false;
-        };
-        let meets = [self.mesh.path(k - 1, x).ends[1], self.mesh.path(k, x).ends[0]];
-        let into = [corner.before.map(|t| -t), corner.after];
-        let over = |p: Vec2, edge: Option<Vec2>| {
-            edge.is_some_and(|t| (p - node.end.center).dot(&t) > OVER_AN_EDGE * node.end.radius)
-        };
-        meets.into_iter().any(|p| into.into_iter().any(|edge| over(p, edge)))
     }
 
     fn turn_at(&self, k: usize, x: &[Vec2]) -> f64 {
@@ -301,14 +271,13 @@ impl Dynamics {
 
     /// Whether a sliding node between two nodes would bend the cable the right way and its bars would meet nothing.
     fn fits(&self, [before, after]: [usize; 2], sliding: &Sliding) -> bool {
-        let (x, geometry) = (&self.motion.x, self.problem.world.geometry());
+        let x = &self.motion.x;
         let paths = [
             Path::between(&self.mesh.end(before, x), &sliding.end),
             Path::between(&sliding.end, &self.mesh.end(after, x)),
         ];
-        let feature = |k: usize| self.mesh.sliding[k].as_ref().and_then(Sliding::feature);
-        let rounds = [[feature(before), sliding.feature()], [sliding.feature(), feature(after)]];
-        let least = LEAST_GAP * self.contacts.barrier.reach;
+        let seat = |k: usize| self.mesh.sliding[k].as_ref();
+        let nodes = [[seat(before), Some(sliding)], [Some(sliding), seat(after)]];
         let turn = if sliding.end.radius > 0.0 {
             paths[0].arcs[1] + paths[1].arcs[0]
         } else {
@@ -322,7 +291,7 @@ impl Dynamics {
         };
         let sides = (before == 0 || beside(before, paths[0].arcs[0], before - 1, 1))
             && (after + 1 == self.mesh.nodes() || beside(after, paths[1].arcs[1], after, 0));
-        turn > -WRONG_TURN && sides && (0..2).all(|j| geometry.is_clear(paths[j].ends, least, rounds[j]))
+        turn > -WRONG_TURN && sides && (0..2).all(|j| self.way_is_clear(&paths[j], nodes[j]))
     }
 
     /// The sliding node that a corner or circle pressing on a bar or node asks for: its bar, arc length and itself.
@@ -442,17 +411,6 @@ impl Dynamics {
             }
             e += 1;
         }
-    }
-
-    /// Whether the straight way past node `k` meets nothing.
-    fn clear_without(&self, k: usize) -> bool {
-        if self.problem.world.is_empty() {
-            return true;
-        }
-        let x = &self.motion.x;
-        let way = Path::between(&self.mesh.end(k - 1, x), &self.mesh.end(k + 1, x));
-        let rounds = [self.mesh.rounds(k - 1)[0], self.mesh.rounds(k)[1]];
-        self.problem.world.geometry().is_clear(way.ends, LEAST_GAP * self.contacts.barrier.reach, rounds)
     }
 
     /// Whether a node is there for nothing but the mesh.
