@@ -160,12 +160,13 @@ impl OwnShape {
         }
     }
 
-    /// The largest part (at most `limit`) of the move from `x` to `x` + `step` (m) that leaves `keep` of every gap.
+    /// The largest part (at most `limit`) of the move from `x` to `x` + `step` (m) that leaves `keep` of every gap, or `most` (m) where
+    /// that is less.
     pub fn free_fraction(
         &self,
         (x, arc): (&[Vec2], &[f64]),
         step: &dyn Fn(usize) -> Vec2,
-        [keep, limit]: [f64; 2],
+        [keep, most, limit]: [f64; 3],
         order: &mut Order,
     ) -> f64 {
         if !self.is_on() || x.len() < 3 {
@@ -193,7 +194,7 @@ impl OwnShape {
                 let c = step(p);
                 let moving = [(x[e] - x[p], a - c), (x[e + 1] - x[p], b - c)];
                 let way = |[a, b]: [Vec2; 2]| -from_segment(Vec2::zeros(), a, b);
-                free = advance(moving, (way, |_| 0.0), self.diameter, [keep, noise], free);
+                free = advance(moving, (way, |_| 0.0), self.diameter, [keep, most, noise], free);
             }
         }
         free
@@ -267,11 +268,11 @@ mod tests {
         let x = bight(0.02 + 1e-6, 1.0);
         let s = arc(&x);
         let free =
-            |step: &dyn Fn(usize) -> Vec2| shape.free_fraction((&x, &s), step, [0.5, 1.0], &mut Order::default());
+            |step: &dyn Fn(usize) -> Vec2| shape.free_fraction((&x, &s), step, [0.5, 5e-7, 1.0], &mut Order::default());
         assert_eq!(free(&|_| Vec2::new(0.3, -0.4)), 1.0);
-        // The strand below slides by its own length.
-        assert_eq!(free(&|k| if k <= 20 { Vec2::new(-0.1, 0.0) } else { Vec2::zeros() }), 1.0);
-        let towards = free(&|k| if k <= 20 { Vec2::new(-0.1, 1e-6) } else { Vec2::zeros() });
+        // The strand below slides along.
+        assert_eq!(free(&|k| if k <= 20 { Vec2::new(-0.04, 0.0) } else { Vec2::zeros() }), 1.0);
+        let towards = free(&|k| if k <= 20 { Vec2::new(-0.04, 1e-6) } else { Vec2::zeros() });
         assert!((towards - 0.5).abs() < 1e-6, "{towards}");
     }
 
@@ -287,7 +288,7 @@ mod tests {
             let before = shape.smallest_gap(&x, &s, 1.0).map_or(1.0, |g| g.0);
             prop_assume!(before > 1e-6);
             let step = |k: usize| Vec2::new(moves[k].0, moves[k].1);
-            let free = shape.free_fraction((&x, &s), &step, [0.2, 1.0], &mut Order::default());
+            let free = shape.free_fraction((&x, &s), &step, [0.2, f64::INFINITY, 1.0], &mut Order::default());
             prop_assert!((0.0..=1.0).contains(&free));
             for part in 1..=20 {
                 let t = free * f64::from(part) / 20.0;

@@ -36,15 +36,14 @@ impl Geometry {
     /// See [`super::World::free_fraction`].
     #[must_use]
     pub fn free_fraction(&self, from: [Vec2; 2], to: [Vec2; 2], keep: f64) -> f64 {
-        self.free_fraction_round(from, to, keep, [None, None])
+        self.free_fraction_round(&Sweep::new(from, to, keep), [None, None])
     }
 
     /// As [`Self::free_fraction`] for a segment that ends tangent to the rounds of the corners or circles `round`,
     /// at one or both ends: near these only its other end can come too close.
     #[must_use]
-    pub fn free_fraction_round(&self, from: [Vec2; 2], to: [Vec2; 2], keep: f64, round: [Option<usize>; 2]) -> f64 {
-        let sweep = Sweep::new(from, to, keep);
-        self.free_fraction_among(self.parts(sweep.low, sweep.high, sweep.margin), &sweep, round)
+    pub fn free_fraction_round(&self, sweep: &Sweep, round: [Option<usize>; 2]) -> f64 {
+        self.free_fraction_among(self.parts(sweep.low, sweep.high, sweep.margin), sweep, round)
     }
 
     /// The same among `parts`, which hold all within the sweep's margin of its box.
@@ -61,7 +60,7 @@ impl Geometry {
         if sweep.speed == 0.0 {
             return 1.0;
         }
-        let how = [sweep.keep, sweep.noise];
+        let how = [sweep.keep, sweep.most, sweep.noise];
         let (whole, first, last) = ([(a, da), (b, db)], [(a, da); 2], [(b, db); 2]);
         let mut free = 1.0;
         for part in parts {
@@ -108,6 +107,7 @@ pub struct Sweep {
     pub margin: f64,
     speed: f64,
     keep: f64,
+    most: f64,
     noise: f64,
 }
 
@@ -122,14 +122,32 @@ impl Sweep {
         let speed = if squares[0] > squares[1] { squares[0].sqrt() } else { squares[1].sqrt() };
         let (low, high) = (a.inf(&b).inf(&to[0]).inf(&to[1]), a.sup(&b).sup(&to[0]).sup(&to[1]));
         let noise = ULPS * f64::EPSILON * (low.abs().max() + high.abs().max());
-        Self { from, go, low, high, margin: speed * keep / (1.0 - keep) + noise, speed, keep, noise }
+        Self {
+            from,
+            go,
+            low,
+            high,
+            margin: speed * keep / (1.0 - keep) + noise,
+            speed,
+            keep,
+            most: f64::INFINITY,
+            noise,
+        }
+    }
+
+    /// The same where no more than `most` (m) need be left of a gap, however wide it was.
+    #[must_use]
+    pub fn at_most(self, most: f64) -> Self {
+        let whole = most + self.noise;
+        Self { most, margin: if whole < self.margin { whole } else { self.margin }, ..self }
     }
 }
 
 impl Sweep {
     /// The gap (m) beyond which the part `limit` of the way is free whatever the direction.
     fn clear(&self, limit: f64) -> f64 {
-        (self.speed * limit + 2.0 * self.noise + TOUCHING) / (1.0 - self.keep)
+        let way = self.speed * limit + 2.0 * self.noise + TOUCHING;
+        smaller(way / (1.0 - self.keep), way + self.most)
     }
 }
 
@@ -175,12 +193,13 @@ impl Geometry {
 }
 
 /// The free way up to `limit` of a segment whose ends are given with how far they go, against one feature: `way` is the
-/// shortest from the feature to where the ends are, `farthest` how far the feature reaches in a direction.
+/// shortest from the feature to where the ends are, `farthest` how far the feature reaches in a direction. The part `keep` of the
+/// gap is left, or `most` (m) where that is less.
 pub(super) fn advance(
     moving: [(Vec2, Vec2); 2],
     (way, farthest): (impl Fn([Vec2; 2]) -> Vec2, impl Fn(Vec2) -> f64),
     offset: f64,
-    [keep, noise]: [f64; 2],
+    [keep, most, noise]: [f64; 3],
     limit: f64,
 ) -> f64 {
     let at = |t: f64| moving.map(|(p, go)| p + go * t);
@@ -193,7 +212,7 @@ pub(super) fn advance(
     }
     let surface = if d - offset > noise + TOUCHING { offset } else { 0.0 };
     let gap = d - surface;
-    let floor = surface + keep * gap + noise;
+    let floor = surface + if keep * gap > most { most } else { keep * gap } + noise;
     let close = CLOSE_ENOUGH * gap;
     let mut t = 0.0;
     for _ in 0..MAX_ADVANCES {

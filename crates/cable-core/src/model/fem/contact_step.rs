@@ -26,6 +26,9 @@ use crate::problem::Problem;
 /// steps of ends thrown about are halved, five times as many where the cable meets itself); larger: more steps.
 const KEEP: f64 = 0.5;
 
+/// The same for gaps wider than the barrier's reach, in reaches: a little less than where what is foreseen is to land.
+const KEEP_REACH: f64 = 0.45;
+
 /// Part of a Newton step that may be free without looking for what is in its way.
 const FREE_ENOUGH: f64 = 0.99;
 
@@ -401,6 +404,7 @@ impl Workspace {
     ) -> f64 {
         let (direction, geometry) = (&self.direction, problem.world.geometry());
         let step = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]);
+        let most = KEEP_REACH * contacts.barrier.reach;
         let mut free = fraction;
         for e in 0..mesh.rest_length.len() {
             let slides = [e, e + 1].map(|k| mesh.sliding[k].is_some());
@@ -425,14 +429,14 @@ impl Workspace {
                 let end = |k: usize| mesh.sliding[k].as_ref().map_or(End::point(x[k] + step(k) * free), |s| s.end);
                 Path::between(&end(e), &end(e + 1)).ends
             };
-            let sweep = Sweep::new(from, to, KEEP);
+            let sweep = Sweep::new(from, to, KEEP).at_most(most);
             free *= match contacts.near.of(e, [from, to], sweep.margin) {
                 Some([]) => 1.0,
                 Some(parts) => geometry.free_fraction_among(parts.iter().copied(), &sweep, mesh.rounds(e)),
-                None => geometry.free_fraction_round(from, to, KEEP, mesh.rounds(e)),
+                None => geometry.free_fraction_round(&sweep, mesh.rounds(e)),
             };
         }
-        let limits = [KEEP, free];
+        let limits = [KEEP, most, free];
         contacts.own.shape.free_fraction((&pose.x, &mesh.arc_length), &step, limits, &mut self.order)
     }
 

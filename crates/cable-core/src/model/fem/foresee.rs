@@ -26,8 +26,8 @@ const HARDNESS: f64 = 1e5;
 /// Landing gap, part of the barrier's reach: about where the barrier holds a node that lands.
 const LANDING: f64 = 0.5;
 
-/// Part of its gap that a contact within the barrier may lose in one step.
-const CLOSER: f64 = 0.7;
+/// Part of its gap that a contact within the barrier may lose in one step: less than the search of the step lets it.
+const CLOSER: f64 = 0.45;
 
 /// What a step is about to touch.
 #[derive(Clone, Debug)]
