@@ -26,7 +26,8 @@ use crate::problem::Problem;
 /// steps of ends thrown about are halved, five times as many where the cable meets itself); larger: more steps.
 const KEEP: f64 = 0.5;
 
-/// The same for gaps wider than the barrier's reach, in reaches: a little less than where what is foreseen is to land.
+/// The same for gaps wider than the barrier's reach, in reaches, where contacts are foreseen: a little less than where these land. Of
+/// what the cable meets of itself the same would halve twice as many steps.
 const KEEP_REACH: f64 = 0.45;
 
 /// Part of a Newton step that may be free without looking for what is in its way.
@@ -404,7 +405,7 @@ impl Workspace {
     ) -> f64 {
         let (direction, geometry) = (&self.direction, problem.world.geometry());
         let step = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]);
-        let most = KEEP_REACH * contacts.barrier.reach;
+        let most = if contacts.own.shape.is_on() { f64::INFINITY } else { KEEP_REACH * contacts.barrier.reach };
         let mut free = fraction;
         for e in 0..mesh.rest_length.len() {
             let slides = [e, e + 1].map(|k| mesh.sliding[k].is_some());
