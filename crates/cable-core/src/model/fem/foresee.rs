@@ -210,6 +210,6 @@ mod tests {
         let done = memory.descend((&d.problem, &d.mesh), &d.contacts, &d.task, &mut pose).unwrap();
         let landed = memory.touches.len();
         println!("{} iterations, {landed} nodes landed", done.iterations);
-        assert!(landed > 90 && done.iterations <= 12, "{landed} {}", done.iterations);
+        assert!(landed > 90 && done.iterations <= 8, "{landed} {}", done.iterations);
     }
 }

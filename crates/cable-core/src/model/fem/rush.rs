@@ -266,7 +266,7 @@ mod tests {
             assert_eq!(cost.halved_steps, 0);
         }
         println!("{whole} iterations, at most {most} in a step");
-        assert!(most < 24 && whole < 400, "{whole} {most}");
+        assert!(most < 12 && whole < 360, "{whole} {most}");
     }
 
     proptest! {
