@@ -73,6 +73,7 @@ impl Verdict {
             SolveError::NoRestingPlace { .. } => "no resting place",
             SolveError::Unsupported { .. } => "not supported",
             SolveError::NonFinite { .. } => "not finite",
+            SolveError::Buried { .. } => "inside an obstacle",
             SolveError::TimeStep { .. } => "time step",
             SolveError::StepFailed { .. } => "step failed",
         })

@@ -332,7 +332,7 @@ impl Dynamics {
         let step = |k: usize| x[k] - self.task.start[k];
         let arc = mesh.arc_length.as_slice();
         let own_way = |order: &mut Order| {
-            self.contacts.own.shape.free_fraction((&self.task.start, arc), &step, [KEEP[1], 1.0], order)
+            self.contacts.own.shape.free_fraction((&self.task.start, arc), &step, [KEEP[1], f64::INFINITY, 1.0], order)
         };
         clear && own_way(&mut Order::default()) >= 1.0
     }
