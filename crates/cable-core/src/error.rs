@@ -190,7 +190,7 @@ pub enum SolveError {
         model: Model,
         /// Name of the obstacle.
         obstacle: String,
-        /// How deep, m; 0 where only the way between two nodes runs through it.
+        /// How deep, m.
         depth_m: f64,
         /// Where on the cable, m.
         arc_length_m: f64,

@@ -8,7 +8,6 @@
 use super::dynamics::Dynamics;
 use super::path::Path;
 use super::sliding::{Seat, Sliding};
-use crate::contact::distance::cross_properly;
 use crate::error::SolveError;
 use crate::math::{Vec2, perp};
 use crate::model::Model;
@@ -79,7 +78,7 @@ impl Dynamics {
         })
     }
 
-    /// Refuses to go on from where the cable is inside an obstacle.
+    /// Refuses to go on from where a node is inside an obstacle. A bar that only cuts a corner is left to the rest to come.
     pub(super) fn refuse_buried(&self) -> Result<(), SolveError> {
         let (mesh, x, world) = (&self.mesh, &self.motion.x, &self.problem.world);
         if world.is_empty() {
@@ -96,15 +95,6 @@ impl Dynamics {
             // However deep inside.
             if let Some(gap) = world.signed_gap(x[k], f64::INFINITY).filter(|g| g.gap_m <= 0.0) {
                 return Err(buried(k, gap.obstacle, -gap.gap_m));
-            }
-        }
-        for e in (0..mesh.rest_length.len()).filter(|&e| mesh.is_free(e) && mesh.is_free(e + 1)) {
-            let [a, b] = [x[e], x[e + 1]];
-            let crossed = world.geometry().bodies().iter().find(|body| {
-                body.candidates(a.inf(&b), a.sup(&b)).any(|k| cross_properly(a, b, body.edges[k].p, body.edges[k].q))
-            });
-            if let Some(body) = crossed {
-                return Err(buried(e, body.obstacle, 0.0));
             }
         }
         Ok(())
