@@ -147,6 +147,6 @@ fn fem_with_more_elements_tends_to_spans() {
         near(1e-2)
     );
     assert!(4 * all.len() >= 3 * cases, "{} of {cases}", all.len());
-    // Two of 198 are off by more: one by 1.6e-3; one lies slack without friction, any way it likes.
+    // Of 198 one is off by more, 1.6e-3.
     assert!(50 * (all.len() - near(1e-3)) <= all.len() && mean(2) < 0.5 * mean(0) && mean(2) < 1e-4, "{:?}", all);
 }

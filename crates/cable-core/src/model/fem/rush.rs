@@ -19,7 +19,7 @@ use crate::math::Vec2;
 use crate::problem::Problem;
 
 /// Iterations before the minimiser is asked. Fewer: one of its iterations costs as much as five of these, and with 24 eleven steps of a
-/// cable of 1000 bars dropped on a floor came to it, with 40 few; more: where it is needed after all they are lost.
+/// cable of 1000 bars dropped on a floor came to it, of 336; more: where it is needed after all they are lost.
 const MAX_STEPS: usize = 40;
 
 /// Part of the first residual with which what was reached is handed on; with more the minimiser begins anew.
