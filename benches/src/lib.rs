@@ -3,6 +3,7 @@
 pub mod chart;
 pub mod compare;
 pub mod dots;
+pub mod ridges;
 pub mod table;
 
 use cable_core::catenary::Span;

@@ -4,42 +4,15 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+use cable_benches::ridges::ridges;
 use cable_core::Vec2;
 use cable_core::model::spans::SpansModel;
 use cable_core::model::{Inertia, Mechanics, Settings};
 use cable_core::problem::problems;
-use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};
-
-/// So many ridges a metre apart, on a rise, with a taut cable that bends at each.
-fn ridges(count: usize) -> Scene {
-    let height = |x: f64| 0.02 * x * (count as f64 + 1.0 - x);
-    let mut points_m = vec![[-5.0, -1.0], [0.5, -1.0]];
-    for k in 1..=count {
-        let x = k as f64;
-        points_m.push([x, height(x)]);
-        if k < count {
-            points_m.push([x + 0.5, height(x + 0.5) - 0.5]);
-        }
-    }
-    let end = count as f64 + 1.0;
-    points_m.extend([[end - 0.5, -1.0], [end + 5.0, -1.0]]);
-    let way: f64 = (0..=count).map(|k| (height(k as f64 + 1.0) - height(k as f64)).hypot(1.0)).sum();
-    let (a, b) = ([0.0, 0.0], [end, 0.0]);
-    let mut scene = catalog::hanging_span();
-    scene.loads.clear();
-    scene.obstacles =
-        vec![Obstacle { name: "ground".to_owned(), shape: Shape::Terrain { points_m }, friction: Some(0.3) }];
-    let c = &mut scene.cables[0];
-    (c.bending_stiffness_n_m2, c.axial_stiffness_n, c.diameter_m) = (0.0, 1e6, 0.02);
-    (c.service_tension_n, c.breaking_tension_n, c.length_m) = (1e15, 1e15, way * 1.0005);
-    c.route_m = vec![a, [a[0], 9.0], [b[0], 9.0], b];
-    c.supports = vec![Support::fixed("A", a), Support::fixed("B", b)];
-    scene
-}
 
 /// A held end goes to and fro by 2 mm: every step reverses all friction that acts. Most iterations of a step, and of the rest.
 fn cost(count: usize) -> (usize, usize) {
-    let scene = ridges(count);
+    let scene = ridges(count, 1);
     let last = scene.cables[0].supports[1].at_m.expect("a place");
     let mut model = SpansModel::new(problems(&scene).expect("valid").remove(0), Settings::default()).expect("a model");
     let rest = model.settle().expect("a rest").cost.iterations;
