@@ -44,6 +44,8 @@ impl Band {
     /// Divides a row and its right-hand side by its largest entry.
     pub fn scale(&mut self, rhs: &mut [f64]) {
         for (row, r) in self.rows.iter_mut().zip(rhs) {
+            // As it was added: nothing has filled the right.
+            let row = &mut row[..=2 * BAND];
             let largest = row.iter().fold(0.0f64, |m, v| if v.abs() > m { v.abs() } else { m });
             if largest > 0.0 {
                 let inverse = 1.0 / largest;
@@ -64,38 +66,44 @@ impl Band {
         self.negative = false;
         for k in 0..n {
             let last = (k + BAND + 1).min(n);
-            let (mut best, mut size) = (k, 0.0);
-            for i in k..last {
-                let v = self.rows[i][k + BAND - i].abs();
+            let (Some((pivot_row, below)), Some((right, b))) =
+                (self.rows[k..last].split_first_mut(), b[k..last].split_first_mut())
+            else {
+                return false;
+            };
+            let (mut best, mut size) = (None, pivot_row[BAND].abs());
+            for (d, row) in below.iter().enumerate() {
+                let v = row[BAND - 1 - d].abs();
                 if v > size || v.is_nan() {
-                    (best, size) = (i, v);
+                    (best, size) = (Some(d), v);
                 }
             }
             if !(size > 0.0 && size.is_finite()) {
                 return false;
             }
-            if best != k {
+            if let Some(d) = best {
                 // Both rows in the columns k … k + 2 BAND, each at its own place.
-                let (upper, lower) = self.rows.split_at_mut(best);
-                let (own, other) = (&mut upper[k][BAND..], &mut lower[0][k + BAND - best..]);
-                own.iter_mut().zip(other).for_each(|(a, b)| std::mem::swap(a, b));
-                b.swap(k, best);
+                let other = &mut below[d][BAND - 1 - d..];
+                pivot_row[BAND..].iter_mut().zip(other).for_each(|(a, b)| std::mem::swap(a, b));
+                std::mem::swap(right, &mut b[d]);
                 self.negative = !self.negative;
             }
-            let pivot_row = self.rows[k];
             self.negative ^= pivot_row[BAND] < 0.0;
-            let (inverse, right) = (1.0 / pivot_row[BAND], b[k]);
-            for (d, row) in self.rows[k + 1..last].iter_mut().enumerate() {
-                let first = BAND - 1 - d;
-                let factor = row[first] * inverse;
+            let [inverse, right] = [1.0 / pivot_row[BAND], *right];
+            let known: &[f64; 2 * BAND] = pivot_row.last_chunk().unwrap_or(&[0.0; 2 * BAND]);
+            for (d, (row, b)) in below.iter_mut().zip(b).enumerate() {
+                let row = &mut row[BAND - 1 - d..];
+                let factor = row[0] * inverse;
                 if factor == 0.0 {
                     continue;
                 }
                 // The columns k + 1 … k + 2 BAND; those beyond the matrix hold zeros.
-                for (v, p) in row[first + 1..first + 1 + 2 * BAND].iter_mut().zip(&pivot_row[BAND + 1..]) {
-                    *v -= factor * p;
+                if let Some(row) = row[1..].first_chunk_mut::<{ 2 * BAND }>() {
+                    for (v, p) in row.iter_mut().zip(known) {
+                        *v -= factor * p;
+                    }
                 }
-                b[k + 1 + d] -= factor * right;
+                *b -= factor * right;
             }
         }
         for k in (0..n).rev() {

@@ -1,18 +1,13 @@
 //! The check of an answer that does not use the solver: lengths by quadrature of the law of the free cable, balance of
-//! each contact from its ends, the cone of friction along it, gaps by the obstacles' own distance.
+//! each contact from its ends, the cone of friction along it. That no span is inside an obstacle is the last that `events` finds, by the obstacles' own distance.
 
-use super::history::History;
 use super::law::Track;
-use super::seek;
 use super::strand::{Contact, Course, Strand, Tie};
 use super::trouble::Trouble;
-use crate::contact::World;
 use crate::math::{GAUSS, Vec2, cross};
 
 /// Equations must hold to this part of the length, the tension, the angle. The solver stops at 1e-11.
 const HOLDS: f64 = 1e-7;
-/// Depth in an obstacle that is let pass, m.
-const DEEPEST: f64 = 1e-6;
 /// Compression that is rounding, of the greatest tension.
 const PUSHES: f64 = 1e-9;
 /// A contact may end so far beyond its chain, m or rad: rounding.
@@ -26,8 +21,8 @@ const TAUT_PANELS: usize = 4;
 /// Panels of the quadrature of a span, in v; 5 Gauss points each leave 1e-12.
 const PANEL: f64 = 0.5;
 
-/// Whether an answer is one.
-pub(super) fn sound(strand: &Strand, course: &Course, world: &World, pasts: &mut [History; 2]) -> Result<(), Trouble> {
+/// Whether an answer is one; its contacts remember it.
+pub(super) fn sound(strand: &Strand, course: &Course) -> Result<(), Trouble> {
     let mut before = strand.from;
     let greatest = strand
         .contacts
@@ -46,17 +41,17 @@ pub(super) fn sound(strand: &Strand, course: &Course, world: &World, pasts: &mut
         }
         before = to;
         if strand.has_span(k) {
-            span(strand, course, world, k)?;
+            span(strand, course, k)?;
         }
         if k < strand.contacts.len() {
-            contact(strand, course, (k, greatest), pasts)?;
+            contact(strand, course, (k, greatest))?;
         }
     }
     Ok(())
 }
 
-/// The span closes, and is outside everything.
-fn span(strand: &Strand, course: &Course, world: &World, k: usize) -> Result<(), Trouble> {
+/// The span closes.
+fn span(strand: &Strand, course: &Course, k: usize) -> Result<(), Trouble> {
     let (from, to) = strand.material(k);
     if let [Some(a), Some(b)] = strand.ends_of(course, k) {
         let (mut at, mut before) = (a, from);
@@ -68,9 +63,6 @@ fn span(strand: &Strand, course: &Course, world: &World, k: usize) -> Result<(),
         if !((at - b).norm() <= HOLDS * (strand.to - strand.from)) {
             return Err(Trouble::Unsound { what: "a span does not close", s: from, at });
         }
-    }
-    if let Some(hit) = seek::deepest(strand, course, world, k, DEEPEST) {
-        return Err(Trouble::Unsound { what: "the cable is inside an obstacle", s: hit.s, at: hit.at });
     }
     Ok(())
 }
@@ -111,14 +103,9 @@ fn way(strand: &Strand, course: &Course, k: usize, [from, to]: [f64; 2]) -> Vec2
 }
 
 /// A contact presses, does not push along itself, keeps the cone, and the spans leave it along its tangent.
-fn contact(
-    strand: &Strand,
-    course: &Course,
-    (j, greatest): (usize, f64),
-    [past, memory]: &mut [History; 2],
-) -> Result<(), Trouble> {
+fn contact(strand: &Strand, course: &Course, (j, greatest): (usize, f64)) -> Result<(), Trouble> {
     let c = &strand.contacts[j];
-    let (track, e) = (course.track(c), &c.ends);
+    let (track, e) = (course.track(c).seen_from(c.ends.p[0]), &c.ends);
     let unsound = |what: &'static str, p: f64, s: f64| Trouble::Unsound { what, s, at: track.place(p).at };
     let (first, last) = (track.curve.origin(c.home.first), track.curve.end(c.home.last));
     if !(track.curve.is_round() || e.p[0] >= first - BEYOND && e.p[1] <= last + BEYOND) {
@@ -149,25 +136,28 @@ fn contact(
     {
         return Err(Trouble::LoadLies { s: l.arc_length });
     }
-    past.clone_from(&c.history);
-    past.commit(&track, e, (c.mode, c.held), memory);
-    along(strand, course, (j, greatest), past)
+    along(&track, c, greatest)
 }
 
 /// Along a contact friction keeps its cone, nothing pushes along it and nothing pulls it off. On each stretch between two knots
 /// one part of friction is called upon: what holds for that and at the next knot holds all along.
-fn along(strand: &Strand, course: &Course, (j, greatest): (usize, f64), past: &History) -> Result<(), Trouble> {
-    let c = &strand.contacts[j];
-    let (track, friction) = (course.track(c), course.friction(c));
+fn along(track: &Track<'_>, c: &Contact, greatest: f64) -> Result<(), Trouble> {
+    let friction = track.friction;
     let room = HOLDS * (greatest + 1e-9);
-    for pair in past.knots().windows(2) {
+    for pair in c.history.knots().windows(2) {
         let (knot, next) = (&pair[0], &pair[1]);
         let (mut p, mut t, mut s) = (knot.p, knot.tension, knot.s);
         let unsound = |what: &'static str| Err(Trouble::Unsound { what, s: knot.s, at: track.place(knot.p).at });
         while p < next.p {
             let q = track.next_border(p, next.p);
-            let (half, whole) = (track.slide(p, 0.5 * (p + q), t, knot.m), track.slide(p, q, t, knot.m));
-            for (x, way) in [(0.5 * (p + q), half), (q, whole)] {
+            let whole = track.slide(p, q, t, knot.m);
+            let half = || track.slide(p, 0.5 * (p + q), t, knot.m);
+            let looked = if firm(track, (p, q), t, knot.m) {
+                [None; 2]
+            } else {
+                [Some((0.5 * (p + q), half())), Some((q, whole))]
+            };
+            for (x, way) in looked.into_iter().flatten() {
                 let place = track.place(x);
                 if !(way.tension >= -PUSHES * greatest - 1e-9) {
                     return Err(Trouble::Compressed { s: s + way.material, at: place.at, tension: way.tension });
@@ -179,22 +169,30 @@ fn along(strand: &Strand, course: &Course, (j, greatest): (usize, f64), past: &H
             (p, t, s) = (q, whole.tension, s + whole.material);
         }
         // On its way under a drag it is no answer yet.
-        if course.drag > 0.0 {
+        if track.drag > 0.0 {
             continue;
         }
         if !(knot.m.abs() <= friction * (1.0 + HOLDS)) {
             return unsound("friction beyond its cone");
         }
         if !((t - next.tension).abs() <= room) {
-            return sampled(&track, c, friction, room, past);
+            return sampled(track, c, friction, room);
         }
     }
     Ok(())
 }
 
+/// Whether tension and pressure cannot vanish on a short way round an arc: dT/dp > −|m|T − 2cb, and N ds/dp > T − cb.
+fn firm(track: &Track<'_>, (p, q): (f64, f64), t: f64, m: f64) -> bool {
+    let place = track.place(p);
+    let load = place.stretch * track.law.load.norm() / track.law.thermal;
+    place.turn != 0.0 && track.law.stiffness > 0.0 && t - (q - p) * (m.abs() * t + 2.0 * load) > load && m.abs() <= 1.0
+}
+
 /// Where the load has changed since something was laid, what sticks has changed by less than friction takes up: the cone from
 /// point to point.
-fn sampled(track: &Track<'_>, c: &Contact, friction: f64, room: f64, past: &History) -> Result<(), Trouble> {
+fn sampled(track: &Track<'_>, c: &Contact, friction: f64, room: f64) -> Result<(), Trouble> {
+    let past = &c.history;
     let [first, last] = c.ends.p;
     let (mut p, mut t) = (first, past.at(track, first).0);
     for i in 1..=SAMPLES {

@@ -177,6 +177,11 @@ impl Curve {
         }
     }
 
+    /// Whether a piece is an arc.
+    pub fn is_arc(&self, i: i64) -> bool {
+        matches!(self.piece(i).form, Form::Arc { .. })
+    }
+
     /// Where a piece starts in p.
     pub fn origin(&self, i: i64) -> f64 {
         if let Some(start) = self.starts.get(i as usize) {

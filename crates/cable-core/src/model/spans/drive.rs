@@ -23,6 +23,8 @@ const RUN: f64 = 1e-3;
 const DRAG: f64 = 10.0;
 /// It has come to rest when it needs no more than this part of that drag.
 const LEAST_DRAG: f64 = 1e-3;
+/// A force that differs by less than this part is the same.
+const SAME: f64 = 1e-9;
 /// Steps it is followed for at most, and times in a row the drag is raised.
 const MOST_DRAGGED: usize = 200;
 const MOST_RAISED: usize = 5;
@@ -34,8 +36,9 @@ const TAUT: f64 = 4.0;
 /// Part of the load that acts at first. More: a long span sags into what is below it before it can be met step by step.
 /// Less: nothing gained.
 const LIGHT: f64 = 1e-3;
-/// First step of the way from taut to what it is.
+/// First step of the way from taut to what it is, and how large (at most twice this) steps become that succeed.
 const FIRST_STEP: f64 = 0.05;
+const LARGEST_STEP: f64 = 0.2;
 
 /// Parts of the cone of friction that a cable taken over may use: along the very edge of the cone sliding from an end would
 /// stop anywhere, and Newton stalls. The first changes nothing that shows, the second holds a little first.
@@ -218,10 +221,6 @@ impl Network {
                 return Err(trouble);
             }
         }
-        for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts) {
-            let track = self.course.track(c);
-            c.history.commit(&track, &c.ends, (c.mode, c.held), &mut work.pasts[1]);
-        }
         Ok(taken)
     }
 
@@ -255,14 +254,18 @@ impl Network {
         if found.is_err() {
             // From where each span by itself would be.
             strand.clone_from(moved);
+            let mut other = came.is_none();
             for j in 0..strand.spans() {
                 if strand.has_span(j)
                     && let Some(g) = strand.solve_span(&self.course, j)
                 {
+                    other |= (strand.forces[j] - g).norm() > SAME * g.norm();
                     strand.forces[j] = g;
                 }
             }
-            found = events::solve(strand, &mut self.course, (world, &layout.corners), came, work);
+            if other {
+                found = events::solve(strand, &mut self.course, (world, &layout.corners), came, work);
+            }
         }
         if found.is_err() {
             // What has hardly any tension left may have lost it: the least, the two least …
@@ -281,7 +284,11 @@ impl Network {
             }
         }
         let solved = found?;
-        check::sound(&self.strands[k], &self.course, world, &mut work.pasts)?;
+        for c in &mut self.strands[k].contacts {
+            let track = self.course.track(c).seen_from(c.ends.p[0]);
+            c.history.commit(&track, &c.ends, (c.mode, c.held), &mut work.past);
+        }
+        check::sound(&self.strands[k], &self.course)?;
         let clear = || pass::clear(start, &self.strands[k], &self.course, &layout.corners);
         if !world.is_empty() && came.is_none() && !clear() {
             let [old, new] = &mut work.shapes;
@@ -362,7 +369,7 @@ impl Network {
         work: &mut Work,
     ) -> Result<Taken, (Trouble, f64)> {
         let (mut done, mut step, mut taken) = (0.0, first, Taken::default());
-        let mut halvings = 0;
+        let mut halvings: u32 = 0;
         while done < 1.0 {
             let next = if done + 1.000_001 * step >= 1.0 { 1.0 } else { done + step };
             at.between(from, to, next);
@@ -370,8 +377,8 @@ impl Network {
                 Ok(t) => {
                     taken = taken.and(t);
                     done = next;
-                    if halvings > 0 {
-                        halvings -= 1;
+                    if halvings > 0 || step < LARGEST_STEP {
+                        halvings = halvings.saturating_sub(1);
                         step *= 2.0;
                     }
                     continue;

@@ -13,15 +13,17 @@ use super::strand::{Contact, Course, Strand, Tie};
 use super::taut::Corner;
 use super::trouble::Trouble;
 use crate::contact::{Gap, World};
-use crate::math::{Vec2, cross, perp};
+use crate::math::{Vec2, cross, perp, smaller};
 
 /// Events in one solve at most. A cold start over 24 corners takes 60.
 const MAX_EVENTS: usize = 200;
 /// A contact is let go when its interval has turned round by this much (m or rad). Smaller: rounding releases what
 /// touches in a point. Larger: a contact that pulls is accepted.
 const TURNED: f64 = 1e-10;
-/// Depth inside an obstacle that is met, of the strand's length. Smaller: rounding at touch points; larger: it is seen.
+/// Depth inside an obstacle that is met, of the strand's length, and at most, m. Smaller: rounding at touch points; larger: it
+/// is seen.
 const DEEP: f64 = 1e-9;
+const DEEPEST: f64 = 1e-6;
 /// A support this near to a boundary lies on it, m.
 pub(super) const ON: f64 = 1e-9;
 
@@ -152,7 +154,7 @@ fn meet(strand: &mut Strand, course: &Course, world: &World, resting: bool) -> R
     if world.is_empty() {
         return Ok(false);
     }
-    let deep = DEEP * (strand.to - strand.from);
+    let deep = smaller(DEEP * (strand.to - strand.from), DEEPEST);
     let mut any = false;
     // From the last span, so that those before keep their number.
     for k in (0..strand.spans()).rev() {
@@ -169,6 +171,9 @@ fn meet(strand: &mut Strand, course: &Course, world: &World, resting: bool) -> R
 
 /// Where the tip of a hanging end is inside something.
 fn landed(strand: &Strand, course: &Course, world: &World, k: usize, deep: f64) -> Option<Vec2> {
+    if !strand.ties.iter().any(|t| matches!(t, Tie::Hangs(_))) {
+        return None;
+    }
     let [start, end] = strand.ends_of(course, k);
     let (from, to) = strand.material(k);
     let chain = course.chain(from, to);

@@ -1,30 +1,48 @@
-//! Which contacts will slide in a step, before it is solved.
+//! Which contacts will slide in a step and how far, about, before it is solved.
 //!
 //! Newton's method with a wrong set of sliding contacts ends at a state that shows the next wrong set: of ten contacts in a
 //! row one after the other is found to slide. To first order the whole question is one of scalars. With d the gap that a
-//! span's old force leaves after its ends have moved, C its compliance, t the cable's direction and f = λt at its two ends a, b,
+//! span's force leaves after its ends have moved, C its compliance, t the cable's direction and f = λt at its two ends a, b,
 //! and σ the material that has slid back through the contact before and after it (s at a fixed place grows by σ),
 //!
 //! ```text
-//! ΔT_a = −tₐ·C⁻¹(d + f_b σ_after − fₐ σ_before),      ΔT_b = −t_b·C⁻¹(the same)
+//! ΔG = −C⁻¹(d + f_b σ_after − fₐ σ_before),      ΔT_a = tₐ·(ΔG − b σ_before),      ΔT_b = t_b·(ΔG − b σ_after)
 //! contact: σ = 0 where T₂ is within what sliding makes of T₁ at ±μ; σ ≤ 0 at +μ, σ ≥ 0 at −μ
 //! ```
 //!
 //! (that a contact's end moves along the boundary takes as much of the cable as of the chord). This is a linear
 //! complementarity problem with three diagonals, solved by changing what is on the wrong side until nothing is: G. Zoutendijk's
-//! active sets in their simplest form. Its answer is a guess: Newton's method judges each contact again.
+//! active sets in their simplest form. A few rounds of it, each from where the last has left the spans, are Newton's method for
+//! the cable whose contacts end where they did; the ends then follow the new directions. All that is a guess: Newton's method
+//! for the whole starts there and judges each contact again.
 
 use super::history::Mode;
 use super::strand::{Course, Strand, Tie};
-use crate::math::{Mat2, Vec2};
+use crate::math::{Vec2, cross, larger};
 
 /// Rounds of changing sides, over two for each contact.
 const MORE_ROUNDS: usize = 6;
+/// Rounds of Newton's method at most, and the change of tension, as part of it, from which another is worth its cost: what is
+/// left after it is that squared.
+const ROUNDS: usize = 5;
+const ENOUGH: f64 = 0.02;
+/// A span whose tension would change by more than this factor in a round is not foreseen.
+const WILD: f64 = 4.0;
+/// A contact's end follows its span by at most this angle, rad.
+const FOLLOWS: f64 = 0.2;
 
 /// A span to first order.
 #[derive(Clone, Copy, Debug, Default)]
 struct Bar {
-    /// Tension at both ends were nothing to slide, N.
+    /// From its start to its end, m; None where it keeps its force.
+    chord: Option<Vec2>,
+    /// G, N, and material at both ends, m.
+    force: Vec2,
+    material: [f64; 2],
+    /// Change of G were nothing to slide, and by σ before and after it, N and N/m.
+    change: [Vec2; 3],
+    /// Tension at both ends, and were nothing to slide, N.
+    was: [f64; 2],
     tension: [f64; 2],
     /// Change of tension at each end by σ before and after it, N/m.
     by: [[f64; 2]; 2],
@@ -39,7 +57,9 @@ struct Link {
     reach: Option<[(f64, f64); 2]>,
     /// −1, 0, +1: slides back, sticks, slides on.
     side: i8,
+    /// What slides in a round, and what slid before it, m.
     sigma: f64,
+    slid: f64,
 }
 
 /// Memory of a guess.
@@ -51,47 +71,93 @@ pub(super) struct Foresight {
     swept: Vec<(f64, f64)>,
 }
 
-/// Gives each contact the mode that the step will ask for, as far as that can be foreseen.
+/// Gives each contact the mode that the step will ask for, and contacts and spans their place, as far as that can be foreseen.
 pub(super) fn foresee(strand: &mut Strand, course: &Course, memory: &mut Foresight) {
-    if course.drag > 0.0 || !strand.contacts.iter().any(|c| course.friction(c) > 0.0) {
+    if course.drag > 0.0 || strand.contacts.is_empty() {
         return;
     }
     strand.take_tensions(course);
     memory.bars.clear();
-    memory.bars.extend((0..strand.spans()).map(|k| bar(strand, course, k).unwrap_or_default()));
+    memory.bars.extend((0..strand.spans()).map(|k| span(strand, course, k)));
     memory.links.clear();
     memory.links.extend((0..strand.contacts.len()).map(|j| link(strand, course, j)));
-    if !memory.settle() {
-        return;
-    }
+    let Some(settled) = memory.rounds(course, strand.from) else { return };
     for (c, l) in strand.contacts.iter_mut().zip(&memory.links) {
         let friction = course.friction(c);
         if l.reach.is_some() && friction > 0.0 {
             c.mode = if l.side == 0 { Mode::Hold } else { Mode::Slide(friction * f64::from(l.side)) };
         }
     }
+    if settled {
+        follow(strand, course, memory);
+    }
 }
 
-fn bar(strand: &Strand, course: &Course, k: usize) -> Option<Bar> {
+/// A span as it is, to begin with.
+fn span(strand: &Strand, course: &Course, k: usize) -> Bar {
     if !strand.has_span(k) {
-        return None;
+        return Bar::default();
     }
     let (from, to) = strand.material(k);
     let forces = [strand.force(course, k, from), strand.force(course, k, to)];
-    let [Some(a), Some(b)] = strand.ends_of(course, k) else {
+    let chord = match strand.ends_of(course, k) {
+        [Some(a), Some(b)] => Some(b - a),
         // What hangs keeps its force.
-        return Some(Bar { tension: forces.map(|f| f.norm()), ..Bar::default() });
+        _ => None,
     };
-    let (way, compliance) = course.chain(from, to).reach(forces[0]);
-    let stiffness: Mat2 = compliance.try_inverse()?;
-    let pulled = stiffness * (way - (b - a));
-    let rates = forces.map(|f| course.rate(f));
-    let at = |f: Vec2| {
-        let t = f / f.norm();
-        (f.norm() - t.dot(&pulled), [t.dot(&(stiffness * rates[0])), -t.dot(&(stiffness * rates[1]))])
-    };
-    let [(start, by_start), (end, by_end)] = forces.map(at);
-    Some(Bar { tension: [start, end], by: [by_start, by_end] })
+    let tension = forces.map(|f| f.norm());
+    Bar { chord, force: strand.forces[k], material: [from, to], tension, ..Bar::default() }
+}
+
+impl Bar {
+    /// To first order from where it is; false where that cannot be told.
+    fn renew(&mut self, course: &Course, first: f64) -> bool {
+        let Some(chord) = self.chord else { return true };
+        let [from, to] = self.material;
+        let start = self.force - course.load_between(first, from);
+        let end = start - course.load_between(from, to);
+        let (way, compliance) = course.chain(from, to).reach(start);
+        let Some(stiffness) = compliance.try_inverse() else { return false };
+        let [rate, rate_end] = [start, end].map(|f| course.rate(f));
+        self.change = [-(stiffness * (way - chord)), stiffness * rate, -(stiffness * rate_end)];
+        for (i, f) in [start, end].into_iter().enumerate() {
+            let (size, load) = (f.norm(), course.law.load);
+            let t = f / size;
+            self.was[i] = size;
+            self.tension[i] = size + t.dot(&self.change[0]);
+            self.by[i] = [t.dot(&self.change[1]), t.dot(&self.change[2])];
+            self.by[i][i] -= t.dot(&load);
+        }
+        self.tension.iter().all(|t| t.is_finite())
+    }
+}
+
+/// Takes what has slid and changed, and lets the ends of contacts on arcs follow the directions of their spans.
+fn follow(strand: &mut Strand, course: &Course, memory: &Foresight) {
+    for (force, bar) in strand.forces.iter_mut().zip(&memory.bars).filter(|(_, b)| b.chord.is_some()) {
+        *force = bar.force;
+    }
+    for (j, l) in memory.links.iter().enumerate().filter(|(_, l)| l.reach.is_some()) {
+        strand.contacts[j].ends.s = strand.contacts[j].ends.s.map(|s| s + l.slid);
+        for side in 0..2 {
+            let Some(force) = strand.force_at_contact(course, j, side) else { continue };
+            let c = &strand.contacts[j];
+            let track = course.track(c);
+            let place = track.place(c.ends.p[side]);
+            let angle = cross(place.tangent, force).atan2(place.tangent.dot(&force));
+            if place.turn == 0.0 || !(angle.abs() <= FOLLOWS) {
+                continue;
+            }
+            let by = angle / place.turn;
+            let p = c.ends.p[side] + by;
+            let turned = if side == 0 { p < c.ends.p[1] } else { p > c.ends.p[0] };
+            if turned && track.turns(p) {
+                let e = &mut strand.contacts[j].ends;
+                e.p[side] = p;
+                e.s[side] += by * place.stretch / course.law.stretch(force.norm());
+            }
+        }
+    }
 }
 
 fn link(strand: &Strand, course: &Course, j: usize) -> Link {
@@ -103,7 +169,7 @@ fn link(strand: &Strand, course: &Course, j: usize) -> Link {
     if lies || strand.in_pocket(j, 0) || strand.in_pocket(j, 1) || !(e.p[1] > e.p[0] && e.t[0] > 0.0) {
         return out;
     }
-    let (track, friction) = (course.track(c), course.friction(c));
+    let (track, friction) = (course.track(c).seen_from(e.p[0]), course.friction(c));
     out.reach = Some([-friction, friction].map(|m| {
         let way = track.slide(e.p[0], e.p[1], e.t[0], m);
         (way.tension, way.by_tension)
@@ -114,6 +180,51 @@ fn link(strand: &Strand, course: &Course, j: usize) -> Link {
 }
 
 impl Foresight {
+    /// Newton's method for what slides: whether it came to an end, None where not even the modes can be told.
+    fn rounds(&mut self, course: &Course, first: f64) -> Option<bool> {
+        for round in 0..ROUNDS {
+            if !self.bars.iter_mut().all(|b| b.renew(course, first)) || !self.settle() {
+                return (round > 0).then_some(false);
+            }
+            match self.step() {
+                Some(change) if change <= ENOUGH => return Some(true),
+                Some(_) => {}
+                None => return Some(false),
+            }
+        }
+        Some(false)
+    }
+
+    /// Takes what the round has found; the greatest change of tension as part of it, None where that is wild.
+    fn step(&mut self) -> Option<f64> {
+        let mut greatest = 0.0;
+        for k in 0..self.bars.len() {
+            let slide = |j: Option<usize>| j.and_then(|j| self.links.get(j)).map_or(0.0, |l| l.sigma);
+            let (before, after) = (slide(k.checked_sub(1)), slide(Some(k)));
+            let bar = &mut self.bars[k];
+            if bar.chord.is_none() {
+                continue;
+            }
+            let change = bar.change[0] + bar.change[1] * before + bar.change[2] * after;
+            let now = [0, 1].map(|i| bar.tension[i] + bar.by[i][0] * before + bar.by[i][1] * after);
+            for (now, was) in now.into_iter().zip(bar.was) {
+                if !(now <= was * WILD && now >= was / WILD) {
+                    return None;
+                }
+                greatest = larger(greatest, (now - was).abs() / was);
+            }
+            bar.force += change;
+            bar.material = [bar.material[0] + before, bar.material[1] + after];
+            if !(bar.material[1] > bar.material[0]) {
+                return None;
+            }
+        }
+        for l in &mut self.links {
+            l.slid += l.sigma;
+        }
+        Some(greatest)
+    }
+
     /// Finds sides and slips that agree; false where that comes to no end.
     fn settle(&mut self) -> bool {
         for _ in 0..2 * self.links.len() + MORE_ROUNDS {
@@ -137,7 +248,7 @@ impl Foresight {
                 side => Some(r[usize::from(side > 0)]),
             });
             before = match reach {
-                None => (0.0, 0.0),
+                None => (0.0, -l.slid),
                 Some((made, by)) => {
                     let (one, two) = (&self.bars[j], &self.bars[j + 1]);
                     // T₂ − what is made of T₁ = 0.
@@ -171,8 +282,8 @@ impl Foresight {
             let side = if l.side == 0 {
                 let (before, after) = (sigma(&self.links, j.checked_sub(1)), sigma(&self.links, Some(j + 1)));
                 let (one, two) = (&self.bars[j], &self.bars[j + 1]);
-                let grown = one.tension[1] + one.by[1][0] * before - l.from;
-                let reached = two.tension[0] + two.by[0][1] * after;
+                let grown = one.tension[1] + one.by[1][0] * before + one.by[1][1] * l.sigma - l.from;
+                let reached = two.tension[0] + two.by[0][0] * l.sigma + two.by[0][1] * after;
                 if reached > high + by_high * grown {
                     1
                 } else if reached < low + by_low * grown {
@@ -180,7 +291,7 @@ impl Foresight {
                 } else {
                     0
                 }
-            } else if l.sigma * f64::from(l.side) > 0.0 {
+            } else if (l.slid + l.sigma) * f64::from(l.side) > 0.0 {
                 0
             } else {
                 l.side

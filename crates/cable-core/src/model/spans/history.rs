@@ -144,7 +144,7 @@ impl History {
                     (last.m, knot.tension) = (-friction, low);
                 } else {
                     let by = NUDGE * friction;
-                    last.m = crossing((-friction, friction), FLOOR * knot.tension.abs(), (None, None), |m| {
+                    last.m = crossing((-friction, friction), FLOOR * knot.tension.abs(), None, |m| {
                         (knot.tension - reach(m), (reach(m - by) - reach(m + by)) / (2.0 * by))
                     });
                 }
@@ -226,17 +226,16 @@ impl History {
         let sign = if t < old { 1.0 } else { -1.0 };
         let m = track.friction * sign * if right { 1.0 } else { -1.0 };
         let (mut at, mut way) = (p, Step::none(t));
-        if t == old {
+        if (t - old).abs() <= FLOOR * t.abs() {
             return Front { p, way, m, met: true, old: s };
         }
         while at != to {
             let (next, old_m) = self.stretch(track, at, to);
-            let piece = track.on(at, next);
-            if let Some((x, [there, here])) = piece.crossing(next, [(old, old_m), (way.tension, m)]) {
-                return Front { p: x, way: way.then(here), m, met: true, old: s + there.material };
-            }
-            let (here, there) = (piece.slide(next, way.tension, m), piece.slide(next, old, old_m));
+            let (met, [there, here]) = track.on(at, next).crossing(next, [(old, old_m), (way.tension, m)]);
             way = way.then(here);
+            if let Some(x) = met {
+                return Front { p: x, way, m, met: true, old: s + there.material };
+            }
             (old, s) = (there.tension, s + there.material);
             at = next;
             if (old - way.tension) * sign <= 0.0 {
@@ -269,7 +268,7 @@ impl History {
         }
         // … or they slide towards or away from each other.
         let sign = if left.m > 0.0 { 1.0 } else { -1.0 };
-        let meet = crossing((p1, p2), FLOOR * (t1.abs() + t2.abs()), (None, None), |x| {
+        let meet = crossing((p1, p2), FLOOR * (t1.abs() + t2.abs()), None, |x| {
             let (r, l) = (track.slide(p2, x, t2, right.m).tension, track.slide(p1, x, t1, left.m).tension);
             let place = track.place(x);
             let slope = track.law.slope(&place, r, right.m) - track.law.slope(&place, l, left.m);

@@ -20,10 +20,8 @@
 //! and the exact T differs by −c ∫ e^{m(ψ−ξ)} (b·t + m b·n)(1/λ(T⁰) − 1/λ₀) dξ, a small part (of order cb·ΔT/EA) of a
 //! small part; what this leaves out is of the order of its square over T. Material is c ∫ dψ/λ. Both by Gauss.
 
-use std::cell::Cell;
-
 use super::curve::{Curve, Home, Place};
-use super::root::{FLOOR, crossing};
+use super::piece::{OnPiece, Pivot};
 use crate::math::{GAUSS, Vec2, sin_cos};
 
 /// Longest stretch of an arc taken by one rule of 5 Gauss points, rad. At 0.8 a full turn at μ = 0.5 is exact to 1e-13.
@@ -32,12 +30,6 @@ const PANEL: f64 = 0.8;
 /// Longest stretch of an arc for which 3 points will do, rad: they leave 4e-10 of the change of 1/λ along it, which is of the
 /// order of T/EA.
 const SHORT: f64 = 0.3;
-
-/// Where two tensions are about one before this part of a piece it is not asked whether they are so on it. Larger: asked after
-/// all more often.
-const WELL: f64 = 0.9;
-/// Two tensions have met when they differ by less than this part: more than rounding, less than where they have not.
-const CLOSED: f64 = 1e-12;
 
 /// A rule of Gauss: weight of the middle, distance of a pair from there as part of the whole and weight of each.
 struct Rule {
@@ -58,6 +50,17 @@ pub(super) struct Law {
     pub thermal: f64,
     /// EA, N.
     pub stiffness: f64,
+}
+
+/// A point of the boundary as the law sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spot {
+    /// d(length)/dp, m.
+    pub stretch: f64,
+    /// Whether it is on an arc.
+    pub turns: bool,
+    /// b·t and b·n, N/m.
+    pub load: (f64, f64),
 }
 
 /// What came of a way along the boundary.
@@ -90,16 +93,26 @@ impl Law {
         2.0 * theta / (1.0 + if square > 0.0 { square.sqrt() } else { 0.0 })
     }
 
+    /// A place as the law sees it.
+    pub fn spot(&self, place: &Place) -> Spot {
+        let load = (self.load.dot(&place.tangent), self.load.dot(&place.normal));
+        Spot { stretch: place.stretch, turns: place.turn != 0.0, load }
+    }
+
     /// dT/dp at a place where it slides with m.
     pub fn slope(&self, place: &Place, t: f64, m: f64) -> f64 {
-        let along = self.load.dot(&place.tangent) + m * self.load.dot(&place.normal);
-        let turned = if place.turn == 0.0 { 0.0 } else { m * t };
-        turned - place.stretch * along / self.stretch(t)
+        self.slope_at(&self.spot(place), t, m)
+    }
+
+    /// As [`Self::slope`].
+    pub fn slope_at(&self, spot: &Spot, t: f64, m: f64) -> f64 {
+        let turned = if spot.turns { m * t } else { 0.0 };
+        turned - spot.stretch * (spot.load.0 + m * spot.load.1) / self.stretch(t)
     }
 
     /// dΘ/dp on an edge.
-    pub fn edge_rate(&self, place: &Place, m: f64) -> f64 {
-        -(self.load.dot(&place.tangent) + m * self.load.dot(&place.normal)) / self.thermal
+    pub fn edge_rate(&self, spot: &Spot, m: f64) -> f64 {
+        -(spot.load.0 + m * spot.load.1) / self.thermal
     }
 
     /// Normal force per unstretched metre times its stretch, per dp: N ds/dp, N (per metre of an edge, per radian of an
@@ -110,8 +123,8 @@ impl Law {
     }
 
     /// From a place, with tension `t`, so far (`way`) along the piece it lies on.
-    pub fn along(&self, from: &Place, way: f64, t: f64, m: f64) -> Step {
-        if from.turn == 0.0 {
+    pub fn along(&self, from: &Spot, way: f64, t: f64, m: f64) -> Step {
+        if !from.turns {
             return self.on_edge(self.edge_rate(from, m), way, t);
         }
         if from.stretch == 0.0 {
@@ -119,7 +132,7 @@ impl Law {
             return Step { tension: t * grown, material: 0.0, by_tension: grown, material_by_tension: 0.0 };
         }
         // Load along and out of the arc: t turns by −n, n by t.
-        let mut load = (self.load.dot(&from.tangent), self.load.dot(&from.normal));
+        let mut load = from.load;
         if way.abs() <= SHORT {
             return self.on_arc((from.stretch, load), (way, &THREE), t, m);
         }
@@ -146,26 +159,28 @@ impl Law {
 
     /// Along a stretch h of an arc of radius c, with (b·t, b·n) at its start.
     fn on_arc(&self, (c, (bt, bn)): (f64, (f64, f64)), (h, rule): (f64, &Rule), t: f64, m: f64) -> Step {
-        let stretch0 = self.stretch(t);
-        let g = c / stretch0;
+        let first = 1.0 / self.stretch(t);
+        let g = c * first;
         let divided = g / (1.0 + m * m);
         let (alpha, beta) = (2.0 * divided * m, divided * (m * m - 1.0));
         let own = t - alpha * bt - beta * bn;
-        // b·t, b·n, e^{mψ} and T⁰ after a turn of which (sin ψ, cos ψ, e^{mψ}) is given.
-        let at = |(sin, cos, grown): (f64, f64, f64)| {
-            let (bt, bn) = (bt * cos - bn * sin, bn * cos + bt * sin);
-            (bt, bn, grown, alpha * bt + beta * bn + own * grown)
-        };
+        // sin ψ, cos ψ, e^{mψ} and e^{−mψ} of a turn; of one after another.
         let turn = |psi: f64| {
-            let (sin, cos) = sin_cos(psi);
-            (sin, cos, if m == 0.0 { 1.0 } else { (m * psi).exp() })
+            let ((sin, cos), grown) = (sin_cos(psi), if m == 0.0 { 1.0 } else { (m * psi).exp() });
+            [sin, cos, grown, 1.0 / grown]
         };
-        let on = |a: (f64, f64, f64), b: (f64, f64, f64)| (a.0 * b.1 + a.1 * b.0, a.1 * b.1 - a.0 * b.0, a.2 * b.2);
+        let on =
+            |a: [f64; 4], b: [f64; 4]| [a[0] * b[1] + a[1] * b[0], a[1] * b[1] - a[0] * b[0], a[2] * b[2], a[3] * b[3]];
+        let back = |a: [f64; 4]| [-a[0], a[1], a[3], a[2]];
+        let tension =
+            |[sin, cos, grown, _]: [f64; 4]| alpha * (bt * cos - bn * sin) + beta * (bn * cos + bt * sin) + own * grown;
         let (mut correction, mut material, mut by) = (0.0, 0.0, 0.0);
-        let mut node = |turn: (f64, f64, f64), weight: f64| {
-            let (bt, bn, grown, t0) = at(turn);
-            let inverse = 1.0 / self.stretch(t0);
-            correction += weight * (bt + m * bn) / grown * (inverse - 1.0 / stretch0);
+        let (along, out) = (bt + m * bn, m * bt - bn);
+        let mut node = |turn: [f64; 4], weight: f64| {
+            let inverse = 1.0 / self.stretch(tension(turn));
+            let [sin, cos, grown, shrunk] = turn;
+            // b·t + m b·n there.
+            correction += weight * (along * cos + out * sin) * shrunk * (inverse - first);
             material += weight * inverse;
             by += weight * grown * inverse * inverse;
         };
@@ -175,9 +190,10 @@ impl Law {
         for (off, weight) in rule.pairs {
             let off = turn(off * h);
             node(on(middle, off), *weight);
-            node(on(middle, (-off.0, off.1, 1.0 / off.2)), *weight);
+            node(on(middle, back(off)), *weight);
         }
-        let (_, _, grown, t0) = at(on(middle, middle));
+        let end = on(middle, middle);
+        let (t0, grown) = (tension(end), end[2]);
         Step {
             tension: t0 - c * h * grown * correction,
             material: c * h * material,
@@ -214,22 +230,55 @@ pub(super) struct Track<'a> {
     pub friction: f64,
     /// See [`Course`](super::strand::Course).
     pub drag: f64,
+    /// A point of it from which what lies on the same piece is seen.
+    pub pivot: Option<Pivot>,
 }
 
 impl Track<'_> {
+    /// The same, seen from p.
+    pub fn seen_from(self, p: f64) -> Self {
+        Self { pivot: Some(Pivot::new(self.curve, self.home, &self.law, p)), ..self }
+    }
+
     /// The point at p.
     pub fn place(&self, p: f64) -> Place {
-        self.curve.place(p, self.home)
+        match &self.pivot {
+            Some(pivot) if pivot.holds(p) => pivot.place(p),
+            _ => self.curve.place(p, self.home),
+        }
+    }
+
+    /// Whether p is on an arc.
+    pub fn turns(&self, p: f64) -> bool {
+        match &self.pivot {
+            Some(pivot) if pivot.holds(p) => pivot.turns(),
+            _ => self.curve.is_arc(self.curve.locate(p, self.home)),
+        }
     }
 
     /// The piece between p₀ and p₁, which lie on one.
     pub fn on(&self, p0: f64, p1: f64) -> OnPiece<'_> {
-        let i = self.curve.locate(0.5 * (p0 + p1), self.home);
-        OnPiece { law: &self.law, from: self.curve.place_on(i, p0 - self.curve.origin(i)), p0 }
+        let from = match &self.pivot {
+            Some(pivot) if pivot.reaches(p0) && pivot.reaches(p1) => pivot.spot(p0),
+            _ => {
+                let i = self.curve.locate(0.5 * (p0 + p1), self.home);
+                self.law.spot(&self.curve.place_on(i, p0 - self.curve.origin(i)))
+            }
+        };
+        OnPiece { law: &self.law, from, p0 }
     }
 
     /// Slides with m from p₀, where the tension is `t`, to p₁ (either way).
     pub fn slide(&self, p0: f64, p1: f64, t: f64, m: f64) -> Step {
+        if p0 == p1 {
+            return Step::none(t);
+        }
+        if let Some(pivot) = &self.pivot
+            && pivot.reaches(p0)
+            && pivot.reaches(p1)
+        {
+            return self.law.along(&pivot.spot(p0), p1 - p0, t, m);
+        }
         let (mut i, last) = (self.curve.locate(p0, self.home), self.curve.locate(p1, self.home));
         let (mut at, mut sum) = (p0, Step::none(t));
         loop {
@@ -239,7 +288,7 @@ impl Track<'_> {
                 std::cmp::Ordering::Less => self.curve.origin(i + 1),
                 std::cmp::Ordering::Greater => origin,
             };
-            let from = self.curve.place_on(i, at - origin);
+            let from = self.law.spot(&self.curve.place_on(i, at - origin));
             sum = sum.then(self.law.along(&from, to - at, sum.tension, m));
             if i == last {
                 return sum;
@@ -251,9 +300,12 @@ impl Track<'_> {
 
     /// The m that keeps tension even where p is, as far as friction can: −b·t − m b·n = 0 on an edge; 0 on an arc.
     pub fn even(&self, p: f64) -> f64 {
+        if self.turns(p) {
+            return 0.0;
+        }
         let place = self.place(p);
         let out_of = self.law.load.dot(&place.normal);
-        if place.turn != 0.0 || out_of == 0.0 {
+        if out_of == 0.0 {
             return 0.0;
         }
         (-self.law.load.dot(&place.tangent) / out_of).clamp(-self.friction, self.friction)
@@ -272,6 +324,9 @@ impl Track<'_> {
 
     /// The next place from p towards `to` where the boundary changes from edge to arc or back; `to` if none lies between.
     pub fn next_border(&self, p: f64, to: f64) -> f64 {
+        if self.pivot.as_ref().is_some_and(|v| v.reaches(p) && v.reaches(to)) {
+            return to;
+        }
         let mut i = self.curve.locate(p, self.home);
         if to > p {
             // A border reached by rounding lies behind.
@@ -298,82 +353,6 @@ impl Track<'_> {
             }
         }
         to
-    }
-}
-
-/// One piece of a track, from a point on it.
-pub(super) struct OnPiece<'a> {
-    law: &'a Law,
-    from: Place,
-    p0: f64,
-}
-
-impl OnPiece<'_> {
-    /// Slides with m from its point, where the tension is `t`, to p.
-    pub fn slide(&self, p: f64, t: f64, m: f64) -> Step {
-        self.law.along(&self.from, p - self.p0, t, m)
-    }
-
-    /// dT/dp so far on, where the tension is `t`.
-    fn slope(&self, way: f64, t: f64, m: f64) -> f64 {
-        let (sin, cos) = if self.from.turn == 0.0 { (0.0, 1.0) } else { sin_cos(way) };
-        let (tangent, normal) = (self.from.tangent, self.from.normal);
-        let place = Place { tangent: tangent * cos - normal * sin, normal: normal * cos + tangent * sin, ..self.from };
-        self.law.slope(&place, t, m)
-    }
-
-    /// Where before p₁ two tensions, each with its m, that differ at its point come to be one, and both ways there; None
-    /// where that is not before p₁. On an edge both Θ are linear, round a sharp corner both T are exponential, else about.
-    pub fn crossing(&self, p1: f64, [(t, m), (u, n)]: [(f64, f64); 2]) -> Option<(f64, [Step; 2])> {
-        let law = self.law;
-        let whole = p1 - self.p0;
-        let both = |p: f64| [self.slide(p, t, m), self.slide(p, u, n)];
-        let about = if self.from.turn == 0.0 {
-            (law.theta(u) - law.theta(t)) / (law.edge_rate(&self.from, m) - law.edge_rate(&self.from, n))
-        } else {
-            // As if the load were that of its start all along.
-            let held = |t: f64, m: f64| {
-                let g = self.from.stretch / (law.stretch(t) * (1.0 + m * m));
-                let (bt, bn) = (law.load.dot(&self.from.tangent), law.load.dot(&self.from.normal));
-                t - g * (2.0 * m * bt + (m * m - 1.0) * bn)
-            };
-            (held(u, n) / held(t, m)).ln() / (m - n)
-        };
-        // Parallel: nowhere. NaN is not inside either.
-        let part = about / whole;
-        let exact = self.from.turn == 0.0 || self.from.stretch == 0.0;
-        if exact {
-            let inside = (0.0..=1.0).contains(&part);
-            return inside.then(|| (self.p0 + about, both(self.p0 + about)));
-        }
-        let sign = (t - u).signum();
-        let near = (part > 0.0 && part < WELL).then_some(self.p0 + about);
-        if let Some(near) = near {
-            let found = self.meeting(p1, [(t, m), (u, n)], (-1.0, Some(near)));
-            let [a, b] = found.1;
-            if (a.tension - b.tension).abs() <= CLOSED * t.abs() {
-                return Some(found);
-            }
-        }
-        let [a, b] = both(p1);
-        let end = (a.tension - b.tension) * sign;
-        (end <= 0.0).then(|| self.meeting(p1, [(t, m), (u, n)], (end, None)))
-    }
-
-    /// As [`Self::crossing`] round an arc; `end`: the difference at p₁, `near`: about where.
-    fn meeting(&self, p1: f64, [(t, m), (u, n)]: [(f64, f64); 2], (end, near): (f64, Option<f64>)) -> (f64, [Step; 2]) {
-        let sign = (t - u).signum();
-        let both = |p: f64| [self.slide(p, t, m), self.slide(p, u, n)];
-        let last = Cell::new((f64::NAN, [Step::none(t); 2]));
-        let ends = ((t - u) * sign, end);
-        let x = crossing((self.p0, p1), FLOOR * t.abs(), (Some(ends), near), |x| {
-            let [a, b] = both(x);
-            last.set((x, [a, b]));
-            let way = x - self.p0;
-            ((a.tension - b.tension) * sign, (self.slope(way, a.tension, m) - self.slope(way, b.tension, n)) * sign)
-        });
-        let (at, ways) = last.get();
-        (x, if at == x { ways } else { both(x) })
     }
 }
 

@@ -24,6 +24,7 @@ mod lay;
 mod loss;
 mod newton;
 mod pass;
+mod piece;
 mod pocket;
 mod report;
 mod root;

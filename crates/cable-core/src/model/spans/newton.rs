@@ -18,7 +18,7 @@ mod tests;
 use self::sheet::{Sheet, assemble, gather, lies, pinned, renew, scatter};
 pub(super) use self::stable::stable;
 use super::foresee::Foresight;
-use super::history::{History, Mode};
+use super::history::{Held, History, Mode};
 use super::instant::Instant;
 use super::rub;
 use super::strand::{Course, Strand};
@@ -72,8 +72,8 @@ pub(super) struct Work {
     pub instants: [Instant; 3],
     /// What a guess at the modes is made with.
     pub foresight: Foresight,
-    /// A contact's past as it would be, and as it was.
-    pub pasts: [History; 2],
+    /// A contact's past as it was.
+    pub past: History,
 }
 
 /// Newton did not converge.
@@ -148,8 +148,7 @@ fn room(strand: &Strand, course: &Course, x: &[f64], d: &[f64]) -> f64 {
                 continue;
             }
             let (p, dp) = (x[6 * k + 2 + 2 * side], d[6 * k + 2 + 2 * side]);
-            let turned = track.place(p).turn != 0.0 || track.place(p + alpha * dp).turn != 0.0;
-            if turned && alpha * dp.abs() > MOST_TURN {
+            if alpha * dp.abs() > MOST_TURN && (track.turns(p) || track.turns(p + alpha * dp)) {
                 alpha = MOST_TURN / dp.abs();
             }
         }
@@ -195,11 +194,13 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
         let (mut worst, mut at) = norm(&work.sheet.residual);
         let done = worst <= tolerance(strand, course);
         if worst <= SETTLED || stalled >= PATIENCE {
-            if change_modes(strand, course, if done { 4 * MOST_FLIPS } else { MOST_FLIPS }, &mut work.sheet) {
+            let (changed, content) =
+                change_modes(strand, course, if done { 4 * MOST_FLIPS } else { MOST_FLIPS }, &mut work.sheet);
+            if changed {
                 (worst, at) = norm(&work.sheet.residual);
                 (best, stalled) = (f64::INFINITY, 0);
             } else if done {
-                return if agreed(strand, course) {
+                return if content || agreed(strand, course) {
                     Ok(Solved { iterations, residual: worst })
                 } else {
                     Err(Stall { iterations, residual: worst, at: at / 6 })
@@ -215,7 +216,7 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
         let over = !worst.is_finite() || iterations == MAX_ITERATIONS || stalled > MAX_STALLED;
         iterations += usize::from(!over);
         if over || !step(strand, course, work) {
-            if !over && change_modes(strand, course, MOST_FLIPS, &mut work.sheet) {
+            if !over && change_modes(strand, course, MOST_FLIPS, &mut work.sheet).0 {
                 continue;
             }
             // Rounding: nothing is gained any more.
@@ -231,7 +232,12 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
 /// The mode that the state of contact j asks for.
 fn asked(strand: &Strand, course: &Course, j: usize, patience: f64) -> Mode {
     let c = &strand.contacts[j];
-    rub::next_mode(&course.track(c), (&c.history, &c.ends), c.held, (c.mode, pinned(strand, j)), patience)
+    // What holds within its cone goes on so, and what is smooth slides.
+    if matches!((c.mode, c.held), (Mode::Hold, Some(Held::Between(_) | Held::Meet(_)))) && course.friction(c) > 0.0 {
+        return c.mode;
+    }
+    let track = course.track(c).seen_from(c.ends.p[0]);
+    rub::next_mode(&track, (&c.history, &c.ends), c.held, (c.mode, pinned(strand, j)), patience)
 }
 
 /// Whether every contact is in the mode that its state asks for.
@@ -239,12 +245,14 @@ fn agreed(strand: &Strand, course: &Course) -> bool {
     (0..strand.contacts.len()).all(|j| asked(strand, course, j, PATIENT) == strand.contacts[j].mode)
 }
 
-fn change_modes(strand: &mut Strand, course: &Course, most: u32, sheet: &mut Sheet) -> bool {
-    let mut changed = false;
+/// Gives contacts the mode they ask for; whether any was changed, and whether none asked for another.
+fn change_modes(strand: &mut Strand, course: &Course, most: u32, sheet: &mut Sheet) -> (bool, bool) {
+    let (mut changed, mut content) = (false, true);
     for j in 0..strand.contacts.len() {
         let flips = strand.contacts[j].flips;
         let next = asked(strand, course, j, if flips < MOST_FLIPS { 1.0 } else { PATIENT });
         let c = &mut strand.contacts[j];
+        content &= next == c.mode;
         if next != c.mode && c.flips < most {
             c.mode = next;
             c.flips += 1;
@@ -252,7 +260,7 @@ fn change_modes(strand: &mut Strand, course: &Course, most: u32, sheet: &mut She
             renew(strand, course, j, sheet);
         }
     }
-    changed
+    (changed, content)
 }
 
 /// One Newton step with a line search on the sum of squares; false where none makes it smaller. The sheet is that of where

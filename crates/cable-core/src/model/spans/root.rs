@@ -11,12 +11,7 @@ const MAX_ROUNDS: usize = 100;
 /// Where f falls from above zero at `a` to zero or below at `b`: Newton's method from the secant, kept inside what brackets
 /// the root. `f`: value and slope; `floor`: a value that is rounding; the values at a and b and a place near the root where
 /// they are known.
-pub(super) fn crossing(
-    (a, b): (f64, f64),
-    floor: f64,
-    (ends, near): (Option<(f64, f64)>, Option<f64>),
-    f: impl Fn(f64) -> (f64, f64),
-) -> f64 {
+pub(super) fn crossing((a, b): (f64, f64), floor: f64, ends: Option<(f64, f64)>, f: impl Fn(f64) -> (f64, f64)) -> f64 {
     let (mut x0, mut x1) = (a, b);
     let (f0, f1) = ends.unwrap_or_else(|| (f(a).0, f(b).0));
     if !(f0 > floor) {
@@ -26,7 +21,7 @@ pub(super) fn crossing(
         return b;
     }
     let rounding = ROOT * (a.abs() + b.abs());
-    let (mut x, mut before) = (near.unwrap_or(a + (b - a) * (f0 / (f0 - f1))), f64::INFINITY);
+    let (mut x, mut before) = (a + (b - a) * (f0 / (f0 - f1)), f64::INFINITY);
     for _ in 0..MAX_ROUNDS {
         let (value, slope) = f(x);
         if value.abs() <= floor || (x1 - x0).abs() <= rounding {

@@ -112,7 +112,7 @@ impl Course {
     /// The chain a contact lies on.
     pub fn track(&self, c: &Contact) -> Track<'_> {
         let curve = &self.curves[c.curve];
-        Track { curve, home: c.home, law: self.law, friction: self.friction(c), drag: self.drag }
+        Track { curve, home: c.home, law: self.law, friction: self.friction(c), drag: self.drag, pivot: None }
     }
 
     /// Friction of a contact.

@@ -2,6 +2,8 @@
 
 use super::super::band::Band;
 use super::super::curve::Place;
+use super::super::law::Track;
+use super::super::piece::Pivot;
 use super::super::rub;
 use super::super::strand::{Course, Strand, Tie};
 use crate::math::{Vec2, cross, larger};
@@ -70,8 +72,8 @@ pub(super) struct Sheet {
     pub residual: Vec<f64>,
     /// The Jacobian.
     pub band: Band,
-    /// The places of both ends of each contact.
-    spots: Vec<[Place; 2]>,
+    /// The places of both ends of each contact, and the first with its piece.
+    spots: Vec<([Place; 2], Pivot)>,
 }
 
 /// Works out the equations of a strand where it is, and where each of its contacts sticks.
@@ -82,8 +84,10 @@ pub(super) fn assemble(strand: &mut Strand, course: &Course, sheet: &mut Sheet) 
     sheet.band.reset(n);
     sheet.spots.clear();
     sheet.spots.extend(strand.contacts.iter().map(|c| {
-        let track = course.track(c);
-        c.ends.p.map(|p| track.place(p))
+        let [first, last] = c.ends.p;
+        let bare = course.track(c);
+        let pivot = Pivot::new(bare.curve, c.home, &course.law, first);
+        ([pivot.at, if pivot.holds(last) { pivot.place(last) } else { bare.place(last) }], pivot)
     }));
     for k in 0..strand.spans() {
         span_rows(strand, course, k, sheet);
@@ -128,8 +132,8 @@ fn span_rows(strand: &Strand, course: &Course, k: usize, sheet: &mut Sheet) {
         band.add(row + 1, row + 1, size);
         return;
     }
-    let before = k.checked_sub(1).map(|j| &sheet.spots[j][1]);
-    let after = sheet.spots.get(k).map(|s| &s[0]);
+    let before = k.checked_sub(1).map(|j| &sheet.spots[j].0[1]);
+    let after = sheet.spots.get(k).map(|s| &s.0[0]);
     let held = |t: &Tie| if let Tie::Held(at) = t { Some(*at) } else { None };
     let ends = (
         before.map_or_else(|| held(&strand.ties[0]), |s| Some(s.at)),
@@ -163,9 +167,9 @@ fn span_rows(strand: &Strand, course: &Course, k: usize, sheet: &mut Sheet) {
 }
 
 fn contact_rows(strand: &mut Strand, course: &Course, j: usize, sheet: &mut Sheet) {
-    let (r, b, spots, scale) = (&mut sheet.residual, &mut sheet.band, &sheet.spots[j], scale(strand));
+    let (r, b, (spots, pivot), scale) = (&mut sheet.residual, &mut sheet.band, &sheet.spots[j], scale(strand));
     let c = &strand.contacts[j];
-    let track = course.track(c);
+    let track = Track { pivot: Some(*pivot), ..course.track(c) };
     let row = 6 * j + 2;
     let (rows, held) = rub::rows(&track, (&c.history, &c.ends), spots, (c.mode, pinned(strand, j)));
     strand.contacts[j].held = held;
