@@ -24,6 +24,9 @@ use crate::math::{Vec2, cross, perp, sin_cos};
 /// tilts would hold a cable that hangs beside it. Larger: floors steeper than 89.99° would not hold.
 const PRESSES: f64 = 1e-9;
 
+/// A direction beyond the end of an arc by less than this (rad) is rounding.
+const ASIDE: f64 = 1e-9;
+
 /// The form of a piece of the curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Form {
@@ -340,6 +343,18 @@ impl Curve {
             Form::Arc { from, .. } => self.arc_at(from, piece.extent, along),
         };
         self.origin(i) + x
+    }
+
+    /// Whether the tangent of arc i comes to be `along` only before its start (−1) or after its end (+1); 0 where it does on it.
+    pub fn aside(&self, i: i64, along: Vec2) -> i64 {
+        let piece = self.piece(i);
+        let Form::Arc { from, .. } = piece.form else { return 0 };
+        let x = -self.sense * cross(from, along).atan2(from.dot(&along));
+        match piece.extent.is_finite() {
+            true if x < -ASIDE => -1,
+            true if x > piece.extent + ASIDE => 1,
+            _ => 0,
+        }
     }
 
     fn arc_at(&self, start: Vec2, extent: f64, tangent: Vec2) -> f64 {

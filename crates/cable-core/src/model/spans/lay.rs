@@ -25,6 +25,8 @@ const LIFTS: f64 = 1e-9;
 const ROUND: f64 = 2.5;
 /// Rounds of bringing a free end to where the material ends; each gains the digits of the strain.
 const FITS: usize = 6;
+/// Corners by which a seat goes on at most.
+const MOST_STRETCHED: usize = 8;
 /// A contact guessed keeps at least this part of the strand's material clear of the next.
 const CLEAR: f64 = 1e-4;
 
@@ -170,9 +172,9 @@ fn bends(
     (way, first, last): (&Way, usize, usize),
     (at, tension): (&dyn Fn(f64) -> f64, f64),
 ) -> Option<Vec<Contact>> {
-    let seats = seats(layout, part, course, instant, (way, first, last))?;
+    let mut seats = seats(layout, part, course, instant, (way, first, last))?;
     let mut contacts = Vec::with_capacity(seats.len() + 2);
-    let rounds = rounds(course, &seats, (way.points[first], way.points[last]));
+    let rounds = stretched(course, &mut seats, (way.points[first], way.points[last]));
     for (k, seat) in seats.iter().enumerate() {
         let arrive = tangent(rounds[k][1], rounds[k + 1][0]);
         let leave = tangent(rounds[k + 1][1], rounds[k + 2][0]);
@@ -433,6 +435,37 @@ fn push(out: &mut Vec<Seat>, course: &Course, b: &Bend, (w, turn): (f64, f64)) -
     }
     out.push(Seat { curve: curve_index, home, pieces: [i, i], wheel: None, way: [w, w], turn });
     Some(())
+}
+
+/// Lets each seat go on to the corner beside it where the string comes up to its corner, or leaves it, through the edge
+/// between the two; the rounds of all.
+///
+/// The string of points passes just by such a corner, that of the cable's radius bends round it: along the edge nothing
+/// turns, and Newton's method does not find across it.
+fn stretched(course: &Course, seats: &mut [Seat], ends: (Vec2, Vec2)) -> Vec<[Round; 2]> {
+    let mut found = rounds(course, seats, ends);
+    for _ in 0..MOST_STRETCHED {
+        let mut changed = false;
+        for (k, seat) in seats.iter_mut().enumerate() {
+            let curve = &course.curves[seat.curve];
+            let arrive = tangent(found[k][1], found[k + 1][0]);
+            let leave = tangent(found[k + 1][1], found[k + 2][0]);
+            let (first, last) = (seat.pieces[0] - 2, seat.pieces[1] + 2);
+            if curve.aside(seat.pieces[0], arrive) < 0 && first >= seat.home.first && curve.is_arc(first) {
+                seat.pieces[0] = first;
+                changed = true;
+            }
+            if curve.aside(seat.pieces[1], leave) > 0 && last <= seat.home.last && curve.is_arc(last) {
+                seat.pieces[1] = last;
+                changed = true;
+            }
+        }
+        if !changed {
+            break;
+        }
+        found = rounds(course, seats, ends);
+    }
+    found
 }
 
 /// A circle: centre, radius, sense.

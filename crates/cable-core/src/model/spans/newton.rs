@@ -242,7 +242,9 @@ fn asked(strand: &Strand, course: &Course, j: usize, patience: f64) -> Mode {
 
 /// Whether every contact is in the mode that its state asks for.
 fn agreed(strand: &Strand, course: &Course) -> bool {
-    (0..strand.contacts.len()).all(|j| asked(strand, course, j, PATIENT) == strand.contacts[j].mode)
+    // What is rounding grows with the stiffness as the residual does.
+    let patience = PATIENT * tolerance(strand, course) / RESIDUAL;
+    (0..strand.contacts.len()).all(|j| asked(strand, course, j, patience) == strand.contacts[j].mode)
 }
 
 /// Gives contacts the mode they ask for; whether any was changed, and whether none asked for another.
