@@ -228,8 +228,15 @@ fn ends_thrown_about_ten_thousand_times_do_not_cross_the_cable_itself() {
     let count = throw_about(0..100, 100, 1.0 / 60.0, true);
     println!("{} steps, {} halved", count.steps, count.halved);
     assert!(count.failed.is_empty(), "{:#?}", count.failed);
-    // Asked is one in a thousand: 52 of 40 000.
-    assert!(count.halved * 500 <= count.steps, "{} of {} steps halved", count.halved, count.steps);
+    assert!(count.halved * 1000 <= count.steps, "{} of {} steps halved", count.halved, count.steps);
+}
+
+#[test]
+fn what_is_drawn_round_a_corner_or_along_the_cable_itself_is_not_halved() {
+    // Straight on, a bar that slides along a corner and turns runs into it: six steps of these were halved.
+    let count = throw_about([0, 3, 7, 9], 80, 1.0 / 60.0, true);
+    println!("{} steps, {} halved", count.steps, count.halved);
+    assert!(count.failed.is_empty() && count.halved == 0, "{} {:#?}", count.halved, count.failed);
 }
 
 #[test]

@@ -194,7 +194,7 @@ impl OwnShape {
                 let c = step(p);
                 let moving = [(x[e] - x[p], a - c), (x[e + 1] - x[p], b - c)];
                 let way = |[a, b]: [Vec2; 2]| -from_segment(Vec2::zeros(), a, b);
-                free = advance(moving, (way, |_| 0.0), self.diameter, [keep, most, noise], free);
+                free = advance(moving, (way, [Vec2::zeros(); 2]), self.diameter, [keep, most, noise], free);
             }
         }
         free

@@ -12,7 +12,7 @@
 
 use super::distance::{between_segments, from_segment, point_segment, segment_segment};
 use super::geometry::{Geometry, Part};
-use crate::math::{Vec2, larger, smaller};
+use crate::math::{Vec2, cross, larger, smaller};
 
 /// Steps of advancement per feature. Fewer return a shorter free way at glancing approach (still safe); the
 /// distance left shrinks geometrically, and 1e5 random sweeps never used more than 40.
@@ -77,13 +77,12 @@ impl Geometry {
                 // Both ends on one side of its line and far enough from that: the edge cannot be met.
                 (Some(e), _) if way_off([a, b], e.p, e.normal()) - body.offset > sweep.clear(free) => {}
                 (Some(e), _) => {
-                    let farthest = |n: Vec2| larger(n.dot(&e.p), n.dot(&e.q));
                     let way = |[a, b]: [Vec2; 2]| between_segments(a, b, e.p, e.q);
-                    free = advance(moving, (way, farthest), body.offset, how, free);
+                    free = advance(moving, (way, [e.p, e.q]), body.offset, how, free);
                 }
                 (None, Some(c)) => {
                     let way = |[a, b]: [Vec2; 2]| -from_segment(c, a, b);
-                    free = advance(moving, (way, |n: Vec2| n.dot(&c)), body.offset, how, free);
+                    free = advance(moving, (way, [c; 2]), body.offset, how, free);
                 }
                 (None, None) => {}
             }
@@ -192,16 +191,16 @@ impl Geometry {
     }
 }
 
-/// The free way up to `limit` of a segment whose ends are given with how far they go, against one feature: `way` is the
-/// shortest from the feature to where the ends are, `farthest` how far the feature reaches in a direction. The part `keep` of the
-/// gap is left, or `most` (m) where that is less.
+/// The free way up to `limit` of a segment whose ends are given with how far they go, against the feature between two points: `way`
+/// is the shortest from the feature to where the ends are. The part `keep` of the gap is left, or `most` (m) where that is less.
 pub(super) fn advance(
     moving: [(Vec2, Vec2); 2],
-    (way, farthest): (impl Fn([Vec2; 2]) -> Vec2, impl Fn(Vec2) -> f64),
+    (way, feature): (impl Fn([Vec2; 2]) -> Vec2, [Vec2; 2]),
     offset: f64,
     [keep, most, noise]: [f64; 3],
     limit: f64,
 ) -> f64 {
+    let farthest = |n: Vec2| larger(n.dot(&feature[0]), n.dot(&feature[1]));
     let at = |t: f64| moving.map(|(p, go)| p + go * t);
     let mut away = way(at(0.0));
     let mut d = away.norm();
@@ -230,6 +229,10 @@ pub(super) fn advance(
                 next = (least - height) / rate;
             }
         }
+        if next < limit {
+            let beside = beside_line(moving, feature, floor, [t, limit]);
+            next = if beside > next { beside } else { next };
+        }
         if next >= limit {
             return limit;
         }
@@ -244,4 +247,39 @@ pub(super) fn advance(
         }
     }
     t
+}
+
+/// Until when (from `t` on, at most `limit`) the line through two moving points keeps a feature on one side, at least `least` (m) away.
+///
+/// With e = b − a, r = p − a for a point p of the feature and τ = t′ − t, the line is at least K from p while
+/// ```text
+/// ± e(τ) × r(τ) ≥ K |e(τ)|,      |e(τ)| ≤ L + Λ τ  up to the limit, as |e| is convex
+/// ```
+/// which is quadratic. A segment that turns about a corner it is near to is free by the root of its gap here, by a part of it above.
+fn beside_line([(a, da), (b, db)]: [(Vec2, Vec2); 2], feature: [Vec2; 2], least: f64, [t, limit]: [f64; 2]) -> f64 {
+    let from = a + da * t;
+    let (e, turn, left) = (b + db * t - from, db - da, limit - t);
+    let length = e.norm();
+    let growth = ((e + turn * left).norm() - length) / left;
+    let side = if cross(e, feature[0] - from) < 0.0 { -1.0 } else { 1.0 };
+    let mut free = left;
+    for p in feature {
+        let r = p - from;
+        let room = side * cross(e, r) - least * length;
+        let slope = side * (cross(turn, r) - cross(e, da)) - least * growth;
+        let bend = -side * cross(turn, da);
+        let root = slope * slope - 4.0 * bend * room;
+        if !(room > 0.0) {
+            return t;
+        }
+        if root >= 0.0 {
+            let under = root.sqrt() - slope;
+            if under * free > 2.0 * room {
+                free = 2.0 * room / under;
+            }
+        } else if root.is_nan() {
+            return t;
+        }
+    }
+    t + free
 }

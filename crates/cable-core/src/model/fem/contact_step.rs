@@ -26,12 +26,8 @@ use crate::problem::Problem;
 /// steps of ends thrown about are halved, five times as many where the cable meets itself); larger: more steps.
 const KEEP: f64 = 0.5;
 
-/// The same for gaps wider than the barrier's reach, in reaches, where contacts are foreseen: a little less than where these land. Of
-/// what the cable meets of itself the same would halve twice as many steps.
+/// The same for gaps wider than the barrier's reach, in reaches: a little less than where foreseen contacts land.
 const KEEP_REACH: f64 = 0.45;
-
-/// Part of a Newton step that may be free without looking for what is in its way.
-const FREE_ENOUGH: f64 = 0.99;
 
 /// Sufficient decrease (Armijo).
 const DECREASE: f64 = 1e-4;
@@ -63,9 +59,11 @@ const MAX_PUSHES: usize = 12;
 /// Memory of the minimisation.
 #[derive(Debug)]
 pub struct Workspace {
-    system: System,
-    factor: BandFactor,
+    pub(super) system: System,
+    pub(super) factor: BandFactor,
     pub(super) direction: Vec<f64>,
+    /// The direction before contacts ahead were looked at.
+    pub(super) plain: Vec<f64>,
     pub(super) trial: Pose,
     pub(super) touches: Vec<Touch>,
     magnitude: f64,
@@ -77,8 +75,6 @@ pub struct Workspace {
     order: Order,
     /// Entries of the Hessian outside its band, from contacts of the cable with itself.
     pub(super) coupling: Coupling,
-    /// Whether the last equations had such entries.
-    coupled: bool,
     pub(super) ahead: Ahead,
     /// Pulls carried as unknowns; empty: those of the present lengths.
     pub(super) carried: Vec<bar::Carried>,
@@ -100,6 +96,7 @@ impl Workspace {
         let factor = BandFactor::new(2 * mesh.nodes(), mesh.half_bandwidth())?;
         Ok(Self {
             direction: vec![0.0; 2 * mesh.nodes()],
+            plain: Vec::with_capacity(2 * mesh.nodes()),
             trial: Pose { x: vec![Vec2::zeros(); mesh.nodes()], slide: vec![0.0; mesh.nodes()] },
             touches: Vec::with_capacity(mesh.nodes()),
             magnitude: 0.0,
@@ -108,7 +105,6 @@ impl Workspace {
             own_pairs: Vec::new(),
             order: Order::default(),
             coupling: Coupling::new(),
-            coupled: false,
             ahead: Ahead::new(mesh.nodes()),
             carried: Vec::with_capacity(mesh.nodes()),
             branches: Vec::with_capacity(mesh.nodes()),
@@ -261,9 +257,9 @@ impl Workspace {
                 }
             }
         }
-        self.coupled = !self.coupling.is_empty();
-        if self.coupled {
+        if !self.coupling.is_empty() {
             self.coupling.retain(|&(i, j, _)| !mesh.held[i / 2] && !mesh.held[j / 2]);
+            self.ahead.keep(&self.direction);
             return solve_coupled(&s.hessian, &self.coupling, &mut self.direction).is_ok()
                 && self.direction.iter().all(|d| d.is_finite());
         }
@@ -334,7 +330,7 @@ impl Workspace {
             if task.moves {
                 self.look_ahead((problem, mesh), contacts, pose);
             }
-            let mut slope: f64 = self.direction.iter().zip(&self.system.gradient).map(|(d, g)| d * g).sum();
+            let mut slope = self.slope();
             if !(slope < 0.0) && !left {
                 slope = 0.0;
             }
@@ -383,17 +379,6 @@ impl Workspace {
         if largest > task.max_move { task.max_move / largest } else { 1.0 }
     }
 
-    /// Finds the direction again if something is in its way; returns how much of it is free.
-    pub(super) fn look_ahead(&mut self, (problem, mesh): (&Problem, &Mesh), contacts: &ContactSet, pose: &Pose) -> f64 {
-        let free = self.free_way((problem, mesh), contacts, pose, 1.0);
-        if free >= FREE_ENOUGH || self.coupled {
-            return free;
-        }
-        let equations = (&mut self.system, &mut self.factor);
-        self.ahead.solve(equations, (problem, mesh), (contacts, &pose.x), &mut self.direction);
-        self.free_way((problem, mesh), contacts, pose, 1.0)
-    }
-
     /// The largest part (at most `fraction`) of the direction that crosses nothing and leaves some cable between sliding
     /// nodes and their neighbours.
     pub(super) fn free_way(
@@ -405,7 +390,7 @@ impl Workspace {
     ) -> f64 {
         let (direction, geometry) = (&self.direction, problem.world.geometry());
         let step = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]);
-        let most = if contacts.own.shape.is_on() { f64::INFINITY } else { KEEP_REACH * contacts.barrier.reach };
+        let most = KEEP_REACH * contacts.barrier.reach;
         let mut free = fraction;
         for e in 0..mesh.rest_length.len() {
             let slides = [e, e + 1].map(|k| mesh.sliding[k].is_some());

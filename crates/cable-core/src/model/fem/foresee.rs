@@ -5,23 +5,36 @@
 //! took as many iterations as nodes landed. So what the step δ would carry past its landing gap g* is made to stop there,
 //! and the step is found again:
 //! ```text
-//! min ½ δᵀHδ + gᵀδ   subject to   n·δc ≥ −(g − g*)    for each contact ahead, c its point
+//! min ½ δᵀHδ + gᵀδ   subject to   n·δc + r ≥ −(g − g*)    for each contact ahead, c its point
 //! ```
-//! with the violated constraints as stiff springs, added until there are no more. δ = 0 keeps every constraint, so
-//! what is found goes downhill.
+//! with the violated constraints as stiff springs, added until there are no more. r is what the gap changes beside its slope
+//! (`stop`), taken at the step found last: a bar that slides along a corner turns, and straight on it would run into the corner however
+//! much its gap opens at first (a second-order correction: N. Maratos, "Exact penalty function algorithms for finite
+//! dimensional and control optimization problems", thesis, University of London, 1978; R. Fletcher, "Second order
+//! corrections for non-differentiable optimization", Lecture Notes in Mathematics 912, 1982). Without it a taut cable that a hand draws
+//! round a corner goes a hundredth of its way in each iteration. With r = 0 the step δ = 0 keeps every constraint, so what is found goes
+//! downhill; with r it may not, and the step without constraints is then taken as far as it is free.
 
 use super::assembly::{Mesh, System};
 use super::contact_set::{ContactSet, Touch};
-use crate::linalg::BandFactor;
+use super::contact_step::Workspace;
+use super::own::Coupling;
+use super::stop::Stop;
+use super::task::Pose;
+use crate::contact::own::{Order, OwnPair};
+use crate::linalg::{BandFactor, solve_coupled};
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 
 /// Rounds of adding constraints. More find nothing new where a front of contact runs along the cable.
 const MAX_ROUNDS: usize = 6;
 
-/// Stiffness of a constraint in units of the largest stiffness at its nodes. Softer: nodes still run into the barrier; much
-/// harder: rounding.
-const HARDNESS: f64 = 1e5;
+/// Part of a Newton step that may be free without looking for what is in its way.
+const FREE_ENOUGH: f64 = 0.99;
+
+/// Least descent of a step held by contacts ahead, part of that of the free one. Less: steps that only bend round corners and gain nothing;
+/// more: good ones are given up.
+const DOWNHILL: f64 = 0.1;
 
 /// Landing gap, part of the barrier's reach: about where the barrier holds a node that lands.
 const LANDING: f64 = 0.5;
@@ -33,7 +46,9 @@ const CLOSER: f64 = 0.45;
 #[derive(Clone, Debug)]
 pub struct Ahead {
     touches: Vec<Touch>,
-    added: Vec<bool>,
+    stops: Vec<Stop>,
+    pairs: Vec<OwnPair>,
+    order: Order,
     right: Vec<f64>,
     step: Vec<f64>,
 }
@@ -44,7 +59,9 @@ impl Ahead {
     pub fn new(nodes: usize) -> Self {
         Self {
             touches: Vec::with_capacity(nodes),
-            added: Vec::with_capacity(nodes),
+            stops: Vec::with_capacity(nodes),
+            pairs: Vec::new(),
+            order: Order::default(),
             right: Vec::with_capacity(2 * nodes),
             step: Vec::with_capacity(2 * nodes),
         }
@@ -66,7 +83,7 @@ impl Ahead {
         self.look((problem, mesh), (contacts, x), direction);
         for touch in self.touches.iter().filter(|t| !t.on_segment && t.pair.weight > 0.0 && mesh.is_free(t.node)) {
             let (n, k) = (touch.pair.gap.normal, 2 * touch.node);
-            let least = landing(touch, contacts.barrier.reach);
+            let least = landing(touch.pair.gap.gap_m, contacts.barrier.reach);
             let over = least - touch.pair.gap.gap_m - n.dot(&moved(touch, direction));
             if over > 0.0 {
                 direction[k] += n.x * over;
@@ -77,46 +94,55 @@ impl Ahead {
 
     /// Finds all that a step of this size could touch.
     fn look(&mut self, (problem, mesh): (&Problem, &Mesh), (contacts, x): (&ContactSet, &[Vec2]), step: &[f64]) {
-        let longest = step.chunks_exact(2).map(|d| d[0] * d[0] + d[1] * d[1]).fold(0.0, larger).sqrt();
-        contacts.find_within(problem, mesh, x, contacts.barrier.reach + longest, &mut self.touches);
+        contacts.find_within(problem, mesh, x, contacts.barrier.reach + longest(step), &mut self.touches);
     }
 
     /// Solves again, with contacts ahead as constraints; `system` is pinned, and `direction` the step that ran into them.
     /// Where that fails `direction` stays as it is.
     pub fn solve(
         &mut self,
-        (system, factor): (&mut System, &mut BandFactor),
+        (system, factor, coupling): (&mut System, &mut BandFactor, &mut Coupling),
         (problem, mesh): (&Problem, &Mesh),
         (contacts, x): (&ContactSet, &[Vec2]),
         direction: &mut [f64],
     ) {
-        let reach = contacts.barrier.reach;
         self.look((problem, mesh), (contacts, x), direction);
-        self.added.clear();
-        self.added.resize(self.touches.len(), false);
-        let Self { touches, added, right, step } = self;
+        let reach = contacts.barrier.reach;
+        self.stops.clear();
+        for touch in self.touches.iter().filter(|t| t.pair.weight > 0.0) {
+            self.stops.push(Stop::of(touch, (mesh, system), landing(touch.pair.gap.gap_m, reach)));
+        }
+        if contacts.own.shape.is_on() {
+            let within = reach + 2.0 * longest(direction);
+            contacts.own.shape.pairs((x, &mesh.arc_length), within, &mut self.order, &mut self.pairs);
+            for pair in self.pairs.iter().filter(|p| p.weight > 0.0) {
+                self.stops.push(Stop::of_own(pair, system, landing(pair.gap_m, reach)));
+            }
+        }
+        let Self { stops, right, step, .. } = self;
         step.clear();
         step.extend_from_slice(direction);
         for _ in 0..MAX_ROUNDS {
-            let before = added.iter().filter(|a| **a).count();
-            for (touch, added) in touches.iter().zip(added.iter_mut()) {
-                let (n, gap) = (touch.pair.gap.normal, touch.pair.gap.gap_m);
-                let least = landing(touch, reach);
-                let closing = -n.dot(&moved(touch, step));
-                if !*added && touch.pair.weight > 0.0 && closing > gap - least {
-                    *added = true;
-                    constrain(system, mesh, touch, (n, least - gap), step, right);
-                }
+            let (mut stiffer, mut changed) = (false, false);
+            for stop in stops.iter_mut() {
+                let [new, moved] = stop.hold((system, coupling, right), mesh, (x, step));
+                stiffer |= new;
+                changed |= moved;
             }
-            if added.iter().filter(|a| **a).count() == before {
+            if !changed {
                 break;
             }
-            if factor.factor(&system.hessian).is_err() {
-                return;
-            }
             step.copy_from_slice(right);
-            factor.solve_in_place(step);
-            if !step.iter().all(|d| d.is_finite()) {
+            let solved = if !coupling.is_empty() {
+                solve_coupled(&system.hessian, coupling, step).is_ok()
+            } else {
+                let sound = !stiffer || factor.factor(&system.hessian).is_ok();
+                if sound {
+                    factor.solve_in_place(step);
+                }
+                sound
+            };
+            if !solved || !step.iter().all(|d| d.is_finite()) {
                 return;
             }
         }
@@ -124,9 +150,38 @@ impl Ahead {
     }
 }
 
+impl Workspace {
+    /// How fast Φ changes along the direction, J.
+    pub(super) fn slope(&self) -> f64 {
+        self.direction.iter().zip(&self.system.gradient).map(|(d, g)| d * g).sum()
+    }
+
+    /// Finds the direction again if something is in its way; returns how much of it is free.
+    pub(super) fn look_ahead(&mut self, (problem, mesh): (&Problem, &Mesh), contacts: &ContactSet, pose: &Pose) -> f64 {
+        let free = self.free_way((problem, mesh), contacts, pose, 1.0);
+        if free >= FREE_ENOUGH {
+            return free;
+        }
+        let downhill = self.slope();
+        self.plain.clone_from(&self.direction);
+        let equations = (&mut self.system, &mut self.factor, &mut self.coupling);
+        self.ahead.solve(equations, (problem, mesh), (contacts, &pose.x), &mut self.direction);
+        // In a hurry nothing is asked of the energy.
+        if self.carried.is_empty() && !(self.slope() <= DOWNHILL * downhill) {
+            self.direction.clone_from(&self.plain);
+            return free;
+        }
+        self.free_way((problem, mesh), contacts, pose, 1.0)
+    }
+}
+
+/// Longest move of a node in a step, m.
+fn longest(step: &[f64]) -> f64 {
+    step.chunks_exact(2).map(|d| d[0] * d[0] + d[1] * d[1]).fold(0.0, larger).sqrt()
+}
+
 /// The gap at which a step is stopped.
-fn landing(touch: &Touch, reach: f64) -> f64 {
-    let gap = touch.pair.gap.gap_m;
+fn landing(gap: f64, reach: f64) -> f64 {
     if gap > reach { LANDING * reach } else { (1.0 - CLOSER) * gap }
 }
 
@@ -137,40 +192,10 @@ fn moved(touch: &Touch, step: &[f64]) -> Vec2 {
     if touch.on_segment { at(touch.node) * shares[0] + at(touch.node + 1) * shares[1] } else { at(touch.node) }
 }
 
-/// Adds the spring ½ K (n·δc − way)² to the equations of the nodes that are free to move.
-fn constrain(system: &mut System, mesh: &Mesh, touch: &Touch, (n, way): (Vec2, f64), step: &[f64], right: &mut [f64]) {
-    let shares = touch.shares();
-    let nodes = [touch.node, touch.node + usize::from(touch.on_segment)];
-    let free = [0, 1].map(|j| shares[j] != 0.0 && mesh.is_free(nodes[j]));
-    let mut stiffness = 0.0;
-    let mut way = way;
-    for j in 0..2 {
-        let k = 2 * nodes[j];
-        if free[j] {
-            let here = system.hessian.get(k, k) + system.hessian.get(k + 1, k + 1);
-            stiffness = if here > stiffness { here } else { stiffness };
-        } else if shares[j] != 0.0 {
-            // What is held goes where it goes; a sliding node stays where it is.
-            let by = if mesh.held[nodes[j]] { Vec2::new(step[k], step[k + 1]) } else { Vec2::zeros() };
-            way -= shares[j] * n.dot(&by);
-        }
-    }
-    let k = HARDNESS * stiffness;
-    let block = n * n.transpose();
-    for j in (0..2).filter(|&j| free[j]) {
-        system.add_block(nodes[j], nodes[j], &(block * (k * shares[j] * shares[j])));
-        right[2 * nodes[j]] += k * shares[j] * way * n.x;
-        right[2 * nodes[j] + 1] += k * shares[j] * way * n.y;
-    }
-    if free == [true, true] {
-        system.add_block(nodes[0], nodes[1], &(block * (k * shares[0] * shares[1])));
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::contact_step::Workspace;
     use super::super::dynamics::{Dynamics, REACH};
+    use super::Workspace;
     use crate::math::Vec2;
     use crate::model::{Inertia, Settings};
     use crate::problem::problems;

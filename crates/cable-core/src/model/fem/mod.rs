@@ -43,6 +43,7 @@ mod sliding;
 mod sliding_tests;
 mod span;
 pub mod statics;
+mod stop;
 mod take_over;
 mod task;
 mod touch;

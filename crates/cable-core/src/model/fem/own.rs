@@ -156,7 +156,7 @@ pub fn add(
 }
 
 /// Adds a block for two nodes, in the band or outside it.
-fn couple(s: &mut System, coupling: &mut Coupling, [i, j]: [usize; 2], block: &Mat2) {
+pub(super) fn couple(s: &mut System, coupling: &mut Coupling, [i, j]: [usize; 2], block: &Mat2) {
     if i.abs_diff(j) <= 1 {
         s.add_block(i, j, block);
         return;

@@ -6,7 +6,7 @@
 //! technique for forcing convergence in algorithms for constrained optimization", Mathematical Programming Study 16, 1982). Only gaps
 //! are watched, and that none becomes so small that its force drowns in rounding: nothing else keeps a node from creeping up to an
 //! obstacle by a part of its gap in every iteration. What has not converged after a few iterations is left to the minimiser, from the same start.
-//! Contacts of the cable with itself are not foreseen: there the minimiser goes first, and what it does not find is tried in a hurry.
+//! Where the cable meets itself the minimiser goes first, and what it does not find is tried in a hurry.
 
 use super::assembly::Mesh;
 use super::bar;
