@@ -31,6 +31,7 @@ pub mod math;
 pub mod model;
 pub mod origin;
 pub mod problem;
+pub mod reach;
 pub mod record;
 pub mod robot;
 pub mod scene;

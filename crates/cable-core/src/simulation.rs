@@ -236,11 +236,7 @@ impl Simulation {
             }
             self.lead_outline();
             self.each(|c| c.advance(h, inertia))?;
-            let outlines = self.cables.iter().filter_map(Strand::outline);
-            let last = outlines.reduce(|a, b| if b.left_m > a.left_m { b } else { a }).filter(|o| o.left_m > 0.0);
-            if let (Some(vehicle), Some(last)) = (&mut self.vehicle, last) {
-                vehicle.hold_back(last.placement);
-            }
+            self.hold_vehicle();
             cost = Cost {
                 iterations: cost.iterations + self.cost.iterations,
                 halved_steps: cost.halved_steps + self.cost.halved_steps,
@@ -275,6 +271,40 @@ impl Simulation {
         if let Some(vehicle) = &mut self.vehicle {
             vehicle.command(speed_m_per_s);
         }
+    }
+
+    /// Puts the middle of the robot's tracks at `x_m` (m) whatever that takes, in one step of `dt_s` (s): no drive and no traction
+    /// limits it, its outline pushes the cable. Returns how far from there the cable stopped it, m; None where it cannot stand
+    /// there, and nothing has moved then.
+    ///
+    /// # Errors
+    /// See [`Mechanics::advance`](crate::model::Mechanics::advance).
+    pub fn lead_robot(&mut self, x_m: f64, (dt_s, inertia): (f64, Inertia)) -> Result<Option<f64>, SolveError> {
+        let Some(hitch) = self.vehicle.as_mut().and_then(|v| v.put(x_m)) else { return Ok(None) };
+        for (cable, support) in self.hitches() {
+            self.drag_support(cable, support, hitch);
+        }
+        self.lead_outline();
+        let done = self.each(|c| c.advance(dt_s, inertia));
+        let left_m = self.hold_vehicle();
+        self.look(true);
+        done.map(|()| Some(left_m))
+    }
+
+    /// The vehicle is where the outline came that came least far; how far that is from where it was led, m.
+    fn hold_vehicle(&mut self) -> f64 {
+        let outlines = self.cables.iter().filter_map(Strand::outline);
+        let last = outlines.reduce(|a, b| if b.left_m > a.left_m { b } else { a }).filter(|o| o.left_m > 0.0);
+        if let (Some(vehicle), Some(last)) = (&mut self.vehicle, last) {
+            vehicle.hold_back(last.placement);
+        }
+        last.map_or(0.0, |o| o.left_m)
+    }
+
+    /// The largest tension of some cables now, N (NaN propagates).
+    pub fn largest_n(&self, cables: impl IntoIterator<Item = usize>) -> f64 {
+        let nodes = cables.into_iter().filter_map(|k| self.answers.get(k)).flat_map(|a| &a.nodes);
+        nodes.map(|n| n.tension_n).fold(0.0, larger)
     }
 
     /// Advances by a display frame: at most [`MAX_FRAME_S`], so a stalled picture makes time run slower instead of

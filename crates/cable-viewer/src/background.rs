@@ -11,16 +11,16 @@ pub enum Progress<T> {
     /// Nothing was asked.
     #[default]
     None,
-    /// Share done, 0 to 1.
-    Running(f64),
+    /// Share done, 0 to 1, and what is known so far, where that can be shown.
+    Running(f64, Option<T>),
     /// What came of it.
     Done(T),
     /// Why nothing came of it.
     Failed(String),
 }
 
-/// Hears the share done, 0 to 1, and says whether to go on.
-pub type Heard<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
+/// Hears the share done, 0 to 1, and what is known so far, and says whether to go on.
+pub type Heard<'a, T> = &'a mut dyn FnMut(f64, Option<T>) -> ControlFlow<()>;
 
 /// It, while it is computed. Dropped, it ends at its next word.
 #[derive(Debug)]
@@ -45,18 +45,18 @@ impl<T: Clone + Send + 'static> Job<T> {
     #[must_use]
     pub fn start(
         name: &str,
-        work: impl FnOnce(Heard<'_>) -> Result<T, String> + Send + 'static,
+        work: impl FnOnce(Heard<'_, T>) -> Result<T, String> + Send + 'static,
         shown: impl Fn() + Send + 'static,
     ) -> Self {
-        let (progress, cancelled) = (Mutex::new(Progress::Running(0.0)), AtomicBool::new(false));
+        let (progress, cancelled) = (Mutex::new(Progress::Running(0.0, None)), AtomicBool::new(false));
         let shared = Arc::new(Shared { progress, cancelled });
         let theirs = Arc::clone(&shared);
         let job = move || {
-            let mut heard = |share: f64| {
+            let mut heard = |share: f64, so_far: Option<T>| {
                 if theirs.cancelled.load(Ordering::Relaxed) {
                     return ControlFlow::Break(());
                 }
-                theirs.set(Progress::Running(share));
+                theirs.set(Progress::Running(share, so_far));
                 shown();
                 ControlFlow::Continue(())
             };

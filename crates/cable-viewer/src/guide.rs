@@ -129,8 +129,8 @@ pub const GUIDES: [Guide; 6] = [
                 "Under Robot stands why it is as fast as it is: slope, ground, the pull of the cable. Drive on and it stalls or slips",
             ),
             act(
-                "Press Find safe reach: where it can go and come back below the service tension is drawn along the ground",
-                |s| matches!(s.reach, crate::reach::Progress::Done(..)),
+                "Press Find safe reach on the right: where it can go and come back below the service tension is drawn along the ground",
+                |s| matches!(s.reach.progress, crate::reach::Progress::Done(..)),
             ),
         ],
     },

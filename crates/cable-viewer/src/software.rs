@@ -30,7 +30,7 @@ struct Solid { @builtin(position) at: vec4f, @location(0) @interpolate(flat) col
 @fragment fn solid(c: Solid) -> @location(0) vec4f { return c.colour; }
 ";
 
-/// Twice the area, points², from which a triangle of one colour is drawn without asking the font. Smaller: changing the shader
+/// Twice the area, points², from which a triangle of one colour, or a row of small ones, is drawn without asking the font. Smaller: changing the shader
 /// costs more than the pixels; larger: buttons and plots ask the font for nothing.
 const PLAIN: f32 = 4000.0;
 
@@ -138,8 +138,9 @@ impl Picture {
         let mut first = 0;
         for (clip, mesh) in meshes() {
             picture.corners.extend_from_slice(bytemuck::cast_slice(&mesh.vertices));
-            for triangle in mesh.indices.chunks_exact(3) {
-                picture.add(clip, fill(mesh, triangle), triangle.iter().map(|i| first + i));
+            let fills = fills(mesh);
+            for (triangle, fill) in mesh.indices.chunks_exact(3).zip(fills) {
+                picture.add(clip, fill, triangle.iter().map(|i| first + i));
             }
             first += mesh.vertices.len() as u32;
         }
@@ -222,17 +223,44 @@ impl CallbackTrait for Picture {
     }
 }
 
-/// How a triangle can be drawn; small ones all alike.
-fn fill(mesh: &Mesh, triangle: &[u32]) -> Fill {
-    let corner = |k: usize| triangle.get(k).and_then(|i| mesh.vertices.get(*i as usize));
-    let (Some(a), Some(b), Some(c)) = (corner(0), corner(1), corner(2)) else { return Fill::Font };
-    let (u, v) = (b.pos - a.pos, c.pos - a.pos);
-    let large = (u.x * v.y - u.y * v.x).abs() > PLAIN;
-    match large && [a, b, c].iter().all(|p| p.uv == WHITE_UV) {
-        true if a.color.is_opaque() && a.color == b.color && a.color == c.color => Fill::Solid,
-        true => Fill::Plain,
-        false => Fill::Font,
+/// How each triangle can be drawn: large ones by themselves, small ones that ask the font for nothing where enough of them follow each other.
+fn fills(mesh: &Mesh) -> Vec<Fill> {
+    let mut fills = Vec::with_capacity(mesh.indices.len() / 3);
+    // Where the row of small white ones began, and twice its area, points².
+    let (mut began, mut area) = (0, 0.0);
+    for triangle in mesh.indices.chunks_exact(3) {
+        let (size, fill) = alone(mesh, triangle);
+        if fill == Some(Fill::Plain) && size <= PLAIN {
+            area += size;
+            fills.push(Fill::Font);
+            continue;
+        }
+        settle(&mut fills, began, area);
+        fills.push(fill.unwrap_or(Fill::Font));
+        (began, area) = (fills.len(), 0.0);
     }
+    settle(&mut fills, began, area);
+    fills
+}
+
+/// A row of small triangles is over.
+fn settle(fills: &mut [Fill], began: usize, area: f32) {
+    if area > PLAIN {
+        fills.iter_mut().skip(began).for_each(|f| *f = Fill::Plain);
+    }
+}
+
+/// Twice the area of a triangle, points², and how it can be drawn without the font, if it can.
+fn alone(mesh: &Mesh, triangle: &[u32]) -> (f32, Option<Fill>) {
+    let corner = |k: usize| triangle.get(k).and_then(|i| mesh.vertices.get(*i as usize));
+    let (Some(a), Some(b), Some(c)) = (corner(0), corner(1), corner(2)) else { return (0.0, None) };
+    let (u, v) = (b.pos - a.pos, c.pos - a.pos);
+    let size = (u.x * v.y - u.y * v.x).abs();
+    if [a, b, c].iter().any(|p| p.uv != WHITE_UV) {
+        return (size, None);
+    }
+    let even = a.color.is_opaque() && a.color == b.color && a.color == c.color;
+    (size, Some(if even && size > PLAIN { Fill::Solid } else { Fill::Plain }))
 }
 
 /// What stays on the device.

@@ -47,8 +47,8 @@ impl Job {
     pub fn start(ask: Ask, shown: impl Fn() + Send + 'static) -> Self {
         let ask = Arc::new(ask);
         let theirs = Arc::clone(&ask);
-        let work = move |heard: background::Heard<'_>| {
-            let found = spread::spread(&theirs, heard);
+        let work = move |heard: background::Heard<'_, Found>| {
+            let found = spread::spread(&theirs, |share| heard(share, None));
             found.map(|s| (Arc::new(s), theirs)).map_err(|e| e.to_string())
         };
         Self { job: background::Job::start("friction range", work, shown), ask }

@@ -13,7 +13,7 @@ use crate::dialog::Dialog;
 use crate::guide;
 use crate::history::History;
 use crate::panels::system::System;
-use crate::reach::Progress;
+use crate::reach;
 use crate::recording::Recording;
 use crate::run::Run;
 use crate::spread;
@@ -72,8 +72,10 @@ pub struct AppState {
     pub robot_order: Option<f64>,
     /// Speed the robot is driven with by hand, m/s; None: its greatest.
     pub robot_speed: Option<f64>,
-    /// Where the robot can go.
-    pub reach: Progress,
+    /// Where the robot or an end can be taken.
+    pub reach: reach::View,
+    /// The part of the world that the canvas shows, lower left and upper right corner, m.
+    pub visible_m: [Point; 2],
     /// What less and more friction does.
     pub spread: spread::View,
     /// The guided scene that is on.
@@ -292,7 +294,8 @@ impl AppState {
             held: Vec::new(),
             robot_order: None,
             robot_speed: None,
-            reach: Progress::None,
+            reach: reach::View::default(),
+            visible_m: [[-1.0; 2], [1.0; 2]],
             spread: spread::View::default(),
             guide: None,
             worker: WorkerStatus::Idle,

@@ -14,8 +14,6 @@
 //!
 //! The cable is felt with the delay of one [`STEP_S`]; its own hitch follows the vehicle as a support dragged by hand does.
 
-pub mod reach;
-
 use serde::{Deserialize, Serialize};
 
 use crate::contact::outline::Placement;
@@ -216,6 +214,15 @@ impl Vehicle {
             let push = Vec2::new(then.push_x_n, then.push_y_n);
             self.tell([hitch, push], forces, (then.commanded_m_per_s, then.going));
         }
+    }
+
+    /// Puts it with its tracks' middle at `x_m`, standing; where its hitch is then, m. None where it cannot stand.
+    pub fn put(&mut self, x_m: f64) -> Option<Vec2> {
+        self.pose = self.robot.pose_on(&self.ground, self.preset, x_m)?;
+        self.speed = 0.0;
+        (self.report.x_m, self.report.y_m) = (self.pose.at_m[0], self.pose.at_m[1]);
+        (self.report.pitch_deg, self.report.speed_m_per_s) = (self.pose.pitch.to_degrees(), 0.0);
+        Some(vec2(self.pose.hitch_m(self.preset)))
     }
 
     /// How it stands.

@@ -8,7 +8,7 @@ use super::tangle::turns;
 use crate::math::Vec2;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-use crate::solution::{Bend, CableSolution, Node, Pressure, Warning, WarningKind};
+use crate::solution::{Bend, CableSolution, ContactReport, Node, Pressure, Warning, WarningKind};
 
 /// Gap (m) within which an obstacle leads the cable. Smaller: a contact that a model holds a barrier's width off is missed;
 /// larger: what passes close by leads it. The models keep up to 1 mm.
@@ -141,6 +141,9 @@ pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Le
     if problem.loads.iter().any(|l| (l.arc_length - n.arc_length_m).abs() < 1e-6 * problem.length) {
         return Lead::Held;
     }
+    if on_outline(problem, answer, node) {
+        return Lead::Round(problem.radius, CORNER_TURN);
+    }
     if problem.world.is_empty() {
         return Lead::Free;
     }
@@ -159,6 +162,15 @@ pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Le
     rounds
         .min_by(|a, b| a.0.total_cmp(&b.0))
         .map_or(Lead::Free, |(_, b)| Lead::Round(b.offset, if b.center.is_some() { LEAST_TURN } else { CORNER_TURN }))
+}
+
+/// Whether the cable lies on the outline of the robot at a node or beside it: that moves, and is not among the obstacles.
+fn on_outline(problem: &Problem, answer: &CableSolution, node: usize) -> bool {
+    let Some(outline) = &problem.outline else { return false };
+    let arc = |k: usize| answer.nodes.get(k).or(answer.nodes.last()).map_or(f64::NAN, |n| n.arc_length_m);
+    let (before, after) = (arc(node.saturating_sub(1)), arc(node + 1));
+    let lies = |c: &ContactReport| c.ends_m.max(c.arc_length_m) >= before && c.begins_m.min(c.arc_length_m) <= after;
+    answer.contacts.iter().any(|c| c.obstacle == outline.name && lies(c))
 }
 
 /// Appends bends sharper than the cable stands, free and led, and pressure beyond its limit.

@@ -176,7 +176,7 @@ const ABOUT: &[(&str, &[&str])] = &[
             "Nothing was compared with a test of a real cable or robot: it is not certified",
             "Figures of presets marked ≈ or C are estimates; bending stiffness of rubber cables lies anywhere in about 10 : 1",
             "Everything is plane: no cable passes sideways round anything, and knots cannot be told",
-            "The robot’s body is no obstacle for the cable yet; its drive curve is an assumption",
+            "The robot’s outline is an obstacle for its cable with finite elements only; its drive curve is an assumption",
             "How accurate violent motion is (ends thrown metres in a frame): only that it does not fail",
             "With friction there are many resting places; one way of laying is answered",
         ],

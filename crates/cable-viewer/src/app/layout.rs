@@ -24,6 +24,7 @@ const READ: &[Section] = &[
     ("Warnings", panels::warnings::ui),
     (MARKED, panels::origin::ui),
     ("Readouts", panels::readouts::ui),
+    ("Safe reach", panels::reach::ui),
     ("Compare", panels::compare::ui),
     (UNMARKED, panels::origin::ui),
     ("Friction range", panels::spread::ui),
@@ -86,7 +87,7 @@ fn tabs(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.horizontal(|ui| {
             ui.selectable_value(&mut read, false, "Edit").on_hover_text("Scene, robot, cable, environment, solver");
             ui.selectable_value(&mut read, true, "Read")
-                .on_hover_text("Warnings, readouts, tension at a place, compare");
+                .on_hover_text("Warnings, readouts, safe reach, tension at a place, compare");
             let warnings = state.snapshot.solution.as_ref().map_or(0, |s| s.warnings.len());
             if state.scene_fault.is_some() || state.snapshot.error.is_some() || warnings > 0 {
                 ui.colored_label(ui.visuals().warn_fg_color, "Warnings: see Read");

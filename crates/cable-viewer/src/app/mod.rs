@@ -154,8 +154,8 @@ impl ViewerApp {
             self.show(report);
         }
         if let Some(job) = &self.reach {
-            self.state.reach = job.progress();
-            if !matches!(self.state.reach, reach::Progress::Running(_)) {
+            self.state.reach.progress = job.progress();
+            if !matches!(self.state.reach.progress, reach::Progress::Running(..)) {
                 self.reach = None;
             }
         }

@@ -37,6 +37,8 @@ fn entries() -> Vec<(String, Command)> {
         ("Recentre on the cable", Command::View(ViewCommand::Recentre)),
         ("Hold this answer", Command::View(ViewCommand::Hold)),
         ("Let all held answers go", Command::View(ViewCommand::LetGo(None))),
+        ("Find safe reach", Command::View(ViewCommand::Reach(true))),
+        ("Cancel or clear the safe reach", Command::View(ViewCommand::Reach(false))),
         ("Light theme", theme(egui::ThemePreference::Light)),
         ("Dark theme", theme(egui::ThemePreference::Dark)),
         ("Theme of the system", theme(egui::ThemePreference::System)),

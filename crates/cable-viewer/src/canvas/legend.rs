@@ -4,7 +4,7 @@ use egui::{Align2, FontId, Mesh, Rect, Stroke, StrokeKind, pos2, vec2};
 
 use super::view::View;
 use crate::colour::{ColourScale, Quantity};
-use crate::panels::translate;
+use crate::panels::{fault, translate};
 use crate::state::{AppState, WorkerStatus};
 use crate::units;
 
@@ -92,7 +92,10 @@ fn service(view: &View<'_>, state: &AppState, bar: Rect, range: [f64; 2]) {
 pub fn banner(view: &mut View<'_>, state: &AppState) {
     let (title, text) = match (&state.worker, &state.snapshot.error) {
         (WorkerStatus::Dead(why), _) => ("The solver has stopped", why.clone()),
-        (_, Some(why)) => ("No answer for this scene", translate::shown(why).into_owned()),
+        (_, Some(why)) => {
+            let told = fault::whole(state).unwrap_or_else(|| translate::shown(why).into_owned());
+            ("No answer for this scene", told)
+        }
         _ => return,
     };
     let kept = if state.snapshot.solution.is_some() { "The last good picture is shown in grey." } else { "" };

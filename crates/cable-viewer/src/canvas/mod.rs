@@ -43,6 +43,8 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         let bounds = bounds::scene(state);
         state.camera.fit(rect, bounds);
     }
+    let [low, high] = [rect.left_bottom(), rect.right_top()].map(|p| state.camera.to_world(rect, p));
+    state.visible_m = [low, high];
     pointer::read(ui, &response, state, commands);
     named::ui(ui, rect, state);
     let mut view = View {
@@ -62,14 +64,15 @@ fn draw(view: &mut View<'_>, state: &AppState) {
     if state.layers.grid {
         grid::lines(view);
     }
+    reach::area(view, state);
     obstacles::draw(view, state);
+    let mut figures = Vec::new();
+    reach::line(view, state, &mut figures);
     robot::draw(view, state);
     held::draw(view, state);
     contact::draw(view, state);
     cable::draw(view, state);
-    let mut figures = Vec::new();
     forces::draw(view, state, &mut figures);
-    reach::draw(view, state, &mut figures);
     supports::draw(view, state);
     probe::draw(view, state, &mut figures);
     path::draw(view, state, &mut figures);
@@ -81,6 +84,7 @@ fn draw(view: &mut View<'_>, state: &AppState) {
     legend::draw(view, state);
     legend::contacts(view, state);
     legend::banner(view, state);
+    reach::legend(view, state);
     if state.layers.labels {
         supports::labels(view, state, figures);
     }

@@ -108,6 +108,13 @@ pub fn summary(state: &AppState) -> String {
             out.push(format!("robot at {}, {}", unit::position([robot.x_m, robot.y_m]), robot.going.name()));
         }
     }
+    if let Some((maps, _)) = state.reach.found() {
+        let shown = if state.reach.choice.back { "there and back" } else { "there" };
+        out.push(format!(
+            "safe reach, {shown}: {}",
+            crate::panels::reach::told(maps, state.reach.choice.back).join(", ")
+        ));
+    }
     if let Some(error) = &state.snapshot.error {
         out.push(format!("no answer: {}", translate::shown(error)));
     }

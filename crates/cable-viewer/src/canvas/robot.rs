@@ -3,7 +3,7 @@
 use cable_core::math::Point;
 use cable_core::robot::Going;
 use cable_core::scene::preset::{RobotPreset, robot_preset};
-use cable_core::scene::robot::Pose;
+use cable_core::scene::robot::{Heading, Pose};
 use egui::{Color32, Mesh, Pos2, Stroke};
 
 use super::triangulate::triangulate;
@@ -67,8 +67,25 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
     let body: Vec<Pos2> = points.iter().map(|&p| view.at(p)).collect();
     view.painter.add(egui::Shape::closed_line(body, line));
     tracks(view, &pose, preset);
+    touched(view, state, (&pose, preset));
     let hitch = view.at(pose.hitch_m(preset));
     view.painter.circle(hitch, 4.0, Color32::TRANSPARENT, Stroke::new(1.6, view.palette.support));
+}
+
+/// What the cable meets of it, where it touches that: it is cut back round the hitch and boxed at the tracks. What of it reaches below
+/// the ground, so that nothing gets under a track, is left out.
+fn touched(view: &View<'_>, state: &AppState, (pose, preset): (&Pose, &RobotPreset)) {
+    let contacts = state.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
+    if !state.layers.contacts || !contacts.into_iter().any(|c| c.obstacle == "robot") {
+        return;
+    }
+    // In its own axes, looking right: the pose turns it to where it looks.
+    let corners = preset.meets_cable_m(Heading::Right);
+    let above: Vec<Pos2> = corners.iter().map(|c| view.at(pose.place([c.x, c.y.max(0.0)]))).collect();
+    let line = Stroke::new(1.2, view.palette.normal);
+    let first = above.first().copied();
+    let ring: Vec<Pos2> = above.iter().copied().chain(first).collect();
+    view.painter.extend(egui::Shape::dashed_line(&ring, line, 4.0, 3.0));
 }
 
 /// A belt with wheels along the foot of the outline.

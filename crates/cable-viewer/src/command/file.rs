@@ -181,7 +181,8 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
     state.robot_order = None;
     state.reopened = Vec::new();
     state.guide = None;
-    (state.reach, effects.reach) = (crate::reach::Progress::None, Some(None));
+    state.reach = crate::reach::View::default();
+    effects.reach = Some(None);
     effects.request.robot = Some(None);
     state.camera.fit_wanted = true;
     state.dialog = None;

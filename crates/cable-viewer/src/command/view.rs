@@ -8,7 +8,7 @@ use super::Effects;
 use crate::colour::ColourScale;
 use crate::guide;
 use crate::panels::system::System;
-use crate::reach::{Order, Progress};
+use crate::reach::{self, Moved, Order, Progress};
 use crate::run::Run;
 use crate::state::{AppState, Grab, Held, Item, Layers, Probe};
 
@@ -50,8 +50,10 @@ pub enum ViewCommand {
     SetLayers(Layers),
     /// Light or dark.
     SetTheme(egui::ThemePreference),
-    /// Looks for where the robot can go, or ends that and forgets it.
+    /// Looks for where the robot or an end can be taken, or ends that and forgets it.
     Reach(bool),
+    /// What of it is asked and shown.
+    SetReach(reach::Choice),
     /// Shows what less and more friction does, or not any more; least and greatest friction over that of the scene.
     Spread(bool, [f64; 2]),
     /// Leads to a step of a guided scene, or not any more.
@@ -104,13 +106,21 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
         ViewCommand::SetColour(colour) => state.colour = colour,
         ViewCommand::SetLayers(layers) => state.layers = layers,
         ViewCommand::SetTheme(theme) => state.theme = theme,
-        ViewCommand::Reach(false) => (state.reach, effects.reach) = (Progress::None, Some(None)),
+        ViewCommand::Reach(false) => (state.reach.progress, effects.reach) = (Progress::None, Some(None)),
         ViewCommand::Reach(true) => {
-            state.reach = Progress::Running(0.0);
-            let [low, high] = crate::canvas::bounds::ground(state);
-            let order = Order { scene: state.scene.clone(), settings: state.settings, ends_m: [low, high] };
-            effects.reach = Some(Some(Box::new(order)));
+            let Some(moved) = reach::moved(state) else {
+                state.reach.progress = Progress::Failed("nothing here has a place to be taken from".to_owned());
+                return;
+            };
+            state.reach.progress = Progress::Running(0.0, None);
+            let corners_m = match moved {
+                Moved::Robot => crate::canvas::bounds::ground(state).map(|x| [x, 0.0]),
+                Moved::Support { .. } => state.visible_m,
+            };
+            let (scene, settings, across) = (state.scene.clone(), state.settings, state.reach.choice.across);
+            effects.reach = Some(Some(Box::new(Order { scene, settings, moved, corners_m, across })));
         }
+        ViewCommand::SetReach(choice) => state.reach.choice = choice,
         ViewCommand::Spread(on, [low, high]) => {
             state.spread.on = on;
             if low >= 0.0 && high.is_finite() {

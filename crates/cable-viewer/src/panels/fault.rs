@@ -43,6 +43,17 @@ pub fn sentence(fault: &SceneFault) -> String {
     }
 }
 
+/// What is wrong with the scene, if anything: which property of what, and why.
+#[must_use]
+pub fn whole(state: &AppState) -> Option<String> {
+    let found = state.scene_fault.as_ref()?;
+    let named = cable_and_key(&found.path).and_then(|(index, key)| {
+        let property = super::cable::property::PROPERTIES.iter().find(|p| p.key == key)?;
+        Some(format!("{} of {}", property.quantity.name, state.scene.cables.get(index)?.name))
+    });
+    Some(format!("{} {}", named.unwrap_or_else(|| found.path.clone()), sentence(&found.fault)))
+}
+
 /// Rounded up to the next hundredth, so that the figure shown is long enough.
 fn up_to_hundredth(length: f64) -> String {
     format!("{:.2}", ceil_hundredth(length))

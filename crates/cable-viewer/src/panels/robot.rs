@@ -35,7 +35,6 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     figures(ui, robot, commands);
     path(ui, robot, commands);
     fault::inline(ui, state, "robot.path", commands);
-    super::reach::ui(ui, state, commands);
 }
 
 /// Speed of the robot by hand, m/s: what was set, else its greatest.

@@ -51,7 +51,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         Progress::None => {
             ui.weak("Begins once time stands still");
         }
-        Progress::Running(share) => {
+        Progress::Running(share, _) => {
             let bar = ui.add(ProgressBar::new(*share as f32).show_percentage().desired_height(16.0));
             field::name(&bar, "Progress of the friction range");
         }

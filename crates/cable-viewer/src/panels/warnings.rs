@@ -90,12 +90,8 @@ fn dead_worker(state: &AppState) -> Option<Entry> {
 }
 
 fn scene_fault(state: &AppState) -> Option<Entry> {
-    let found = state.scene_fault.as_ref()?;
-    let text = format!(
-        "{} {}. The picture and the figures are of the last scene that could be solved.",
-        found.path,
-        fault::sentence(&found.fault)
-    );
+    let found = fault::whole(state)?;
+    let text = format!("{found}. The picture and the figures are of the last scene that could be solved.");
     let title = "The scene cannot be solved".to_owned();
     Some(Entry { title, fix: fault::fix(state), ..entry(Severity::Stop, text) })
 }
@@ -140,9 +136,10 @@ fn figures(warning: &Warning) -> Option<String> {
     match warning.kind {
         WarningKind::ServiceTension | WarningKind::BreakingTension => Some(unit::force_of(value, limit)),
         WarningKind::Broken => Some(unit::force(limit)),
-        WarningKind::BendRadius | WarningKind::Kink | WarningKind::Slack => {
-            Some(format!("{} of {}", unit::length(value), unit::length(limit)))
+        WarningKind::BendRadius | WarningKind::Kink => {
+            Some(format!("{}, least {}", unit::length(value), unit::length(limit)))
         }
+        WarningKind::Slack => Some(unit::length(value)),
         WarningKind::SidewallPressure => {
             let per_metre = |v| unit::Unit { decimals: Some(0), ..unit::Unit::N_PER_M }.text(v).replace(' ', "\u{a0}");
             Some(format!("{} of {}", per_metre(value), per_metre(limit)))

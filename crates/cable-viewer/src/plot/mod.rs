@@ -44,6 +44,8 @@ const NEAR: f64 = 0.5;
 /// Free room above the data, as a share of their range.
 const HEADROOM: f64 = 0.12;
 
+/// Lower graphs (points) name their unit only beside the axis: the whole name would stand over the title.
+const UPRIGHT: f32 = 110.0;
 /// Lowest graph that can still be read, points.
 const LEAST_HEIGHT: f32 = 70.0;
 /// Distance of numbers on the horizontal axis, points: close enough to read between, far enough not to touch.
@@ -167,7 +169,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
         .link_cursor(Id::unique(("cursor", graph.group.to_owned())), [true, false])
         .height(height)
         .x_axis_label(format!("{across}, {across_symbol}"))
-        .y_axis_label(format!("{}, {symbol}", graph.measure.name()))
+        .y_axis_label(if height < UPRIGHT { symbol.to_owned() } else { format!("{}, {symbol}", graph.measure.name()) })
         .y_axis_min_width(44.0)
         .allow_drag(!follow)
         .allow_zoom(!follow)

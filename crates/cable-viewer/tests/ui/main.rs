@@ -7,6 +7,7 @@ mod hands;
 mod help;
 mod pictures;
 mod playing;
+mod reach;
 mod recovery;
 mod rows;
 mod runs;

@@ -4,7 +4,7 @@
 use cable_core::scene::catalog;
 use cable_core::solution::{CableSolution, ContactReport, ContactState, Cost, Node};
 use cable_core::{Model, Solution};
-use cable_viewer::command::Command;
+use cable_viewer::command::{Command, PlaybackCommand};
 use cable_viewer::state::{AppState, Item};
 use cable_viewer::{canvas, screenshot, theme};
 use egui::{Theme, Vec2};
@@ -144,20 +144,81 @@ fn robot_light() {
 
 #[test]
 fn safe_reach_and_path_dark() {
-    use cable_core::robot::reach::{Map, Place};
+    use cable_core::reach::line::{Map, Place};
     let mut state = solved(catalog::robot_drive());
     // By hand: what a search would find depends on the solver.
     let place = |k: u32| {
         let x = 2.0 + 0.4 * f64::from(k);
         let mound = 0.12 * (1.0 - ((x - 12.0) / 0.9).powi(2)).max(0.0);
         let there_and_back_n = if x > 14.2 { f64::INFINITY } else { 60.0 + 20.0 * ((x - 8.0) / 1.5).powi(4).min(60.0) };
-        Place { at_m: [x, mound], there_n: there_and_back_n, there_and_back_n }
+        Place { at_m: [x, mound], there_n: there_and_back_n, there_and_back_n, jammed: false }
     };
     let map = Map { places: (0..41).map(place).collect(), start_x_m: 10.0, service_n: 800.0, breaking_n: 1e4 };
     let scene = std::sync::Arc::new(state.scene.clone());
-    state.reach = cable_viewer::reach::Progress::Done((std::sync::Arc::new(map), scene));
+    let maps = cable_viewer::reach::Maps::Line(std::sync::Arc::new(map));
+    state.reach.progress = cable_viewer::reach::Progress::Done((maps, scene));
+    state.reach.choice.back = true;
     state.selected = Some(Item::Leg(2));
     compare("safe_reach_and_path_dark", state, Theme::Dark);
+}
+
+/// A robot that has backed over its own slack cable and pushes it as a heap: what of it the cable meets is dashed, above the ground.
+#[test]
+fn robot_pushes_its_cable_dark() {
+    let mut scene = catalog::robot_drive();
+    scene.cables[0].length_m = 15.5;
+    scene.cables[0].segments = Some(40);
+    let mut harness = crate::open(scene);
+    crate::apply(&mut harness, Command::Playback(PlaybackCommand::DriveRobot(Some(-0.6))));
+    harness.run_steps(130);
+    let mut state = harness.into_state().state;
+    let contacts = state.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
+    assert!(contacts.into_iter().any(|c| c.obstacle == "robot"), "{:?}", state.snapshot.error);
+    // Near enough to see the outline.
+    let at = state.snapshot.solution.as_ref().and_then(|s| s.robot).expect("a robot");
+    (state.camera.fit_wanted, state.camera.points_per_m) = (false, 110.0);
+    state.camera.centre_m = [at.x_m - 0.8, at.y_m + 0.6];
+    compare("robot_pushes_its_cable_dark", state, Theme::Dark);
+}
+
+/// A span with the map of its right end: by hand, as a search would depend on the solver.
+fn end_reached() -> AppState {
+    use cable_core::reach::area::Area;
+    let mut state = solved(catalog::over_beam());
+    let mut area = Area {
+        origin_m: [-1.0, 0.5],
+        spacing_m: 0.5,
+        columns: 27,
+        most_n: vec![f64::NAN; 27 * 12],
+        start_m: [9.0, 0.5],
+        service_n: 800.0,
+        breaking_n: 1e4,
+    };
+    area.most_n = (0..area.most_n.len())
+        .map(|k| {
+            let [x, y] = area.at(k);
+            let far = (x.hypot(y - 5.0) / 10.8).min(2.0);
+            match () {
+                () if (3.5..4.6).contains(&x) && (1.9..3.1).contains(&y) => f64::NAN,
+                () if far > 1.06 => f64::INFINITY,
+                () => 70.0 + 60.0 * x.abs() + 2e4 * (far - 0.85).max(0.0).powi(2) * 12.0,
+            }
+        })
+        .collect();
+    let scene = std::sync::Arc::new(state.scene.clone());
+    let maps = cable_viewer::reach::Maps::Area(std::sync::Arc::new(area), None);
+    state.reach.progress = cable_viewer::reach::Progress::Done((maps, scene));
+    state
+}
+
+#[test]
+fn safe_reach_of_an_end_light() {
+    compare("safe_reach_of_an_end_light", end_reached(), Theme::Light);
+}
+
+#[test]
+fn safe_reach_of_an_end_dark() {
+    compare("safe_reach_of_an_end_dark", end_reached(), Theme::Dark);
 }
 
 #[test]

@@ -275,3 +275,15 @@ fn s20_colours_are_even_to_every_eye_and_what_they_show_is_chosen() {
     let node = answer(&harness).cables[0].nodes[0];
     assert!(low < high && (low..=high).contains(&node.stress_pa));
 }
+
+#[test]
+fn every_row_that_was_asked_for_has_a_test_named_after_it() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/ui");
+    let files = std::fs::read_dir(folder).unwrap().map(|f| std::fs::read_to_string(f.unwrap().path()).unwrap());
+    let all: String = files.collect();
+    for (row, last) in [('s', 20), ('u', 19), ('t', 5)] {
+        for k in 1..=last {
+            assert!(all.contains(&format!("\nfn {row}{k:02}_")), "{row}{k:02} has none");
+        }
+    }
+}

@@ -1,0 +1,126 @@
+use super::*;
+use crate::scene::catalog;
+use crate::scene::{Obstacle, Shape};
+
+fn look(ask: &Ask) -> Area {
+    area(ask, |_, _| ControlFlow::Continue(())).unwrap()
+}
+
+fn ask(scene: Scene, corners_m: [Point; 2], spacing_m: f64) -> Ask {
+    let support = scene.cables[0].supports.len() - 1;
+    Ask { scene, settings: Settings::default(), cable: 0, support, corners_m, spacing_m, back: false }
+}
+
+/// What is known of the place nearest to a point, and where that is.
+fn place(area: &Area, p: Point) -> (Point, f64) {
+    let near = |k: &usize| (vec2(area.at(*k)) - vec2(p)).norm();
+    let k = (0..area.most_n.len()).min_by(|a, b| near(a).total_cmp(&near(b))).unwrap();
+    assert!(near(&k) < area.spacing_m, "{p:?} is outside");
+    (area.at(k), area.most_n[k])
+}
+
+fn block(name: &str, low: Point, high: Point) -> Obstacle {
+    let points_m = vec![low, [high[0], low[1]], high, [low[0], high[1]]];
+    Obstacle { name: name.to_owned(), shape: Shape::Polygon { points_m }, friction: None }
+}
+
+/// 10.8 m of cable from (0, 5) to (9, 0.5) with nothing in its way.
+fn free() -> Scene {
+    let mut scene = catalog::over_beam();
+    scene.obstacles.clear();
+    scene
+}
+
+#[test]
+fn without_anything_to_touch_each_place_is_what_a_cable_laid_there_pulls() {
+    let found = look(&ask(free(), [[6.0, 0.0], [12.0, 5.0]], 0.75));
+    let mut compared = 0;
+    for (k, &there_n) in found.most_n.iter().enumerate() {
+        let at = found.at(k);
+        let far = (at[0] - 0.0).hypot(at[1] - 5.0) / 10.8;
+        if far < 1.0 {
+            let mut scene = free();
+            scene.cables[0].supports.last_mut().unwrap().at_m = Some(at);
+            let laid = Simulation::new(scene, Model::Catenary).unwrap().settle().unwrap().max_tension().tension_n;
+            assert!((there_n - laid).abs() < 1e-6 * laid, "{at:?}: {there_n} for {laid} N");
+            compared += 1;
+        } else if far > 1.02 {
+            assert!(!there_n.is_finite(), "{at:?}: {there_n} N");
+        }
+    }
+    assert!(compared > 20, "{compared}");
+    assert_eq!(found.start_m, [9.0, 0.5]);
+    assert_eq!(place(&found, [9.0, 0.5]).0, [9.0, 0.5], "the start is a place");
+}
+
+#[test]
+fn ways_go_round_what_is_in_the_way_and_nothing_is_known_of_what_is_shut_in() {
+    let mut scene = free();
+    scene.cables[0].length_m = 12.5;
+    // A box with walls of 0.3 m, and a block right of the start.
+    scene.obstacles = vec![
+        block("left", [4.0, 0.0], [4.3, 2.0]),
+        block("right", [5.7, 0.0], [6.0, 2.0]),
+        block("top", [4.0, 1.7], [6.0, 2.0]),
+        block("bottom", [4.0, 0.0], [6.0, 0.3]),
+        block("stop", [9.4, -1.0], [9.8, 1.6]),
+    ];
+    scene.cables[0].route_m = vec![[0.0, 5.0], [4.0, 3.0], [8.0, 2.5], [9.0, 0.5]];
+    let found = look(&ask(scene, [[4.5, 0.0], [10.0, 2.5]], 0.5));
+    assert!(place(&found, [5.0, 1.0]).1.is_nan(), "shut in");
+    assert!(place(&found, [9.5, 0.5]).1.is_nan(), "inside");
+    assert!(place(&found, [8.0, 1.0]).1.is_finite());
+    let (at, behind_n) = place(&found, [10.0, 0.5]);
+    assert!(at[0] > 9.8 && behind_n > place(&found, [9.0, 0.5]).1, "{at:?} {behind_n}");
+}
+
+#[test]
+fn the_way_back_over_an_edge_pulls_more_than_the_place() {
+    let mut scene = free();
+    scene.cables[0].friction = 0.5;
+    scene.cables[0].length_m = 11.5;
+    scene.obstacles = vec![block("beam", [4.0, 3.0], [4.6, 3.4])];
+    scene.cables[0].route_m = vec![[0.0, 5.0], [4.3, 3.7], [9.0, 0.5]];
+    let there = ask(scene, [[7.5, 0.0], [10.0, 1.6]], 0.5);
+    let both = look(&Ask { back: true, ..there.clone() });
+    let there = look(&there);
+    let mut more = 0;
+    for (out_n, back_n) in there.most_n.iter().zip(&both.most_n) {
+        assert_eq!(out_n.is_finite(), back_n.is_finite(), "{out_n} {back_n}");
+        if out_n.is_finite() {
+            assert!(*back_n >= out_n * (1.0 - 1e-9), "{out_n} {back_n}");
+            more += usize::from(*back_n > 1.02 * out_n);
+        }
+    }
+    assert!(more > there.most_n.len() / 4, "{more} of {}", there.most_n.len());
+    let start = place(&both, [9.0, 0.5]).1;
+    assert!((start - place(&there, [9.0, 0.5]).1).abs() < 1e-9 * start, "no way, no snag");
+}
+
+#[test]
+fn it_ends_when_it_is_told_to_and_is_the_same_each_time() {
+    let ask = ask(free(), [[7.0, 0.0], [10.0, 2.0]], 0.5);
+    let mut heard = 0;
+    let found = area(&ask, |_, share| {
+        assert!((0.0..=1.0).contains(&share));
+        heard += 1;
+        if heard < 4 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    });
+    assert_eq!(found.unwrap().most_n.iter().filter(|n| !n.is_nan()).count(), 3);
+    let bits = |a: &Area| a.most_n.iter().map(|n| n.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&look(&ask)), bits(&look(&ask)));
+}
+
+#[test]
+fn what_has_no_place_is_refused_in_words() {
+    let there = ask(free(), [[7.0, 0.0], [10.0, 2.0]], 0.5);
+    for wrong in [
+        Ask { cable: 3, ..there.clone() },
+        Ask { support: 9, ..there.clone() },
+        Ask { spacing_m: 0.0, ..there.clone() },
+        Ask { spacing_m: 1e-4, ..there.clone() },
+        Ask { corners_m: [[0.0; 2], [f64::NAN; 2]], ..there },
+    ] {
+        assert!(area(&wrong, |_, _| ControlFlow::Continue(())).is_err(), "{wrong:?}");
+    }
+}

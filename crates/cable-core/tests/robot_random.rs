@@ -1,0 +1,132 @@
+//! Robots driven at random over every bundled map, with slack cables and their outlines as obstacles: no step fails, nothing gets
+//! into anything, and the same log gives the same bits. Looked at by polygons alone, not by what the solver uses.
+
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic, missing_docs)] // a failing test is meant to panic
+
+use cable_core::contact::distance::cross_properly;
+use cable_core::contact::outline::Placement;
+use cable_core::record::Fingerprint;
+use cable_core::scene::{Shape, SupportKind, catalog, preset};
+use cable_core::{Model, Robot, Scene, Simulation, Vec2};
+
+/// Time between two looks, s.
+const FRAME_S: f64 = 1.0 / 60.0;
+/// Drives over each of the six maps.
+const DRIVES: u64 = 9;
+/// Times a key is pressed or let go in a drive, and frames between.
+const KEYS: (usize, usize) = (5, 16);
+
+/// The next of a fixed row of numbers from 0 to 1 (D. H. Lehmer's generator with the multiplier of S. K. Park and K. W. Miller,
+/// "Random number generators: good ones are hard to find", Communications of the ACM 31(10), 1988).
+fn next(seed: &mut u64) -> f64 {
+    *seed = *seed * 16_807 % 2_147_483_647;
+    *seed as f64 / 2_147_483_647.0
+}
+
+/// A robot somewhere on a map, on more cable than it needs.
+fn scene(map: &preset::MapPreset, seed: &mut u64) -> Scene {
+    let mut scene = catalog::robot_drive();
+    scene.obstacles = map.obstacles.clone();
+    let presets = preset::robot_presets();
+    let preset = &presets[(next(seed) * presets.len() as f64) as usize];
+    let half_m = 0.5 * map.inside_width_m.value - 3.0;
+    let place = |x: f64| Robot { preset: preset.id.to_owned(), at_m: [x, 0.0], ..Robot::default() };
+    scene.robot = Some(place(map.riser_at_m[0] + 0.5 * (next(seed) - 0.2) * half_m));
+    let hitch = scene.hitch_m().unwrap();
+    let cable = &mut scene.cables[0];
+    cable.supports[0].at_m = Some(map.riser_at_m);
+    cable.supports.last_mut().unwrap().kind = SupportKind::Robot;
+    let way_m = (hitch[0] - map.riser_at_m[0]).hypot(hitch[1] - map.riser_at_m[1]);
+    cable.length_m = (1.05 + 0.3 * next(seed)) * way_m + 1.0;
+    cable.segments = Some(40);
+    cable.route_m.clear();
+    scene
+}
+
+/// Every solid as a closed polygon: the ground down to far below it, and the robot as it stands.
+fn solids(simulation: &Simulation) -> Vec<(String, Vec<Vec2>)> {
+    let scene = simulation.scene();
+    let mut all: Vec<(String, Vec<Vec2>)> = Vec::new();
+    for o in &scene.obstacles {
+        let corners = |points: &[[f64; 2]]| points.iter().map(|p| Vec2::new(p[0], p[1])).collect::<Vec<_>>();
+        match &o.shape {
+            Shape::Terrain { points_m } => {
+                let mut ring = corners(points_m);
+                let (first, last) = (ring[0], ring[ring.len() - 1]);
+                ring.extend([Vec2::new(last.x, -1e3), Vec2::new(first.x, -1e3)]);
+                all.push((o.name.clone(), ring));
+            }
+            Shape::Polygon { points_m } => all.push((o.name.clone(), corners(points_m))),
+            Shape::Circle { center_m, radius_m } => {
+                let turn = |k: u32| f64::from(k) * std::f64::consts::TAU / 24.0;
+                let ring = (0..24)
+                    .map(|k| Vec2::new(center_m[0], center_m[1]) + Vec2::new(turn(k).cos(), turn(k).sin()) * *radius_m);
+                all.push((o.name.clone(), ring.collect()));
+            }
+            Shape::Polyline { .. } => {}
+        }
+    }
+    let r = simulation.solution().robot.unwrap();
+    let at = Placement { at: Vec2::new(r.x_m, r.y_m), angle: r.pitch_deg.to_radians() };
+    let outline = scene.robot_outline(0.5).unwrap();
+    all.push(("robot".to_owned(), outline.edges(at).map(|[p, _]| p).collect()));
+    all
+}
+
+fn inside(p: Vec2, ring: &[Vec2]) -> bool {
+    let far = Vec2::new(1.7e3, 2.9e3);
+    let edges = (0..ring.len()).map(|k| [ring[k], ring[(k + 1) % ring.len()]]);
+    edges.filter(|[a, b]| cross_properly(p, far, *a, *b)).count() % 2 == 1
+}
+
+/// The first node inside a solid, in words.
+fn buried(simulation: &Simulation) -> Option<String> {
+    let solids = solids(simulation);
+    let cables = simulation.solution().cables;
+    let nodes = cables.iter().flat_map(|c| &c.nodes).map(cable_core::solution::Node::at);
+    let found =
+        nodes.flat_map(|p| solids.iter().filter(move |(_, ring)| inside(p, ring)).map(move |(name, _)| (p, name)));
+    found.map(|(p, name)| format!("t = {:.3} s: {p:?} in {name}", simulation.time_s())).next()
+}
+
+/// One drive by keys; its fingerprint.
+fn drive(map: &preset::MapPreset, mut seed: u64, watched: bool) -> Fingerprint {
+    let scene = scene(map, &mut seed);
+    let top = preset::robot_preset(&scene.robot.as_ref().unwrap().preset).unwrap().speed_m_per_s.value;
+    let mut simulation = Simulation::new(scene, Model::Auto).unwrap();
+    simulation.settle().unwrap_or_else(|e| panic!("{}: {e}", map.name));
+    let mut print = Fingerprint::default();
+    for _ in 0..KEYS.0 {
+        // A and D are held, or neither.
+        simulation.command_robot(Some([-top, top, 0.0][(next(&mut seed) * 2.4) as usize]));
+        for _ in 0..KEYS.1 {
+            simulation
+                .step(FRAME_S)
+                .unwrap_or_else(|e| panic!("{} {seed} at {:.2} s: {e}", map.name, simulation.time_s()));
+            if watched {
+                assert_eq!(buried(&simulation), None, "{} {seed}", map.name);
+            }
+            print.push(&simulation.solution());
+        }
+    }
+    print
+}
+
+#[test]
+fn whatever_is_pressed_on_whatever_map_nothing_gets_into_anything() {
+    let mut touched = 0;
+    for map in preset::map_presets() {
+        for seed in 1..=DRIVES {
+            drive(map, 7919 * seed, true);
+            touched += 1;
+        }
+    }
+    assert!(touched >= 50, "{touched}");
+}
+
+#[test]
+fn the_same_keys_give_the_same_bits() {
+    for map in preset::map_presets() {
+        assert_eq!(drive(map, 104_729, false), drive(map, 104_729, false), "{}", map.name);
+    }
+}

@@ -1,0 +1,141 @@
+//! Where the robot or an end can be taken: asked for, seen, told and ended, by a user.
+
+use std::time::{Duration, Instant};
+
+use cable_core::reach::line::Map;
+use cable_core::scene::catalog;
+use cable_viewer::ViewerApp;
+use cable_viewer::command::{Command, ViewCommand};
+use cable_viewer::reach::{Choice, Found, Maps, Moved, Order, PLACES, Progress, View, start};
+use egui::{Key, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+
+use crate::{apply, open};
+
+fn reach<'a>(harness: &'a Harness<'_, ViewerApp>) -> &'a View {
+    &harness.state().state.reach
+}
+
+fn click(harness: &mut Harness<'_, ViewerApp>, label: &str) {
+    harness.get_by_label(label).click();
+    harness.run_steps(2);
+}
+
+fn patiently(what: &str, mut done: impl FnMut() -> bool) {
+    let began = Instant::now();
+    while !done() {
+        assert!(began.elapsed() < Duration::from_secs(120), "{what} takes too long");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+fn tall(scene: cable_core::Scene) -> Harness<'static, ViewerApp> {
+    let mut harness = open(scene);
+    harness.set_size(Vec2::new(1280.0, 1800.0));
+    harness.run_steps(3);
+    harness
+}
+
+#[test]
+fn safe_reach_of_a_robot_is_found_beside_the_window_and_can_be_ended() {
+    let mut scene = catalog::robot_drive();
+    scene.cables[0].segments = Some(24);
+    let mut harness = tall(scene.clone());
+    click(&mut harness, "Find safe reach");
+    assert!(matches!(reach(&harness).progress, Progress::Running(..)), "{:?}", reach(&harness));
+    // The window goes on meanwhile.
+    harness.key_press(Key::ArrowRight);
+    harness.run_steps(3);
+    assert_eq!(harness.state().state.snapshot.error, None);
+    click(&mut harness, "Cancel safe reach");
+    assert!(matches!(reach(&harness).progress, Progress::None));
+
+    // A short search to its end.
+    let settings = cable_core::Settings::default();
+    let corners_m = [[9.9, 0.0], [10.1, 0.0]];
+    let job = start(Order { scene: scene.clone(), settings, moved: Moved::Robot, corners_m, across: 8 }, || {});
+    let mut found: Option<Found> = None;
+    patiently("a short search", || {
+        match job.progress() {
+            Progress::Done(done) => found = Some(done),
+            Progress::Failed(why) => panic!("{why}"),
+            Progress::None | Progress::Running(..) => {}
+        }
+        found.is_some()
+    });
+    let (maps, of) = found.unwrap();
+    assert_eq!(*of, scene);
+    let Maps::Line(map) = maps else { panic!("{maps:?}") };
+    let map: &Map = &map;
+    assert_eq!(map.places.len(), PLACES);
+    assert!(map.safe_m(map.service_n, true).is_some());
+}
+
+#[test]
+fn safe_reach_of_an_end_is_a_map_of_the_plane_found_by_keys_alone_and_told_in_words() {
+    let mut harness = tall(catalog::hanging_span());
+    assert_eq!(reach(&harness).choice.moved, None);
+    apply(&mut harness, Command::View(ViewCommand::SetReach(Choice { across: 10, ..Choice::default() })));
+    harness.get_by_label("Find safe reach").focus();
+    harness.step();
+    harness.key_press(Key::Enter);
+    harness.run_steps(2);
+    assert!(matches!(reach(&harness).progress, Progress::Running(..)), "{:?}", reach(&harness));
+
+    // An edit meanwhile is answered at once, and the map says that it is of the scene before.
+    let mut cable = harness.state().state.scene.cables[0].clone();
+    cable.length_m += 0.1;
+    let edit = cable_viewer::command::SceneCommand::SetCable { cable: 0, value: Box::new(cable) };
+    apply(&mut harness, Command::Scene(edit));
+    assert!(harness.state().settled());
+    patiently("a coarse map", || {
+        harness.step();
+        matches!(reach(&harness).progress, Progress::Done(_))
+    });
+    harness.get_by_label("Of the scene before the last edits");
+    let Some((Maps::Area(there, Some(ways)), _)) = reach(&harness).found().cloned() else {
+        panic!("{:?}", reach(&harness))
+    };
+    let [low, high] = harness.state().state.visible_m;
+    let inside = |p: [f64; 2]| (0..2).all(|k| p[k] >= low[k] - 1e-9 && p[k] <= high[k] + 1e-9);
+    assert!((0..there.most_n.len()).all(|k| inside(there.at(k))), "all over what is in view, and no farther");
+    let (rows, known) = (there.most_n.len() / there.columns, there.most_n.iter().filter(|n| n.is_finite()).count());
+    assert!(rows >= 4 && there.columns >= 9 && known > 20, "{rows} {} {known}", there.columns);
+    assert!((ways.spacing_m - 2.0 * there.spacing_m).abs() < 1e-12);
+
+    let words = || {
+        let node = harness.get_by_label("Canvas");
+        node.accesskit_node().data().description().unwrap_or_default().to_owned()
+    };
+    assert!(words().contains("safe reach, there: Below service"), "{}", words());
+    harness.get_by_label_contains("Below breaking");
+    click(&mut harness, "There and back");
+    assert!(reach(&harness).choice.back);
+    click(&mut harness, "Clear");
+    assert!(reach(&harness).found().is_none());
+    assert!(harness.query_by_label("There and back").is_none(), "nothing to show");
+}
+
+#[test]
+fn what_is_taken_somewhere_is_the_robot_else_what_is_picked_else_an_end_and_can_be_chosen() {
+    let moved = |harness: &Harness<'_, ViewerApp>| cable_viewer::reach::moved(&harness.state().state);
+    let mut harness = tall(catalog::robot_drive());
+    assert_eq!(moved(&harness), Some(Moved::Robot));
+    harness.get_by_label("What is taken somewhere").click();
+    harness.run_steps(3);
+    let riser = harness.state().state.scene.cables[0].supports[0].name.clone();
+    let label = format!("Support {riser} of {}", harness.state().state.scene.cables[0].name);
+    // The canvas has a name of the same words.
+    let entry =
+        harness.get_all_by_label(&label).find(|n| n.accesskit_node().role() != egui::accesskit::Role::GraphicsSymbol);
+    entry.unwrap().click();
+    harness.run_steps(3);
+    assert_eq!(moved(&harness), Some(Moved::Support { cable: 0, support: 0 }));
+
+    let mut harness = tall(catalog::hanging_span());
+    assert_eq!(moved(&harness), Some(Moved::Support { cable: 0, support: 1 }));
+    let left = cable_viewer::state::Item::Support { cable: 0, support: 0 };
+    apply(&mut harness, Command::View(ViewCommand::Select(Some(left))));
+    assert_eq!(moved(&harness), Some(Moved::Support { cable: 0, support: 0 }));
+}
