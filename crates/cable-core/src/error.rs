@@ -80,6 +80,20 @@ pub enum SceneFault {
         /// The nearest known name.
         nearest: Option<String>,
     },
+    /// A route that leads through something solid.
+    #[error(
+        "from here the route leads {depth_m:.3} m deep through `{obstacle}` at ({x_m:.3} m, {y_m:.3} m): lead it past, on the side where the cable shall lie"
+    )]
+    RouteInside {
+        /// The obstacle.
+        obstacle: String,
+        /// How deep inside it, m.
+        depth_m: f64,
+        /// Where, m.
+        x_m: f64,
+        /// Where, m.
+        y_m: f64,
+    },
     /// The cable is too short for the way between its supports.
     #[error(
         "the way between the supports is {way_m:.4} m, the cable is {length_m:.4} m long, and stretching to it takes {needed_n:.4e} N where it breaks at {breaking_n:.4e} N: make length_m at least {way_m:.4} m"

@@ -3,6 +3,8 @@
 //! Arc lengths are unstretched at rest temperature; temperature enters as the factor `thermal_stretch` on
 //! unstretched lengths: strain = length/(thermal_stretch·ds) − 1. Weight and wind are per metre of arc length.
 
+mod route;
+
 use std::sync::Arc;
 
 use crate::contact::World;
@@ -166,7 +168,9 @@ pub fn problems(scene: &Scene) -> Result<Vec<Arc<Problem>>, SceneError> {
     scene.validate()?;
     let mut out = Vec::with_capacity(scene.cables.len());
     for (index, cable) in scene.cables.iter().enumerate() {
-        out.push(Arc::new(problem(scene, index, cable)?));
+        let problem = problem(scene, index, cable)?;
+        route::clear(&problem)?;
+        out.push(Arc::new(problem));
     }
     Ok(out)
 }

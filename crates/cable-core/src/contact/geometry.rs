@@ -217,7 +217,9 @@ impl Body {
         }
     }
 
-    fn signed_gap(&self, p: Vec2, reach: f64) -> Option<Gap> {
+    /// The gap of a point to this body alone, if no larger than `reach` (m).
+    #[must_use]
+    pub fn signed_gap(&self, p: Vec2, reach: f64) -> Option<Gap> {
         if let Some(c) = self.center {
             let gap = self.gap(self.first + 1, (p - c).norm(), unit_or(p - c, Vec2::y()), c);
             return (gap.gap_m <= reach).then_some(gap);

@@ -12,7 +12,7 @@ pub mod import;
 pub mod load;
 pub mod motion;
 pub mod obstacle;
-mod path;
+pub(crate) mod path;
 pub mod preset;
 mod range;
 mod read;
