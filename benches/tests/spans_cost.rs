@@ -29,10 +29,10 @@ fn cost(count: usize) -> (usize, usize) {
     (rest, most)
 }
 
-/// Measured: 4, 5 and 6 in a warm step, 57, 142 and 144 in a first rest.
+/// Measured: 2, 2 and 3 in most warm steps, 57, 40 and 27 in a first rest.
 #[test]
 fn a_step_that_reverses_friction_takes_a_handful_of_iterations_whatever_the_number_of_contacts() {
-    for (count, rest, warm) in [(1, 60, 5), (10, 150, 6), (36, 160, 7)] {
+    for (count, rest, warm) in [(1, 60, 5), (10, 60, 6), (36, 60, 7)] {
         let found = cost(count);
         assert!(found.0 <= rest && found.1 <= warm, "{count} contacts: {found:?}, {rest} and {warm} allowed");
     }
