@@ -4,7 +4,7 @@
 
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::solution::{CableSolution, WarningKind};
-use cable_core::{Load, Model, Settings, Simulation};
+use cable_core::{Load, Model, Settings, Simulation, SolveError};
 use serde_json::Value;
 
 fn solve(scene: &Scene, model: Model, segments: usize) -> CableSolution {
@@ -428,5 +428,45 @@ fn what_corners_leave_uncertain_is_said() {
         } else {
             assert!(errors[1] > 0.4 * errors[0], "no mesh helps on a corner: {errors:?}");
         }
+    }
+}
+
+#[test]
+fn a_state_inside_an_obstacle_is_refused() {
+    let mut scene = catalog::hanging_span();
+    let shape = Shape::Terrain { points_m: vec![[-20.0, -3.0], [20.0, -3.0]] };
+    scene.obstacles = vec![Obstacle { name: "ground".to_owned(), shape, friction: Some(0.5) }];
+    let c = &mut scene.cables[0];
+    (c.length_m, c.segments, c.bending_stiffness_n_m2) = (11.0, Some(40), 0.0);
+    (c.breaking_tension_n, c.service_tension_n) = (1e12, 1e12);
+    let radius = 0.5 * c.diameter_m;
+    c.supports = vec![Support::fixed("left", [-4.0, 0.0]), Support::fixed("right", [4.0, 0.0])];
+    let mut sim = Simulation::new(scene, Model::MassSpring).unwrap();
+    sim.settle().unwrap();
+    let before = sim.states();
+    // All of the cable but its ends, its lowest point so deep (m) in the ground.
+    let lowered = |depth: f64| {
+        let mut states = before.clone();
+        let inner = &mut states[0].position_m[1..40];
+        let lowest = inner.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+        for p in inner {
+            p.y += -3.0 + radius - depth - lowest;
+        }
+        states
+    };
+    sim.adopt(&before).unwrap();
+    // Not as deep as its radius it is pushed out.
+    sim.adopt(&lowered(0.8 * radius)).unwrap();
+    sim.step(0.1).unwrap();
+    let lowest = sim.states()[0].position_m.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+    assert!(lowest > -3.0 + 0.99 * radius, "{lowest}");
+    // Deeper it would be held in: refused, and where it was.
+    sim.adopt(&before).unwrap();
+    for depth in [1.2 * radius, 0.5, 40.0] {
+        let refused = sim.adopt(&lowered(depth)).unwrap_err();
+        let named = matches!(&refused, SolveError::Buried { obstacle, depth_m, .. }
+            if obstacle == "ground" && (depth_m - depth).abs() < 1e-9);
+        assert!(named, "{refused}");
+        assert_eq!(sim.states(), before);
     }
 }

@@ -1,7 +1,10 @@
 //! Impulses where the cable meets an obstacle in a sub-step.
 
+use super::pulley::NONE;
 use super::{MassSpringModel, Touch};
+use crate::error::SolveError;
 use crate::math::Vec2;
+use crate::model::Model;
 
 /// Distance kept ready for contact beside what is travelled, m.
 pub(super) const SKIN: f64 = 1e-4;
@@ -13,6 +16,28 @@ const PUSH_OUT_TIME: f64 = 0.02;
 const CONTACT_PASSES: usize = 2;
 
 impl MassSpringModel {
+    /// Refuses to go on from where the middle of the cable is inside an obstacle: distances have no sign there, and what should push it
+    /// out would hold it in. What lies in less deep is pushed out.
+    pub(super) fn refuse_buried(&self) -> Result<(), SolveError> {
+        let world = &self.problem.world;
+        if world.is_empty() {
+            return Ok(());
+        }
+        let free = (0..self.x.len()).filter(|&n| !self.held[n] && self.pulley_at[n] == NONE);
+        let gaps = free.filter_map(|n| Some((n, world.signed_gap(self.x[n], f64::INFINITY)?)));
+        let inside = gaps.filter(|(_, gap)| gap.gap_m < -self.problem.radius);
+        if let Some((n, deepest)) = inside.min_by(|a, b| a.1.gap_m.total_cmp(&b.1.gap_m)) {
+            return Err(SolveError::Buried {
+                model: Model::MassSpring,
+                obstacle: world.obstacle_name(deepest.obstacle).to_owned(),
+                depth_m: -deepest.gap_m,
+                arc_length_m: self.s[n],
+                at_m: self.x[n],
+            });
+        }
+        Ok(())
+    }
+
     /// Makes velocities such that nothing is entered in this sub-step: at each contact an inelastic normal impulse and
     /// a friction impulse within the Coulomb cone. Inside the cone the tangential velocity becomes exactly zero, so a
     /// held cable does not creep.

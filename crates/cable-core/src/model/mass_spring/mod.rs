@@ -279,6 +279,7 @@ impl Mechanics for MassSpringModel {
         }
         let slid = self.slid_in(state);
         let next = self.shaped(state, &slid).ok_or_else(|| misfit(0))?;
+        next.refuse_buried()?;
         *self = next;
         Ok(())
     }
