@@ -1,7 +1,7 @@
 //! Where the end of a cable can be taken: what the cable pulls there, and on the way there and back.
 //!
-//! Histories without inertia, with friction: a robot is led along its ground ([`line`]), an end that a hand or a crane moves
-//! through the free plane ([`area`]). From each place it goes back to where it started: a cable that was drawn round an edge on
+//! Histories without inertia, with friction: a robot is led along its ground ([`mod@line`]), an end that a hand or a crane moves
+//! through the free plane ([`mod@area`]). From each place it goes back to where it started: a cable that was drawn round an edge on
 //! the way out may hold there on the way back. Nothing limits what moves it: the question is what the cable would have to bear.
 
 pub mod area;
