@@ -228,7 +228,8 @@ pub(super) fn minimise(
                 accepted = true;
                 break;
             }
-            if in_noise {
+            // Halving a Newton step makes any gradient smaller that is more than round-off.
+            if in_noise && closure <= CLOSURE_ACCEPTED * lengths {
                 break;
             }
             alpha *= 0.5;

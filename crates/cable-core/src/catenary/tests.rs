@@ -183,3 +183,21 @@ proptest! {
         prop_assert!((force_end - f.end).norm() <= 1e-11 * (size * 6.0 + f.start.norm()));
     }
 }
+
+#[test]
+fn nearly_vertical_and_nearly_taut_spans_close() {
+    // Where the cable's own stretch alone bridges the way the upper part carries H ≪ wL, and the energy is flat
+    // there to the last digit.
+    for aside in [1e-8, 1e-6, 1e-5, 4.1e-5, 1e-4, 1e-3, 1e-2] {
+        for excess in [-1e-3, -1e-6, -1e-9, 0.0, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3] {
+            for eps in [1e-12, 1e-9, 1e-7, 1e-6, 8.65e-6, 1e-4, 1e-3, 1e-2] {
+                for up in [1.0, -1.0] {
+                    let s = span(aside, up, f64::hypot(aside, 1.0) * (1.0 + excess), 1.0, 1.0 / eps);
+                    let c = Catenary::solve(&s).unwrap_or_else(|e| panic!("{s:?}: {e}"));
+                    let gap = (c.position_at(s.length) - s.chord).norm();
+                    assert!(gap <= 1e-12 && c.iterations() <= 14, "{s:?}: {gap:e} m in {}", c.iterations());
+                }
+            }
+        }
+    }
+}
