@@ -14,12 +14,12 @@ use crate::solution::{CableSolution, ContactReport, ContactState, Node, SupportR
 pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
     let problem = &d.problem;
     let tension = bar_tensions(d, x);
-    let ends = end_forces(d, x, &tension);
+    let (ends, lain) = end_forces(d, x, &tension);
     CableSolution {
         name: problem.cable.name.clone(),
         nodes: nodes(d, (x, v), &tension, &ends),
         supports: supports(d, x, &ends, &tension),
-        contacts: contacts(d, x, &tension),
+        contacts: contacts(d, x, &tension, &lain),
         ..CableSolution::default()
     }
 }
@@ -35,11 +35,24 @@ fn bar_tensions(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
         .collect()
 }
 
+/// What the ground does to the half bar at a held end that lies on it.
+struct Lain {
+    /// The end, and the node beside it.
+    node: usize,
+    next: usize,
+    obstacle: usize,
+    normal_n: f64,
+    /// Along the cable.
+    friction_n: f64,
+}
+
 /// Tension force (N) at the start of the first bar and at the end of the last: what hangs there on a free end, else that of
 /// the middle plus what acts on the half between. On the ground what acts on the half is guessed from the next node.
-fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> [Vec2; 2] {
+/// With it what the ground does to the halves that lie along an edge.
+fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<Lain>; 2]) {
     let n = x.len();
-    let end = |node: usize, next: usize, e: usize, sign: f64| {
+    let mut lain = [None, None];
+    let mut end = |node: usize, next: usize, e: usize, sign: f64| {
         let ground = d.problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach);
         if let Some(hung) = free_end(d, node) {
             // What presses on the ground there is the ground's.
@@ -50,16 +63,28 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> [Vec2; 2] {
         let half = d.mesh.share(node);
         let body = d.problem.body_force(d.time()) * half;
         let Some(ground) = ground else { return middle + body * sign };
-        let force = middle + (body + ground_force(d, next, x) * (half / d.mesh.share(next))) * sign;
+        let grounded = ground_force(d, next, x) * (half / d.mesh.share(next));
+        let force = middle + (body + grounded) * sign;
         // What lies on an edge up to its end presses on the edge alone; the barrier's width would tilt the last bar.
         let beyond = d.problem.world.signed_gap(x[next], 3.0 * d.contacts.barrier.reach);
         let along = ground.feature % 2 == 0 && beyond.is_some_and(|g| g.feature == ground.feature);
-        if along { force - ground.normal * ground.normal.dot(&force) } else { force }
+        if !along {
+            return force;
+        }
+        let lift = force.dot(&ground.normal) * sign;
+        lain[usize::from(sign < 0.0)] = Some(Lain {
+            node,
+            next,
+            obstacle: ground.obstacle,
+            normal_n: grounded.dot(&ground.normal) - lift,
+            friction_n: grounded.dot(&d.mesh.path(e, x).direction),
+        });
+        force - ground.normal * (lift * sign)
     };
     if n < 3 {
-        return [Vec2::zeros(); 2];
+        return ([Vec2::zeros(); 2], lain);
     }
-    [end(0, 1, 0, 1.0), end(n - 1, n - 2, n - 2, -1.0)]
+    ([end(0, 1, 0, 1.0), end(n - 1, n - 2, n - 2, -1.0)], lain)
 }
 
 /// What hangs on a free end without a lump, whose inertia would pull as well, N; None for other nodes.
@@ -200,7 +225,7 @@ fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<
 }
 
 /// One report for each stretch of neighbouring contacts with one obstacle.
-fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> Vec<ContactReport> {
+fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64], lain: &[Option<Lain>; 2]) -> Vec<ContactReport> {
     let mut touches: Vec<Touch> = Vec::new();
     d.contacts.find(&d.problem, &d.mesh, x, &mut touches);
     let mut obstacles: Vec<usize> = touches.iter().map(|t| t.pair.gap.obstacle).collect();
@@ -217,6 +242,19 @@ fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> Vec<ContactReport> {
             stretch.push(*t);
         }
         out.push(report(d, x, tension, &stretch));
+    }
+    for end in lain.iter().flatten() {
+        let (tip, at) = (d.mesh.arc_length[end.node], d.mesh.arc_length[end.next]);
+        let name = d.problem.world.obstacle_name(end.obstacle);
+        let holds = |c: &&mut ContactReport| c.obstacle == name && c.begins_m <= at && c.ends_m >= at;
+        if let Some(c) = out.iter_mut().find(holds) {
+            c.normal_n += end.normal_n;
+            c.friction_n += end.friction_n;
+            (c.begins_m, c.ends_m) = (c.begins_m.min(tip), c.ends_m.max(tip));
+            c.arc_length_m += 0.5 * (tip - at);
+            let half = (x[end.node] - x[end.next]) * 0.5;
+            (c.x_m, c.y_m) = (c.x_m + half.x, c.y_m + half.y);
+        }
     }
     rounds(d, x, &mut out);
     d.own_contacts(x, tension, &mut out);

@@ -225,10 +225,38 @@ fn the_answer_lists_the_floor() {
     d.settle(&[]).unwrap();
     let s = d.solution();
     assert_eq!(s.contacts.len(), 1);
-    // The end that is held stands on its support with half of its element.
-    let expected = weight_per_m() * 12.0 * (1.0 - 0.5 / 60.0);
+    let expected = weight_per_m() * 12.0;
     assert!((s.contacts[0].normal_n / expected - 1.0).abs() < 1e-3, "{:?}", s.contacts[0]);
     assert_eq!(s.contacts[0].obstacle, "floor");
+}
+
+/// A floor carries all of a cable that lies on it, the halves at its held ends too: the supports pull only along it.
+#[test]
+fn a_floor_carries_what_lies_on_it_up_to_the_held_ends() {
+    for friction in [0.0, 0.3] {
+        let d = {
+            let flat = scene(
+                |c| {
+                    c.axial_stiffness_n = 1e5;
+                    c.segments = Some(24);
+                    c.length_m = 11.99;
+                    c.route_m = vec![[0.0, RADIUS], [12.0, RADIUS]];
+                    c.supports = vec![Support::fixed("A", [0.0, RADIUS]), Support::fixed("B", [12.0, RADIUS])];
+                },
+                vec![floor(friction)],
+            );
+            let mut d = build(&flat);
+            d.settle(&[]).unwrap();
+            d
+        };
+        let answer = d.solution();
+        let weight = weight_per_m() * 11.99;
+        assert_eq!(answer.contacts.len(), 1, "{:?}", answer.contacts);
+        let contact = &answer.contacts[0];
+        assert!((contact.normal_n / weight - 1.0).abs() < 1e-6, "{} N of {weight} N", contact.normal_n);
+        assert!((contact.begins_m, contact.ends_m) == (0.0, 11.99), "{contact:?}");
+        assert!(answer.supports.iter().all(|s| s.reaction_y_n.abs() < 1e-6 * weight), "{:?}", answer.supports);
+    }
 }
 
 /// Drops that differ by a millimetre land anywhere. A fold of a few slack bars that stands up between two stones swings on
