@@ -3,7 +3,7 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
-use cable_core::scene::{Scene, Support, SupportKind, catalog};
+use cable_core::scene::{Obstacle, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::solution::CableSolution;
 use cable_core::{Load, Model, Settings, Simulation, SolveError};
 use serde_json::Value;
@@ -252,6 +252,24 @@ fn nothing_holds_it() {
     let held = solve(&scene, 20).unwrap().0;
     let pulley = &held.supports[1];
     assert!((pulley.reaction_y_n + 240.0 + 12.0 * 8.0).abs() < 1e-9);
+}
+
+/// Half a turn round a post: e^{μπ} is 2.57 for a friction of 0.3.
+#[test]
+fn a_post_whose_friction_does_not_hold_lets_the_cable_go() {
+    let mut scene = span(4.5, [0.0, 0.0], 5.0, 2e5);
+    let cable = &mut scene.cables[0];
+    cable.diameter_m = 0.004;
+    let half_turn =
+        (0..=12).map(|k| f64::from(k) * std::f64::consts::PI / 12.0).map(|a| [-0.152 * a.cos(), 0.152 * a.sin()]);
+    cable.route_m = [[-0.152, -2.0]].into_iter().chain(half_turn).chain([[0.152, -2.0]]).collect();
+    let shape = Shape::Circle { center_m: [0.0, 0.0], radius_m: 0.15 };
+    scene.obstacles = vec![Obstacle { name: "post".to_owned(), shape, friction: Some(0.3) }];
+    let load = |name: &str, n: f64| Support { force_n: Some([0.0, -n]), ..support(name, SupportKind::Load) };
+    scene.cables[0].supports = vec![load("A", 100.0), load("B", 240.0)];
+    solve(&scene, 60).unwrap();
+    scene.cables[0].supports = vec![load("A", 100.0), load("B", 300.0)];
+    assert!(matches!(solve(&scene, 60), Err(SolveError::NoRestingPlace { .. })));
 }
 
 #[test]

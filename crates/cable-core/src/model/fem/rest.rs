@@ -219,7 +219,12 @@ impl Dynamics {
             }
             Err(f) => {
                 let at_m = self.motion.x.get(f.node).copied().unwrap_or_default();
+                let sought = self.motion.x.clone();
                 self.restore();
+                if let Some(way) = self.ran_away(&sought) {
+                    let why = format!("nothing holds the cable, it slides away: the search followed it for {way:.0} m");
+                    return Err(SolveError::NoRestingPlace { why });
+                }
                 let (residual_n, node) = (f.residual, f.node);
                 Err(SolveError::NotConverged { model: Model::Fem, iterations: MAX_RELAX, residual_n, node, at_m })
             }
@@ -253,6 +258,14 @@ impl Dynamics {
             return Err(SolveError::Unsupported { model: Model::Fem, feature });
         }
         Ok(self.relax(time, dragged))
+    }
+
+    /// How far (m) both ends have moved to `sought` at least, if that is further than the cable is long.
+    fn ran_away(&self, sought: &[Vec2]) -> Option<f64> {
+        let moved = |a: Option<&Vec2>, b: Option<&Vec2>| Some((a? - b?).norm());
+        let now = &self.motion.x;
+        let way = moved(sought.first(), now.first())?.min(moved(sought.last(), now.last())?);
+        (way > self.problem.length).then_some(way)
     }
 
     /// Whether two bars of the cable cross.
