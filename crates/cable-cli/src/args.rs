@@ -61,9 +61,9 @@ pub struct RunArguments {
     /// How long: 10s, 250ms, 2min
     #[arg(long = "for", value_parser = duration_s)]
     pub duration_s: f64,
-    /// Time between outputs [default: 1/60 s]
-    #[arg(long, value_parser = interval_s, default_value = "0.016666666666666666s", hide_default_value = true)]
-    pub every: f64,
+    /// Time between outputs [default: 1/60 s, with inertia at most a 500th of the run]
+    #[arg(long, value_parser = interval_s)]
+    pub every: Option<f64>,
     /// Without inertia: supports move infinitely slowly, friction remembers
     #[arg(long)]
     pub quasi_static: bool,
@@ -77,6 +77,14 @@ pub struct RunArguments {
 
 fn model(text: &str) -> Result<Model, String> {
     Model::from_name(text).ok_or_else(|| "the models are auto, catenary, spans, fem and mass-spring".to_owned())
+}
+
+impl RunArguments {
+    /// Time between outputs, s. Who follows a cable for half a second wants to see what happens in it.
+    pub fn every_s(&self) -> f64 {
+        let part = if self.quasi_static { f64::INFINITY } else { self.duration_s / 500.0 };
+        self.every.unwrap_or((1.0_f64 / 60.0).min(part))
+    }
 }
 
 fn stepping(text: &str) -> Result<Stepping, String> {

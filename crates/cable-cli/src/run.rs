@@ -92,10 +92,11 @@ impl Begun {
 
 /// Follows a scene over time.
 pub fn run(a: &RunArguments) -> Done {
-    if a.duration_s / a.every > MAX_OUTPUTS {
+    let every = a.every_s();
+    if a.duration_s / every > MAX_OUTPUTS {
         return Err(Failure::Argument(format!(
-            "--for {} s with --every {} s makes more than {MAX_OUTPUTS:.0e} output times: make --every longer",
-            a.duration_s, a.every
+            "--for {} s with --every {every} s makes more than {MAX_OUTPUTS:.0e} output times: make --every longer",
+            a.duration_s
         )));
     }
     let scene = read_scene(&a.common.scene)?;
@@ -144,9 +145,10 @@ fn walk(simulation: &mut Simulation, inertia: Inertia, outputs: &mut Outputs<'_>
     };
     outputs.push(&first, began.elapsed().as_secs_f64())?;
     // A last interval shorter than a billionth of the others is round-off, not an interval.
-    let count = (a.duration_s / a.every - 1e-9).ceil() as usize;
+    let every = a.every_s();
+    let count = (a.duration_s / every - 1e-9).ceil() as usize;
     for k in 1..=count {
-        let target_s = if k == count { a.duration_s } else { k as f64 * a.every };
+        let target_s = if k == count { a.duration_s } else { k as f64 * every };
         began = Instant::now();
         let dt_s = target_s - simulation.time_s();
         let stepped = match inertia {

@@ -2,7 +2,7 @@
 
 use cable_core::scene::{Scene, Support, SupportKind, catalog};
 use cable_core::state::State;
-use cable_core::{Model, Simulation, Vec2};
+use cable_core::{Model, Settings, Simulation, Vec2};
 
 /// Gravity of these scenes, m/s².
 pub const G: f64 = cable_core::scene::STANDARD_GRAVITY;
@@ -19,16 +19,30 @@ pub fn lump(name: &str, mass_kg: f64) -> Support {
     Support { mass_kg: Some(mass_kg), force_n: Some([0.0, 0.0]), ..Support::new(name, SupportKind::Load) }
 }
 
-/// The scene settled.
+/// Lets no vibration be so fast that a model would take shorter steps than it is told.
+const ANY: f64 = 1e9;
+
+/// The scene settled; its steps are those asked for.
 pub fn settled(scene: &Scene, model: Model) -> Simulation {
-    let mut sim = Simulation::new(scene.clone(), model).unwrap();
+    settled_within(ANY, scene, model)
+}
+
+/// The scene settled, to be followed with a tolerance.
+fn settled_within(tolerance: f64, scene: &Scene, model: Model) -> Simulation {
+    let settings = Settings { tolerance, ..Settings::default() };
+    let mut sim = Simulation::with_settings(scene.clone(), model, settings).unwrap();
     sim.settle().unwrap();
     sim
 }
 
 /// A motion that begins at t = 0 from the resting place as `change` changes it.
 pub fn started(scene: &Scene, change: impl FnOnce(&mut State)) -> Simulation {
-    let mut sim = settled(scene, Model::Fem);
+    started_within(ANY, scene, change)
+}
+
+/// The same, followed with a tolerance.
+pub fn started_within(tolerance: f64, scene: &Scene, change: impl FnOnce(&mut State)) -> Simulation {
+    let mut sim = settled_within(tolerance, scene, Model::Fem);
     // A first step hands the shape from statics to dynamics, which keeps velocities.
     sim.step(1e-4).unwrap();
     let mut states = sim.states();

@@ -2,8 +2,10 @@
 //! (J. L. Lagrange's loaded string). As N grows that is kπ/L √(T/(λρ)).
 
 use cable_core::scene::{Scene, Support};
+use cable_core::state::State;
+use cable_core::{Settings, Simulation};
 
-use super::measure::{Ring, bdf2_damps, bdf2_slows, cable, ladder, masses, ring, sampled, started};
+use super::measure::{Ring, bdf2_damps, bdf2_slows, cable, ladder, masses, ring, sampled, started, started_within};
 
 /// m.
 pub const LENGTH: f64 = 10.0;
@@ -29,18 +31,29 @@ pub fn scene(growth: f64, segments: usize) -> Scene {
 /// The same of a string heated so that it is longer by `growth` at rest.
 fn heated_swing(growth: f64, k: usize, segments: usize, h: f64) -> Ring {
     let scene = scene(growth, segments);
-    let shape = |s: f64| (k as f64 * std::f64::consts::PI * s / LENGTH).sin();
-    let mut sim = started(&scene, |state| {
-        for (p, s) in state.position_m.iter_mut().zip(&state.arc_length_m) {
-            p.y = 1e-3 * shape(*s);
-        }
-    });
-    let mass = masses(&scene, &sim.states()[0]);
     let every = (std::f64::consts::TAU / continuous(k) / h / 5.0).round() as usize;
-    let samples = sampled(&mut sim, (h, every), 60, |state| {
-        (0..mass.len()).map(|i| mass[i] * shape(state.arc_length_m[i]) * state.position_m[i].y).sum()
-    });
+    let samples = swung(started(&scene, |state| bow(state, k)), (&scene, k), (h, every), 60);
     ring(&samples, h * every as f64)
+}
+
+/// The shape of mode `k`.
+fn shape(k: usize, s: f64) -> f64 {
+    (k as f64 * std::f64::consts::PI * s / LENGTH).sin()
+}
+
+/// Drawn aside by 1 mm in mode `k`.
+fn bow(state: &mut State, k: usize) {
+    for (p, s) in state.position_m.iter_mut().zip(&state.arc_length_m) {
+        p.y = 1e-3 * shape(k, *s);
+    }
+}
+
+/// The part of mode `k` in the motion, `count` + 1 times.
+fn swung(mut sim: Simulation, (scene, k): (&Scene, usize), step: (f64, usize), count: usize) -> Vec<f64> {
+    let mass = masses(scene, &sim.states()[0]);
+    sampled(&mut sim, step, count, |state| {
+        (0..mass.len()).map(|i| mass[i] * shape(k, state.arc_length_m[i]) * state.position_m[i].y).sum()
+    })
 }
 
 /// Of a continuous string, 1/s.
@@ -96,5 +109,31 @@ fn a_heated_string_swings_more_slowly() {
         let off = heated_swing(growth, 1, n, h).omega * (1.0 + bdf2_slows(exact, h)) / exact - 1.0;
         println!("longer by {growth} in the heat: frequency off by {off:.1e}");
         assert!(off.abs() < 2e-5, "{growth}: {off}");
+    }
+}
+
+/// In frames of 1/60 s fast strings get the steps that their tone needs: at 1/240 s they are flat by (ωh)²/3.
+#[test]
+fn fast_strings_are_in_tune_in_frames() {
+    const FRAME: f64 = 1.0 / 60.0;
+    for (k, n) in [(1, 16), (4, 32), (8, 64), (12, 96)] {
+        let scene = scene(0.0, n);
+        let omega = discrete(k, n);
+        let asked = Settings::default().tolerance;
+        let tone = |tolerance: f64| {
+            // Slow ones are sampled more widely, for the fit; and it takes some frames to notice.
+            let stride = (std::f64::consts::TAU / omega / FRAME / 5.0).max(1.0) as usize;
+            let sim = started_within(tolerance, &scene, |state| bow(state, k));
+            let samples = swung(sim, (&scene, k), (FRAME, 1), 8 + 60 * stride);
+            let samples: Vec<f64> = samples[8..].iter().step_by(stride).copied().collect();
+            ring(&samples, FRAME * stride as f64).omega / omega - 1.0
+        };
+        let (off, flat) = (tone(asked), tone(1e9));
+        println!(
+            "mode {k}: {:.1} Hz off by {off:.1e}, with steps of 1/240 s by {flat:.1e}",
+            omega / std::f64::consts::TAU
+        );
+        assert!(off.abs() <= 1.2 * asked, "mode {k}: {off:.2e}");
+        assert!((flat / bdf2_slows(omega, 1.0 / 240.0) + 1.0).abs() < 0.2, "mode {k}: {flat:.2e}");
     }
 }

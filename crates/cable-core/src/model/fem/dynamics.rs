@@ -10,6 +10,7 @@ use super::contact_step::Workspace;
 use super::free_step::FreeStep;
 use super::integrate::PULLED;
 use super::motion::{Motion, Saved};
+use super::pace::Pace;
 use super::prepare::{load_scale, tolerance};
 use super::sleep::Sleep;
 use super::sliding::Seat;
@@ -23,7 +24,7 @@ use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
 
-/// Inner time step, s. METHODS' comparison at 1/240: tip of a falling chain within 5e-4 of its length.
+/// Longest inner time step, s. METHODS' comparison at 1/240: tip of a falling chain within 5e-4 of its length.
 pub(super) const INNER_STEP: f64 = 1.0 / 240.0;
 
 /// Gap at which contact begins (d̂), m. Where the cable is taut a corner lifts it by this: 1e-3 adds 2 % to the tension of a
@@ -97,6 +98,9 @@ pub struct Dynamics {
     pub(super) memory: Memory,
     pub(super) free: FreeStep,
     pub(super) sleep: Sleep,
+    pub(super) pace: Pace,
+    /// Part of its frequency that a vibration may be off by.
+    pub(super) tolerance: f64,
     pub(super) rested: bool,
     pub(super) held_back: Vec<usize>,
     /// Room for where hands draw supports in a part of a step.
@@ -164,6 +168,8 @@ impl Dynamics {
             memory: Memory(None),
             free: FreeStep::default(),
             sleep: Sleep::default(),
+            pace: Pace::default(),
+            tolerance: settings.tolerance,
             rested: false,
             held_back: Vec::new(),
             aims: Vec::new(),
@@ -259,7 +265,7 @@ impl Dynamics {
             return Ok(self.report(Done::default(), 0, 0.0));
         }
         let pieces = match inertia {
-            Inertia::Dynamic => (dt_s / INNER_STEP - 1e-9).ceil().max(1.0),
+            Inertia::Dynamic => (dt_s / self.pace.step - 1e-9).ceil().max(1.0),
             Inertia::QuasiStatic => self.pieces(end, dragged),
         };
         let h = dt_s / pieces;
@@ -270,6 +276,7 @@ impl Dynamics {
         }
         self.motion.time = end;
         if inertia == Inertia::Dynamic {
+            self.set_pace(dt_s);
             self.watch();
         } else {
             self.wake();

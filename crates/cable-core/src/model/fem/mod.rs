@@ -32,6 +32,7 @@ mod mesh_edit;
 mod motion;
 mod network;
 mod own;
+mod pace;
 mod path;
 mod prepare;
 mod remesh;
