@@ -1,4 +1,4 @@
-//! Steps follow how fast the cable vibrates.
+//! Steps follow how fast a taut cable vibrates.
 //!
 //! BDF2 puts (3x₁ − 4x₀ + x₋)/2h = ẋ − h²/3 x⃛ + … for ẋ, so that a vibration of angular frequency ω comes out slower by
 //! (ωh)²/3 of it, and loses π(ωh)³/2 of its amplitude a period (Hairer, Wanner, "Solving ordinary differential equations
@@ -39,13 +39,13 @@ impl Default for Pace {
 }
 
 impl Dynamics {
-    /// Looks at a step of `h` (s) just made. A node that lands stops at once: that is no vibration.
+    /// Looks at a step of `h` (s) just made. What falls or lands is no vibration.
     pub(super) fn note_pace(&mut self, h: f64) {
-        let (m, pace) = (&self.motion, &mut self.pace);
-        if !(self.contacts.rubs.is_empty() && self.contacts.own.rubs.is_empty()) {
-            pace.seen = [0.0; 3];
+        if !self.is_string() {
+            self.pace.seen = [0.0; 3];
             return;
         }
+        let (m, pace) = (&self.motion, &mut self.pace);
         let free = || (0..m.v.len()).filter(|&k| self.mesh.is_free(k)).map(|k| (k, self.mesh.share(k)));
         let (mut length, mut mean) = (0.0, [Vec2::zeros(); 2]);
         for (k, share) in free() {
@@ -60,6 +60,14 @@ impl Dynamics {
             pace.seen[1] += share * speed.norm_squared() * 0.25 * h;
         }
         pace.seen[2] += h;
+    }
+
+    /// Whether the cable touches nothing and is pulled all along by more than it weighs.
+    fn is_string(&self) -> bool {
+        let weight = self.problem.body_force(self.motion.time).norm() * self.problem.length;
+        let taut = |e: usize| self.mesh.bar(e).tension(self.mesh.path(e, &self.motion.x).length) > weight;
+        let alone = self.contacts.rubs.is_empty() && self.contacts.own.rubs.is_empty();
+        alone && (0..self.mesh.rest_length.len()).all(taut)
     }
 
     /// Chooses the longest step of the next frame, after one of `dt` (s).
