@@ -29,6 +29,25 @@ fn iterations_of_a_resting_span_do_not_grow_with_the_mesh() {
     assert!(found.iter().all(|&n| n <= 6), "{found:?}");
 }
 
+/// Found as a span first; the way down past a world that is not met took 69 s with 800 bars.
+#[test]
+fn a_span_above_ground_rests_in_as_many_iterations_on_any_mesh() {
+    let found = [100, 400, 1600].map(|n| {
+        let mut scene = catalog::hanging_span();
+        scene.cables[0].bending_stiffness_n_m2 = 0.0;
+        let shape = Shape::Terrain { points_m: vec![[-20.0, -15.0], [0.0, -14.0], [20.0, -16.0]] };
+        scene.obstacles = vec![Obstacle { name: "ground".to_owned(), shape, friction: Some(0.5) }];
+        let settings = Settings { segments: Some(n), ..Settings::default() };
+        let mut model = FemModel::new(problems(&scene).unwrap().remove(0), settings).unwrap();
+        let iterations = model.settle().unwrap().cost.iterations;
+        let lowest = model.solution().nodes.iter().map(|n| n.y_m).fold(0.0, f64::min);
+        assert!(lowest > -13.0, "the ground is not met: {lowest}");
+        iterations
+    });
+    println!("{found:?}");
+    assert!(found.iter().all(|&n| n <= 40), "{found:?}");
+}
+
 #[test]
 fn iterations_of_a_swinging_span_do_not_grow_with_the_mesh() {
     for bars in [100, 1000, 10_000] {

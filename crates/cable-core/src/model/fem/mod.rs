@@ -132,6 +132,10 @@ impl Mechanics for FemModel {
             self.ask(Part::Statics)?;
             self.statics.settle(&self.dragged)
         } else {
+            let begins = !self.dynamics.rested && self.dynamics.time() == 0.0;
+            if begins && self.statics.settle(&self.dragged).is_ok() {
+                self.dynamics.begin_at(&self.statics.state());
+            }
             self.dynamics.settle(&self.dragged)
         }
     }

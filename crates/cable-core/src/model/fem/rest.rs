@@ -9,6 +9,7 @@ use super::task::{Done, Failure, Pose};
 use crate::error::SolveError;
 use crate::math::{Vec2, larger};
 use crate::model::{Model, StepReport};
+use crate::state::State;
 
 /// Newton iterations of a step without inertia.
 const REST_ITERATIONS: usize = 150;
@@ -228,6 +229,24 @@ impl Dynamics {
                 let (residual_n, node) = (f.residual, f.node);
                 Err(SolveError::NotConverged { model: Model::Fem, iterations: MAX_RELAX, residual_n, node, at_m })
             }
+        }
+    }
+
+    /// Begins at `shape`, a rest without contact, if the cable gets there from its lay without coming near to anything. The way down
+    /// with contact takes as many rounds as a cable that hangs has bars.
+    pub(super) fn begin_at(&mut self, shape: &State) {
+        let alone = self.rider.is_none() && !self.contacts.own.shape.is_on() && !self.problem.world.is_empty();
+        if self.rested || !alone || self.mesh.sliding.iter().any(Option::is_some) {
+            return;
+        }
+        let Some(to) = self.mesh.arc_length.iter().map(|&s| shape.position_at(s)).collect::<Option<Vec<Vec2>>>() else {
+            return;
+        };
+        let x = &self.motion.x;
+        self.contacts.look_around(&self.problem, &self.mesh, x, |k| (to[k] - x[k]).norm());
+        if self.contacts.out_of_reach(&self.mesh, [x, &to]) {
+            self.motion.x = to;
+            self.forget_history();
         }
     }
 
