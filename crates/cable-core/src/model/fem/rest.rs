@@ -247,6 +247,9 @@ impl Dynamics {
         if self.contacts.out_of_reach(&self.mesh, [x, &to]) {
             self.motion.x = to;
             self.forget_history();
+        } else {
+            // These lists reach far, and would stand for those of the way down.
+            self.contacts.near.clear();
         }
     }
 
