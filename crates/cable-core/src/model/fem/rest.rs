@@ -242,14 +242,14 @@ impl Dynamics {
         let Some(to) = self.mesh.arc_length.iter().map(|&s| shape.position_at(s)).collect::<Option<Vec<Vec2>>>() else {
             return;
         };
-        let x = &self.motion.x;
-        self.contacts.look_around(&self.problem, &self.mesh, x, |k| (to[k] - x[k]).norm());
-        if self.contacts.out_of_reach(&self.mesh, [x, &to]) {
+        let (x, geometry) = (&self.motion.x, self.problem.world.geometry());
+        let clear = (0..self.mesh.rest_length.len()).all(|e| {
+            let [[a, b], [c, d]] = [self.mesh.straight(e, x), self.mesh.straight(e, &to)];
+            geometry.parts(a.inf(&b).inf(&c.inf(&d)), a.sup(&b).sup(&c.sup(&d)), REACH).next().is_none()
+        });
+        if clear {
             self.motion.x = to;
             self.forget_history();
-        } else {
-            // These lists reach far, and would stand for those of the way down.
-            self.contacts.near.clear();
         }
     }
 
