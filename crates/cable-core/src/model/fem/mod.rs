@@ -134,7 +134,7 @@ impl Mechanics for FemModel {
         } else {
             let begins = !self.dynamics.rested && self.dynamics.time() == 0.0;
             if begins && self.statics.settle(&self.dragged).is_ok() {
-                self.dynamics.begin_at(&self.statics.state());
+                self.dynamics.begin_at(&self.statics.state(), &self.dragged);
             }
             self.dynamics.settle(&self.dragged)
         }

@@ -4,7 +4,7 @@ use super::carry::Rider;
 use super::contact_start::push_out;
 use super::dynamics::{Dynamics, REACH};
 use super::integrate::PULLED;
-use super::prepare::load_scale;
+use super::prepare::{load_scale, tolerance};
 use super::task::{Done, Failure, Pose};
 use crate::error::SolveError;
 use crate::math::{Vec2, larger};
@@ -234,7 +234,7 @@ impl Dynamics {
 
     /// Begins at `shape`, a rest without contact, if the cable gets there from its lay without coming near to anything. The way down
     /// with contact takes as many rounds as a cable that hangs has bars.
-    pub(super) fn begin_at(&mut self, shape: &State) {
+    pub(super) fn begin_at(&mut self, shape: &State, dragged: &[Option<Vec2>]) {
         let alone = self.rider.is_none() && !self.contacts.own.shape.is_on() && !self.problem.world.is_empty();
         if self.rested || !alone || self.mesh.sliding.iter().any(Option::is_some) {
             return;
@@ -247,10 +247,23 @@ impl Dynamics {
             let [[a, b], [c, d]] = [self.mesh.straight(e, x), self.mesh.straight(e, &to)];
             geometry.parts(a.inf(&b).inf(&c.inf(&d)), a.sup(&b).sup(&c.sup(&d)), REACH).next().is_none()
         });
-        if clear {
-            self.motion.x = to;
+        if !clear {
+            return;
+        }
+        self.motion.x = to;
+        self.forget_history();
+        // Its bars are straight: what sags between its nodes makes their tension wrong, evenly, so that little force is left over.
+        self.prepare_task(self.motion.time, Some(dragged));
+        self.task.max_iterations = REST_ITERATIONS;
+        let exact = self.task.tolerance;
+        self.task.tolerance = tolerance(&self.problem, 0.0);
+        let mut pose = self.still_pose();
+        if self.free.solve(&self.mesh, &self.task, &mut pose).is_some() {
+            self.motion.x.clone_from(&pose.x);
             self.forget_history();
         }
+        self.pose = pose;
+        self.task.tolerance = exact;
     }
 
     /// The resting place; one that the cable reaches without ever touching itself is found as if it could pass itself, for
