@@ -234,6 +234,7 @@ impl Dynamics {
         m.w_before.clone_from(&m.w);
         m.s_before.clone_from(&self.mesh.arc_length);
         m.step_before = 0.0;
+        self.pace = Pace::default();
     }
 
     pub(super) fn refuse(&self) -> Result<(), SolveError> {

@@ -235,7 +235,8 @@ impl Dynamics {
     /// Begins at `shape`, a rest without contact, if the cable gets there from its lay without coming near to anything. The way down
     /// with contact takes as many rounds as a cable that hangs has bars.
     pub(super) fn begin_at(&mut self, shape: &State, dragged: &[Option<Vec2>]) {
-        let alone = self.rider.is_none() && !self.contacts.own.shape.is_on() && !self.problem.world.is_empty();
+        let touched = self.problem.floor_friction.is_some() || self.contacts.own.shape.is_on();
+        let alone = self.rider.is_none() && !touched && !self.problem.world.is_empty();
         if self.rested || !alone || self.mesh.sliding.iter().any(Option::is_some) {
             return;
         }
