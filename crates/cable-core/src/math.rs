@@ -49,15 +49,21 @@ pub fn angle(a: Vec2, b: Vec2) -> f64 {
     r * (1.0 - s * (1.0 / 3.0 - s * (1.0 / 5.0 - s * (1.0 / 7.0 - s / 9.0))))
 }
 
-/// Angles whose sine and cosine [`sin_cos`] takes from the series, rad: the next terms are 9e-17 and 6e-19 of them.
+/// Angles whose sine and cosine [`sin_cos`] takes from a short series, rad: the next terms are 9e-17 and 6e-19 of them.
 const SMALL_ANGLE: f64 = 0.3;
+/// … and from a longer one: just over an eighth of a turn, and terms of 1e-18.
+const LARGE_ANGLE: f64 = 0.8;
+/// Quarters of a turn that are taken off in two parts without losing a digit.
+const MOST_QUARTERS: f64 = 64.0;
+/// π/2 as a number of few digits and the rest.
+const QUARTER: [f64; 2] = [1.570_796_325_802_803, 9.920_935_796_805_404e-10];
 
 /// Sine and cosine of an angle, rad. Corners turn little: there by the series, as a call of the library is dear.
 #[must_use]
 #[inline]
 pub fn sin_cos(angle: f64) -> (f64, f64) {
     if !(angle.abs() <= SMALL_ANGLE) {
-        return angle.sin_cos();
+        return sin_cos_of_more(angle);
     }
     let s = angle * angle;
     let sin = 1.0 / 362_880.0 - s / 39_916_800.0;
@@ -65,6 +71,48 @@ pub fn sin_cos(angle: f64) -> (f64, f64) {
     let cos = 1.0 / 40_320.0 - s * (1.0 / 3_628_800.0 - s / 479_001_600.0);
     let cos = 1.0 - s * (0.5 - s * (1.0 / 24.0 - s * (1.0 / 720.0 - s * cos)));
     (angle * sin, cos)
+}
+
+fn sin_cos_of_more(angle: f64) -> (f64, f64) {
+    if angle.abs() <= LARGE_ANGLE {
+        return long_series(angle);
+    }
+    let quarters = (angle / std::f64::consts::FRAC_PI_2).round();
+    if !(quarters.abs() <= MOST_QUARTERS) {
+        return angle.sin_cos();
+    }
+    let (sin, cos) = long_series((angle - quarters * QUARTER[0]) - quarters * QUARTER[1]);
+    match (quarters as i64).rem_euclid(4) {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
+}
+
+fn long_series(angle: f64) -> (f64, f64) {
+    let s = angle * angle;
+    let sin = 1.0 / 6_227_020_800.0 - s * (1.0 / 1_307_674_368_000.0 - s / 355_687_428_096_000.0);
+    let sin = 1.0 / 5040.0 - s * (1.0 / 362_880.0 - s * (1.0 / 39_916_800.0 - s * sin));
+    let cos = 1.0 / 479_001_600.0 - s * (1.0 / 87_178_291_200.0 - s / 20_922_789_888_000.0);
+    let cos = 1.0 / 720.0 - s * (1.0 / 40_320.0 - s * (1.0 / 3_628_800.0 - s * cos));
+    let sin = 1.0 - s * (1.0 / 6.0 - s * (1.0 / 120.0 - s * sin));
+    let cos = 1.0 - s * (0.5 - s * (1.0 / 24.0 - s * cos));
+    (angle * sin, cos)
+}
+
+/// Exponents whose power [`exp`] takes from the series: the next term is 3e-17.
+const SMALL_EXPONENT: f64 = 0.1;
+
+/// e to the power of x. Friction on small turns multiplies by little: there by the series, as a call of the library is dear.
+#[must_use]
+#[inline]
+pub fn exp(x: f64) -> f64 {
+    if !(x.abs() <= SMALL_EXPONENT) {
+        return x.exp();
+    }
+    let high = 1.0 / 120.0 + x * (1.0 / 720.0 + x * (1.0 / 5040.0 + x * (1.0 / 40_320.0 + x / 362_880.0)));
+    1.0 + x * (1.0 + x * (0.5 + x * (1.0 / 6.0 + x * (1.0 / 24.0 + x * high))))
 }
 
 /// The larger of two numbers; NaN once one of them is, unlike `f64::max`.
@@ -104,7 +152,21 @@ mod tests {
             let ((sin, cos), (s, c)) = (sin_cos(angle), angle.sin_cos());
             assert!((sin - s).abs() <= 3e-16 * s.abs() && (cos - c).abs() <= 3e-16, "{angle}");
         }
+        for k in -20_000_i32..=20_000 {
+            let angle = 0.006 * f64::from(k);
+            let ((sin, cos), (s, c)) = (sin_cos(angle), angle.sin_cos());
+            assert!((sin - s).abs() <= 3e-16 && (cos - c).abs() <= 3e-16, "{angle}");
+        }
         assert!(sin_cos(f64::NAN).0.is_nan());
+    }
+
+    #[test]
+    fn a_power_of_e_is_that_of_the_library() {
+        for k in -1000_i32..=1000 {
+            let x = 2e-4 * f64::from(k);
+            assert!((exp(x) - x.exp()).abs() <= 3e-16 * x.exp(), "{x}");
+        }
+        assert!(exp(f64::NAN).is_nan());
     }
 
     #[test]

@@ -244,3 +244,31 @@ fn loads_and_wind_over_a_post() {
     assert_eq!(answer.contacts.len(), 1);
     assert!(answer.contacts[0].tension_after_n / answer.contacts[0].tension_before_n < (0.2f64 * 2.0).exp());
 }
+
+/// Whether a point is below the ground, by the points of the ground alone.
+fn below(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    points.windows(2).any(|w| {
+        let [[x0, y0], [x1, y1]] = [w[0], w[1]];
+        x0 <= x && x < x1 && y < y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+    })
+}
+
+/// A cable with too much length for its way hangs in a narrow fold beside its end, through the ground: nearest to its deepest
+/// point is the kink of a valley, which no edge's own stretch lies above.
+#[test]
+fn a_fold_does_not_rest_inside_the_ground_below_a_valley() {
+    let heap =
+        [[-9.0, 1.4], [-5.715, 0.432], [-5.334, 0.346], [-4.953, 0.411], [-4.572, 0.484], [-4.191, 0.486], [0.0, 0.3]];
+    for length in [12.8, 13.2, 13.65, 14.5] {
+        let mut s = scene(vec![ground(&heap)], vec![[-6.0, 11.0], [-4.889, 0.874]], (length, 0.7));
+        s.cables[0].linear_density_kg_per_m = 1.2;
+        let mut m = SpansModel::new(problems(&s).unwrap().remove(0), Settings::default()).unwrap();
+        // It may be refused, but no answer is inside.
+        if m.settle().is_err() {
+            continue;
+        }
+        for n in m.solution().nodes {
+            assert!(!below(&heap, [n.x_m, n.y_m - 0.01 + 1e-6]), "{length}: ({}, {})", n.x_m, n.y_m);
+        }
+    }
+}

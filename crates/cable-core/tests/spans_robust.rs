@@ -354,3 +354,17 @@ fn random_moves_over_random_scenes() {
     assert!(20 * unfound <= rests, "{unfound} rests not found of {rests}");
     assert!(1000 * sum(&refused) <= steps, "{} steps refused of {steps}", sum(&refused));
 }
+
+/// Scenes whose first rest was not found once: laid deep into the ground, whose nearest feature there is a kink; on the wrong side
+/// of a thin beam; on both sides of a post; short of the far corner of a beam; too slack along a string that bends too often.
+const HARD_RESTS: [u64; 9] = [389, 399, 739, 774, 885, 1011, 10_226, 11_267, 11_275];
+
+#[test]
+fn rests_that_were_not_found_once_are() {
+    for number in HARD_RESTS {
+        let problem = problems(&case(number).scene).unwrap().remove(0);
+        let mut model = SpansModel::new(problem.clone(), Settings::default()).unwrap();
+        model.settle().unwrap_or_else(|e| panic!("{number}: {e}"));
+        sound(number, &model, &problem);
+    }
+}

@@ -6,25 +6,28 @@
 //! ```text
 //! energy  φ  = ∫ T + ε T²/2 ds                                   (complementary, convex in (h, v))
 //! x = ∂φ/∂h  = h (ε l + q),            q = ∫ ds/T = (asinh(v_b/h) − asinh(v_a/h))/w
-//! z = ∂φ/∂v  = ε l (v_a + v_b)/2 + l (v_a + v_b)/(T_a + T_b)
+//! z = ∂φ/∂v  = ε l (v_a + v_b)/2 + l σ,                          σ = (v_a + v_b)/(T_a + T_b)
 //! Hessian    = ε l I + ∫ (I − t tᵀ)/T ds = ε l I + [q − c, k; k, c],
-//!         c  = (v_b/T_b − v_a/T_a)/w,  k = −h l (v_a + v_b)/((T_a + T_b) T_a T_b)
+//!         c  = (v_b/T_b − v_a/T_a)/w,  k = −h l σ/(T_a T_b)
 //! ```
 //!
-//! Each is written in the form that keeps its digits: asinh b − asinh a = 2 atanh(w l/(T_a + T_b)), whose
-//! argument r says how far the piece is from taut (r → 0) or folded (r → 1). Nothing divides by w when r is
-//! small, so a weightless piece needs no case of its own.
-
-use crate::math::GAUSS;
+//! Each is written in the form that keeps its digits, from T_b − T_a = w l σ. With r = w l/(T_a + T_b), which says how far
+//! the piece is from taut (r → 0) or folded (r → 1),
+//!
+//! ```text
+//! asinh(v_b/h) − asinh(v_a/h) = 2 atanh r
+//! v_b T_b − v_a T_a           = w l (T_b + v_a σ)
+//! v_b T_a − v_a T_b           = w l (T_a − v_a σ) = w l (T_b − v_b σ)
+//! q₀ − c                      = l (v_a + v_b)(v_a T_b + v_b T_a)/((T_a + T_b)² T_a T_b),   q₀ = 2 l/(T_a + T_b)
+//! ```
+//!
+//! Nothing divides by w, so a weightless piece needs no case of its own.
 
 /// Above this r the area tangent loses digits to 1 − r and logarithms are used. At 0.3 the logarithms would
 /// lose as many to their difference; anything between 0.5 and 0.9 gives the same results to 2e-16.
 const LOG_FORM: f64 = 0.7;
-/// Below this r the closed Hessian and energy cancel (error ~ 1e-16/r²), and 5-point Gauss, whose error falls
-/// like r¹⁰, takes over. At 0.3 both are good to 1e-6 of the Hessian, which only steers Newton.
-const GAUSS_FORM: f64 = 0.3;
-/// Below this r the series of atanh(r)/r to r⁴ is exact to round-off.
-const SERIES_FORM: f64 = 1e-3;
+/// Below this r the series of atanh(r)/r to r¹⁴ is exact to round-off: the next term is r¹⁶/17.
+const SERIES_FORM: f64 = 0.1;
 /// Smallest force taken apart from zero (relative to the caller's unit): keeps logarithms finite at a fold.
 const TINY: f64 = 1e-300;
 
@@ -57,18 +60,39 @@ fn tension(h: f64, v: f64) -> f64 {
     if t < TINY { TINY } else { t }
 }
 
-impl Piece {
-    /// (T_a, T_b, q).
+/// What a piece is with a force at its start.
+struct Pulled {
+    va: f64,
+    vb: f64,
+    ta: f64,
+    tb: f64,
+    /// σ.
+    sigma: f64,
+    /// q₀ and q − q₀.
+    q: (f64, f64),
+}
+
+impl Pulled {
     #[inline]
-    fn inverse_tension_integral(&self, h: f64, va: f64) -> (f64, f64, f64) {
+    fn q(&self) -> f64 {
+        self.q.0 + self.q.1
+    }
+}
+
+impl Piece {
+    #[inline]
+    fn pulled(&self, h: f64, va: f64) -> Pulled {
         let vb = va + self.w * self.l;
         let (ta, tb) = (tension(h, va), tension(h, vb));
-        let r = self.w * self.l / (ta + tb);
-        let q = if r < SERIES_FORM {
-            let r2 = r * r;
-            2.0 * self.l / (ta + tb) * (1.0 + r2 * (1.0 / 3.0 + r2 / 5.0))
+        let inverse = 1.0 / (ta + tb);
+        let r = self.w * self.l * inverse;
+        let first = 2.0 * self.l * inverse;
+        let more = if r <= SERIES_FORM {
+            let s = r * r;
+            let more = 1.0 / 9.0 + s * (1.0 / 11.0 + s * (1.0 / 13.0 + s / 15.0));
+            first * s * (1.0 / 3.0 + s * (1.0 / 5.0 + s * (1.0 / 7.0 + s * more)))
         } else if r <= LOG_FORM {
-            (2.0 * r / (1.0 - r)).ln_1p() / self.w
+            (2.0 * r / (1.0 - r)).ln_1p() / self.w - first
         } else {
             // r > 0.7 leaves |v_a| + |v_b| < 1.43 w l: at most one of the sums below is small, never both.
             let a = if h.abs() < TINY { TINY } else { h.abs() };
@@ -79,29 +103,27 @@ impl Piece {
             } else {
                 ((tb + vb) / a).ln() + ((ta - va) / a).ln()
             };
-            log / self.w
+            log / self.w - first
         };
-        (ta, tb, q)
+        Pulled { va, vb, ta, tb, sigma: (va + vb) * inverse, q: (first, more) }
     }
 
     /// Displacement from start to end in the frame of the load.
     #[inline]
     pub fn displacement(&self, h: f64, va: f64) -> (f64, f64) {
-        let (ta, tb, q) = self.inverse_tension_integral(h, va);
-        let sum = va + (va + self.w * self.l);
-        (h * (self.eps * self.l + q), self.l * sum * (0.5 * self.eps + 1.0 / (ta + tb)))
+        let p = self.pulled(h, va);
+        (h * (self.eps * self.l + p.q()), self.l * (0.5 * self.eps * (p.va + p.vb) + p.sigma))
     }
 
-    /// Stretched length l + ε ∫ T ds, ∫ T ds = ½ ((v_b T_b − v_a T_a)/w + h² q) (Gauss where that cancels).
+    /// ∫ T ds = ½ (l (T_b + v_a σ) + h² q).
+    #[inline]
+    fn pull(&self, h: f64, p: &Pulled) -> f64 {
+        0.5 * (self.l * (p.tb + p.va * p.sigma) + h * h * p.q())
+    }
+
+    /// Stretched length l + ε ∫ T ds.
     pub fn stretched(&self, h: f64, va: f64) -> f64 {
-        let vb = va + self.w * self.l;
-        let (ta, tb, q) = self.inverse_tension_integral(h, va);
-        let integral = if self.w * self.l < SERIES_FORM * (ta + tb) {
-            self.l * GAUSS.iter().map(|&(u, weight)| weight * tension(h, va + u * (vb - va))).sum::<f64>()
-        } else {
-            0.5 * ((vb * tb - va * ta) / self.w + h * h * q)
-        };
-        self.l + self.eps * integral
+        self.l + self.eps * self.pull(h, &self.pulled(h, va))
     }
 
     /// ∫ T² ds = l (h² + (v_a² + v_a v_b + v_b²)/3).
@@ -114,41 +136,30 @@ impl Piece {
     /// φ, gradient, Hessian.
     #[inline]
     pub fn energy(&self, h: f64, va: f64) -> Energy {
-        let vb = va + self.w * self.l;
-        let (ta, tb, q) = self.inverse_tension_integral(h, va);
-        let (x, z) = (h * (self.eps * self.l + q), self.l * (va + vb) * (0.5 * self.eps + 1.0 / (ta + tb)));
+        let p = self.pulled(h, va);
         let el = self.eps * self.l;
-        let elastic = 0.5 * self.eps * self.squared(h, va);
-        if self.w * self.l < GAUSS_FORM * (ta + tb) {
-            let (mut k11, mut k12, mut k22, mut sum) = (0.0, 0.0, 0.0, 0.0);
-            for (u, weight) in GAUSS {
-                let v = va + u * (vb - va);
-                let t = tension(h, v);
-                let g = weight / (t * t * t);
-                k11 += g * v * v;
-                k12 -= g * h * v;
-                k22 += g * h * h;
-                sum += weight * t;
-            }
-            let l = self.l;
-            Energy { phi: l * sum + elastic, x, z, k11: el + l * k11, k12: l * k12, k22: el + l * k22 }
+        let Pulled { va, vb, ta, tb, sigma, .. } = p;
+        let both = self.l / (ta * tb);
+        // T_a − v_a σ, all of its terms positive: with T − |v| = h²/(T + |v|) where the signs are equal.
+        let level = if va >= 0.0 {
+            let (a, b) = (1.0 / (ta + va), 1.0 / (tb + vb));
+            h * h * (a + va * (a + b) / (ta + tb))
+        } else if vb <= 0.0 {
+            let (a, b) = (1.0 / (ta - va), 1.0 / (tb - vb));
+            h * h * (b - vb * (a + b) / (ta + tb))
+        } else if sigma >= 0.0 {
+            ta - va * sigma
         } else {
-            // v/T = ±(1 − h²/(T(T + |v|))): of equal signs the ones cancel exactly.
-            let c = if va >= 0.0 {
-                h * h * (1.0 / (ta * (ta + va)) - 1.0 / (tb * (tb + vb))) / self.w
-            } else if vb <= 0.0 {
-                h * h * (1.0 / (tb * (tb - vb)) - 1.0 / (ta * (ta - va))) / self.w
-            } else {
-                (vb / tb - va / ta) / self.w
-            };
-            Energy {
-                phi: 0.5 * ((vb * tb - va * ta) / self.w + h * h * q) + elastic,
-                x,
-                z,
-                k11: el + q - c,
-                k12: -h * self.l * (va + vb) / ((ta + tb) * ta * tb),
-                k22: el + c,
-            }
+            tb - vb * sigma
+        };
+        let rest = (va * tb + vb * ta) / (ta + tb);
+        Energy {
+            phi: self.pull(h, &p) + 0.5 * self.eps * self.squared(h, va),
+            x: h * (el + p.q()),
+            z: self.l * (0.5 * self.eps * (va + vb) + sigma),
+            k11: el + (both * sigma * rest + p.q.1),
+            k12: -h * sigma * both,
+            k22: el + both * level,
         }
     }
 }

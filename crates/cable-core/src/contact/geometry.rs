@@ -140,19 +140,20 @@ impl Edge {
 impl Body {
     /// Edge indices whose boxes meet the given box.
     pub fn candidates(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = usize> {
-        let query = Aabb::new(Vector::new(low.x, low.y), Vector::new(high.x, high.y));
+        self.candidates_where(move |n, x| n.x <= high.x && n.y <= high.y && x.x >= low.x && x.y >= low.y)
+    }
+
+    /// Edge indices whose boxes, from a lowest to a highest point, meet what is asked; `meets` holds for every box around
+    /// one for which it holds.
+    pub fn candidates_where(&self, meets: impl Fn(Vec2, Vec2) -> bool + Copy) -> impl Iterator<Item = usize> {
         let listed = self.bvh.iter().flat_map(move |bvh| {
             bvh.leaves(move |node| {
                 let (n, x) = (node.mins(), node.maxs());
-                n.x <= query.maxs.x && n.y <= query.maxs.y && x.x >= query.mins.x && x.y >= query.mins.y
+                meets(Vec2::new(n.x, n.y), Vec2::new(x.x, x.y))
             })
         });
-        let meets = move |e: &Edge| {
-            let (n, x) = (e.p.inf(&e.q), e.p.sup(&e.q));
-            n.x <= high.x && n.y <= high.y && x.x >= low.x && x.y >= low.y
-        };
         let all = if self.bvh.is_none() { self.edges.as_slice() } else { &[] };
-        let moving = all.iter().enumerate().filter(move |(_, e)| meets(e)).map(|(k, _)| k);
+        let moving = all.iter().enumerate().filter(move |(_, e)| meets(e.p.inf(&e.q), e.p.sup(&e.q))).map(|(k, _)| k);
         listed.map(|leaf| leaf as usize).filter(|&k| k < self.edges.len()).chain(moving)
     }
 

@@ -356,8 +356,14 @@ impl Piece {
             Inertia::QuasiStatic => (breaking_n, SLOW_LOOKS),
         };
         if looks > 1.0 && rupture::greatest(&self.answer.nodes) < near_n {
-            let before = (self.mechanics.boxed_clone(), self.answer.clone());
-            let report = self.mechanics.advance(dt_s, inertia)?;
+            let before = (self.mechanics.boxed_clone(), std::mem::take(&mut self.answer));
+            let report = match self.mechanics.advance(dt_s, inertia) {
+                Ok(report) => report,
+                Err(error) => {
+                    self.answer = before.1;
+                    return Err(error);
+                }
+            };
             self.look();
             if rupture::greatest(&self.answer.nodes) < near_n {
                 self.quiet = self.quiet.saturating_sub(looks as u32);

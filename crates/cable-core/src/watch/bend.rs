@@ -147,21 +147,14 @@ pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Le
     if problem.world.is_empty() {
         return Lead::Free;
     }
-    let mut gaps = Vec::new();
-    for (a, b) in [(node.checked_sub(1), Some(node)), (Some(node), Some(node + 1))] {
-        if let (Some(a), Some(b)) = (a.and_then(at), b.and_then(at)) {
-            problem.world.segment_gaps(a, b, TOUCH, &mut gaps);
-        }
-    }
-    // A flat edge leads nobody round: only corners and circles do. Features of a body count edge, corner, edge, corner.
-    let bodies = problem.world.geometry().bodies();
-    let rounds = gaps.iter().filter(|g| g.gap_m < TOUCH).filter_map(|g| {
-        let body = bodies.iter().find(|b| b.obstacle == g.obstacle)?;
-        (body.center.is_some() || g.feature.abs_diff(body.first) % 2 == 1).then_some((g.gap_m, body))
-    });
-    rounds
-        .min_by(|a, b| a.0.total_cmp(&b.0))
-        .map_or(Lead::Free, |(_, b)| Lead::Round(b.offset, if b.center.is_some() { LEAST_TURN } else { CORNER_TURN }))
+    // A flat edge leads nobody round: only corners and circles do.
+    let chain = [node.checked_sub(1), Some(node), Some(node + 1)].map(|k| k.and_then(at));
+    let chain = chain.map(|p| p.unwrap_or(here));
+    problem
+        .world
+        .geometry()
+        .round_near(&chain, TOUCH)
+        .map_or(Lead::Free, |b| Lead::Round(b.offset, if b.center.is_some() { LEAST_TURN } else { CORNER_TURN }))
 }
 
 /// Whether the cable lies on the outline of the robot at a node or beside it: that moves, and is not among the obstacles.

@@ -17,8 +17,8 @@ pub(super) struct Band {
 impl Band {
     /// All zero, of a size.
     pub fn reset(&mut self, n: usize) {
-        self.rows.clear();
         self.rows.resize(n, [0.0; WIDTH]);
+        self.rows.iter_mut().for_each(|row| *row = [0.0; WIDTH]);
     }
 
     /// Adds to an entry; entries outside the band or the matrix must not be asked for and are left out.
@@ -61,57 +61,68 @@ impl Band {
     }
 
     /// Solves A x = b in place of b; false where A is singular or not finite.
-    pub fn solve(&mut self, b: &mut [f64]) -> bool {
+    pub fn solve(&mut self, b: &mut Vec<f64>) -> bool {
         let n = self.rows.len();
         self.negative = false;
-        for k in 0..n {
-            let last = (k + BAND + 1).min(n);
-            let (Some((pivot_row, below)), Some((right, b))) =
-                (self.rows[k..last].split_first_mut(), b[k..last].split_first_mut())
-            else {
-                return false;
-            };
-            let (mut best, mut size) = (None, pivot_row[BAND].abs());
-            for (d, row) in below.iter().enumerate() {
-                let v = row[BAND - 1 - d].abs();
-                if v > size || v.is_nan() {
-                    (best, size) = (Some(d), v);
-                }
-            }
-            if !(size > 0.0 && size.is_finite()) {
-                return false;
-            }
-            if let Some(d) = best {
-                // Both rows in the columns k … k + 2 BAND, each at its own place.
-                let other = &mut below[d][BAND - 1 - d..];
-                pivot_row[BAND..].iter_mut().zip(other).for_each(|(a, b)| std::mem::swap(a, b));
-                std::mem::swap(right, &mut b[d]);
-                self.negative = !self.negative;
-            }
-            self.negative ^= pivot_row[BAND] < 0.0;
-            let [inverse, right] = [1.0 / pivot_row[BAND], *right];
-            let known: &[f64; 2 * BAND] = pivot_row.last_chunk().unwrap_or(&[0.0; 2 * BAND]);
-            for (d, (row, b)) in below.iter_mut().zip(b).enumerate() {
-                let row = &mut row[BAND - 1 - d..];
-                let factor = row[0] * inverse;
-                if factor == 0.0 {
-                    continue;
-                }
-                // The columns k + 1 … k + 2 BAND; those beyond the matrix hold zeros.
-                if let Some(row) = row[1..].first_chunk_mut::<{ 2 * BAND }>() {
-                    for (v, p) in row.iter_mut().zip(known) {
-                        *v -= factor * p;
-                    }
-                }
-                *b -= factor * right;
-            }
+        // Rows of nothing after the last, so that each has as many below it.
+        self.rows.resize(n + BAND, [0.0; WIDTH]);
+        b.resize(n + BAND, 0.0);
+        let found = (0..n).all(|k| self.eliminate(k, b));
+        self.rows.truncate(n);
+        if !found {
+            return false;
         }
         for k in (0..n).rev() {
-            let row = &self.rows[k];
-            let known = row[BAND + 1..].iter().zip(&b[k + 1..]).fold(b[k], |sum, (a, x)| sum - a * x);
-            b[k] = known / row[BAND];
+            let (Some(row), Some([own, after @ ..])) = (self.rows.get(k), b.get_mut(k..)) else { return false };
+            let known = row[BAND + 1..].iter().zip(after).fold(*own, |sum, (a, x)| sum - a * *x);
+            *own = known / row[BAND];
         }
+        b.truncate(n);
         b.iter().all(|v| v.is_finite())
+    }
+
+    /// Column k goes from the rows below row k; false where it has no pivot.
+    fn eliminate(&mut self, k: usize, b: &mut [f64]) -> bool {
+        let windows = (self.rows.get_mut(k..), b.get_mut(k..));
+        let (Some(rows), Some(b)) = windows else { return false };
+        let (Some([pivot, below @ ..]), Some([right, b @ ..])) =
+            (rows.first_chunk_mut::<{ BAND + 1 }>(), b.first_chunk_mut::<{ BAND + 1 }>())
+        else {
+            return false;
+        };
+        let (mut best, mut size) = (None, pivot[BAND].abs());
+        for (d, row) in below.iter().enumerate() {
+            let v = row[BAND - 1 - d].abs();
+            if v > size || v.is_nan() {
+                (best, size) = (Some(d), v);
+            }
+        }
+        if !(size > 0.0 && size.is_finite()) {
+            return false;
+        }
+        if let Some(d) = best {
+            // Both rows in the columns k … k + 2 BAND, each at its own place.
+            let other = &mut below[d][BAND - 1 - d..];
+            pivot[BAND..].iter_mut().zip(other).for_each(|(a, b)| std::mem::swap(a, b));
+            std::mem::swap(right, &mut b[d]);
+            self.negative = !self.negative;
+        }
+        self.negative ^= pivot[BAND] < 0.0;
+        let [inverse, right] = [1.0 / pivot[BAND], *right];
+        let known: [f64; 2 * BAND] = std::array::from_fn(|i| pivot[BAND + 1 + i]);
+        for d in 0..BAND {
+            let row = &mut below[d];
+            let factor = row[BAND - 1 - d] * inverse;
+            if factor == 0.0 {
+                continue;
+            }
+            // The columns k + 1 … k + 2 BAND; those beyond the matrix hold zeros.
+            for i in 0..2 * BAND {
+                row[BAND - d + i] -= factor * known[i];
+            }
+            b[d] -= factor * right;
+        }
+        true
     }
 }
 

@@ -1,5 +1,5 @@
 //! The check of an answer that does not use the solver: lengths by quadrature of the law of the free cable, balance of
-//! each contact from its ends, the cone of friction along it. That no span is inside an obstacle is the last that `events` finds, by the obstacles' own distance.
+//! each contact from its ends, the cone of friction along it. That nothing is inside an obstacle is looked at in `gaps`.
 
 use super::law::Track;
 use super::strand::{Contact, Course, Strand, Tie};
@@ -16,8 +16,10 @@ const BEYOND: f64 = 1e-9;
 const SAMPLES: usize = 8;
 /// A span hangs in one line when the force across the load is below this part of its load.
 const FOLDED: f64 = 1e-12;
-/// Panels of a span far from its fold.
+/// Panels of a span beside its fold.
 const TAUT_PANELS: usize = 4;
+/// Lengths of a span from which its fold is so far that one panel leaves 1e-12.
+const FAR: f64 = 4.0;
 /// Panels of the quadrature of a span, in v; 5 Gauss points each leave 1e-12.
 const PANEL: f64 = 0.5;
 
@@ -83,10 +85,12 @@ fn way(strand: &Strand, course: &Course, k: usize, [from, to]: [f64; 2]) -> Vec2
         return straight(from, fold) + straight(fold, to);
     }
     let middle = from + start.dot(&course.law.load) / (b * b);
-    if middle < 2.0 * from - to || middle > 2.0 * to - from {
-        // Far from the fold it is smooth as it is.
-        let h = (to - from) / TAUT_PANELS as f64;
-        let points = (0..TAUT_PANELS).flat_map(|j| GAUSS.map(|(u, weight)| (from + (j as f64 + u) * h, weight * h)));
+    // T² = H² + b² (s − s*)²: smooth as it is far from s* ± i H/b.
+    let far = (0.5 * (from + to) - middle).hypot(across / b);
+    if middle < 2.0 * from - to || middle > 2.0 * to - from || far > FAR * (to - from) {
+        let panels = if far > FAR * (to - from) { 1 } else { TAUT_PANELS };
+        let h = (to - from) / panels as f64;
+        let points = (0..panels).flat_map(|j| GAUSS.map(|(u, weight)| (from + (j as f64 + u) * h, weight * h)));
         return points.fold(Vec2::zeros(), |sum, (s, weight)| sum + course.rate(force(s)) * weight);
     }
     let (v0, v1) = ((b * (from - middle) / across).asinh(), (b * (to - middle) / across).asinh());

@@ -3,6 +3,7 @@
 use super::check;
 use super::events;
 use super::foresee::foresee;
+use super::gaps;
 use super::history::Mode;
 use super::instant::{Instant, Layout, place_ends};
 use super::lay;
@@ -11,6 +12,7 @@ use super::pass;
 use super::pocket;
 use super::strand::{Course, Strand};
 use super::take;
+use super::tight;
 use super::trouble::Trouble;
 use crate::math::Vec2;
 use crate::solution::Node;
@@ -33,6 +35,9 @@ const MOST_POCKETS: usize = 3;
 /// Tension at which a rest is first sought, of the weight of the cable: so taut that it touches only what it is led
 /// round. Less: it lies on more than the string of the route. More: nothing gained.
 const TAUT: f64 = 4.0;
+/// The same where that finds none: corners that the string of the route bends round and the cable does not give away more
+/// than it was shrunk by.
+const TAUTER: f64 = 400.0;
 /// Part of the load that acts at first. More: a long span sags into what is below it before it can be met step by step.
 /// Less: nothing gained.
 const LIGHT: f64 = 1e-3;
@@ -76,7 +81,8 @@ impl Network {
         let course = layout.course(curves, instant);
         // As it is laid; else where it needs no friction; either may have to begin taut.
         let smooth = Instant { friction: 0.0, ..instant.clone() };
-        let ways = [(instant, false), (&smooth, false), (&smooth, true), (instant, true)];
+        let ways =
+            [(instant, None), (&smooth, None), (&smooth, Some(TAUT)), (instant, Some(TAUT)), (&smooth, Some(TAUTER))];
         // What is not held at both ends would run to where it needs no friction.
         let held = layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
         let (mut first, mut stopped) = (None, None);
@@ -91,7 +97,7 @@ impl Network {
             }) {
                 Ok(taken) => return Ok((network, taken)),
                 Err(trouble) => {
-                    if cooled && stopped.is_none() {
+                    if cooled.is_some() && stopped.is_none() {
                         stopped = Some((trouble.clone(), Some(Box::new(network))));
                     }
                     first = first.or(Some((trouble, None)));
@@ -121,7 +127,7 @@ impl Network {
     }
 
     /// Lays it along the route as it is, or shrunk until it is taut and then let out again.
-    fn laid(&mut self, layout: &Layout, goal: &Instant, shrunk: bool, work: &mut Work) -> Result<Taken, Trouble> {
+    fn laid(&mut self, layout: &Layout, goal: &Instant, taut: Option<f64>, work: &mut Work) -> Result<Taken, Trouble> {
         let mut begin = goal.clone();
         layout.give(&mut self.course, &begin);
         self.strands.clear();
@@ -133,14 +139,14 @@ impl Network {
             self.strands.push(strand);
             came.push(way);
         }
-        if shrunk {
-            begin.thermal = self.shrunk_thermal(layout, goal);
+        if let Some(taut) = taut {
+            begin.thermal = self.shrunk_thermal(layout, goal, taut);
             begin.load *= LIGHT;
             begin.forces.iter_mut().for_each(|f| *f *= LIGHT);
             layout.give(&mut self.course, &begin);
             for (strand, part) in self.strands.iter_mut().zip(&layout.strands) {
                 if part.supports.iter().all(Option::is_some) {
-                    lay::tighten(strand, &self.course);
+                    tight::tighten(strand, &self.course);
                 }
             }
         }
@@ -158,7 +164,7 @@ impl Network {
         if met {
             taken = taken.and(self.step(layout, &begin, work)?);
         }
-        if !shrunk {
+        if taut.is_none() {
             return Ok(taken);
         }
         let heavy = Instant { thermal: begin.thermal, ..goal.clone() };
@@ -167,13 +173,13 @@ impl Network {
     }
 
     /// The factor on lengths at which the cable is taut along the string of its route.
-    fn shrunk_thermal(&self, layout: &Layout, goal: &Instant) -> f64 {
+    fn shrunk_thermal(&self, layout: &Layout, goal: &Instant, taut: f64) -> f64 {
         let p = &layout.problem;
         let drawn: f64 = goal.forces.iter().map(|f| f.norm()).sum();
-        let tension = TAUT * goal.load.norm() * p.length + drawn;
+        let tension = taut * goal.load.norm() * p.length + drawn;
         let mut least = goal.thermal;
         for s in &self.strands {
-            let way = lay::taut_length(s, &self.course);
+            let way = tight::taut_length(s, &self.course);
             let taut = way / ((s.to - s.from) * (1.0 + tension / p.axial_stiffness));
             if taut < least && taut > 0.0 {
                 least = taut;
@@ -289,6 +295,7 @@ impl Network {
             c.history.commit(&track, &c.ends, (c.mode, c.held), &mut work.past);
         }
         check::sound(&self.strands[k], &self.course)?;
+        gaps::clear(&self.strands[k], &self.course, world)?;
         let clear = || pass::clear(start, &self.strands[k], &self.course, &layout.corners);
         if !world.is_empty() && came.is_none() && !clear() {
             let [old, new] = &mut work.shapes;

@@ -4,6 +4,7 @@
 //! an obstacle the neighbouring contact is drawn out to it, or a new one begins at a point. After each the strand is
 //! solved again, until nothing fires.
 
+use super::curve::{Curve, Home};
 use super::history::{Ends, History, Knot, Mode};
 use super::newton::{self, Solved, Work};
 use super::pass;
@@ -24,6 +25,8 @@ const TURNED: f64 = 1e-10;
 /// is seen.
 const DEEP: f64 = 1e-9;
 const DEEPEST: f64 = 1e-6;
+/// Edges that a contact grows over at once.
+const MOST_EDGES: usize = 8;
 /// A support this near to a boundary lies on it, m.
 pub(super) const ON: f64 = 1e-9;
 
@@ -46,16 +49,17 @@ pub(super) fn solve(
         })?;
         sum.iterations += found.iterations;
         sum.residual = found.residual;
-        if release(strand, course)?
+        // What was passed on the way says better than what is inside on which side of it the cable shall be.
+        let changed = release(strand, course)?
             || join(strand, course)
             || pocket::open(strand, course)
-            || meet(strand, course, world, came.is_some())?
-        {
-            continue;
-        }
-        match came {
-            Some(came) if passed(strand, course, (corners, came), work)? => {}
-            _ => return Ok(sum),
+            || match came {
+                Some(came) => passed(strand, course, (corners, came), work)?,
+                None => false,
+            }
+            || meet(strand, course, world, came.is_some())?;
+        if !changed {
+            return Ok(sum);
         }
     }
     Err(Trouble::Restless { s: strand.from })
@@ -237,19 +241,24 @@ fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit, resting: boo
     let curve_index = 2 * hit.body + usize::from(back);
     let Some(curve) = course.curves.get(curve_index) else { return Err(no_seat) };
     let load = course.law.load;
-    let Some(i) = curve.piece_of(hit.gap.feature, hit.at) else { return Err(no_seat) };
+    // In a kink there is nothing but its edges.
+    let kink = || [1, 3].into_iter().find_map(|back| curve.piece_of(hit.gap.feature.checked_sub(back)?, hit.at));
+    let Some(i) = curve.piece_of(hit.gap.feature, hit.at).or_else(kink) else { return Err(no_seat) };
     // Of a wall or an underside the cable goes round the corner that is nearer.
     let found = curve.chain(i, load).or_else(|| curve.chain(curve.corner_beside(i, hit.at)?, load));
     let Some((i, home)) = found else { return Err(no_seat) };
     let edge = curve.place_on(i, 0.0).turn == 0.0;
     let p = if edge { curve.project(i, hit.at) } else { curve.with_tangent(i, hit.tangent) };
+    let ends = strand.ends_of(course, k);
     let force = strand.force(course, k, hit.s).norm();
     let same = |c: &Contact| c.curve == curve_index && c.home == home && c.wheel.is_none();
     if let Some(c) = k.checked_sub(1).and_then(|j| strand.contacts.get_mut(j)).filter(|c| same(c) && p > c.ends.p[1]) {
+        let p = beyond_edges(curve, home, (p, 1), ends[1]);
         (c.ends.p[1], c.ends.s[1], c.ends.t[1]) = (p, hit.s, force);
         return Ok(());
     }
     if let Some(c) = strand.contacts.get_mut(k).filter(|c| same(c) && p < c.ends.p[0]) {
+        let p = beyond_edges(curve, home, (p, 0), ends[0]);
         (c.ends.p[0], c.ends.s[0], c.ends.t[0]) = (p, hit.s, force);
         return Ok(());
     }
@@ -293,5 +302,51 @@ fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit, resting: boo
             strand.ties[side] = Tie::Lies(p);
         }
     }
+    if resting {
+        lead(strand, course, k);
+    }
     Ok(())
+}
+
+/// From p, where a contact ends on a side, on to the corner behind each edge that the way to the far end of the span there
+/// leads into: along an edge nothing turns, and Newton's method does not find across it.
+fn beyond_edges(curve: &Curve, home: Home, (mut p, side): (f64, usize), far: Option<Vec2>) -> f64 {
+    let (step, forward) = if side == 0 { (-1, -1.0) } else { (1, 1.0) };
+    let Some(far) = far else { return p };
+    let inside = |i: i64| i >= home.first && i <= home.last;
+    let mut i = curve.locate(p, home);
+    for _ in 0..MOST_EDGES {
+        let edge = if curve.is_arc(i) { i + step } else { i };
+        let arc = edge + step;
+        let way = (far - curve.place(p, home).at) * forward;
+        if !inside(edge) || !inside(arc) || curve.is_arc(edge) || !curve.is_arc(arc) {
+            break;
+        }
+        // An arc leads on to its edge where it does not come to run along the way.
+        if curve.is_arc(i) && curve.aside(i, way) != step {
+            break;
+        }
+        let place = curve.place_on(edge, 0.0);
+        let corner = curve.place_on(arc, if side == 0 { curve.piece(arc).extent } else { 0.0 }).at;
+        // On beyond the end of the edge, and below it there.
+        let on = (far - corner) * forward;
+        if (far - corner).dot(&place.normal) >= 0.0 || on.dot(&place.tangent) <= 0.0 {
+            break;
+        }
+        (p, i) = (curve.with_tangent(arc, on), arc);
+    }
+    p
+}
+
+/// What has been laid down in span k leads the contacts beside it over their edges.
+fn lead(strand: &mut Strand, course: &Course, k: usize) {
+    for (j, side) in [(k.checked_sub(1), 1), (Some(k + 1), 0)] {
+        let Some(j) = j.filter(|&j| strand.contacts.get(j).is_some_and(|c| c.wheel.is_none())) else { continue };
+        let far = strand.ends_of(course, j + side)[side];
+        let c = &mut strand.contacts[j];
+        let p = beyond_edges(&course.curves[c.curve], c.home, (c.ends.p[side], side), far);
+        let track = course.track(c);
+        let way = track.curve.length(c.ends.p[side], p, c.home) / course.law.stretch(c.ends.t[side]);
+        (c.ends.p[side], c.ends.s[side]) = (p, c.ends.s[side] + way);
+    }
 }

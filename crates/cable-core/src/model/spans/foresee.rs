@@ -16,9 +16,12 @@
 //! the cable whose contacts end where they did; the ends then follow the new directions. All that is a guess: Newton's method
 //! for the whole starts there and judges each contact again.
 
+use super::curve::Place;
 use super::history::Mode;
-use super::strand::{Course, Strand, Tie};
-use crate::math::{Vec2, cross, larger};
+use super::law::Track;
+use super::piece::Pivot;
+use super::strand::{Contact, Course, Strand, Tie};
+use crate::math::{Vec2, angle, larger};
 
 /// Rounds of changing sides, over two for each contact.
 const MORE_ROUNDS: usize = 6;
@@ -69,6 +72,8 @@ pub(super) struct Foresight {
     links: Vec<Link>,
     /// Upper diagonal and right-hand side of the elimination.
     swept: Vec<(f64, f64)>,
+    /// The places of both ends of each contact, and the piece of the first.
+    spots: Vec<([Place; 2], Pivot)>,
 }
 
 /// Gives each contact the mode that the step will ask for, and contacts and spans their place, as far as that can be foreseen.
@@ -77,10 +82,14 @@ pub(super) fn foresee(strand: &mut Strand, course: &Course, memory: &mut Foresig
         return;
     }
     strand.take_tensions(course);
-    memory.bars.clear();
-    memory.bars.extend((0..strand.spans()).map(|k| span(strand, course, k)));
-    memory.links.clear();
-    memory.links.extend((0..strand.contacts.len()).map(|j| link(strand, course, j)));
+    let Foresight { bars, links, spots, .. } = memory;
+    let seen = |c: &Contact| Pivot::of_ends(&course.curves[c.curve], c.home, &course.law, c.ends.p);
+    spots.clear();
+    spots.extend(strand.contacts.iter().map(seen));
+    bars.clear();
+    bars.extend((0..strand.spans()).map(|k| span(strand, course, (spots, k))));
+    links.clear();
+    links.extend((0..strand.contacts.len()).map(|j| link(strand, course, (spots, j))));
     let Some(settled) = memory.rounds(course, strand.from) else { return };
     for (c, l) in strand.contacts.iter_mut().zip(&memory.links) {
         let friction = course.friction(c);
@@ -94,17 +103,17 @@ pub(super) fn foresee(strand: &mut Strand, course: &Course, memory: &mut Foresig
 }
 
 /// A span as it is, to begin with.
-fn span(strand: &Strand, course: &Course, k: usize) -> Bar {
+fn span(strand: &Strand, course: &Course, (spots, k): (&[([Place; 2], Pivot)], usize)) -> Bar {
     if !strand.has_span(k) {
         return Bar::default();
     }
     let (from, to) = strand.material(k);
     let forces = [strand.force(course, k, from), strand.force(course, k, to)];
-    let chord = match strand.ends_of(course, k) {
-        [Some(a), Some(b)] => Some(b - a),
-        // What hangs keeps its force.
-        _ => None,
-    };
+    let held = |t: &Tie| if let Tie::Held(at) = t { Some(*at) } else { None };
+    let before = k.checked_sub(1).and_then(|j| spots.get(j)).map_or_else(|| held(&strand.ties[0]), |s| Some(s.0[1].at));
+    let after = spots.get(k).map_or_else(|| held(&strand.ties[1]), |s| Some(s.0[0].at));
+    // What hangs keeps its force.
+    let chord = before.zip(after).map(|(a, b)| b - a);
     let tension = forces.map(|f| f.norm());
     Bar { chord, force: strand.forces[k], material: [from, to], tension, ..Bar::default() }
 }
@@ -142,9 +151,10 @@ fn follow(strand: &mut Strand, course: &Course, memory: &Foresight) {
         for side in 0..2 {
             let Some(force) = strand.force_at_contact(course, j, side) else { continue };
             let c = &strand.contacts[j];
-            let track = course.track(c);
-            let place = track.place(c.ends.p[side]);
-            let angle = cross(place.tangent, force).atan2(place.tangent.dot(&force));
+            let Some((places, pivot)) = memory.spots.get(j) else { continue };
+            let track = Track { pivot: Some(*pivot), ..course.track(c) };
+            let place = &places[side];
+            let angle = angle(place.tangent, force);
             if place.turn == 0.0 || !(angle.abs() <= FOLLOWS) {
                 continue;
             }
@@ -160,7 +170,7 @@ fn follow(strand: &mut Strand, course: &Course, memory: &Foresight) {
     }
 }
 
-fn link(strand: &Strand, course: &Course, j: usize) -> Link {
+fn link(strand: &Strand, course: &Course, (spots, j): (&[([Place; 2], Pivot)], usize)) -> Link {
     let c = &strand.contacts[j];
     let e = &c.ends;
     let ties = [(j == 0).then(|| strand.ties[0]), (j + 1 == strand.contacts.len()).then(|| strand.ties[1])];
@@ -169,7 +179,7 @@ fn link(strand: &Strand, course: &Course, j: usize) -> Link {
     if lies || strand.in_pocket(j, 0) || strand.in_pocket(j, 1) || !(e.p[1] > e.p[0] && e.t[0] > 0.0) {
         return out;
     }
-    let (track, friction) = (course.track(c).seen_from(e.p[0]), course.friction(c));
+    let (track, friction) = (Track { pivot: spots.get(j).map(|s| s.1), ..course.track(c) }, course.friction(c));
     out.reach = Some([-friction, friction].map(|m| {
         let way = track.slide(e.p[0], e.p[1], e.t[0], m);
         (way.tension, way.by_tension)

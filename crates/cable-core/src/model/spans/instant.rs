@@ -188,7 +188,7 @@ impl Layout {
     /// The course at an instant; the boundaries are those of `self.curves()`.
     pub fn course(&self, curves: Vec<Curve>, instant: &Instant) -> Course {
         let loads = self.loads.iter().map(|l| PointForce { arc_length: l.arc_length, force: Vec2::zeros() });
-        let law = Law { load: instant.load, thermal: instant.thermal, stiffness: self.problem.axial_stiffness };
+        let law = Law::new(instant.load, instant.thermal, self.problem.axial_stiffness);
         let mut course = Course { curves, law, drag: 0.0, loads: loads.collect() };
         self.give(&mut course, instant);
         course

@@ -18,28 +18,12 @@
 //! ```
 //!
 //! and the exact T differs by −c ∫ e^{m(ψ−ξ)} (b·t + m b·n)(1/λ(T⁰) − 1/λ₀) dξ, a small part (of order cb·ΔT/EA) of a
-//! small part; what this leaves out is of the order of its square over T. Material is c ∫ dψ/λ. Both by Gauss.
+//! small part; what this leaves out is of the order of its square over T. Material is c ∫ dψ/λ. Both in `arc`.
 
+use super::arc::Way;
 use super::curve::{Curve, Home, Place};
 use super::piece::{OnPiece, Pivot};
-use crate::math::{GAUSS, Vec2, sin_cos};
-
-/// Longest stretch of an arc taken by one rule of 5 Gauss points, rad. At 0.8 a full turn at μ = 0.5 is exact to 1e-13.
-const PANEL: f64 = 0.8;
-
-/// Longest stretch of an arc for which 3 points will do, rad: they leave 4e-10 of the change of 1/λ along it, which is of the
-/// order of T/EA.
-const SHORT: f64 = 0.3;
-
-/// A rule of Gauss: weight of the middle, distance of a pair from there as part of the whole and weight of each.
-struct Rule {
-    middle: f64,
-    pairs: &'static [(f64, f64)],
-}
-
-const THREE: Rule = Rule { middle: 4.0 / 9.0, pairs: &[(0.387_298_334_620_741_7, 5.0 / 18.0)] };
-const FIVE: Rule =
-    Rule { middle: GAUSS[2].1, pairs: &[(0.5 - GAUSS[0].0, GAUSS[0].1), (0.5 - GAUSS[1].0, GAUSS[1].1)] };
+use crate::math::{Vec2, exp};
 
 /// Load and stiffness of a cable at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +34,8 @@ pub(super) struct Law {
     pub thermal: f64,
     /// EA, N.
     pub stiffness: f64,
+    /// 1/EA, 1/N.
+    pub compliance: f64,
 }
 
 /// A point of the boundary as the law sees it.
@@ -77,19 +63,24 @@ pub(super) struct Step {
 }
 
 impl Law {
+    /// With a load per metre (N/m), τ and EA (N).
+    pub fn new(load: Vec2, thermal: f64, stiffness: f64) -> Self {
+        Self { load, thermal, stiffness, compliance: 1.0 / stiffness }
+    }
+
     /// λ of a tension.
     pub fn stretch(&self, t: f64) -> f64 {
-        self.thermal * (1.0 + t / self.stiffness)
+        self.thermal * (1.0 + t * self.compliance)
     }
 
     /// Θ = T + T²/2EA of a tension.
     pub fn theta(&self, t: f64) -> f64 {
-        t + 0.5 * t * t / self.stiffness
+        t + 0.5 * t * t * self.compliance
     }
 
     /// The tension of Θ; −EA (crushed to nothing) where there is none.
     pub fn tension(&self, theta: f64) -> f64 {
-        let square = 1.0 + 2.0 * theta / self.stiffness;
+        let square = 1.0 + 2.0 * theta * self.compliance;
         2.0 * theta / (1.0 + if square > 0.0 { square.sqrt() } else { 0.0 })
     }
 
@@ -128,78 +119,20 @@ impl Law {
             return self.on_edge(self.edge_rate(from, m), way, t);
         }
         if from.stretch == 0.0 {
-            let grown = (m * way).exp();
+            let grown = exp(m * way);
             return Step { tension: t * grown, material: 0.0, by_tension: grown, material_by_tension: 0.0 };
         }
-        // Load along and out of the arc: t turns by −n, n by t.
-        let mut load = from.load;
-        if way.abs() <= SHORT {
-            return self.on_arc((from.stretch, load), (way, &THREE), t, m);
-        }
-        let panels = (way.abs() / PANEL).ceil().max(1.0);
-        let h = way / panels;
-        let (sin, cos) = sin_cos(h);
-        let mut sum = Step::none(t);
-        for _ in 0..panels as usize {
-            sum = sum.then(self.on_arc((from.stretch, load), (h, &FIVE), sum.tension, m));
-            load = (load.0 * cos - load.1 * sin, load.1 * cos + load.0 * sin);
-        }
-        sum
+        Way::new(from, way).slide(self, t, m).0
     }
 
     fn on_edge(&self, rate: f64, x: f64, t: f64) -> Step {
         let tension = self.tension(self.theta(t) + rate * x);
-        let (a, b) = (1.0 + t / self.stiffness, 1.0 + tension / self.stiffness);
+        let (a, b) = (1.0 + t * self.compliance, 1.0 + tension * self.compliance);
         let by_tension = a / b;
         let mean = 0.5 * (a + b);
         let material = x / (self.thermal * mean);
-        let material_by_tension = -material / mean * (1.0 + by_tension) / (2.0 * self.stiffness);
+        let material_by_tension = -material / mean * (1.0 + by_tension) * (0.5 * self.compliance);
         Step { tension, material, by_tension, material_by_tension }
-    }
-
-    /// Along a stretch h of an arc of radius c, with (b·t, b·n) at its start.
-    fn on_arc(&self, (c, (bt, bn)): (f64, (f64, f64)), (h, rule): (f64, &Rule), t: f64, m: f64) -> Step {
-        let first = 1.0 / self.stretch(t);
-        let g = c * first;
-        let divided = g / (1.0 + m * m);
-        let (alpha, beta) = (2.0 * divided * m, divided * (m * m - 1.0));
-        let own = t - alpha * bt - beta * bn;
-        // sin ψ, cos ψ, e^{mψ} and e^{−mψ} of a turn; of one after another.
-        let turn = |psi: f64| {
-            let ((sin, cos), grown) = (sin_cos(psi), if m == 0.0 { 1.0 } else { (m * psi).exp() });
-            [sin, cos, grown, 1.0 / grown]
-        };
-        let on =
-            |a: [f64; 4], b: [f64; 4]| [a[0] * b[1] + a[1] * b[0], a[1] * b[1] - a[0] * b[0], a[2] * b[2], a[3] * b[3]];
-        let back = |a: [f64; 4]| [-a[0], a[1], a[3], a[2]];
-        let tension =
-            |[sin, cos, grown, _]: [f64; 4]| alpha * (bt * cos - bn * sin) + beta * (bn * cos + bt * sin) + own * grown;
-        let (mut correction, mut material, mut by) = (0.0, 0.0, 0.0);
-        let (along, out) = (bt + m * bn, m * bt - bn);
-        let mut node = |turn: [f64; 4], weight: f64| {
-            let inverse = 1.0 / self.stretch(tension(turn));
-            let [sin, cos, grown, shrunk] = turn;
-            // b·t + m b·n there.
-            correction += weight * (along * cos + out * sin) * shrunk * (inverse - first);
-            material += weight * inverse;
-            by += weight * grown * inverse * inverse;
-        };
-        // The nodes lie alike on both sides of the middle, and the end is as far from there as the start.
-        let middle = turn(0.5 * h);
-        node(middle, rule.middle);
-        for (off, weight) in rule.pairs {
-            let off = turn(off * h);
-            node(on(middle, off), *weight);
-            node(on(middle, back(off)), *weight);
-        }
-        let end = on(middle, middle);
-        let (t0, grown) = (tension(end), end[2]);
-        Step {
-            tension: t0 - c * h * grown * correction,
-            material: c * h * material,
-            by_tension: grown,
-            material_by_tension: -c * h * by * self.thermal / self.stiffness,
-        }
     }
 }
 

@@ -6,15 +6,19 @@ use super::history::{Ends, History, Knot, Mode};
 use super::instant::{Instant, Layout, Part, Pulley};
 use super::strand::{Contact, Course, Strand, Tie};
 use super::taut::{self, Bend};
+use super::tight;
 use super::way::{Way, way};
 use crate::contact::World;
-use crate::math::{Vec2, cross};
+use crate::math::{Vec2, cross, smaller};
 
 /// Ends of a route this near to a boundary lie on it, of the cable's radius.
 const LIES: f64 = 0.05;
 /// Tension with which the cable is laid at least where it does not lie in one piece, of its weight. Smaller: spans over
 /// hollows shrink to nothing. Larger: friction at a free end has to hold it, and it slides there first.
 const LAID: f64 = 1e-3;
+/// A route longer than the cable by more than this part is not how it lies: no cable is strained so. It is laid along the string
+/// then. Smaller: a cable laid taut is laid anew with other tensions. Larger: the first guess is far off.
+const LONG: f64 = 0.05;
 /// Points of a route between its ends lie on a boundary if they are this near, of the cable's radius: routes follow the
 /// surface, the centre line is cut off at kinks.
 const NEAR: f64 = 0.5;
@@ -111,8 +115,7 @@ fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way:
     for (side, h) in heads.iter().enumerate() {
         let Some(h) = h else { continue };
         let way_at = |k: usize| at(way.along[k]);
-        let room = 0.5 * (h.p[1] - h.p[0]);
-        let join = if join < room { join } else { room };
+        let join = smaller(join, 0.5 * (h.p[1] - h.p[0]));
         let s = if side == 0 { [from, way_at(first) - join] } else { [way_at(last) + join, to] };
         let p = if side == 0 { [h.p[0], h.p[1] - join] } else { [h.p[0] + join, h.p[1]] };
         let c = contact(course, (h.curve, h.home), (p, s), tension);
@@ -125,13 +128,22 @@ fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way:
         measure(&mut strand, course, [loose(0), loose(1)], stretch);
     }
     spread(&mut strand, course);
+    solve_spans(&mut strand, course)?;
+    if slack > LONG && heads.iter().all(Option::is_none) && !loose(0) && !loose(1) {
+        tight::relay(&mut strand, course);
+    }
+    Some(strand)
+}
+
+/// Forces of spans whose ends and material are known.
+fn solve_spans(strand: &mut Strand, course: &Course) -> Option<()> {
     for k in 0..strand.spans() {
         if strand.has_span(k) {
             strand.forces[k] = strand.solve_span(course, k)?;
         }
     }
     strand.take_tensions(course);
-    Some(strand)
+    Some(())
 }
 
 /// A strand that lies on one boundary from end to end.
@@ -207,39 +219,9 @@ fn bare(part: &Part, instant: &Instant) -> Option<Strand> {
     part.pulleys.is_empty().then(|| Strand { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()] })
 }
 
-/// Length of the taut string through what it touches, m.
-pub(super) fn taut_length(strand: &Strand, course: &Course) -> f64 {
-    let own = |c: &Contact| course.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.home);
-    let spans: f64 = (0..strand.spans())
-        .filter_map(|k| match strand.ends_of(course, k) {
-            [Some(a), Some(b)] => Some((b - a).norm()),
-            _ => None,
-        })
-        .sum();
-    spans + strand.contacts.iter().map(own).sum::<f64>()
-}
-
-/// Spreads the material of a strand that is held at both ends evenly along its taut string.
-pub(super) fn tighten(strand: &mut Strand, course: &Course) {
-    let stretch = taut_length(strand, course) / (strand.to - strand.from);
-    if !(stretch > 0.0) {
-        return;
-    }
-    measure(strand, course, [false, true], stretch);
-    spread(strand, course);
-    for k in 0..strand.spans() {
-        if strand.has_span(k)
-            && let Some(g) = strand.solve_span(course, k)
-        {
-            strand.forces[k] = g;
-        }
-    }
-    strand.take_tensions(course);
-}
-
 /// Material as it lies along the taut string, strained by `stretch`, from the end that is held; from the first contact as
 /// the route has it where none is.
-fn measure(strand: &mut Strand, course: &Course, loose: [bool; 2], stretch: f64) {
+pub(super) fn measure(strand: &mut Strand, course: &Course, loose: [bool; 2], stretch: f64) {
     let n = strand.contacts.len();
     let point = |strand: &Strand, k: usize, side: usize| strand.ends_of(course, k)[side];
     let chord = |strand: &Strand, k: usize| match (point(strand, k, 0), point(strand, k, 1)) {
@@ -288,7 +270,7 @@ fn end_tie(tie: Tie, p: f64) -> Tie {
 }
 
 /// Keeps material in order, and some of it in each span.
-fn spread(strand: &mut Strand, course: &Course) {
+pub(super) fn spread(strand: &mut Strand, course: &Course) {
     let least = CLEAR * (strand.to - strand.from);
     let n = strand.contacts.len();
     let mut before = strand.from;

@@ -5,11 +5,12 @@
 //! Each part has its derivation above it: the boundary (`curve`), the law of sliding along it (`law`), what friction
 //! remembers (`history`), a contact's equations (`rub`), the unknowns (`strand`), their solution (`newton`), contacts that
 //! come and go (`events`, `seek`, `ends`), the way from one instant to the next (`drive`), the first lay (`taut`, `lay`),
-//! and the check of each answer that knows nothing of all this (`check`).
+//! and the checks of each answer that know nothing of all this (`check`, `gaps`).
 //!
 //! What it cannot do it refuses: bending, self-contact, inertia, plan view, supports that let go; a cable that loses its
 //! tension is said to have lost it, with the place.
 
+mod arc;
 mod band;
 mod check;
 mod curve;
@@ -17,6 +18,7 @@ mod drive;
 mod ends;
 mod events;
 mod foresee;
+mod gaps;
 mod history;
 mod instant;
 mod law;
@@ -33,6 +35,7 @@ mod seek;
 mod strand;
 mod take;
 mod taut;
+mod tight;
 mod trouble;
 mod way;
 

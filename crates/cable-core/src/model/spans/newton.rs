@@ -20,6 +20,7 @@ pub(super) use self::stable::stable;
 use super::foresee::Foresight;
 use super::history::{Held, History, Mode};
 use super::instant::Instant;
+use super::law::Track;
 use super::rub;
 use super::strand::{Course, Strand};
 use crate::math::{Vec2, larger};
@@ -53,8 +54,8 @@ const PATIENCE: usize = 3;
 /// Changes of mode of one contact while iterating; after that only between converged states.
 const MOST_FLIPS: u32 = 6;
 
-/// Memory of a solve, kept between steps.
-#[derive(Clone, Debug, Default)]
+/// Memory of a solve, kept between steps. A copy has none of its own: what is in it means nothing between two steps.
+#[derive(Debug, Default)]
 pub(super) struct Work {
     sheet: Sheet,
     rhs: Vec<f64>,
@@ -74,6 +75,12 @@ pub(super) struct Work {
     pub foresight: Foresight,
     /// A contact's past as it was.
     pub past: History,
+}
+
+impl Clone for Work {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }
 
 /// Newton did not converge.
@@ -110,17 +117,24 @@ fn squares(r: &[f64]) -> f64 {
     r.iter().map(|v| v * v).sum()
 }
 
-/// The residual that will do.
+/// The residual that will do, of a strand whose contacts have the tensions of the spans beside them.
 fn tolerance(strand: &Strand, course: &Course) -> f64 {
     let mut least = f64::INFINITY;
-    for k in 0..strand.spans() {
+    let mut take = |t: f64| {
+        if t < least {
+            least = t;
+        }
+    };
+    let last = strand.contacts.len();
+    for (k, s) in [(0, strand.from), (last, strand.to)] {
         if strand.has_span(k) {
-            let (from, to) = strand.material(k);
-            for s in [from, to] {
-                let t = strand.force(course, k, s).norm();
-                if t < least {
-                    least = t;
-                }
+            take(strand.force(course, k, s).norm());
+        }
+    }
+    for (j, c) in strand.contacts.iter().enumerate() {
+        for side in 0..2 {
+            if strand.has_span(j + side) {
+                take(c.ends.t[side]);
             }
         }
     }
@@ -200,7 +214,7 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
                 (worst, at) = norm(&work.sheet.residual);
                 (best, stalled) = (f64::INFINITY, 0);
             } else if done {
-                return if content || agreed(strand, course) {
+                return if content || agreed(strand, course, &work.sheet) {
                     Ok(Solved { iterations, residual: worst })
                 } else {
                     Err(Stall { iterations, residual: worst, at: at / 6 })
@@ -220,7 +234,7 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
                 continue;
             }
             // Rounding: nothing is gained any more.
-            return if worst <= ROUNDING * tolerance(strand, course) && agreed(strand, course) {
+            return if worst <= ROUNDING * tolerance(strand, course) && agreed(strand, course, &work.sheet) {
                 Ok(Solved { iterations, residual: worst })
             } else {
                 Err(stall(worst))
@@ -230,21 +244,21 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
 }
 
 /// The mode that the state of contact j asks for.
-fn asked(strand: &Strand, course: &Course, j: usize, patience: f64) -> Mode {
+fn asked(strand: &Strand, course: &Course, (sheet, j): (&Sheet, usize), patience: f64) -> Mode {
     let c = &strand.contacts[j];
     // What holds within its cone goes on so, and what is smooth slides.
     if matches!((c.mode, c.held), (Mode::Hold, Some(Held::Between(_) | Held::Meet(_)))) && course.friction(c) > 0.0 {
         return c.mode;
     }
-    let track = course.track(c).seen_from(c.ends.p[0]);
+    let track = Track { pivot: sheet.spots.get(j).map(|s| s.1), ..course.track(c) };
     rub::next_mode(&track, (&c.history, &c.ends), c.held, (c.mode, pinned(strand, j)), patience)
 }
 
-/// Whether every contact is in the mode that its state asks for.
-fn agreed(strand: &Strand, course: &Course) -> bool {
+/// Whether every contact is in the mode that its state asks for; the sheet is that of the state.
+fn agreed(strand: &Strand, course: &Course, sheet: &Sheet) -> bool {
     // What is rounding grows with the stiffness as the residual does.
     let patience = PATIENT * tolerance(strand, course) / RESIDUAL;
-    (0..strand.contacts.len()).all(|j| asked(strand, course, j, patience) == strand.contacts[j].mode)
+    (0..strand.contacts.len()).all(|j| asked(strand, course, (sheet, j), patience) == strand.contacts[j].mode)
 }
 
 /// Gives contacts the mode they ask for; whether any was changed, and whether none asked for another.
@@ -252,7 +266,7 @@ fn change_modes(strand: &mut Strand, course: &Course, most: u32, sheet: &mut She
     let (mut changed, mut content) = (false, true);
     for j in 0..strand.contacts.len() {
         let flips = strand.contacts[j].flips;
-        let next = asked(strand, course, j, if flips < MOST_FLIPS { 1.0 } else { PATIENT });
+        let next = asked(strand, course, (sheet, j), if flips < MOST_FLIPS { 1.0 } else { PATIENT });
         let c = &mut strand.contacts[j];
         content &= next == c.mode;
         if next != c.mode && c.flips < most {

@@ -3,6 +3,7 @@
 
 use std::cell::Cell;
 
+use super::arc::{HAIR, Way};
 use super::curve::{Curve, Home, Place};
 use super::law::{Law, Spot, Step};
 use super::root::{FLOOR, crossing};
@@ -12,9 +13,6 @@ use crate::math::{Vec2, sin_cos};
 /// all more often.
 const WELL: f64 = 0.9;
 
-/// A way (rad) so short that what changes on it is known from its start to second order: what is left out is its cube times
-/// the change of tension per radian. Larger: material is off. Smaller: one more look at both tensions.
-const HAIR: f64 = 1e-4;
 /// Looks at both tensions before their meeting is sought within bounds.
 const LOOKS: usize = 3;
 
@@ -38,6 +36,12 @@ impl Pivot {
         let first = if i > home.first { origin } else { f64::NEG_INFINITY };
         let last = if i < home.last { curve.origin(i + 1) } else { f64::INFINITY };
         Self { p, at, load: law.spot(&at).load, ends: [first, last] }
+    }
+
+    /// The places of both ends of a contact, and the piece of the first.
+    pub fn of_ends(curve: &Curve, home: Home, law: &Law, [first, last]: [f64; 2]) -> ([Place; 2], Self) {
+        let pivot = Self::new(curve, home, law, first);
+        ([pivot.at, if pivot.holds(last) { pivot.place(last) } else { curve.place(last, home) }], pivot)
     }
 
     /// Whether p is on this piece.
@@ -139,6 +143,10 @@ impl OnPiece<'_> {
         if end > 0.0 {
             return (None, [a, b]);
         }
+        // Where friction goes to and fro over the same stretch.
+        if end.abs() <= FLOOR * t.abs() {
+            return (Some(p1), [a, b]);
+        }
         let (at, ways) = self.meeting(p1, [(t, m), (u, n)], end);
         (Some(at), ways)
     }
@@ -147,12 +155,14 @@ impl OnPiece<'_> {
     fn closing(&self, about: f64, whole: f64, [(t, m), (u, n)]: [(f64, f64); 2]) -> Option<(f64, [Step; 2])> {
         let mut way = about;
         for _ in 0..LOOKS {
-            let spot = self.from.on(way);
-            let [a, b] = [(t, m), (u, n)].map(|(t, m)| self.law.along(&self.from, way, t, m));
-            let [one, two] = [(a, m), (b, n)].map(|(step, m)| Rates::new(self.law, &spot, &step, m));
+            let there = Way::new(&self.from, way);
+            let [(a, one), (b, two)] = [(t, m), (u, n)].map(|(t, m)| there.slide(self.law, t, m));
             let apart = a.tension - b.tension;
-            let first = -apart / (one.slope - two.slope);
-            let by = -apart / (one.slope - two.slope + 0.5 * (one.bend - two.bend) * first);
+            let [first, second, third] = [0, 1, 2].map(|k| one.tension[k] - two.tension[k]);
+            // Halley's step, and from there one of Newton's on what is known to third order.
+            let by = -apart / (first - 0.5 * second * apart / first);
+            let rest = apart + by * (first + 0.5 * by * (second + by / 3.0 * third));
+            let by = by - rest / (first + by * (second + 0.5 * by * third));
             let next = way + by;
             if !(next / whole > 0.0 && next / whole < 1.0) {
                 return None;
@@ -180,38 +190,5 @@ impl OnPiece<'_> {
         });
         let (at, ways) = last.get();
         (x, if at == x { ways } else { both(x) })
-    }
-}
-
-/// How tension and material go on from the end of a way round an arc.
-struct Rates {
-    /// dT/dp, N/rad.
-    slope: f64,
-    /// d²T/dp², N/rad².
-    bend: f64,
-    m: f64,
-    /// Material per radian and how that changes, m/rad and m/rad²; its change by the tension at the start, m/(rad N).
-    material: [f64; 3],
-}
-
-impl Rates {
-    fn new(law: &Law, spot: &Spot, way: &Step, m: f64) -> Self {
-        let ((bt, bn), stretch) = (spot.load, law.stretch(way.tension));
-        let per = spot.stretch / stretch;
-        let slope = m * way.tension - per * (bt + m * bn);
-        // λ' = τ T'/EA.
-        let strained = law.thermal / (law.stiffness * stretch);
-        let bend = m * slope - per * (m * bt - bn - (bt + m * bn) * strained * slope);
-        Self { slope, bend, m, material: [per, -per * strained * slope, -per * strained * way.by_tension] }
-    }
-
-    fn on(&self, way: &Step, by: f64) -> Step {
-        let [per, change, by_tension] = self.material;
-        Step {
-            tension: way.tension + by * (self.slope + 0.5 * by * self.bend),
-            material: way.material + by * (per + 0.5 * by * change),
-            by_tension: way.by_tension * (1.0 + self.m * by * (1.0 + 0.5 * self.m * by)),
-            material_by_tension: way.material_by_tension + by * by_tension,
-        }
     }
 }

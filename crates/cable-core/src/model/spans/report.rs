@@ -1,9 +1,11 @@
 //! The answer: nodes, what supports feel, what obstacles feel.
 
+use super::curve::Place;
 use super::drive::Network;
 use super::history::{History, Mode};
 use super::instant::Layout;
 use super::law::Track;
+use super::piece::{OnPiece, Pivot};
 use super::seek;
 use super::strand::{Contact, Strand, Tie};
 use crate::catenary::PointForce;
@@ -18,6 +20,12 @@ const EDGE_NODES: usize = 8;
 
 /// Longest stretch of an arc over which forces are summed with one rule of 5 Gauss points, rad: exact to 1e-11.
 const PANEL: f64 = 1.0;
+/// Longest one for which 3 points are as good, rad.
+const SHORT: f64 = 0.1;
+
+/// Nodes and weights of 3-point Gauss–Legendre quadrature on [0, 1].
+const THREE: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
 /// Everything a solution shows.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -44,75 +52,106 @@ pub(super) fn report(layout: &Layout, network: &Network) -> Report {
         }
     }
     let mut nodes = Nodes::new(&layout.problem, greatest);
+    let mut contacts = Vec::new();
     for strand in &network.strands {
         for k in 0..strand.spans() {
             if strand.has_span(k) {
                 seek::shapes(strand, course, k, |s0, at, shape| nodes.catenary(s0, at, shape));
             }
             if let Some(c) = strand.contacts.get(k) {
-                contact_nodes(&mut nodes, &course.track(c), c);
+                let track = course.track(c).seen_from(c.ends.p[0]);
+                let stretches = stretches(&track, &c.history, c.ends.p);
+                contact_nodes(&mut nodes, &track, c, &stretches);
+                if let Some(obstacle) = track.curve.obstacle {
+                    let name = layout.problem.world.obstacle_name(obstacle);
+                    contacts.push(contact((&track, name), c, &stretches));
+                }
             }
         }
     }
     let nodes = nodes.out;
     let supports = supports(layout, network, &nodes);
-    let contacts = network
-        .strands
-        .iter()
-        .flat_map(|s| &s.contacts)
-        .filter_map(|c| {
-            let name = layout.problem.world.obstacle_name(course.curves[c.curve].obstacle?);
-            Some(contact(&course.track(c), c, name, course.friction(c)))
-        })
-        .collect();
     Report { nodes, supports, contacts }
 }
 
-/// Stretches of a contact on which tension has one law and the boundary one form.
-fn stretches(track: &Track<'_>, history: &History, [p1, p2]: [f64; 2]) -> Vec<[f64; 2]> {
-    let mut borders = vec![p1];
-    let mut p = p1;
-    while p < p2 {
-        p = track.next_border(p, p2);
-        borders.push(p);
-    }
-    borders.extend(history.knots().iter().map(|k| k.p).filter(|p| *p > p1 && *p < p2));
-    borders.sort_by(f64::total_cmp);
-    borders.dedup();
-    borders.windows(2).map(|w| [w[0], w[1]]).collect()
+/// A stretch of a contact on which tension has one law and the boundary one form.
+#[derive(Clone, Copy)]
+struct Stretch {
+    from: f64,
+    to: f64,
+    /// Tension (N) and material (m) at its start.
+    tension: f64,
+    s: f64,
+    /// Friction coefficient called upon.
+    m: f64,
+    pivot: Pivot,
 }
 
-fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, c: &Contact) {
-    let push = |nodes: &mut Nodes<'_>, p: f64, (tension, s): (f64, f64)| {
-        let place = track.place(p);
+impl Stretch {
+    fn new(track: &Track<'_>, history: &History, [from, to]: [f64; 2]) -> Self {
+        let middle = 0.5 * (from + to);
+        let (tension, s) = history.at(track, from);
+        let pivot = match track.pivot {
+            Some(pivot) if pivot.reaches(from) && pivot.reaches(to) => pivot,
+            _ => Pivot::new(track.curve, track.home, &track.law, middle),
+        };
+        Self { from, to, tension, s, m: history.called(track, middle), pivot }
+    }
+
+    /// Tension and material at p.
+    fn at(&self, track: &Track<'_>, p: f64) -> (f64, f64) {
+        let piece = OnPiece { law: &track.law, from: self.pivot.spot(self.from), p0: self.from };
+        let way = piece.slide(p, self.tension, self.m);
+        (way.tension, self.s + way.material)
+    }
+}
+
+fn stretches(track: &Track<'_>, history: &History, [p1, p2]: [f64; 2]) -> Vec<Stretch> {
+    let knots = history.knots();
+    let mut out = Vec::with_capacity(knots.len() + 1);
+    let (mut p, mut k) = (p1, 0);
+    while p < p2 {
+        let border = track.next_border(p, p2);
+        while knots.get(k).is_some_and(|knot| knot.p <= p) {
+            k += 1;
+        }
+        let next = knots.get(k).map_or(border, |knot| if knot.p < border { knot.p } else { border });
+        out.push(Stretch::new(track, history, [p, next]));
+        p = next;
+    }
+    out
+}
+
+fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, c: &Contact, stretches: &[Stretch]) {
+    let mut push = |place: &Place, (tension, s): (f64, f64)| {
         let curvature = if place.stretch > 0.0 { place.turn * track.law.stretch(tension) / place.stretch } else { 0.0 };
         nodes.push(Point { s, at: place.at, tension, curvature });
     };
-    push(nodes, c.ends.p[0], (c.ends.t[0], c.ends.s[0]));
-    for [a, b] in stretches(track, &c.history, c.ends.p) {
-        let arc = track.place(0.5 * (a + b)).turn != 0.0;
-        let count = if arc { ((b - a) / ARC_STEP).ceil() as usize + 1 } else { EDGE_NODES };
-        for i in 1..count {
-            let p = a + (b - a) * i as f64 / count as f64;
-            push(nodes, p, c.history.at(track, p));
-        }
-        if b < c.ends.p[1] {
-            push(nodes, b, c.history.at(track, b));
+    push(&track.place(c.ends.p[0]), (c.ends.t[0], c.ends.s[0]));
+    for stretch in stretches {
+        let (a, b) = (stretch.from, stretch.to);
+        let count = if stretch.pivot.turns() { ((b - a) / ARC_STEP).ceil() as usize + 1 } else { EDGE_NODES };
+        let last = if b < c.ends.p[1] { count } else { count - 1 };
+        for i in 1..=last {
+            let p = if i == count { b } else { a + (b - a) * i as f64 / count as f64 };
+            push(&stretch.pivot.place(p), stretch.at(track, p));
         }
     }
-    push(nodes, c.ends.p[1], (c.ends.t[1], c.ends.s[1]));
+    push(&track.place(c.ends.p[1]), (c.ends.t[1], c.ends.s[1]));
 }
 
 /// Normal force summed over a contact, its direction, the pull of the load along it, and how far it turns.
-fn pressed(track: &Track<'_>, c: &Contact) -> (f64, Vec2, f64, f64) {
+fn pressed(track: &Track<'_>, stretches: &[Stretch]) -> (f64, Vec2, f64, f64) {
     let (mut normal, mut push, mut along, mut turned) = (0.0, Vec2::zeros(), 0.0, 0.0);
-    for [a, b] in stretches(track, &c.history, c.ends.p) {
-        let panels = if track.place(0.5 * (a + b)).turn == 0.0 { 1.0 } else { ((b - a) / PANEL).ceil().max(1.0) };
-        let h = (b - a) / panels;
+    for stretch in stretches {
+        let (a, way, turns) = (stretch.from, stretch.to - stretch.from, stretch.pivot.turns());
+        let panels = if turns { (way / PANEL).ceil().max(1.0) } else { 1.0 };
+        let h = way / panels;
+        let rule: &[(f64, f64)] = if turns && h <= SHORT { &THREE } else { &GAUSS };
         for k in 0..panels as usize {
-            for (u, weight) in GAUSS {
+            for (u, weight) in rule {
                 let p = a + (k as f64 + u) * h;
-                let (t, place, weight) = (c.history.at(track, p).0, track.place(p), weight * h);
+                let (t, place, weight) = (stretch.at(track, p).0, stretch.pivot.place(p), weight * h);
                 let press = track.law.press(&place, t);
                 normal += weight * press;
                 push += place.normal * (weight * press);
@@ -124,8 +163,9 @@ fn pressed(track: &Track<'_>, c: &Contact) -> (f64, Vec2, f64, f64) {
     (normal, push, along, turned)
 }
 
-fn contact(track: &Track<'_>, c: &Contact, name: &str, friction: f64) -> ContactReport {
-    let (normal_n, push, along, turned) = pressed(track, c);
+fn contact((track, name): (&Track<'_>, &str), c: &Contact, stretches: &[Stretch]) -> ContactReport {
+    let friction = track.friction;
+    let (normal_n, push, along, turned) = pressed(track, stretches);
     let middle = track.place(0.5 * (c.ends.p[0] + c.ends.p[1]));
     let unit = if push.norm() > 0.0 { push.normalize() } else { middle.normal };
     let [t1, t2] = c.ends.t;
@@ -144,25 +184,26 @@ fn contact(track: &Track<'_>, c: &Contact, name: &str, friction: f64) -> Contact
         tension_after_n: t2,
         begins_m: c.ends.s[0],
         ends_m: c.ends.s[1],
-        parts: if slips { Vec::new() } else { parts(track, c, friction) },
+        parts: if slips { Vec::new() } else { parts(c, friction, stretches) },
     }
 }
 
 /// Stretches that stick and stretches at the limit of friction, neighbours alike joined; none where all is alike.
-fn parts(track: &Track<'_>, c: &Contact, friction: f64) -> Vec<ContactPart> {
+fn parts(c: &Contact, friction: f64, stretches: &[Stretch]) -> Vec<ContactPart> {
     /// What is called upon of friction counts as all of it from this share on: rounding.
     const LIMIT: f64 = 1.0 - 1e-9;
-    let mut out: Vec<ContactPart> = Vec::new();
-    for [a, b] in stretches(track, &c.history, c.ends.p) {
-        let slid = c.history.called(track, 0.5 * (a + b)).abs() >= LIMIT * friction;
-        let state = if slid { ContactState::Slip } else { ContactState::Stick };
-        let [begins_m, ends_m] = [a, b].map(|p| c.history.at(track, p).1);
-        match out.last_mut() {
-            Some(last) if last.state == state => last.ends_m = ends_m,
-            _ => out.push(ContactPart { begins_m, ends_m, state }),
+    let state = |s: &Stretch| if s.m.abs() >= LIMIT * friction { ContactState::Slip } else { ContactState::Stick };
+    let Some(first) = stretches.first().map(state).filter(|f| stretches.iter().any(|s| state(s) != *f)) else {
+        return Vec::new();
+    };
+    let mut out = vec![ContactPart { begins_m: c.ends.s[0], ends_m: c.ends.s[1], state: first }];
+    for s in stretches {
+        if let Some(last) = out.last_mut().filter(|last| last.state != state(s)) {
+            last.ends_m = s.s;
+            out.push(ContactPart { begins_m: s.s, ends_m: c.ends.s[1], state: state(s) });
         }
     }
-    if out.len() > 1 { out } else { Vec::new() }
+    out
 }
 
 /// Force of the cable at an end of a strand (pulling along growing arc length), N.

@@ -8,7 +8,7 @@ use super::strand::{Course, Strand};
 use crate::catenary::Catenary;
 use crate::contact::geometry::Body;
 use crate::contact::{Gap, World};
-use crate::math::{Vec2, cross, perp};
+use crate::math::{Vec2, cross, larger, perp};
 
 /// Stretches of a catenary looked through for points nearest to a corner. Fewer: a corner near both branches of a deep
 /// catenary is seen from one only.
@@ -90,7 +90,7 @@ impl<'a> Arc<'a> {
 
     /// The box it lies in: it is widest at its ends and where it runs along an axis.
     fn bounds(&self) -> (Vec2, Vec2) {
-        let (a, b) = (self.at, self.point(self.length()));
+        let (a, b) = (self.at, self.at + self.shape.span().chord);
         let (mut low, mut high) = (a.inf(&b), a.sup(&b));
         let f = self.shape.force_at(0.0);
         for s in [f.x / self.load.x, f.y / self.load.y] {
@@ -210,7 +210,9 @@ fn search(arc: &Arc<'_>, body: &Body, (low, high): (Vec2, Vec2), tolerance: f64,
         if let Some(s) = arc.along(e.tangent) {
             let d = arc.point(s) - e.p;
             let (x, height) = (d.dot(&e.tangent), d.dot(&perp(e.tangent)));
-            if height < body.offset - tolerance && x > -body.offset && x < e.length() + body.offset {
+            // What is deep is nearest to an edge, or to the kink beside it, that it does not lie straight below.
+            let aside = larger(body.offset, -height);
+            if height < body.offset - tolerance && x > -aside && x < e.length() + aside {
                 found(s);
             }
         }

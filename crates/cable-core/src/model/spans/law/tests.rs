@@ -4,7 +4,7 @@ use crate::scene::obstacle::{Obstacle, Shape};
 use proptest::prelude::*;
 
 fn law(stiffness: f64) -> Law {
-    Law { load: Vec2::new(0.7, -9.0), thermal: 1.001, stiffness }
+    Law::new(Vec2::new(0.7, -9.0), 1.001, stiffness)
 }
 
 const ROUND: Home = Home { first: 0, last: 0 };

@@ -5,7 +5,7 @@ use super::super::curve::Place;
 use super::super::law::Track;
 use super::super::piece::Pivot;
 use super::super::rub;
-use super::super::strand::{Course, Strand, Tie};
+use super::super::strand::{Contact, Course, Strand, Tie};
 use crate::math::{Vec2, cross, larger};
 
 fn count(strand: &Strand) -> usize {
@@ -13,13 +13,14 @@ fn count(strand: &Strand) -> usize {
 }
 
 pub(super) fn gather(strand: &Strand, out: &mut Vec<f64>) {
-    out.clear();
-    for k in 0..strand.spans() {
-        out.extend([strand.forces[k].x, strand.forces[k].y]);
-        if let Some(c) = strand.contacts.get(k) {
-            let e = &c.ends;
-            out.extend([slot(strand, k, 0), e.s[0], slot(strand, k, 1), e.s[1]]);
-        }
+    out.resize(count(strand), 0.0);
+    let mut blocks = out.chunks_exact_mut(6);
+    for ((k, c), block) in strand.contacts.iter().enumerate().zip(&mut blocks) {
+        let (g, s) = (strand.forces[k], c.ends.s);
+        block.copy_from_slice(&[g.x, g.y, slot(strand, k, 0), s[0], slot(strand, k, 1), s[1]]);
+    }
+    if let ([x, y], Some(g)) = (blocks.into_remainder(), strand.forces.last()) {
+        (*x, *y) = (g.x, g.y);
     }
 }
 
@@ -73,7 +74,7 @@ pub(super) struct Sheet {
     /// The Jacobian.
     pub band: Band,
     /// The places of both ends of each contact, and the first with its piece.
-    spots: Vec<([Place; 2], Pivot)>,
+    pub spots: Vec<([Place; 2], Pivot)>,
 }
 
 /// Works out the equations of a strand where it is, and where each of its contacts sticks.
@@ -83,12 +84,8 @@ pub(super) fn assemble(strand: &mut Strand, course: &Course, sheet: &mut Sheet) 
     sheet.residual.resize(n, 0.0);
     sheet.band.reset(n);
     sheet.spots.clear();
-    sheet.spots.extend(strand.contacts.iter().map(|c| {
-        let [first, last] = c.ends.p;
-        let bare = course.track(c);
-        let pivot = Pivot::new(bare.curve, c.home, &course.law, first);
-        ([pivot.at, if pivot.holds(last) { pivot.place(last) } else { bare.place(last) }], pivot)
-    }));
+    let seen = |c: &Contact| Pivot::of_ends(&course.curves[c.curve], c.home, &course.law, c.ends.p);
+    sheet.spots.extend(strand.contacts.iter().map(seen));
     for k in 0..strand.spans() {
         span_rows(strand, course, k, sheet);
         if k < strand.contacts.len() {
