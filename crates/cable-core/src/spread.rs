@@ -8,6 +8,7 @@
 use std::ops::ControlFlow;
 
 use crate::error::Error;
+use crate::math::{Point, vec2};
 use crate::model::auto::Question;
 use crate::model::{Inertia, Model, Settings};
 use crate::scene::Scene;
@@ -57,6 +58,50 @@ pub struct Ask {
     pub factors: [f64; 2],
     /// How long time runs, s; 0 asks for the resting place.
     pub span_s: f64,
+    /// What a hand did meanwhile, in order of time; what it did at 0 s is how the scene begins.
+    pub hands: Vec<Hand>,
+}
+
+/// What a hand did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hand {
+    /// When, s.
+    pub time_s: f64,
+    /// What.
+    pub what: Handled,
+}
+
+/// What a hand moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Handled {
+    /// A support is then at a place.
+    Support {
+        /// Index of the cable.
+        cable: usize,
+        /// Index of the support.
+        support: usize,
+        /// Where, m.
+        to_m: Point,
+    },
+    /// The robot is told a speed, m/s; None: its path.
+    Robot(Option<f64>),
+}
+
+impl Hand {
+    fn place(self, scene: &mut Scene) {
+        if let Handled::Support { cable, support, to_m } = self.what
+            && let Some(s) = scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support))
+        {
+            s.at_m = Some(to_m);
+        }
+    }
+
+    fn act(self, run: &mut Simulation) {
+        match self.what {
+            Handled::Support { cable, support, to_m } => run.drag_support(cable, support, vec2(to_m)),
+            Handled::Robot(speed_m_per_s) => run.command_robot(speed_m_per_s),
+        }
+    }
 }
 
 /// The scene with every coefficient of friction of its cables, obstacles and pulleys scaled.
@@ -87,8 +132,14 @@ pub fn spread(ask: &Ask, mut progress: impl FnMut(f64) -> ControlFlow<()>) -> Re
     let inertia = if slow { Inertia::QuasiStatic } else { Inertia::Dynamic };
     let question = if motion { Question::History(inertia) } else { Question::Rest };
     let mut runs = Vec::with_capacity(3);
+    let mut hands = ask.hands.as_slice();
+    let mut start = ask.scene.clone();
+    while let Some((hand, later)) = hands.split_first().filter(|(h, _)| h.time_s <= 0.0) {
+        hand.place(&mut start);
+        hands = later;
+    }
     for factor in [low, 1.0, high] {
-        let mut run = Simulation::for_question(scaled(&ask.scene, factor), ask.model, ask.settings, question)?;
+        let mut run = Simulation::for_question(scaled(&start, factor), ask.model, ask.settings, question)?;
         run.settle()?;
         runs.push(run);
         if progress(if motion { 0.0 } else { runs.len() as f64 / 3.0 }).is_break() {
@@ -101,6 +152,10 @@ pub fn spread(ask: &Ask, mut progress: impl FnMut(f64) -> ControlFlow<()>) -> Re
     let steps = (ask.span_s / STEP_S).ceil();
     for k in 1..=steps as u64 {
         let end = if k as f64 >= steps { ask.span_s } else { k as f64 * STEP_S };
+        while let Some((hand, later)) = hands.split_first().filter(|(h, _)| h.time_s < end + 0.5 * STEP_S) {
+            runs.iter_mut().for_each(|run| hand.act(run));
+            hands = later;
+        }
         let stepped = runs.iter_mut().try_for_each(|run| {
             let dt_s = end - run.time_s();
             if slow { run.step_quasi_static(dt_s) } else { run.step(dt_s) }

@@ -5,12 +5,12 @@
 use std::ops::ControlFlow;
 
 use cable_core::scene::catalog;
-use cable_core::spread::{Ask, Spread, scaled, spread};
+use cable_core::spread::{Ask, Hand, Handled, Spread, scaled, spread};
 use cable_core::{Model, Settings, Simulation};
 
 fn ask(model: Model, span_s: f64) -> Ask {
     let settings = Settings::default();
-    Ask { scene: catalog::draped_slipping(), model, settings, factors: [0.5, 1.5], span_s }
+    Ask { scene: catalog::draped_slipping(), model, settings, factors: [0.5, 1.5], span_s, hands: Vec::new() }
 }
 
 fn find(ask: &Ask) -> Spread {
@@ -60,6 +60,43 @@ fn the_answer_of_the_scene_lies_in_the_ribbon() {
         }
         assert!(found.over_time.iter().all(|b| b.low_n <= b.high_n));
     }
+}
+
+/// Half a metre down by hand and back up: what the hand did is done to all three, so the middle one is the run itself.
+#[test]
+fn what_a_hand_did_is_repeated() {
+    let mut ask = ask(Model::Spans, 1.0);
+    for support in &mut ask.scene.cables[0].supports {
+        support.motion = None;
+    }
+    let held: Vec<usize> = (0..ask.scene.cables[0].supports.len()).collect();
+    let support = *held.last().unwrap();
+    let from = ask.scene.cables[0].supports[support].at_m.unwrap();
+    let y = |t: f64| from[1] - 0.5 + (2.0 * t - 1.0).abs() * 0.5;
+    let mut one = Simulation::new(ask.scene.clone(), Model::Spans).unwrap();
+    one.settle().unwrap();
+    let still = one.largest_n([0]);
+    for k in 1..=60 {
+        let (time_s, to_m) = (f64::from(k) / 60.0, [from[0], y(f64::from(k) / 60.0)]);
+        ask.hands.push(Hand { time_s, what: Handled::Support { cable: 0, support, to_m } });
+        one.drag_support(0, support, cable_core::math::vec2(to_m));
+        one.step_quasi_static(1.0 / 60.0).unwrap();
+    }
+    let found = find(&ask);
+    assert_eq!(found.ended, None);
+    assert!((found.most_n[1] - one.largest_n([0])).abs() < 1e-6 * still, "{:?} {}", found.most_n, one.largest_n([0]));
+    let pulled = found.over_time.iter().map(|b| b.high_n).fold(0.0, f64::max);
+    let [low, _, high] = found.most_n;
+    assert!(pulled > 1.05 * still && (high - low).abs() > 0.01 * still, "{pulled} {still} {:?}", found.most_n);
+    // Where a hand had moved it before, it begins there.
+    ask.hands =
+        vec![Hand { time_s: 0.0, what: Handled::Support { cable: 0, support, to_m: [from[0], from[1] - 0.2] } }];
+    ask.span_s = 0.0;
+    let mut there = ask.scene.clone();
+    there.cables[0].supports[support].at_m = Some([from[0], from[1] - 0.2]);
+    let mut one = Simulation::new(there, Model::Spans).unwrap();
+    one.settle().unwrap();
+    assert!((find(&ask).most_n[1] - one.largest_n([0])).abs() < 1e-9 * still);
 }
 
 #[test]

@@ -108,6 +108,22 @@ impl History {
         out
     }
 
+    /// Time (s) and value of the greatest of a line that [`Measure::LEADS`](crate::plot::measure::Measure::LEADS) names: the block it is in is
+    /// found first.
+    #[must_use]
+    pub fn peak(&self, of: impl Fn(&Sample) -> f64) -> Option<[f64; 2]> {
+        let greatest = |a: (usize, f64), b: (usize, f64)| if b.1 > a.1 { b } else { a };
+        let [_, size] = BLOCKS;
+        let [_, blocks] = &self.blocks;
+        let known = blocks.len() / 2 * size;
+        let values = blocks.iter().enumerate().map(|(k, s)| (k / 2 * size, of(s))).filter(|(_, v)| v.is_finite());
+        let block = values.reduce(greatest).map_or(known, |(from, _)| from);
+        let ends = [block..(block + size).min(known), known..self.samples.len()];
+        let inside = ends.into_iter().flat_map(|r| r.map(|k| (k, self.samples.get(k).map_or(f64::NAN, &of))));
+        let (k, value) = inside.filter(|(_, v)| v.is_finite()).reduce(greatest)?;
+        Some([self.samples.get(k)?.time_s, value])
+    }
+
     /// Forgets everything.
     pub fn clear(&mut self) {
         *self = Self::default();
@@ -250,6 +266,21 @@ mod tests {
                 let near = samples.range(from..).take_while(|s| s.time_s < peak.time_s + 0.125);
                 assert!(near.clone().any(|s| line(s) == line(&peak)), "line {n}, peak at {} s", peak.time_s);
             }
+        }
+    }
+
+    #[test]
+    fn the_greatest_is_found_with_its_time_wherever_it_is() {
+        let leads: [fn(&Sample) -> f64; 2] = [|s| s.max_tension_n, |s| s.robot.map_or(f64::NAN, |r| r[0])];
+        for count in [0, 1, 200, 256, 600, 9000, 40_000] {
+            let mut history = History::default();
+            (0..count).for_each(|k| history.push(at(k)));
+            for of in leads {
+                let all = history.samples.iter().map(|s| [s.time_s, of(s)]);
+                let expected = all.reduce(|a, b| if b[1] > a[1] { b } else { a });
+                assert_eq!(history.peak(of), expected, "of {count}");
+            }
+            assert_eq!(history.peak(|_| f64::NAN), None);
         }
     }
 

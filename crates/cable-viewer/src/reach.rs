@@ -7,7 +7,7 @@ use cable_core::math::Point;
 use cable_core::reach::area::{self, Area};
 use cable_core::reach::line::{self, Map};
 use cable_core::scene::SupportKind;
-use cable_core::{Scene, Settings};
+use cable_core::{Scene, Settings, Solution};
 
 use crate::background;
 use crate::state::{AppState, Item};
@@ -70,6 +70,8 @@ pub struct View {
 pub struct Order {
     /// The scene.
     pub scene: Scene,
+    /// Where time has run: how its cables lie now.
+    pub now: Option<Arc<Solution>>,
     /// Mesh and accuracy.
     pub settings: Settings,
     /// What is taken somewhere.
@@ -139,15 +141,16 @@ fn find(order: Order, heard: background::Heard<'_, Found>) -> Result<Found, Stri
         Moved::Robot => {
             let ends_m = order.corners_m.map(|p| p[0]);
             let told = |map: &Map, share: f64| tell(share, &|| Maps::Line(Arc::new(map.clone())));
-            let map = line::reach(&scene, order.settings, (ends_m, PLACES), told).map_err(|e| e.to_string())?;
+            let map = line::reach((&scene, order.now.as_deref()), order.settings, (ends_m, PLACES), told)
+                .map_err(|e| e.to_string())?;
             Maps::Line(Arc::new(map))
         }
         Moved::Support { cable, support } => {
             let [low, high] = order.corners_m;
             let spacing_m = (high[0] - low[0]) / order.across.clamp(ACROSS[0], ACROSS[1]) as f64;
-            let (settings, corners_m) = (order.settings, order.corners_m);
+            let (now, settings, corners_m) = (order.now, order.settings, order.corners_m);
             let ask =
-                area::Ask { scene: (*scene).clone(), settings, cable, support, corners_m, spacing_m, back: false };
+                area::Ask { scene: (*scene).clone(), now, settings, cable, support, corners_m, spacing_m, back: false };
             let told = |area: &Area, share: f64| tell(0.5 * share, &|| Maps::Area(Arc::new(area.clone()), None));
             let there = Arc::new(area::area(&ask, told).map_err(|e| e.to_string())?);
             let ask = area::Ask { spacing_m: COARSER * spacing_m, back: true, ..ask };

@@ -28,6 +28,8 @@ const MOST_BYTES: u64 = 512 << 20;
 pub struct Run {
     /// The leading line of each measure over time, SI, in the order of [`Measure::LEADS`].
     lines: Vec<Pyramid>,
+    /// The greatest of each of them: looked for once, not in every frame.
+    peaks: Vec<Option<Peak>>,
     /// Some of its answers, oldest first.
     answers: Vec<Arc<Solution>>,
     /// How many warnings began in it.
@@ -58,10 +60,11 @@ impl Run {
             let points = samples.clone().map(|s| [s.time_s, of(s)]).filter(|p| p[1].is_finite());
             Pyramid::new(points.collect())
         };
-        let lines = Measure::LEADS.iter().map(|(_, of)| line(*of)).collect();
+        let lines: Vec<Pyramid> = Measure::LEADS.iter().map(|(_, of)| line(*of)).collect();
+        let peaks = lines.iter().map(|l| Peak::of(l.points().iter().copied())).collect();
         let every = answers.len().div_ceil(MOST_PICTURES).max(1);
         let kept = answers.iter().step_by(every).chain(answers.last());
-        Some(Self { lines, answers: kept.map(|a| Arc::new(a.clone())).collect(), events })
+        Some(Self { lines, peaks, answers: kept.map(|a| Arc::new(a.clone())).collect(), events })
     }
 
     /// The leading line of a measure over time; None where it has none.
@@ -88,7 +91,8 @@ impl Run {
     /// The greatest of a measure.
     #[must_use]
     pub fn peak(&self, measure: Measure) -> Option<Peak> {
-        Peak::of(self.line(measure)?.points().iter().copied())
+        let k = Measure::LEADS.iter().position(|(m, _)| m.leads_as(measure))?;
+        self.peaks.get(k).copied().flatten()
     }
 }
 

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use cable_core::Scene;
-use cable_core::spread::{self, Ask, Spread};
+use cable_core::scene::SupportKind;
+use cable_core::spread::{self, Ask, Hand, Handled, Spread};
+use cable_core::{Scene, Solution};
 
 use crate::background;
 use crate::state::AppState;
@@ -88,7 +89,51 @@ pub fn asked(state: &AppState) -> Option<Ask> {
         settings: state.settings,
         factors: state.spread.factors,
         span_s: span_s(state),
+        hands: hands(scene(state), state.recording.answers()),
     })
+}
+
+/// Least move of a support between two answers that is a hand's, m: less is rounding.
+const MOVED_M: f64 = 1e-9;
+
+/// What hands did in a run: where supports that move by nothing else went, and what the robot was told.
+#[must_use]
+pub fn hands(scene: &Scene, answers: &[Solution]) -> Vec<Hand> {
+    let by_hand = scene.cables.iter().enumerate().flat_map(|(cable, c)| {
+        let held = |s: &cable_core::Support| {
+            s.at_m.is_some() && s.motion.is_none() && !matches!(s.kind, SupportKind::Pulley | SupportKind::Robot)
+        };
+        c.supports.iter().enumerate().filter(move |(_, s)| held(s)).map(move |(support, _)| (cable, support))
+    });
+    let by_hand: Vec<(usize, usize)> = by_hand.collect();
+    let at = |a: &Solution, (cable, support): (usize, usize)| {
+        a.cables.get(cable).and_then(|c| c.supports.get(support)).map(|s| [s.x_m, s.y_m])
+    };
+    let mut hands = Vec::new();
+    let Some(first) = answers.first() else { return hands };
+    for &(cable, support) in &by_hand {
+        if let Some(to_m) = at(first, (cable, support)) {
+            hands.push(Hand { time_s: 0.0, what: Handled::Support { cable, support, to_m } });
+        }
+    }
+    let mut told = None;
+    for pair in answers.windows(2) {
+        let [before, now] = [&pair[0], &pair[1]];
+        for &(cable, support) in &by_hand {
+            let (Some(from_m), Some(to_m)) = (at(before, (cable, support)), at(now, (cable, support))) else {
+                continue;
+            };
+            if (to_m[0] - from_m[0]).hypot(to_m[1] - from_m[1]) > MOVED_M {
+                hands.push(Hand { time_s: now.time_s, what: Handled::Support { cable, support, to_m } });
+            }
+        }
+        let order = now.robot.map(|r| r.leg.is_none().then_some(r.commanded_m_per_s));
+        if let Some(order) = order.filter(|o| told != Some(*o)) {
+            hands.push(Hand { time_s: now.time_s, what: Handled::Robot(order) });
+            told = Some(order);
+        }
+    }
+    hands
 }
 
 fn scene(state: &AppState) -> &Scene {

@@ -125,7 +125,8 @@ pub fn install(ctx: &Context) {
 fn visuals(visuals: &mut Visuals, palette: &Palette) {
     let dark = visuals.dark_mode;
     visuals.panel_fill = if dark { Color32::from_rgb(28, 31, 37) } else { Color32::from_rgb(244, 245, 247) };
-    visuals.window_fill = if dark { Color32::from_rgb(34, 38, 45) } else { Color32::WHITE };
+    // Light fields stand off it: a dialog asks for something to be typed.
+    visuals.window_fill = if dark { Color32::from_rgb(34, 38, 45) } else { Color32::from_rgb(240, 242, 245) };
     visuals.extreme_bg_color = if dark { Color32::from_rgb(17, 19, 23) } else { Color32::WHITE };
     visuals.faint_bg_color = if dark { Color32::from_rgb(34, 38, 44) } else { Color32::from_rgb(236, 238, 241) };
     visuals.selection.bg_fill = palette.accent.gamma_multiply(0.45);
@@ -138,6 +139,10 @@ fn visuals(visuals: &mut Visuals, palette: &Palette) {
     widgets.noninteractive.fg_stroke.color = palette.text;
     widgets.noninteractive.bg_stroke.color = palette.plate_line;
     widgets.inactive.fg_stroke.color = palette.text;
+    if !dark {
+        // Rails of sliders and boxes to tick: the default is hardly darker than the panel.
+        widgets.inactive.bg_fill = Color32::from_rgb(203, 208, 215);
+    }
     for w in [&mut widgets.noninteractive, &mut widgets.inactive, &mut widgets.hovered, &mut widgets.active] {
         w.corner_radius = radius;
     }

@@ -5,7 +5,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{HOPELESS, STEP_S, least, stilled, unsupported};
+use super::{HOPELESS, STEP_S, lay, least, stilled, unsupported};
 use crate::error::Error;
 use crate::math::{Point, larger};
 use crate::model::auto::Question;
@@ -15,6 +15,7 @@ use crate::scene::ground::Ground;
 use crate::scene::preset::robot_preset;
 use crate::scene::{Scene, SupportKind};
 use crate::simulation::Simulation;
+use crate::solution::Solution;
 
 /// Longest way between two answers, m. Longer: an edge that the cable slips over is passed unseen; shorter: more answers.
 const STEP_M: f64 = 0.05;
@@ -26,6 +27,13 @@ const LEFT_M: f64 = 1e-3;
 /// Faster: its swing shows in the tension; slower: longer.
 const SHOVED_M_PER_S: f64 = 0.3;
 
+/// Every how manieth way back is looked at, one after the other. Begun with less: longer until the first picture; with more: of no use.
+const STRIDES: [usize; 4] = [8, 4, 2, 1];
+
+/// Two places whose tensions lie closer than this part of the service tension agree: between them the larger counts. More: a snag
+/// between them is not seen; less: more ways back.
+const AGREE: f64 = 0.02;
+
 /// A place of the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
@@ -33,7 +41,8 @@ pub struct Place {
     pub at_m: Point,
     /// Largest tension with the robot there, N; infinite where the cable does not reach, not a number where no answer was found.
     pub there_n: f64,
-    /// Largest tension on the way there and back, N; infinite where the cable does not reach, not a number where no answer was found.
+    /// Largest tension on the way there and back, N; infinite where the cable does not reach, not a number where no answer was found
+    /// or none is known yet. Between neighbours that agree it is the larger of theirs.
     pub there_and_back_n: f64,
     /// The cable lies in the robot's way there or back and cannot get out of it.
     pub jammed: bool,
@@ -66,17 +75,18 @@ impl Map {
     }
 }
 
-/// Looks at so many places between two, m; `progress` hears the map so far and the share done (0 to 1), and can end it.
+/// Looks at so many places between two, m, from where an answer of the scene has robot and cable now, if there is one; `progress` hears the map so far and the share done (0 to 1), and can end it.
 ///
 /// # Errors
 /// The scene is wrong or has no robot with a cable on ground in a side view, or its start has no answer.
 pub fn reach(
-    scene: &Scene,
+    (scene, now): (&Scene, Option<&Solution>),
     settings: Settings,
     ([from_m, to_m], count): ([f64; 2], usize),
     mut progress: impl FnMut(&Map, f64) -> ControlFlow<()>,
 ) -> Result<Map, Error> {
-    let vehicle = scene.robot.as_ref().ok_or_else(|| unsupported("a scene without a robot"))?;
+    let still = stilled(scene, now);
+    let vehicle = still.robot.as_ref().ok_or_else(|| unsupported("a scene without a robot"))?;
     let preset = robot_preset(&vehicle.preset).ok_or_else(|| unsupported("a robot of no known kind"))?;
     let hangs = |k: &usize| scene.cables[*k].supports.iter().any(|s| s.kind == SupportKind::Robot);
     let cables: Vec<usize> = (0..scene.cables.len()).filter(hangs).collect();
@@ -92,41 +102,35 @@ pub fn reach(
         ..Map::default()
     };
     let question = Question::History(Inertia::QuasiStatic);
-    let mut start = Simulation::for_question(stilled(scene), Model::Auto, settings, question)?;
-    start.settle()?;
+    let mut start = Simulation::for_question(still.clone(), Model::Auto, settings, question)?;
+    lay(&mut start, now)?;
     let walk = Walk { cables: &cables, limit_n: HOPELESS * map.breaking_n };
     let step = (to_m - from_m) / count.saturating_sub(1).max(1) as f64;
     let xs: Vec<f64> = (0..count).map(|k| from_m + step * k as f64).collect();
-    for side in [1.0, -1.0] {
-        let mut ordered: Vec<f64> = xs.iter().copied().filter(|x| side * (x - start_x_m) >= 0.0).collect();
-        if side < 0.0 {
-            ordered.retain(|x| *x < start_x_m);
-            ordered.reverse();
+    let right: Vec<f64> = xs.iter().copied().filter(|x| *x >= start_x_m).collect();
+    let left: Vec<f64> = xs.iter().rev().copied().filter(|x| *x < start_x_m).collect();
+    // The way there is gone once; the ways back are as long for every place.
+    let out_m = right.last().map_or(0.0, |x| x - start_x_m) + left.last().map_or(0.0, |x| start_x_m - x);
+    let back_m: f64 = xs.iter().map(|x| (x - start_x_m).abs()).sum();
+    let mut gone_m = 0.0;
+    let mut heard = |map: &Map, more_m: f64| {
+        gone_m += more_m;
+        progress(map, (gone_m / (out_m + back_m).max(STEP_M)).min(1.0))
+    };
+    let stands = |x: f64| vehicle.pose_on(&ground, preset, x).map(|stand| stand.at_m);
+    let mut sides = Vec::with_capacity(2);
+    for xs in [right, left] {
+        match walk.out(&start, (&xs, stands), &mut map, &mut heard) {
+            ControlFlow::Continue(side) => sides.push(side),
+            ControlFlow::Break(()) => return Ok(map),
         }
-        let (mut there, mut at) = (start.clone(), start_x_m);
-        let mut most = Ok(there.largest_n(cables.iter().copied()));
-        for x in ordered {
-            let share = (map.places.len() + 1) as f64 / count.max(1) as f64;
-            if progress(&map, share).is_break() {
+    }
+    // Coarsely first.
+    for stride in STRIDES {
+        for side in &mut sides {
+            if walk.back(side, stride, &mut map, &mut heard).is_break() {
                 return Ok(map);
             }
-            let Some(stand) = vehicle.pose_on(&ground, preset, x) else { continue };
-            most = most.and_then(|m| walk.go(&mut there, [at, x]).map(|out| larger(m, out)));
-            at = x;
-            let back = most.and_then(|_| walk.go(&mut there.clone(), [x, start_x_m]));
-            let value = |found: Result<f64, Stop>| match found {
-                Ok(n) => n,
-                Err(Stop::NoAnswer) => f64::NAN,
-                Err(Stop::Taut | Stop::Jammed) => f64::INFINITY,
-            };
-            let place = Place {
-                at_m: stand.at_m,
-                there_n: value(most.map(|_| there.largest_n(cables.iter().copied()))),
-                there_and_back_n: larger(value(most), value(back)),
-                jammed: most == Err(Stop::Jammed) || back == Err(Stop::Jammed),
-            };
-            let after = map.places.partition_point(|p| p.at_m[0] < place.at_m[0]);
-            map.places.insert(after, place);
         }
     }
     Ok(map)
@@ -143,13 +147,105 @@ enum Stop {
     NoAnswer,
 }
 
+/// A place on one side of the start, and robot and cable there.
+struct Stood {
+    /// Where its tracks' middle is, m.
+    at_m: Point,
+    /// Which place it was led to, m.
+    x_m: f64,
+    /// There, if it got there.
+    simulation: Option<Simulation>,
+    /// Largest tension on the way there.
+    most: Result<f64, Stop>,
+    /// The way back from it is known.
+    known: bool,
+}
+
+fn value(found: Result<f64, Stop>) -> f64 {
+    match found {
+        Ok(n) => n,
+        Err(Stop::NoAnswer) => f64::NAN,
+        Err(Stop::Taut | Stop::Jammed) => f64::INFINITY,
+    }
+}
+
 /// How the robot is moved.
 struct Walk<'a> {
     cables: &'a [usize],
     limit_n: f64,
 }
 
+/// What is heard of the map, and how much farther it went, m.
+type Heard<'a> = &'a mut dyn FnMut(&Map, f64) -> ControlFlow<()>;
+
 impl Walk<'_> {
+    /// Goes from place to place away from the start; stays ready at each for the way back.
+    fn out(
+        &self,
+        start: &Simulation,
+        (xs, stands): (&[f64], impl Fn(f64) -> Option<Point>),
+        map: &mut Map,
+        heard: Heard<'_>,
+    ) -> ControlFlow<(), Vec<Stood>> {
+        let (mut there, mut at) = (start.clone(), map.start_x_m);
+        let mut most = Ok(there.largest_n(self.cables.iter().copied()));
+        let mut side = Vec::with_capacity(xs.len());
+        for &x in xs {
+            heard(map, (x - at).abs())?;
+            let Some(at_m) = stands(x) else { continue };
+            most = most.and_then(|m| self.go(&mut there, [at, x]).map(|out| larger(m, out)));
+            at = x;
+            let place = Place {
+                at_m,
+                there_n: value(most.map(|_| there.largest_n(self.cables.iter().copied()))),
+                there_and_back_n: f64::NAN,
+                jammed: most == Err(Stop::Jammed),
+            };
+            let after = map.places.partition_point(|p| p.at_m[0] < at_m[0]);
+            map.places.insert(after, place);
+            let simulation = most.is_ok().then(|| there.clone());
+            side.push(Stood { at_m, x_m: x, simulation, most, known: false });
+        }
+        ControlFlow::Continue(side)
+    }
+
+    /// Goes back from every so manieth place that is not known yet; one between two that agree is not gone back from.
+    fn back(&self, side: &mut [Stood], stride: usize, map: &mut Map, heard: Heard<'_>) -> ControlFlow<()> {
+        let place = |map: &Map, s: &Stood| map.places.iter().position(|p| p.at_m == s.at_m);
+        // Counted from the farthest one: its way back leads past all others.
+        for k in (0..side.len()).rev().step_by(stride) {
+            if side[k].known {
+                continue;
+            }
+            let (start_m, x) = (map.start_x_m, side[k].x_m);
+            heard(map, (x - start_m).abs())?;
+            let beside = |j: Option<usize>| {
+                let s = j.and_then(|j| side.get(j)).filter(|s| s.known)?;
+                Some(map.places[place(map, s)?])
+            };
+            let agreed = match (beside(k.checked_sub(stride)), beside(Some(k + stride))) {
+                (Some(a), Some(b)) if a.jammed == b.jammed => {
+                    let [a_n, b_n] = [a.there_and_back_n, b.there_and_back_n];
+                    (a_n == b_n || (a_n - b_n).abs() <= AGREE * map.service_n).then(|| (larger(a_n, b_n), a.jammed))
+                }
+                _ => None,
+            };
+            let (most_n, jammed) = agreed.unwrap_or_else(|| {
+                let most = side[k].most;
+                let back = match &side[k].simulation {
+                    Some(there) => self.go(&mut there.clone(), [x, start_m]),
+                    None => most,
+                };
+                (larger(value(most), value(back)), most == Err(Stop::Jammed) || back == Err(Stop::Jammed))
+            });
+            if let Some(p) = place(map, &side[k]).and_then(|j| map.places.get_mut(j)) {
+                (p.there_and_back_n, p.jammed) = (most_n, jammed);
+            }
+            side[k].known = true;
+        }
+        ControlFlow::Continue(())
+    }
+
     /// Moves the robot from one place to another; the largest tension on the way.
     fn go(&self, simulation: &mut Simulation, [from, to]: [f64; 2]) -> Result<f64, Stop> {
         let steps = ((to - from).abs() / STEP_M).ceil();
@@ -193,7 +289,7 @@ mod tests {
     fn map(change: impl FnOnce(&mut Scene), ends: [f64; 2], count: usize) -> Map {
         let mut scene = catalog::robot_drive();
         change(&mut scene);
-        reach(&scene, Settings::default(), (ends, count), |_, _| ControlFlow::Continue(())).unwrap()
+        reach((&scene, None), Settings::default(), (ends, count), |_, _| ControlFlow::Continue(())).unwrap()
     }
 
     #[test]
@@ -214,7 +310,7 @@ mod tests {
     fn it_ends_when_it_is_told_to() {
         let scene = catalog::robot_drive();
         let mut heard = 0;
-        let map = reach(&scene, Settings::default(), ([8.0, 12.0], 9), |_, _| {
+        let map = reach((&scene, None), Settings::default(), ([8.0, 12.0], 9), |_, _| {
             heard += 1;
             if heard < 3 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
@@ -223,7 +319,8 @@ mod tests {
 
     #[test]
     fn what_has_no_robot_is_refused_in_words() {
-        let error = reach(&catalog::tank(), Settings::default(), ([0.0, 1.0], 3), |_, _| ControlFlow::Continue(()));
+        let error =
+            reach((&catalog::tank(), None), Settings::default(), ([0.0, 1.0], 3), |_, _| ControlFlow::Continue(()));
         assert!(error.unwrap_err().to_string().contains("robot"));
     }
 }

@@ -9,7 +9,9 @@ pub mod line;
 
 use crate::error::{Error, SolveError};
 use crate::model::Model;
-use crate::scene::{Cable, Scene};
+use crate::scene::{Cable, Scene, SupportKind};
+use crate::simulation::Simulation;
+use crate::solution::Solution;
 
 /// Time of a step, s: no inertia acts, so it only says how far a support trails what draws it. Less: by a part of the step, and a taut cable
 /// shows a tenth of a millimetre; more: nothing.
@@ -21,8 +23,9 @@ const HOPELESS: f64 = 2.0;
 /// Breaking tension while looking, N: the map says where it would break and goes on.
 const UNBREAKABLE_N: f64 = 1e15;
 
-/// The scene as it is at the start, for good: nothing moves by itself, lets go or breaks.
-fn stilled(scene: &Scene) -> Scene {
+/// The scene as it is at the start, for good: nothing moves by itself, lets go or breaks. Supports and robot stand where an answer
+/// has them, if there is one.
+fn stilled(scene: &Scene, now: Option<&Solution>) -> Scene {
     let mut still = scene.clone();
     let environment = &mut still.environment;
     if let Some(&wind) = environment.winds_n_per_m.first() {
@@ -50,6 +53,37 @@ fn stilled(scene: &Scene) -> Scene {
     }
     if let Some(robot) = &mut still.robot {
         robot.path.clear();
+        if let Some(now) = now.and_then(|n| n.robot) {
+            robot.at_m = [now.x_m, now.y_m];
+        }
+    }
+    for (cable, now) in still.cables.iter_mut().zip(now.iter().flat_map(|n| &n.cables)) {
+        for (support, now) in cable.supports.iter_mut().zip(&now.supports) {
+            if support.at_m.is_some() && support.kind != SupportKind::Pulley {
+                support.at_m = Some([now.x_m, now.y_m]);
+            }
+        }
+    }
+    still
+}
+
+/// Lays the cables: at rest as an answer has them, else as the scene does.
+fn lay(simulation: &mut Simulation, now: Option<&Solution>) -> Result<(), Error> {
+    if let Some(now) = now {
+        if now.cables.iter().any(|c| !c.breaks.is_empty()) {
+            return Err(unsupported("a cable that has broken"));
+        }
+        simulation.resume(&at_rest(now))?;
+    }
+    simulation.settle()?;
+    Ok(())
+}
+
+/// An answer in which nothing moves.
+fn at_rest(answer: &Solution) -> Solution {
+    let mut still = answer.clone();
+    for node in still.cables.iter_mut().flat_map(|c| &mut c.nodes) {
+        (node.vx_m_per_s, node.vy_m_per_s) = (0.0, 0.0);
     }
     still
 }

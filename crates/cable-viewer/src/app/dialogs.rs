@@ -162,7 +162,7 @@ const ABOUT: &[(&str, &[&str])] = &[
     (
         "Checked",
         &[
-            "Free spans against the elastic catenary, to 40 digits",
+            "Free spans against the elastic catenary, worked out with 40 digits",
             "Whole scenes over floors, beams and posts against references found by shooting",
             "Motion against closed forms: pendulums, falling and hanging chains, strings, Irvine’s modes, the capstan",
             "Breaking at the time and place that the strain says",

@@ -16,7 +16,7 @@ pub fn ui(ui: &mut Ui, answers: &mut Answers, path: &mut String, commands: &mut 
             ui.label(*question);
             ui.horizontal(|ui| {
                 for k in 1..=BEST {
-                    let button = ui.selectable_label(*mark == Some(k), k.to_string());
+                    let button = ui.radio(*mark == Some(k), k.to_string());
                     field::name(&button, &format!("{question}: {k}"));
                     if button.clicked() {
                         *mark = Some(k);

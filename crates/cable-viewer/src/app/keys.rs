@@ -90,7 +90,8 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     if (plain(Key::Delete) || plain(Key::Backspace)) && state.selected.is_some() {
         commands.push(Command::Scene(SceneCommand::RemoveAll(state.picks())));
     }
-    if plain(Key::Escape) {
+    // An open menu or list closes first, and only it.
+    if !egui::Popup::is_any_open(ctx) && plain(Key::Escape) {
         commands.push(Command::View(ViewCommand::Select(None)));
     }
 }

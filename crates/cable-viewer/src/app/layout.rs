@@ -1,6 +1,6 @@
 //! Where panels and canvas are.
 
-use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, ScrollArea, Ui};
+use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, RichText, ScrollArea, Ui};
 
 use super::{guide, menu};
 use crate::canvas;
@@ -35,8 +35,8 @@ const UNMARKED: &str = "Tension at a place";
 
 /// Narrower windows (points) have one side panel instead of two: the canvas would be smaller than its labels.
 const WIDE: f32 = 1100.0;
-/// Lower windows (points) have no graphs: nothing would be left of the canvas.
-const LEAST_FOR_GRAPHS: f32 = 340.0;
+/// Lower windows (points) have one side panel, and the graphs in it: nothing would be left of the canvas above them.
+const LEAST_FOR_GRAPHS: f32 = 520.0;
 /// Lowest panel of graphs, points.
 const LEAST_GRAPHS: f32 = 130.0;
 
@@ -52,18 +52,19 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         panels::playback::ui(ui, state, commands);
     });
     let [width, height] = ui.ctx().content_rect().size().into();
-    if width >= WIDE {
+    let graphs = height >= LEAST_FOR_GRAPHS;
+    if width >= WIDE && graphs {
         side(ui, "edit", (EDIT, state, commands));
         side(ui, "read", (READ, state, commands));
     } else {
-        tabs(ui, state, commands);
+        tabs(ui, (state, !graphs), commands);
     }
-    if height < LEAST_FOR_GRAPHS {
+    if !graphs {
         CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
         return;
     }
-    let graphs = (0.3 * height).clamp(LEAST_GRAPHS, 240.0);
-    Panel::bottom("plots").resizable(true).default_size(graphs).size_range(LEAST_GRAPHS..=500.0).show(ui, |ui| {
+    let high = (0.3 * height).clamp(LEAST_GRAPHS, 240.0);
+    Panel::bottom("plots").resizable(true).default_size(high).size_range(LEAST_GRAPHS..=500.0).show(ui, |ui| {
         // A panel takes the height of what is in it: without this it shrinks by a margin a frame.
         ui.set_min_height(ui.available_height());
         panels::plots::ui(ui, state, commands);
@@ -76,26 +77,44 @@ fn side(ui: &mut Ui, id: &'static str, (sections, state, commands): (&[Section],
     panel.size_range(220.0..=420.0).show(ui, |ui| scroll(ui, id, (sections, state, commands)));
 }
 
-/// One panel for both in a window that has no room for two.
-fn tabs(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+/// What the one panel of a small window shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Tab {
+    #[default]
+    Edit,
+    Read,
+    Graphs,
+}
+
+/// One panel for all in a window that has no room for two, or none for graphs below the canvas.
+fn tabs(ui: &mut Ui, (state, graphs): (&AppState, bool), commands: &mut Vec<Command>) {
     // A large scale on a small screen: half of it stays for the picture.
     let most = 0.5 * ui.ctx().content_rect().width();
     let range = most.min(220.0)..=most.min(420.0);
     Panel::left("narrow").default_size(most.min(320.0)).size_range(range).show(ui, |ui| {
         let id = Id::unique("narrow tab");
-        let mut read: bool = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+        let mut tab: Tab = ui.data(|d| d.get_temp(id)).unwrap_or_default();
         ui.horizontal(|ui| {
-            ui.selectable_value(&mut read, false, "Edit").on_hover_text("Scene, robot, cable, environment, solver");
-            ui.selectable_value(&mut read, true, "Read")
+            ui.selectable_value(&mut tab, Tab::Edit, "Edit").on_hover_text("Scene, robot, cable, environment, solver");
+            ui.selectable_value(&mut tab, Tab::Read, "Read")
                 .on_hover_text("Warnings, readouts, safe reach, tension at a place, compare");
+            if graphs {
+                ui.selectable_value(&mut tab, Tab::Graphs, "Graphs")
+                    .on_hover_text("Tension and more, over time and along the cable");
+            }
             let warnings = state.snapshot.solution.as_ref().map_or(0, |s| s.warnings.len());
             if state.scene_fault.is_some() || state.snapshot.error.is_some() || warnings > 0 {
-                ui.colored_label(ui.visuals().warn_fg_color, "Warnings: see Read");
+                ui.add(
+                    egui::Label::new(RichText::new("Warnings: see Read").color(ui.visuals().warn_fg_color)).truncate(),
+                );
             }
         });
-        ui.data_mut(|d| d.insert_temp(id, read));
-        let (id, sections) = if read { ("read", READ) } else { ("edit", EDIT) };
-        scroll(ui, id, (sections, state, commands));
+        ui.data_mut(|d| d.insert_temp(id, tab));
+        match tab {
+            Tab::Graphs if graphs => panels::plots::ui(ui, state, commands),
+            Tab::Read => scroll(ui, "read", (READ, state, commands)),
+            Tab::Edit | Tab::Graphs => scroll(ui, "edit", (EDIT, state, commands)),
+        }
     });
 }
 

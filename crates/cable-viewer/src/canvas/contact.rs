@@ -2,7 +2,7 @@
 //! slip front. Blue and orange are told apart by colour-blind eyes; filled and hollow by every eye.
 
 use cable_core::solution::{CableSolution, ContactPart, ContactReport, ContactState, Node};
-use egui::{Mesh, Rect, Stroke, StrokeKind, vec2};
+use egui::{Mesh, Pos2, Rect, Stroke, StrokeKind, vec2};
 
 use super::cable::{LEAST_WIDTH, Ribbon, seen};
 use super::view::View;
@@ -14,6 +14,9 @@ const BAND: f32 = 9.0;
 const EDGE: f32 = 3.6;
 /// Half the length of the tick at a slip front, points.
 const TICK: f32 = 11.0;
+
+/// Ticks nearer to the one before than this (points) are not drawn: closer in there is room for them.
+const APART: f32 = 8.0;
 
 /// The stretches of a contact that hold or slide, in order.
 #[must_use]
@@ -55,13 +58,14 @@ pub fn draw(view: &View<'_>, state: &AppState) {
     }
     view.painter.add(mesh);
     for answer in &solution.cables {
+        let mut last = None;
         for s in answer.contacts.iter().flat_map(fronts) {
-            tick(view, answer, s);
+            tick(view, answer, s, &mut last);
         }
     }
 }
 
-fn tick(view: &View<'_>, answer: &CableSolution, s: f64) {
+fn tick(view: &View<'_>, answer: &CableSolution, s: f64, last: &mut Option<Pos2>) {
     let near = between(answer, [s, s]);
     let k = answer.nodes.partition_point(|n| n.arc_length_m <= s).clamp(1, answer.nodes.len().saturating_sub(1).max(1));
     let (Some(n), Some(a), Some(b)) = (near.first(), answer.nodes.get(k - 1), answer.nodes.get(k)) else { return };
@@ -69,6 +73,10 @@ fn tick(view: &View<'_>, answer: &CableSolution, s: f64) {
     if along.length() > 0.0 {
         let across = along.normalized().rot90() * TICK;
         let at = view.at([n.x_m, n.y_m]);
+        if last.is_some_and(|p| p.distance(at) < APART) {
+            return;
+        }
+        *last = Some(at);
         view.painter.line_segment([at - across, at + across], Stroke::new(2.0, view.palette.text));
     }
 }

@@ -2,7 +2,7 @@
 //! small ones stay visible beside large ones.
 
 use cable_core::math::Point;
-use cable_core::solution::{CableSolution, ContactState};
+use cable_core::solution::{CableSolution, ContactReport, ContactState};
 use egui::{Align2, Color32, Pos2, Stroke, Vec2, pos2, vec2};
 
 use super::view::View;
@@ -10,6 +10,8 @@ use crate::panels::unit::Unit;
 use crate::state::{AppState, Item};
 use crate::units;
 
+/// Of contacts nearer to each other than this (points) only the strongest has arrows; closer in there is room for more.
+const APART: f32 = 22.0;
 /// Longest and shortest arrow, points.
 const LENGTH: [f64; 2] = [64.0, 9.0];
 /// Length of a load's arrow of 1 N, points; it grows with the square root. Loads have a scale of their own that does not depend
@@ -59,8 +61,14 @@ fn screen_vector(f: Point, greatest: f64) -> Vec2 {
 }
 
 fn contacts(view: &View<'_>, cable: &CableSolution, scale: &impl Fn(Point) -> Vec2) {
-    for c in &cable.contacts {
+    let mut drawn: Vec<Pos2> = Vec::new();
+    for c in strongest_first(&cable.contacts) {
         let at = view.at([c.x_m, c.y_m]);
+        // Twenty arrows on a hand's breadth hide the cable and each other.
+        if drawn.iter().any(|p| p.distance(at) < APART) {
+            continue;
+        }
+        drawn.push(at);
         let normal = scale([c.normal[0] * c.normal_n, c.normal[1] * c.normal_n]);
         view.arrow(at, normal, Stroke::new(1.8, view.palette.normal));
         // Growing arc length is along the tangent nearest to the direction of the cable there.
@@ -71,6 +79,12 @@ fn contacts(view: &View<'_>, cable: &CableSolution, scale: &impl Fn(Point) -> Ve
         let fill = if c.state == ContactState::Stick { view.palette.normal } else { view.palette.background };
         view.painter.circle(at, 3.0, fill, Stroke::new(1.5, view.palette.normal));
     }
+}
+
+fn strongest_first(contacts: &[ContactReport]) -> Vec<&ContactReport> {
+    let mut sorted: Vec<&ContactReport> = contacts.iter().collect();
+    sorted.sort_by(|a, b| b.normal_n.abs().total_cmp(&a.normal_n.abs()));
+    sorted
 }
 
 /// Direction of growing arc length in the contact plane.

@@ -118,7 +118,9 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
                 Moved::Support { .. } => state.visible_m,
             };
             let (scene, settings, across) = (state.scene.clone(), state.settings, state.reach.choice.across);
-            effects.reach = Some(Some(Box::new(Order { scene, settings, moved, corners_m, across })));
+            // From where the cable is on screen, once time has run: a hand or the robot may have taken it elsewhere.
+            let now = state.snapshot.solution.clone().filter(|s| s.time_s > 0.0 && !state.snapshot.stale);
+            effects.reach = Some(Some(Box::new(Order { scene, now, settings, moved, corners_m, across })));
         }
         ViewCommand::SetReach(choice) => state.reach.choice = choice,
         ViewCommand::Spread(on, [low, high]) => {

@@ -1,7 +1,9 @@
 //! Compare panel: answers held beside the present one, their figures and what differs in their input.
 
-use cable_core::{Scene, Solution};
-use egui::{Grid, RichText, Ui};
+use std::sync::Arc;
+
+use cable_core::{Model, Scene, Solution};
+use egui::{Grid, Id, RichText, Ui};
 
 use super::readouts::figures;
 use super::{field, unit};
@@ -65,7 +67,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     runs(ui, state);
     for (k, held) in state.held.iter().enumerate() {
         ui.weak(format!("{}: {}", k + 1, held.name));
-        for line in differences(held, state) {
+        for line in remembered(ui, k, held, state).iter() {
             ui.label(RichText::new(line).small());
         }
     }
@@ -77,9 +79,8 @@ fn runs(ui: &mut Ui, state: &AppState) {
         return;
     }
     let measures = [Measure::Cable(Quantity::Tension), Measure::Pull];
-    let samples = &state.history.samples;
     let own = state.recording.span_s().map(|span_s| {
-        let peaks = measures.map(|m| Peak::of(samples.iter().filter_map(|s| Some([s.time_s, m.lead()?(s)]))));
+        let peaks = measures.map(|m| state.history.peak(m.lead()?).map(|[time_s, value]| Peak { time_s, value }));
         ("Now".to_owned(), None, (span_s, peaks, state.recording.events().len()))
     });
     ui.separator();
@@ -159,6 +160,30 @@ fn cell(ui: &mut Ui, text: String, (value, present): (Option<f64>, Option<f64>))
             ui.label(RichText::new(share).small().weak()).on_hover_text("Against the present answer");
         }
     });
+}
+
+/// What two scenes and models differ in.
+#[derive(Clone)]
+struct Told {
+    held: Arc<Scene>,
+    present: Arc<Scene>,
+    models: [Option<Model>; 2],
+    lines: Arc<Vec<String>>,
+}
+
+/// The differences of the last frame where nothing has changed since: to write two files and compare them takes milliseconds.
+fn remembered(ui: &Ui, k: usize, held: &Held, state: &AppState) -> Arc<Vec<String>> {
+    let id = Id::unique(("differences", k));
+    let models = [Some(held.solution.model), state.snapshot.solution.as_ref().map(|s| s.model)];
+    let last = ui.data(|d| d.get_temp::<Told>(id));
+    let fits = |t: &Told| Arc::ptr_eq(&t.held, &held.scene) && t.models == models && *t.present == state.scene;
+    if let Some(told) = last.filter(fits) {
+        return told.lines;
+    }
+    let lines = Arc::new(differences(held, state));
+    let (present, held) = (Arc::new(state.scene.clone()), Arc::clone(&held.scene));
+    ui.data_mut(|d| d.insert_temp(id, Told { held, present, models, lines: Arc::clone(&lines) }));
+    lines
 }
 
 /// What differs in the input of a held answer and the present one, line by line of their files; the models first.

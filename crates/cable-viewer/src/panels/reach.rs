@@ -30,8 +30,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
     } else {
         ui.horizontal(|ui| {
-            let help = "Looks at places along the ground, or all over the part of the picture that is in view, each there and back; \
-                        the window stays usable meanwhile. Nothing limits what moves: the question is what the cable would bear";
+            let help = "Looks at places along the ground, or all over the part of the picture that is in view, each there and back, \
+                        from where the cable lies now; first coarsely, then finer. The window stays usable meanwhile. Nothing \
+                        limits what moves: the question is what the cable would bear";
             if ui.button("Find safe reach").on_hover_text(help).clicked() {
                 commands.push(Command::View(ViewCommand::Reach(true)));
             }
@@ -82,7 +83,8 @@ fn choices(ui: &mut Ui, state: &AppState, moved: Moved, commands: &mut Vec<Comma
             let mut across = choice.across;
             let slider = ui.add(Slider::new(&mut across, ACROSS[0]..=ACROSS[1]));
             field::name(&slider, "Places side by side");
-            let help = "How finely the part of the picture in view is looked at: twice as many take four to eight times as long";
+            let help =
+                "How finely the part of the picture in view is looked at: twice as many take up to four times as long";
             if slider.on_hover_text(help).changed() {
                 commands.push(set(Choice { across, ..choice }));
             }

@@ -87,9 +87,9 @@ fn readouts(ui: &mut Ui, r: &RobotReport) {
             {
                 let Unit { symbol, si, .. } = Unit::M_PER_S.shown();
                 let shown = |v: f64| unit::significant(v / si, 3);
-                format!("{} of {} {symbol}", shown(r.speed_m_per_s), shown(r.commanded_m_per_s))
+                format!("{} {symbol}, told {} {symbol}", shown(r.speed_m_per_s), shown(r.commanded_m_per_s))
             },
-            "Along the ground, of what is asked for",
+            "Along the ground, and what it is told by hand or by its path",
         ),
         ("Slope", format!("{:.1}°", r.pitch_deg).replace('-', "−"), "Positive where it climbs to the right"),
         (

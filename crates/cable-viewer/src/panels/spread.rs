@@ -30,7 +30,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let view = &state.spread;
     let mut on = view.on;
     let help = "The same question with less and with more friction, as a ribbon in the graphs of tension; computed beside the \
-                window whenever time stands still. What was moved by hand while time ran is not repeated";
+                window whenever time stands still. What was moved or driven by hand meanwhile is repeated";
     if ui.checkbox(&mut on, "Show less and more friction").on_hover_text(help).changed() {
         commands.push(Command::View(ViewCommand::Spread(on, view.factors)));
     }

@@ -56,6 +56,10 @@ const ROW: f32 = 24.0;
 /// Room for the export button beside the legend, points.
 const EXPORT: f32 = 62.0;
 
+/// A held line that goes up and down by this many times its whole height is drawn solid and thin. More: frames with long runs take
+/// longer; fewer: a few swings lose their dashes.
+const RESTLESS: f64 = 40.0;
+
 /// Length of a line in the legend, points.
 const SWATCH: f32 = 16.0;
 
@@ -192,9 +196,9 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
         }
         draw_ribbon(plot, &graph.ribbon, [x_si, si]);
         for (k, line) in lines.iter().enumerate() {
-            let (colour, style) = look(line, k);
+            let (colour, style, width) = drawn(line, k);
             let points: Vec<[f64; 2]> = line.points.iter().map(|p| [p[0] / x_si, p[1] / si]).collect();
-            plot.line(egui_plot::Line::new(line.name.clone(), points).color(colour).width(2.0).style(style));
+            plot.line(egui_plot::Line::new(line.name.clone(), points).color(colour).width(width).style(style));
         }
         draw_limits(plot, graph.limits, si, symbol);
         let places: Vec<f64> = cursors.0.iter().map(|x| x / x_si).collect();
@@ -268,6 +272,21 @@ fn look(line: &Series, k: usize) -> (Color32, LineStyle) {
         Some(held) => (LINES[held % LINES.len()], LineStyle::dashed_loose()),
         None => (LINES[k % LINES.len()], LineStyle::Solid),
     }
+}
+
+/// Colour, style and width with which it is drawn. Where it goes up and down in every column, dashes cannot be seen, and would be
+/// thousands.
+fn drawn(line: &Series, k: usize) -> (Color32, LineStyle, f32) {
+    let (colour, style) = look(line, k);
+    if line.held.is_some() && restless(&line.points) {
+        return (colour.gamma_multiply(0.7), LineStyle::Solid, 1.0);
+    }
+    (colour, style, 2.0)
+}
+
+fn restless(points: &[[f64; 2]]) -> bool {
+    let (low, high) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[1]), h.max(p[1])));
+    points.windows(2).map(|p| (p[1][1] - p[0][1]).abs()).sum::<f64>() > RESTLESS * (high - low)
 }
 
 fn hovered_id(group: &str) -> Id {
@@ -427,6 +446,17 @@ mod tests {
         assert!(near[1] > 800.0 && near[1] < 1000.0, "{near:?}");
         let wide = vertical_range(&[line(&[10.0, 80.0])], &[[0.0, 5.0, 200.0]], [800.0, 10_000.0]);
         assert!(wide[1] > 200.0, "the ribbon is in view: {wide:?}");
+    }
+
+    #[test]
+    fn only_held_lines_that_do_not_tremble_are_dashed() {
+        let held = |values: &[f64]| Series { held: Some(0), ..line(values) };
+        let wave: Vec<f64> = (0..1200).map(|k| (0.02 * f64::from(k)).sin()).collect();
+        let noise: Vec<f64> = (0..1200).map(|k| f64::from(k % 2)).collect();
+        assert!(matches!(drawn(&held(&wave), 0), (_, LineStyle::Dashed { .. }, _)));
+        assert!(matches!(drawn(&held(&noise), 0), (_, LineStyle::Solid, _)));
+        assert!(matches!(drawn(&held(&[1.0; 9]), 0), (_, LineStyle::Dashed { .. }, _)));
+        assert!(matches!(drawn(&line(&noise), 0), (_, LineStyle::Solid, w) if w == 2.0));
     }
 
     #[test]

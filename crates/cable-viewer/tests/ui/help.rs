@@ -57,8 +57,39 @@ fn u11_every_control_has_a_name() {
 
 #[test]
 fn u11_every_control_explains_itself_on_hover() {
-    let mut harness = open(catalog::robot_drive());
+    every_control_explains_itself(open(catalog::robot_drive()), None);
+}
+
+/// What opens for something that is picked, and what only some scenes have.
+#[test]
+fn u11_every_control_of_what_is_picked_explains_itself_on_hover() {
+    for (scene, item) in [
+        (catalog::loads_wind_heat(), Item::Load(0)),
+        (catalog::pulley_waypoints(), Item::Support { cable: 0, support: 1 }),
+        (catalog::over_beam(), Item::Obstacle(0)),
+        (catalog::round_post(), Item::Obstacle(0)),
+    ] {
+        every_control_explains_itself(open(scene), Some(item));
+    }
+    // A support that moves and lets go; a cable that is too short, with what puts it right.
+    let mut scene = catalog::floor_drag();
+    let moved = scene.cables[0].supports.iter().position(|s| s.motion.is_some()).unwrap();
+    scene.cables[0].supports[moved].release_s = Some(1.0);
+    every_control_explains_itself(open(scene), Some(Item::Support { cable: 0, support: moved }));
+    let mut harness = open(catalog::hanging_span());
+    let mut value = state(&harness).scene.cables[0].clone();
+    value.length_m = 7.0;
+    apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(value) }));
+    apply(&mut harness, Command::View(ViewCommand::Spread(true, [0.5, 1.5])));
+    let from = cable_core::origin::From::Start;
+    let probe = cable_viewer::state::Probe { cable: 0, arc_length_m: 4.0, from };
+    apply(&mut harness, Command::View(ViewCommand::Probe(Some(probe))));
+    every_control_explains_itself(harness, None);
+}
+
+fn every_control_explains_itself(mut harness: Harness<'static, ViewerApp>, picked: Option<Item>) {
     apply(&mut harness, Command::View(ViewCommand::Hold));
+    apply(&mut harness, Command::View(ViewCommand::Select(picked)));
     harness.ctx.all_styles_mut(|style| {
         style.interaction.tooltip_delay = 0.0;
         style.interaction.show_tooltips_only_when_still = false;
@@ -156,6 +187,197 @@ fn t01_six_guided_scenes_lead_from_step_to_step() {
     harness.get_by_label("End guide").click();
     harness.run_steps(2);
     assert_eq!(state(&harness).guide, None);
+}
+
+/// Each step of each guide, done as it says: the guide sees it and goes on, and what it says happens.
+#[test]
+fn t01_every_step_of_every_guide_can_be_done_as_it_says() {
+    fn at(harness: &Harness<'_, ViewerApp>) -> Option<usize> {
+        state(harness).guide.map(|p| p.step)
+    }
+    fn next(harness: &mut Harness<'_, ViewerApp>) {
+        harness.get_by_label("Next").click();
+        harness.run_steps(2);
+    }
+    fn start(k: usize) -> Harness<'static, ViewerApp> {
+        let mut harness = open_span();
+        harness.set_size(egui::Vec2::new(1280.0, 1800.0));
+        apply(&mut harness, Command::SetModel(cable_core::Model::Auto));
+        apply(&mut harness, Command::File(FileCommand::Discard(Box::new(Command::File(FileCommand::OpenGuide(k))))));
+        harness.run_steps(3);
+        assert_eq!(at(&harness), Some(0), "{}", GUIDES[k].title);
+        harness
+    }
+    fn hold(harness: &mut Harness<'_, ViewerApp>, key: Key, frames: usize) {
+        let modifiers = Modifiers::NONE;
+        for pressed in [true, false] {
+            harness.event(egui::Event::Key { key, physical_key: None, pressed, repeat: false, modifiers });
+            harness.run_steps(if pressed { frames } else { 2 });
+        }
+    }
+    fn typed(harness: &mut Harness<'_, ViewerApp>, label: &str, text: &str) {
+        let field = harness.get_all_by_label(label).find(|n| n.accesskit_node().role() == Role::TextInput).unwrap();
+        field.focus();
+        harness.step();
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+        harness.step();
+        let field = harness.get_all_by_label(label).find(|n| n.accesskit_node().role() == Role::TextInput).unwrap();
+        field.type_text(text);
+        harness.step();
+        harness.key_press(Key::Enter);
+        harness.run_steps(4);
+    }
+
+    // 1. Drag an end.
+    let mut harness = start(0);
+    let from = crate::support(&harness, "right");
+    crate::drag(&mut harness, from, egui::Vec2::new(-60.0, -40.0));
+    assert_eq!(at(&harness), Some(1));
+    harness.get_by_label("Readouts");
+    next(&mut harness);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(3);
+    harness.get_by_label("Done");
+
+    // 2. Change the cable.
+    let mut harness = start(1);
+    typed(&mut harness, "Linear density", "2");
+    assert_eq!(at(&harness), Some(1));
+    next(&mut harness);
+    typed(&mut harness, "Length", "8.5");
+    assert_eq!(at(&harness), Some(3), "{:?}", state(&harness).scene_fault);
+    harness.get_by_label("The scene cannot be solved");
+    let fix = harness.get_all_by_label_contains("Set to ").next().expect("the fix is offered");
+    fix.click();
+    harness.run_steps(3);
+    assert_eq!(state(&harness).scene_fault, None);
+    harness.get_by_label("Done");
+
+    // 3. Waypoints.
+    let mut harness = start(2);
+    let answer = state(&harness).snapshot.solution.clone().unwrap();
+    let node = answer.cables[0].nodes[answer.cables[0].nodes.len() / 2];
+    let canvas = harness.get_by_label("Canvas").rect();
+    let place = state(&harness).camera.to_screen(canvas, [node.x_m, node.y_m]);
+    harness.hover_at(place);
+    harness.step();
+    for pressed in [true, false, true, false] {
+        crate::press(&harness, place, pressed);
+        harness.step();
+    }
+    harness.run_steps(3);
+    assert_eq!(at(&harness), Some(1));
+    let canvas = harness.get_by_label("Canvas").rect();
+    let rise = 2.8 * state(&harness).camera.points_per_m as f32;
+    let place = state(&harness).camera.to_screen(canvas, state(&harness).scene.cables[0].supports[1].at_m.unwrap());
+    crate::drag(&mut harness, place, egui::Vec2::new(0.0, -rise));
+    assert_eq!(at(&harness), Some(2), "{:?}", state(&harness).scene.cables[0].supports[1]);
+    assert_eq!(state(&harness).snapshot.error, None);
+    harness.get_by_label("Wheel radius");
+    harness.key_press(Key::Delete);
+    harness.run_steps(3);
+    harness.get_by_label("Done");
+
+    // 4. Time.
+    let mut harness = start(3);
+    harness.key_press(Key::Space);
+    harness.run_steps(30);
+    assert_eq!(at(&harness), Some(1));
+    assert!(state(&harness).history.samples.len() > 10, "the graphs fill");
+    harness.key_press(Key::Space);
+    harness.run_steps(3);
+    assert_eq!(at(&harness), Some(2));
+    harness.key_press(Key::ArrowLeft);
+    harness.run_steps(3);
+    assert_eq!(at(&harness), Some(3));
+    harness.get_by_label("Present").click();
+    harness.run_steps(3);
+    harness.get_by_label("Done");
+
+    // 5. Drive.
+    let mut harness = start(4);
+    hold(&mut harness, Key::D, 80);
+    assert_eq!(at(&harness), Some(1), "{:?}", state(&harness).live.solution.as_ref().and_then(|s| s.robot));
+    for row in ["Slope", "Pull of the cable", "Track force"] {
+        harness.get_by_label(row);
+    }
+    next(&mut harness);
+    harness.get_by_label("Find safe reach").click();
+    harness.run_steps(2);
+    assert!(matches!(state(&harness).reach.progress, cable_viewer::reach::Progress::Running(..)));
+
+    // 6. Compare.
+    let mut harness = start(5);
+    harness.get_by_label("Hold this answer").click();
+    harness.run_steps(3);
+    assert_eq!(at(&harness), Some(1));
+    typed(&mut harness, "Length", "12.5");
+    assert_eq!(at(&harness), Some(2));
+    harness.get_by_label_contains("length_m");
+    assert!(harness.get_all_by_label_contains("Export").count() >= 2, "one beside each graph");
+    harness.get_by_label("File").click();
+    harness.run_steps(3);
+    harness.get_by_label("Save run…");
+}
+
+#[test]
+fn escape_closes_a_menu_or_list_before_it_drops_what_is_picked() {
+    let mut harness = open_span();
+    let item = Item::Support { cable: 0, support: 1 };
+    apply(&mut harness, Command::View(ViewCommand::Select(Some(item))));
+    for (opener, entry) in [("File", "Save run…"), ("Time window", "Last 60 s")] {
+        harness.get_by_label(opener).click();
+        harness.run_steps(3);
+        harness.get_by_label(entry);
+        harness.key_press(Key::Escape);
+        harness.run_steps(3);
+        assert!(harness.query_by_label(entry).is_none(), "{opener} is still open");
+        assert_eq!(state(&harness).selected, Some(item));
+    }
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    assert_eq!(state(&harness).selected, None);
+}
+
+/// What is typed into stands off the dialog that asks for it, in both themes.
+#[test]
+fn fields_stand_off_dialogs_and_panels() {
+    let harness = open_span();
+    for theme in [egui::Theme::Light, egui::Theme::Dark] {
+        let visuals = harness.ctx.style_of(theme).visuals.clone();
+        for behind in [visuals.window_fill, visuals.panel_fill] {
+            let far = (0..3).map(|k| visuals.extreme_bg_color[k].abs_diff(behind[k])).max().unwrap();
+            assert!(far >= 8, "{theme:?}: {:?} on {behind:?}", visuals.extreme_bg_color);
+            let rail = visuals.widgets.inactive.bg_fill;
+            let far = (0..3).map(|k| rail[k].abs_diff(behind[k])).max().unwrap();
+            assert!(far >= 20, "{theme:?}: rails {rail:?} on {behind:?}");
+        }
+    }
+}
+
+/// Where there is no room for graphs below the canvas they are in the one panel, and the canvas is larger than its labels.
+#[test]
+fn small_windows_keep_a_canvas_and_have_all_panels() {
+    let mut harness = open(catalog::robot_drive());
+    for (size, graphs_below) in [([640.0, 400.0], false), ([1280.0, 480.0], false), ([800.0, 600.0], true)] {
+        harness.set_size(egui::Vec2::new(size[0], size[1]));
+        harness.run_steps(4);
+        let canvas = harness.get_by_label("Canvas").rect();
+        assert!(canvas.height() > 180.0 && canvas.width() > 300.0, "{size:?}: {canvas}");
+        assert_eq!(harness.query_by_label("Graphs").is_none(), graphs_below, "{size:?}");
+        if !graphs_below {
+            harness.get_by_label("Graphs").click();
+            harness.run_steps(3);
+            let graph = harness.get_by_label("Along the cable").rect();
+            assert!(graph.height() > 60.0, "{size:?}: {graph}");
+        }
+        harness.get_by_label("Read").click();
+        harness.run_steps(3);
+        harness.get_by_label("Max tension");
+        // The menu of the same name is above it.
+        harness.get_all_by_label("Edit").find(|n| n.rect().top() > 24.0).unwrap().click();
+        harness.run_steps(3);
+    }
 }
 
 #[test]

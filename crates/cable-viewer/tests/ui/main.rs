@@ -17,6 +17,7 @@ mod speed;
 mod stories;
 mod timing;
 mod units;
+mod walk;
 mod wishes;
 
 use cable_core::scene::{Shape, catalog};

@@ -210,6 +210,7 @@ fn end_reached() -> AppState {
         spacing_m: 0.5,
         columns: 27,
         most_n: vec![f64::NAN; 27 * 12],
+        guessed: vec![false; 27 * 12],
         start_m: [9.0, 0.5],
         service_n: 800.0,
         breaking_n: 1e4,

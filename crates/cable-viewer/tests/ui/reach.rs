@@ -54,7 +54,8 @@ fn safe_reach_of_a_robot_is_found_beside_the_window_and_can_be_ended() {
     // A short search to its end.
     let settings = cable_core::Settings::default();
     let corners_m = [[9.9, 0.0], [10.1, 0.0]];
-    let job = start(Order { scene: scene.clone(), settings, moved: Moved::Robot, corners_m, across: 8 }, || {});
+    let job =
+        start(Order { scene: scene.clone(), now: None, settings, moved: Moved::Robot, corners_m, across: 8 }, || {});
     let mut found: Option<Found> = None;
     patiently("a short search", || {
         match job.progress() {
@@ -70,6 +71,30 @@ fn safe_reach_of_a_robot_is_found_beside_the_window_and_can_be_ended() {
     let map: &Map = &map;
     assert_eq!(map.places.len(), PLACES);
     assert!(map.safe_m(map.service_n, true).is_some());
+}
+
+/// A search that nobody waits for any more ends, and takes no more of the machine.
+#[test]
+fn a_search_that_is_dropped_ends() {
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    let heard = Arc::new(AtomicUsize::new(0));
+    let theirs = Arc::clone(&heard);
+    let (scene, settings) = (catalog::robot_drive(), cable_core::Settings::default());
+    let corners_m = [[0.0, 0.0], [20.0, 0.0]];
+    let order = Order { scene, now: None, settings, moved: Moved::Robot, corners_m, across: 8 };
+    let job = start(order, move || {
+        theirs.fetch_add(1, Ordering::Relaxed);
+        std::thread::sleep(Duration::from_millis(20));
+    });
+    patiently("the first words", || heard.load(Ordering::Relaxed) > 2);
+    assert!(matches!(job.progress(), Progress::Running(..)), "a search that is done says nothing of ending");
+    drop(job);
+    // What it was at, and its last word.
+    std::thread::sleep(Duration::from_secs(1));
+    let last = heard.load(Ordering::Relaxed);
+    std::thread::sleep(Duration::from_secs(1));
+    assert_eq!(heard.load(Ordering::Relaxed), last, "it goes on");
 }
 
 #[test]
@@ -115,6 +140,33 @@ fn safe_reach_of_an_end_is_a_map_of_the_plane_found_by_keys_alone_and_told_in_wo
     click(&mut harness, "Clear");
     assert!(reach(&harness).found().is_none());
     assert!(harness.query_by_label("There and back").is_none(), "nothing to show");
+}
+
+/// Time has run and has taken the end elsewhere: the map begins there.
+#[test]
+fn safe_reach_begins_where_the_end_is_on_screen() {
+    let mut scene = catalog::over_beam();
+    scene.obstacles.clear();
+    let (times_s, points_m) = (vec![0.0, 0.5], vec![[9.0, 0.5], [8.0, 1.0]]);
+    scene.cables[0].supports[1].motion = Some(cable_core::scene::Motion { times_s, points_m });
+    let mut harness = tall(scene);
+    apply(&mut harness, Command::View(ViewCommand::SetReach(Choice { across: 8, ..Choice::default() })));
+    apply(&mut harness, Command::Playback(cable_viewer::command::PlaybackCommand::SetPaused(false)));
+    harness.run_steps(50);
+    apply(&mut harness, Command::Playback(cable_viewer::command::PlaybackCommand::SetPaused(true)));
+    let there = harness.state().state.snapshot.solution.as_ref().unwrap().cables[0].supports[1].clone();
+    assert!((there.x_m - 8.0).abs() < 1e-6, "{there:?}");
+    click(&mut harness, "Find safe reach");
+    patiently("a coarse map", || {
+        harness.step();
+        matches!(reach(&harness).progress, Progress::Done(_))
+    });
+    let Some((Maps::Area(map, _), _)) = reach(&harness).found() else { panic!("{:?}", reach(&harness)) };
+    assert!(
+        (map.start_m[0] - there.x_m).abs() < 1e-9 && (map.start_m[1] - there.y_m).abs() < 1e-9,
+        "{:?}",
+        map.start_m
+    );
 }
 
 #[test]

@@ -155,28 +155,59 @@ fn a_recorded_drag_over_a_right_angle_has_no_sawtooth() {
     assert!((found / exact - 1.0).abs() < 2e-3, "{found} against {exact}");
 }
 
+/// The ribbon, once it is there.
+fn ribbon(
+    harness: &mut egui_kittest::Harness<'_, cable_viewer::ViewerApp>,
+) -> std::sync::Arc<cable_core::spread::Spread> {
+    use cable_viewer::background::Progress;
+    for _ in 0..6000 {
+        harness.run_steps(1);
+        match &state(harness).spread.progress {
+            Progress::Done((found, _)) => return found.clone(),
+            Progress::Failed(why) => panic!("{why}"),
+            _ => std::thread::sleep(std::time::Duration::from_millis(5)),
+        }
+    }
+    panic!("no ribbon in half a minute");
+}
+
+/// A hand draws the cable down while time runs: the ribbon is of that run, its middle one what is on screen.
+#[test]
+fn s19_the_ribbon_of_friction_repeats_what_a_hand_did() {
+    let mut scene = catalog::draped_slipping();
+    let from = scene.cables[0].supports[1].at_m.unwrap();
+    scene.cables[0].supports[1].motion = None;
+    let mut harness = open(scene);
+    apply(&mut harness, Command::SetModel(Model::Spans));
+    harness.set_size(Vec2::new(1400.0, 1800.0));
+    let still = answer(&harness).max_tension().tension_n;
+    play(&mut harness, 5);
+    for k in 1..=15 {
+        let item = cable_viewer::state::Item::Support { cable: 0, support: 1 };
+        let to_m = [from[0], from[1] - 0.04 * f64::from(k)];
+        apply(&mut harness, Command::Scene(cable_viewer::command::SceneCommand::Move { item, to_m }));
+    }
+    harness.run_steps(20);
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
+    let now = answer(&harness).max_tension().tension_n;
+    assert!(now > 1.05 * still, "{now} N of {still} N: it was drawn");
+    click(&mut harness, "Show less and more friction");
+    let found = ribbon(&mut harness);
+    let [low, likely, high] = found.most_n;
+    assert!((likely / now - 1.0).abs() < 1e-6, "{likely} N for {now} N");
+    assert!(low < 0.9 * likely && high > 1.1 * likely, "{:?}", found.most_n);
+}
+
 /// Least, likely and most friction: a ribbon in both graphs, which the answer lies in, and figures.
 #[test]
 fn friction_that_is_not_known_well_is_a_ribbon_of_tension() {
-    use cable_viewer::background::Progress;
     let mut harness = open(catalog::draped_slipping());
     apply(&mut harness, Command::SetModel(Model::Spans));
     harness.set_size(Vec2::new(1400.0, 1800.0));
     play(&mut harness, 110);
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
     click(&mut harness, "Show less and more friction");
-    let wait = |harness: &mut egui_kittest::Harness<'_, cable_viewer::ViewerApp>| {
-        for _ in 0..2000 {
-            harness.run_steps(1);
-            match &state(harness).spread.progress {
-                Progress::Done((found, _)) => return found.clone(),
-                Progress::Failed(why) => panic!("{why}"),
-                _ => std::thread::sleep(std::time::Duration::from_millis(5)),
-            }
-        }
-        panic!("no ribbon in ten seconds");
-    };
-    let found = wait(&mut harness);
+    let found = ribbon(&mut harness);
     harness.run_steps(2);
     let [low, likely, high] = found.most_n;
     assert!(
@@ -200,7 +231,7 @@ fn friction_that_is_not_known_well_is_a_ribbon_of_tension() {
     harness.get_by_label(&cable_viewer::panels::unit::force(high));
     // It follows what is edited, and goes.
     apply(&mut harness, Command::View(cable_viewer::command::ViewCommand::Spread(true, [1.0, 1.0])));
-    let found = wait(&mut harness);
+    let found = ribbon(&mut harness);
     assert!((found.most_n[0] / found.most_n[2] - 1.0).abs() < 1e-12, "{:?}", found.most_n);
     click(&mut harness, "Show less and more friction");
     let figure = harness.get_by_role_and_label(Role::Figure, "Over time");

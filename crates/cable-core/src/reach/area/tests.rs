@@ -8,7 +8,7 @@ fn look(ask: &Ask) -> Area {
 
 fn ask(scene: Scene, corners_m: [Point; 2], spacing_m: f64) -> Ask {
     let support = scene.cables[0].supports.len() - 1;
-    Ask { scene, settings: Settings::default(), cable: 0, support, corners_m, spacing_m, back: false }
+    Ask { scene, now: None, settings: Settings::default(), cable: 0, support, corners_m, spacing_m, back: false }
 }
 
 /// What is known of the place nearest to a point, and where that is.
@@ -38,17 +38,20 @@ fn without_anything_to_touch_each_place_is_what_a_cable_laid_there_pulls() {
     for (k, &there_n) in found.most_n.iter().enumerate() {
         let at = found.at(k);
         let far = (at[0] - 0.0).hypot(at[1] - 5.0) / 10.8;
+        assert!(!found.guessed[k] || there_n.is_finite());
         if far < 1.0 {
             let mut scene = free();
             scene.cables[0].supports.last_mut().unwrap().at_m = Some(at);
             let laid = Simulation::new(scene, Model::Catenary).unwrap().settle().unwrap().max_tension().tension_n;
-            assert!((there_n - laid).abs() < 1e-6 * laid, "{at:?}: {there_n} for {laid} N");
+            // What is guessed lies between four places that agree to 2 % of the service tension.
+            let allowed = if found.guessed[k] { 0.02 * found.service_n } else { 1e-6 * laid };
+            assert!((there_n - laid).abs() < allowed, "{at:?}: {there_n} for {laid} N");
             compared += 1;
         } else if far > 1.02 {
             assert!(!there_n.is_finite(), "{at:?}: {there_n} N");
         }
     }
-    assert!(compared > 20, "{compared}");
+    assert!(compared > 20 && found.guessed.iter().filter(|g| **g).count() < compared / 2, "{compared}");
     assert_eq!(found.start_m, [9.0, 0.5]);
     assert_eq!(place(&found, [9.0, 0.5]).0, [9.0, 0.5], "the start is a place");
 }
@@ -66,8 +69,12 @@ fn ways_go_round_what_is_in_the_way_and_nothing_is_known_of_what_is_shut_in() {
         block("stop", [9.4, -1.0], [9.8, 1.6]),
     ];
     scene.cables[0].route_m = vec![[0.0, 5.0], [4.0, 3.0], [8.0, 2.5], [9.0, 0.5]];
+    // Walls that are thinner than a grid is wide shut in all the same.
+    for spacing_m in [0.5, 0.35, 1.0] {
+        let found = look(&ask(scene.clone(), [[4.5, 0.0], [10.0, 2.5]], spacing_m));
+        assert!(place(&found, [5.0, 1.0]).1.is_nan(), "shut in, {spacing_m} m");
+    }
     let found = look(&ask(scene, [[4.5, 0.0], [10.0, 2.5]], 0.5));
-    assert!(place(&found, [5.0, 1.0]).1.is_nan(), "shut in");
     assert!(place(&found, [9.5, 0.5]).1.is_nan(), "inside");
     assert!(place(&found, [8.0, 1.0]).1.is_finite());
     let (at, behind_n) = place(&found, [10.0, 0.5]);
@@ -106,9 +113,80 @@ fn it_ends_when_it_is_told_to_and_is_the_same_each_time() {
         heard += 1;
         if heard < 4 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     });
-    assert_eq!(found.unwrap().most_n.iter().filter(|n| !n.is_nan()).count(), 3);
+    assert_eq!(found.unwrap().most_n.iter().filter(|n| !n.is_nan()).count(), 4, "the start and three ways");
     let bits = |a: &Area| a.most_n.iter().map(|n| n.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&look(&ask)), bits(&look(&ask)));
+}
+
+/// What is heard of a fine map before it is done covers it from a coarse one, and is told to be guessed; in the end only places between
+/// others that agree are.
+#[test]
+fn a_coarse_map_comes_first_and_finer_ones_go_on_from_it() {
+    let ask = ask(free(), [[-2.0, -2.0], [12.0, 6.0]], 0.5);
+    let mut first: Option<(Area, f64)> = None;
+    let mut shares = vec![0.0];
+    let found = area(&ask, |so_far, share| {
+        shares.push(share);
+        let told = so_far.most_n.iter().filter(|n| n.is_finite()).count();
+        if first.is_none() && told > 150 {
+            first = Some((so_far.clone(), share));
+        }
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+    assert!(shares.windows(2).all(|w| w[0] <= w[1]));
+    let (coarse, share) = first.unwrap();
+    let guessed = coarse.guessed.iter().filter(|g| **g).count();
+    assert!(share < 0.3 && guessed > 100, "{share}: {guessed}");
+    let mut compared = 0;
+    for (k, early_n) in coarse.most_n.iter().enumerate().filter(|(_, n)| n.is_finite()) {
+        let late_n = found.most_n[k];
+        // Far from its greatest reach tension grows slowly.
+        if found.at(k)[0] < 6.0 {
+            assert!((early_n - late_n).abs() < 0.1 * found.service_n, "{:?}: {early_n} {late_n}", found.at(k));
+            compared += 1;
+        }
+    }
+    assert!(compared > 50, "{compared}");
+    assert!(found.guessed.iter().zip(&found.most_n).all(|(g, n)| !g || n.is_finite()));
+}
+
+/// A hand has taken the end elsewhere meanwhile: the map begins there, with the cable as it lies.
+#[test]
+fn it_begins_where_the_cable_lies_now() {
+    let scene = free();
+    let mut moved = Simulation::for_question(
+        scene.clone(),
+        Model::Auto,
+        Settings::default(),
+        Question::History(Inertia::QuasiStatic),
+    )
+    .unwrap();
+    moved.settle().unwrap();
+    moved.drag_support(0, 1, vec2([7.5, 2.0]));
+    moved.step_quasi_static(1.0).unwrap();
+    let now = Some(Arc::new(moved.solution()));
+    let there = Ask { now, ..ask(scene, [[6.0, 0.0], [10.0, 4.0]], 1.0) };
+    let found = look(&there);
+    assert!((vec2(found.start_m) - vec2([7.5, 2.0])).norm() < 1e-9, "{:?}", found.start_m);
+    let (at, n) = place(&found, [7.5, 2.0]);
+    assert!((vec2(at) - vec2(found.start_m)).norm() < 1e-9 && (n - moved.largest_n([0])).abs() < 1e-3 * n, "{n}");
+    let mut broken = moved.solution();
+    broken.cables[0].breaks.push(3);
+    assert!(area(&Ask { now: Some(Arc::new(broken)), ..there }, |_, _| ControlFlow::Continue(())).is_err());
+}
+
+/// Over heaps of slack finite elements catch on corners: on these two ways they pulled by 16 and 5 kN. None of that is on the map.
+#[test]
+fn ways_over_heaps_of_slack_pull_by_no_more_than_weight() {
+    let ask = ask(catalog::tank(), [[-3.0, 0.0], [4.0, 6.0]], 1.0);
+    let (flood, laid) = begin(&ask).unwrap();
+    let cable = &ask.scene.cables[0];
+    let weight_n = cable.linear_density_kg_per_m * ask.scene.environment.gravity_m_per_s2 * cable.length_m;
+    for to in [[0.0, 5.0], [-2.0, 4.0]] {
+        let most_n = flood.go(&mut laid.clone(), [vec2([3.2, 0.85]), vec2(to)]).unwrap();
+        assert!(most_n < weight_n, "to {to:?}: {most_n} N of {weight_n} N");
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use cable_core::Load;
 use egui::{ComboBox, Ui};
 
-use super::{GAP, KIND_WIDTH, NAME_WIDTH, NUMBER_WIDTH, components, headings, remove, selectable_name, show_faults};
+use super::{GAP, KIND_WIDTH, NUMBER_WIDTH, components, headings, name_width, remove, selectable_name, show_faults};
 use crate::command::{Command, SceneCommand};
 use crate::panels::property::{Known, Quantity, row};
 use crate::panels::times::{self, Knots, Table};
@@ -30,7 +30,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if !state.scene.loads.is_empty() {
         let (length, force) = (Unit::M.shown().symbol, Unit::N.shown().symbol);
         let [at, right, up] = [format!("At, {length}"), format!("Right, {force}"), format!("Up, {force}")];
-        let columns = [("Name", NAME_WIDTH), (&*at, KIND_WIDTH), (&*right, NUMBER_WIDTH), (&*up, NUMBER_WIDTH)];
+        let columns = [("Name", name_width(ui)), (&*at, KIND_WIDTH), (&*right, NUMBER_WIDTH), (&*up, NUMBER_WIDTH)];
         headings(ui, &columns);
     }
     for (k, load) in state.scene.loads.iter().enumerate() {

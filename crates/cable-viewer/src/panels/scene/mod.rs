@@ -22,8 +22,10 @@ use crate::state::{AppState, Item};
 const NUMBER_WIDTH: f32 = 60.0;
 /// Width of a number with its unit, points: “−123.456 m” fits.
 const VALUE_WIDTH: f32 = 84.0;
-/// Width of a name in a list, points.
-const NAME_WIDTH: f32 = 70.0;
+/// Narrowest and widest column of names, points: what is left of the panel beside the others.
+const NAME_WIDTH: [f32; 2] = [70.0, 100.0];
+/// Width of the columns beside the names and of the cross at the end, points.
+const BESIDE_NAME: f32 = KIND_WIDTH + 2.0 * NUMBER_WIDTH + 3.0 * GAP + 28.0;
 /// Width of the kind in a list, points.
 const KIND_WIDTH: f32 = 70.0;
 /// Gap between columns, points.
@@ -88,13 +90,19 @@ fn pickers(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 fn selectable_name(ui: &mut Ui, state: &AppState, item: Item, name: &str, commands: &mut Vec<Command>) -> bool {
     let selected = state.selected == Some(item);
     let button = Button::selectable(selected, (name, Atom::grow())).truncate();
-    let response = cell(ui, NAME_WIDTH, |ui| ui.add(button.min_size(egui::vec2(NAME_WIDTH, 0.0))));
+    let width = name_width(ui);
+    let response = cell(ui, width, |ui| ui.add(button.min_size(egui::vec2(width, 0.0))));
     field::name(&response, &format!("Select {name}"));
     if response.on_hover_text(format!("{name}: click to see and edit everything about it")).clicked() {
         let item = if selected { None } else { Some(item) };
         commands.push(Command::View(ViewCommand::Select(item)));
     }
     selected
+}
+
+/// Width of the column of names at the start of a line, points.
+fn name_width(ui: &Ui) -> f32 {
+    (ui.available_width() - BESIDE_NAME).clamp(NAME_WIDTH[0], NAME_WIDTH[1])
 }
 
 /// A cell of a list, so that columns stand under each other.

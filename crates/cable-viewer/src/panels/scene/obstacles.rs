@@ -6,7 +6,7 @@ use cable_core::scene::Shape;
 use egui::{Button, Frame, ScrollArea, Ui};
 
 use super::{
-    GAP, KIND_WIDTH, NAME_WIDTH, NUMBER_WIDTH, cell, coordinates, headings, optional, remove, selectable_name,
+    GAP, KIND_WIDTH, NUMBER_WIDTH, cell, coordinates, headings, name_width, optional, remove, selectable_name,
     show_faults,
 };
 use crate::command::{Command, SceneCommand};
@@ -23,7 +23,7 @@ const CORNERS_HEIGHT: f32 = 240.0;
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if !state.scene.obstacles.is_empty() {
         let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.shown().symbol));
-        headings(ui, &[("Name", NAME_WIDTH), ("Form", KIND_WIDTH), (&x, NUMBER_WIDTH), (&y, NUMBER_WIDTH)]);
+        headings(ui, &[("Name", name_width(ui)), ("Form", KIND_WIDTH), (&x, NUMBER_WIDTH), (&y, NUMBER_WIDTH)]);
     }
     for (k, obstacle) in state.scene.obstacles.iter().enumerate() {
         ui.push_id(k, |ui| line(ui, state, k, obstacle, commands));
@@ -117,7 +117,7 @@ fn details(ui: &mut Ui, k: usize, obstacle: &Obstacle, commands: &mut Vec<Comman
             value.name = name;
         }
         faults.extend(entry.fault);
-        entry.response
+        entry.response.on_hover_text("What it is called here, in contacts and in warnings")
     });
     let mut own = obstacle.friction.is_some();
     let help = "Off: the cable's own coefficient";

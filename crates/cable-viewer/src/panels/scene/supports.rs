@@ -8,7 +8,7 @@ use egui::{ComboBox, Frame, Ui};
 use super::loads::FIRST_SPAN_S;
 use super::support_kind::{KINDS, of_kind, refusal};
 use super::{
-    GAP, KIND_WIDTH, NAME_WIDTH, NUMBER_WIDTH, cell, components, coordinates, headings, optional, remove,
+    GAP, KIND_WIDTH, NUMBER_WIDTH, cell, components, coordinates, headings, name_width, optional, remove,
     selectable_name, show_faults,
 };
 use crate::command::{Command, SceneCommand};
@@ -52,7 +52,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Comman
     let Some(cable) = state.scene.cables.get(index) else { return };
     let last = cable.supports.len().saturating_sub(1);
     let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.shown().symbol));
-    headings(ui, &[("Name", NAME_WIDTH), ("Kind", KIND_WIDTH), (&x, NUMBER_WIDTH), (&y, NUMBER_WIDTH)]);
+    headings(ui, &[("Name", name_width(ui)), ("Kind", KIND_WIDTH), (&x, NUMBER_WIDTH), (&y, NUMBER_WIDTH)]);
     for (support, value) in cable.supports.iter().enumerate() {
         let end = support == 0 || support == last;
         let row = Row { cable: index, support, value, end, now: place_now(state, index, support, cable) };
@@ -158,7 +158,7 @@ fn details(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>) {
             row.changed(commands, |s| s.name = name);
         }
         faults.extend(entry.fault);
-        entry.response
+        entry.response.on_hover_text("What it is called here, in tables and in warnings")
     });
     if s.arc_length_m.is_some() || (!row.end && s.kind != SupportKind::Pulley) {
         let text = ["Sits at", "Where on the cable it grips, m of unstretched length from the start"];

@@ -1,0 +1,91 @@
+//! What a map of safe reach costs on the tank: printed, not asserted.
+//! `cargo test -p cable-core --test reach_cost -- --nocapture --ignored`.
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)]
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use cable_core::Settings;
+use cable_core::reach::area::{Ask, area};
+use cable_core::scene::catalog;
+
+/// CPU time of this thread so far, s; 0 where it is not known. Linux only.
+fn cpu_s() -> f64 {
+    let stat = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    stat.split_whitespace().next().and_then(|ns| ns.parse::<f64>().ok()).map_or(0.0, |ns| ns * 1e-9)
+}
+
+/// A robot there and back, 41 places.
+#[test]
+#[ignore = "a minute"]
+fn cost_of_a_robot() {
+    let scene = catalog::robot_drive();
+    let (began, cpu, mut told) = (Instant::now(), cpu_s(), -1.0);
+    let map = cable_core::reach::line::reach((&scene, None), Settings::default(), ([-2.0, 20.0], 41), |map, share| {
+        if share > told + 0.1 {
+            told = share;
+            let back = map.places.iter().filter(|p| !p.there_and_back_n.is_nan()).count();
+            println!(
+                "{:5.1} s of CPU: {:3.0} %, {} places, back from {back}",
+                cpu_s() - cpu,
+                100.0 * share,
+                map.places.len()
+            );
+        }
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+    println!("{:5.1} s of CPU, {:.1} s", cpu_s() - cpu, began.elapsed().as_secs_f64());
+    for p in &map.places {
+        println!(
+            "{:6.2} m {:9.0} N there, {:9.0} N and back{}",
+            p.at_m[0],
+            p.there_n,
+            p.there_and_back_n,
+            if p.jammed { ", jammed" } else { "" }
+        );
+    }
+}
+
+#[test]
+#[ignore = "a minute"]
+fn cost_on_the_tank() {
+    let across: usize = std::env::var("ACROSS").ok().and_then(|v| v.parse().ok()).unwrap_or(16);
+    let (low, high) = ([-14.0, -2.0], [14.0, 12.0]);
+    let ask = Ask {
+        scene: catalog::tank(),
+        now: None,
+        settings: Settings::default(),
+        cable: 0,
+        support: 1,
+        corners_m: [low, high],
+        spacing_m: (high[0] - low[0]) / across as f64,
+        back: std::env::var("BACK").is_ok(),
+    };
+    let (began, cpu) = (Instant::now(), cpu_s());
+    let mut told = -1.0;
+    let found = area(&ask, |so_far, share| {
+        if share > told + 0.1 {
+            told = share;
+            let known = so_far.most_n.iter().filter(|n| !n.is_nan()).count();
+            println!(
+                "{:5.1} s: {:3.0} %, {known} of {}",
+                began.elapsed().as_secs_f64(),
+                100.0 * share,
+                so_far.most_n.len()
+            );
+        }
+        ControlFlow::Continue(())
+    })
+    .unwrap();
+    let guessed = found.guessed.iter().filter(|g| **g).count();
+    println!("{:5.1} s of CPU, {:.1} s; {guessed} places guessed", cpu_s() - cpu, began.elapsed().as_secs_f64());
+    for row in found.most_n.chunks(found.columns).rev() {
+        let text = |n: &f64| match *n {
+            n if n.is_nan() => "    .".to_owned(),
+            n if n.is_infinite() => "   oo".to_owned(),
+            n => format!("{n:5.0}"),
+        };
+        println!("{}", row.iter().map(text).collect::<String>());
+    }
+}
