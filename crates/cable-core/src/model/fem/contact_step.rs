@@ -11,23 +11,14 @@ use super::bar;
 use super::contact_set::{ContactSet, Touch};
 use super::foresee::Ahead;
 use super::own::{self, Coupling};
-use super::path::{End, Path};
 use super::task::{Done, Failure, Pose, Task};
 use super::touch::{add_floor, add_rubs, add_touch};
 use crate::contact::friction;
 use crate::contact::own::{Order, OwnPair};
-use crate::contact::sweep::Sweep;
 use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger};
 use crate::problem::Problem;
-
-/// Part of each gap that a Newton step leaves. Smaller: gaps shrink faster than Newton opens them again (with 0.2 twice as many
-/// steps of ends thrown about are halved, five times as many where the cable meets itself); larger: more steps.
-const KEEP: f64 = 0.5;
-
-/// The same for gaps wider than the barrier's reach, in reaches: a little less than where foreseen contacts land.
-const KEEP_REACH: f64 = 0.45;
 
 /// Sufficient decrease (Armijo).
 const DECREASE: f64 = 1e-4;
@@ -49,9 +40,6 @@ pub const ROUNDED: f64 = 0.01;
 /// 0.01 N in 1e6; larger: contact forces are known worse than they could be.
 const GAP_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Least part of the cable between a sliding node and its neighbour that one iteration leaves.
-const LEAVE: f64 = 0.3;
-
 /// Short moves of held nodes towards their targets before they are stopped. Fewer: supports lag that could have got there;
 /// more: iterations spent on what the next step does as well.
 const MAX_PUSHES: usize = 12;
@@ -72,7 +60,7 @@ pub struct Workspace {
     /// Where held nodes go: their targets, or where they had to stop, m.
     pub(super) goal: Vec<Vec2>,
     own_pairs: Vec<OwnPair>,
-    order: Order,
+    pub(super) order: Order,
     /// Entries of the Hessian outside its band, from contacts of the cable with itself.
     pub(super) coupling: Coupling,
     pub(super) ahead: Ahead,
@@ -369,63 +357,6 @@ impl Workspace {
         }
     }
 
-    /// The part of the direction in which no node moves too far.
-    pub(super) fn whole(&self, task: &Task) -> f64 {
-        let mut largest = 0.0;
-        for d in self.direction.chunks_exact(2) {
-            largest = larger(largest, d[0] * d[0] + d[1] * d[1]);
-        }
-        let largest = largest.sqrt();
-        if largest > task.max_move { task.max_move / largest } else { 1.0 }
-    }
-
-    /// The largest part (at most `fraction`) of the direction that crosses nothing and leaves some cable between sliding
-    /// nodes and their neighbours.
-    pub(super) fn free_way(
-        &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        pose: &Pose,
-        fraction: f64,
-    ) -> f64 {
-        let (direction, geometry) = (&self.direction, problem.world.geometry());
-        let step = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]);
-        let most = KEEP_REACH * contacts.barrier.reach;
-        let mut free = fraction;
-        for e in 0..mesh.rest_length.len() {
-            let slides = [e, e + 1].map(|k| mesh.sliding[k].is_some());
-            if slides != [false, false] {
-                let go = [e, e + 1].map(|k| if mesh.sliding[k].is_some() { direction[2 * k] } else { 0.0 });
-                let change = go[1] - go[0];
-                let whole = mesh.rest_length[e] / mesh.thermal_stretch + pose.slide[e + 1] - pose.slide[e];
-                let straight = mesh.path(e, &pose.x).straight;
-                let length = if straight > 0.0 && straight < whole { straight } else { whole };
-                if change < 0.0 && -change * free > (1.0 - LEAVE) * length {
-                    free = (1.0 - LEAVE) * length / -change;
-                }
-            }
-            if problem.world.is_empty() || slides == [true, true] {
-                continue;
-            }
-            let x = &pose.x;
-            let from = mesh.straight(e, x);
-            let to = if slides == [false, false] {
-                [from[0] + step(e) * free, from[1] + step(e + 1) * free]
-            } else {
-                let end = |k: usize| mesh.sliding[k].as_ref().map_or(End::point(x[k] + step(k) * free), |s| s.end);
-                Path::between(&end(e), &end(e + 1)).ends
-            };
-            let sweep = Sweep::new(from, to, KEEP).at_most(most);
-            free *= match contacts.near.of(e, [from, to], sweep.margin) {
-                Some([]) => 1.0,
-                Some(parts) => geometry.free_fraction_among(parts.iter().copied(), &sweep, mesh.rounds(e)),
-                None => geometry.free_fraction_round(&sweep, mesh.rounds(e)),
-            };
-        }
-        let limits = [KEEP, most, free];
-        contacts.own.shape.free_fraction((&pose.x, &mesh.arc_length), &step, limits, &mut self.order)
-    }
-
     /// Moves `pose` along the direction as far as is free and lowers Φ; None if nothing does. Returns Φ and the part of
     /// the step taken; the system is assembled there.
     fn search(
@@ -437,7 +368,7 @@ impl Workspace {
     ) -> Option<(f64, f64)> {
         let n = mesh.nodes();
         let whole = self.whole(task);
-        let mut fraction = self.free_way((problem, mesh), contacts, pose, whole);
+        let mut fraction = self.free_from_here((problem, mesh), contacts, pose, whole);
         let noise = ENERGY_NOISE * (self.magnitude.abs() + value.abs());
         for _ in 0..MAX_HALVINGS {
             let mut trial = std::mem::take(&mut self.trial);

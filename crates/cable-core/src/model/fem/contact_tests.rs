@@ -260,11 +260,12 @@ fn a_floor_carries_what_lies_on_it_up_to_the_held_ends() {
 }
 
 /// Drops that differ by a millimetre land anywhere. A fold of a few slack bars that stands up between two stones swings on
-/// like the linkage it is: without bending stiffness nothing damps it. All else has to lie still.
+/// like the linkage it is: without bending stiffness nothing damps it. Of 300 such drops 223 slept after 20 s, and in 10 more than three
+/// nodes still moved.
 #[test]
 fn a_cable_dropped_on_rubble_comes_to_rest() {
-    let mut asleep = 0;
-    for higher in 0..4 {
+    let (mut asleep, mut restless) = (0, 0);
+    for higher in 0..12 {
         let mut scene = catalog::rubble_drop();
         let lift = |p: &mut [f64; 2]| p[1] += 1e-3 * f64::from(higher);
         scene.cables[0].route_m.iter_mut().for_each(lift);
@@ -283,10 +284,10 @@ fn a_cable_dropped_on_rubble_comes_to_rest() {
             asleep += 1;
         }
         let moved = |(a, b): &(&Vec2, &Vec2)| (*a - *b).norm() > 1e-3;
-        let moving = start.position_m.iter().zip(&end.position_m).filter(moved).count();
-        assert!(moving <= 3, "{moving} nodes still move after 20 s");
+        restless += usize::from(start.position_m.iter().zip(&end.position_m).filter(moved).count() > 3);
     }
-    assert!(asleep >= 2, "{asleep} of 4 came to rest");
+    // By these rates one set of drops in three hundred has fewer asleep, one in two hundred more that move.
+    assert!(asleep >= 5 && restless <= 2, "{asleep} of 12 came to rest, {restless} do not come near it");
 }
 
 #[test]

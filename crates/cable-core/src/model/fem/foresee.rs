@@ -18,12 +18,13 @@
 use super::assembly::{Mesh, System};
 use super::contact_set::{ContactSet, Touch};
 use super::contact_step::Workspace;
+use super::free_way::longest;
 use super::own::Coupling;
 use super::stop::Stop;
 use super::task::Pose;
 use crate::contact::own::{Order, OwnPair};
 use crate::linalg::{BandFactor, solve_coupled};
-use crate::math::{Vec2, larger};
+use crate::math::Vec2;
 use crate::problem::Problem;
 
 /// Rounds of adding constraints. More find nothing new where a front of contact runs along the cable.
@@ -158,7 +159,7 @@ impl Workspace {
 
     /// Finds the direction again if something is in its way; returns how much of it is free.
     pub(super) fn look_ahead(&mut self, (problem, mesh): (&Problem, &Mesh), contacts: &ContactSet, pose: &Pose) -> f64 {
-        let free = self.free_way((problem, mesh), contacts, pose, 1.0);
+        let free = self.free_from_here((problem, mesh), contacts, pose, 1.0);
         if free >= FREE_ENOUGH {
             return free;
         }
@@ -171,13 +172,8 @@ impl Workspace {
             self.direction.clone_from(&self.plain);
             return free;
         }
-        self.free_way((problem, mesh), contacts, pose, 1.0)
+        self.free_from_here((problem, mesh), contacts, pose, 1.0)
     }
-}
-
-/// Longest move of a node in a step, m.
-fn longest(step: &[f64]) -> f64 {
-    step.chunks_exact(2).map(|d| d[0] * d[0] + d[1] * d[1]).fold(0.0, larger).sqrt()
 }
 
 /// The gap at which a step is stopped.

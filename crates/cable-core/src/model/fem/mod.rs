@@ -24,6 +24,7 @@ pub mod element;
 mod estimate;
 mod foresee;
 mod free_step;
+mod free_way;
 mod handover;
 mod integrate;
 mod layout;
