@@ -1,4 +1,4 @@
-//! Every scene of the catalogue, a group each: `fem` and `mass-spring` side by side, settling and stepping a frame, with
+//! Every scene of the catalogue, a group each: `fem`, `mass-spring` and `spans` side by side, settling and stepping a frame, with
 //! the error against a reference printed before the times (of friction, after its motion: see `cable_benches::compare`).
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
@@ -23,14 +23,13 @@ fn scenes(c: &mut Criterion) {
         let reference = Reference::of(&scene, FINEST);
         let mut group = c.benchmark_group(id);
         group.sample_size(10).measurement_time(Duration::from_secs(1)).warm_up_time(Duration::from_millis(200));
-        for model in [Model::Fem, Model::MassSpring] {
-            let (Some(start), Some(rest)) =
-                (fresh(&scene, model, Some(SEGMENTS)), settled(&scene, model, Some(SEGMENTS)))
-            else {
+        for model in [Model::Fem, Model::MassSpring, Model::Spans] {
+            let segments = (model != Model::Spans).then_some(SEGMENTS);
+            let (Some(start), Some(rest)) = (fresh(&scene, model, segments), settled(&scene, model, segments)) else {
                 continue;
             };
             if let Some(r) = &reference
-                && let Some(row) = compare::once(id, &scene, r, model, SEGMENTS)
+                && let Some(row) = compare::once(id, &scene, r, (model, segments))
             {
                 let (by, unsure) = (&r.by, r.uncertainty);
                 println!(

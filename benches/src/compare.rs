@@ -1,4 +1,4 @@
-//! Every scene of the catalogue, `fem` and `mass-spring` side by side: error against a reference, and cost.
+//! Every scene of the catalogue, `fem`, `mass-spring` and `spans` side by side: error against a reference, and cost.
 //!
 //! Where nothing rubs or nothing moves the question is where it rests; where friction decides and a support is drawn, which
 //! place of the many it comes to at the end of that motion, slowly: there everything slides, and one place is right.
@@ -89,14 +89,21 @@ pub struct Row {
     pub scene: &'static str,
     /// Who answered.
     pub model: Model,
-    /// With how many elements.
-    pub segments: usize,
+    /// With how many elements; None: it has none.
+    pub segments: Option<usize>,
     /// Wall time, s.
     pub cost_s: f64,
     /// Relative error.
     pub error: f64,
     /// Relative error it states itself, if it does.
     pub said: Option<f64>,
+}
+
+/// Whether elements of so fine a mesh are shorter than a cable that lies in itself is thick: each then touches its neighbours'
+/// neighbours, and an answer takes minutes.
+#[must_use]
+pub fn lies_in_itself(scene: &Scene, segments: usize) -> bool {
+    scene.cables.iter().any(|c| c.self_contact && c.length_m < c.diameter_m * segments as f64)
 }
 
 impl Reference {
@@ -135,23 +142,33 @@ impl Reference {
 
 /// Error and cost of a model; None, with a note, where it does not answer.
 #[must_use]
-pub fn measure(id: &'static str, scene: &Scene, reference: &Reference, model: Model, segments: usize) -> Option<Row> {
+pub fn measure(
+    id: &'static str,
+    scene: &Scene,
+    reference: &Reference,
+    (model, segments): (Model, Option<usize>),
+) -> Option<Row> {
     repeated((id, scene), reference, (model, segments), REPEATS)
 }
 
 /// As [`measure`], of one solve.
 #[must_use]
-pub fn once(id: &'static str, scene: &Scene, reference: &Reference, model: Model, segments: usize) -> Option<Row> {
+pub fn once(
+    id: &'static str,
+    scene: &Scene,
+    reference: &Reference,
+    (model, segments): (Model, Option<usize>),
+) -> Option<Row> {
     repeated((id, scene), reference, (model, segments), 1)
 }
 
 fn repeated(
     (id, scene): (&'static str, &Scene),
     reference: &Reference,
-    (model, segments): (Model, usize),
+    (model, segments): (Model, Option<usize>),
     repeats: usize,
 ) -> Option<Row> {
-    let start = fresh(scene, model, Some(segments))?;
+    let start = fresh(scene, model, segments)?;
     let (mut costs, all) = (Vec::new(), Instant::now());
     let mut answer = None;
     while costs.len() < repeats && (costs.is_empty() || all.elapsed().as_secs_f64() < LONGEST_S) {
@@ -162,7 +179,7 @@ fn repeated(
         match result {
             Ok(a) => answer = Some(a),
             Err(e) => {
-                eprintln!("skipped: {model} on \"{id}\" with {segments} elements: {e}");
+                eprintln!("skipped: {model} on \"{id}\" with {segments:?} elements: {e}");
                 return None;
             }
         }

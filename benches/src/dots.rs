@@ -9,7 +9,7 @@ pub struct Dot {
     pub value: f64,
     /// Fill, from the palette of M. Okabe and K. Ito (2008).
     pub colour: &'static str,
-    /// 0 a disc, else a square.
+    /// 0 a disc, 3 a triangle, else a square.
     pub corners: u32,
 }
 
@@ -48,10 +48,18 @@ const TOP: f64 = 92.0;
 const BOTTOM: f64 = 56.0;
 
 fn mark(out: &mut String, (x, y): (f64, f64), colour: &str, corners: u32) {
-    let _ = if corners == 0 {
-        writeln!(out, r#"<circle cx="{x:.1}" cy="{y:.1}" r="6" fill="{colour}"/>"#)
-    } else {
-        writeln!(out, r#"<rect x="{:.1}" y="{:.1}" width="11" height="11" fill="{colour}"/>"#, x - 5.5, y - 5.5)
+    let _ = match corners {
+        0 => writeln!(out, r#"<circle cx="{x:.1}" cy="{y:.1}" r="6" fill="{colour}"/>"#),
+        3 => writeln!(
+            out,
+            r#"<polygon points="{x:.1},{:.1} {:.1},{:.1} {:.1},{:.1}" fill="{colour}"/>"#,
+            y - 7.0,
+            x - 6.5,
+            y + 5.0,
+            x + 6.5,
+            y + 5.0
+        ),
+        _ => writeln!(out, r#"<rect x="{:.1}" y="{:.1}" width="11" height="11" fill="{colour}"/>"#, x - 5.5, y - 5.5),
     };
 }
 

@@ -8,8 +8,9 @@ use crate::compare::{Question, Reference, Row};
 use crate::dots::{Dot, Line, Plot};
 use cable_core::Model;
 
-/// Colours and marks of the two models.
-pub const MARKS: [(Model, &str, u32); 2] = [(Model::Fem, "#0072B2", 0), (Model::MassSpring, "#D55E00", 4)];
+/// Colours and marks of the models.
+pub const MARKS: [(Model, &str, u32); 3] =
+    [(Model::Fem, "#0072B2", 0), (Model::MassSpring, "#D55E00", 4), (Model::Spans, "#009E73", 3)];
 
 /// Elements in the dot plot.
 const DOT_SEGMENTS: &str = "100";
@@ -32,7 +33,7 @@ impl Record {
             row.scene.to_owned(),
             question.name().to_owned(),
             row.model.to_string(),
-            row.segments.to_string(),
+            row.segments.map(|n| n.to_string()).unwrap_or_default(),
             format!("{:.3e}", row.error),
             format!("{:.3e}", row.cost_s),
             row.said.map(|e| format!("{e:.3e}")).unwrap_or_default(),
@@ -52,6 +53,11 @@ impl Record {
     /// Whether it is the very answer that it would be compared with.
     fn is_its_reference(&self) -> bool {
         self.0[7] == format!("{}, {} elements", self.0[2], self.0[3])
+    }
+
+    /// Whether it is in the dot plot.
+    fn is_shown(&self) -> bool {
+        (self.0[3] == DOT_SEGMENTS || self.0[3].is_empty()) && !self.is_its_reference()
     }
 
     fn figure(&self, column: usize) -> f64 {
@@ -100,7 +106,8 @@ pub fn read(path: &Path) -> Result<Vec<Record>, Box<dyn Error>> {
 #[must_use]
 pub fn plot(records: &[Record]) -> Plot {
     Plot {
-        title: "Every scene with 100 elements: error and cost (further left is better)".to_owned(),
+        title: "Every scene, with 100 elements where a model has any: error and cost (further left is better)"
+            .to_owned(),
         legend: MARKS.map(|(m, colour, corners)| (m.to_string(), colour, corners)).into(),
         columns: [("error of forces (relative)", (-10, 0)), ("cost of an answer, wall time (s)", (-5, 1))],
         lines: scenes(records).iter().filter_map(|rows| line(rows)).collect(),
@@ -121,8 +128,8 @@ fn scenes(records: &[Record]) -> Vec<&[Record]> {
 fn line(rows: &[Record]) -> Option<Line> {
     let first = rows.first()?;
     let pick = |read: fn(&Record) -> f64| {
-        let middle = rows.iter().filter(|r| r.0[3] == DOT_SEGMENTS && !r.is_its_reference());
-        middle
+        rows.iter()
+            .filter(|r| r.is_shown())
             .filter_map(|r| MARKS.iter().find(|m| r.is_of(m.0)).map(|m| (r, m)))
             .map(|(r, m)| Dot { value: read(r), colour: m.1, corners: m.2 })
             .collect()
@@ -137,7 +144,7 @@ fn line(rows: &[Record]) -> Option<Line> {
 
 fn ladder(rows: &[Record]) -> Option<Panel> {
     let series = MARKS.map(|(model, colour, corners)| Series {
-        name: format!("{model}, 25 to 400 elements"),
+        name: if model == Model::Spans { model.to_string() } else { format!("{model}, 25 to 400 elements") },
         colour,
         corners,
         points: rows
