@@ -29,10 +29,10 @@ fn cost(count: usize) -> (usize, usize) {
     (rest, most)
 }
 
-/// Measured: 2, 2 and 3 to 4 in most warm steps, 3, 3 and 6 in a first rest.
+/// Measured: 1 in every warm step; 3, 3 and 6 in a first rest.
 #[test]
 fn a_step_that_reverses_friction_takes_a_handful_of_iterations_whatever_the_number_of_contacts() {
-    for (count, rest, warm) in [(1, 6, 5), (10, 6, 6), (36, 12, 7)] {
+    for (count, rest, warm) in [(1, 6, 2), (10, 6, 2), (36, 12, 3)] {
         let found = cost(count);
         assert!(found.0 <= rest && found.1 <= warm, "{count} contacts: {found:?}, {rest} and {warm} allowed");
     }

@@ -12,33 +12,37 @@
 //!
 //! (that a contact's end moves along the boundary takes as much of the cable as of the chord). This is a linear
 //! complementarity problem with three diagonals, solved by changing what is on the wrong side until nothing is: G. Zoutendijk's
-//! active sets in their simplest form. A few rounds of it, each from where the last has left the spans, are Newton's method for
-//! the cable whose contacts end where they did; the ends then follow the new directions. All that is a guess: Newton's method
-//! for the whole starts there and judges each contact again.
+//! active sets in their simplest form. After each of a few rounds of it the ends of contacts on arcs follow the directions of
+//! their spans, and the next begins from there: with another wrap. All that is a guess: Newton's method for the whole starts
+//! there and judges each contact again.
 
 use super::curve::Place;
-use super::history::Mode;
+use super::history::{Ends, Mode};
 use super::law::Track;
 use super::piece::Pivot;
 use super::strand::{Contact, Course, Strand, Tie};
-use crate::math::{Vec2, angle, larger};
+use crate::math::{Vec2, angle, exp, larger};
 
 /// Rounds of changing sides, over two for each contact.
 const MORE_ROUNDS: usize = 6;
 /// Rounds of Newton's method at most, and the change of tension, as part of it, from which another is worth its cost: what is
-/// left after it is that squared.
-const ROUNDS: usize = 5;
-const ENOUGH: f64 = 0.02;
+/// left after it is about that squared. A round costs a tenth of an iteration of Newton's method for the whole.
+const ROUNDS: usize = 6;
+const ENOUGH: f64 = 2e-3;
+/// Change of tension, as part of it, in the last of all rounds with which its guess is still taken.
+const WORTH: f64 = 0.02;
 /// A span whose tension would change by more than this factor in a round is not foreseen.
 const WILD: f64 = 4.0;
+/// A span whose force changes by no more than this part in a round is where it was. Larger: the guess is off by as much.
+const STILL: f64 = 1e-8;
 /// A contact's end follows its span by at most this angle, rad.
 const FOLLOWS: f64 = 0.2;
 
 /// A span to first order.
 #[derive(Clone, Copy, Debug, Default)]
 struct Bar {
-    /// From its start to its end, m; None where it keeps its force.
-    chord: Option<Vec2>,
+    /// Where it starts and ends, m; None where it keeps its force.
+    ends: Option<[Vec2; 2]>,
     /// G, N, and material at both ends, m.
     force: Vec2,
     material: [f64; 2],
@@ -49,13 +53,15 @@ struct Bar {
     tension: [f64; 2],
     /// Change of tension at each end by σ before and after it, N/m.
     by: [[f64; 2]; 2],
+    /// Whether the last round left it where it was: what is said of it holds on.
+    still: bool,
 }
 
 /// A contact to first order.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Link {
-    /// Tension at its start as it is, N.
-    from: f64,
+    /// Where it ends, material and tensions there.
+    ends: Ends,
     /// Tension that sliding with −μ and +μ makes of that, N, and its derivative; None where it is not ours to say.
     reach: Option<[(f64, f64); 2]>,
     /// −1, 0, +1: slides back, sticks, slides on.
@@ -65,6 +71,9 @@ struct Link {
     slid: f64,
 }
 
+/// The places of both ends of a contact, and the piece of the first.
+type Spots = ([Place; 2], Pivot);
+
 /// Memory of a guess.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Foresight {
@@ -72,8 +81,7 @@ pub(super) struct Foresight {
     links: Vec<Link>,
     /// Upper diagonal and right-hand side of the elimination.
     swept: Vec<(f64, f64)>,
-    /// The places of both ends of each contact, and the piece of the first.
-    spots: Vec<([Place; 2], Pivot)>,
+    spots: Vec<Spots>,
 }
 
 /// Gives each contact the mode that the step will ask for, and contacts and spans their place, as far as that can be foreseen.
@@ -90,20 +98,25 @@ pub(super) fn foresee(strand: &mut Strand, course: &Course, memory: &mut Foresig
     bars.extend((0..strand.spans()).map(|k| span(strand, course, (spots, k))));
     links.clear();
     links.extend((0..strand.contacts.len()).map(|j| link(strand, course, (spots, j))));
-    let Some(settled) = memory.rounds(course, strand.from) else { return };
-    for (c, l) in strand.contacts.iter_mut().zip(&memory.links) {
+    let Some(settled) = memory.rounds(strand, course) else { return };
+    for (c, l) in strand.contacts.iter_mut().zip(&memory.links).filter(|(_, l)| l.reach.is_some()) {
         let friction = course.friction(c);
-        if l.reach.is_some() && friction > 0.0 {
+        if friction > 0.0 {
             c.mode = if l.side == 0 { Mode::Hold } else { Mode::Slide(friction * f64::from(l.side)) };
+        }
+        if settled {
+            c.ends = l.ends;
         }
     }
     if settled {
-        follow(strand, course, memory);
+        for (force, bar) in strand.forces.iter_mut().zip(&memory.bars).filter(|(_, b)| b.ends.is_some()) {
+            *force = bar.force;
+        }
     }
 }
 
 /// A span as it is, to begin with.
-fn span(strand: &Strand, course: &Course, (spots, k): (&[([Place; 2], Pivot)], usize)) -> Bar {
+fn span(strand: &Strand, course: &Course, (spots, k): (&[Spots], usize)) -> Bar {
     if !strand.has_span(k) {
         return Bar::default();
     }
@@ -113,22 +126,32 @@ fn span(strand: &Strand, course: &Course, (spots, k): (&[([Place; 2], Pivot)], u
     let before = k.checked_sub(1).and_then(|j| spots.get(j)).map_or_else(|| held(&strand.ties[0]), |s| Some(s.0[1].at));
     let after = spots.get(k).map_or_else(|| held(&strand.ties[1]), |s| Some(s.0[0].at));
     // What hangs keeps its force.
-    let chord = before.zip(after).map(|(a, b)| b - a);
+    let ends = before.zip(after).map(|(a, b)| [a, b]);
     let tension = forces.map(|f| f.norm());
-    Bar { chord, force: strand.forces[k], material: [from, to], tension, ..Bar::default() }
+    Bar { ends, force: strand.forces[k], material: [from, to], tension, ..Bar::default() }
 }
 
 impl Bar {
-    /// To first order from where it is; false where that cannot be told.
-    fn renew(&mut self, course: &Course, first: f64) -> bool {
-        let Some(chord) = self.chord else { return true };
+    /// Force at both ends, N.
+    fn pulls(&self, course: &Course, first: f64) -> [Vec2; 2] {
         let [from, to] = self.material;
         let start = self.force - course.load_between(first, from);
-        let end = start - course.load_between(from, to);
+        [start, start - course.load_between(from, to)]
+    }
+
+    /// To first order from where it is; false where that cannot be told.
+    fn renew(&mut self, course: &Course, first: f64) -> bool {
+        let Some([a, b]) = self.ends else { return true };
+        if self.still {
+            self.change[0] = Vec2::zeros();
+            return true;
+        }
+        let [from, to] = self.material;
+        let [start, end] = self.pulls(course, first);
         let (way, compliance) = course.chain(from, to).reach(start);
         let Some(stiffness) = compliance.try_inverse() else { return false };
         let [rate, rate_end] = [start, end].map(|f| course.rate(f));
-        self.change = [-(stiffness * (way - chord)), stiffness * rate, -(stiffness * rate_end)];
+        self.change = [-(stiffness * (way - (b - a))), stiffness * rate, -(stiffness * rate_end)];
         for (i, f) in [start, end].into_iter().enumerate() {
             let (size, load) = (f.norm(), course.law.load);
             let t = f / size;
@@ -141,45 +164,17 @@ impl Bar {
     }
 }
 
-/// Takes what has slid and changed, and lets the ends of contacts on arcs follow the directions of their spans.
-fn follow(strand: &mut Strand, course: &Course, memory: &Foresight) {
-    for (force, bar) in strand.forces.iter_mut().zip(&memory.bars).filter(|(_, b)| b.chord.is_some()) {
-        *force = bar.force;
-    }
-    for (j, l) in memory.links.iter().enumerate().filter(|(_, l)| l.reach.is_some()) {
-        strand.contacts[j].ends.s = strand.contacts[j].ends.s.map(|s| s + l.slid);
-        for side in 0..2 {
-            let Some(force) = strand.force_at_contact(course, j, side) else { continue };
-            let c = &strand.contacts[j];
-            let Some((places, pivot)) = memory.spots.get(j) else { continue };
-            let track = Track { pivot: Some(*pivot), ..course.track(c) };
-            let place = &places[side];
-            let angle = angle(place.tangent, force);
-            if place.turn == 0.0 || !(angle.abs() <= FOLLOWS) {
-                continue;
-            }
-            let by = angle / place.turn;
-            let p = c.ends.p[side] + by;
-            let turned = if side == 0 { p < c.ends.p[1] } else { p > c.ends.p[0] };
-            if turned && track.turns(p) {
-                let e = &mut strand.contacts[j].ends;
-                e.p[side] = p;
-                e.s[side] += by * place.stretch / course.law.stretch(force.norm());
-            }
-        }
-    }
-}
-
-fn link(strand: &Strand, course: &Course, (spots, j): (&[([Place; 2], Pivot)], usize)) -> Link {
+fn link(strand: &Strand, course: &Course, (spots, j): (&[Spots], usize)) -> Link {
     let c = &strand.contacts[j];
     let e = &c.ends;
     let ties = [(j == 0).then(|| strand.ties[0]), (j + 1 == strand.contacts.len()).then(|| strand.ties[1])];
     let lies = ties.iter().flatten().any(|t| matches!(t, Tie::Lies(_) | Tie::Loose(_)));
-    let mut out = Link { from: e.t[0], ..Link::default() };
+    let mut out = Link { ends: c.ends, reach: None, side: 0, sigma: 0.0, slid: 0.0 };
     if lies || strand.in_pocket(j, 0) || strand.in_pocket(j, 1) || !(e.p[1] > e.p[0] && e.t[0] > 0.0) {
         return out;
     }
-    let (track, friction) = (Track { pivot: spots.get(j).map(|s| s.1), ..course.track(c) }, course.friction(c));
+    let friction = course.friction(c);
+    let track = Track { pivot: spots.get(j).map(|s| s.1), ..course.track(c) };
     out.reach = Some([-friction, friction].map(|m| {
         let way = track.slide(e.p[0], e.p[1], e.t[0], m);
         (way.tension, way.by_tension)
@@ -191,18 +186,66 @@ fn link(strand: &Strand, course: &Course, (spots, j): (&[([Place; 2], Pivot)], u
 
 impl Foresight {
     /// Newton's method for what slides: whether it came to an end, None where not even the modes can be told.
-    fn rounds(&mut self, course: &Course, first: f64) -> Option<bool> {
+    fn rounds(&mut self, strand: &Strand, course: &Course) -> Option<bool> {
+        let mut last = f64::INFINITY;
         for round in 0..ROUNDS {
-            if !self.bars.iter_mut().all(|b| b.renew(course, first)) || !self.settle() {
+            if !self.bars.iter_mut().all(|b| b.renew(course, strand.from)) || !self.settle() {
                 return (round > 0).then_some(false);
             }
-            match self.step() {
-                Some(change) if change <= ENOUGH => return Some(true),
-                Some(_) => {}
-                None => return Some(false),
+            let Some(change) = self.step() else { return Some(false) };
+            self.turn(strand, course);
+            if change <= ENOUGH {
+                return Some(true);
+            }
+            last = change;
+        }
+        Some(last <= WORTH)
+    }
+
+    /// Lets the ends of contacts on arcs follow the directions of their spans.
+    fn turn(&mut self, strand: &Strand, course: &Course) {
+        let law = &course.law;
+        let pulls = |bar: &Bar, end: usize| bar.ends.map(|_| bar.pulls(course, strand.from)[end]);
+        for (j, c) in strand.contacts.iter().enumerate() {
+            let (l, (places, pivot)) = (&mut self.links[j], &mut self.spots[j]);
+            if l.reach.is_none() || self.bars[j].still && self.bars[j + 1].still {
+                continue;
+            }
+            let old = l.ends;
+            l.ends.s = l.ends.s.map(|s| s + l.sigma);
+            let track = Track { pivot: Some(*pivot), ..course.track(c) };
+            for side in 0..2 {
+                let bar = &mut self.bars[j + side];
+                let Some(force) = pulls(bar, 1 - side) else { continue };
+                let (tension, place) = (force.norm(), &mut places[side]);
+                l.ends.t[side] = tension;
+                let angle = angle(place.tangent, force);
+                if place.turn == 0.0 || !(angle.abs() <= FOLLOWS) {
+                    continue;
+                }
+                let by = angle / place.turn;
+                let p = l.ends.p[side] + by;
+                let turned = if side == 0 { p < l.ends.p[1] } else { p > l.ends.p[0] };
+                if turned && track.turns(p) {
+                    l.ends.p[side] = p;
+                    l.ends.s[side] += by * place.stretch / course.law.stretch(tension);
+                    *place = track.place(p);
+                }
+                bar.material[1 - side] = l.ends.s[side];
+                if let Some(ends) = &mut bar.ends {
+                    ends[1 - side] = place.at;
+                }
+            }
+            // T₂ = T₁ e^{mψ} and the load along it, to first order of what the ends have moved.
+            for (m, (made, by)) in [-track.friction, track.friction].into_iter().zip(l.reach.iter_mut().flatten()) {
+                let load = |place: &Place, t: f64| law.slope(place, t, m) - m * place.turn.abs() * t;
+                let [first, last] = [0, 1].map(|side| l.ends.p[side] - old.p[side]);
+                let grown = exp(m * (last * places[1].turn.abs() - first * places[0].turn.abs()));
+                *made += *by * (l.ends.t[0] - old.t[0] - load(&places[0], old.t[0]) * first);
+                *made = (*made + load(&places[1], *made) * last) * grown;
+                *by *= grown;
             }
         }
-        Some(false)
     }
 
     /// Takes what the round has found; the greatest change of tension as part of it, None where that is wild.
@@ -212,7 +255,7 @@ impl Foresight {
             let slide = |j: Option<usize>| j.and_then(|j| self.links.get(j)).map_or(0.0, |l| l.sigma);
             let (before, after) = (slide(k.checked_sub(1)), slide(Some(k)));
             let bar = &mut self.bars[k];
-            if bar.chord.is_none() {
+            if bar.ends.is_none() {
                 continue;
             }
             let change = bar.change[0] + bar.change[1] * before + bar.change[2] * after;
@@ -223,6 +266,8 @@ impl Foresight {
                 }
                 greatest = larger(greatest, (now - was).abs() / was);
             }
+            bar.still = before == 0.0 && after == 0.0 && change.norm() <= STILL * bar.was[0];
+            (bar.was, bar.tension) = (now, now);
             bar.force += change;
             bar.material = [bar.material[0] + before, bar.material[1] + after];
             if !(bar.material[1] > bar.material[0]) {
@@ -264,7 +309,7 @@ impl Foresight {
                     // T₂ − what is made of T₁ = 0.
                     let lower = -by * one.by[1][0];
                     let middle = two.by[0][0] - by * one.by[1][1];
-                    let rest = made + by * (one.tension[1] - l.from) - two.tension[0];
+                    let rest = made + by * (one.tension[1] - l.ends.t[0]) - two.tension[0];
                     let pivot = middle - lower * before.0;
                     (two.by[0][1] / pivot, (rest - lower * before.1) / pivot)
                 }
@@ -292,7 +337,7 @@ impl Foresight {
             let side = if l.side == 0 {
                 let (before, after) = (sigma(&self.links, j.checked_sub(1)), sigma(&self.links, Some(j + 1)));
                 let (one, two) = (&self.bars[j], &self.bars[j + 1]);
-                let grown = one.tension[1] + one.by[1][0] * before + one.by[1][1] * l.sigma - l.from;
+                let grown = one.tension[1] + one.by[1][0] * before + one.by[1][1] * l.sigma - l.ends.t[0];
                 let reached = two.tension[0] + two.by[0][0] * l.sigma + two.by[0][1] * after;
                 if reached > high + by_high * grown {
                     1

@@ -42,6 +42,12 @@ impl Hull {
         Self { corners: [a, apex, b], sides: [(a, first), (b, inwards(perp(u), -d)), (a, chord)] }
     }
 
+    /// The box it lies in, r wider.
+    fn bounds(&self, r: f64) -> (Vec2, Vec2) {
+        let [a, apex, b] = &self.corners;
+        (a.inf(apex).inf(b) - Vec2::repeat(r), a.sup(apex).sup(b) + Vec2::repeat(r))
+    }
+
     /// Whether a box comes within r of it, as far as its sides tell.
     fn meets(&self, (low, high): (Vec2, Vec2), r: f64) -> bool {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
@@ -82,7 +88,10 @@ impl Hull {
         if let Some(center) = body.center {
             return beside == Some(body.first + 1) || self.misses_point(center, r);
         }
-        let near = |low: Vec2, high: Vec2| self.meets((low, high), r);
+        let (first, last) = self.bounds(r);
+        let beside_box =
+            |low: Vec2, high: Vec2| low.x > last.x || low.y > last.y || high.x < first.x || high.y < first.y;
+        let near = |low: Vec2, high: Vec2| !beside_box(low, high) && self.meets((low, high), r);
         body.candidates_where(near)
             .filter(|&k| !beside.is_some_and(|feature| body.is_beside(k, feature)))
             .filter_map(|k| body.edges.get(k))

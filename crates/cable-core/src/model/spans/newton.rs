@@ -213,6 +213,10 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
             if changed {
                 (worst, at) = norm(&work.sheet.residual);
                 (best, stalled) = (f64::INFINITY, 0);
+                // In rounding at the edge of the cone another mode changes nothing: nothing is left to solve.
+                if worst <= tolerance(strand, course) {
+                    continue;
+                }
             } else if done {
                 return if content || agreed(strand, course, &work.sheet) {
                     Ok(Solved { iterations, residual: worst })
