@@ -14,6 +14,7 @@ pub mod dialog;
 pub mod feedback;
 pub mod guide;
 pub mod history;
+pub mod models;
 pub mod panels;
 pub mod plot;
 pub mod reach;

@@ -12,6 +12,7 @@ use crate::command::clipboard::Clipboard;
 use crate::dialog::Dialog;
 use crate::guide;
 use crate::history::History;
+use crate::models;
 use crate::panels::system::System;
 use crate::reach;
 use crate::recording::Recording;
@@ -76,6 +77,8 @@ pub struct AppState {
     pub reach: reach::View,
     /// The part of the world that the canvas shows, lower left and upper right corner, m.
     pub visible_m: [Point; 2],
+    /// What every model says of a scene.
+    pub models: models::Progress,
     /// What less and more friction does.
     pub spread: spread::View,
     /// The guided scene that is on.
@@ -296,6 +299,7 @@ impl AppState {
             robot_speed: None,
             reach: reach::View::default(),
             visible_m: [[-1.0; 2], [1.0; 2]],
+            models: models::Progress::None,
             spread: spread::View::default(),
             guide: None,
             worker: WorkerStatus::Idle,

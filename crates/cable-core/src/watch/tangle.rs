@@ -53,9 +53,18 @@ fn loops(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
     let least = LOOP_DIAMETERS * problem.cable.diameter_m;
     let spans = |c: &Crossing| [arc(c.first, c.fractions[0]), arc(c.second, c.fractions[1])];
     let real = |c: &&Crossing| c.sine >= CROSSING_SINE && spans(c)[1] - spans(c)[0] >= least;
-    let count = found.iter().filter(real).count();
-    for c in found.iter().filter(real).take(MOST_LOOPS) {
+    let mut all: Vec<&Crossing> = found.iter().filter(real).collect();
+    let count = all.len();
+    // The tightest first; of loops in or across each other one is named: a heap would be a list of almost the same.
+    let length = |c: &Crossing| spans(c)[1] - spans(c)[0];
+    all.sort_by(|a, b| length(a).total_cmp(&length(b)));
+    let mut named: Vec<[f64; 2]> = Vec::new();
+    for c in all {
         let [s, t] = spans(c);
+        if named.len() == MOST_LOOPS || named.iter().any(|[a, b]| s < *b && *a < t) {
+            continue;
+        }
+        named.push([s, t]);
         let p = points[c.first] + (points[c.first + 1] - points[c.first]) * c.fractions[0];
         let message = format!(
             "`{name}` crosses itself at ({:.3} m, {:.3} m): {s:.3} m and {t:.3} m along it ({count} in all); the loop of {:.3} m between can tighten into a kink or a knot when it is pulled; lay it without the loop, or draw it in from the slack end",

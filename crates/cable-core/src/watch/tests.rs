@@ -79,6 +79,27 @@ fn a_loop_is_named_where_it_crosses() {
 }
 
 #[test]
+fn loops_in_each_other_are_one_tangle_named_by_its_tightest() {
+    let p = problem(&scene());
+    let named = |points: &[Point]| -> Vec<f64> {
+        let all = found(&p, &along(points, 100.0));
+        all.iter().filter(|w| w.kind == WarningKind::Loop).map(|w| w.value).collect()
+    };
+    // Out along y = 0, back to and fro across it: three crossings, the nearest by the shortest loop.
+    let heap = [[0.0, 0.0], [4.0, 0.0], [3.5, 1.0], [3.0, -1.0], [2.0, 1.0], [1.0, -1.0]];
+    let one = named(&heap);
+    assert_eq!(one.len(), 1, "{one:?}");
+    let tightest = 0.75 + 1.25_f64.sqrt() + 0.5 * 4.25_f64.sqrt();
+    assert!((one[0] - tightest).abs() < 1e-9, "{one:?}, {tightest}");
+    let message = &found(&p, &along(&heap, 100.0)).into_iter().find(|w| w.kind == WarningKind::Loop).unwrap().message;
+    assert!(message.contains("(3 in all)"), "{message}");
+    // Two loops one after the other are two.
+    let bow = |x: f64| [[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x + 0.5, 1.0], [x + 0.5, -1.0]];
+    let both: Vec<Point> = bow(0.0).into_iter().chain(bow(5.0)).collect();
+    assert_eq!(named(&both).len(), 2);
+}
+
+#[test]
 fn a_curl_is_a_free_turn_of_270_degrees_in_a_tight_space() {
     let p = problem(&scene());
     let turned = |radius: f64, turn: f64| along(&arc([0.0, 0.0], radius, 0.0, turn, 60), 100.0);

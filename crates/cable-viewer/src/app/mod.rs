@@ -18,6 +18,7 @@ use crate::autosave::Autosave;
 use crate::command::{self, Command, Effects};
 use crate::dialog::Dialog;
 use crate::history::Sample;
+use crate::models;
 use crate::panels::system;
 use crate::reach;
 use crate::spread;
@@ -43,6 +44,8 @@ pub struct ViewerApp {
     asked: VecDeque<(u64, Instant)>,
     /// The map of where the robot can go, while it is computed.
     reach: Option<reach::Job>,
+    /// Every model being asked.
+    models: Option<models::Job>,
     /// The ribbon of less and more friction, computed or being computed.
     spread: Option<spread::Job>,
 }
@@ -71,6 +74,7 @@ impl ViewerApp {
             autosave: None,
             asked: VecDeque::new(),
             reach: None,
+            models: None,
             spread: None,
         };
         let mut effects = Effects::default();
@@ -130,6 +134,10 @@ impl ViewerApp {
             let shown = ctx.clone();
             self.reach = order.map(|o| reach::start(*o, move || shown.request_repaint()));
         }
+        if let Some(scene) = effects.models {
+            let (shown, settings) = (ctx.clone(), self.state.settings);
+            self.models = scene.map(|s| models::start(*s, settings, move || shown.request_repaint()));
+        }
         if effects.restart_worker {
             self.worker = new_worker(ctx, self.threaded);
         }
@@ -157,6 +165,15 @@ impl ViewerApp {
             self.state.reach.progress = job.progress();
             if !matches!(self.state.reach.progress, reach::Progress::Running(..)) {
                 self.reach = None;
+            }
+        }
+        if let Some(job) = &self.models {
+            self.state.models = job.progress();
+            if let models::Progress::Done(found) = self.state.models.clone() {
+                models::hold(&mut self.state.held, &found);
+            }
+            if !matches!(self.state.models, models::Progress::Running(..)) {
+                self.models = None;
             }
         }
         self.keep_spread(ctx);

@@ -36,6 +36,7 @@ fn entries() -> Vec<(String, Command)> {
         ("Fit scene", Command::View(ViewCommand::Fit)),
         ("Recentre on the cable", Command::View(ViewCommand::Recentre)),
         ("Hold this answer", Command::View(ViewCommand::Hold)),
+        ("Hold every model", Command::View(ViewCommand::HoldModels(true))),
         ("Let all held answers go", Command::View(ViewCommand::LetGo(None))),
         ("Find safe reach", Command::View(ViewCommand::Reach(true))),
         ("Cancel or clear the safe reach", Command::View(ViewCommand::Reach(false))),

@@ -183,6 +183,8 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
     state.guide = None;
     state.reach = crate::reach::View::default();
     effects.reach = Some(None);
+    state.models = crate::models::Progress::None;
+    effects.models = Some(None);
     effects.request.robot = Some(None);
     state.camera.fit_wanted = true;
     state.dialog = None;

@@ -15,7 +15,7 @@ pub use playback::PlaybackCommand;
 pub use scene::SceneCommand;
 pub use view::ViewCommand;
 
-use cable_core::{Model, Settings};
+use cable_core::{Model, Scene, Settings};
 
 use crate::reach::Order;
 use crate::state::AppState;
@@ -51,6 +51,8 @@ pub struct Effects {
     pub restart_worker: bool,
     /// Look for where the robot can go, or end that.
     pub reach: Option<Option<Box<Order>>>,
+    /// Ask every model about a scene, or end that.
+    pub models: Option<Option<Box<Scene>>>,
     /// Text for the clipboard of the system.
     pub copied: Option<String>,
 }

@@ -7,6 +7,7 @@ use cable_core::math::Point;
 use super::Effects;
 use crate::colour::ColourScale;
 use crate::guide;
+use crate::models;
 use crate::panels::system::System;
 use crate::reach::{self, Moved, Order, Progress};
 use crate::run::Run;
@@ -62,6 +63,8 @@ pub enum ViewCommand {
     SetUnits(System),
     /// Keeps the answer on screen to compare with.
     Hold,
+    /// Asks every model about the scene at rest and holds what they answer, or ends that.
+    HoldModels(bool),
     /// Lets one go, or all.
     LetGo(Option<usize>),
 }
@@ -143,6 +146,11 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
                 state.held.push(Held { name, scene, solution, wall_s, run });
             }
         }
+        ViewCommand::HoldModels(true) => {
+            state.models = models::Progress::Running(0.0, None);
+            effects.models = Some(Some(Box::new(state.scene.clone())));
+        }
+        ViewCommand::HoldModels(false) => (state.models, effects.models) = (models::Progress::None, Some(None)),
         ViewCommand::LetGo(None) => state.held.clear(),
         ViewCommand::LetGo(Some(k)) => {
             if k < state.held.len() {

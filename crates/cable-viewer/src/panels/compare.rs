@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use cable_core::{Model, Scene, Solution};
-use egui::{Grid, Id, RichText, Ui};
+use egui::{Grid, Id, ProgressBar, RichText, Ui};
 
 use super::readouts::figures;
-use super::{field, unit};
+use super::{field, translate, unit};
+use crate::background::Progress;
 use crate::colour::Quantity;
 use crate::command::{Command, FileCommand, ViewCommand};
 use crate::dialog::Dialog;
@@ -37,6 +38,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             commands.push(Command::View(ViewCommand::LetGo(None)));
         }
     });
+    every_model(ui, state, commands);
     if state.held.is_empty() {
         ui.weak("Nothing held: hold an answer, then change the scene or the model");
         return;
@@ -70,6 +72,39 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         for line in remembered(ui, k, held, state).iter() {
             ui.label(RichText::new(line).small());
         }
+    }
+}
+
+/// Asks every model at once, and tells why some have no answer.
+fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    if let Progress::Running(share, _) = state.models {
+        let bar = ui.add(ProgressBar::new(share as f32).show_percentage().desired_height(16.0));
+        field::name(&bar, "Progress of every model");
+        if ui.button("Cancel every model").on_hover_text("Ends it; nothing is held").clicked() {
+            commands.push(Command::View(ViewCommand::HoldModels(false)));
+        }
+        return;
+    }
+    let help = "Solves the scene at rest with each model in turn, beside the window, and holds what they answer: tension, sag, \
+                energy and cost side by side";
+    let can = state.scene_fault.is_none();
+    let button = ui.add_enabled(can, egui::Button::new("Hold every model")).on_hover_text(help);
+    if button.on_disabled_hover_text("The scene has a fault: see Warnings").clicked() {
+        commands.push(Command::View(ViewCommand::HoldModels(true)));
+    }
+    match &state.models {
+        Progress::Failed(why) => field::fault(ui, why),
+        Progress::Done(found) if *found.scene == state.scene => {
+            for answer in &found.answers {
+                if let Err(why) = &answer.result {
+                    // Most refusals begin with the model's name.
+                    let name = if why.contains(answer.model.name()) { "" } else { answer.model.name() };
+                    let colon = if name.is_empty() { "" } else { ": " };
+                    ui.label(RichText::new(format!("{name}{colon}{}", translate::shown(why))).small());
+                }
+            }
+        }
+        _ => {}
     }
 }
 

@@ -5,6 +5,7 @@
 mod editing;
 mod hands;
 mod help;
+mod job;
 mod pictures;
 mod playing;
 mod reach;

@@ -150,8 +150,8 @@ fn walk_b_faults_and_loads() {
     walk.view(ViewCommand::Select(Some(Item::Support { cable: 0, support: 1 })));
     walk.look("b07-waypoints");
     let mut scene = catalog::hanging_span();
-    scene.cables[0].breaking_tension_n = 180.0;
-    scene.cables[0].service_tension_n = 100.0;
+    scene.cables[0].breaking_tension_n = 90.0;
+    scene.cables[0].service_tension_n = 60.0;
     let Some(mut walk) = Walk::open(scene, WINDOW) else { return };
     walk.look("b08-over-breaking-at-rest");
     walk.plays(30);

@@ -4,15 +4,16 @@ use cable_core::Scene;
 use cable_core::scene::preset::{self, MapPreset};
 use egui::{ComboBox, Ui};
 
+use crate::canvas::place;
 use crate::command::{Command, SceneCommand, ViewCommand};
 use crate::panels::cable::labelled;
 use crate::panels::unit;
-use crate::state::AppState;
+use crate::state::{AppState, Item};
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let present = preset::map_presets().iter().find(|m| m.obstacles == state.scene.obstacles);
     labelled(ui, "Map", "Map", |ui| {
-        let present = preset::map_presets().iter().find(|m| m.obstacles == state.scene.obstacles);
         let text = match present {
             Some(map) => map.name.as_str(),
             None if state.scene.obstacles.is_empty() => "None",
@@ -32,6 +33,25 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         });
         shown.response.on_hover_text("Replaces all obstacles by those of a tank; cables stay where they are")
     });
+    if let Some(map) = present {
+        opening(ui, state, map, commands);
+    }
+}
+
+/// Offers to begin the cable at the opening of the tank, where it does not.
+fn opening(ui: &mut Ui, state: &AppState, map: &MapPreset, commands: &mut Vec<Command>) {
+    let item = Item::Support { cable: state.current_cable(), support: 0 };
+    let Some(at) = place::of(state, item).filter(|at| *at != map.riser_at_m) else { return };
+    let help = format!(
+        "Moves the start of the cable from {} to the opening of the tank at {}",
+        unit::position(at),
+        unit::position(map.riser_at_m)
+    );
+    if ui.button("Cable in by the opening").on_hover_text(help).clicked() {
+        commands.push(Command::Scene(SceneCommand::EditDone));
+        commands.push(Command::Scene(SceneCommand::Move { item, to_m: map.riser_at_m }));
+        commands.push(Command::Scene(SceneCommand::EditDone));
+    }
 }
 
 fn about(map: &MapPreset) -> String {

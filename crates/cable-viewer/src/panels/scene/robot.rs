@@ -1,11 +1,11 @@
-//! The robot: which, where, which way.
+//! The robot: which, where, which way. A first one stands where it can, with the end of the cable on its hitch.
 
-use cable_core::Robot;
-use cable_core::scene::Heading;
 use cable_core::scene::preset::{self, RobotPreset};
+use cable_core::scene::{Heading, SupportKind};
+use cable_core::{Robot, Scene};
 use egui::{ComboBox, Ui};
 
-use super::{coordinates, show_faults};
+use super::{coordinates, show_faults, support_kind};
 use crate::command::{Command, SceneCommand};
 use crate::panels::cable::labelled;
 use crate::panels::fault;
@@ -27,13 +27,13 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             for p in preset::robot_presets() {
                 let entry = ui.selectable_label(present.is_some_and(|r| r.preset == p.id), &p.name);
                 if entry.on_hover_text(about(p)).clicked() {
-                    set(Some(chosen(state, p)), commands);
+                    choose(state, p, commands);
                 }
             }
         });
         shown
             .response
-            .on_hover_text("A vehicle to scale; set the kind of an end to Robot to hang the cable on its hitch")
+            .on_hover_text("A vehicle to scale. A first one stands near the end of the cable, on ground that is level enough, and has that end on its hitch")
     });
     if let Some(robot) = present {
         placed(ui, robot, commands);
@@ -58,15 +58,46 @@ fn set(robot: Option<Robot>, commands: &mut Vec<Command>) {
     commands.push(Command::Scene(SceneCommand::EditDone));
 }
 
-/// The same robot of another kind, or a first one with its hitch at the end of the cable.
-fn chosen(state: &AppState, p: &RobotPreset) -> Robot {
+/// The same robot of another kind, or a first one with the end of the cable on its hitch.
+fn choose(state: &AppState, p: &RobotPreset, commands: &mut Vec<Command>) {
     if let Some(present) = &state.scene.robot {
-        return Robot { preset: p.id.to_owned(), ..present.clone() };
+        return set(Some(Robot { preset: p.id.to_owned(), ..present.clone() }), commands);
     }
-    let end = state.scene.cables.get(state.current_cable()).and_then(|c| c.supports.last()?.at_m).unwrap_or_default();
-    let x = end[0] + p.hitch_back_m.value;
-    let y = Ground::of(&state.scene).height(x).unwrap_or(end[1] - p.hitch_up_m.value);
-    Robot { preset: p.id.to_owned(), at_m: [x, y], ..Robot::default() }
+    let mut scene = state.scene.clone();
+    add(&mut scene, state.current_cable(), p);
+    commands.push(Command::Scene(SceneCommand::SetScene(Box::new(scene))));
+}
+
+/// Steepest ground that a first robot is put on, rad: 11°. More: much of what its tracks hold is spent before it pulls; less: rough waste
+/// has no place for it.
+const STEEPEST: f64 = 0.2;
+/// How far apart the places that are tried are, m, and how many to each side: a tank's width.
+const TRIED: (f64, u32) = (0.25, 100);
+
+/// Puts a robot into a scene that has none: as near as can be to below the end of a cable, which it takes over from a hand.
+fn add(scene: &mut Scene, cable: usize, p: &RobotPreset) {
+    let end = scene.cables.get(cable).and_then(|c| c.supports.last()?.at_m);
+    let at = end.unwrap_or_default();
+    let (ground, half) = (Ground::of(scene), p.track_half_length_m());
+    let stands = |x: f64| {
+        // No part of it in a wall, and not on top of one.
+        let level = |half: f64| ground.stand(x, half).filter(|s| s.pitch.abs() < STEEPEST);
+        let place = level(0.5 * p.length_m.value).and(level(half)).map(|s| [x, s.y]);
+        place.filter(|place| place[1] <= at[1] + p.height_m.value)
+    };
+    // Its back is turned to where the cable comes from.
+    let start = scene.cables.get(cable).and_then(|c| c.supports.first()?.at_m);
+    let (heading, forward) =
+        if start.is_some_and(|s| s[0] > at[0]) { (Heading::Left, -1.0) } else { (Heading::Right, 1.0) };
+    let below = at[0] + forward * p.hitch_back_m.value;
+    let places = (0..=TRIED.1).flat_map(|k| [-1.0, 1.0].map(|side| below + side * TRIED.0 * f64::from(k)));
+    let at_m = places.into_iter().find_map(stands).unwrap_or([below, at[1] - p.hitch_up_m.value]);
+    scene.robot = Some(Robot { preset: p.id.to_owned(), at_m, heading, ..Robot::default() });
+    let taken = |kind| matches!(kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Free);
+    let last = scene.cables.get_mut(cable).and_then(|c| c.supports.last_mut());
+    if let Some(support) = last.filter(|s| taken(s.kind)) {
+        *support = support_kind::of_kind(support, SupportKind::Robot, at, 0.0, true);
+    }
 }
 
 fn placed(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {

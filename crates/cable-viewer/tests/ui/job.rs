@@ -1,0 +1,144 @@
+//! A tank job set up from the first scene by someone who knows nothing of it: map, robot, opening; every model asked about it.
+
+use cable_core::scene::ground::Ground;
+use cable_core::scene::{SupportKind, catalog, preset};
+use cable_core::{Model, Scene};
+use cable_viewer::ViewerApp;
+use cable_viewer::command::{Command, ViewCommand};
+use cable_viewer::models::Progress;
+use cable_viewer::state::AppState;
+use egui::{Key, Modifiers, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+use crate::{apply, open};
+
+fn state<'a>(harness: &'a Harness<'_, ViewerApp>) -> &'a AppState {
+    &harness.state().state
+}
+
+fn tall(scene: Scene) -> Harness<'static, ViewerApp> {
+    let mut harness = open(scene);
+    harness.set_size(Vec2::new(1280.0, 1800.0));
+    harness.run_steps(3);
+    harness
+}
+
+/// Clicks the last thing of a name: an open list is above what it covers.
+fn click(harness: &mut Harness<'_, ViewerApp>, label: &str) {
+    harness.get_all_by_label(label).last().unwrap_or_else(|| panic!("{label}")).click();
+    harness.run_steps(3);
+}
+
+#[test]
+fn a_first_robot_stands_in_the_tank_with_the_cable_on_its_hitch() {
+    for map in preset::map_presets() {
+        for robot in preset::robot_presets() {
+            let mut harness = tall(catalog::hanging_span());
+            click(&mut harness, "Map");
+            click(&mut harness, &map.name);
+            let end = state(&harness).scene.cables[0].supports[1].at_m.unwrap();
+            let before = state(&harness).scene.clone();
+            click(&mut harness, "Robot");
+            click(&mut harness, &robot.name);
+            let what = format!("{} in {}", robot.name, map.name);
+            let scene = &state(&harness).scene;
+            assert_eq!(scene.cables[0].supports[1].kind, SupportKind::Robot, "{what}");
+            let at = scene.robot.as_ref().unwrap_or_else(|| panic!("{what}: none")).at_m;
+            let stand = Ground::of(scene).stand(at[0], robot.track_half_length_m());
+            let stand = stand.unwrap_or_else(|| panic!("{what}: no ground at {at:?}"));
+            assert!(stand.pitch.abs() < 0.21 && (stand.y - at[1]).abs() < 1e-9, "{what}: {stand:?}, {at:?}");
+            assert!(at[1] < end[1] && at[0].abs() < 0.5 * map.inside_width_m.value, "{what}: on the wall, {at:?}");
+            // One step back for all of it.
+            harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+            harness.run_steps(2);
+            assert_eq!(state(&harness).scene, before, "{what}");
+        }
+    }
+}
+
+#[test]
+fn a_robot_turns_its_back_to_where_the_cable_comes_from() {
+    let mut scene = catalog::hanging_span();
+    scene.cables[0].supports.reverse();
+    scene.cables[0].supports[0].name = "start".to_owned();
+    scene.obstacles.push(catalog::robot_drive().obstacles[0].clone());
+    let mut harness = tall(scene);
+    click(&mut harness, "Robot");
+    click(&mut harness, &preset::robot_presets()[0].name);
+    let scene = &state(&harness).scene;
+    let (robot, hitch) = (scene.robot.as_ref().unwrap(), scene.hitch_m().unwrap());
+    assert_eq!(robot.heading, cable_core::scene::Heading::Left);
+    assert!(hitch[0] > robot.at_m[0] && hitch[0].abs() < 1.0, "{hitch:?}, {:?}", robot.at_m);
+}
+
+#[test]
+fn a_tank_job_is_set_up_and_driven_from_the_first_scene() {
+    let mut harness = tall(catalog::hanging_span());
+    let map = preset::map_presets().iter().find(|m| m.id == "saltcake-75ft").unwrap();
+    click(&mut harness, "Map");
+    click(&mut harness, &map.name);
+    click(&mut harness, "Robot");
+    click(&mut harness, &preset::robot_presets()[0].name);
+    click(&mut harness, "Cable in by the opening");
+    assert_eq!(state(&harness).scene.cables[0].supports[0].at_m, Some(map.riser_at_m));
+    assert!(harness.query_by_label("Cable in by the opening").is_none(), "it is there");
+    // Too short for that, which is said with the remedy.
+    assert!(state(&harness).scene_fault.is_some());
+    harness.get_all_by_label_contains("Set to ").next().expect("the fix is offered").click();
+    harness.run_steps(3);
+    assert_eq!(state(&harness).scene_fault, None);
+    assert_eq!(state(&harness).snapshot.error, None);
+    let x = |h: &Harness<'_, ViewerApp>| state(h).live.solution.as_ref().unwrap().robot.unwrap().x_m;
+    let before = x(&harness);
+    let key = |pressed| egui::Event::Key {
+        key: Key::A,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers: Modifiers::NONE,
+    };
+    harness.event(key(true));
+    harness.run_steps(90);
+    harness.event(key(false));
+    harness.run_steps(2);
+    assert_eq!(state(&harness).snapshot.error, None);
+    assert!(x(&harness) < before - 0.1, "{before} m to {} m", x(&harness));
+}
+
+fn asked(harness: &mut Harness<'_, ViewerApp>) {
+    let began = std::time::Instant::now();
+    while matches!(state(harness).models, Progress::Running(..)) {
+        assert!(began.elapsed() < std::time::Duration::from_secs(60), "it takes too long");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        harness.step();
+    }
+    harness.run_steps(2);
+}
+
+#[test]
+fn s16_every_model_of_a_scene_is_held_with_its_cost_and_refusals_are_told() {
+    let mut harness = tall(catalog::over_beam());
+    click(&mut harness, "Hold every model");
+    harness.get_by_label("Progress of every model");
+    asked(&mut harness);
+    let models: Vec<Model> = state(&harness).held.iter().map(|h| h.solution.model).collect();
+    assert_eq!(models, [Model::Spans, Model::Fem, Model::MassSpring]);
+    harness.get_by_label_contains("catenary cannot answer this scene: ");
+    let most: Vec<f64> = state(&harness).held.iter().map(|h| h.solution.max_tension().tension_n).collect();
+    assert!(most.iter().all(|n| (n / most[0] - 1.0).abs() < 0.1), "{most:?}");
+    for held in &state(&harness).held {
+        assert!(held.wall_s > 0.0 && held.solution.time_s == 0.0);
+        let cost = cable_viewer::panels::unit::duration(held.wall_s);
+        assert!(harness.query_all_by_label(&cost).next().is_some(), "{cost}");
+    }
+    // Again: in their place, not beside them.
+    click(&mut harness, "Hold every model");
+    asked(&mut harness);
+    assert_eq!(state(&harness).held.len(), 3);
+    // Ended, and forgotten with its scene.
+    apply(&mut harness, Command::View(ViewCommand::LetGo(None)));
+    click(&mut harness, "Hold every model");
+    click(&mut harness, "Cancel every model");
+    assert!(matches!(state(&harness).models, Progress::None) && state(&harness).held.is_empty());
+}
