@@ -3,9 +3,9 @@
 //! Where nothing rubs or nothing moves the question is where it rests; where friction decides and a support is drawn, which
 //! place of the many it comes to at the end of that motion, slowly: there everything slides, and one place is right.
 //!
-//! The reference is the elastic catenary where it can answer (no discretisation error), else the finest `fem`, uncertain by
-//! what half as many elements change. The error is the largest of a support's force and of the largest tension, over the
-//! largest tension. `mass-spring` starts from the shape that `fem` finds at rest.
+//! The reference is the elastic catenary where it can answer, else `spans` (no discretisation error either), else the finest `fem`,
+//! uncertain by what half as many elements change. The error is the largest of a support's force and of the largest tension, over the
+//! largest tension. All models are laid the same at first.
 
 use std::time::Instant;
 
@@ -118,6 +118,9 @@ impl Reference {
             return Some(Self { by: "catenary".to_owned(), uncertainty: 0.0, answer });
         }
         let question = Question::of(scene);
+        if let Some(answer) = question.ask(scene, Model::Spans, None) {
+            return Some(Self { by: "spans".to_owned(), uncertainty: 0.0, answer });
+        }
         let half = question.ask(scene, Model::Fem, Some(finest / 2))?;
         let answer = question.ask(scene, Model::Fem, Some(finest))?;
         let mut this = Self { by: format!("fem, {finest} elements"), uncertainty: 0.0, answer };

@@ -52,12 +52,12 @@ impl Record {
 
     /// Whether it is the very answer that it would be compared with.
     fn is_its_reference(&self) -> bool {
-        self.0[7] == format!("{}, {} elements", self.0[2], self.0[3])
+        self.0[7] == self.0[2] || self.0[7] == format!("{}, {} elements", self.0[2], self.0[3])
     }
 
     /// Whether it is in the dot plot.
     fn is_shown(&self) -> bool {
-        (self.0[3] == DOT_SEGMENTS || self.0[3].is_empty()) && !self.is_its_reference()
+        self.0[3] == DOT_SEGMENTS || self.0[3].is_empty()
     }
 
     fn figure(&self, column: usize) -> f64 {
@@ -127,9 +127,9 @@ fn scenes(records: &[Record]) -> Vec<&[Record]> {
 
 fn line(rows: &[Record]) -> Option<Line> {
     let first = rows.first()?;
-    let pick = |read: fn(&Record) -> f64| {
+    let pick = |read: fn(&Record) -> f64, costs: bool| {
         rows.iter()
-            .filter(|r| r.is_shown())
+            .filter(|r| r.is_shown() && (costs || !r.is_its_reference()))
             .filter_map(|r| MARKS.iter().find(|m| r.is_of(m.0)).map(|m| (r, m)))
             .map(|(r, m)| Dot { value: read(r), colour: m.1, corners: m.2 })
             .collect()
@@ -138,7 +138,7 @@ fn line(rows: &[Record]) -> Option<Line> {
         name: first.scene().to_owned(),
         note: format!("{}, against {}", first.0[1], first.0[7]),
         blind_to: first.figure(8),
-        dots: [pick(Record::error), pick(Record::cost_s)],
+        dots: [pick(Record::error, false), pick(Record::cost_s, true)],
     })
 }
 

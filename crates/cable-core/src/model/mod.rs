@@ -9,6 +9,7 @@ pub mod catenary;
 pub mod conformance;
 pub mod drive;
 pub mod fem;
+pub mod lay;
 pub mod mass_spring;
 pub mod relay;
 pub mod spans;

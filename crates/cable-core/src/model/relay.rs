@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use super::fem::FemModel;
+use super::lay::{is_buried, meets_outline};
 use super::spans::SpansModel;
 use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
 use crate::contact::outline::Placement;
@@ -24,13 +25,6 @@ const FELT: f64 = 1e-2;
 const FIRST_WAIT: usize = 1;
 /// … up to this.
 const LONGEST_WAIT: usize = 8;
-/// A cable this near to the robot is answered by the model that knows of it, m. Less: a step passes it unseen.
-const ROOM_M: f64 = 0.02;
-/// An answer of `spans` at rest that is this deep in an obstacle is none, m. Less: chords across round things are; more: a slack
-/// cable that hangs in the ground is shown.
-const BURIED_M: f64 = 0.02;
-/// How deep is looked, m: what is deeper came in somewhere.
-const DEEPEST_M: f64 = 0.5;
 /// Why it is then the other model.
 const BURIED: &str = "the cable was not found clear of the ground without a mesh";
 /// Why it is then that model.
@@ -93,7 +87,7 @@ impl Relay {
     fn handed_over(&self) -> Result<FemModel, SolveError> {
         let mut fem = self.new_fem()?;
         let answer = self.spans.solution();
-        if self.meets_robot(&answer) || (self.spans.time_s() == 0.0 && self.buried(&answer)) {
+        if self.meets_robot(&answer) || (self.spans.time_s() == 0.0 && is_buried(&self.problem, &answer)) {
             // Found without knowing of the robot, or no answer: laid anew.
         } else if let Some(state) = &self.adopted {
             fem.adopt(state)?;
@@ -116,7 +110,7 @@ impl Relay {
 
     /// `fem` at the route, the robot where it is.
     fn new_fem(&self) -> Result<FemModel, SolveError> {
-        let mut fem = FemModel::new(self.problem.clone(), self.settings)?;
+        let mut fem = FemModel::new(self.problem.clone(), self.settings)?.laid_alone();
         if let Some(led) = self.led {
             fem.lead_outline(led);
         }
@@ -125,14 +119,7 @@ impl Relay {
 
     /// Whether the cable is in touch with the robot, or in its place.
     fn meets_robot(&self, answer: &CableSolution) -> bool {
-        let (Some(outline), Some(at)) = (&self.problem.outline, self.led) else { return false };
-        !outline.is_clear(at, answer.nodes.iter().map(Node::at), self.problem.radius + ROOM_M)
-    }
-
-    /// Whether it lies in an obstacle, deeper than what the models disagree by.
-    fn buried(&self, answer: &CableSolution) -> bool {
-        let gap = |n: &Node| self.problem.world.signed_gap(n.at(), DEEPEST_M).map(|g| g.gap_m);
-        answer.nodes.iter().any(|n| gap(n).is_some_and(|g| g < -BURIED_M))
+        meets_outline(&self.problem, self.led, answer)
     }
 
     fn is_dragged(&self, support: usize) -> bool {
@@ -197,7 +184,7 @@ impl Mechanics for Relay {
         if self.fem.is_none() {
             match self.spans.settle() {
                 Ok(_) if self.meets_robot(&self.spans.solution()) => TOUCHES.clone_into(&mut why),
-                Ok(_) if self.buried(&self.spans.solution()) => BURIED.clone_into(&mut why),
+                Ok(_) if is_buried(&self.problem, &self.spans.solution()) => BURIED.clone_into(&mut why),
                 Ok(report) => {
                     self.adopted = None;
                     return Ok(report);

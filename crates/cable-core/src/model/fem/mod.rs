@@ -53,12 +53,13 @@ mod wheel;
 
 use std::sync::Arc;
 
+use super::lay::least_sliding;
 use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::problem::Problem;
-use crate::solution::CableSolution;
+use crate::solution::{CableSolution, Warning};
 use crate::state::State;
 
 /// Which part holds the present state.
@@ -77,6 +78,11 @@ pub struct FemModel {
     statics: statics::Statics,
     dynamics: dynamics::Dynamics,
     present: Part,
+    /// Whether a first rest with contact goes on from that of `spans`, where there is one.
+    laid_evenly: bool,
+    settings: Settings,
+    /// Where the outline of the robot was led.
+    led: Option<Placement>,
 }
 
 impl FemModel {
@@ -88,7 +94,35 @@ impl FemModel {
         let statics = statics::Statics::new(problem.clone(), settings)?;
         let dynamics = dynamics::Dynamics::new(problem.clone(), settings)?;
         let present = if touches_nothing(&problem) { Part::Statics } else { Part::Dynamics };
-        Ok(Self { dragged: vec![None; problem.supports.len()], problem, statics, dynamics, present })
+        Ok(Self {
+            dragged: vec![None; problem.supports.len()],
+            statics,
+            dynamics,
+            present,
+            laid_evenly: true,
+            settings,
+            led: problem.outline.as_ref().map(|o| o.placement),
+            problem,
+        })
+    }
+
+    /// The same, but `spans` is not asked how the cable is laid: it was, and has no answer.
+    #[must_use]
+    pub fn laid_alone(mut self) -> Self {
+        self.laid_evenly = false;
+        self
+    }
+
+    /// Lays the cable with the least sliding, if there is an answer to that. On its own way down slack comes to lie in folds, which
+    /// friction then holds. Returns what there is to say of it.
+    fn lay(&mut self) -> Option<Vec<Warning>> {
+        let lay = least_sliding(&self.problem, self.settings, (&self.dragged, self.led))?;
+        let before = self.dynamics.clone();
+        if self.dynamics.take_over(&lay.answer, before.time(), &self.dragged).is_ok() && self.dynamics.rested {
+            return Some(lay.warnings);
+        }
+        self.dynamics = before;
+        None
     }
 
     /// The same without sliding nodes at corners and posts: every node stays with its material. For models that take
@@ -134,10 +168,13 @@ impl Mechanics for FemModel {
             self.statics.settle(&self.dragged)
         } else {
             let begins = !self.dynamics.rested && self.dynamics.time() == 0.0;
-            if begins && self.statics.settle(&self.dragged).is_ok() {
+            let said = if begins && self.laid_evenly { self.lay() } else { None };
+            if begins && said.is_none() && self.statics.settle(&self.dragged).is_ok() {
                 self.dynamics.begin_at(&self.statics.state(), &self.dragged);
             }
-            self.dynamics.settle(&self.dragged)
+            let mut report = self.dynamics.settle(&self.dragged)?;
+            report.warnings.extend(said.into_iter().flatten());
+            Ok(report)
         }
     }
 
@@ -188,6 +225,7 @@ impl Mechanics for FemModel {
     }
 
     fn lead_outline(&mut self, to: Placement) {
+        self.led = Some(to);
         self.dynamics.lead_outline(to);
     }
 

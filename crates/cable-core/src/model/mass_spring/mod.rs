@@ -35,7 +35,7 @@ use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-use crate::solution::{CableSolution, Cost, Warning};
+use crate::solution::{CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
 use kept::Kept;
 use pulley::Pulley;
@@ -127,10 +127,12 @@ fn unsupported(feature: &str) -> SolveError {
 /// The resting shape of the corrected bars and where the supports sit on it.
 fn shape_of(problem: Arc<Problem>, settings: Settings) -> Option<Shape> {
     let mut fem = FemModel::new(problem, settings).ok()?.with_material_nodes();
-    fem.settle().ok()?;
+    let warnings = fem.settle().ok()?.warnings;
     let (state, answer) = (fem.state(), fem.solution());
     let slid = answer.supports.iter().map(|s| s.arc_length_m).collect();
-    Some(Shape { state, slid, tension: answer.nodes.iter().map(|n| (n.arc_length_m, n.tension_n)).collect() })
+    let tension = answer.nodes.iter().map(|n| (n.arc_length_m, n.tension_n)).collect();
+    let warnings = warnings.into_iter().filter(|w| w.kind == WarningKind::NotUnique).collect();
+    Some(Shape { state, slid, tension, warnings })
 }
 
 /// A resting shape of another model.
@@ -140,6 +142,8 @@ struct Shape {
     slid: Vec<f64>,
     /// Arc length, m, and tension there, N.
     tension: Vec<(f64, f64)>,
+    /// Why it might be another one.
+    warnings: Vec<Warning>,
 }
 
 impl MassSpringModel {
@@ -168,6 +172,7 @@ impl MassSpringModel {
                 let k = shape.tension.partition_point(|n| n.0 < middle).min(shape.tension.len().saturating_sub(1));
                 next.tension[e] = shape.tension.get(k).map_or(0.0, |n| n.1);
             }
+            next.warnings.extend(shape.warnings);
             *self = next;
         }
         self.laid = true;

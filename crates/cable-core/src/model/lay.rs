@@ -1,0 +1,61 @@
+//! How a cable is first laid: as `spans` lays it, with the least sliding, whoever goes on from there.
+
+use std::sync::Arc;
+
+use super::spans::SpansModel;
+use super::{Mechanics, Settings};
+use crate::contact::outline::Placement;
+use crate::math::Vec2;
+use crate::problem::Problem;
+use crate::solution::{CableSolution, Node, Warning};
+
+/// A cable this near to the robot is answered by the model that knows of it, m. Less: a step passes it unseen.
+const ROOM_M: f64 = 0.02;
+/// An answer of `spans` at rest that is this deep in an obstacle is none, m. Less: chords across round things are; more: a slack
+/// cable that hangs in the ground is shown.
+const BURIED_M: f64 = 0.02;
+/// How deep is looked, m: what is deeper came in somewhere.
+const DEEPEST_M: f64 = 0.5;
+
+/// A first rest.
+#[derive(Clone, Debug)]
+pub struct Lay {
+    /// The cable there.
+    pub answer: CableSolution,
+    /// What there is to say of it.
+    pub warnings: Vec<Warning>,
+}
+
+/// Where the cable comes to lie with the least sliding, supports `dragged` (m) and the robot led to where it is; None where `spans`
+/// does not know.
+#[must_use]
+pub fn least_sliding(
+    problem: &Arc<Problem>,
+    settings: Settings,
+    (dragged, led): (&[Option<Vec2>], Option<Placement>),
+) -> Option<Lay> {
+    let mut spans = SpansModel::new(Problem::without_outline(problem.clone()), settings).ok()?;
+    for (k, at) in dragged.iter().enumerate() {
+        if let Some(at) = at {
+            spans.drag_support(k, *at);
+        }
+    }
+    let warnings = spans.settle().ok()?.warnings;
+    let answer = spans.solution();
+    let clear = !meets_outline(problem, led, &answer) && !is_buried(problem, &answer);
+    clear.then_some(Lay { answer, warnings })
+}
+
+/// Whether the cable is in touch with the robot, or in its place.
+#[must_use]
+pub fn meets_outline(problem: &Problem, led: Option<Placement>, answer: &CableSolution) -> bool {
+    let (Some(outline), Some(at)) = (&problem.outline, led) else { return false };
+    !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius + ROOM_M)
+}
+
+/// Whether it lies in an obstacle, deeper than what the models disagree by.
+#[must_use]
+pub fn is_buried(problem: &Problem, answer: &CableSolution) -> bool {
+    let gap = |n: &Node| problem.world.signed_gap(n.at(), DEEPEST_M).map(|g| g.gap_m);
+    answer.nodes.iter().any(|n| gap(n).is_some_and(|g| g < -BURIED_M))
+}
