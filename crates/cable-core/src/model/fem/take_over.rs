@@ -157,7 +157,8 @@ impl Dynamics {
         for arc in self.arcs_told(told) {
             let round = arc.node.end.radius * arc.turn;
             let many = 0.5 * arc.turn > WIDE && 0.5 * round > SMALL * self.even();
-            let marks = (arc.turn / if many { WIDE } else { MOST }).ceil().max(1.0);
+            let bars = if many { (round / self.even()).round() } else { 1.0 };
+            let marks = (arc.turn / if many { WIDE } else { MOST }).ceil().max(bars);
             for i in 0..marks as usize {
                 let part = (i as f64 + 0.5) / marks;
                 let end = arc.node.end;
