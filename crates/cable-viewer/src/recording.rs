@@ -57,7 +57,11 @@ impl Recording {
             self.events.pop();
         }
         for w in &solution.warnings {
-            let known = self.active.iter().any(|(kind, cable)| *kind == w.kind && *cable == w.cable);
+            let known = match w.kind {
+                // What is broken stays so: each break is an event of its own.
+                WarningKind::Broken => self.events.iter().any(|e| e.kind == w.kind && e.text == w.message),
+                _ => self.active.iter().any(|(kind, cable)| *kind == w.kind && *cable == w.cable),
+            };
             if !known && marks(w.kind) && self.events.len() < MOST_EVENTS {
                 self.events.push(Event { time_s: began(w, solution.time_s), kind: w.kind, text: w.message.clone() });
             }
@@ -195,6 +199,19 @@ mod tests {
         assert_eq!(r.events().iter().map(|e| e.time_s).collect::<Vec<_>>(), [1.0, 4.0]);
         r.push(at(2.0, 1, true));
         assert_eq!(r.events().len(), 1, "what is wound back over is forgotten");
+    }
+
+    #[test]
+    fn each_break_is_an_event() {
+        let broken = |texts: &[&str], time_s: f64| {
+            let one = |t: &&str| Warning::new(WarningKind::Broken, "a", 1.0, [9.0, 8.0], (*t).to_owned());
+            Solution { warnings: texts.iter().map(one).collect(), ..at(time_s, 1, false) }
+        };
+        let mut r = Recording::default();
+        for (k, texts) in [&["first"][..], &["first"], &["first", "second"], &["first", "second"]].iter().enumerate() {
+            r.push(broken(texts, k as f64));
+        }
+        assert_eq!(r.events().iter().map(|e| e.time_s).collect::<Vec<_>>(), [0.0, 2.0]);
     }
 
     #[test]

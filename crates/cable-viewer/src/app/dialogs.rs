@@ -137,20 +137,34 @@ fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], commands: &mu
     });
 }
 
+/// What may be taller than the window scrolls; heading and buttons stay in sight.
+fn tall(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+    /// Of heading, buttons and margins, points.
+    const REST: f32 = 130.0;
+    let most = (ui.ctx().content_rect().height() - REST).max(60.0);
+    ui.scope(|ui| {
+        ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
+        // Else it grows by a line a frame.
+        egui::ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, contents);
+    });
+}
+
 /// What was checked and what was not.
 fn about(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.heading("About the cable simulator");
     ui.weak(format!("Version {}; MIT or Apache-2.0", env!("CARGO_PKG_VERSION")));
-    for (title, lines) in ABOUT {
-        ui.add_space(8.0);
-        ui.strong(*title);
-        for line in *lines {
-            ui.horizontal_top(|ui| {
-                ui.label("•");
-                ui.add(egui::Label::new(*line).wrap());
-            });
+    tall(ui, |ui| {
+        for (title, lines) in ABOUT {
+            ui.add_space(8.0);
+            ui.strong(*title);
+            for line in *lines {
+                ui.horizontal_top(|ui| {
+                    ui.label("•");
+                    ui.add(egui::Label::new(*line).wrap());
+                });
+            }
         }
-    }
+    });
     ui.add_space(10.0);
     if ui.button("Close").clicked() {
         commands.push(close());
@@ -178,6 +192,9 @@ const ABOUT: &[(&str, &[&str])] = &[
             "Everything is plane: no cable passes sideways round anything, and knots cannot be told",
             "The robot’s outline is an obstacle for its cable with finite elements only; its drive curve is an assumption",
             "How accurate violent motion is (ends thrown metres in a frame): only that it does not fail",
+            "Mass-spring over sharp corners: its tension swings there by a third and more, and the answer says by how much",
+            "Contact of the cable with itself is finite elements’ only, and not in scenes with pulleys",
+            "Safe reach moves slowly and looks at places on a grid: jerks, and what lies between, are not in it",
             "With friction there are many resting places; one way of laying is answered",
         ],
     ),
@@ -257,34 +274,41 @@ fn recover(ui: &mut Ui, scene: &cable_core::Scene, commands: &mut Vec<Command>) 
 fn help(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.heading("Pointer and keys");
     ui.add_space(6.0);
-    egui::Grid::new("keys").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
-        for (what, does) in [
-            ("Drag a support, waypoint or corner", "Moves it; the cable follows"),
-            ("Drag an obstacle", "Moves all of it; click it to see its corners"),
-            ("Double-click the cable", "Adds a waypoint"),
-            ("Shift+click, Shift+drag", "Picks several things; draws a frame round them"),
-            ("Drag the head of a load's arrow", "Sets its force"),
-            ("Double-click the ground", "Adds a leg to the robot's path; drag its flag to move it"),
-            ("Drag the background", "Moves the view"),
-            ("Wheel", "Zooms at the pointer, in graphs too"),
-            ("Click in a graph", "Sets a cursor; a second one tells the difference"),
-            ("F, C", "Fits the scene, recentres on the cable"),
-            ("Space", "Runs or pauses"),
-            ("Arrow right, left", "One step of 1/60 s; one picture back"),
-            ("Hold A, D", "Drives the robot left, right"),
-            ("R", "Back to the start"),
-            ("Del", "Removes what is selected"),
-            ("Ctrl+Z, Ctrl+Shift+Z", "Undo, redo"),
-            ("N, Shift+N", "Picks the next thing, the one before"),
-            ("Alt+arrows", "Moves what is picked by a grid line"),
-            ("Ctrl+C, X, V, A", "Copy, cut, paste, pick everything"),
-            ("Ctrl+O, Ctrl+S", "Open, save"),
-            ("Ctrl+P", "Everything by name"),
-        ] {
-            ui.strong(what);
-            ui.label(does);
-            ui.end_row();
-        }
+    tall(ui, |ui| {
+        egui::Grid::new("keys").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
+            for (what, does) in [
+                ("Drag a support, waypoint or corner", "Moves it; the cable follows"),
+                ("Drag an obstacle", "Moves all of it; click it to see its corners"),
+                ("Double-click the cable", "Adds a waypoint"),
+                ("Shift+click, Shift+drag", "Picks several things; draws a frame round them"),
+                ("Drag the head of a load's arrow", "Sets its force"),
+                ("Double-click the ground", "Adds a leg to the robot's path; drag its flag to move it"),
+                ("Drag the background", "Moves the view"),
+                ("Wheel", "Zooms at the pointer, in graphs too"),
+                ("+, −, Shift+arrows", "Zooms about the middle; moves the view"),
+                ("Click the cable", "Takes its tension there apart"),
+                ("Click in a graph", "Sets a cursor; a second one tells the difference"),
+                ("Tab, Enter, Esc", "Next control; presses it; back to the canvas"),
+                ("Left, right in a graph", "Moves its cursor; with Shift what is in view"),
+                ("Up, down, Enter in a graph", "Zooms; sets another cursor"),
+                ("F, C", "Fits the scene, recentres on the cable"),
+                ("Space", "Runs or pauses"),
+                ("Arrow right, left", "One step of 1/60 s; one picture back"),
+                ("Hold A, D", "Drives the robot left, right"),
+                ("R", "Back to the start"),
+                ("Del", "Removes what is selected"),
+                ("Ctrl+Z, Ctrl+Shift+Z", "Undo, redo"),
+                ("N, Shift+N, M", "Picks the next thing, the one before, one more"),
+                ("Alt+arrows", "Moves what is picked by a grid line"),
+                ("Ctrl+C, X, V, A", "Copy, cut, paste, pick everything"),
+                ("Ctrl+O, Ctrl+S", "Open, save"),
+                ("Ctrl+P", "Everything by name"),
+            ] {
+                ui.strong(what);
+                ui.label(does);
+                ui.end_row();
+            }
+        });
     });
     ui.add_space(10.0);
     if ui.button("Close").clicked() {

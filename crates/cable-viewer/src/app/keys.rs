@@ -64,6 +64,7 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     clipboard(ctx, state, commands);
     // The longer ones first here too: a plain arrow is found in alt with an arrow.
     pick_and_move(ctx, state, commands);
+    camera(ctx, state, commands);
     let plain = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
     if plain(Key::F) {
         commands.push(Command::View(ViewCommand::Fit));
@@ -96,6 +97,34 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
+/// Zoom by one key: three presses double the scale.
+const ZOOM: f64 = 1.26;
+/// What an arrow moves the view by, points.
+const PAN: f32 = 60.0;
+
+/// + and − zoom about the middle, Shift with an arrow moves the view.
+fn camera(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
+    // With ctrl they scale the whole window; plus is on the shifted half of its key on many keyboards.
+    let pressed = |key| ctx.input_mut(|i| !i.modifiers.command && i.consume_key(Modifiers::NONE, key));
+    let zoom = |factor| Command::View(ViewCommand::Zoom { about_m: state.camera.centre_m, factor });
+    if pressed(Key::Plus) || pressed(Key::Equals) {
+        commands.push(zoom(ZOOM));
+    }
+    if pressed(Key::Minus) {
+        commands.push(zoom(1.0 / ZOOM));
+    }
+    for (key, by) in [
+        (Key::ArrowLeft, egui::vec2(PAN, 0.0)),
+        (Key::ArrowRight, egui::vec2(-PAN, 0.0)),
+        (Key::ArrowUp, egui::vec2(0.0, PAN)),
+        (Key::ArrowDown, egui::vec2(0.0, -PAN)),
+    ] {
+        if ctx.input_mut(|i| i.consume_key(Modifiers::SHIFT, key)) {
+            commands.push(Command::View(ViewCommand::Pan(by)));
+        }
+    }
+}
+
 /// Copy, cut and paste: of things of the scene, and of a table of points from another program.
 fn clipboard(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     let scene = |command| Command::Scene(command);
@@ -116,7 +145,7 @@ fn clipboard(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-/// N picks the next thing, Alt with an arrow moves what is picked by a grid line, Ctrl+A picks everything.
+/// N picks the next thing, M one more, Alt with an arrow moves what is picked by a grid line, Ctrl+A picks everything.
 fn pick_and_move(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     let all = place::all(state);
     for (modifiers, forward) in [(Modifiers::SHIFT, false), (Modifiers::NONE, true)] {
@@ -130,6 +159,13 @@ fn pick_and_move(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
             };
             commands.push(Command::View(ViewCommand::Select(all.get(next).copied())));
         }
+    }
+    if ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::M)) {
+        let mut picks = state.picks();
+        let after = picks.last().and_then(|s| all.iter().position(|i| i == s)).map_or(0, |k| k + 1);
+        let next = all.iter().cycle().skip(after).take(all.len()).find(|i| !picks.contains(i));
+        picks.extend(next);
+        commands.push(Command::View(ViewCommand::SelectAll(picks)));
     }
     if ctx.input_mut(|i| i.consume_shortcut(&SELECT_ALL)) {
         commands.push(Command::View(ViewCommand::SelectAll(all)));

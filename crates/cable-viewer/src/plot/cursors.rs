@@ -23,6 +23,19 @@ impl Cursors {
         } else {
             self.0.push(x);
         }
+        self.keep(ui, title);
+    }
+
+    /// Moves the last one to `x`, or sets the first there.
+    pub fn put_last(&mut self, ui: &Ui, title: &str, x: f64) {
+        match self.0.last_mut() {
+            Some(last) => *last = x,
+            None => self.0.push(x),
+        }
+        self.keep(ui, title);
+    }
+
+    fn keep(&self, ui: &Ui, title: &str) {
         let places = self.0.clone();
         ui.data_mut(|d| d.insert_temp(id(title), places));
     }

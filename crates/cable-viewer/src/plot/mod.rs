@@ -3,6 +3,7 @@
 pub mod along;
 mod cursors;
 pub mod export;
+mod keys;
 pub mod measure;
 pub mod pyramid;
 pub mod series;
@@ -203,16 +204,27 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
         draw_limits(plot, graph.limits, si, symbol);
         let places: Vec<f64> = cursors.0.iter().map(|x| x / x_si).collect();
         draw_marks(plot, graph.mark, &places, cursor_text.as_deref());
-        wheel(plot)
+        let wheel = wheel(plot);
+        let asked = keys::read(plot, places.last().copied());
+        keys::Asked { zoomed: wheel || asked.zoomed, ..asked }
     });
+    let asked = response.inner;
     let bounds = response.transform.bounds();
     let ends = [bounds.min()[0] * x_si, bounds.max()[0] * x_si];
     ui.data_mut(|d| d.insert_temp(Id::unique(("in view", graph.title)), ends));
     let over = response.response.hover_pos().map(|p| response.transform.value_from_position(p).x * x_si);
     ui.data_mut(|d| d.insert_temp(hovered_id(graph.group), over));
-    let clicked = response.response.clicked().then(|| response.response.interact_pointer_pos()).flatten();
-    if let Some(at) = clicked {
-        cursors.click(ui, graph.group, response.transform.value_from_position(at).x * x_si);
+    if response.response.clicked() {
+        let at = response.response.interact_pointer_pos();
+        let place = at.map_or(asked.next, |at| response.transform.value_from_position(at).x);
+        cursors.click(ui, graph.group, place * x_si);
+    }
+    if let Some(place) = asked.cursor {
+        cursors.put_last(ui, graph.group, place * x_si);
+    }
+    if response.response.has_focus() {
+        let stroke = ui.visuals().selection.stroke;
+        ui.painter().rect_stroke(response.response.rect, 2.0, stroke, egui::StrokeKind::Outside);
     }
     let figure = response.response.labelled_by(title);
     let ribbon = graph.ribbon.last().map(|r| r.map(|v| v / si));
@@ -225,7 +237,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
         bounds: [bounds.min()[0], bounds.min()[1], bounds.max()[0], bounds.max()[1]],
         lines: lines.to_vec(),
     };
-    Touched { zoomed: response.inner, export: export.then(|| Box::new(sheet())) }
+    Touched { zoomed: asked.zoomed, export: export.then(|| Box::new(sheet())) }
 }
 
 /// Says the last values of the lines, and what the cursors read.

@@ -6,6 +6,7 @@ mod editing;
 mod hands;
 mod help;
 mod job;
+mod keys;
 mod pictures;
 mod playing;
 mod reach;

@@ -1,6 +1,7 @@
 //! Stories of the users that no other file tells: each test is named after its row.
 
 use cable_core::scene::preset::robot_presets;
+use cable_core::scene::robot::Pose;
 use cable_core::scene::{Shape, Support, catalog};
 use cable_core::solution::WarningKind;
 use cable_core::{Model, Robot, Scene, Solution};
@@ -87,6 +88,56 @@ fn s04_nothing_gets_into_anything() {
         }
     }
     assert!(answer(&harness).cables[0].contacts.iter().any(|c| c.normal_n > 0.0), "and it does touch");
+}
+
+/// A robot that backs over its own slack cable pushes it before it.
+#[test]
+fn s04_the_cable_stays_out_of_the_robot() {
+    let mut harness = open(catalog::robot_drive());
+    let key = |pressed| egui::Event::Key {
+        key: egui::Key::A,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers: egui::Modifiers::NONE,
+    };
+    harness.event(key(true));
+    harness.run_steps(300);
+    harness.event(key(false));
+    harness.run_steps(2);
+    assert_eq!(state(&harness).snapshot.error, None);
+    let heading = state(&harness).scene.robot.as_ref().unwrap().heading;
+    let preset = robot_presets().iter().find(|p| p.id == state(&harness).scene.robot.as_ref().unwrap().preset).unwrap();
+    let radius = 0.5 * state(&harness).scene.cables[0].diameter_m;
+    let answers = state(&harness).recording.answers();
+    let (mut way, mut pressed) = (0.0_f64, 0.0_f64);
+    for answer in answers {
+        let r = answer.robot.unwrap();
+        way = way.max(answers[0].robot.unwrap().x_m - r.x_m);
+        pressed = pressed.max(r.push_x_n.hypot(r.push_y_n));
+        let pose = Pose { at_m: [r.x_m, r.y_m], pitch: r.pitch_deg.to_radians(), heading };
+        // Its back is cut by 0.1 m, where the cable hangs.
+        let back = 0.1 - preset.hitch_back_m.value;
+        let outline: Vec<[f64; 2]> = preset.outline_m.iter().map(|p| pose.place([p[0].max(back), p[1]])).collect();
+        for n in &answer.cables[0].nodes {
+            let deep = inside(&outline, [n.x_m, n.y_m]);
+            assert!(deep < radius, "({}, {}) is {deep} m deep at {} s", n.x_m, n.y_m, answer.time_s);
+        }
+    }
+    assert!(way > 2.0 && pressed > 1.0, "it backs ({way} m) against its cable ({pressed} N)");
+}
+
+/// How deep a point is in a polygon, m; 0 outside.
+fn inside(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
+    let edges = || polygon.iter().zip(polygon.iter().cycle().skip(1));
+    let crossed =
+        edges().filter(|(a, b)| (a[1] > y) != (b[1] > y) && x < a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]));
+    let far = |(a, b): (&[f64; 2], &[f64; 2])| {
+        let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+        let t = (((x - a[0]) * dx + (y - a[1]) * dy) / (dx * dx + dy * dy).max(1e-12)).clamp(0.0, 1.0);
+        (a[0] + t * dx - x).hypot(a[1] + t * dy - y)
+    };
+    if crossed.count() % 2 == 1 { edges().map(far).fold(f64::MAX, f64::min) } else { 0.0 }
 }
 
 /// How deep a point is in level ground, a box or a post, m; 0 outside.

@@ -213,6 +213,28 @@ fn walk_e_sizes() {
 }
 
 #[test]
+fn walk_g_small_dialogs() {
+    let Some(mut walk) = Walk::open(catalog::hanging_span(), [640.0, 400.0]) else { return };
+    for (name, dialog) in [("about", Dialog::About), ("help", Dialog::Help)] {
+        walk.dialog(dialog);
+        walk.look(&format!("g-{name}-640x400"));
+    }
+    let Some(mut walk) = Walk::open(catalog::hanging_span(), WINDOW) else { return };
+    walk.plays(90);
+    walk.harness.get_by_label("Along the cable").focus();
+    walk.harness.run_steps(2);
+    for key in [Key::ArrowRight, Key::Enter, Key::ArrowRight, Key::ArrowRight, Key::ArrowUp] {
+        walk.harness.key_press(key);
+        walk.harness.run_steps(2);
+    }
+    walk.look("g-graph-by-keys");
+    for (name, dialog) in [("about", Dialog::About), ("help", Dialog::Help)] {
+        walk.dialog(dialog);
+        walk.look(&format!("g-{name}"));
+    }
+}
+
+#[test]
 fn walk_f_tall_panels() {
     for (name, scene) in [("robot", catalog::robot_drive()), ("tank", catalog::tank())] {
         let Some(mut walk) = Walk::open(scene, [1280.0, 2400.0]) else { return };
