@@ -9,7 +9,7 @@ use cable_core::model::{Inertia, Mechanics, Settings};
 use cable_core::problem::problems;
 use cable_core::scene::obstacle::{Obstacle, Shape};
 use cable_core::scene::{Load, Scene, Support, catalog};
-use cable_core::solution::CableSolution;
+use cable_core::solution::{CableSolution, ContactReport};
 
 /// A flexible cable from a to b along a route over shapes.
 fn scene(shapes: Vec<Shape>, route_m: Vec<[f64; 2]>, (length_m, friction): (f64, f64)) -> Scene {
@@ -271,4 +271,75 @@ fn a_fold_does_not_rest_inside_the_ground_below_a_valley() {
             assert!(!below(&heap, [n.x_m, n.y_m - 0.01 + 1e-6]), "{length}: ({}, {})", n.x_m, n.y_m);
         }
     }
+}
+
+/// A stiff cable so taut that its weight turns it by no more than 1e-6 along an edge comes to lie on a beam from its near corner to
+/// its far one, in one step and from whichever direction.
+#[test]
+fn a_taut_stiff_cable_comes_to_lie_on_an_edge_from_corner_to_corner() {
+    for friction in [0.0, 0.2] {
+        let mut s =
+            scene(vec![beam([1.0, 1.4], [0.5, 1.0])], vec![[0.0, 0.0], [1.0, 1.2], [3.0, 1.06]], (3.0, friction));
+        s.cables[0].axial_stiffness_n = 1e8;
+        let rest = model(&s);
+        for k in 1..=60 {
+            let mut m = rest.clone();
+            m.drag_support(1, Vec2::new(3.0, 1.06 - 0.01 * f64::from(k)));
+            m.advance(0.1, Inertia::QuasiStatic).unwrap_or_else(|e| panic!("{friction}, {k}: {e}"));
+            let answer = m.solution();
+            let [first, last] = [&answer.contacts[0], answer.contacts.last().unwrap()];
+            // (level with the edge it sags on to it)
+            assert_eq!(last.ends_m - first.begins_m > 0.3, k >= 5, "{friction}, {k}");
+        }
+    }
+}
+
+/// Over the nose of an overhang and back in below it: two corners hold it, a half turn and no more, e^{μθ} from end to end once
+/// it has been drawn along.
+#[test]
+fn a_cable_bends_round_the_nose_of_an_overhang() {
+    let friction = 0.15;
+    let nose =
+        Shape::Polygon { points_m: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [3.0, 2.0], [3.0, 2.4], [0.0, 2.4]] };
+    let mut s = scene(vec![nose], vec![[-1.0, 2.8], [3.2, 2.7], [3.2, 1.7], [1.5, 1.2]], (6.1, friction));
+    s.cables[0].linear_density_kg_per_m = 1e-6;
+    let mut m = model(&s);
+    for k in 1..=40 {
+        m.drag_support(1, Vec2::new(1.5, 1.2 - 0.01 * f64::from(k)));
+        m.advance(0.1, Inertia::QuasiStatic).unwrap();
+    }
+    let answer = m.solution();
+    assert!(!answer.contacts.is_empty());
+    let turn: f64 = answer.contacts.iter().map(|c| c.turn_deg.abs().to_radians()).sum();
+    let law = (friction * turn).exp();
+    let [t, u] = pulls(&answer);
+    assert!(turn > 1.5 && turn < 3.2 && (u / t / law - 1.0).abs() <= 1e-6, "{turn}: {t} {u} {law}");
+    // In the notch below the nose, and never in it.
+    for n in &answer.nodes {
+        let [x, y] = [n.x_m, n.y_m];
+        assert!(!(x < 3.0 && y > 2.0 && y < 2.4 && x > 0.0), "({x}, {y})");
+    }
+}
+
+/// Under a keel of three corners: each bends it up, without friction all tensions are one, and the hull pushes it down by what the
+/// ends pull it up.
+#[test]
+fn a_keel_is_held_from_below_by_all_its_corners() {
+    let keel = Shape::Polygon { points_m: vec![[2.0, 3.0], [2.0, 2.0], [4.0, 1.4], [6.0, 2.0], [6.0, 3.0]] };
+    let mut s = scene(vec![keel], vec![[0.0, 3.0], [1.8, 1.8], [4.0, 1.0], [6.2, 1.8], [8.0, 3.0]], (8.9, 0.0));
+    s.cables[0].linear_density_kg_per_m = 1e-6;
+    let mut m = model(&s);
+    for k in 1..=30 {
+        m.drag_support(1, Vec2::new(8.0 + 0.005 * f64::from(k), 3.0 + 0.02 * f64::from(k)));
+        m.advance(0.1, Inertia::QuasiStatic).unwrap();
+    }
+    let answer = m.solution();
+    let [t, u] = pulls(&answer);
+    assert!((t / u - 1.0).abs() <= 1e-5, "{t} {u}");
+    assert!(answer.contacts.len() == 3 && answer.contacts.iter().all(|c| c.normal[1] < 0.0), "{:?}", answer.contacts);
+    // T on both sides of a turn δ push with 2T sin δ/2.
+    let push = |c: &ContactReport| 2.0 * t * (0.5 * c.turn_deg.abs().to_radians()).sin() * c.normal[1];
+    let pushed: f64 = answer.contacts.iter().map(push).sum();
+    let held: f64 = answer.supports.iter().map(|s| s.reaction_y_n).sum();
+    assert!((pushed - held).abs() <= 1e-4 * held.abs(), "{pushed} {held}");
 }

@@ -368,3 +368,16 @@ fn rests_that_were_not_found_once_are() {
         sound(number, &model, &problem);
     }
 }
+
+/// Scenes of which steps were refused once: a stiff cable whose span comes to run along an edge (10040, 10103, 10181), lays beside
+/// slack in a kink that slid back and were taken to slide on, for the load made the tension behind the greater (10139, 10152).
+const HARD_STEPS: [u64; 5] = [10_040, 10_103, 10_139, 10_152, 10_181];
+
+#[test]
+fn steps_that_were_refused_once_are_taken() {
+    for number in HARD_STEPS {
+        let mut table = Table::default();
+        run(number, &mut table);
+        assert!(table.refused.is_empty() && table.steps > 90, "{number}: {:?}, {} steps", table.refused, table.steps);
+    }
+}

@@ -7,6 +7,7 @@ use super::gaps;
 use super::history::Mode;
 use super::instant::{Instant, Layout, place_ends};
 use super::lay;
+use super::loss;
 use super::newton::{self, Solved, Work};
 use super::pass;
 use super::pocket;
@@ -316,12 +317,14 @@ impl Network {
         let (before, old) = (self.strands.clone(), self.instant.clone());
         let size = to.load.norm();
         let (mut drag, mut taken, mut raised) = (DRAG * size, Taken::default(), 0);
+        let mut pushed = None;
         for _ in 0..MOST_DRAGGED {
             self.course.drag = drag;
             let result = self.step(layout, to, work);
             self.course.drag = 0.0;
             match result {
                 Ok(t) => {
+                    pushed = None;
                     taken = taken.and(t);
                     drag *= if raised > 0 { 0.5 } else { 0.25 };
                     raised = 0;
@@ -331,7 +334,8 @@ impl Network {
                         return Ok(taken.and(t));
                     }
                 }
-                Err(_) => {
+                Err(trouble) => {
+                    pushed = matches!(trouble, Trouble::Compressed { .. }).then_some(trouble);
                     drag *= 8.0;
                     raised += 1;
                 }
@@ -343,12 +347,23 @@ impl Network {
         self.strands = before;
         layout.give(&mut self.course, &old);
         self.instant = old;
-        Err(Trouble::Restless { s: 0.0 })
+        Err(pushed.unwrap_or(Trouble::Restless { s: 0.0 }))
     }
 
     /// Whether every strand is a rest and not a balance that runs away.
     pub fn stable(&self, work: &mut Work) -> bool {
         self.strands.iter().all(|s| newton::stable(s, &self.course, work))
+    }
+
+    /// Why a step was not taken: it would have to push however much it is held back, or nothing better than the trouble of the step.
+    fn reason(&self, step: Trouble, held_back: Trouble) -> Trouble {
+        let found_nothing = matches!(step, Trouble::Stalled { .. } | Trouble::Restless { .. });
+        let pushes = matches!(held_back, Trouble::Compressed { .. });
+        if found_nothing && pushes && loss::lost(&self.strands, &self.course, &step).is_none() {
+            held_back
+        } else {
+            step
+        }
     }
 
     /// To an instant, in steps of this part of the way at first, halved where one fails.
@@ -399,7 +414,10 @@ impl Network {
                 // Where nothing near by holds the cable it runs away, to the next place that does.
                 let next = if done + RUN < 1.0 { done + RUN } else { 1.0 };
                 at.between(from, to, next);
-                let Ok(t) = self.follow(layout, at, work) else { return Err((trouble, done)) };
+                let t = match self.follow(layout, at, work) {
+                    Ok(t) => t,
+                    Err(other) => return Err((self.reason(trouble, other), done)),
+                };
                 (taken, done, halvings, step) = (taken.and(t), next, 0, RUN);
                 taken.ran += 1;
             }

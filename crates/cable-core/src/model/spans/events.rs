@@ -27,6 +27,9 @@ const DEEP: f64 = 1e-9;
 const DEEPEST: f64 = 1e-6;
 /// Edges that a contact grows over at once.
 const MOST_EDGES: usize = 8;
+/// Part of p by which an end of a contact may be off the end of an arc and be taken to be there: Newton's steps go beyond it by
+/// less.
+const AT_BORDER: f64 = 1e-8;
 /// A support this near to a boundary lies on it, m.
 pub(super) const ON: f64 = 1e-9;
 
@@ -42,11 +45,17 @@ pub(super) fn solve(
 ) -> Result<Solved, Trouble> {
     let mut sum = Solved::default();
     for _ in 0..MAX_EVENTS {
-        let found = newton::solve(strand, course, work).map_err(|stall| Trouble::Stalled {
-            iterations: stall.iterations,
-            residual: stall.residual,
-            s: strand.material(stall.at).0,
-        })?;
+        let found = match newton::solve(strand, course, work) {
+            Ok(found) => found,
+            Err(stall) => {
+                sum.iterations += stall.iterations;
+                if grow(strand, course) {
+                    continue;
+                }
+                let s = strand.material(stall.at).0;
+                return Err(Trouble::Stalled { iterations: sum.iterations, residual: stall.residual, s });
+            }
+        };
         sum.iterations += found.iterations;
         sum.residual = found.residual;
         // What was passed on the way says better than what is inside on which side of it the cable shall be.
@@ -341,12 +350,40 @@ fn beyond_edges(curve: &Curve, home: Home, (mut p, side): (f64, usize), far: Opt
 /// What has been laid down in span k leads the contacts beside it over their edges.
 fn lead(strand: &mut Strand, course: &Course, k: usize) {
     for (j, side) in [(k.checked_sub(1), 1), (Some(k + 1), 0)] {
-        let Some(j) = j.filter(|&j| strand.contacts.get(j).is_some_and(|c| c.wheel.is_none())) else { continue };
-        let far = strand.ends_of(course, j + side)[side];
-        let c = &mut strand.contacts[j];
-        let p = beyond_edges(&course.curves[c.curve], c.home, (c.ends.p[side], side), far);
-        let track = course.track(c);
-        let way = track.curve.length(c.ends.p[side], p, c.home) / course.law.stretch(c.ends.t[side]);
-        (c.ends.p[side], c.ends.s[side]) = (p, c.ends.s[side] + way);
+        if let Some(j) = j.filter(|&j| strand.contacts.get(j).is_some_and(|c| c.wheel.is_none())) {
+            lead_end(strand, course, j, side);
+        }
     }
+}
+
+/// Leads an end of contact j over edges; whether there was one.
+fn lead_end(strand: &mut Strand, course: &Course, j: usize, side: usize) -> bool {
+    let far = strand.ends_of(course, j + side)[side];
+    let c = &mut strand.contacts[j];
+    let p = beyond_edges(&course.curves[c.curve], c.home, (c.ends.p[side], side), far);
+    if p == c.ends.p[side] {
+        return false;
+    }
+    let way = course.curves[c.curve].length(c.ends.p[side], p, c.home) / course.law.stretch(c.ends.t[side]);
+    (c.ends.p[side], c.ends.s[side]) = (p, c.ends.s[side] + way);
+    true
+}
+
+/// G: contacts that came to the end of an arc, with their span turned on into the edge behind it, go on to the corner at the
+/// edge's far end; whether there was one. A stiff taut cable turns by w/T a metre along an edge: next to nothing.
+fn grow(strand: &mut Strand, course: &Course) -> bool {
+    let mut any = false;
+    for j in 0..strand.contacts.len() {
+        for side in 0..2 {
+            let c = &strand.contacts[j];
+            let curve = &course.curves[c.curve];
+            let p = c.ends.p[side];
+            let i = curve.locate(p, c.home);
+            let border = |q: f64| (p - q).abs() <= AT_BORDER * (1.0 + p.abs());
+            if c.wheel.is_none() && strand.has_span(j + side) && (border(curve.origin(i)) || border(curve.end(i))) {
+                any |= lead_end(strand, course, j, side);
+            }
+        }
+    }
+    any
 }

@@ -257,8 +257,12 @@ impl History {
         }
         // One has come past the other, or to the far end: either the tensions are too far apart …
         let beyond = |m: f64| Held::Beyond(m, [left, right]);
-        if left.m == right.m || !(p2 > p1) {
-            return beyond(if t2 > t1 || left.m == right.m && left.m > 0.0 { friction } else { -friction });
+        if !(p2 > p1) {
+            return beyond(if t2 > t1 { friction } else { -friction });
+        }
+        // (along a slope the load may make the tension behind the greater all the same) …
+        if left.m == right.m {
+            return beyond(left.m);
         }
         if t2 > track.slide(p1, p2, t1, friction).tension {
             return beyond(friction);
