@@ -369,8 +369,35 @@ fn lead_end(strand: &mut Strand, course: &Course, j: usize, side: usize) -> bool
     true
 }
 
+/// Takes an end of contact j that lies at the start of an arc, seen along the contact, back over the edge before it where its span
+/// leaves that edge; whether it did.
+fn lift_end(strand: &mut Strand, course: &Course, j: usize, side: usize) -> bool {
+    let Some(far) = strand.ends_of(course, j + side)[side] else { return false };
+    let c = &mut strand.contacts[j];
+    let (curve, p) = (&course.curves[c.curve], c.ends.p[side]);
+    let (back, forward) = if side == 0 { (1, -1.0) } else { (-1, 1.0) };
+    let i = curve.locate(p, c.home);
+    let arc = if curve.is_arc(i) { i } else { i - back };
+    let (edge, near) = (arc + back, arc + 2 * back);
+    let inside = |i: i64| i >= c.home.first && i <= c.home.last;
+    let way = (far - curve.place(p, c.home).at) * forward;
+    if ![arc, edge, near].into_iter().all(inside) || curve.is_arc(edge) || !curve.is_arc(arc) || !curve.is_arc(near) {
+        return false;
+    }
+    if curve.aside(arc, way) != back {
+        return false;
+    }
+    let q = curve.with_tangent(near, way);
+    let other = c.ends.p[1 - side];
+    let q = if (q - other) * forward > 0.0 { q } else { other };
+    let moved = curve.length(p, q, c.home) / course.law.stretch(c.ends.t[side]);
+    (c.ends.p[side], c.ends.s[side]) = (q, c.ends.s[side] + moved);
+    moved != 0.0
+}
+
 /// G: contacts that came to the end of an arc, with their span turned on into the edge behind it, go on to the corner at the
-/// edge's far end; whether there was one. A stiff taut cable turns by w/T a metre along an edge: next to nothing.
+/// edge's far end, those that came to its start, with their span lifted off the edge before it, back to the near one; whether there
+/// was one. A stiff taut cable turns by w/T a metre along an edge: next to nothing.
 fn grow(strand: &mut Strand, course: &Course) -> bool {
     let mut any = false;
     for j in 0..strand.contacts.len() {
@@ -381,7 +408,7 @@ fn grow(strand: &mut Strand, course: &Course) -> bool {
             let i = curve.locate(p, c.home);
             let border = |q: f64| (p - q).abs() <= AT_BORDER * (1.0 + p.abs());
             if c.wheel.is_none() && strand.has_span(j + side) && (border(curve.origin(i)) || border(curve.end(i))) {
-                any |= lead_end(strand, course, j, side);
+                any |= lead_end(strand, course, j, side) || lift_end(strand, course, j, side);
             }
         }
     }
