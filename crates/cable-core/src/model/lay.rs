@@ -6,7 +6,7 @@ use super::spans::SpansModel;
 use super::{Mechanics, Settings};
 use crate::contact::outline::Placement;
 use crate::math::Vec2;
-use crate::problem::Problem;
+use crate::problem::{Problem, SupportPoint};
 use crate::solution::{CableSolution, Node, Warning};
 
 /// A cable this near to the robot is answered by the model that knows of it, m. Less: a step passes it unseen.
@@ -34,7 +34,7 @@ pub fn least_sliding(
     settings: Settings,
     (dragged, led): (&[Option<Vec2>], Option<Placement>),
 ) -> Option<Lay> {
-    let mut spans = SpansModel::new(Problem::without_outline(problem.clone()), settings).ok()?;
+    let mut spans = SpansModel::new(laid_flexible(problem), settings).ok()?;
     for (k, at) in dragged.iter().enumerate() {
         if let Some(at) = at {
             spans.drag_support(k, *at);
@@ -44,6 +44,21 @@ pub fn least_sliding(
     let answer = spans.solution();
     let clear = !meets_outline(problem, led, &answer) && !is_buried(problem, &answer);
     clear.then_some(Lay { answer, warnings })
+}
+
+/// The cable as `spans` can lay it: without the robot, which moves; a stiff one as a flexible one, it bends from there; and supports that
+/// let go later hold it.
+fn laid_flexible(problem: &Arc<Problem>) -> Arc<Problem> {
+    let plain = Problem::without_outline(problem.clone());
+    let lets_go = |s: &SupportPoint| s.release.is_some_and(|t| t > 0.0);
+    if plain.bending_stiffness == 0.0 && !plain.supports.iter().any(lets_go) {
+        return plain;
+    }
+    let mut flexible = Problem { bending_stiffness: 0.0, ..Problem::clone(&plain) };
+    for support in flexible.supports.iter_mut().filter(|s| lets_go(s)) {
+        support.release = None;
+    }
+    Arc::new(flexible)
 }
 
 /// Whether the cable is in touch with the robot, or in its place.

@@ -66,6 +66,9 @@ use crate::state::State;
 /// bars too long for the ground, held by friction at both ends, keep a pull that nothing else asks for (25 bars on a robot's ground: 220 %).
 const JAMMED: f64 = 0.1;
 
+/// The same of a stiff cable, which is laid as a flexible one: its bending takes part in what supports feel.
+const JAMMED_STIFF: f64 = 0.5;
+
 /// Which part holds the present state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
@@ -127,7 +130,8 @@ impl FemModel {
         let found = self.dynamics.solution();
         let pairs = lay.answer.supports.iter().zip(&found.supports);
         let off = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
-        if taken && off.fold(0.0, larger) <= JAMMED * greatest {
+        let jammed = if self.problem.bending_stiffness > 0.0 { JAMMED_STIFF } else { JAMMED };
+        if taken && off.fold(0.0, larger) <= jammed * greatest {
             return Some(lay.warnings);
         }
         self.dynamics = before;
