@@ -1,7 +1,8 @@
 //! Sentences of the solver in the units on screen.
 //!
 //! The core speaks SI: `a` is pulled with 912.0 N at 3.200 m. On a screen in US units each figure with its unit is written in
-//! the unit of that system, with as many decimals; names between backticks, words and figures without a unit stay.
+//! the unit of that system, with as many decimals; words and figures without a unit stay. Names, which the core has between
+//! backticks, are read between quotation marks in both.
 
 use std::borrow::Cow;
 
@@ -12,18 +13,25 @@ use super::unit::Unit;
 const UNITS: [Unit; 9] =
     [Unit::N_PER_M, Unit::M_PER_S2, Unit::M_PER_S, Unit::KG_PER_M, Unit::KG, Unit::KN, Unit::MM, Unit::N, Unit::M];
 
-/// A sentence in the units on screen.
+/// A sentence as it is on screen: its units, and its names between quotation marks.
 #[must_use]
 pub fn shown(text: &str) -> Cow<'_, str> {
-    if system::shown() == System::Si {
+    let si = system::shown() == System::Si;
+    if si && !text.contains('`') {
         return Cow::Borrowed(text);
     }
     let mut out = String::with_capacity(text.len());
     let (mut rest, mut quoted) = (text, false);
     while let Some(c) = rest.chars().next() {
-        quoted ^= c == '`';
+        if c == '`' {
+            quoted ^= true;
+            out.push(if quoted { '“' } else { '”' });
+            rest = rest.get(1..).unwrap_or_default();
+            continue;
+        }
         let word_before = out.chars().next_back().is_some_and(|b| b.is_alphanumeric() || b == '_');
-        if !quoted
+        if !si
+            && !quoted
             && !word_before
             && let Some((written, length)) = figure(rest)
         {
@@ -102,8 +110,9 @@ mod tests {
             ("it turns 360° within 0.305 m; 1.5 times", "it turns 360° within 1.001 ft; 1.5 times"),
             ("kept at 1.246 kg/m.", "kept at 0.837 lb/ft."),
         ] {
-            assert_eq!(us(si).replace('-', "−"), expected.replace('-', "−"), "{si}");
-            assert_eq!(shown(si), si, "SI stays as it is");
+            let names = |text: &str| text.replacen('`', "“", 1).replacen('`', "”", 1);
+            assert_eq!(us(si).replace('-', "−"), names(expected).replace('-', "−"), "{si}");
+            assert_eq!(shown(si), names(si), "but for names SI stays as it is");
         }
     }
 

@@ -3,7 +3,7 @@
 use cable_core::scene::SupportKind;
 use cable_core::solution::{Warning, WarningKind};
 use cable_core::{Settings, Solution};
-use egui::{Color32, Frame, RichText, Ui};
+use egui::{Color32, Frame, RichText, ScrollArea, Ui};
 
 use super::fault::{self, Fix};
 use super::icon::{self, Icon};
@@ -13,6 +13,10 @@ use crate::state::{AppState, Item, WorkerStatus};
 
 /// Most warnings drawn; the rest is counted. A cable that is too tight everywhere can have one a node.
 const MOST: usize = 30;
+
+/// Most of the window's height that warnings take; more of them scroll. More: the readouts below are out of sight when something is wrong;
+/// less: a second warning is.
+const SHARE: f32 = 0.42;
 
 /// How bad something is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -47,12 +51,16 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         });
         return;
     }
-    for (k, entry) in entries.iter().take(MOST).enumerate() {
-        ui.push_id(k, |ui| card(ui, k, entry, commands));
-    }
-    if entries.len() > MOST {
-        ui.weak(format!("and {} more", entries.len() - MOST));
-    }
+    let high = SHARE * ui.ctx().content_rect().height();
+    let area = ScrollArea::vertical().id_salt("warnings").max_height(high).min_scrolled_height(high);
+    area.auto_shrink([false, true]).show(ui, |ui| {
+        for (k, entry) in entries.iter().take(MOST).enumerate() {
+            ui.push_id(k, |ui| card(ui, k, entry, commands));
+        }
+        if entries.len() > MOST {
+            ui.weak(format!("and {} more", entries.len() - MOST));
+        }
+    });
 }
 
 fn entries(state: &AppState) -> Vec<Entry> {

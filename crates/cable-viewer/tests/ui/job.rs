@@ -120,7 +120,6 @@ fn asked(harness: &mut Harness<'_, ViewerApp>) {
 fn s16_every_model_of_a_scene_is_held_with_its_cost_and_refusals_are_told() {
     let mut harness = tall(catalog::over_beam());
     click(&mut harness, "Hold every model");
-    harness.get_by_label("Progress of every model");
     asked(&mut harness);
     let models: Vec<Model> = state(&harness).held.iter().map(|h| h.solution.model).collect();
     assert_eq!(models, [Model::Spans, Model::Fem, Model::MassSpring]);
@@ -136,9 +135,18 @@ fn s16_every_model_of_a_scene_is_held_with_its_cost_and_refusals_are_told() {
     click(&mut harness, "Hold every model");
     asked(&mut harness);
     assert_eq!(state(&harness).held.len(), 3);
-    // Ended, and forgotten with its scene.
-    apply(&mut harness, Command::View(ViewCommand::LetGo(None)));
-    click(&mut harness, "Hold every model");
+    // On the way its progress is shown, and it can be ended.
+    harness.state_mut().state.models = Progress::Running(0.5, None);
+    harness.run_steps(2);
+    harness.get_by_label("Progress of every model");
     click(&mut harness, "Cancel every model");
+    assert!(matches!(state(&harness).models, Progress::None));
+    // What was ended holds nothing, however soon it comes.
+    apply(&mut harness, Command::View(ViewCommand::LetGo(None)));
+    let ctx = harness.ctx.clone();
+    let commands = [true, false].map(|on| Command::View(ViewCommand::HoldModels(on)));
+    harness.state_mut().apply(&ctx, commands.into());
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    harness.run_steps(3);
     assert!(matches!(state(&harness).models, Progress::None) && state(&harness).held.is_empty());
 }
