@@ -109,7 +109,8 @@ fn warnings() {
         state.scene_fault = state.scene.validate().err();
         state
     };
-    picture("warnings", warned, panels::warnings::ui, [320.0, 600.0]);
+    // Tall: they take two fifths of a window.
+    picture("warnings", warned, panels::warnings::ui, [320.0, 1200.0]);
 }
 
 #[test]
