@@ -1,8 +1,8 @@
 //! A picture of each panel at the width it has in the window. They need a graphics adapter (software will do):
 //! without one they are skipped with a notice, where CI=true they fail.
 
-use cable_viewer::panels;
 use cable_viewer::state::{AppState, Item};
+use cable_viewer::{models, panels, reach, spread};
 use egui_kittest::{SnapshotOptions, SnapshotResults};
 
 use crate::fixture::{PanelUi, bench, compared, driven, recorded, state, warn, with_pulley, wrapped};
@@ -93,6 +93,60 @@ fn robot() {
 #[test]
 fn compare() {
     picture("compare", compared, panels::compare::ui, [320.0, 240.0]);
+}
+
+/// After every model was asked, with one that has no answer.
+#[test]
+fn compare_models() {
+    let asked = || {
+        let mut state = compared();
+        let why = "catenary cannot answer this scene: the cable reaches an obstacle 4.894 m along it".to_owned();
+        let answers = vec![models::Answer { model: cable_core::Model::Catenary, result: Err(why) }];
+        let scene = std::sync::Arc::new(state.scene.clone());
+        state.models = models::Progress::Done(models::Found { scene, answers });
+        state
+    };
+    picture("compare_models", asked, panels::compare::ui, [320.0, 280.0]);
+}
+
+/// On its way: progress, and how to end it.
+#[test]
+fn reach() {
+    let searching = || {
+        let mut state = state();
+        state.reach.progress = reach::Progress::Running(0.4, None);
+        state
+    };
+    picture("reach", searching, panels::reach::ui, [320.0, 130.0]);
+}
+
+#[test]
+fn friction_range() {
+    let computing = || {
+        let mut state = state();
+        state.spread.on = true;
+        state.spread.progress = spread::Progress::Running(0.3, None);
+        state
+    };
+    picture("friction_range", computing, panels::spread::ui, [320.0, 130.0]);
+}
+
+/// Every panel of the window has a picture here.
+#[test]
+fn every_panel_has_a_picture() {
+    let here = include_str!("pictures.rs");
+    let layout = include_str!("../../src/app/layout.rs");
+    let mut missing = Vec::new();
+    for part in layout.split("panels::").skip(1) {
+        let Some(name) = part.split("::ui").next().filter(|n| n.chars().all(|c| c.is_ascii_lowercase() || c == '_'))
+        else {
+            continue;
+        };
+        if !here.contains(&format!("panels::{name}::ui, [")) {
+            missing.push(name);
+        }
+    }
+    assert!(missing.is_empty(), "{missing:?}");
 }
 
 #[test]
