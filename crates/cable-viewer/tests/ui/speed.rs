@@ -225,6 +225,10 @@ fn speed_of_import() {
 /// Drawn by our own shader the window looks as egui draws it, but for the rounding of the font's edges.
 #[test]
 fn software_drawing_looks_the_same() {
+    [1.0, 1.5].into_iter().for_each(software_drawing_looks_the_same_at);
+}
+
+fn software_drawing_looks_the_same_at(scale: f32) {
     let picture = |taken_over: bool| {
         let options = RendererOptions { dithering: false, ..RendererOptions::default() };
         let state = match screenshot::render_state(options) {
@@ -238,6 +242,7 @@ fn software_drawing_looks_the_same() {
         let software = Software::of(&state).filter(|_| taken_over);
         let mut harness = Harness::builder()
             .with_size(Vec2::new(1100.0, 640.0))
+            .with_pixels_per_point(scale)
             .with_render_cursor(false)
             .with_accessibility_check(false)
             .allow_missing_glyphs()
@@ -264,7 +269,7 @@ fn software_drawing_looks_the_same() {
     let most = |(a, b): (&image::Rgba<u8>, &image::Rgba<u8>)| (0..3).map(|k| a[k].abs_diff(b[k])).max().unwrap_or(0);
     let differences: Vec<u8> = by_egui.pixels().zip(own.pixels()).map(most).collect();
     let share = |least: u8| differences.iter().filter(|d| **d > least).count() as f64 / differences.len() as f64;
-    assert!(share(2) < 1e-3 && share(40) == 0.0, "{} of the pixels differ, {} much", share(2), share(40));
+    assert!(share(2) < 1e-3 && share(40) == 0.0, "at {scale} {} of the pixels differ, {} much", share(2), share(40));
 }
 
 /// A window whose graphs show all of a million samples of a held run and of a history that is full, printed and not asserted: a
