@@ -29,6 +29,7 @@ fn all_models_begin_at_the_same_rest() {
         ("round-post", catalog::round_post(), 2e-3, 1e-2),
         ("robot-drive", catalog::robot_drive(), 3e-3, 3e-3),
         ("slack-to-floor", catalog::slack_to_floor(), 1e-3, 1e-3),
+        ("floor-drag", catalog::floor_drag(), 4e-3, 4e-3),
     ];
     let mut wrong = false;
     for (id, scene, fine, coarse) in scenes {
@@ -72,6 +73,22 @@ fn supports_that_let_go_later_hold_the_first_lay() {
     assert!(apart(&held, &rest(&scene, Model::Fem, Some(100))) < 1e-9);
 }
 
+/// A free end drawn by hand falls on what is below it: it does not hang from its support through the ground.
+#[test]
+fn a_free_end_drawn_above_the_ground_lies_on_it() {
+    let mut scene = catalog::floor_drag();
+    let radius = 0.5 * scene.cables[0].diameter_m;
+    let top = [1.0, 1.5, 1.9].map(|height| {
+        let route = &mut scene.cables[0].route_m;
+        (route[0][1], route[1][1]) = (height * radius, height * radius);
+        let found = rest(&scene, Model::Spans, None);
+        let lowest = found.cables[0].nodes.iter().map(|n| n.y_m).fold(f64::INFINITY, f64::min);
+        assert!(lowest > 0.999 * radius, "{lowest}");
+        found.max_tension().tension_n
+    });
+    assert!(top.iter().all(|t| (t / top[0] - 1.0).abs() < 0.02), "{top:?}");
+}
+
 /// Bars too long for the ground would keep a pull of 220 % where friction holds both their ends: such a lay is not taken over.
 #[test]
 fn a_coarse_mesh_is_not_jammed() {
@@ -88,10 +105,14 @@ fn a_coarse_mesh_is_not_jammed() {
 /// The finer the mesh the nearer: what is left is its own error.
 #[test]
 fn finer_meshes_come_nearer() {
-    for (id, scene) in [("over-beam", catalog::over_beam()), ("slack-to-floor", catalog::slack_to_floor())] {
+    for (id, scene, finest) in [
+        ("over-beam", catalog::over_beam(), 1e-4),
+        ("slack-to-floor", catalog::slack_to_floor(), 3e-4),
+        ("floor-drag", catalog::floor_drag(), 2e-3),
+    ] {
         let exact = rest(&scene, Model::Spans, None);
         let off = [25, 50, 100, 200].map(|n| apart(&exact, &rest(&scene, Model::Fem, Some(n))));
         println!("{id}: {off:?}");
-        assert!(off[3] < 0.3 * off[0] && off[3] < 3e-4, "{id}: {off:?}");
+        assert!(off[3] < 0.1 * off[0] && off[3] < finest, "{id}: {off:?}");
     }
 }

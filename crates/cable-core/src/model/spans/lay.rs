@@ -13,6 +13,9 @@ use crate::math::{Vec2, cross, smaller};
 
 /// Ends of a route this near to a boundary lie on it, of the cable's radius.
 const LIES: f64 = 0.05;
+/// The same of a free end and of the points of the route behind it, which fall on what is below them. Smaller: an end drawn by hand a
+/// little above the ground hangs from its support, through the ground; larger: what hangs beside an obstacle is laid on it.
+const FALLS: f64 = 1.0;
 /// Tension with which the cable is laid at least where it does not lie in one piece, of its weight. Smaller: spans over
 /// hollows shrink to nothing. Larger: friction at a free end has to hold it, and it slides there first.
 const LAID: f64 = 1e-3;
@@ -67,7 +70,9 @@ fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way:
     });
     // Ends that lie: how many points of the route, and the contact. What a load lifts does not.
     let heads = [0, 1].map(|side| {
-        lying(course, &layout.problem.world, layout.problem.radius, &way.points, side).filter(|h| match ties[side] {
+        let near = if part.supports[side].is_none() { [FALLS; 2] } else { [LIES, NEAR] };
+        let near = near.map(|n| n * layout.problem.radius);
+        lying(course, &layout.problem.world, near, (&way.points, side)).filter(|h| match ties[side] {
             Tie::Hangs(force) => {
                 let place = course.curves[h.curve].place(h.p[side], h.home);
                 force.dot(&place.normal) <= LIFTS * force.norm()
@@ -333,12 +338,11 @@ struct Head {
     count: usize,
 }
 
-/// Whether the first points of a route (the last, for side 1) lie on one chain.
-fn lying(course: &Course, world: &World, radius: f64, points: &[Vec2], side: usize) -> Option<Head> {
+/// Whether the first points of a route (the last, for side 1) lie on one chain: the end and the others as `near` as that, m.
+fn lying(course: &Course, world: &World, near: [f64; 2], (points, side): (&[Vec2], usize)) -> Option<Head> {
     let n = points.len();
     let point = |k: usize| points[if side == 0 { k } else { n - 1 - k }];
-    let within = LIES * radius;
-    let gap = world.signed_gap(point(0), 2.0 * radius).filter(|g| g.gap_m.abs() <= within)?;
+    let gap = world.signed_gap(point(0), 2.0 * near[0]).filter(|g| g.gap_m.abs() <= near[0])?;
     let body = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle)?;
     let travel = (point(1) - point(0)) * if side == 0 { 1.0 } else { -1.0 };
     // n = σ perp t.
@@ -347,8 +351,7 @@ fn lying(course: &Course, world: &World, radius: f64, points: &[Vec2], side: usi
     let curve = course.curves.get(curve_index)?;
     let i = curve.piece_of(gap.feature, point(0))?;
     let (_, home) = curve.chain(i, course.law.load)?;
-    let near = |k: usize| if k == 0 { within } else { NEAR * radius };
-    let on: Vec<f64> = (0..n).map_while(|k| curve.on_chain(home, point(k), near(k))).collect();
+    let on: Vec<f64> = (0..n).map_while(|k| curve.on_chain(home, point(k), near[k.min(1)])).collect();
     let (first, last) = (*on.first()?, *on.last()?);
     let p = if side == 0 { [first, last] } else { [last, first] };
     (on.len() > 1 && p[1] > p[0]).then_some(Head { curve: curve_index, home, p, count: on.len() })
