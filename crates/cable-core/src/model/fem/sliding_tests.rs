@@ -242,3 +242,45 @@ fn a_cable_that_folds_back_at_a_corner_does_not_run_through_its_edge() {
     x[k + 1] = d.mesh.sliding[k].unwrap().end.center - crate::math::Vec2::new(0.5, 0.5);
     assert_eq!(d.pulled(&x), Some(k));
 }
+
+/// A mark that is not in the middle of its arc: the node that takes its place must not stretch one bar and squeeze the other. Of
+/// that a slack cable of 2 MN once broke.
+#[test]
+fn a_node_that_leaves_its_corner_leaves_the_tension_as_it_was() {
+    let shape = Shape::Polygon { points_m: vec![[-1.0, -0.2], [1.0, -0.2], [0.0, 0.0]] };
+    let ridge = Obstacle { name: "ridge".to_owned(), shape, friction: Some(0.3) };
+    let stiff = 2e6;
+    let held = |c: &mut Cable| {
+        (c.diameter_m, c.axial_stiffness_n, c.linear_density_kg_per_m) = (0.028, stiff, 1.2);
+        (c.length_m, c.segments) = (4.004, Some(24));
+        c.route_m = vec![[-2.0, -0.05], [0.0, 0.0145], [2.0, -0.05]];
+        c.supports = vec![Support::fixed("a", [-2.0, -0.05]), Support::fixed("b", [2.0, -0.05])];
+    };
+    let mut d = build(&scene(held, vec![ridge]));
+    d.settle(&[]).unwrap();
+    let k = (0..d.mesh.nodes()).find(|&k| d.mesh.sliding[k].is_some()).unwrap();
+    let turn = {
+        let path = [d.mesh.path(k - 1, &d.motion.x), d.mesh.path(k, &d.motion.x)];
+        path[0].arcs[1] + path[1].arcs[0]
+    };
+    let node = d.mesh.sliding[k].unwrap();
+    let (radius, aside) = (node.end.radius, 0.3 * turn);
+    // The material that is there, but for what its strain makes of a hundredth of a millimetre.
+    let mark = super::marks::rotate(node.end.mark, node.end.sense * aside);
+    d.mesh.sliding[k] = Some(super::sliding::Sliding { end: super::path::End { mark, ..node.end }, ..node });
+    let material = aside * radius;
+    d.mesh.arc_length[k] += material;
+    d.mesh.rest_length[k - 1] += material;
+    d.mesh.rest_length[k] -= material;
+    let tensions =
+        |d: &Dynamics| [k - 1, k].map(|e| stiff * (d.mesh.path(e, &d.motion.x).length / d.mesh.rest_length[e] - 1.0));
+    let before = tensions(&d);
+    assert!(d.settle_down(k));
+    let after = tensions(&d);
+    // Two tangents are longer than the arc between them; both bars share that.
+    let longer = radius * (2.0 * (0.5 * turn).tan() - turn);
+    let more = stiff * longer / (d.mesh.rest_length[k - 1] + d.mesh.rest_length[k]);
+    println!("{before:?} N, then {after:?}: {more} N more for a turn of {turn}");
+    assert!(turn > 0.03 && stiff * material / d.mesh.rest_length[k] > 500.0);
+    assert!((0..2).all(|j| (after[j] - before[j] - more).abs() < 1.0), "{before:?} {after:?} {more}");
+}
