@@ -120,9 +120,12 @@ fn first_scene(path: Option<PathBuf>) -> Result<(Scene, Option<PathBuf>), String
 fn explain(error: &eframe::Error) -> String {
     match error {
         eframe::Error::WinitEventLoop(_) | eframe::Error::Winit(_) => {
-            "no window can be opened here: no display answers; run it in a desktop session or set DISPLAY, \
-             or draw a picture with --screenshot FILE"
-                .to_owned()
+            let whole = error.to_string(); // begins with the place in winit's source
+            format!(
+                "no window can be opened here: no display answers ({}); run it in a desktop session or set DISPLAY, \
+                 or draw a picture with --screenshot FILE",
+                whole.rsplit(": ").next().unwrap_or(&whole)
+            )
         }
         eframe::Error::Wgpu(_) => format!(
             "no graphics adapter was found ({error}); install a Vulkan driver \
