@@ -250,6 +250,44 @@ fn meshes_of_its_own_choice_are_as_good() {
     }
 }
 
+/// Read along straight lines between its nodes a stiff cable is where it is, however few bars its forces need.
+#[test]
+fn places_between_nodes_lie_on_the_cable() {
+    for case in stiff_catenaries() {
+        let (cable, fine) = (solve(&case.scene, None), solve(&case.scene, Some(3000)));
+        let length = case.scene.cables[0].length_m;
+        for node in &fine.nodes {
+            let k = cable.nodes.partition_point(|n| n.arc_length_m < node.arc_length_m).clamp(1, cable.nodes.len() - 1);
+            let (a, b) = (&cable.nodes[k - 1], &cable.nodes[k]);
+            let f = (node.arc_length_m - a.arc_length_m) / (b.arc_length_m - a.arc_length_m);
+            let off = (a.at() + (b.at() - a.at()) * f - node.at()).norm() / length;
+            assert!(off < 3e-5, "{}: {off:.1e} of the length at {} m", case.name, node.arc_length_m);
+        }
+    }
+}
+
+/// A stiff cable longer than its way pushes where it runs back: T = H cos θ + V sin θ, at every node.
+#[test]
+fn what_pushes_has_less_than_no_tension() {
+    let end = clamp("B", [3.76, -0.70]);
+    let cable = solve(&clamped(4.52, 4.79, 1e7, 5.95, end), None);
+    let [h, v] = [cable.supports[0].reaction_x_n, cable.supports[0].reaction_y_n];
+    let (first, last) = (cable.nodes.first().unwrap(), cable.nodes.last().unwrap());
+    assert!((first.tension_n - h).abs() < 1e-6 && (last.tension_n - h).abs() < 1e-6, "{first:?} {last:?}");
+    assert!(h < -4.0, "it pushes its clamps with {h} N");
+    // The direction is that of the nodes beside it: 1 % of the push.
+    for p in cable.nodes.windows(3) {
+        let along = p[2].at() - p[0].at();
+        let expected = (h * along.x + (v + 4.79 * p[1].arc_length_m) * along.y) / along.norm();
+        assert!(
+            (p[1].tension_n - expected).abs() < 0.06,
+            "{} and {expected} N at {} m",
+            p[1].tension_n,
+            p[1].arc_length_m
+        );
+    }
+}
+
 /// A route that winds the other way, or twice, is kept: M = 2π n EI/L.
 #[test]
 fn a_stiff_cable_keeps_the_loops_of_its_route() {

@@ -4,39 +4,31 @@ use super::layout::{Hold, Layout, Stop};
 use super::network::Network;
 use super::span::elements;
 use super::wheel;
-use crate::math::{Vec2, cross, perp};
+use crate::math::{Vec2, cross, larger, perp};
 use crate::problem::Problem;
 use crate::solution::{Node, SupportReaction};
 
 /// Nodes on a wheel for each radian the cable turns on it: the chord then lies within 0.1 % of the radius.
 const NODES_PER_RADIAN: f64 = 10.0;
 
-/// A point of the cable with the tension force just before and just after it.
+/// A point of the cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// Arc length, m.
     pub arc_length: f64,
     /// Where it is, m.
     pub at: Vec2,
-    /// Tension force before it, N.
-    pub before: Vec2,
-    /// Tension force after it, N.
-    pub after: Vec2,
+    /// Tension, N: the larger of those beside it, the one that breaks the cable. A stiff cable may push: less than zero.
+    pub tension: f64,
     /// d(angle)/d(arc length), 1/m.
     pub curvature: f64,
 }
 
 impl Point {
-    /// The larger of the tensions beside it, N: the one that breaks the cable.
-    #[must_use]
-    pub fn tension(&self) -> f64 {
-        let (a, b) = (self.before.norm(), self.after.norm());
-        if a <= b { b } else { a }
-    }
-
     /// As an answer holds it.
     #[must_use]
-    pub fn node(&self, problem: &Problem, tension_n: f64) -> Node {
+    pub fn node(&self, problem: &Problem) -> Node {
+        let tension_n = self.tension;
         let area = std::f64::consts::PI * problem.radius * problem.radius;
         Node {
             arc_length_m: self.arc_length,
@@ -75,7 +67,7 @@ pub fn points(network: &Network, out: &mut Vec<Point>) {
         run(network, (last, end), start, network.forces[last][1], out);
         let load = layout.stops[end].load;
         let tip = out.last().map_or(start, |p| p.at) + last_chord(network, end);
-        out.push(Point { arc_length: layout.length, at: tip, before: load, after: load, curvature: 0.0 });
+        out.push(Point { arc_length: layout.length, at: tip, tension: load.norm(), curvature: 0.0 });
     }
 }
 
@@ -108,7 +100,12 @@ fn run(network: &Network, (first, last): (usize, usize), start: Vec2, force: Vec
             if e > 0 || !stop.anchors() {
                 let before = if e == 0 { before } else { f };
                 let curvature = free_curvature(f, material.body, material.smoothing);
-                out.push(Point { arc_length: stop.leaves() + ds * e as f64, at, before, after: f, curvature });
+                out.push(Point {
+                    arc_length: stop.leaves() + ds * e as f64,
+                    at,
+                    tension: larger(before.norm(), f.norm()),
+                    curvature,
+                });
             }
             at += material.respond(ds, f - drop * 0.5).chord;
         }
@@ -126,8 +123,7 @@ fn anchor(network: &Network, k: usize, out: &mut Vec<Point>) {
             let tangent = |point: Vec2, arc_length: f64, force: Vec2, curvature: f64| Point {
                 arc_length,
                 at: point,
-                before: force,
-                after: force,
+                tension: force.norm(),
                 curvature,
             };
             let turn = wheel::turn(&wheel, before);
@@ -147,7 +143,12 @@ fn anchor(network: &Network, k: usize, out: &mut Vec<Point>) {
         _ => {
             let side = if after.norm_squared() > 0.0 { after } else { before };
             let curvature = free_curvature(side, network.material.body, network.material.smoothing);
-            out.push(Point { arc_length: stop.arc_length, at: meets, before, after, curvature });
+            out.push(Point {
+                arc_length: stop.arc_length,
+                at: meets,
+                tension: larger(before.norm(), after.norm()),
+                curvature,
+            });
         }
     }
 }

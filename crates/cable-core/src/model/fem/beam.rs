@@ -34,7 +34,7 @@ const STILL: f64 = 1e-11;
 /// Tries with other bending stiffnesses on the way to the real one.
 const MAX_TRIES: usize = 80;
 /// Gauss points of a bar from 0 to 1 and their weights.
-const GAUSS: [(f64, f64); 3] =
+pub(super) const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 /// 3l ∫φₐ'φ_b' ds of a bar of length l.
 pub(super) const BEND: [[f64; 3]; 3] = [[7.0, -8.0, 1.0], [-8.0, 16.0, -8.0], [1.0, -8.0, 7.0]];
@@ -230,7 +230,7 @@ impl Beam {
     }
 
     /// The angle in bar `e` at `x` from 0 to 1, rad.
-    fn angle(&self, e: usize, x: f64) -> f64 {
+    pub(super) fn angle(&self, e: usize, x: f64) -> f64 {
         dot(&shapes(x), &self.angles[2 * e..2 * e + 3])
     }
 

@@ -1,9 +1,15 @@
 //! From a solved stiff cable to its nodes: places, tensions, moments and curvatures.
 
 use super::answer::Point;
-use super::beam::{BEND, Beam, dot};
+use super::beam::{BEND, Beam, GAUSS, dot};
 use super::layout::Stop;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
+
+/// Between two points the cable leaves a straight line by no more than this part of its length. More: places read between
+/// points are off by as much, with the nodes alone by 1e-3 of a span; less: thousands of points.
+const FLATNESS: f64 = 1e-5;
+/// Parts of a bar at most. Fewer: a bar of a coarse given mesh shows corners; more: points that nobody can tell apart.
+const MOST_PARTS: f64 = 32.0;
 
 impl Beam {
     /// Moments at both nodes of bar `e`, N·m: those that balance it.
@@ -34,19 +40,19 @@ impl Beam {
         per_moment * if left.abs() > right.abs() { left } else { right }
     }
 
-    /// All nodes; `before` and `after` of each hold the tension along the cable there (the shear is left out).
+    /// All nodes; `smooth`, as many points between them as it takes to draw the cable with straight lines.
     #[must_use]
-    pub fn points(&self) -> Vec<Point> {
+    pub fn points(&self, smooth: bool) -> Vec<Point> {
         let n = self.bars.len();
         let (starts, forces) = (self.stretch_starts(), self.stop_forces());
+        let curvatures: Vec<f64> = (0..=n).map(|v| self.curvature(v, &starts)).collect();
         let chord = |e: usize| self.samples(e, &starts).iter().map(|p| p.t * (p.length * (1.0 + p.tau))).sum::<Vec2>();
         let first = self.layout.stops.iter().position(Stop::anchors).unwrap_or(0);
         let anchor = self.layout.stops[first].point(0).unwrap_or_default();
         let mut at = (0..n).filter(|&e| self.bars[e].stretch < first).fold(anchor, |p, e| p - chord(e));
         let mut out = Vec::with_capacity(n + 1);
         for v in 0..=n {
-            let angle = self.angles[2 * v];
-            let t = Vec2::new(angle.cos(), angle.sin());
+            let t = self.tangent(self.angles[2 * v]);
             let stretch = self.bars.get(v).map_or(self.layout.stops.len() - 1, |b| b.stretch);
             let at_stop = v == n || v == 0 || self.bars[v - 1].stretch != stretch;
             let inside = self.bars.get(v).map_or(Vec2::zeros(), |b| self.force(b, 0.0, &starts));
@@ -55,13 +61,52 @@ impl Beam {
             if at_stop && let Some(p) = self.layout.stops[stretch].point(0) {
                 at = p;
             }
-            let curvature = self.curvature(v, &starts);
-            out.push(Point { arc_length, at, before: t * before.dot(&t), after: t * after.dot(&t), curvature });
+            // Nothing pulls beyond an end.
+            let tension = if v == 0 {
+                after.dot(&t)
+            } else if v == n {
+                before.dot(&t)
+            } else {
+                larger(before.dot(&t), after.dot(&t))
+            };
+            out.push(Point { arc_length, at, tension, curvature: curvatures[v] });
             if v < n {
+                if smooth {
+                    self.between(v, at, [curvatures[v], curvatures[v + 1]], &starts, &mut out);
+                }
                 at += chord(v);
             }
         }
         out
+    }
+
+    /// The points inside bar `e`, which begins at `at`: between two the cable leaves a straight line by `FLATNESS` at most.
+    fn between(&self, e: usize, mut at: Vec2, curvatures: [f64; 2], starts: &[Vec2], out: &mut Vec<Point>) {
+        let (bar, angles) = (&self.bars[e], &self.angles[2 * e..2 * e + 3]);
+        let half_turn = larger((angles[1] - angles[0]).abs(), (angles[2] - angles[1]).abs());
+        // A sagitta κl²/8 with κ of the half that turns more.
+        let off = 0.25 * half_turn * bar.ds;
+        let parts = (off / (FLATNESS * self.layout.length)).sqrt().ceil().clamp(1.0, MOST_PARTS);
+        let step = 1.0 / parts;
+        for k in 1..parts as usize {
+            let (from, x) = ((k - 1) as f64 * step, k as f64 * step);
+            for (part, weight) in GAUSS {
+                let x = from + part * step;
+                let t = self.tangent(self.angle(e, x));
+                let stretched = 1.0 + self.force(bar, x, starts).dot(&t) / self.material.axial_stiffness;
+                at += t * (weight * step * self.rest(e) * stretched);
+            }
+            out.push(Point {
+                arc_length: bar.start + x * bar.ds,
+                at,
+                tension: self.force(bar, x, starts).dot(&self.tangent(self.angle(e, x))),
+                curvature: curvatures[0] + x * (curvatures[1] - curvatures[0]),
+            });
+        }
+    }
+
+    fn tangent(&self, angle: f64) -> Vec2 {
+        Vec2::new(angle.cos(), angle.sin())
     }
 }
 

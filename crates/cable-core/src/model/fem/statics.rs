@@ -108,13 +108,7 @@ impl Statics {
             let f = if width > 0.0 { (stops[k].arc_length - stops[a].arc_length) / width } else { 0.0 };
             anchor(a) + (anchor(b) - anchor(a)) * f
         };
-        let point = |arc_length: f64, at: Vec2| Point {
-            arc_length,
-            at,
-            before: Vec2::zeros(),
-            after: Vec2::zeros(),
-            curvature: 0.0,
-        };
+        let point = |arc_length: f64, at: Vec2| Point { arc_length, at, tension: 0.0, curvature: 0.0 };
         self.points.clear();
         for k in 0..stops.len() - 1 {
             let (a, b, s, d) = (at(k), at(k + 1), stops[k].arc_length, stops[k + 1].arc_length - stops[k].arc_length);
@@ -261,7 +255,8 @@ impl Statics {
             Outcome::Failed => return Err(self.error(&network, Failure::Span(0, coarse.residual))),
         }
         self.time = time;
-        self.points = coarse.points();
+        // Who gives the mesh is answered at its nodes.
+        self.points = coarse.points(!given);
         self.rested = Some((coarse.layout().clone(), coarse.stop_forces()));
         self.estimate = estimate;
         let cost = Cost { iterations, residual_n: coarse.residual, ..Cost::default() };
@@ -371,8 +366,7 @@ impl Statics {
         self.points.extend(state.arc_length_m.iter().zip(&state.position_m).map(|(&arc_length, &at)| Point {
             arc_length,
             at,
-            before: Vec2::zeros(),
-            after: Vec2::zeros(),
+            tension: 0.0,
             curvature: 0.0,
         }));
         Ok(())
@@ -398,7 +392,7 @@ impl Statics {
         });
         CableSolution {
             name: self.problem.cable.name.clone(),
-            nodes: self.points.iter().map(|p| p.node(&self.problem, p.tension())).collect(),
+            nodes: self.points.iter().map(|p| p.node(&self.problem)).collect(),
             supports,
             contacts: Vec::new(),
             error_estimate: self.estimate,
