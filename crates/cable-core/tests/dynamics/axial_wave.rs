@@ -10,9 +10,6 @@ const EA: f64 = 1e4;
 const DENSITY: f64 = 1.0;
 const SPEED: f64 = 100.0;
 
-/// Least time constant of material damping in the model, s (`MATERIAL_DAMPING`).
-const DAMPING_TIME: f64 = 1e-3;
-
 /// First axial swing between two fixed ends at step `h` (s).
 fn swing(damping_ratio: f64, segments: usize, h: f64) -> Ring {
     let supports = vec![Support::fixed("A", [0.0, 0.0]), Support::fixed("B", [1.02 * LENGTH, 0.0])];
@@ -49,9 +46,7 @@ fn it_swings_at_the_speed_of_its_wave() {
     let errors = [4, 8, 16].map(|n| {
         let omega = discrete(n);
         let found = swing(0.0, n, h);
-        // Damped: ω √(1 − ζ²), ζ = ωτ/2.
-        let exact = omega * (1.0 - (0.5 * omega * DAMPING_TIME).powi(2)).sqrt();
-        let off = found.omega * (1.0 + bdf2_slows(omega, h)) / exact - 1.0;
+        let off = found.omega * (1.0 + bdf2_slows(omega, h)) / omega - 1.0;
         println!("{n} bars: {off:.1e} from the chain's own frequency");
         found.omega * (1.0 + bdf2_slows(omega, h)) / continuous() - 1.0
     });
@@ -61,9 +56,8 @@ fn it_swings_at_the_speed_of_its_wave() {
 #[test]
 fn it_rings_down_by_its_damping_ratio() {
     let omega = discrete(16);
-    for ratio in [0.0, 0.02, 0.1] {
-        let tau = if ratio > 0.0 { 2.0 * ratio / continuous() } else { DAMPING_TIME };
-        let zeta = 0.5 * omega * tau;
+    for ratio in [0.008, 0.02, 0.1] {
+        let zeta = omega * ratio / continuous();
         let exact = Ring { omega: omega * (1.0 - zeta * zeta).sqrt(), decay: zeta * omega };
         let mut slow = Vec::new();
         for h in [1.0 / 240.0, 1.0 / 480.0, 1.0 / 960.0] {
@@ -91,6 +85,8 @@ fn a_pull_arrives_after_length_over_speed() {
         };
         let mut scene = cable([LENGTH, DENSITY, EA], n, vec![Support::fixed("wall", [0.0, 0.0]), end]);
         scene.environment.gravity_m_per_s2 = 0.0;
+        // A time constant of 1 ms: without it the ends of the ramp ring from bar to bar.
+        scene.cables[0].damping_ratio = 0.5e-3 * continuous();
         let mut sim = settled(&scene, cable_core::Model::Fem);
         let h = 1.0 / (19.2 * n as f64);
         let (mut t, mut last) = (0.0, 500.0);

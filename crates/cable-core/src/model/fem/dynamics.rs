@@ -265,6 +265,9 @@ impl Dynamics {
             self.motion.time = end;
             return Ok(self.report(Done::default(), 0, 0.0));
         }
+        if inertia == Inertia::Dynamic && self.motion.step_before == 0.0 && self.meets_nothing() {
+            self.open_folds();
+        }
         let pieces = match inertia {
             Inertia::Dynamic => (dt_s / self.pace.step - 1e-9).ceil().max(1.0),
             Inertia::QuasiStatic => self.pieces(end, dragged),

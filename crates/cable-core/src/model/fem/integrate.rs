@@ -226,6 +226,7 @@ impl Dynamics {
 
     /// Inertia and damping of a step; `now` and `past` weigh the history, `a` turns lengths into speeds (1/s).
     fn set_inertia(&mut self, [now, past, a]: [f64; 3]) {
+        let rubs = !(self.meets_nothing() && self.never_slides && self.problem.floor_friction.is_none());
         let (m, task, mesh) = (&self.motion, &mut self.task, &self.mesh);
         for k in 0..m.x.len() {
             let v_hat = m.v[k] * now - m.v_before[k] * past;
@@ -243,7 +244,7 @@ impl Dynamics {
             }
         }
         task.moves = true;
-        task.damping = self.problem.axial_stiffness * damping_time(&self.problem) * a;
+        task.damping = self.problem.axial_stiffness * damping_time(&self.problem, rubs) * a;
         for e in 0..mesh.rest_length.len() {
             task.predicted_length[e] = if mesh.sliding[e].is_none() && mesh.sliding[e + 1].is_none() {
                 let length = |x: &[Vec2]| (x[e + 1] - x[e]).norm();

@@ -4,7 +4,7 @@ use super::assembly::Mesh;
 use super::contact_set::ContactSet;
 use super::dynamics::Dynamics;
 use crate::contact::outline::Placement;
-use crate::math::Vec2;
+use crate::math::{Vec2, cross, perp};
 use crate::model::drive::Follower;
 
 /// What a step may change, kept to go back to.
@@ -55,7 +55,27 @@ pub(super) struct Saved {
     reaction: Vec<Vec2>,
 }
 
+/// How far (parts of a bar) the middle of a fold is moved aside. Less: the fold opens later than it would; more: its bars are
+/// stretched by half of the square of it.
+const ASIDE: f64 = 1e-4;
+
+/// Sine of the turn off a line below which a fold lies in it.
+const IN_LINE: f64 = 1e-6;
+
 impl Dynamics {
+    /// Moves the middle of each fold that lies in one line a little aside, as a motion begins. In the line itself a bar would
+    /// have to pass through no length to turn over: a weight that fell beside its slack cable hung in the fold.
+    pub(super) fn open_folds(&mut self) {
+        let (mesh, x) = (&self.mesh, &mut self.motion.x);
+        for k in 1..x.len().saturating_sub(1) {
+            let (a, b) = (x[k] - x[k - 1], x[k + 1] - x[k]);
+            let size = a.norm() * b.norm();
+            if mesh.is_free(k) && a.dot(&b) < 0.0 && cross(a, b).abs() <= IN_LINE * size {
+                x[k] += perp(a) * ASIDE;
+            }
+        }
+    }
+
     /// Keeps the present state to go back to, in the memory of the one kept before.
     pub(super) fn save(&mut self) {
         match &mut self.saved {
