@@ -86,3 +86,45 @@ fn iterations_of_the_catalogue_stay_as_they_are() {
     }
     assert_eq!(found, ITERATIONS, "{found:#?}");
 }
+
+/// `auto` draws a cable with friction over two wheels to the end, as the capstan says: `catenary` found no balance on the way.
+#[test]
+fn a_cable_that_rubs_on_wheels_is_drawn_to_the_end() {
+    let text = r#"
+version = 1
+name = "two wheels"
+[[cables]]
+name = "c"
+length_m = 6.2036
+linear_density_kg_per_m = 0.3820095017632952
+axial_stiffness_n = 29276.49031617108
+bending_stiffness_n_m2 = 0.0
+diameter_m = 0.002
+service_tension_n = 1e12
+breaking_tension_n = 1e12
+supports = [
+  { name = "A", kind = "fixed", at_m = [0.0, 0.45987739593123295] },
+  { name = "P1", kind = "pulley", at_m = [1.7564249758031634, 0.17340276563541712], radius_m = 0.0639153339940018, friction = 0.13551670695112508 },
+  { name = "P2", kind = "pulley", at_m = [3.828141911987024, 0.2493026713567143], radius_m = 0.0639153339940018, friction = 0.13551670695112508 },
+  { name = "B", kind = "fixed", at_m = [5.779522889041098, 0.04115231597696779], motion = { times_s = [0.0, 6.0], points_m = [[5.779522889041098, 0.04115231597696779], [5.89930465698678, 0.010018452143435507]] } },
+]
+"#;
+    let mut simulation = Simulation::new(Scene::from_toml(text).unwrap(), Model::Auto).unwrap();
+    simulation.settle().unwrap();
+    for _ in 0..360 {
+        simulation.step_quasi_static(1.0 / 60.0).unwrap();
+    }
+    let cable = simulation.solution().cables.remove(0);
+    let turn = |s: f64| {
+        let k = cable.nodes.partition_point(|n| n.arc_length_m < s).clamp(1, cable.nodes.len() - 1);
+        let d = cable.nodes[k].at() - cable.nodes[k - 1].at();
+        d.y.atan2(d.x)
+    };
+    for support in &cable.supports[1..3] {
+        let ratio = (support.tension_after_n.unwrap() / support.tension_before_n.unwrap()).ln();
+        // Directions just off the wheel, on which the cable weighs a thirtieth of its tension.
+        let (before, after) = (turn(support.arc_length_m - 0.04), turn(support.arc_length_m + 0.04));
+        let capstan = 0.13551670695112508 * (before - after).abs();
+        assert!((ratio / capstan - 1.0).abs() < 0.1, "{}: {ratio} instead of {capstan}", support.name);
+    }
+}

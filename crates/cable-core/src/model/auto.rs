@@ -25,6 +25,9 @@ pub fn choose(problem: &Problem, question: Question) -> (Model, String) {
         (Model::Fem, "in plan view the floor rubs everywhere".to_owned())
     } else if !problem.world.is_empty() || problem.outline.is_some() {
         (Model::Spans, "a taut cable among obstacles: contacts as intervals have no discretisation error".to_owned())
+    } else if problem.supports.iter().any(|s| s.wheel_radius > 0.0 && s.friction > 0.0) {
+        // `catenary` keeps the friction of a whole wheel as one number: it finds some motions slowly and some not at all.
+        (Model::Spans, "the cable rubs on wheels: contacts as intervals have no discretisation error".to_owned())
     } else {
         (Model::Catenary, "supports only: the elastic catenary has no discretisation error".to_owned())
     }
