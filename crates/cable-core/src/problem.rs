@@ -160,6 +160,32 @@ impl Series {
     }
 }
 
+/// The first of `times` between two others (s, not either of them) at which what goes through `values` turns back or stops.
+fn turn_between<V>(times: &[f64], values: &[V], from: f64, to: f64, of: impl Fn(&V) -> Vec2) -> Option<f64> {
+    let first = times.partition_point(|&t| t <= from + SAME_TIME);
+    let last = times.partition_point(|&t| t < to - SAME_TIME);
+    (first.max(1)..last).find_map(|k| {
+        let [a, b, c] = [values.get(k - 1)?, values.get(k)?, values.get(k + 1)?].map(&of);
+        (!((b - a).dot(&(c - b)) > 0.0)).then_some(times[k])
+    })
+}
+
+impl Problem {
+    /// The first time after `from` and before `to` (s) at which a support, a load or the wind turns back or stops. Friction
+    /// remembers it, so a step may not pass it.
+    #[must_use]
+    pub fn turn_between(&self, from: f64, to: f64) -> Option<f64> {
+        let series = |s: &Series| turn_between(&s.times, &s.values, from, to, |v| *v);
+        let moves = |s: &SupportPoint| {
+            let m = s.motion.as_ref()?;
+            turn_between(&m.times_s, &m.points_m, from, to, |p| vec2(*p))
+        };
+        let supports = self.supports.iter().flat_map(|s| [moves(s), series(&s.force)]);
+        let all = supports.chain(self.loads.iter().map(|l| series(&l.force))).chain([series(&self.wind)]);
+        all.flatten().fold(None, |least: Option<f64>, t| Some(least.map_or(t, |l| if t < l { t } else { l })))
+    }
+}
+
 /// Resolves every cable of a scene. The scene is validated first.
 ///
 /// # Errors

@@ -143,8 +143,22 @@ impl Strand {
         Ok(sum)
     }
 
-    /// Advances time by exactly `dt_s`, breaking on the way where it must.
+    /// Advances time by exactly `dt_s`, breaking on the way where it must. Without inertia it stops where something turns
+    /// back: one step from before a reversal to after it would be another history.
     pub fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+        let mut sum = StepReport::default();
+        let (mut left, end_s) = (dt_s, self.time_s() + dt_s);
+        while inertia == Inertia::QuasiStatic
+            && let Some(at) = self.problem.turn_between(self.time_s(), end_s)
+        {
+            add(&mut sum, self.advance_on(at - self.time_s(), inertia)?);
+            left = end_s - self.time_s();
+        }
+        add(&mut sum, self.advance_on(left, inertia)?);
+        Ok(sum)
+    }
+
+    fn advance_on(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
         let mut sum = StepReport::default();
         self.slip_off_pulleys(inertia)?;
         let Some(end_s) = self.pieces.first().map(|p| p.mechanics.time_s() + dt_s) else { return Ok(sum) };
