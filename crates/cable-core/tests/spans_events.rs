@@ -104,6 +104,24 @@ fn tension_does_not_jump_where_contacts_come_and_go() {
     }
 }
 
+/// A load comes down, what is beside it does, and all of it lifts off again; an end that is drawn comes down.
+#[test]
+fn tension_does_not_jump_where_loads_come_down_and_lift_off() {
+    let floor = || ground(&[[-5.0, 0.0], [20.0, 0.0]]);
+    let weight = |s: &mut Scene, arc_length_m: f64, force: [f64; 2]| {
+        let cable = s.cables[0].name.clone();
+        s.loads.push(Load { cable, arc_length_m, force_n: Some(force), times_s: vec![], forces_n: vec![] });
+    };
+    for friction in [0.0, 0.3] {
+        let mut s = scene(vec![floor()], vec![[0.0, 2.0], [10.0, 2.5]], (11.0, friction));
+        weight(&mut s, 5.0, [0.0, -100.0]);
+        assert!(continuous(&s, Vec2::new(0.3, -1.8), 40) >= 1);
+        let mut s = scene(vec![floor()], vec![[0.0, 1.0], [5.0, 0.01], [10.0, 1.0]], (11.0, friction));
+        weight(&mut s, 5.5, [0.0, -100.0]);
+        assert!(continuous(&s, Vec2::new(0.3, 3.0), 40) >= 2);
+    }
+}
+
 /// A valley between two hills: as the end comes nearer the span over the kink shrinks, the cable falls slack in it, and is
 /// drawn taut again on the way back.
 #[test]

@@ -201,7 +201,9 @@ fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<
             let last = x.len() - 1;
             let lies = problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach).is_some();
             let reaction = match node {
-                // A dead load is what hangs there: the cable pulls it the other way; a lump it may pull faster.
+                // A dead load is what hangs there: the cable pulls it the other way; a lump it may pull faster. Of one that lies
+                // the ground takes a part, which is the contact's.
+                _ if !d.mesh.held[node] && lies => -problem.hung_on(k, d.time()),
                 0 if !d.mesh.held[node] => ends[0],
                 k if k == last && !d.mesh.held[node] => -ends[1],
                 _ if !d.mesh.held[node] => -problem.hung_on(k, d.time()),

@@ -4,6 +4,7 @@
 use super::law::Track;
 use super::strand::{Contact, Course, Strand, Tie};
 use super::trouble::Trouble;
+use super::weight;
 use crate::math::{GAUSS, Vec2, cross};
 
 /// Equations must hold to this part of the length, the tension, the angle. The solver stops at 1e-11.
@@ -115,6 +116,9 @@ fn contact(strand: &Strand, course: &Course, (j, greatest): (usize, f64)) -> Res
     if !(track.curve.is_round() || e.p[0] >= first - BEYOND && e.p[1] <= last + BEYOND) {
         return Err(unsound("a contact goes on beyond what it lies on", e.p[0], e.s[0]));
     }
+    if c.weight {
+        return weight::sound(strand, course, j);
+    }
     for side in 0..2 {
         if let Some(force) = strand.force_at_contact(course, j, side) {
             let tangent = track.place(e.p[side]).tangent;
@@ -125,6 +129,8 @@ fn contact(strand: &Strand, course: &Course, (j, greatest): (usize, f64)) -> Res
             if e.t[side] != 0.0 {
                 return Err(unsound("slack has tension", e.p[side], e.s[side]));
             }
+        } else if strand.is_joined(j, side) {
+            // The load beside it is looked at by itself.
         } else if let Tie::Loose(force) = strand.ties[side] {
             let lifts = force.dot(&track.place(e.p[side]).normal);
             if !((e.t[side] - course.pull(c, side, force)).abs() <= HOLDS * greatest && lifts <= HOLDS * force.norm()) {

@@ -293,7 +293,15 @@ impl Network {
         let solved = found?;
         for c in &mut self.strands[k].contacts {
             let track = self.course.track(c).seen_from(c.ends.p[0]);
+            if c.weight {
+                c.ends.p[1] = c.ends.p[0];
+            }
             c.history.commit(&track, &c.ends, (c.mode, c.held), &mut work.past);
+            // What came down in this step rubs from now on.
+            if c.smooth && came.is_none() {
+                c.smooth = false;
+                c.mode = if self.course.curves[c.curve].friction > 0.0 { Mode::Hold } else { c.mode };
+            }
         }
         check::sound(&self.strands[k], &self.course)?;
         gaps::clear(&self.strands[k], &self.course, world)?;

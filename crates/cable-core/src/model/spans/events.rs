@@ -13,6 +13,7 @@ use super::seek::{self, Hit};
 use super::strand::{Contact, Course, Strand, Tie};
 use super::taut::Corner;
 use super::trouble::Trouble;
+use super::weight;
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, perp, smaller};
 
@@ -25,6 +26,11 @@ const TURNED: f64 = 1e-10;
 /// is seen.
 const DEEP: f64 = 1e-9;
 const DEEPEST: f64 = 1e-6;
+/// Times in one solve at most that something is done about loads where Newton stalls.
+const MOST_CAUGHT: usize = 4;
+/// What lies beside a load is let go where it is shorter than this part of the strand when Newton stalls. Smaller: Newton comes
+/// so near to its end only after many halvings. Larger: it is laid down again for nothing.
+const SHED: f64 = 1e-4;
 /// Edges that a contact grows over at once.
 const MOST_EDGES: usize = 8;
 /// Part of p by which an end of a contact may be off the end of an arc and be taken to be there: Newton's steps go beyond it by
@@ -43,13 +49,18 @@ pub(super) fn solve(
     came: Option<&[Vec2]>,
     work: &mut Work,
 ) -> Result<Solved, Trouble> {
-    let mut sum = Solved::default();
+    let (mut sum, mut caught) = (Solved::default(), 0);
     for _ in 0..MAX_EVENTS {
+        weight::join(strand)?;
         let found = match newton::solve(strand, course, work) {
             Ok(found) => found,
             Err(stall) => {
                 sum.iterations += stall.iterations;
                 if grow(strand, course) {
+                    continue;
+                }
+                caught += 1;
+                if caught <= MOST_CAUGHT && (shed(strand, course)? || weight::catch(strand, course)) {
                     continue;
                 }
                 let s = strand.material(stall.at).0;
@@ -61,6 +72,7 @@ pub(super) fn solve(
         // What was passed on the way says better than what is inside on which side of it the cable shall be.
         let changed = release(strand, course)?
             || join(strand, course)
+            || weight::settle(strand, course)?
             || pocket::open(strand, course)
             || match came {
                 Some(came) => passed(strand, course, (corners, came), work)?,
@@ -80,6 +92,22 @@ fn release(strand: &mut Strand, course: &mut Course) -> Result<bool, Trouble> {
     let worst =
         (0..strand.contacts.len()).min_by(|&a, &b| turned(&strand.contacts[a]).total_cmp(&turned(&strand.contacts[b])));
     let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -TURNED) else { return Ok(false) };
+    let_go(strand, course, j)
+}
+
+/// S: lets go of what has shrunk to next to nothing beside a load, whose weight a span that turned round past it would count;
+/// whether there was any.
+fn shed(strand: &mut Strand, course: &mut Course) -> Result<bool, Trouble> {
+    let least = SHED * (strand.to - strand.from);
+    let small = |c: &Contact| !c.weight && c.ends.s[1] - c.ends.s[0] < least;
+    let beside = |j: usize| strand.is_joined(j, 0) || strand.is_joined(j, 1);
+    let Some(j) = (0..strand.contacts.len()).find(|&j| small(&strand.contacts[j]) && beside(j)) else {
+        return Ok(false);
+    };
+    let_go(strand, course, j)
+}
+
+fn let_go(strand: &mut Strand, course: &mut Course, j: usize) -> Result<bool, Trouble> {
     if let Some(support) = strand.contacts[j].wheel {
         turn_eye(&mut strand.contacts[j], course, support)?;
         return Ok(true);
@@ -88,6 +116,18 @@ fn release(strand: &mut Strand, course: &mut Course) -> Result<bool, Trouble> {
     let m = strand.contacts.len();
     if let Some(before) = j.checked_sub(1).and_then(|i| strand.contacts.get_mut(i)) {
         before.pocket = false;
+    }
+    // Beside a load there was no span; now there is the one that was on the other side.
+    let before = j.checked_sub(1).is_some_and(|i| std::mem::take(&mut strand.contacts[i].joined));
+    if before || contact.joined {
+        let (k, other) = if contact.joined { (j + 1, j) } else { (j, j + 1) };
+        let ends = (other == 0 && !strand.ties[0].has_span()) || (other > m && !strand.ties[1].has_span());
+        if ends {
+            return Err(Trouble::LoadLies { s: contact.ends.s[0] });
+        }
+        strand.forces.remove(k);
+        resolve(strand, course, j);
+        return Ok(true);
     }
     // What lay is held in the air now, or hangs.
     for side in 0..2 {
@@ -112,7 +152,7 @@ fn release(strand: &mut Strand, course: &mut Course) -> Result<bool, Trouble> {
 }
 
 /// The force of a span that has changed.
-fn resolve(strand: &mut Strand, course: &Course, k: usize) {
+pub(super) fn resolve(strand: &mut Strand, course: &Course, k: usize) {
     if let Some(g) = strand.solve_span(course, k) {
         strand.forces[k] = g;
     }
@@ -143,13 +183,14 @@ fn turn_eye(c: &mut Contact, course: &Course, support: usize) -> Result<(), Trou
 fn join(strand: &mut Strand, course: &Course) -> bool {
     for j in 1..strand.contacts.len() {
         let (a, b) = (&strand.contacts[j - 1], &strand.contacts[j]);
-        if a.curve == b.curve && a.home == b.home && a.wheel.is_none() && b.ends.p[1] >= a.ends.p[0] {
+        let loads = a.weight || b.weight;
+        if a.curve == b.curve && a.home == b.home && a.wheel.is_none() && !loads && b.ends.p[1] >= a.ends.p[0] {
             let b = strand.contacts.remove(j);
             strand.forces.remove(j);
             let a = &mut strand.contacts[j - 1];
             a.history.append(&course.track(&b), &b.history);
             a.smooth &= b.smooth;
-            a.pocket = b.pocket;
+            (a.pocket, a.joined) = (b.pocket, b.joined);
             (a.ends.p[1], a.ends.s[1], a.ends.t[1]) = (b.ends.p[1], b.ends.s[1], b.ends.t[1]);
             if let (Mode::Slide(m), Mode::Hold) = (a.mode, b.mode)
                 && m != 0.0
@@ -171,8 +212,10 @@ fn meet(strand: &mut Strand, course: &Course, world: &World, resting: bool) -> R
     let mut any = false;
     // From the last span, so that those before keep their number.
     for k in (0..strand.spans()).rev() {
-        if let Some(at) = landed(strand, course, world, k, deep) {
-            return Err(Trouble::EndLands { at });
+        if let Some(landing) = weight::landing(strand, course, world, (k, deep)) {
+            weight::touch(strand, course, k, &landing)?;
+            any = true;
+            continue;
         }
         if let Some(hit) = seek::deepest(strand, course, world, k, deep) {
             touch(strand, course, k, &hit, resting)?;
@@ -180,22 +223,6 @@ fn meet(strand: &mut Strand, course: &Course, world: &World, resting: bool) -> R
         }
     }
     Ok(any)
-}
-
-/// Where the tip of a hanging end is inside something.
-fn landed(strand: &Strand, course: &Course, world: &World, k: usize, deep: f64) -> Option<Vec2> {
-    if !strand.ties.iter().any(|t| matches!(t, Tie::Hangs(_))) {
-        return None;
-    }
-    let [start, end] = strand.ends_of(course, k);
-    let (from, to) = strand.material(k);
-    let chain = course.chain(from, to);
-    let tip = match (start, end) {
-        (Some(a), None) => a + chain.reach(strand.force(course, k, from)).0,
-        (None, Some(b)) => b - chain.reach(strand.force(course, k, from)).0,
-        _ => return None,
-    };
-    world.signed_gap(tip, strand.to - strand.from).is_some_and(|g| g.gap_m < -deep).then_some(tip)
 }
 
 /// Lays the cable on a corner it has passed through on its way.
@@ -260,7 +287,7 @@ fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit, resting: boo
     let p = if edge { curve.project(i, hit.at) } else { curve.with_tangent(i, hit.tangent) };
     let ends = strand.ends_of(course, k);
     let force = strand.force(course, k, hit.s).norm();
-    let same = |c: &Contact| c.curve == curve_index && c.home == home && c.wheel.is_none();
+    let same = |c: &Contact| c.curve == curve_index && c.home == home && c.wheel.is_none() && !c.weight;
     if let Some(c) = k.checked_sub(1).and_then(|j| strand.contacts.get_mut(j)).filter(|c| same(c) && p > c.ends.p[1]) {
         let p = beyond_edges(curve, home, (p, 1), ends[1]);
         (c.ends.p[1], c.ends.s[1], c.ends.t[1]) = (p, hit.s, force);
@@ -281,6 +308,8 @@ fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit, resting: boo
         flips: 0,
         held: None,
         pocket: false,
+        joined: false,
+        weight: false,
         smooth: resting,
     };
     let track = course.track(&contact);
@@ -350,7 +379,7 @@ fn beyond_edges(curve: &Curve, home: Home, (mut p, side): (f64, usize), far: Opt
 /// What has been laid down in span k leads the contacts beside it over their edges.
 fn lead(strand: &mut Strand, course: &Course, k: usize) {
     for (j, side) in [(k.checked_sub(1), 1), (Some(k + 1), 0)] {
-        if let Some(j) = j.filter(|&j| strand.contacts.get(j).is_some_and(|c| c.wheel.is_none())) {
+        if let Some(j) = j.filter(|&j| strand.contacts.get(j).is_some_and(|c| c.wheel.is_none() && !c.weight)) {
             lead_end(strand, course, j, side);
         }
     }
@@ -407,7 +436,11 @@ fn grow(strand: &mut Strand, course: &Course) -> bool {
             let p = c.ends.p[side];
             let i = curve.locate(p, c.home);
             let border = |q: f64| (p - q).abs() <= AT_BORDER * (1.0 + p.abs());
-            if c.wheel.is_none() && strand.has_span(j + side) && (border(curve.origin(i)) || border(curve.end(i))) {
+            if c.wheel.is_none()
+                && !c.weight
+                && strand.has_span(j + side)
+                && (border(curve.origin(i)) || border(curve.end(i)))
+            {
                 any |= lead_end(strand, course, j, side) || lift_end(strand, course, j, side);
             }
         }

@@ -153,6 +153,15 @@ impl History {
         }
     }
 
+    /// What is remembered up to p, and from there on.
+    pub fn split(&self, track: &Track<'_>, p: f64) -> (Self, Self) {
+        let (tension, s) = self.at(track, p);
+        let knot = Knot { p, s, tension, m: self.called(track, p) };
+        let before = self.knots.iter().filter(|k| k.p < p).copied().chain([Knot { m: 0.0, ..knot }]);
+        let after = [knot].into_iter().chain(self.knots.iter().filter(|k| k.p > p).copied());
+        (Self { knots: before.collect() }, Self { knots: after.collect() })
+    }
+
     /// Forgets everything but what is new; keeps the memory of the list.
     fn clear(&mut self) {
         self.knots.clear();

@@ -8,6 +8,7 @@ use super::strand::{Contact, Course, Strand, Tie};
 use super::taut::{self, Bend};
 use super::tight;
 use super::way::{Way, way};
+use super::weight::LIFTS;
 use crate::contact::World;
 use crate::math::{Vec2, cross, smaller};
 
@@ -25,8 +26,6 @@ const LONG: f64 = 0.05;
 /// Points of a route between its ends lie on a boundary if they are this near, of the cable's radius: routes follow the
 /// surface, the centre line is cut off at kinks.
 const NEAR: f64 = 0.5;
-/// Part of a dead force that lifts an end off what it lies on.
-const LIFTS: f64 = 1e-9;
 /// How far along the route, in radii of a post, the cable may come up to it before or after the string does: less than half
 /// a turn, so that turns are not mistaken for each other.
 const ROUND: f64 = 2.5;
@@ -325,6 +324,8 @@ fn contact(course: &Course, (curve, home): (usize, Home), (p, s): ([f64; 2], [f6
         flips: 0,
         held: None,
         pocket: false,
+        joined: false,
+        weight: false,
         smooth: false,
     }
 }

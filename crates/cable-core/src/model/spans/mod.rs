@@ -4,7 +4,7 @@
 //!
 //! Each part has its derivation above it: the boundary (`curve`), the law of sliding along it (`law`), what friction
 //! remembers (`history`), a contact's equations (`rub`), the unknowns (`strand`), their solution (`newton`), contacts that
-//! come and go (`events`, `seek`, `ends`), the way from one instant to the next (`drive`), the first lay (`taut`, `lay`),
+//! come and go (`events`, `seek`, `ends`), loads that lie (`weight`), the way from one instant to the next (`drive`), the first lay (`taut`, `lay`),
 //! and the checks of each answer that know nothing of all this (`check`, `gaps`).
 //!
 //! What it cannot do it refuses: bending, self-contact, inertia, plan view, supports that let go; a cable that loses its
@@ -38,6 +38,7 @@ mod taut;
 mod tight;
 mod trouble;
 mod way;
+mod weight;
 
 use std::sync::Arc;
 
@@ -172,9 +173,6 @@ fn said(layout: &Layout, trouble: Trouble) -> SolveError {
             unsupported(format!("a support is inside an obstacle at ({:.3} m, {:.3} m)", at.x, at.y))
         }
         Trouble::LoadLies { s } => unsupported(format!("the load at {s:.3} m lies on an obstacle")),
-        Trouble::EndLands { at } => {
-            unsupported(format!("a hanging end reaches an obstacle at ({:.3} m, {:.3} m)", at.x, at.y))
-        }
         Trouble::NoSeat { s, at } => {
             unsupported(format!("an obstacle is met {s:.3} m along the cable at ({:.3} m, {:.3} m)", at.x, at.y))
         }

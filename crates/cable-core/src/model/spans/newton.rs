@@ -23,6 +23,7 @@ use super::instant::Instant;
 use super::law::Track;
 use super::rub;
 use super::strand::{Course, Strand};
+use super::weight;
 use crate::math::{Vec2, larger};
 
 /// Iterations at most. A failure is not cured by more; steps are halved instead.
@@ -250,6 +251,9 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
 /// The mode that the state of contact j asks for.
 fn asked(strand: &Strand, course: &Course, (sheet, j): (&Sheet, usize), patience: f64) -> Mode {
     let c = &strand.contacts[j];
+    if c.weight {
+        return weight::next_mode(strand, course, j, patience);
+    }
     // What holds within its cone goes on so, and what is smooth slides.
     if matches!((c.mode, c.held), (Mode::Hold, Some(Held::Between(_) | Held::Meet(_)))) && course.friction(c) > 0.0 {
         return c.mode;

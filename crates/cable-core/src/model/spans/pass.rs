@@ -24,7 +24,7 @@ pub(super) fn clear(old: &Strand, new: &Strand, course: &Course, corners: &[Corn
     let load = course.law.load;
     let same = |(a, b): (&Contact, &Contact)| {
         let moved = |side: usize| (a.ends.p[side] - b.ends.p[side]).abs();
-        (a.curve, a.home, a.wheel, a.pocket) == (b.curve, b.home, b.wheel, b.pocket)
+        (a.curve, a.home, a.wheel, a.pocket, a.weight) == (b.curve, b.home, b.wheel, b.pocket, b.weight)
             && moved(0) < SMALL
             && moved(1) < SMALL
     };

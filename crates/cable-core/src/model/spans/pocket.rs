@@ -26,7 +26,7 @@ const PART: f64 = 0.3;
 /// Where the ends of the contacts before and after span k would lie in a kink: p on both, the turn, rad.
 fn kink(strand: &Strand, course: &Course, k: usize) -> Option<([f64; 2], f64)> {
     let (a, b) = (strand.contacts.get(k.checked_sub(1)?)?, strand.contacts.get(k)?);
-    if a.curve != b.curve || a.wheel.is_some() || b.wheel.is_some() {
+    if a.curve != b.curve || a.wheel.is_some() || b.wheel.is_some() || a.weight || b.weight {
         return None;
     }
     let curve = &course.curves[a.curve];

@@ -7,7 +7,8 @@ use super::instant::Layout;
 use super::law::Track;
 use super::piece::{OnPiece, Pivot};
 use super::seek;
-use super::strand::{Contact, Strand, Tie};
+use super::strand::{Contact, Course, Strand, Tie};
+use super::weight;
 use crate::catenary::PointForce;
 use crate::math::{GAUSS, Vec2};
 use crate::model::catenary::report::{Nodes, Point};
@@ -64,7 +65,10 @@ pub(super) fn report(layout: &Layout, network: &Network) -> Report {
                 contact_nodes(&mut nodes, &track, c, &stretches);
                 if let Some(obstacle) = track.curve.obstacle {
                     let name = layout.problem.world.obstacle_name(obstacle);
-                    contacts.push(contact((&track, name), c, &stretches));
+                    contacts.push(match c.weight {
+                        true => load((strand, course, k), (&track, name)),
+                        false => contact((&track, name), c, &stretches),
+                    });
                 }
             }
         }
@@ -185,6 +189,30 @@ fn contact((track, name): (&Track<'_>, &str), c: &Contact, stretches: &[Stretch]
         begins_m: c.ends.s[0],
         ends_m: c.ends.s[1],
         parts: if slips { Vec::new() } else { parts(c, friction, stretches) },
+    }
+}
+
+/// The contact of the load that is contact j.
+fn load((strand, course, j): (&Strand, &Course, usize), (track, name): (&Track<'_>, &str)) -> ContactReport {
+    let c = &strand.contacts[j];
+    let felt = weight::felt(strand, course, j);
+    let at = track.place(c.ends.p[0]).at;
+    let slips = track.friction <= 0.0 || matches!(c.mode, Mode::Slide(_));
+    ContactReport {
+        obstacle: name.to_owned(),
+        x_m: at.x,
+        y_m: at.y,
+        arc_length_m: c.ends.s[0],
+        normal: [felt.normal.x, felt.normal.y],
+        normal_n: felt.press(),
+        friction_n: -felt.sum.dot(&felt.tangent),
+        state: if slips { ContactState::Slip } else { ContactState::Stick },
+        turn_deg: 0.0,
+        tension_before_n: c.ends.t[0],
+        tension_after_n: c.ends.t[1],
+        begins_m: c.ends.s[0],
+        ends_m: c.ends.s[0],
+        parts: Vec::new(),
     }
 }
 

@@ -60,6 +60,10 @@ pub(super) struct Contact {
     pub flips: u32,
     /// Whether it ends in a kink without tension, as the next begins there: no span between them, see `pocket`.
     pub pocket: bool,
+    /// Whether the next begins where it ends, as one of the two is a load that lies: no span between them, see `weight`.
+    pub joined: bool,
+    /// Whether it is a load that lies.
+    pub weight: bool,
     /// Smooth for now: found while a rest is sought, where it has not rubbed yet.
     pub smooth: bool,
 }
@@ -138,6 +142,11 @@ impl Course {
         }
     }
 
+    /// Load at a material point, N.
+    pub fn load_at(&self, s: f64) -> Vec2 {
+        self.loads.iter().filter(|l| l.arc_length == s).fold(Vec2::zeros(), |sum, l| sum + l.force)
+    }
+
     /// Load between two material points, N.
     pub fn load_between(&self, from: f64, to: f64) -> Vec2 {
         let inside = self.loads.iter().filter(|l| l.arc_length > from && l.arc_length < to);
@@ -158,13 +167,29 @@ impl Strand {
 
     /// Whether span k is there.
     pub fn has_span(&self, k: usize) -> bool {
-        let pocket = k.checked_sub(1).and_then(|j| self.contacts.get(j)).is_some_and(|c| c.pocket);
-        !pocket && (k > 0 || self.ties[0].has_span()) && (k < self.contacts.len() || self.ties[1].has_span())
+        let none = k.checked_sub(1).and_then(|j| self.contacts.get(j)).is_some_and(|c| c.pocket || c.joined);
+        !none && (k > 0 || self.ties[0].has_span()) && (k < self.contacts.len() || self.ties[1].has_span())
     }
 
     /// Whether contact j ends in a pocket on a side.
     pub fn in_pocket(&self, j: usize, side: usize) -> bool {
         (j + side).checked_sub(1).and_then(|i| self.contacts.get(i)).is_some_and(|c| c.pocket)
+    }
+
+    /// Whether contact j is joined to what is beside it on a side.
+    pub fn is_joined(&self, j: usize, side: usize) -> bool {
+        (j + side).checked_sub(1).and_then(|i| self.contacts.get(i)).is_some_and(|c| c.joined)
+    }
+
+    /// Whether the material at a side of contact j is that of a load.
+    pub fn is_marked(&self, j: usize, side: usize) -> bool {
+        self.contacts[j].weight || self.is_joined(j, side)
+    }
+
+    /// Whether contact j is joined to a load on a side that sticks.
+    pub fn is_pinned(&self, j: usize, side: usize) -> bool {
+        let beside = (j + 2 * side).checked_sub(1).and_then(|i| self.contacts.get(i));
+        self.is_joined(j, side) && beside.is_some_and(|c| c.weight && c.mode == Mode::Hold)
     }
 
     /// Material at both ends of span k, m.
@@ -228,6 +253,13 @@ impl Strand {
                     self.contacts[j].ends.t[side] = force.norm();
                 } else if self.in_pocket(j, side) {
                     self.contacts[j].ends.t[side] = 0.0;
+                } else if self.is_joined(j, side) {
+                    self.contacts[j].ends.t[side] = self.forces[j + side].x;
+                } else if self.contacts[j].weight {
+                    // Beyond it is nothing.
+                    let k = j + 1 - side;
+                    let inner = self.force_at_contact(course, j, 1 - side);
+                    self.contacts[j].ends.t[side] = inner.map_or(self.forces[k].x, |f| f.norm());
                 } else if let Tie::Loose(force) = self.ties[side] {
                     self.contacts[j].ends.t[side] = course.pull(&self.contacts[j], side, force);
                 }

@@ -10,6 +10,7 @@ use super::events::ON;
 use super::history::{Ends, History, Knot, Mode};
 use super::instant::{Instant, Layout, Part};
 use super::strand::{Contact, Course, Strand, Tie};
+use super::weight::LIFTS;
 use crate::math::{Vec2, cross, perp};
 use crate::solution::Node;
 
@@ -206,6 +207,8 @@ impl Run<'_> {
             held: None,
             smooth: false,
             pocket: false,
+            joined: false,
+            weight: false,
         };
         for side in 0..2 {
             let (p, s, t) = self.end(strand, course, stations, side)?;
@@ -266,8 +269,21 @@ impl Run<'_> {
                 },
                 Tie::Hangs(force) => {
                     strand.ties[side] = Tie::Loose(force);
-                    let along = force.dot(&self.curve.place(p, self.home).tangent);
-                    return Some((p, s, if side == 0 { -along } else { along }));
+                    let place = self.curve.place(p, self.home);
+                    let along = force.dot(&place.tangent);
+                    // What is pressed down rubs by itself.
+                    let pressed = self.curve.friction > 0.0 && force.dot(&place.normal) < -LIFTS * force.norm();
+                    return Some((
+                        p,
+                        s,
+                        if pressed {
+                            tension
+                        } else if side == 0 {
+                            -along
+                        } else {
+                            along
+                        },
+                    ));
                 }
                 _ => return None,
             }

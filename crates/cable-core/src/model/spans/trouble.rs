@@ -19,8 +19,6 @@ pub(super) enum Trouble {
     SupportInside { at: Vec2 },
     /// A point load lies on an obstacle.
     LoadLies { s: f64 },
-    /// A hanging end reaches an obstacle.
-    EndLands { at: Vec2 },
     /// An obstacle is met where this model cannot lay the cable.
     NoSeat { s: f64, at: Vec2 },
     /// The answer does not pass the check that does not use the solver.

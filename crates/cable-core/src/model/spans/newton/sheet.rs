@@ -2,10 +2,12 @@
 
 use super::super::band::Band;
 use super::super::curve::Place;
+use super::super::history::Mode;
 use super::super::law::Track;
 use super::super::piece::Pivot;
 use super::super::rub;
 use super::super::strand::{Contact, Course, Strand, Tie};
+use super::super::weight;
 use crate::math::{Vec2, cross, larger};
 
 fn count(strand: &Strand) -> usize {
@@ -32,7 +34,7 @@ pub(super) fn lies(strand: &Strand, j: usize, side: usize) -> bool {
 
 /// Which ends of contact j are held on the boundary.
 pub(super) fn pinned(strand: &Strand, j: usize) -> [bool; 2] {
-    [lies(strand, j, 0), lies(strand, j, 1)]
+    [0, 1].map(|side| lies(strand, j, side) || strand.is_pinned(j, side))
 }
 
 /// Whether that side of contact j is an end of the strand that lies.
@@ -53,9 +55,13 @@ pub(super) fn scatter(strand: &mut Strand, course: &Course, x: &[f64]) {
         if k < strand.contacts.len() {
             for side in 0..2 {
                 let (slot, s) = (x[2 + 2 * side], x[3 + 2 * side]);
-                let own = lies(strand, k, side);
-                let e = &mut strand.contacts[k].ends;
-                e.s[side] = s;
+                let (own, marked) = (lies(strand, k, side), strand.is_marked(k, side));
+                let c = &mut strand.contacts[k];
+                let e = &mut c.ends;
+                // The material of a load is what it is, to the last digit.
+                if !marked {
+                    e.s[side] = s;
+                }
                 if own {
                     e.t[side] = slot;
                 } else {
@@ -96,6 +102,10 @@ pub(super) fn assemble(strand: &mut Strand, course: &Course, sheet: &mut Sheet) 
 
 /// As [`assemble`], where nothing but the mode of contact j has changed since.
 pub(super) fn renew(strand: &mut Strand, course: &Course, j: usize, sheet: &mut Sheet) {
+    if strand.contacts[j].weight {
+        // What is joined to it is held or let go with it.
+        return assemble(strand, course, sheet);
+    }
     for row in 6 * j + 2..6 * j + 6 {
         sheet.residual[row] = 0.0;
         sheet.band.clear(row);
@@ -112,6 +122,16 @@ fn span_rows(strand: &Strand, course: &Course, k: usize, sheet: &mut Sheet) {
     let (row, scale) = (6 * k, scale(strand));
     let (r, band) = (&mut sheet.residual, &mut sheet.band);
     let m = strand.contacts.len();
+    if k > 0 && strand.is_joined(k, 0) {
+        // One place; the tension stands where the force would.
+        r[row] = (strand.contacts[k - 1].ends.p[1] - strand.contacts[k].ends.p[0]) * scale;
+        band.add(row, row - 2, scale);
+        band.add(row, row + 2, -scale);
+        let size = 1.0 / larger(strand.forces[k].x.abs(), 1e-9 * course.law.load.norm());
+        r[row + 1] = strand.forces[k].y * size;
+        band.add(row + 1, row + 1, size);
+        return;
+    }
     let known = if !strand.has_span(k) {
         Some(strand.forces[k])
     } else if k == 0 && matches!(strand.ties[0], Tie::Hangs(_)) {
@@ -163,7 +183,44 @@ fn span_rows(strand: &Strand, course: &Course, k: usize, sheet: &mut Sheet) {
     }
 }
 
+/// The rows of a load that lies, see `weight`.
+fn weight_rows(strand: &Strand, course: &Course, j: usize, sheet: &mut Sheet) {
+    let (r, b, scale) = (&mut sheet.residual, &mut sheet.band, scale(strand));
+    let (c, place) = (&strand.contacts[j], &sheet.spots[j].0[0]);
+    let (row, p) = (6 * j + 2, c.ends.p[0]);
+    // Its material stays as it is, and both of its ends are one.
+    b.add(row, row + 1, scale);
+    b.add(row + 3, row + 3, scale);
+    r[row + 2] = (c.ends.p[1] - p) * scale;
+    b.add(row + 2, row + 2, scale);
+    b.add(row + 2, row, -scale);
+    let Mode::Slide(m) = c.mode else {
+        r[row + 1] = (p - weight::held_at(c)) * scale;
+        b.add(row + 1, row, scale);
+        return;
+    };
+    let felt = weight::felt(strand, course, j);
+    let size = 1.0 / larger(felt.size, 1e-9 * course.law.load.norm());
+    let across = felt.tangent + felt.normal * m;
+    r[row + 1] = felt.sum.dot(&across) * size;
+    if place.turn != 0.0 {
+        b.add(row + 1, row, felt.fixed.dot(&(felt.tangent * m - felt.normal)) * size);
+    }
+    for (side, sign) in [(0, -size), (1, size)] {
+        let g = 6 * (j + side);
+        if strand.has_span(j + side) {
+            b.add(row + 1, g, sign * across.x);
+            b.add(row + 1, g + 1, sign * across.y);
+        } else if strand.is_joined(j, side) {
+            b.add(row + 1, g, sign);
+        }
+    }
+}
+
 fn contact_rows(strand: &mut Strand, course: &Course, j: usize, sheet: &mut Sheet) {
+    if strand.contacts[j].weight {
+        return weight_rows(strand, course, j, sheet);
+    }
     let (r, b, (spots, pivot), scale) = (&mut sheet.residual, &mut sheet.band, &sheet.spots[j], scale(strand));
     let c = &strand.contacts[j];
     let track = Track { pivot: Some(*pivot), ..course.track(c) };
@@ -185,6 +242,16 @@ fn contact_rows(strand: &mut Strand, course: &Course, j: usize, sheet: &mut Shee
             b.add(tangency, p_column, 1.0);
             for i in 0..2 {
                 b.add(row + 1 + i, s_column, by(i, 1));
+            }
+            continue;
+        }
+        if strand.is_joined(j, side) {
+            b.add(tangency, s_column, scale);
+            let g = 6 * (j + side);
+            for i in 0..2 {
+                b.add(row + 1 + i, p_column, by(i, 0));
+                b.add(row + 1 + i, s_column, by(i, 1));
+                b.add(row + 1 + i, g, by(i, 2));
             }
             continue;
         }

@@ -13,7 +13,7 @@ use super::{Work, assemble, lies};
 /// friction holds: that came there by its own motion.
 pub(in crate::model::spans) fn stable(strand: &Strand, course: &Course, work: &mut Work) -> bool {
     let rubs = strand.contacts.iter().any(|c| course.friction(c) > 0.0);
-    let pockets = strand.contacts.iter().any(|c| c.pocket);
+    let pockets = strand.contacts.iter().any(|c| c.pocket || c.weight);
     if rubs || pockets || strand.contacts.is_empty() || strand.ties.iter().any(|t| matches!(t, Tie::Loose(_))) {
         return true;
     }

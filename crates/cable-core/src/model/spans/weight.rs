@@ -1,0 +1,475 @@
+//! Dead loads that lie on a boundary, inside the cable or at an end of it.
+//!
+//! Such a load P is a contact without extent: p₁ = p₂ = q, and its material is its own (after it the next number, so that
+//! what is summed up to there has the load in it, and what is summed up to before it has not). With F₋ and F₊ the force of
+//! the cable before and after it, pressed by N n and rubbed by −mN t as all that lies (see `law`), V = F₊ − F₋ + P:
+//!
+//! ```text
+//! V + N n − m N t = 0:      N = −V·n,      V·(t + m n) = 0  where it slides with m,      |V·t| ≤ μN  where it sticks
+//! ```
+//!
+//! The cable beside it comes from the air at any angle, a span that ends in q; or it lies on the same chain, F = T t, and
+//! there is no span between the two: they are *joined*, and T stands where the force of that span would stand. At an end of
+//! the cable nothing is beyond it, and P is what draws the end.
+
+use super::events::resolve;
+use super::history::{Ends, History, Knot, Mode};
+use super::law::Track;
+use super::root::{FLOOR, crossing};
+use super::seek;
+use super::strand::{Contact, Course, Strand, Tie};
+use super::trouble::Trouble;
+use crate::catenary::PointForce;
+use crate::contact::{Gap, World};
+use crate::math::{Vec2, larger, perp, smaller};
+
+/// Part of the forces at a load that is rounding. Smaller: chatter at the edge of the cone. Larger: creep.
+const CONE: f64 = 1e-12;
+/// Part of the material coordinate that is no movement.
+const UNMOVED: f64 = 1e-15;
+/// Part of a dead force that lifts an end off what it lies on, or presses it down.
+pub(super) const LIFTS: f64 = 1e-9;
+/// Equations must hold to this part of the forces; the solver stops at 1e-11.
+const HOLDS: f64 = 1e-7;
+/// A contact's end this near to a load, of the strand's length, may end there. Smaller: it is found after more halvings. Larger: loads
+/// in the air are set down for nothing.
+const CATCHES: f64 = 0.02;
+/// Part of the strand that a contact gives way by where a load lifts off beside it, to begin with.
+const GIVES: f64 = 1e-6;
+
+/// What a load feels.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Felt {
+    /// V, N, and what of it does not turn with the boundary.
+    pub sum: Vec2,
+    pub fixed: Vec2,
+    pub tangent: Vec2,
+    pub normal: Vec2,
+    /// Greatest of the forces in V, N.
+    pub size: f64,
+}
+
+impl Felt {
+    /// N.
+    pub fn press(&self) -> f64 {
+        -self.sum.dot(&self.normal)
+    }
+}
+
+/// What the load that is contact j feels.
+pub(super) fn felt(strand: &Strand, course: &Course, j: usize) -> Felt {
+    let c = &strand.contacts[j];
+    let place = course.track(c).place(c.ends.p[0]);
+    let own = load(strand, course, j);
+    let (mut fixed, mut along, mut size) = (own, 0.0, own.norm());
+    for (side, sign) in [(0, -1.0), (1, 1.0)] {
+        if let Some(force) = strand.force_at_contact(course, j, side) {
+            fixed += force * sign;
+            size = larger(size, force.norm());
+        } else if strand.is_joined(j, side) {
+            let tension = strand.forces[j + side].x;
+            along += tension * sign;
+            size = larger(size, tension.abs());
+        }
+    }
+    Felt { sum: fixed + place.tangent * along, fixed, tangent: place.tangent, normal: place.normal, size }
+}
+
+/// P of the load that is contact j, N.
+fn load(strand: &Strand, course: &Course, j: usize) -> Vec2 {
+    let s = strand.contacts[j].ends.s[0];
+    for (side, end) in [(0, 0), (1, strand.contacts.len() - 1)] {
+        if let (true, Tie::Loose(force)) = (j == end, strand.ties[side]) {
+            return force;
+        }
+    }
+    course.load_at(s)
+}
+
+/// The mode that the load that is contact j asks for.
+pub(super) fn next_mode(strand: &Strand, course: &Course, j: usize, patience: f64) -> Mode {
+    let c = &strand.contacts[j];
+    let friction = course.friction(c);
+    if friction <= 0.0 {
+        return Mode::Slide(0.0);
+    }
+    let felt = felt(strand, course, j);
+    match c.mode {
+        Mode::Hold => {
+            let (along, press) = (felt.sum.dot(&felt.tangent), larger(felt.press(), 0.0));
+            let beyond = along.abs() > friction * press + CONE * patience * felt.size;
+            if beyond { Mode::Slide(friction * along.signum()) } else { Mode::Hold }
+        }
+        Mode::Slide(m) => {
+            let moved = c.ends.p[0] - held_at(c);
+            let back = m * moved < 0.0 && moved.abs() > UNMOVED * patience * c.ends.p[0].abs();
+            if m == 0.0 || back { Mode::Hold } else { c.mode }
+        }
+    }
+}
+
+/// Where a load was last, p.
+pub(super) fn held_at(c: &Contact) -> f64 {
+    c.history.knots().first().map_or(c.ends.p[0], |k| k.p)
+}
+
+/// Whether an answer holds at the load that is contact j.
+pub(super) fn sound(strand: &Strand, course: &Course, j: usize) -> Result<(), Trouble> {
+    let c = &strand.contacts[j];
+    let f = felt(strand, course, j);
+    let unsound =
+        |what: &'static str| Trouble::Unsound { what, s: c.ends.s[0], at: course.track(c).place(c.ends.p[0]).at };
+    let room = HOLDS * f.size;
+    if !(f.press() >= -room) {
+        return Err(unsound("a load is held down"));
+    }
+    if !(f.sum.dot(&f.tangent).abs() <= course.friction(c) * f.press() + room) {
+        return Err(unsound("a load slides against more than its friction"));
+    }
+    for side in (0..2).filter(|&side| strand.is_joined(j, side)) {
+        let beside = strand.contacts[j + 2 * side - 1].ends;
+        if !((beside.p[1 - side] - c.ends.p[side]).abs() <= HOLDS * (strand.to - strand.from)) {
+            return Err(unsound("a load is not where the cable beside it ends"));
+        }
+    }
+    Ok(())
+}
+
+/// L: loads that lift are let go, those within a contact are set down there, ends that are pressed down rub, and what lies
+/// on one chain beside a load is joined to it; whether there was any.
+pub(super) fn settle(strand: &mut Strand, course: &Course) -> Result<bool, Trouble> {
+    for j in 0..strand.contacts.len() {
+        if strand.contacts[j].weight {
+            let f = felt(strand, course, j);
+            if f.press() < -CONE * f.size {
+                lift(strand, course, j);
+                return Ok(true);
+            }
+        } else if set_down(strand, course, j) || press_end(strand, course, j) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// Lets the load that is contact j go.
+fn lift(strand: &mut Strand, course: &Course, j: usize) {
+    let gives = GIVES * (strand.to - strand.from);
+    for (side, sign) in [(0, -1.0), (1, 1.0)] {
+        if !strand.is_joined(j, side) {
+            continue;
+        }
+        let end = 1 - side;
+        let i = j + 2 * side - 1;
+        let c = &mut strand.contacts[i];
+        let e = &mut c.ends;
+        let most = 0.5 * (e.s[1] - e.s[0]);
+        let by = if gives < most { gives } else { most };
+        e.s[end] += sign * by;
+        e.p[end] += sign * 0.5 * (e.p[1] - e.p[0]) * if most > 0.0 { by / most } else { 0.0 };
+    }
+    let last = strand.contacts.len() - 1;
+    let before = j.checked_sub(1).is_some_and(|i| std::mem::take(&mut strand.contacts[i].joined));
+    let after = strand.contacts[j].joined;
+    for (side, end) in [(0, 0), (1, last)] {
+        if let (true, Tie::Loose(force)) = (j == end, strand.ties[side]) {
+            let lies = if side == 0 { after } else { before };
+            strand.contacts.remove(j);
+            strand.forces.remove(j + usize::from((side == 1) != lies));
+            if !lies {
+                strand.ties[side] = Tie::Hangs(force);
+            }
+            resolve(strand, course, if side == 0 { 0 } else { strand.contacts.len() });
+            return;
+        }
+    }
+    strand.contacts.remove(j);
+    strand.forces.remove(j + usize::from(!before));
+    resolve(strand, course, j);
+}
+
+/// Joins loads to what lies on their chains beside them.
+pub(super) fn join(strand: &mut Strand) -> Result<(), Trouble> {
+    for j in 0..strand.contacts.len() {
+        while strand.contacts[j].weight && join_one(strand, j)? {}
+    }
+    Ok(())
+}
+
+/// Whether there was one more beside the load that is contact j.
+fn join_one(strand: &mut Strand, j: usize) -> Result<bool, Trouble> {
+    let (p, s) = (strand.contacts[j].ends.p[0], strand.contacts[j].ends.s);
+    let (curve, home) = (strand.contacts[j].curve, strand.contacts[j].home);
+    for side in 0..2 {
+        let Some(i) = (j + 2 * side).checked_sub(1).filter(|&i| i < strand.contacts.len()) else { continue };
+        let c = &strand.contacts[i];
+        let same = c.curve == curve && c.home == home && c.wheel.is_none();
+        if !same || strand.is_joined(j, side) || strand.in_pocket(j, side) {
+            continue;
+        }
+        let k = j + side;
+        let tension = strand.contacts[i].ends.t[1 - side];
+        let c = &mut strand.contacts[i];
+        let e = &mut c.ends;
+        (e.p[1 - side], e.s[1 - side]) = (p, s[side]);
+        if c.weight && (e.p[0] != p || e.s[0] == s[side]) {
+            // Two loads with air between them on one chain: what lies between has not been met yet.
+            return Err(Trouble::LoadLies { s: s[side] });
+        }
+        strand.forces[k] = Vec2::new(tension, 0.0);
+        strand.contacts[if side == 0 { i } else { j }].joined = true;
+        return Ok(true);
+    }
+    Ok(false)
+}
+
+/// C: where Newton stalls an end of a contact may have come to a load: it ends there, whatever the load rests with. The load
+/// that is nearest to an end is set down; whether there was one.
+pub(super) fn catch(strand: &mut Strand, course: &Course) -> bool {
+    let mut best: Option<(f64, usize, usize, f64)> = None;
+    let lies = |s: f64| strand.contacts.iter().any(|c| c.weight && c.ends.s[0] == s);
+    for (j, c) in strand.contacts.iter().enumerate() {
+        for side in (0..2).filter(|&side| strand.has_span(j + side) && !c.weight && c.wheel.is_none()) {
+            let [from, to] = [strand.material(j + side).0, strand.material(j + side).1];
+            let inside = |l: &&PointForce| l.arc_length > strand.from && l.arc_length < strand.to;
+            let near = |l: &&PointForce| l.force.norm() > 0.0 && inside(l) && !lies(l.arc_length);
+            for l in course.loads.iter().filter(near) {
+                let off = (l.arc_length - c.ends.s[side]).abs();
+                let beside = l.arc_length >= from && l.arc_length <= to;
+                let turned =
+                    l.arc_length >= c.ends.s[1].min(c.ends.s[0]) && l.arc_length <= c.ends.s[0].max(c.ends.s[1]);
+                if (beside || turned) && off <= CATCHES * (strand.to - strand.from) && best.is_none_or(|b| off < b.0) {
+                    best = Some((off, j, side, l.arc_length));
+                }
+            }
+        }
+    }
+    let Some((_, j, side, s)) = best else { return false };
+    let c = &strand.contacts[j];
+    let e = c.ends;
+    let p = walk(&course.track(c), e.p[side], (s - e.s[side]) * course.law.stretch(e.t[side]));
+    let load = lying(c, (p, [s, s.next_up()]), e.t[side], true);
+    let left = if side == 0 { e.p[1] - p } else { p - e.p[0] };
+    if left <= 0.0 {
+        // Nothing else of it is left.
+        strand.contacts[j] = Contact { joined: c.joined, pocket: c.pocket, ..load };
+        return true;
+    }
+    let c = &mut strand.contacts[j];
+    (c.ends.p[side], c.ends.s[side]) = (p, if side == 0 { s.next_up() } else { s });
+    let joint = Vec2::new(e.t[side], 0.0);
+    if side == 0 {
+        strand.contacts.insert(j, Contact { joined: true, ..load });
+        strand.forces.insert(j + 1, joint);
+    } else {
+        c.joined = true;
+        strand.contacts.insert(j + 1, load);
+        strand.forces.insert(j + 1, joint);
+    }
+    true
+}
+
+/// So far (m, either way) along a boundary from p, to the end of its chain at most.
+fn walk(track: &Track<'_>, mut p: f64, way: f64) -> f64 {
+    let (first, last) = (track.curve.origin(track.home.first), track.curve.end(track.home.last));
+    let end = if way > 0.0 { last } else { first };
+    let mut left = way.abs();
+    while p != end && left > 0.0 {
+        let next = track.next_border(p, end);
+        let stretch = track.place(0.5 * (p + next)).stretch;
+        if !((next - p).abs() * stretch < left) {
+            return p + left / stretch * way.signum();
+        }
+        left -= (next - p).abs() * stretch;
+        p = next;
+    }
+    p
+}
+
+/// Sets a load within contact j down where it lies.
+fn set_down(strand: &mut Strand, course: &Course, j: usize) -> bool {
+    let c = &strand.contacts[j];
+    // What is at an end of the strand draws that end.
+    let [from, to] = [larger(c.ends.s[0], strand.from), smaller(c.ends.s[1], strand.to)];
+    let Some(s) = course.loads.iter().find(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0) else {
+        return false;
+    };
+    let s = s.arc_length;
+    let track = course.track(c);
+    let [p0, p1] = c.ends.p;
+    let floor = FLOOR * (strand.to - strand.from);
+    let q = crossing((p0, p1), floor, None, |p| {
+        let place = track.place(p);
+        let (tension, laid) = c.history.at(&track, p);
+        (s - laid, -place.stretch / track.law.stretch(tension))
+    });
+    let tension = c.history.at(&track, q).0;
+    let knots = c.history.knots();
+    // What had been laid before stays; where it is only now coming to lie nothing has rubbed yet.
+    let fresh = c.smooth || !knots.first().zip(knots.last()).is_some_and(|(a, b)| q >= a.p && q <= b.p);
+    let (first, second) = c.history.split(&track, q);
+    let after = s.next_up();
+    let mut load = lying(c, (q, [s, after]), tension, fresh);
+    (load.joined, load.smooth) = (true, fresh);
+    let mut rest = c.clone();
+    (rest.ends.p[0], rest.ends.s[0], rest.ends.t[0], rest.history) = (q, after, tension, second);
+    let c = &mut strand.contacts[j];
+    (c.ends.p[1], c.ends.s[1], c.ends.t[1], c.history) = (q, s, tension, first);
+    (c.pocket, c.joined) = (false, true);
+    strand.contacts.insert(j + 1, load);
+    strand.contacts.insert(j + 2, rest);
+    for _ in 0..2 {
+        strand.forces.insert(j + 1, Vec2::new(tension, 0.0));
+    }
+    true
+}
+
+/// An end that lies on contact j and is pressed down by what draws it rubs by itself.
+fn press_end(strand: &mut Strand, course: &Course, j: usize) -> bool {
+    for (side, end) in [(0, 0), (1, strand.contacts.len() - 1)] {
+        let Tie::Loose(force) = strand.ties[side] else { continue };
+        let c = &strand.contacts[j];
+        let normal = course.track(c).place(c.ends.p[side]).normal;
+        if j != end || course.friction(c) <= 0.0 || force.dot(&normal) >= -LIFTS * force.norm() {
+            continue;
+        }
+        let (p, s, tension) = (c.ends.p[side], c.ends.s[side], c.ends.t[side]);
+        let load = lying(c, (p, [s; 2]), tension, c.smooth);
+        let k = j + side;
+        strand.contacts.insert(k, load);
+        strand.contacts[j].joined = true;
+        strand.forces.insert(j + 1, Vec2::new(tension, 0.0));
+        return true;
+    }
+    false
+}
+
+/// A load on what a contact lies on.
+fn lying(on: &Contact, (p, s): (f64, [f64; 2]), tension: f64, fresh: bool) -> Contact {
+    Contact {
+        ends: Ends { p: [p; 2], s, t: [tension; 2] },
+        mode: if fresh { Mode::Slide(0.0) } else { Mode::Hold },
+        held: None,
+        history: History::new(Knot { p, s: s[0], tension, m: 0.0 }, Knot { p, s: s[0], tension, m: 0.0 }),
+        flips: 0,
+        pocket: false,
+        joined: false,
+        weight: true,
+        smooth: fresh,
+        ..on.clone()
+    }
+}
+
+/// A load of span k, or the tip of it, that is deeper inside something than `deep` (m).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Landing {
+    s: f64,
+    at: Vec2,
+    /// Direction of the cable there, about, of any length.
+    along: Vec2,
+    gap: Gap,
+    body: usize,
+    /// The end of the strand that it is.
+    tip: Option<usize>,
+}
+
+/// What of span k is inside something.
+pub(super) fn landing(strand: &Strand, course: &Course, world: &World, (k, deep): (usize, f64)) -> Option<Landing> {
+    let hangs = [k == 0, k == strand.contacts.len()];
+    let (from, to) = strand.material(k);
+    let inner = course.loads.iter().any(|l| l.arc_length > from && l.arc_length < to);
+    let tip = |side: usize| hangs[side] && matches!(strand.ties[side], Tie::Hangs(_));
+    if !strand.has_span(k) || !(inner || tip(0) || tip(1)) {
+        return None;
+    }
+    let mut worst: Option<Landing> = None;
+    let look = |s: f64, at: Vec2, along: Vec2, tip: Option<usize>, worst: &mut Option<Landing>| {
+        let Some(gap) = world.signed_gap(at, strand.to - strand.from).filter(|g| g.gap_m < -deep) else { return };
+        let Some(body) = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle) else { return };
+        if worst.is_none_or(|w| gap.gap_m < w.gap.gap_m) {
+            *worst = Some(Landing { s, at, along, gap, body, tip });
+        }
+    };
+    let mut before: Option<Vec2> = None;
+    seek::shapes(strand, course, k, |s0, at, shape| {
+        let (start, end) = (shape.start_force(), shape.end_force());
+        match before.take() {
+            Some(force) => look(s0, at, force / force.norm() + start / start.norm(), None, &mut worst),
+            None if tip(0) => look(s0, at, start, Some(0), &mut worst),
+            None => {}
+        }
+        before = Some(end);
+        if tip(1) && s0 + shape.span().length >= to {
+            look(to, at + shape.span().chord, end, Some(1), &mut worst);
+        }
+    });
+    worst
+}
+
+/// Lays down what has landed of span k.
+pub(super) fn touch(strand: &mut Strand, course: &Course, k: usize, l: &Landing) -> Result<(), Trouble> {
+    let no_seat = Trouble::NoSeat { s: l.s, at: l.at };
+    let drawn = match l.tip.map(|side| strand.ties[side]) {
+        Some(Tie::Hangs(force)) => force,
+        _ => Vec2::zeros(),
+    };
+    let pressed = l.tip.is_none() || drawn.dot(&l.gap.normal) < -LIFTS * drawn.norm();
+    // An end that nothing presses down slides on with its load as it lies down, or comes to lie in a heap.
+    let load = course.law.load;
+    let down = load - l.gap.normal * load.dot(&l.gap.normal);
+    let along = if pressed { l.along } else { down * if l.tip == Some(0) { -1.0 } else { 1.0 } };
+    let index = 2 * l.body + usize::from(l.gap.normal.dot(&perp(along)) < 0.0);
+    let Some(curve) = course.curves.get(index) else { return Err(no_seat) };
+    let found = curve.piece_of(l.gap.feature, l.at).and_then(|i| curve.chain(i, load));
+    let Some((i, home)) = found else { return Err(no_seat) };
+    let p = curve.project(i, l.at);
+    let tension = strand.force(course, k, l.s).norm();
+    let knot = |p: f64, s: f64, tension: f64| Knot { p, s, tension, m: 0.0 };
+    let mut c = Contact {
+        curve: index,
+        home,
+        ends: Ends { p: [p; 2], s: [l.s, l.s.next_up()], t: [tension; 2] },
+        mode: Mode::Slide(0.0),
+        held: None,
+        history: History::new(knot(p, l.s, tension), knot(p, l.s, tension)),
+        wheel: None,
+        flips: 0,
+        pocket: false,
+        joined: false,
+        weight: true,
+        smooth: true,
+    };
+    let Some(side) = l.tip else {
+        let g = strand.forces[k];
+        strand.contacts.insert(k, c);
+        strand.forces.insert(k + 1, g);
+        return Ok(());
+    };
+    c.ends.s = [l.s; 2];
+    if !pressed {
+        let place = curve.place(p, home);
+        let (press, pull) = (-load.dot(&place.normal), load.dot(&place.tangent).abs());
+        let rate = pull - curve.friction * press;
+        if !(rate > 0.0) {
+            return Err(Trouble::Compressed { s: l.s, at: l.at, tension: 0.0 });
+        }
+        // So much of it hangs below the surface, and lies along it.
+        let hangs = if l.along.norm() > 0.0 { l.along } else { load };
+        let steep = hangs.dot(&place.normal).abs() / hangs.norm();
+        let below = -l.gap.gap_m / larger(steep, 0.1);
+        let sign = if side == 0 { -1.0 } else { 1.0 };
+        let (inner, tension) = (1 - side, rate * below);
+        (c.weight, c.smooth) = (false, false);
+        c.ends.p[side] += sign * below;
+        c.ends.s[inner] -= sign * below;
+        (c.ends.t[side], c.ends.t[inner]) = (0.0, tension);
+        c.mode = Mode::Slide(sign * curve.friction);
+        let e = c.ends;
+        c.history = History::new(knot(e.p[0], e.s[0], e.t[0]), knot(e.p[1], e.s[1], e.t[1]));
+        strand.forces[k] = place.tangent * tension + course.load_between(strand.from, e.s[inner]);
+    }
+    strand.ties[side] = Tie::Loose(drawn);
+    strand.contacts.insert(k, c);
+    strand.forces.insert(k + side, Vec2::zeros());
+    Ok(())
+}
