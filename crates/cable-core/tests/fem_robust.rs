@@ -313,3 +313,32 @@ friction = 0.3735608334186499
         node.tension_n
     );
 }
+
+/// Laid exactly on a post, its nodes a rounding away from it: it finds a rest from there, too.
+#[test]
+fn a_cable_laid_in_touch_finds_a_rest() {
+    let mut scene = catalog::hanging_span();
+    scene.loads.clear();
+    let (mu, radius) = (0.23653988940858117, 0.12154170598370315);
+    let (tail, drop) = (1.3562381160663473, 0.43386497201316426);
+    let c = &mut scene.cables[0];
+    (c.linear_density_kg_per_m, c.axial_stiffness_n, c.bending_stiffness_n_m2) =
+        (0.3609995931039175, 277959831.6329003, 0.0);
+    (c.diameter_m, c.friction, c.length_m, c.segments) = (0.001, mu, 2.171937618702684, None);
+    c.route_m = vec![[-radius, -tail]];
+    c.route_m.extend((0..10).map(|i| {
+        let angle = std::f64::consts::PI - f64::from(i) * 20_f64.to_radians();
+        [radius * angle.cos(), radius * angle.sin()]
+    }));
+    c.route_m.push([radius, -drop]);
+    c.supports = vec![Support::free("A"), Support::fixed("B", [radius, -drop])];
+    let weight = c.linear_density_kg_per_m * cable_core::scene::STANDARD_GRAVITY;
+    let post = Shape::Circle { center_m: [0.0, 0.0], radius_m: radius - 0.0005 };
+    scene.obstacles = vec![Obstacle { name: "post".to_owned(), shape: post, friction: Some(mu) }];
+    let mut simulation = Simulation::new(scene, Model::Fem).unwrap();
+    simulation.settle().unwrap();
+    let tension = simulation.solution().cables[0].supports[1].reaction_y_n + weight * drop;
+    // Somewhere between what the tail weighs with all the friction there is against it and for it.
+    let most = (mu * std::f64::consts::PI).exp();
+    assert!(tension > 0.9 * weight * tail / most && tension < 1.1 * weight * tail * most, "{tension} N");
+}

@@ -29,11 +29,6 @@ const MAX_HALVINGS: usize = 30;
 /// Unbalanced force, in tolerances, that is accepted where iterating gains nothing more: 3e-5 of the whole load.
 const ENOUGH: f64 = 30.0;
 
-/// Unbalanced force, in tolerances, that is accepted at rest where contact forces are known no better: 1e-3 of the whole load. More:
-/// a node a rounding away from a corner makes any force a rest (6e10 N were taken for one); less: cables that a support
-/// squeezes find none.
-const NEGLIGIBLE: f64 = 1e3;
-
 /// Energies are trusted to this part of the sum of their magnitudes.
 const ENERGY_NOISE: f64 = 1e-13;
 
@@ -294,7 +289,7 @@ impl Workspace {
             }
             let left = left && !squeezed;
             done.residual = residual;
-            let known = if task.moves { self.noise } else { self.noise.min(NEGLIGIBLE * task.tolerance) };
+            let known = if self.noise > task.most_noise { task.most_noise } else { self.noise };
             let tolerance = if known > task.tolerance { known } else { task.tolerance };
             if residual <= tolerance && !left {
                 return Ok(done);

@@ -42,6 +42,8 @@ pub struct Task {
     pub floor_limit: Vec<f64>,
     /// Unbalanced force to reach, N.
     pub tolerance: f64,
+    /// Unbalanced force that is accepted at most where contact forces are known no better, N.
+    pub most_noise: f64,
     /// Iterations allowed.
     pub max_iterations: usize,
     /// Largest move of a node in one iteration, m.
