@@ -12,8 +12,8 @@ use serde_json::Value;
 /// Groups of `data/composite.json` in which friction holds something.
 const GROUPS: [&str; 5] = ["floor-corner", "beams", "post", "reversal", "drag"];
 
-/// Half a second before the end of a motion, some of it slides and some of it sticks.
-const STEPS: usize = 30;
+/// Steps of 0.05 s after which it is handed over: some of it slides and some of it sticks.
+const STEPS: [usize; 4] = [7, 15, 23, 30];
 
 fn scenes() -> Vec<(String, Scene)> {
     let all: Value = serde_json::from_str(include_str!("../data/composite.json")).unwrap();
@@ -29,10 +29,10 @@ fn model(scene: &Scene, model: Model, segments: Option<usize>) -> Option<Box<dyn
 }
 
 /// `spans` somewhere on the way.
-fn on_the_way(scene: &Scene) -> Option<Box<dyn Mechanics>> {
+fn on_the_way(scene: &Scene, steps: usize) -> Option<Box<dyn Mechanics>> {
     let mut spans = model(scene, Model::Spans, None)?;
     spans.settle().ok()?;
-    for _ in 0..STEPS {
+    for _ in 0..steps {
         spans.advance(0.05, Inertia::QuasiStatic).ok()?;
     }
     Some(spans)
@@ -63,9 +63,9 @@ fn apart(fine: &CableSolution, coarse: &CableSolution) -> (f64, f64) {
 #[test]
 fn spans_go_on_from_their_own_answer_as_if_nothing_had_been() {
     let mut tried = 0;
-    for (name, scene) in scenes() {
-        let Some(old) = on_the_way(&scene).filter(|m| greatest(&m.solution()) > 0.0) else { continue };
-        let mut new = model(&scene, Model::Spans, None).unwrap();
+    for ((name, scene), steps) in scenes().iter().flat_map(|s| STEPS.map(|n| (s, n))) {
+        let Some(old) = on_the_way(scene, steps).filter(|m| greatest(&m.solution()) > 0.0) else { continue };
+        let mut new = model(scene, Model::Spans, None).unwrap();
         new.take_over(&old.solution(), old.time_s()).unwrap_or_else(|e| panic!("{name}: {e}"));
         let (shape, force) = apart(&old.solution(), &new.solution());
         // Their nodes lie elsewhere on the curve, and between nodes it is a chord. Of the cone 1e-5 is left unused.
@@ -77,14 +77,14 @@ fn spans_go_on_from_their_own_answer_as_if_nothing_had_been() {
 
 #[test]
 fn friction_holds_on_when_fem_goes_on_from_spans_and_back() {
-    let (mut worst, mut tried, mut refused) = ([0.0_f64; 4], 0, 0);
-    for (name, scene) in scenes() {
-        let Some(old) = on_the_way(&scene).filter(|m| greatest(&m.solution()) > 0.0) else { continue };
+    let (mut worst, mut last, mut within, mut tried, mut refused) = ([0.0_f64; 4], [0.0_f64; 4], 0, 0, 0);
+    for ((name, scene), steps) in scenes().iter().flat_map(|s| STEPS.map(|n| (s, n))) {
+        let Some(old) = on_the_way(scene, steps).filter(|m| greatest(&m.solution()) > 0.0) else { continue };
         let before = old.solution();
-        let mut fem = model(&scene, Model::Fem, None).unwrap();
+        let mut fem = model(scene, Model::Fem, None).unwrap();
         fem.take_over(&before, old.time_s()).unwrap_or_else(|e| panic!("{name}: {e}"));
         let there = apart(&before, &fem.solution());
-        let mut back = model(&scene, Model::Spans, None).unwrap();
+        let mut back = model(scene, Model::Spans, None).unwrap();
         if let Err(e) = back.take_over(&fem.solution(), fem.time_s()) {
             println!("{name}: refused: {e}");
             refused += 1;
@@ -92,21 +92,31 @@ fn friction_holds_on_when_fem_goes_on_from_spans_and_back() {
         }
         let again = apart(&back.solution(), &fem.solution());
         println!(
-            "{name}: to fem {:.2} mm, {:.1e}; to spans {:.2} mm, {:.1e}",
+            "{name}, step {steps}: to fem {:.2} mm, {:.1e}; to spans {:.2} mm, {:.1e}",
             1e3 * there.0,
             there.1,
             1e3 * again.0,
             again.1
         );
-        for (w, v) in worst.iter_mut().zip([there.0, there.1, again.0, again.1]) {
+        let found = [there.0, there.1, again.0, again.1];
+        for (w, v) in worst.iter_mut().zip(found) {
             *w = w.max(v);
         }
+        if steps == STEPS[3] {
+            for (w, v) in last.iter_mut().zip(found) {
+                *w = w.max(v);
+            }
+        }
+        within += usize::from(found.iter().all(|v| *v <= 1e-3));
         tried += 1;
     }
-    println!("worst of {tried}: {worst:?}, refused {refused}");
-    assert!(tried >= 14 && refused <= 1, "{tried} {refused}");
-    assert!(worst[0] < 1e-3 && worst[2] < 1e-3, "a move is seen: {worst:?}");
-    assert!(worst[1] < 4e-3 && worst[3] < 4e-3, "a jump is felt: {worst:?}");
+    println!(
+        "worst of {tried}: {worst:?}, refused {refused}; {within} within 1 mm and 1e-3; worst after 1.5 s: {last:?}"
+    );
+    assert!(tried >= 60 && refused <= 1, "{tried} {refused}");
+    assert!(last.iter().all(|v| *v <= 1e-3), "after 1.5 s: {last:?}");
+    // At the beginning of a pull tensions are a few newtons, and the front of sliding is as wide as a bar.
+    assert!(worst.iter().all(|v| *v < 1e-2) && 20 * within >= 17 * tried, "{within} of {tried}: {worst:?}");
 }
 
 /// A cable of 10 m on a floor, whose end is let down until more of it lies there than there is way, and drawn up again.

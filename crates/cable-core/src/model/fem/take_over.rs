@@ -28,6 +28,10 @@ const ON_ROUND: f64 = 1e-3;
 /// Turn (rad) that one mark can carry: the way to it must not go round the other side.
 const MOST: f64 = 2.8;
 
+/// Marks on a round that is taken over, for each bar that would lie on it. Fewer: tension jumps by more (1.2e-3 of the greatest with 1 round a post of
+/// 450°, 7e-4 with 1.5); more: more nodes.
+const MARKS: f64 = 1.5;
+
 /// Bars beside a new sliding node are at least this part of an even one.
 const LEAST_BAR: f64 = 0.35;
 
@@ -157,7 +161,7 @@ impl Dynamics {
         for arc in self.arcs_told(told) {
             let round = arc.node.end.radius * arc.turn;
             let many = 0.5 * arc.turn > WIDE && 0.5 * round > SMALL * self.even();
-            let bars = if many { (round / self.even()).round() } else { 1.0 };
+            let bars = if many { (MARKS * round / self.even()).round() } else { 1.0 };
             let marks = (arc.turn / if many { WIDE } else { MOST }).ceil().max(bars);
             for i in 0..marks as usize {
                 let part = (i as f64 + 0.5) / marks;

@@ -48,7 +48,7 @@ const LARGEST_STEP: f64 = 0.2;
 
 /// Parts of the cone of friction that a cable taken over may use: along the very edge of the cone sliding from an end would
 /// stop anywhere, and Newton stalls. The first changes nothing that shows, the second holds a little first.
-const WITHIN: [f64; 2] = [1.0 - 1e-5, 0.99];
+const WITHIN: [f64; 3] = [1.0 - 1e-5, 1.0 - 1e-3, 0.99];
 
 /// All strands of a cable at an instant.
 #[derive(Clone, Debug)]

@@ -107,6 +107,44 @@ impl History {
         out
     }
 
+    /// The same, from the last knot back.
+    pub fn through_back(track: &Track<'_>, knots: &[Knot], within: f64) -> Self {
+        let friction = track.friction * within;
+        let mut out: Vec<Knot> = Vec::with_capacity(knots.len());
+        for knot in knots.iter().rev() {
+            let mut knot = *knot;
+            if let Some(next) = out.last() {
+                if knot.p >= next.p {
+                    continue;
+                }
+                let reach = |m: f64| track.slide(next.p, knot.p, next.tension, m).tension;
+                knot.m = Self::between(&mut knot.tension, friction, reach, false);
+            }
+            out.push(knot);
+        }
+        out.reverse();
+        Self { knots: out }
+    }
+
+    /// The m with which sliding reaches a tension, which is brought to what it can reach. `grows`: what it reaches grows with m.
+    fn between(tension: &mut f64, friction: f64, reach: impl Fn(f64) -> f64, grows: bool) -> f64 {
+        let sign = if grows { 1.0 } else { -1.0 };
+        let (low, high) = (reach(-friction * sign), reach(friction * sign));
+        if *tension >= high {
+            *tension = high;
+            return friction * sign;
+        }
+        if *tension <= low {
+            *tension = low;
+            return -friction * sign;
+        }
+        let by = NUDGE * friction;
+        let goal = *tension;
+        sign * crossing((-friction, friction), FLOOR * goal.abs(), None, |m| {
+            (goal - reach(m * sign), (reach((m - by) * sign) - reach((m + by) * sign)) / (2.0 * by))
+        })
+    }
+
     /// Material laid with an even tension from p₁ to p₂ as far as friction holds that on every slope.
     pub fn laid(track: &Track<'_>, e: &Ends) -> Self {
         let mut out = Self::default();
@@ -132,22 +170,15 @@ impl History {
         let friction = track.friction;
         for knot in &next.knots {
             let mut knot = *knot;
+            let mut tension = knot.tension;
             if let Some(last) = self.knots.last_mut() {
                 if knot.p <= last.p {
                     continue;
                 }
-                let reach = |m: f64| track.slide(last.p, knot.p, last.tension, m).tension;
-                let (low, high) = (reach(-friction), reach(friction));
-                if knot.tension >= high {
-                    (last.m, knot.tension) = (friction, high);
-                } else if knot.tension <= low {
-                    (last.m, knot.tension) = (-friction, low);
-                } else {
-                    let by = NUDGE * friction;
-                    last.m = crossing((-friction, friction), FLOOR * knot.tension.abs(), None, |m| {
-                        (knot.tension - reach(m), (reach(m - by) - reach(m + by)) / (2.0 * by))
-                    });
-                }
+                let from = *last;
+                let reach = |m: f64| track.slide(from.p, knot.p, from.tension, m).tension;
+                last.m = Self::between(&mut tension, friction, reach, true);
+                knot.tension = tension;
             }
             self.knots.push(knot);
         }

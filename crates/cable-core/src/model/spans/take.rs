@@ -237,7 +237,18 @@ impl Run<'_> {
             }
         }
         knots.push(knot(1));
-        contact.history = History::through(&course.track(&contact), &knots, self.within);
+        let track = course.track(&contact);
+        // What is beyond the cone goes to where the tension is known without friction: away from an end that lies, to one that
+        // is not held.
+        let lies = [0, 1].map(|side| matches!(strand.ties[side], Tie::Lies(_)));
+        let at_end = [self.first == 0, self.last + 1 == stations.len()];
+        let free = strand.ties.map(|t| matches!(t, Tie::Hangs(_) | Tie::Loose(_)));
+        let back = lies[1] && at_end[1] && !(lies[0] && at_end[0]) || free[0] && !free[1];
+        contact.history = if back {
+            History::through_back(&track, &knots, self.within)
+        } else {
+            History::through(&track, &knots, self.within)
+        };
         // What the cone has changed at an end that lies is its tension.
         if let (Some(k), Tie::Lies(_)) = (contact.history.knots().last(), strand.ties[1]) {
             contact.ends.t[1] = k.tension;
