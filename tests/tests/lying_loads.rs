@@ -148,6 +148,35 @@ fn scenes() -> Vec<(&'static str, Scene, f64)> {
             2.0,
         ),
         (
+            "a weight is drawn down into a kink, held there, and drawn out of it",
+            s(
+                21.4,
+                "[[-8.0, 2.5], [0.0, 0.01], [8.0, 2.5]]",
+                &[
+                    held("A", &[[-8.0, 2.5]]),
+                    load("W", [0.0, -60.0], Some(8.6)),
+                    held("B", &[[12.0, 3.5], [12.4, 3.7], [12.0, 3.5]]),
+                    ground(&[[-30.0, 3.0], [0.0, 0.0], [3.0, 0.6], [40.0, 4.3]], 0.2),
+                ],
+            ),
+            2.0,
+        ),
+        (
+            "two weights are set down side by side",
+            s(
+                12.0,
+                "[[0.0, 3.0], [5.0, 1.0], [10.0, 3.0]]",
+                &[
+                    held("A", &down_and_up(0.0, 0.0)),
+                    load("V", [0.0, -60.0], Some(5.5)),
+                    load("W", [0.0, -80.0], Some(6.5)),
+                    held("B", &down_and_up(10.0, 10.0)),
+                    flat(0.4),
+                ],
+            ),
+            2.0,
+        ),
+        (
             "a pressed end is dragged over the ground and back",
             s(
                 12.0,

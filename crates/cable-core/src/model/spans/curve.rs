@@ -290,6 +290,13 @@ impl Curve {
         Some((i + turn, Home { first: first + turn, last: last + turn }))
     }
 
+    /// The piece beyond the kink at the start (side 0) or the end of a chain; None where there is none.
+    pub fn beyond_kink(&self, home: Home, side: usize) -> Option<i64> {
+        let (i, after) = if side == 0 { (home.first - 1, home.first) } else { (home.last + 1, home.last + 1) };
+        let there = self.period.is_some() || (i >= 0 && i < self.pieces.len() as i64);
+        (there && !self.is_round() && self.piece(after).kink_before).then_some(i)
+    }
+
     /// The piece of one turn that stands for a feature of the obstacle, the nearest to a point where it has several.
     pub fn piece_of(&self, feature: usize, at: Vec2) -> Option<i64> {
         let mut best: Option<(f64, i64)> = None;

@@ -15,7 +15,8 @@ use super::strand::{Course, Strand};
 use super::take;
 use super::tight;
 use super::trouble::Trouble;
-use crate::math::Vec2;
+use super::weight;
+use crate::math::{Vec2, larger};
 use crate::solution::Node;
 
 /// Halvings of a step at most: 2⁻¹² of a step of 1 % of the cable is a hair's breadth.
@@ -31,6 +32,10 @@ const SAME: f64 = 1e-9;
 /// Steps it is followed for at most, and times in a row the drag is raised.
 const MOST_DRAGGED: usize = 200;
 const MOST_RAISED: usize = 5;
+/// Friction, of the force there, that may be missing in the step in which a load comes down, and the shortest step taken for its
+/// sake. More: forces are off by as much while such a step lasts. Less: more steps.
+const FRESH: f64 = 3e-4;
+const LANDS: f64 = 1.0 / 128.0;
 /// Spans that are tried as pockets in one step. More: dearer failures, each halving tries again.
 const MOST_POCKETS: usize = 3;
 /// Tension at which a rest is first sought, of the weight of the cable: so taut that it touches only what it is led
@@ -70,6 +75,8 @@ pub(super) struct Taken {
     pub ran: usize,
     /// Whether the rest was found without friction, which held it from then on.
     pub eased: bool,
+    /// Friction that what came down would have had in the step it came down in, of the force there.
+    pub fresh: f64,
 }
 
 impl Network {
@@ -219,19 +226,25 @@ impl Network {
         self.instant.clone_from(to);
         layout.give(&mut self.course, to);
         for k in 0..self.strands.len() {
-            if let Err(trouble) =
-                self.solve(layout, k, came.get(k).map(Vec::as_slice), work).map(|s| taken.solved = taken.solved.and(s))
-            {
-                self.strands.clone_from(&work.before);
-                self.instant.clone_from(&work.instants[0]);
-                layout.give(&mut self.course, &self.instant);
-                return Err(trouble);
+            match self.solve(layout, k, came.get(k).map(Vec::as_slice), work) {
+                Ok(one) => taken = taken.and(one),
+                Err(trouble) => {
+                    self.undo(layout, work);
+                    return Err(trouble);
+                }
             }
         }
         Ok(taken)
     }
 
-    fn solve(&mut self, layout: &Layout, k: usize, came: Option<&[Vec2]>, work: &mut Work) -> Result<Solved, Trouble> {
+    /// To where the last step began.
+    fn undo(&mut self, layout: &Layout, work: &Work) {
+        self.strands.clone_from(&work.before);
+        self.instant.clone_from(&work.instants[0]);
+        layout.give(&mut self.course, &self.instant);
+    }
+
+    fn solve(&mut self, layout: &Layout, k: usize, came: Option<&[Vec2]>, work: &mut Work) -> Result<Taken, Trouble> {
         let [mut start, mut moved] = std::mem::take(&mut work.strands);
         start.clone_from(&self.strands[k]);
         let found = self.solve_from(layout, k, came, ([&mut start, &mut moved], work));
@@ -249,7 +262,7 @@ impl Network {
         k: usize,
         came: Option<&[Vec2]>,
         ([start, moved], work): ([&mut Strand; 2], &mut Work),
-    ) -> Result<Solved, Trouble> {
+    ) -> Result<Taken, Trouble> {
         let world = &layout.problem.world;
         let strand = &mut self.strands[k];
         place_ends(layout, k, strand, &self.course, &self.instant)?;
@@ -290,7 +303,10 @@ impl Network {
                 }
             }
         }
-        let solved = found?;
+        let mut taken = Taken { solved: found?, ..Taken::default() };
+        if came.is_none() {
+            taken.fresh = weight::fresh(&self.strands[k], &self.course);
+        }
         for c in &mut self.strands[k].contacts {
             let track = self.course.track(c).seen_from(c.ends.p[0]);
             if c.weight {
@@ -314,7 +330,7 @@ impl Network {
                 return Err(Trouble::Passed { at: corner.at });
             }
         }
-        Ok(solved)
+        Ok(taken)
     }
 
     /// To an instant that no balance near by leads to: the cable slides under a drag that is taken away as it comes to rest.
@@ -404,6 +420,12 @@ impl Network {
             let next = if done + 1.000_001 * step >= 1.0 { 1.0 } else { done + step };
             at.between(from, to, next);
             let trouble = match self.step(layout, at, work) {
+                // What comes down has no friction in the step in which it does: that shall be a short one.
+                Ok(t) if t.fresh > FRESH && step > LANDS => {
+                    self.undo(layout, work);
+                    (step, taken.halved) = (0.5 * step, taken.halved + 1);
+                    continue;
+                }
                 Ok(t) => {
                     taken = taken.and(t);
                     done = next;
@@ -447,6 +469,7 @@ impl Taken {
             halved: self.halved + more.halved,
             ran: self.ran + more.ran,
             eased: self.eased || more.eased,
+            fresh: larger(self.fresh, more.fresh),
         }
     }
 }

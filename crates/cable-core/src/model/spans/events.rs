@@ -13,6 +13,7 @@ use super::seek::{self, Hit};
 use super::strand::{Contact, Course, Strand, Tie};
 use super::taut::Corner;
 use super::trouble::Trouble;
+use super::wedge;
 use super::weight;
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, perp, smaller};
@@ -51,12 +52,12 @@ pub(super) fn solve(
 ) -> Result<Solved, Trouble> {
     let (mut sum, mut caught) = (Solved::default(), 0);
     for _ in 0..MAX_EVENTS {
-        weight::join(strand)?;
+        weight::join(strand, course)?;
         let found = match newton::solve(strand, course, work) {
             Ok(found) => found,
             Err(stall) => {
                 sum.iterations += stall.iterations;
-                if grow(strand, course) {
+                if grow(strand, course) || wedge::enter(strand, course) {
                     continue;
                 }
                 caught += 1;
@@ -72,6 +73,7 @@ pub(super) fn solve(
         // What was passed on the way says better than what is inside on which side of it the cable shall be.
         let changed = release(strand, course)?
             || join(strand, course)
+            || wedge::enter(strand, course)
             || weight::settle(strand, course)?
             || pocket::open(strand, course)
             || match came {
@@ -310,6 +312,7 @@ fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit, resting: boo
         pocket: false,
         joined: false,
         weight: false,
+        kink: None,
         smooth: resting,
     };
     let track = course.track(&contact);

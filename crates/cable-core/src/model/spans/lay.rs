@@ -326,6 +326,7 @@ fn contact(course: &Course, (curve, home): (usize, Home), (p, s): ([f64; 2], [f6
         pocket: false,
         joined: false,
         weight: false,
+        kink: None,
         smooth: false,
     }
 }

@@ -8,6 +8,7 @@
 use super::curve::{Curve, Home};
 use super::history::{Ends, Held, History, Mode};
 use super::law::{Law, Track};
+use super::wedge::Kink;
 use crate::catenary::{Chain, PointForce};
 use crate::math::Vec2;
 
@@ -64,6 +65,8 @@ pub(super) struct Contact {
     pub joined: bool,
     /// Whether it is a load that lies.
     pub weight: bool,
+    /// The kink that load is in.
+    pub kink: Option<Kink>,
     /// Smooth for now: found while a rest is sought, where it has not rubbed yet.
     pub smooth: bool,
 }

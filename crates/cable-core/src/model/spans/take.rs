@@ -209,6 +209,7 @@ impl Run<'_> {
             pocket: false,
             joined: false,
             weight: false,
+            kink: None,
         };
         for side in 0..2 {
             let (p, s, t) = self.end(strand, course, stations, side)?;

@@ -19,6 +19,7 @@ use super::root::{FLOOR, crossing};
 use super::seek;
 use super::strand::{Contact, Course, Strand, Tie};
 use super::trouble::Trouble;
+use super::wedge;
 use crate::catenary::PointForce;
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, larger, perp, smaller};
@@ -34,8 +35,6 @@ const HOLDS: f64 = 1e-7;
 /// A contact's end this near to a load, of the strand's length, may end there. Smaller: it is found after more halvings. Larger: loads
 /// in the air are set down for nothing.
 const CATCHES: f64 = 0.02;
-/// Part of the strand that a contact gives way by where a load lifts off beside it, to begin with.
-const GIVES: f64 = 1e-6;
 
 /// What a load feels.
 #[derive(Clone, Copy, Debug)]
@@ -67,9 +66,13 @@ pub(super) fn felt(strand: &Strand, course: &Course, j: usize) -> Felt {
             fixed += force * sign;
             size = larger(size, force.norm());
         } else if strand.is_joined(j, side) {
-            let tension = strand.forces[j + side].x;
-            along += tension * sign;
+            let (tension, beside) = (strand.forces[j + side].x, &strand.contacts[j + 2 * side - 1]);
             size = larger(size, tension.abs());
+            if beside.home == c.home {
+                along += tension * sign;
+            } else {
+                fixed += course.track(beside).place(beside.ends.p[1 - side]).tangent * (tension * sign);
+            }
         }
     }
     Felt { sum: fixed + place.tangent * along, fixed, tangent: place.tangent, normal: place.normal, size }
@@ -90,6 +93,9 @@ fn load(strand: &Strand, course: &Course, j: usize) -> Vec2 {
 pub(super) fn next_mode(strand: &Strand, course: &Course, j: usize, patience: f64) -> Mode {
     let c = &strand.contacts[j];
     let friction = course.friction(c);
+    if c.kink.is_some() {
+        return Mode::Hold;
+    }
     if friction <= 0.0 {
         return Mode::Slide(0.0);
     }
@@ -108,6 +114,22 @@ pub(super) fn next_mode(strand: &Strand, course: &Course, j: usize, patience: f6
     }
 }
 
+/// The friction of what came down in a step that is not remembered yet, of the force there: loads have had none, and cable rubs
+/// as if it had come down where it was found.
+pub(super) fn fresh(strand: &Strand, course: &Course) -> f64 {
+    let missing = |j: usize| {
+        let c = &strand.contacts[j];
+        if c.weight && c.smooth {
+            let f = felt(strand, course, j);
+            return course.curves[c.curve].friction * larger(f.press(), 0.0) / larger(f.size, f64::MIN_POSITIVE);
+        }
+        let [t1, t2] = c.ends.t;
+        let new = !c.weight && c.wheel.is_none() && c.history.knots().len() == 1 && c.ends.p[1] > c.ends.p[0];
+        if new { (t2 - t1).abs() / larger(larger(t1, t2), f64::MIN_POSITIVE) } else { 0.0 }
+    };
+    (0..strand.contacts.len()).map(missing).fold(0.0, larger)
+}
+
 /// Where a load was last, p.
 pub(super) fn held_at(c: &Contact) -> f64 {
     c.history.knots().first().map_or(c.ends.p[0], |k| k.p)
@@ -120,10 +142,14 @@ pub(super) fn sound(strand: &Strand, course: &Course, j: usize) -> Result<(), Tr
     let unsound =
         |what: &'static str| Trouble::Unsound { what, s: c.ends.s[0], at: course.track(c).place(c.ends.p[0]).at };
     let room = HOLDS * f.size;
-    if !(f.press() >= -room) {
+    if !(wedge::press(course, c, &f) >= -room) {
         return Err(unsound("a load is held down"));
     }
-    if !(f.sum.dot(&f.tangent).abs() <= course.friction(c) * f.press() + room) {
+    if let Some(kink) = c.kink {
+        if !wedge::holds(course, c, (kink, &f), HOLDS) {
+            return Err(unsound("a load is out of its kink"));
+        }
+    } else if !(f.sum.dot(&f.tangent).abs() <= course.friction(c) * f.press() + room) {
         return Err(unsound("a load slides against more than its friction"));
     }
     for side in (0..2).filter(|&side| strand.is_joined(j, side)) {
@@ -141,8 +167,11 @@ pub(super) fn settle(strand: &mut Strand, course: &Course) -> Result<bool, Troub
     for j in 0..strand.contacts.len() {
         if strand.contacts[j].weight {
             let f = felt(strand, course, j);
-            if f.press() < -CONE * f.size {
+            if wedge::press(course, &strand.contacts[j], &f) < -CONE * f.size {
                 lift(strand, course, j);
+                return Ok(true);
+            }
+            if wedge::leave(strand, course, j)? {
                 return Ok(true);
             }
         } else if set_down(strand, course, j) || press_end(strand, course, j) {
@@ -154,19 +183,10 @@ pub(super) fn settle(strand: &mut Strand, course: &Course) -> Result<bool, Troub
 
 /// Lets the load that is contact j go.
 fn lift(strand: &mut Strand, course: &Course, j: usize) {
-    let gives = GIVES * (strand.to - strand.from);
-    for (side, sign) in [(0, -1.0), (1, 1.0)] {
-        if !strand.is_joined(j, side) {
-            continue;
+    for side in 0..2 {
+        if strand.is_joined(j, side) {
+            wedge::give_way(strand, (j + 2 * side - 1, 1 - side));
         }
-        let end = 1 - side;
-        let i = j + 2 * side - 1;
-        let c = &mut strand.contacts[i];
-        let e = &mut c.ends;
-        let most = 0.5 * (e.s[1] - e.s[0]);
-        let by = if gives < most { gives } else { most };
-        e.s[end] += sign * by;
-        e.p[end] += sign * 0.5 * (e.p[1] - e.p[0]) * if most > 0.0 { by / most } else { 0.0 };
     }
     let last = strand.contacts.len() - 1;
     let before = j.checked_sub(1).is_some_and(|i| std::mem::take(&mut strand.contacts[i].joined));
@@ -189,35 +209,50 @@ fn lift(strand: &mut Strand, course: &Course, j: usize) {
 }
 
 /// Joins loads to what lies on their chains beside them.
-pub(super) fn join(strand: &mut Strand) -> Result<(), Trouble> {
-    for j in 0..strand.contacts.len() {
-        while strand.contacts[j].weight && join_one(strand, j)? {}
+pub(super) fn join(strand: &mut Strand, course: &Course) -> Result<(), Trouble> {
+    let mut j = 0;
+    while j < strand.contacts.len() {
+        while strand.contacts[j].weight && join_one(strand, course, j)? {}
+        j += 1;
     }
     Ok(())
 }
 
 /// Whether there was one more beside the load that is contact j.
-fn join_one(strand: &mut Strand, j: usize) -> Result<bool, Trouble> {
-    let (p, s) = (strand.contacts[j].ends.p[0], strand.contacts[j].ends.s);
-    let (curve, home) = (strand.contacts[j].curve, strand.contacts[j].home);
+fn join_one(strand: &mut Strand, course: &Course, j: usize) -> Result<bool, Trouble> {
+    let load = strand.contacts[j].clone();
     for side in 0..2 {
         let Some(i) = (j + 2 * side).checked_sub(1).filter(|&i| i < strand.contacts.len()) else { continue };
         let c = &strand.contacts[i];
-        let same = c.curve == curve && c.home == home && c.wheel.is_none();
-        if !same || strand.is_joined(j, side) || strand.in_pocket(j, side) {
+        let same = c.curve == load.curve && c.home == load.home && c.wheel.is_none();
+        let here = same || wedge::follows(course, &load, c, side);
+        if !here || strand.is_joined(j, side) || strand.in_pocket(j, side) {
             continue;
         }
-        let k = j + side;
-        let tension = strand.contacts[i].ends.t[1 - side];
-        let c = &mut strand.contacts[i];
-        let e = &mut c.ends;
-        (e.p[1 - side], e.s[1 - side]) = (p, s[side]);
-        if c.weight && (e.p[0] != p || e.s[0] == s[side]) {
-            // Two loads with air between them on one chain: what lies between has not been met yet.
-            return Err(Trouble::LoadLies { s: s[side] });
+        let (k, first) = (j + side, if side == 0 { i } else { j });
+        if c.weight {
+            // What lies between two loads of one chain lies, too.
+            let [a, b] = [first, first + 1].map(|k| strand.contacts[k].ends);
+            if !same || !(b.p[0] > a.p[0]) {
+                return Err(Trouble::LoadLies { s: load.ends.s[side] });
+            }
+            let tension = strand.force(course, k, a.s[1]).norm();
+            let ends = Ends { p: [a.p[0], b.p[0]], s: [a.s[1], b.s[0]], t: [tension; 2] };
+            let knot = |side: usize| Knot { p: ends.p[side], s: ends.s[side], tension, m: 0.0 };
+            let history = History::new(knot(0), knot(1));
+            let mode = Mode::Slide(0.0);
+            let between = Contact { ends, history, mode, weight: false, smooth: true, joined: true, ..load };
+            strand.contacts[first].joined = true;
+            strand.contacts.insert(first + 1, Contact { kink: None, ..between });
+            strand.forces[k] = Vec2::new(tension, 0.0);
+            strand.forces.insert(k, Vec2::new(tension, 0.0));
+            return Ok(true);
         }
+        let tension = c.ends.t[1 - side];
+        let e = &mut strand.contacts[i].ends;
+        (e.p[1 - side], e.s[1 - side]) = (load.ends.p[0], load.ends.s[side]);
         strand.forces[k] = Vec2::new(tension, 0.0);
-        strand.contacts[if side == 0 { i } else { j }].joined = true;
+        strand.contacts[first].joined = true;
         return Ok(true);
     }
     Ok(false)
@@ -355,6 +390,7 @@ fn lying(on: &Contact, (p, s): (f64, [f64; 2]), tension: f64, fresh: bool) -> Co
         pocket: false,
         joined: false,
         weight: true,
+        kink: None,
         smooth: fresh,
         ..on.clone()
     }
@@ -420,7 +456,9 @@ pub(super) fn touch(strand: &mut Strand, course: &Course, k: usize, l: &Landing)
     let along = if pressed { l.along } else { down * if l.tip == Some(0) { -1.0 } else { 1.0 } };
     let index = 2 * l.body + usize::from(l.gap.normal.dot(&perp(along)) < 0.0);
     let Some(curve) = course.curves.get(index) else { return Err(no_seat) };
-    let found = curve.piece_of(l.gap.feature, l.at).and_then(|i| curve.chain(i, load));
+    // In a kink there is nothing but its edges.
+    let kink = || [1, 3].into_iter().find_map(|back| curve.piece_of(l.gap.feature.checked_sub(back)?, l.at));
+    let found = curve.piece_of(l.gap.feature, l.at).or_else(kink).and_then(|i| curve.chain(i, load));
     let Some((i, home)) = found else { return Err(no_seat) };
     let p = curve.project(i, l.at);
     let tension = strand.force(course, k, l.s).norm();
@@ -437,6 +475,7 @@ pub(super) fn touch(strand: &mut Strand, course: &Course, k: usize, l: &Landing)
         pocket: false,
         joined: false,
         weight: true,
+        kink: None,
         smooth: true,
     };
     let Some(side) = l.tip else {
