@@ -61,10 +61,12 @@ impl Dynamics {
             return false;
         }
         let nodes = self.mesh.nodes();
-        let mut changed = self.let_go();
-        if self.take_hold() {
-            // What took hold may lift its neighbour off.
-            self.let_go();
+        let mut changed = self.let_go(&[]);
+        let taken = self.take_hold();
+        if !taken.is_empty() {
+            // What took hold may lift its neighbour off. Itself it waits for a step: it took over weight of the nodes beside it, which under
+            // a corner pulls it away until they have moved.
+            self.let_go(&taken);
             changed = true;
         }
         let moved = self.move_marks();
@@ -105,7 +107,8 @@ impl Dynamics {
         Some(Load::new(node, tension, [&path[0], &path[1]], (self.task.body, share)))
     }
 
-    fn let_go(&mut self) -> bool {
+    /// Lets go of the sliding nodes that press on nothing, but for those on `kept`; returns whether there were any.
+    fn let_go(&mut self, kept: &[Seat]) -> bool {
         let mut changed = false;
         let mut k = 1;
         while k + 1 < self.mesh.nodes() {
@@ -114,7 +117,7 @@ impl Dynamics {
                 Some(Seat::Pulley(support)) => {
                     self.problem.supports.get(support).is_none_or(|s| !s.holds_from(self.motion.time))
                 }
-                Some(Seat::Obstacle { .. }) => self.lifts_off(k),
+                Some(seat @ Seat::Obstacle { .. }) => !kept.contains(&seat) && self.lifts_off(k),
             };
             if leaves && self.runs_straight(k) && self.clear_without(k) {
                 self.remove(k);
@@ -250,12 +253,13 @@ impl Dynamics {
         (self.mesh.arc_length[a] - self.mesh.arc_length[b]).abs()
     }
 
-    fn take_hold(&mut self) -> bool {
+    /// Puts sliding nodes where corners and circles press; returns their seats.
+    fn take_hold(&mut self) -> Vec<Seat> {
+        let mut taken = Vec::new();
         if self.problem.world.is_empty() || !self.slides {
-            return false;
+            return taken;
         }
         let mut touches = std::mem::take(&mut self.touches);
-        let mut changed = false;
         for _ in 0..MAX_CHANGES {
             self.contacts.find(&self.problem, &self.mesh, &self.motion.x, &mut touches);
             let found = touches.iter().find_map(|t| {
@@ -276,10 +280,10 @@ impl Dynamics {
                 None => self.insert(bar + 1, arc_length, Some(sliding)),
             }
             self.clear_around(node.unwrap_or(bar + 1));
-            changed = true;
+            taken.push(sliding.seat);
         }
         self.touches = touches;
-        changed
+        taken
     }
 
     /// Whether a sliding node between two nodes would bend the cable the right way and its bars would meet nothing.
