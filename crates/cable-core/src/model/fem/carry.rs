@@ -355,7 +355,7 @@ impl Dynamics {
             sum -= touch.pair.gap.normal * touch.load(&self.contacts.barrier);
         }
         for rub in self.contacts.rubs.iter().filter(|r| r.touch.pair.gap.obstacle == obstacle) {
-            sum -= rub_force(rub, x);
+            sum -= rub_force(&self.contacts, rub, x);
         }
         sum
     }

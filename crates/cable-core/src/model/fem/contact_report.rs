@@ -1,6 +1,6 @@
 //! Reads tensions, reactions and contacts out of a state.
 
-use super::contact_set::{Rub, SLIDE, Touch};
+use super::contact_set::{ContactSet, Rub, Touch};
 use super::dynamics::Dynamics;
 use super::sliding::Seat;
 use crate::contact::friction;
@@ -97,17 +97,17 @@ fn free_end(d: &Dynamics, node: usize) -> Option<Vec2> {
 fn ground_force(d: &Dynamics, node: usize, x: &[Vec2]) -> Vec2 {
     let mut sum = Vec2::zeros();
     for rub in d.contacts.rubs.iter().filter(|r| r.touch.node == node && !r.touch.on_segment) {
-        sum += rub.touch.pair.gap.normal * rub.touch.load(&d.contacts.barrier) + rub_force(rub, x);
+        sum += rub.touch.pair.gap.normal * rub.touch.load(&d.contacts.barrier) + rub_force(&d.contacts, rub, x);
     }
     if let Some(&limit) = d.task.floor_limit.get(node) {
-        sum -= friction::at_plane(d.contacts.floor_slid[node], limit, SLIDE).1;
+        sum -= friction::at_plane(d.contacts.floor_slid[node], limit, d.contacts.slip).1;
     }
     sum
 }
 
 /// Friction force on the cable, N.
-pub(super) fn rub_force(rub: &Rub, x: &[Vec2]) -> Vec2 {
-    -rub.tangent * friction::at(rub.sliding(x), rub.limit, SLIDE).1
+pub(super) fn rub_force(contacts: &ContactSet, rub: &Rub, x: &[Vec2]) -> Vec2 {
+    -rub.tangent * friction::at(rub.sliding(x), rub.limit, contacts.slip).1
 }
 
 fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2; 2]) -> Vec<Node> {
@@ -335,8 +335,8 @@ fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> Conta
     }) {
         let e = rub.touch.node.min(bars - 1);
         let along = d.mesh.path(e, x).direction;
-        friction_n += rub_force(rub, x).dot(&along);
-        if rub.sliding(x).abs() > 0.999 * SLIDE {
+        friction_n += rub_force(&d.contacts, rub, x).dot(&along);
+        if rub.sliding(x).abs() > 0.999 * d.contacts.slip {
             slips += rub.limit;
         }
     }

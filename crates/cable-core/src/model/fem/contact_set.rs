@@ -10,8 +10,25 @@ use crate::contact::pairs::Pair;
 use crate::math::Vec2;
 use crate::problem::Problem;
 
-/// Sliding at which friction is fully mobilised (ε), m. 1e-6 costs half as many iterations again, 1e-4 creeps.
+/// Sliding at which friction is fully mobilised (ε) in motion, and the most of it at rest, m. 1e-6 costs half as many iterations
+/// again, 1e-4 creeps.
 pub const SLIDE: f64 = 1e-5;
+
+/// ε at rest in parts of what the cable stretches under its weight or its greatest tension: where holding ground gives way by as
+/// much as the cable stretches, nothing shows that it holds. Of the tension where a pull has turned round 1e-3 loses up to 3 %,
+/// 1e-4 up to 0.9 %; smaller costs iterations.
+const SLIDE_PART: f64 = 1e-4;
+
+/// Least ε, m: friction of newtons is then a spring of 1e9 N/m, and the rounding of a coordinate of 10 m still a millionth of ε.
+const LEAST_SLIDE: f64 = 1e-9;
+
+/// ε of a cable at rest under a greatest force of `force` (N), m.
+#[must_use]
+pub fn slip_at_rest(problem: &Problem, force: f64) -> f64 {
+    let stretch = force * problem.length / problem.axial_stiffness;
+    // A force that is no number is none of a state to be kept.
+    (SLIDE_PART * stretch).clamp(LEAST_SLIDE, SLIDE)
+}
 
 /// Steps for which a contact without load is remembered: fewer and trembling contacts creep; many more and a cable
 /// that was lifted and put back is held as if it had stayed.
@@ -110,6 +127,8 @@ impl Rub {
 pub struct ContactSet {
     /// The barrier.
     pub barrier: Barrier,
+    /// Sliding at which friction is fully mobilised (ε), m.
+    pub slip: f64,
     /// Friction of the present step.
     pub rubs: Vec<Rub>,
     /// By node; of one node the newest first.
@@ -130,9 +149,10 @@ pub struct ContactSet {
 impl ContactSet {
     /// No contact yet.
     #[must_use]
-    pub fn new(barrier: Barrier, nodes: usize) -> Self {
+    pub fn new(barrier: Barrier, slip: f64, nodes: usize) -> Self {
         Self {
             barrier,
+            slip,
             rubs: Vec::with_capacity(nodes),
             memory: Vec::with_capacity(2 * nodes),
             spare: Vec::with_capacity(2 * nodes),
@@ -146,8 +166,8 @@ impl ContactSet {
 
     /// Becomes a copy without new memory where there is room.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { barrier, rubs, memory, spare: _, scratch: _, near: _, floor_slid, own, carriage } = other;
-        self.barrier = *barrier;
+        let Self { barrier, slip, rubs, memory, spare: _, scratch: _, near: _, floor_slid, own, carriage } = other;
+        (self.barrier, self.slip) = (*barrier, *slip);
         // With room for as many, so that a front of contact that runs on asks for none; and no more, or each copy would double it.
         self.rubs.clear();
         self.rubs.reserve_exact(rubs.capacity());
@@ -158,6 +178,18 @@ impl ContactSet {
         self.floor_slid.clone_from(floor_slid);
         self.own.copy_from(own);
         self.carriage = *carriage;
+    }
+
+    /// Friction is from now on fully mobilised at a sliding of `slip` (m); every contact keeps its force.
+    pub fn set_slip(&mut self, slip: f64) {
+        let part = slip / self.slip;
+        if part == 1.0 {
+            return;
+        }
+        self.memory.iter_mut().for_each(|m| m.slid *= part);
+        self.rubs.iter_mut().for_each(|r| r.slid *= part);
+        self.floor_slid.iter_mut().for_each(|s| *s *= part);
+        self.slip = slip;
     }
 
     /// Forgets all friction.
@@ -308,7 +340,7 @@ impl ContactSet {
                 on_segment: rub.touch.on_segment,
                 feature: gap.feature,
                 obstacle: gap.obstacle,
-                slid: friction::return_map(rub.sliding(end), SLIDE),
+                slid: friction::return_map(rub.sliding(end), self.slip),
                 age: 0,
             });
         }
@@ -326,7 +358,7 @@ impl ContactSet {
         if problem.floor_friction.is_some() {
             for (k, (slid, (e, s))) in self.floor_slid.iter_mut().zip(end.iter().zip(start)).enumerate() {
                 let by = if mesh.sliding[k].is_some() { Vec2::new(slide[k], 0.0) } else { e - s };
-                *slid = friction::return_map_plane(*slid + by, SLIDE);
+                *slid = friction::return_map_plane(*slid + by, self.slip);
             }
         }
         // What is left in `rubs` now tells of the state reached: nothing slides further from here.

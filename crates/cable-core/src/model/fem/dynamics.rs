@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::assembly::Mesh;
 use super::carry::Rider;
-use super::contact_set::{ContactSet, Touch};
+use super::contact_set::{ContactSet, SLIDE, Touch, slip_at_rest};
 use super::contact_start::{lay, push_out, way};
 use super::contact_step::Workspace;
 use super::free_step::FreeStep;
@@ -143,7 +143,7 @@ impl Dynamics {
         let barrier = Barrier { reach: REACH, stiffness: STIFFNESS * normal_per_m * even };
         let task = Task { tolerance: tolerance(&problem, whole), ..Task::default() };
         let mut this = Self {
-            contacts: ContactSet::new(barrier, n),
+            contacts: ContactSet::new(barrier, SLIDE, n),
             reaction: vec![Vec2::zeros(); n],
             motion: Motion {
                 x: lay(&mesh, &way),
@@ -294,15 +294,23 @@ impl Dynamics {
         if self.meets_nothing() {
             return;
         }
-        let mut most = 0.0;
-        for e in 0..self.mesh.rest_length.len() {
-            let tension = self.mesh.bar(e).tension(self.mesh.path(e, &self.motion.x).length);
-            most = if tension > most { tension } else { most };
-        }
+        let most = self.greatest_tension();
         let least = STIFFNESS * self.bar_weight;
         let wanted = if TAUT_STIFFNESS * most > least { TAUT_STIFFNESS * most } else { least };
         let now = self.contacts.barrier.stiffness;
         self.contacts.barrier.stiffness = (wanted * ahead).clamp(now * down, now * up);
+    }
+
+    /// The same for the sliding at which friction is fully mobilised, where inertia does not count.
+    pub(super) fn adapt_slip(&mut self) {
+        let (weight, tension) = (load_scale(&self.problem).0 * self.problem.length, self.greatest_tension());
+        self.contacts.set_slip(slip_at_rest(&self.problem, if tension > weight { tension } else { weight }));
+    }
+
+    /// Greatest tension of a bar, N.
+    fn greatest_tension(&self) -> f64 {
+        let tension = |e| self.mesh.bar(e).tension(self.mesh.path(e, &self.motion.x).length);
+        (0..self.mesh.rest_length.len()).map(tension).fold(0.0, |most, t| if t > most { t } else { most })
     }
 
     /// `h` (s), or less where a support lets go on the way.

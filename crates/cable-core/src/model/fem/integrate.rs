@@ -8,6 +8,7 @@
 //! After each step contacts are made plastic: the barrier is a spring and would throw a landing cable back at
 //! 0.4 to 0.8 of its speed, so the velocity along the normal is taken out of everything that touches.
 
+use super::contact_set::SLIDE;
 use super::dynamics::{Dynamics, REACH, STIFFNESS_CHANGE};
 use super::prepare::damping_time;
 use super::task::{Done, Failure, Pose};
@@ -78,6 +79,7 @@ impl Dynamics {
         }
         self.prepare_way([self.motion.time, self.motion.time + h], Some(dragged));
         self.adapt_reach();
+        self.contacts.set_slip(SLIDE);
         self.adapt_stiffness(STIFFNESS_CHANGE, 1.0);
         let omega = if self.motion.step_before > 0.0 { h / self.motion.step_before } else { 0.0 };
         let alpha = (1.0 + 2.0 * omega) / (1.0 + omega);

@@ -1,6 +1,7 @@
 //! Resting places and slow motion in contact.
 
 use super::carry::Rider;
+use super::contact_set::SLIDE;
 use super::contact_start::push_out;
 use super::dynamics::{Dynamics, REACH};
 use super::integrate::PULLED;
@@ -57,12 +58,19 @@ impl Dynamics {
         let mut total = Done::default();
         for round in 0..CORNER_ROUNDS {
             self.prepare_way([to, to], Some(dragged));
+            self.adapt_slip();
             self.set_reach(REACH);
             self.adapt_stiffness([f64::INFINITY, 0.0], 1.0);
             self.task.max_iterations = REST_ITERATIONS;
             self.task.most_noise = NEGLIGIBLE * self.task.tolerance;
             let mut pose = self.still_pose();
-            let done = self.lag(&mut pose, LAG_ROUNDS);
+            let mut done = self.lag(&mut pose, LAG_ROUNDS);
+            if done.is_err() && self.contacts.slip < SLIDE {
+                // Where grips change all along the cable, as on a first lay, ground that gives way is easier to come to rest on.
+                self.contacts.set_slip(SLIDE);
+                pose = self.still_pose();
+                done = self.lag(&mut pose, LAG_ROUNDS);
+            }
             if round == 0
                 && pull.is_finite()
                 && let Some(node) = self.pulled_by(&pose.x, pull)
@@ -167,6 +175,7 @@ impl Dynamics {
         let mut last = Failure { node: 0, residual: f64::NAN, cause: "it never came to rest" };
         for round in 0..MAX_RELAX {
             self.prepare_task(to, Some(dragged));
+            self.adapt_slip();
             let even = self.problem.length / self.even_bars as f64;
             self.task.inertia.fill(resistance);
             for k in 0..self.mesh.nodes() {

@@ -10,7 +10,7 @@
 
 use super::assembly::Mesh;
 use super::bar;
-use super::contact_set::{ContactSet, SLIDE};
+use super::contact_set::ContactSet;
 use super::contact_step::Workspace;
 use super::task::{Done, Failure, Pose, Task};
 use crate::contact::friction::Branch;
@@ -33,7 +33,7 @@ const NEAR_ENOUGH: f64 = 1e-2;
 const ROUNDING: f64 = 1e-12;
 
 /// Part of the sliding at which friction changes from holding to slipping that counts as none: of friction as much.
-const BRANCH_ROUNDING: f64 = 1e-9;
+const BRANCH_ROUNDING: f64 = 1e-14;
 
 impl Workspace {
     /// Minimises Φ from `pose`, which becomes the answer; on failure it is where it got to.
@@ -136,7 +136,7 @@ impl Workspace {
     ) -> Option<Done> {
         self.move_on((problem, mesh), contacts, task, pose);
         self.branches.clear();
-        self.branches.extend(contacts.rubs.iter().map(|r| Branch::at(r.sliding(&pose.x), SLIDE)));
+        self.branches.extend(contacts.rubs.iter().map(|r| Branch::at(r.sliding(&pose.x), contacts.slip)));
         let mut first = f64::NAN;
         self.near_enough = false;
         for iterations in 0..=MAX_STEPS {
@@ -169,7 +169,7 @@ impl Workspace {
             let whole = self.whole(task);
             self.walk(mesh, task, pose, if free < whole { free } else { whole });
             for (b, r) in self.branches.iter_mut().zip(&contacts.rubs) {
-                *b = b.next(r.sliding(&pose.x), SLIDE);
+                *b = b.next(r.sliding(&pose.x), contacts.slip);
             }
         }
         None
@@ -218,7 +218,8 @@ impl Workspace {
     /// Whether the bars that count as stretched are those that are, and friction holds and slips where it is taken to.
     fn flags_hold(&self, mesh: &Mesh, contacts: &ContactSet, x: &[Vec2]) -> bool {
         let rubs = contacts.rubs.iter().zip(&self.branches);
-        let holds = |y: f64, b: Branch| b == Branch::at(y, SLIDE) || (y.abs() - SLIDE).abs() <= BRANCH_ROUNDING * SLIDE;
+        let slip = contacts.slip;
+        let holds = |y: f64, b: Branch| b == Branch::at(y, slip) || (y.abs() - slip).abs() <= BRANCH_ROUNDING;
         rubs.map(|(r, b)| (r.sliding(x), *b)).all(|(y, b)| holds(y, b))
             && self.carried.iter().enumerate().all(|(e, carried)| {
                 let strain = (x[e + 1] - x[e]).norm() / mesh.rest_length[e] - 1.0;

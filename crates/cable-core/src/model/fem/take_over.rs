@@ -6,7 +6,7 @@
 //! sliding y that gives the friction the answer had is what a contact remembers from then on. Corners and posts get their sliding
 //! nodes at once, with the material the answer has there.
 
-use super::contact_set::{SLIDE, Touch};
+use super::contact_set::Touch;
 use super::contact_start::push_out;
 use super::dynamics::Dynamics;
 use super::dynamics::REACH;
@@ -317,7 +317,7 @@ impl Dynamics {
                 // On the node acts −μN(2u − u|u|) along the tangent.
                 let part = (-pushed.dot(&touch.tangent()) / limit).clamp(-1.0, 1.0);
                 let u = part.signum() * (1.0 - (1.0 - part.abs()).sqrt());
-                self.contacts.remember(touch, u * SLIDE);
+                self.contacts.remember(touch, u * self.contacts.slip);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! What contacts with obstacles add to the equations of a step.
 
 use super::assembly::{Mesh, System};
-use super::contact_set::{ContactSet, SLIDE, Touch};
+use super::contact_set::{ContactSet, Touch};
 use super::contact_step::node_scale;
 use super::task::{Pose, Task};
 use crate::contact::friction::{self, Branch};
@@ -90,9 +90,9 @@ pub fn add_rubs(
     for (k, rub) in contacts.rubs.iter().enumerate() {
         let scale = task.scale.get(rub.touch.node).copied().unwrap_or(node_scale(task, rub.touch.node));
         let y = rub.sliding(x);
-        let (d, mut slope, mut bend) = friction::at(y, rub.limit, SLIDE);
+        let (d, mut slope, mut bend) = friction::at(y, rub.limit, contacts.slip);
         if let Some(branch) = branches.get(k) {
-            (slope, bend) = branch.force(y, rub.limit, SLIDE);
+            (slope, bend) = branch.force(y, rub.limit, contacts.slip);
         }
         value += d * scale;
         let block = rub.tangent * rub.tangent.transpose() * (bend * scale);
@@ -107,13 +107,13 @@ pub fn add_floor(s: &mut System, (mesh, task): (&Mesh, &Task), contacts: &Contac
     for (i, &limit) in task.floor_limit.iter().enumerate() {
         let scale = node_scale(task, i);
         if mesh.sliding[i].is_some() {
-            let (d, slope, bend) = friction::at(contacts.floor_slid[i].x + pose.slide[i], limit, SLIDE);
+            let (d, slope, bend) = friction::at(contacts.floor_slid[i].x + pose.slide[i], limit, contacts.slip);
             value += d * scale;
             s.gradient[2 * i] += slope * scale;
             s.hessian.add(2 * i, 2 * i, bend * scale);
         } else {
             let slid = contacts.floor_slid[i] + (pose.x[i] - task.start[i]);
-            let (d, slope, bend) = friction::at_plane(slid, limit, SLIDE);
+            let (d, slope, bend) = friction::at_plane(slid, limit, contacts.slip);
             value += d * scale;
             s.add_gradient(i, slope * scale);
             s.add_block(i, i, &(bend * scale));
