@@ -35,7 +35,7 @@ const MOST_RAISED: usize = 5;
 /// Friction, of the force there, that may be missing in the step in which a load comes down, and the shortest step taken for its
 /// sake. More: forces are off by as much while such a step lasts. Less: more steps.
 const FRESH: f64 = 3e-4;
-const LANDS: f64 = 1.0 / 128.0;
+const LANDS: f64 = 1.0 / 64.0;
 /// Spans that are tried as pockets in one step. More: dearer failures, each halving tries again.
 const MOST_POCKETS: usize = 3;
 /// Tension at which a rest is first sought, of the weight of the cable: so taut that it touches only what it is led
@@ -416,23 +416,32 @@ impl Network {
     ) -> Result<Taken, (Trouble, f64)> {
         let (mut done, mut step, mut taken) = (0.0, first, Taken::default());
         let mut halvings: u32 = 0;
+        // Not on the way to a first rest; and the step that was taken but had something come down in it.
+        let (mut moves, mut whole) = (first >= 1.0, None);
         while done < 1.0 {
             let next = if done + 1.000_001 * step >= 1.0 { 1.0 } else { done + step };
             at.between(from, to, next);
             let trouble = match self.step(layout, at, work) {
                 // What comes down has no friction in the step in which it does: that shall be a short one.
-                Ok(t) if t.fresh > FRESH && step > LANDS => {
+                Ok(t) if moves && t.fresh > FRESH && step > LANDS => {
                     self.undo(layout, work);
+                    whole = whole.or(Some(step));
                     (step, taken.halved) = (0.5 * step, taken.halved + 1);
                     continue;
                 }
                 Ok(t) => {
+                    (moves, whole) = (first >= 1.0, None);
                     taken = taken.and(t);
                     done = next;
                     if halvings > 0 || step < LARGEST_STEP {
                         halvings = halvings.saturating_sub(1);
                         step *= 2.0;
                     }
+                    continue;
+                }
+                // The long step was taken: better that than none.
+                Err(_) if whole.is_some() => {
+                    (moves, step) = (false, whole.take().unwrap_or(step));
                     continue;
                 }
                 Err(trouble) => trouble,
