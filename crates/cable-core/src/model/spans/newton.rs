@@ -38,7 +38,7 @@ const RESIDUAL: f64 = 1e-11;
 const STIFF_RESIDUAL: f64 = 2e-14;
 /// Where no step gains anything the residual is rounding if it is below so many times the one wanted. Larger: a step that
 /// was halved often enough is taken without having been solved.
-const ROUNDING: f64 = 100.0;
+const ROUNDING: f64 = 20.0;
 /// A contact's end moves by at most so many radians in one iteration. Larger: it jumps a turn of a post.
 const MOST_TURN: f64 = 0.7;
 /// A span keeps at least this part of its material in one iteration.
