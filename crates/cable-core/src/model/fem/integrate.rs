@@ -129,7 +129,7 @@ impl Dynamics {
         self.land_on_itself(QUIET, h);
         self.contacts.carriage = None;
         if !self.never_slides {
-            self.remesh();
+            self.remesh(false);
             if let Some(node) = self.crossing() {
                 return Err(Failure { node, residual: done.residual, cause: "the cable would run through a corner" });
             }

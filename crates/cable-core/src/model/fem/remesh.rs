@@ -55,8 +55,8 @@ const FOLDED: f64 = 0.2;
 pub(super) const MAX_CHANGES: usize = 400;
 
 impl Dynamics {
-    /// Adapts the mesh to what the cable runs over; returns whether that changed (new bars alone do not count).
-    pub(super) fn remesh(&mut self) -> bool {
+    /// Adapts the mesh to what the cable runs over, at rest or in motion; returns whether that changed (new bars alone do not count).
+    pub(super) fn remesh(&mut self, rests: bool) -> bool {
         if self.contacts.own.shape.is_on() {
             return false;
         }
@@ -64,9 +64,9 @@ impl Dynamics {
         let mut changed = self.let_go(&[]);
         let taken = self.take_hold();
         if !taken.is_empty() {
-            // What took hold may lift its neighbour off. Itself it waits for a step: it took over weight of the nodes beside it, which under
-            // a corner pulls it away until they have moved.
-            self.let_go(&taken);
+            // What took hold may lift its neighbour off. Itself it waits for a step where inertia does not count: it took over weight of the
+            // nodes beside it, which under a corner pulls it away until they have moved.
+            self.let_go(if rests { &taken } else { &[] });
             changed = true;
         }
         let moved = self.move_marks();

@@ -131,7 +131,7 @@ impl Dynamics {
         self.motion.time = to;
         self.slide(&pose.slide);
         self.forget_history();
-        self.remesh()
+        self.remesh(true)
     }
 
     /// Weight of an element over a tenth of a metre: enough to keep slack nodes from wandering.
