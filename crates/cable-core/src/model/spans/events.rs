@@ -6,6 +6,7 @@
 
 use super::curve::{Curve, Home};
 use super::history::{Ends, History, Knot, Mode};
+use super::landing;
 use super::newton::{self, Solved, Work};
 use super::pass;
 use super::pocket;
@@ -214,8 +215,8 @@ fn meet(strand: &mut Strand, course: &Course, world: &World, resting: bool) -> R
     let mut any = false;
     // From the last span, so that those before keep their number.
     for k in (0..strand.spans()).rev() {
-        if let Some(landing) = weight::landing(strand, course, world, (k, deep)) {
-            weight::touch(strand, course, k, &landing)?;
+        if let Some(landing) = landing::find(strand, course, world, (k, deep)) {
+            landing::touch(strand, course, k, &landing)?;
             any = true;
             continue;
         }
