@@ -33,3 +33,4 @@ pub use tables::{
     read_nodes,
 };
 pub use whole::WholeRecords;
+pub(crate) use whole::record_ends;

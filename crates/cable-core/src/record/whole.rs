@@ -9,6 +9,16 @@ const LONGEST_RECORD: usize = 1 << 20;
 /// Bytes read at once.
 const CHUNK: usize = 1 << 16;
 
+/// Where the records of a CSV text end, each after its line end.
+pub(crate) fn record_ends(text: &[u8]) -> impl Iterator<Item = usize> {
+    let mut quoted = false;
+    text.iter().enumerate().filter_map(move |(k, byte)| {
+        // Two quotes in a row, which stand for one in a field, change nothing.
+        quoted ^= *byte == b'"';
+        (*byte == b'\n' && !quoted).then_some(k + 1)
+    })
+}
+
 /// Passes on the whole records of a CSV text and holds back what follows the last end of a record, since nobody can know whether
 /// its last number is all there.
 pub struct WholeRecords<R> {
@@ -101,6 +111,12 @@ mod tests {
             assert_eq!(out, &text[..whole], "cut at {cut}");
             assert_eq!(from.left_out_bytes(), cut - whole);
         }
+    }
+
+    #[test]
+    fn records_end_at_lines_outside_quotes() {
+        let text = b"a,b\n1,\"two\nlines, \"\"quoted\"\"\"\n3,4\n5";
+        assert_eq!(record_ends(text).collect::<Vec<_>>(), [4, 31, 35]);
     }
 
     #[test]
