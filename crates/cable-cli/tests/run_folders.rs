@@ -411,6 +411,23 @@ fn a_run_that_fills_the_disk_leaves_readable_tables_and_the_earlier_run() {
     }
 }
 
+/// A line that lies on two pages of its file is cut where a run is killed between them, once in some hundred times.
+#[test]
+fn no_line_lies_on_two_pages() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, out) = (span(folder.path()), folder.path().join("run"));
+    let mut command = cable(&["run", "--for", "10s", "--every", "0.01s", "--quasi-static"]);
+    let o = command.arg(&scene).arg("--out").arg(&out).output().unwrap();
+    assert_eq!(o.status.code(), Some(0), "{}", said(&o));
+    for name in TABLES {
+        let bytes = std::fs::read(out.join(name)).unwrap();
+        let pages = bytes.chunks_exact(4096).count();
+        assert_eq!(bytes.chunks_exact(4096).filter(|page| page.last() == Some(&b'\n')).count(), pages, "{name}");
+        assert!(name == "events.csv" || pages > 10);
+    }
+    assert_eq!(foreign_rows(&out.join("history.csv")), Ok(1001));
+}
+
 #[test]
 fn columns_and_interval_of_nodes_are_chosen() {
     let folder = tempfile::tempdir().unwrap();

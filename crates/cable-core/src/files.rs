@@ -10,8 +10,8 @@ use thiserror::Error;
 
 use crate::error::SceneError;
 use crate::record::{
-    FileRecord, Fingerprint, MANIFEST_HEAD, Manifest, NodeChoice, RunRequest, RunStatus, RunTables, RunWriter,
-    WriteError, has_rows, read_run, record_ends,
+    FileRecord, Fingerprint, MANIFEST_HEAD, Manifest, NodeChoice, Pages, RunRequest, RunStatus, RunTables, RunWriter,
+    WriteError, has_rows, read_run,
 };
 use crate::scene::Scene;
 use crate::scene::file::MAX_TEXT_BYTES;
@@ -250,57 +250,42 @@ struct TableFile {
     file: fs::File,
     bytes: u64,
     hash: Fingerprint,
+    pages: Pages,
 }
+
+/// What a [`TableFile`] held at some moment.
+type Mark = (u64, Fingerprint, Pages);
 
 impl TableFile {
     /// Makes a file that is not there yet.
     fn create(path: &Path) -> io::Result<Self> {
         let file = fs::OpenOptions::new().append(true).create_new(true).open(path)?;
-        Ok(Self { file, bytes: 0, hash: Fingerprint::default() })
+        Ok(Self { file, bytes: 0, hash: Fingerprint::default(), pages: Pages::default() })
     }
 
-    fn mark(&self) -> (u64, Fingerprint) {
-        (self.bytes, self.hash)
+    fn mark(&self) -> Mark {
+        (self.bytes, self.hash, self.pages)
     }
 
     /// Takes back what was written since.
-    fn rewind(&mut self, (bytes, hash): (u64, Fingerprint)) {
+    fn rewind(&mut self, (bytes, hash, pages): Mark) {
         // Where even that fails the table ends within a line, which readers leave out.
         let _ = self.file.set_len(bytes);
-        (self.bytes, self.hash) = (bytes, hash);
+        (self.bytes, self.hash, self.pages) = (bytes, hash, pages);
     }
 }
 
-/// Bytes in which systems copy what is written into their memory, between which a process that is killed may stop: 4096 or a multiple. A
-/// smaller number makes more calls, with a larger one one in forty killed runs ended within a line.
-const PAGE: u64 = 4096;
-
 impl Write for TableFile {
-    /// Whole records within a page at once, and one that lies on two by itself, so that a process which is killed in here leaves whole
-    /// lines.
     fn write(&mut self, rows: &[u8]) -> io::Result<usize> {
         let before = self.mark();
-        let (mut from, mut to) = (0, 0);
-        let ends = record_ends(rows).chain([rows.len()]);
-        let mut parts = Vec::new();
-        for end in ends {
-            let room = PAGE - (before.0 + from as u64) % PAGE;
-            if (end - from) as u64 > room {
-                parts.extend([from..to, to..end]);
-                from = end;
-            }
-            to = end;
-        }
-        parts.push(from..to);
-        let parts = parts.into_iter().filter_map(|part| rows.get(part)).filter(|part| !part.is_empty());
-        for part in parts {
-            if let Err(e) = self.file.write_all(part) {
+        for part in self.pages.lay_out(rows) {
+            if let Err(e) = self.file.write_all(&part) {
                 self.rewind(before);
                 return Err(e);
             }
+            self.bytes += part.len() as u64;
+            self.hash.bytes(&part);
         }
-        self.bytes += rows.len() as u64;
-        self.hash.bytes(rows);
         Ok(rows.len())
     }
 

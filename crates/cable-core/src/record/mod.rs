@@ -9,7 +9,8 @@
 //! | `nodes.csv` | node and time | `time_s`, `cable`, then the fields of [`crate::solution::Node`], or those chosen ([`NodeChoice`]) |
 //! | `events.csv` | event | `time_s`, `kind`, `cable`, `arc_length_m`, `value`, `limit`, `message` |
 //!
-//! Numbers are written with the fewest digits that read back to the same bits. [`RunWriter`] writes the tables to any
+//! Numbers are written with the fewest digits that read back to the same bits (in a file some times have zeros after them, so that no row
+//! lies on two pages of it). [`RunWriter`] writes the tables to any
 //! [`std::io::Write`] in whole instants, `history.csv` last; [`read_run`] reads them again, up to the last instant that is whole in
 //! all of them, wherever they were cut off. [`read_history`], [`read_nodes`] and [`read_events`] read one of them. Folders are made
 //! and read in [`crate::files`].
@@ -18,6 +19,7 @@ mod choice;
 mod energy;
 mod fingerprint;
 mod history;
+mod page;
 mod run;
 mod tables;
 mod whole;
@@ -25,6 +27,7 @@ mod whole;
 pub use choice::{NodeChoice, NodeColumns, NodeInterval, UnknownColumn};
 pub use fingerprint::Fingerprint;
 pub use history::History;
+pub(crate) use page::Pages;
 pub(crate) use run::MANIFEST_HEAD;
 pub use run::{FileRecord, LeftOut, Manifest, NodeSummary, RunRequest, RunStatus, RunTables, read_run};
 pub(crate) use tables::has_rows;
@@ -33,4 +36,3 @@ pub use tables::{
     read_nodes,
 };
 pub use whole::WholeRecords;
-pub(crate) use whole::record_ends;
