@@ -34,6 +34,8 @@ impl Pages {
             if row.len() > self.room() {
                 self.fill(&mut parts, row_start, row.len());
                 parts.push(Vec::new());
+            } else if self.room() == PAGE {
+                parts.push(Vec::new());
             }
             if let Some(part) = parts.last_mut() {
                 row_start = part.len();
