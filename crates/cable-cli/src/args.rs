@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use cable_core::Model;
 use cable_core::model::mass_spring::Stepping;
+use cable_core::record::{NodeChoice, NodeColumns, NodeInterval};
 use clap::{Args, Parser, Subcommand};
 
 #[derive(Debug, Parser)]
@@ -11,7 +12,8 @@ use clap::{Args, Parser, Subcommand};
     name = "cable",
     version,
     about = "Where a cable goes, how hard it pulls, where it rubs",
-    after_help = "Exit codes: 0 answered, 1 no solution or not converged, 2 bad input, 74 could not write."
+    after_help = "Exit codes: 0 answered, 1 no solution or not converged, 2 bad input, 74 could not write; \
+                  130 and 143 where SIGINT (Ctrl-C) or SIGTERM ended a run, whose folder then holds what was reached."
 )]
 pub struct Arguments {
     #[command(subcommand)]
@@ -24,9 +26,9 @@ pub enum Command {
     Solve(SolveArguments),
     /// Follow the scene over time and write a run folder
     Run(RunArguments),
-    /// Say whether a scene can be solved, without solving it
+    /// Say whether a scene can be solved, without solving it; of a run folder, whether it is complete and how far it came
     Check {
-        /// Scene file (TOML)
+        /// Scene file (TOML), or run folder
         scene: PathBuf,
     },
     /// Print the JSON Schema of a scene file
@@ -55,6 +57,11 @@ pub struct SolveArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "\
+A run folder holds scene.toml, run.toml (what was asked, and whether the run is complete), history.csv (a row per time), \
+nodes.csv (a row per node and time) and events.csv (warnings and breaks as they begin). DIR must be new, empty or the folder of an \
+earlier run, which is kept until the new run is complete; until then that is in DIR/unfinished-N. A run that was ended early \
+(Ctrl-C, a full disk, no solution) leaves readable tables up to its last whole instant, and status = \"partial\" in run.toml.")]
 pub struct RunArguments {
     #[command(flatten)]
     pub common: Common,
@@ -70,8 +77,15 @@ pub struct RunArguments {
     /// How mass-spring steps: auto, explicit or preview
     #[arg(long, default_value = "auto", value_parser = stepping)]
     pub stepping: Stepping,
-    /// Folder for scene.toml, history.csv, nodes.csv and events.csv; those of an earlier run there are replaced
-    #[arg(long)]
+    /// Time between outputs to nodes.csv, which is by far the largest table, or "never" [default: as --every]
+    #[arg(long, value_name = "TIME", value_parser = node_interval)]
+    pub nodes_every: Option<NodeInterval>,
+    /// Columns of nodes.csv beside time_s and cable, with commas between: arc_length_m, x_m, y_m, vx_m_per_s, vy_m_per_s,
+    /// tension_n, strain, stress_pa, curvature_per_m [default: all]
+    #[arg(long, value_name = "COLUMNS", value_parser = node_columns)]
+    pub node_columns: Option<NodeColumns>,
+    /// Folder to write into: a new one, an empty one, or that of an earlier run
+    #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }
 
@@ -84,6 +98,18 @@ impl RunArguments {
     pub fn every_s(&self) -> f64 {
         let part = if self.quasi_static { f64::INFINITY } else { self.duration_s / 500.0 };
         self.every.unwrap_or((1.0_f64 / 60.0).min(part))
+    }
+
+    /// What goes into nodes.csv.
+    pub fn node_choice(&self) -> Result<NodeChoice, String> {
+        let interval = self.nodes_every.unwrap_or(NodeInterval::EveryOutput);
+        match interval {
+            NodeInterval::Seconds(nodes_s) if nodes_s < self.every_s() => Err(format!(
+                "--nodes-every {nodes_s} s is shorter than the {} s between outputs: make --every shorter",
+                self.every_s()
+            )),
+            _ => Ok(NodeChoice { columns: self.node_columns.unwrap_or(NodeColumns::ALL), interval }),
+        }
     }
 }
 
@@ -116,6 +142,17 @@ fn interval_s(text: &str) -> Result<f64, String> {
     time_s(text)
         .filter(|v| (1e-6..=1e7).contains(v))
         .ok_or_else(|| "must be a time from 1e-6s to 1e7s, such as 0.02s".to_owned())
+}
+
+fn node_interval(text: &str) -> Result<NodeInterval, String> {
+    match text.trim() {
+        "never" => Ok(NodeInterval::Never),
+        text => interval_s(text).map(NodeInterval::Seconds).map_err(|e| format!("{e}, or never")),
+    }
+}
+
+fn node_columns(text: &str) -> Result<NodeColumns, String> {
+    NodeColumns::named(text.split(',').map(str::trim).filter(|name| !name.is_empty())).map_err(|e| e.to_string())
 }
 
 #[cfg(test)]

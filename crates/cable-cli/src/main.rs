@@ -1,11 +1,12 @@
 //! The headless program `cable`: where a cable rests, what happens to it over time, whether a scene is sound.
 //!
-//! Exit codes: 0 answered, 1 no solution or not converged, 2 bad input, 74 could not write.
+//! Exit codes: 0 answered, 1 no solution or not converged, 2 bad input, 74 could not write; 130 and 143 where SIGINT or SIGTERM ended a run.
 
 mod answer;
 mod args;
 mod output;
 mod run;
+mod signals;
 mod solve;
 mod table;
 
@@ -20,7 +21,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let done = match arguments.command {
         Command::Solve(a) => solve::solve(&a),
-        Command::Run(a) => run::run(&a),
+        Command::Run(a) => run::run(a),
         Command::Check { scene } => solve::check(&scene),
         Command::Schema => solve::schema(),
     };

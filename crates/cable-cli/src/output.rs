@@ -7,6 +7,8 @@ use cable_core::files::FileError;
 use cable_core::record::WriteError;
 use cable_core::{Error, SceneError, SolveError};
 
+use crate::signals::Signal;
+
 /// Why a command did not end well.
 #[derive(Debug)]
 pub enum Failure {
@@ -26,6 +28,14 @@ pub enum Failure {
     Argument(String),
     /// Standard output could not be written.
     Stdout(io::Error),
+    /// A signal ended a run; where what was reached lies, if it was still written.
+    Interrupted(Signal, Option<PathBuf>),
+    /// The run has ended already, and who ended it says why.
+    Ended,
+    /// Signals cannot be waited for.
+    Signals(io::Error),
+    /// No thread can be begun.
+    Thread(io::Error),
 }
 
 impl Failure {
@@ -33,10 +43,12 @@ impl Failure {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Scene(..) | Self::Argument(_) => 2,
-            Self::File(FileError::Write { .. }) | Self::Stdout(_) => 74,
+            Self::File(e) if e.is_of_writing() => 74,
+            Self::Table(_, WriteError::Io { .. }) | Self::Stdout(_) => 74,
             Self::File(_) => 2,
-            Self::Table(_, WriteError::NonFinite { .. }) | Self::Solve(_) | Self::NonFinite(_) | Self::Run { .. } => 1,
-            Self::Table(..) => 74,
+            Self::Table(..) | Self::Solve(_) | Self::NonFinite(_) | Self::Run { .. } => 1,
+            Self::Ended | Self::Signals(_) | Self::Thread(_) => 1,
+            Self::Interrupted(signal, _) => signal.exit_code(),
         }
     }
 
@@ -63,6 +75,13 @@ impl std::fmt::Display for Failure {
             }
             Self::Argument(what) => f.write_str(what),
             Self::Stdout(e) => write!(f, "cannot write to standard output: {e}"),
+            Self::Interrupted(signal, Some(out)) => {
+                write!(f, "interrupted by {}; what was reached is in {}", signal.name(), out.display())
+            }
+            Self::Interrupted(signal, None) => write!(f, "interrupted by {} after the run had ended", signal.name()),
+            Self::Ended => f.write_str("the run has ended"),
+            Self::Signals(e) => write!(f, "cannot wait for signals: {e}"),
+            Self::Thread(e) => write!(f, "cannot begin a thread: {e}"),
         }
     }
 }

@@ -1,53 +1,91 @@
 //! `cable run`: settles, then steps, and writes what it sees at every output time.
+//!
+//! A thread of its own solves and writes; the first thread waits for it and for signals, so that one which arrives in the midst of a
+//! long step, or while a reader of standard output is slow, ends the run at once with what was written.
 
-use std::time::Instant;
+use std::path::PathBuf;
+use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::time::{Duration, Instant};
 
+use cable_core::files::{RunEnd, RunFolder};
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
+use cable_core::record::{RunRequest, WriteError};
 use cable_core::solution::{MaxTension, Solution, WarningKind};
-use cable_core::{Settings, Simulation, SolveError, files};
+use cable_core::{Settings, Simulation, SolveError};
 
 use crate::Done;
 use crate::answer::answer;
 use crate::args::RunArguments;
 use crate::output::{Failure, Printer, Progress};
+use crate::signals::Signals;
 use crate::solve::{no_answer, read_scene, settings};
 use crate::table::table;
 
 /// Most output times of a run: 1e7 of them with 100 nodes are 100 GB of tables, which nobody meant.
 const MAX_OUTPUTS: f64 = 1e7;
 
+/// A run folder until the run has ended, by itself or by a signal.
+#[derive(Clone)]
+struct Shared(Arc<Mutex<Option<RunFolder>>>);
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, Option<RunFolder>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Writes something, unless the run has ended.
+    fn write(&self, out: &std::path::Path, write: impl FnOnce(&mut RunFolder) -> Result<(), WriteError>) -> Done {
+        match &mut *self.lock() {
+            Some(folder) => write(folder).map_err(|e| Failure::Table(out.to_owned(), e)),
+            None => Err(Failure::Ended),
+        }
+    }
+
+    /// Ends the run, unless it has ended. Where it lies then.
+    fn finish(&self, end: RunEnd) -> Option<Result<PathBuf, Failure>> {
+        let mut guard = self.lock();
+        Some(guard.take()?.finish(end).map_err(Failure::File))
+    }
+
+    /// Where it lies for now.
+    fn place(&self) -> Option<PathBuf> {
+        self.lock().as_ref().map(|folder| folder.place().to_owned())
+    }
+}
+
 /// Where the answers of a run go.
-struct Outputs<'a> {
-    arguments: &'a RunArguments,
-    folder: files::RunFolder,
+struct Outputs {
+    arguments: RunArguments,
+    folder: Shared,
+    printing: Arc<Mutex<()>>,
     printer: Printer,
     progress: Progress,
     peak: MaxTension,
     peak_time_s: f64,
     begun: Begun,
+    last: Option<Solution>,
 }
 
-impl Outputs<'_> {
-    fn push(&mut self, solution: &Solution, wall_time_s: f64) -> Done {
-        let printable = answer(solution, wall_time_s, Some(solution.time_s)).map_err(Failure::NonFinite)?;
-        self.folder.push(solution).map_err(|e| Failure::Table(self.arguments.out.clone(), e))?;
+impl Outputs {
+    fn push(&mut self, solution: Solution, wall_time_s: f64, is_last: bool) -> Done {
+        let printable = answer(&solution, wall_time_s, Some(solution.time_s)).map_err(Failure::NonFinite)?;
+        let push = if is_last { RunFolder::push_last } else { RunFolder::push };
+        self.folder.write(&self.arguments.out, |folder| push(folder, &solution))?;
         if self.arguments.common.json {
+            let _whole_line = self.printing.lock().unwrap_or_else(PoisonError::into_inner);
             self.printer.json(&printable)?;
             self.printer.flush()?;
         }
-        self.begun.look(solution);
+        self.begun.look(&solution);
         let top = solution.max_tension();
         if solution.time_s == 0.0 || top.tension_n > self.peak.tension_n {
             (self.peak, self.peak_time_s) = (top, solution.time_s);
         }
         self.progress.at(solution.time_s, self.arguments.duration_s, top.tension_n);
+        self.last = Some(solution);
         Ok(())
-    }
-
-    fn close(&mut self) -> Done {
-        self.progress.end();
-        self.folder.flush().map_err(|e| Failure::Table(self.arguments.out.clone(), e))
     }
 }
 
@@ -90,8 +128,14 @@ impl Begun {
     }
 }
 
+/// Time between two looks for a signal, s. Longer is felt by who waits for the end; shorter wakes the processor for nothing.
+const LOOK_EVERY_S: f64 = 0.02;
+
+/// Stack of the thread that solves, bytes: that of a first thread, 2 MiB is what others get.
+const STACK_BYTES: usize = 8 << 20;
+
 /// Follows a scene over time.
-pub fn run(a: &RunArguments) -> Done {
+pub fn run(a: RunArguments) -> Done {
     let every = a.every_s();
     if a.duration_s / every > MAX_OUTPUTS {
         return Err(Failure::Argument(format!(
@@ -99,56 +143,121 @@ pub fn run(a: &RunArguments) -> Done {
             a.duration_s
         )));
     }
+    let choice = a.node_choice().map_err(Failure::Argument)?;
     let scene = read_scene(&a.common.scene)?;
     let inertia = if a.quasi_static { Inertia::QuasiStatic } else { Inertia::Dynamic };
     let began = Instant::now();
     let settings = Settings { stepping: a.stepping, ..settings(&a.common) };
-    let mut simulation = Simulation::for_question(scene.clone(), a.common.model, settings, Question::History(inertia))
+    let simulation = Simulation::for_question(scene.clone(), a.common.model, settings, Question::History(inertia))
         .map_err(|e| Failure::from_core(&a.common.scene, e))?;
-    let folder = files::create_run(&a.out, &scene).map_err(Failure::File)?;
-    let mut outputs = Outputs {
+    // From here on a signal ends the run in order.
+    let signals = Signals::new().map_err(Failure::Signals)?;
+    let request = RunRequest {
+        program: format!("cable {}", env!("CARGO_PKG_VERSION")),
+        model: Some(a.common.model.name().to_owned()),
+        quasi_static: Some(a.quasi_static),
+        duration_s: Some(a.duration_s),
+        every_s: Some(every),
+    };
+    let mut folder = RunFolder::create(&a.out, &scene, request, choice).map_err(Failure::File)?;
+    // So that a run which is ended before its first instant has tables.
+    let with_robot = simulation.solution().robot.is_some();
+    folder.begin(&scene, with_robot).map_err(|e| Failure::Table(a.out.clone(), e))?;
+    let shared = Shared(Arc::new(Mutex::new(Some(folder))));
+    let printing = Arc::new(Mutex::new(()));
+    let outputs = Outputs {
         arguments: a,
-        folder,
+        folder: shared.clone(),
+        printing: printing.clone(),
         printer: Printer::new(),
         progress: Progress::new(),
         peak: MaxTension::default(),
         peak_time_s: 0.0,
         begun: Begun::default(),
+        last: None,
     };
+    let (done, ended) = sync_channel(1);
+    let solver = std::thread::Builder::new().name("solver".to_owned()).stack_size(STACK_BYTES);
+    let solver = solver.spawn(move || {
+        // Nobody listens where a signal has ended the run.
+        let _ = done.send(follow(simulation, inertia, outputs, began));
+    });
+    let solver = solver.map_err(Failure::Thread)?;
+    loop {
+        match ended.recv_timeout(Duration::from_secs_f64(LOOK_EVERY_S)) {
+            Ok(done) => return done,
+            Err(RecvTimeoutError::Timeout) => {
+                if let Some(signal) = signals.arrived() {
+                    let place = shared.place();
+                    // The tables are readable and marked as partial already, whether this can be noted or not.
+                    let _ = shared.finish(RunEnd::Partial(format!("interrupted by {}", signal.name())));
+                    wait_for_line(&printing);
+                    return Err(Failure::Interrupted(signal, place));
+                }
+            }
+            Err(RecvTimeoutError::Disconnected) => match solver.join() {
+                Err(panic) => {
+                    let _ = shared.finish(RunEnd::Partial("the solver panicked".to_owned()));
+                    std::panic::resume_unwind(panic)
+                }
+                Ok(()) => return Err(Failure::Ended),
+            },
+        }
+    }
+}
+
+/// Lets a line that is being printed end, unless its reader has stopped reading.
+fn wait_for_line(printing: &Mutex<()>) {
+    let began = Instant::now();
+    while let Err(TryLockError::WouldBlock) = printing.try_lock() {
+        if began.elapsed() > Duration::from_millis(200) {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// Solves, writes, and ends the run.
+fn follow(mut simulation: Simulation, inertia: Inertia, mut outputs: Outputs, began: Instant) -> Done {
     let walked = walk(&mut simulation, inertia, &mut outputs, began);
-    let closed = outputs.close();
-    // What stopped the run matters more than a table that could not be flushed after it.
-    walked.and(closed)?;
-    if !a.common.json {
-        let out = &mut outputs.printer;
-        out.line(table(&simulation.solution()).trim_end())?;
+    outputs.progress.end();
+    let end = match &walked {
+        Ok(()) => RunEnd::Complete,
+        Err(failure) => RunEnd::Partial(failure.to_string()),
+    };
+    let finished = outputs.folder.finish(end);
+    // Why the run stopped matters more than a folder that could not be closed after it.
+    walked?;
+    let place = finished.ok_or(Failure::Ended)??;
+    let Outputs { arguments, mut printer, last, .. } = outputs;
+    if let (false, Some(last)) = (arguments.common.json, last) {
+        printer.line(table(&last).trim_end())?;
         let (peak, t) = (outputs.peak, outputs.peak_time_s);
-        out.line(&format!(
+        printer.line(&format!(
             "\nGreatest tension of the run  {:.6} N at {t:.4} s, at {:.4} m",
             peak.tension_n, peak.arc_length_m
         ))?;
         for line in outputs.begun.lines() {
-            out.line(&line)?;
+            printer.line(&line)?;
         }
-        out.line(&format!("Written to {}", a.out.display()))?;
-        out.flush()?;
+        printer.line(&format!("Written to {}", place.display()))?;
+        printer.flush()?;
     }
     Ok(())
 }
 
 /// Output k lies at k·every, the last one exactly at the end.
-fn walk(simulation: &mut Simulation, inertia: Inertia, outputs: &mut Outputs<'_>, mut began: Instant) -> Done {
-    let a = outputs.arguments;
+fn walk(simulation: &mut Simulation, inertia: Inertia, outputs: &mut Outputs, mut began: Instant) -> Done {
     let first = match simulation.settle() {
         Ok(s) => s,
         Err(e) => return Err(stopped(outputs, simulation, e)),
     };
-    outputs.push(&first, began.elapsed().as_secs_f64())?;
     // A last interval shorter than a billionth of the others is round-off, not an interval.
-    let every = a.every_s();
-    let count = (a.duration_s / every - 1e-9).ceil() as usize;
+    let (duration_s, every) = (outputs.arguments.duration_s, outputs.arguments.every_s());
+    let count = (duration_s / every - 1e-9).ceil() as usize;
+    outputs.push(first, began.elapsed().as_secs_f64(), count == 0)?;
     for k in 1..=count {
-        let target_s = if k == count { a.duration_s } else { k as f64 * every };
+        let target_s = if k == count { duration_s } else { k as f64 * every };
         began = Instant::now();
         let dt_s = target_s - simulation.time_s();
         let stepped = match inertia {
@@ -161,12 +270,12 @@ fn walk(simulation: &mut Simulation, inertia: Inertia, outputs: &mut Outputs<'_>
         let mut solution = simulation.solution();
         // Adding steps up rounds; the time asked for is the time meant.
         solution.time_s = target_s;
-        outputs.push(&solution, began.elapsed().as_secs_f64())?;
+        outputs.push(solution, began.elapsed().as_secs_f64(), k == count)?;
     }
     Ok(())
 }
 
-fn stopped(outputs: &mut Outputs<'_>, simulation: &Simulation, error: SolveError) -> Failure {
+fn stopped(outputs: &mut Outputs, simulation: &Simulation, error: SolveError) -> Failure {
     let reached_s = simulation.time_s();
     if outputs.arguments.common.json
         && let Err(e) =
@@ -174,5 +283,6 @@ fn stopped(outputs: &mut Outputs<'_>, simulation: &Simulation, error: SolveError
     {
         return e;
     }
-    Failure::Run { reached_s, out: outputs.arguments.out.clone(), error: Box::new(error) }
+    let place = outputs.folder.place().unwrap_or_else(|| outputs.arguments.out.clone());
+    Failure::Run { reached_s, out: place, error: Box::new(error) }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use cable_core::record::{Event, HistoryTable, NodeRow, read_events, read_history, read_nodes};
+use cable_core::record::{Event, HistoryTable, NodeRow, RunTables};
 use cable_core::robot::RobotReport;
 use cable_core::scene::SupportKind;
 use cable_core::solution::{CableSolution, Cost, Energy, SupportReaction, Warning};
@@ -112,23 +112,64 @@ pub struct Opened {
     pub scene: Scene,
     /// Its instants, oldest first.
     pub answers: Vec<Solution>,
+    /// What the user should know about it, in sentences: that it is partial, that figures are missing.
+    pub remarks: Vec<String>,
 }
 
-/// Reads the folder of a run.
+/// Reads the folder of a run, whole or partial.
 ///
 /// # Errors
 /// In words: what is missing or broken, and where.
 pub fn open(folder: &Path) -> Result<Opened, String> {
-    let scene = crate::scene_file::load(&folder.join("scene.toml")).map_err(|e| format!("scene.toml: {e}"))?;
-    let bytes = |name: &str| files::read_limited(folder.join(name), MOST_BYTES).map_err(|e| e.to_string());
-    let history = read_history(&*bytes("history.csv")?).map_err(|e| e.to_string())?;
-    let nodes = read_nodes(&*bytes("nodes.csv")?).map_err(|e| e.to_string())?;
-    let events = read_events(&*bytes("events.csv")?).map_err(|e| e.to_string())?;
-    let answers = answers(&scene, &history, nodes, &events);
-    if answers.is_empty() {
-        return Err("it holds no instant".to_owned());
+    let run = files::load_run(folder, MOST_BYTES).map_err(|e| e.to_string())?;
+    let mut remarks = run.remarks();
+    let RunTables { history, mut nodes, events, .. } = run.tables;
+    if history.time_s.is_empty() {
+        return Err(format!("it holds no instant. {}", remarks.join(" ")).trim_end().to_owned());
     }
-    Ok(Opened { scene, answers })
+    if let Some(missing) = fill_missing(&mut nodes)? {
+        remarks.push(missing);
+    }
+    let mut answers = answers(&run.scene, &history, nodes, &events);
+    let count = answers.len();
+    // A run may have written its nodes less often than its history: only where there are nodes is there a picture.
+    answers.retain(|a| a.cables.iter().any(|c| !c.nodes.is_empty()));
+    if answers.is_empty() {
+        return Err("its nodes.csv has no nodes, which the picture is drawn from".to_owned());
+    }
+    if answers.len() < count {
+        remarks.push(format!("Nodes were written at {} of its {count} instants, and those are shown.", answers.len()));
+    }
+    Ok(Opened { scene: run.scene, answers, remarks })
+}
+
+/// Figures of nodes that the run left out become 0; a sentence about which. Places cannot be left out.
+fn fill_missing(nodes: &mut [NodeRow]) -> Result<Option<String>, String> {
+    let Some(first) = nodes.first().map(|row| row.node) else { return Ok(None) };
+    if [first.arc_length_m, first.x_m, first.y_m].iter().any(|v| v.is_nan()) {
+        return Err("its nodes.csv lacks arc_length_m, x_m or y_m, which the picture is drawn from".to_owned());
+    }
+    let mut missing = Vec::new();
+    for row in nodes {
+        let n = &mut row.node;
+        let figures = [
+            ("velocity", &mut n.vx_m_per_s),
+            ("velocity", &mut n.vy_m_per_s),
+            ("tension", &mut n.tension_n),
+            ("strain", &mut n.strain),
+            ("stress", &mut n.stress_pa),
+            ("curvature", &mut n.curvature_per_m),
+        ];
+        for (name, value) in figures {
+            if value.is_nan() {
+                *value = 0.0;
+                if !missing.contains(&name) {
+                    missing.push(name);
+                }
+            }
+        }
+    }
+    Ok((!missing.is_empty()).then(|| format!("It was written without {}, which is shown as 0.", missing.join(", "))))
 }
 
 /// The tables put together: an answer for each time of the history.

@@ -1,8 +1,8 @@
-//! Whether two runs are the same, bit for bit.
+//! Whether two runs, or two files, are the same, bit for bit.
 
 use crate::solution::{Node, Solution};
 
-/// A 64-bit hash of every number of the answers it was shown (FNV-1a, after G. Fowler, L. C. Noll and K.-P. Vo, 1991): two runs
+/// A 64-bit hash of every number of the answers it was shown, or of bytes (FNV-1a, after G. Fowler, L. C. Noll and K.-P. Vo, 1991): two runs
 /// with the same one are the same, but for one chance in 1.8e19.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fingerprint(pub u64);
@@ -31,8 +31,13 @@ impl Fingerprint {
     }
 
     fn number(&mut self, value: f64) {
-        for byte in value.to_bits().to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        self.bytes(&value.to_bits().to_le_bytes());
+    }
+
+    /// Takes in bytes of a file.
+    pub fn bytes(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
         }
     }
 }

@@ -1,24 +1,38 @@
 //! What a run leaves behind: a history in memory, and tables in CSV.
 //!
-//! A run folder holds `scene.toml` and three tables, every number in SI units that its column's name ends in:
+//! A run folder holds `scene.toml`, `run.toml` ([`Manifest`]: what was asked, and whether the run is complete) and three tables,
+//! every number in SI units that its column's name ends in:
 //!
 //! | table | a row per | columns |
 //! |---|---|---|
 //! | `history.csv` | time | `time_s`, `max_tension_n`, `max_tension_arc_length_m`, for each support `NAME.reaction_x_n`, `NAME.reaction_y_n` (`CABLE.NAME.…` where there are several cables), `kinetic_energy_j`, `gravity_energy_j`, `stretch_energy_j`, `bending_energy_j`, and with a robot `robot_x_m`, `robot_y_m`, `robot_pitch_deg`, `robot_speed_m_per_s`, `robot_thrust_n` |
-//! | `nodes.csv` | node and time | `time_s`, `cable`, then the fields of [`crate::solution::Node`] |
+//! | `nodes.csv` | node and time | `time_s`, `cable`, then the fields of [`crate::solution::Node`], or those chosen ([`NodeChoice`]) |
 //! | `events.csv` | event | `time_s`, `kind`, `cable`, `arc_length_m`, `value`, `limit`, `message` |
 //!
-//! Numbers are written with the fewest digits that read back to the same bits. [`RunWriter`] writes the tables to any
-//! [`std::io::Write`]; [`read_history`], [`read_nodes`] and [`read_events`] read them again.
+//! Numbers are written with the fewest digits that read back to the same bits (in a file some times have zeros after them, so that no row
+//! lies on two pages of it). [`RunWriter`] writes the tables to any
+//! [`std::io::Write`] in whole instants, `history.csv` last; [`read_run`] reads them again, up to the last instant that is whole in
+//! all of them, wherever they were cut off. [`read_history`], [`read_nodes`] and [`read_events`] read one of them. Folders are made
+//! and read in [`crate::files`].
 
+mod choice;
 mod energy;
 mod fingerprint;
 mod history;
+mod page;
+mod run;
 mod tables;
+mod whole;
 
+pub use choice::{NodeChoice, NodeColumns, NodeInterval, UnknownColumn};
 pub use fingerprint::Fingerprint;
 pub use history::History;
+pub(crate) use page::Pages;
+pub(crate) use run::MANIFEST_HEAD;
+pub use run::{FileRecord, LeftOut, Manifest, NodeSummary, RunRequest, RunStatus, RunTables, read_run};
+pub(crate) use tables::has_rows;
 pub use tables::{
     Event, Extra, HistoryTable, NodeRow, ReadError, RunWriter, SupportColumn, WriteError, read_events, read_history,
     read_nodes,
 };
+pub use whole::WholeRecords;

@@ -5,7 +5,10 @@ use std::io::{Read, Write};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::solution::{Node, Solution, Warning, WarningKind};
+use super::choice::{NodeChoice, NodeColumns, NodeInterval, node_of, node_values};
+use super::whole::WholeRecords;
+use crate::scene::Scene;
+use crate::solution::{Solution, Warning, WarningKind};
 
 /// Why a table was not written: the path or device is named by the caller, who knows it.
 #[derive(Debug, Error)]
@@ -17,6 +20,14 @@ pub enum WriteError {
         table: &'static str,
         /// What the system said.
         source: std::io::Error,
+    },
+    /// The answer has other supports, or another robot, than the table; nothing of this time was written.
+    #[error("{table}: the answer at {time_s} s has other columns than the table")]
+    Columns {
+        /// Which table.
+        table: &'static str,
+        /// Time, s.
+        time_s: f64,
     },
     /// A number is not finite; nothing of this time was written.
     #[error("{table}: {column} is not finite at {time_s} s")]
@@ -57,9 +68,9 @@ pub enum ReadError {
 /// more would let a hostile file exhaust the machine.
 const MAX_ROWS: usize = 10_000_000;
 
-const HISTORY: &str = "history.csv";
-const NODES: &str = "nodes.csv";
-const EVENTS: &str = "events.csv";
+pub(super) const HISTORY: &str = "history.csv";
+pub(super) const NODES: &str = "nodes.csv";
+pub(super) const EVENTS: &str = "events.csv";
 
 /// A row of `nodes.csv`: a node and when.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,7 +80,7 @@ pub struct NodeRow {
     /// The cable's name.
     pub cable: String,
     /// The node.
-    pub node: Node,
+    pub node: crate::solution::Node,
 }
 
 /// A row of `events.csv`: a warning that began.
@@ -126,135 +137,246 @@ pub struct SupportColumn {
     pub reaction_y_n: Vec<f64>,
 }
 
-/// Writes a run's tables as it goes. Call [`Self::flush`] at the end (a full disk shows only there).
+/// Writes a run's tables as it goes, in whole instants: the rows of an instant go out as one write a table, `history.csv` last.
+/// So an instant with a row there is whole in the other tables too, and what was cut off anywhere is whole up to the last such
+/// row ([`super::read_run`]).
 pub struct RunWriter<W: Write> {
-    history: csv::Writer<W>,
-    nodes: csv::Writer<W>,
-    events: csv::Writer<W>,
-    header_done: bool,
-    active: Vec<(WarningKind, String, Option<u64>)>,
-    number: String,
+    history: W,
+    nodes: W,
+    events: W,
+    node_choice: NodeChoice,
+    /// The interval of `node_choice` in which node rows were last written.
+    node_interval: Option<f64>,
+    /// Columns of `history.csv`; none before the headers are written.
+    columns: Vec<String>,
+    active: Vec<ActiveWarning>,
 }
+
+/// Kind, cable and the time since when, in bits, of a warning that lasts.
+type ActiveWarning = (WarningKind, String, Option<u64>);
 
 impl<W: Write> RunWriter<W> {
     /// Over three places to write to.
     pub fn new(history: W, nodes: W, events: W) -> Self {
         Self {
-            history: csv::Writer::from_writer(history),
-            nodes: csv::Writer::from_writer(nodes),
-            events: csv::Writer::from_writer(events),
-            header_done: false,
+            history,
+            nodes,
+            events,
+            node_choice: NodeChoice::default(),
+            node_interval: None,
+            columns: Vec::new(),
             active: Vec::new(),
-            number: String::new(),
         }
+    }
+
+    /// With a choice of what goes into `nodes.csv`.
+    #[must_use]
+    pub fn with_nodes(self, node_choice: NodeChoice) -> Self {
+        Self { node_choice, ..self }
     }
 
     /// Appends one time. A warning becomes an event when it begins, with the time it began at, not again while it lasts.
     ///
     /// # Errors
-    /// When a number is not finite (nothing is written) or the place refuses.
+    /// When a number is not finite (nothing is written) or the place refuses. A place that takes back what it was given of this
+    /// time can be written on.
     pub fn push(&mut self, solution: &Solution) -> Result<(), WriteError> {
+        let due = self.node_choice.due(solution.time_s, self.node_interval);
+        self.append(solution, due.is_some())?;
+        self.node_interval = due.or(self.node_interval);
+        Ok(())
+    }
+
+    /// As [`Self::push`], for the last time of a run: its nodes are written whatever the interval, unless they never are.
+    ///
+    /// # Errors
+    /// As [`Self::push`].
+    pub fn push_last(&mut self, solution: &Solution) -> Result<(), WriteError> {
+        self.append(solution, self.node_choice.interval != NodeInterval::Never)
+    }
+
+    /// Writes the headers alone, so that a run which ends before its first instant has tables: of a scene, whose robot is reported or
+    /// not.
+    ///
+    /// # Errors
+    /// When the place refuses.
+    pub fn begin(&mut self, scene: &Scene, with_robot: bool) -> Result<(), WriteError> {
+        let supports = scene.cables.iter().map(|c| (c.name.as_str(), c.supports.iter().map(|s| s.name.as_str())));
+        let columns = history_columns(supports, scene.cables.len(), with_robot);
+        let mut rows = [HISTORY, NODES, EVENTS].map(Rows::new);
+        self.headers(&mut rows, &columns)?;
+        self.write(rows)?;
+        self.columns = columns;
+        Ok(())
+    }
+
+    fn headers(&self, [history, nodes, events]: &mut [Rows; 3], columns: &[String]) -> Result<(), WriteError> {
+        history.record(columns)?;
+        nodes.record(&self.node_choice.header())?;
+        events.record(&EVENT_COLUMNS)
+    }
+
+    fn append(&mut self, solution: &Solution, with_nodes: bool) -> Result<(), WriteError> {
         check_finite(solution)?;
-        if !self.header_done {
-            self.headers(solution)?;
-            self.header_done = true;
+        let mut rows = [HISTORY, NODES, EVENTS].map(Rows::new);
+        let supports = solution.cables.iter().map(|c| (c.name.as_str(), c.supports.iter().map(|s| s.name.as_str())));
+        let columns = history_columns(supports, solution.cables.len(), solution.robot.is_some());
+        if self.columns.is_empty() {
+            self.headers(&mut rows, &columns)?;
+        } else if self.columns != columns {
+            return Err(WriteError::Columns { table: HISTORY, time_s: solution.time_s });
         }
-        self.history_row(solution)?;
-        self.node_rows(solution)?;
-        self.event_rows(solution)
-    }
-
-    fn headers(&mut self, solution: &Solution) -> Result<(), WriteError> {
-        let mut columns: Vec<String> =
-            ["time_s", "max_tension_n", "max_tension_arc_length_m"].map(String::from).to_vec();
-        let several = solution.cables.len() > 1;
-        for c in &solution.cables {
-            for s in &c.supports {
-                let name = if several { format!("{}.{}", c.name, s.name) } else { s.name.clone() };
-                columns.push(format!("{name}.reaction_x_n"));
-                columns.push(format!("{name}.reaction_y_n"));
-            }
+        let [history, nodes, events] = &mut rows;
+        history_row(history, solution)?;
+        if with_nodes {
+            node_rows(nodes, solution, self.node_choice.columns)?;
         }
-        columns.extend(extras(solution).map(|(name, _)| name.to_owned()));
-        self.history.write_record(&columns).map_err(|e| io_error(HISTORY, e))?;
-        self.nodes.write_record(NODE_COLUMNS).map_err(|e| io_error(NODES, e))?;
-        self.events.write_record(EVENT_COLUMNS).map_err(|e| io_error(EVENTS, e))
-    }
-
-    fn history_row(&mut self, solution: &Solution) -> Result<(), WriteError> {
-        let top = solution.max_tension();
-        let text = &mut self.number;
-        let to = &mut self.history;
-        for value in [solution.time_s, top.tension_n, top.arc_length_m] {
-            number(to, text, value).map_err(|e| io_error(HISTORY, e))?;
+        for w in began(solution, &self.active) {
+            // What began later than its own instant did so by round-off: that instant's time is a multiple of an interval.
+            event_row(events, w.since_s.map_or(solution.time_s, |t| t.min(solution.time_s)), w)?;
         }
-        for s in solution.cables.iter().flat_map(|c| &c.supports) {
-            number(to, text, s.reaction_x_n).map_err(|e| io_error(HISTORY, e))?;
-            number(to, text, s.reaction_y_n).map_err(|e| io_error(HISTORY, e))?;
-        }
-        for (_, value) in extras(solution) {
-            number(to, text, value).map_err(|e| io_error(HISTORY, e))?;
-        }
-        end_row(to).map_err(|e| io_error(HISTORY, e))
-    }
-
-    fn node_rows(&mut self, solution: &Solution) -> Result<(), WriteError> {
-        let text = &mut self.number;
-        let to = &mut self.nodes;
-        let mut row = |cable: &str, n: &Node| -> csv::Result<()> {
-            number(to, text, solution.time_s)?;
-            to.write_field(cable)?;
-            for value in node_values(n) {
-                number(to, text, value)?;
-            }
-            end_row(to)
-        };
-        for c in &solution.cables {
-            for n in &c.nodes {
-                row(&c.name, n).map_err(|e| io_error(NODES, e))?;
-            }
-        }
+        self.write(rows)?;
+        self.columns = columns;
+        self.active = solution.warnings.iter().map(active).collect();
         Ok(())
     }
 
-    fn event_rows(&mut self, solution: &Solution) -> Result<(), WriteError> {
-        for w in &solution.warnings {
-            let since = w.since_s.map(f64::to_bits);
-            if !self.active.iter().any(|(kind, cable, began)| (*kind, began) == (w.kind, &since) && *cable == w.cable) {
-                self.event(w.since_s.unwrap_or(solution.time_s), w)?;
-            }
-        }
-        self.active =
-            solution.warnings.iter().map(|w| (w.kind, w.cable.clone(), w.since_s.map(f64::to_bits))).collect();
-        Ok(())
+    fn write(&mut self, [history, nodes, events]: [Rows; 3]) -> Result<(), WriteError> {
+        nodes.write(&mut self.nodes)?;
+        events.write(&mut self.events)?;
+        history.write(&mut self.history)
     }
 
-    fn event(&mut self, time_s: f64, w: &Warning) -> Result<(), WriteError> {
-        let text = &mut self.number;
-        let to = &mut self.events;
-        let mut row = || -> csv::Result<()> {
-            number(to, text, time_s)?;
-            to.write_field(w.kind.name())?;
-            to.write_field(&w.cable)?;
-            for value in [w.arc_length_m, w.value, w.limit] {
-                number(to, text, value)?;
-            }
-            to.write_field(&w.message)?;
-            end_row(to)
-        };
-        row().map_err(|e| io_error(EVENTS, e))
+    /// The places written to: of `history.csv`, `nodes.csv` and `events.csv`.
+    pub fn places(&mut self) -> [&mut W; 3] {
+        [&mut self.history, &mut self.nodes, &mut self.events]
     }
 
     /// Hands everything to the system.
     ///
     /// # Errors
-    /// When the place refuses (a full disk shows only here).
+    /// When the place refuses (behind a buffer a full disk shows only here).
     pub fn flush(&mut self) -> Result<(), WriteError> {
         self.history.flush().map_err(|source| WriteError::Io { table: HISTORY, source })?;
         self.nodes.flush().map_err(|source| WriteError::Io { table: NODES, source })?;
         self.events.flush().map_err(|source| WriteError::Io { table: EVENTS, source })
     }
 }
+
+/// The rows that one instant adds to a table.
+struct Rows {
+    table: &'static str,
+    csv: csv::Writer<Vec<u8>>,
+    number: String,
+}
+
+impl Rows {
+    fn new(table: &'static str) -> Self {
+        Self { table, csv: csv::Writer::from_writer(Vec::new()), number: String::new() }
+    }
+
+    fn record<T: AsRef<[u8]>>(&mut self, fields: &[T]) -> Result<(), WriteError> {
+        self.csv.write_record(fields).map_err(|e| io_error(self.table, e))
+    }
+
+    fn text(&mut self, text: &str) -> Result<(), WriteError> {
+        self.csv.write_field(text).map_err(|e| io_error(self.table, e))
+    }
+
+    /// Rust prints the fewest digits that read back to the same f64.
+    fn number(&mut self, value: f64) -> Result<(), WriteError> {
+        use std::fmt::Write as _;
+        self.number.clear();
+        // Writing to a String cannot fail.
+        let _ = write!(self.number, "{value:?}");
+        self.csv.write_field(self.number.as_bytes()).map_err(|e| io_error(self.table, e))
+    }
+
+    fn end(&mut self) -> Result<(), WriteError> {
+        self.csv.write_record(None::<&[u8]>).map_err(|e| io_error(self.table, e))
+    }
+
+    /// Hands them over at once, so that no row is cut where a buffer ends.
+    fn write(self, to: &mut impl Write) -> Result<(), WriteError> {
+        let failed = |source| WriteError::Io { table: self.table, source };
+        let bytes = self.csv.into_inner().map_err(|e| failed(e.into_error()))?;
+        if bytes.is_empty() { Ok(()) } else { to.write_all(&bytes).map_err(failed) }
+    }
+}
+
+/// Columns of `history.csv`, from the names of the cables, and of their supports.
+fn history_columns<'a>(
+    cables: impl Iterator<Item = (&'a str, impl Iterator<Item = &'a str>)>,
+    count: usize,
+    with_robot: bool,
+) -> Vec<String> {
+    let mut columns: Vec<String> = HISTORY_COLUMNS.map(String::from).to_vec();
+    for (cable, supports) in cables {
+        for support in supports {
+            let name = if count > 1 { format!("{cable}.{support}") } else { support.to_owned() };
+            columns.push(format!("{name}.reaction_x_n"));
+            columns.push(format!("{name}.reaction_y_n"));
+        }
+    }
+    columns.extend(ENERGY_COLUMNS.map(String::from));
+    columns.extend(ROBOT_COLUMNS.map(String::from).into_iter().filter(|_| with_robot));
+    columns
+}
+
+fn history_row(rows: &mut Rows, solution: &Solution) -> Result<(), WriteError> {
+    let top = solution.max_tension();
+    for value in [solution.time_s, top.tension_n, top.arc_length_m] {
+        rows.number(value)?;
+    }
+    for s in solution.cables.iter().flat_map(|c| &c.supports) {
+        rows.number(s.reaction_x_n)?;
+        rows.number(s.reaction_y_n)?;
+    }
+    for (_, value) in extras(solution) {
+        rows.number(value)?;
+    }
+    rows.end()
+}
+
+fn node_rows(rows: &mut Rows, solution: &Solution, columns: NodeColumns) -> Result<(), WriteError> {
+    for c in &solution.cables {
+        for n in &c.nodes {
+            rows.number(solution.time_s)?;
+            rows.text(&c.name)?;
+            for value in columns.pick(node_values(n)) {
+                rows.number(value)?;
+            }
+            rows.end()?;
+        }
+    }
+    Ok(())
+}
+
+fn active(w: &Warning) -> ActiveWarning {
+    (w.kind, w.cable.clone(), w.since_s.map(f64::to_bits))
+}
+
+/// Warnings of an instant that did not last already.
+fn began<'a>(solution: &'a Solution, lasting: &'a [ActiveWarning]) -> impl Iterator<Item = &'a Warning> {
+    solution.warnings.iter().filter(move |w| {
+        let since = w.since_s.map(f64::to_bits);
+        !lasting.iter().any(|(kind, cable, began)| (*kind, *began) == (w.kind, since) && *cable == w.cable)
+    })
+}
+
+fn event_row(rows: &mut Rows, time_s: f64, w: &Warning) -> Result<(), WriteError> {
+    rows.number(time_s)?;
+    rows.text(w.kind.name())?;
+    rows.text(&w.cable)?;
+    for value in [w.arc_length_m, w.value, w.limit] {
+        rows.number(value)?;
+    }
+    rows.text(&w.message)?;
+    rows.end()
+}
+
+/// Columns of `history.csv` before those of the supports.
+const HISTORY_COLUMNS: [&str; 3] = ["time_s", "max_tension_n", "max_tension_arc_length_m"];
 
 /// Columns of `history.csv` that are of no support.
 const ENERGY_COLUMNS: [&str; 4] = ["kinetic_energy_j", "gravity_energy_j", "stretch_energy_j", "bending_energy_j"];
@@ -267,37 +389,7 @@ fn extras(s: &Solution) -> impl Iterator<Item = (&'static str, f64)> {
     ENERGY_COLUMNS.into_iter().zip(energies).chain(ROBOT_COLUMNS.into_iter().zip(robot.into_iter().flatten()))
 }
 
-const NODE_COLUMNS: [&str; 11] = [
-    "time_s",
-    "cable",
-    "arc_length_m",
-    "x_m",
-    "y_m",
-    "vx_m_per_s",
-    "vy_m_per_s",
-    "tension_n",
-    "strain",
-    "stress_pa",
-    "curvature_per_m",
-];
 const EVENT_COLUMNS: [&str; 7] = ["time_s", "kind", "cable", "arc_length_m", "value", "limit", "message"];
-
-fn node_values(n: &Node) -> [f64; 9] {
-    [n.arc_length_m, n.x_m, n.y_m, n.vx_m_per_s, n.vy_m_per_s, n.tension_n, n.strain, n.stress_pa, n.curvature_per_m]
-}
-
-/// Rust prints the fewest digits that read back to the same f64.
-fn number<W: Write>(to: &mut csv::Writer<W>, text: &mut String, value: f64) -> csv::Result<()> {
-    use std::fmt::Write as _;
-    text.clear();
-    // Writing to a String cannot fail.
-    let _ = write!(text, "{value:?}");
-    to.write_field(text.as_bytes())
-}
-
-fn end_row<W: Write>(to: &mut csv::Writer<W>) -> csv::Result<()> {
-    to.write_record(None::<&[u8]>)
-}
 
 fn io_error(table: &'static str, e: csv::Error) -> WriteError {
     let source = match e.into_kind() {
@@ -312,7 +404,7 @@ fn check_finite(s: &Solution) -> Result<(), WriteError> {
     for c in &s.cables {
         for (i, n) in c.nodes.iter().enumerate() {
             if let Some(k) = node_values(n).iter().position(|v| !v.is_finite()) {
-                return Err(bad(NODES, format!("{} of node {i} of cable `{}`", NODE_COLUMNS[k + 2], c.name)));
+                return Err(bad(NODES, format!("{} of node {i} of cable `{}`", NodeColumns::NAMES[k], c.name)));
             }
         }
         for r in &c.supports {
@@ -332,8 +424,14 @@ fn check_finite(s: &Solution) -> Result<(), WriteError> {
     if s.time_s.is_finite() { Ok(()) } else { Err(bad(HISTORY, "time_s".to_owned())) }
 }
 
-fn reader<R: Read>(from: R) -> csv::Reader<R> {
-    csv::ReaderBuilder::new().from_reader(from)
+/// A table that was cut off ends with its last whole record.
+fn reader<R: Read>(from: R) -> csv::Reader<WholeRecords<R>> {
+    csv::ReaderBuilder::new().from_reader(WholeRecords::new(from))
+}
+
+/// Whether a table has any rows; one that cannot be read has some.
+pub(crate) fn has_rows(from: impl Read) -> bool {
+    reader(from).records().next().is_some()
 }
 
 fn row_error(table: &'static str, line: u64, what: impl ToString) -> ReadError {
@@ -368,57 +466,65 @@ fn rows<R: Read>(
     Ok(())
 }
 
-fn expect_columns<R: Read>(table: &'static str, from: &mut csv::Reader<R>, expected: &[&str]) -> Result<(), ReadError> {
+/// Whether the columns begin with those expected; false where nothing was written yet, not even a header.
+fn expect_columns<R: Read>(
+    table: &'static str,
+    from: &mut csv::Reader<R>,
+    expected: &[&str],
+) -> Result<bool, ReadError> {
     let found = from.headers().map_err(|e| row_error(table, 1, e))?;
+    if found.is_empty() {
+        return Ok(false);
+    }
     match expected.iter().enumerate().find(|(k, name)| found.get(*k) != Some(**name)) {
-        None => Ok(()),
+        None => Ok(true),
         Some((k, name)) => Err(row_error(table, 1, format!("column {} must be `{name}`", k + 1))),
     }
 }
 
-/// Reads `nodes.csv`.
+/// Reads `nodes.csv` up to its last whole row. Values whose columns were not chosen ([`NodeChoice`]) are NaN.
 ///
 /// # Errors
 /// Where it is not such a table.
 pub fn read_nodes(from: impl Read) -> Result<Vec<NodeRow>, ReadError> {
     let mut from = reader(from);
-    expect_columns(NODES, &mut from, &NODE_COLUMNS)?;
     let mut out = Vec::new();
+    if !expect_columns(NODES, &mut from, &["time_s", "cable"])? {
+        return Ok(out);
+    }
+    let header = from.headers().map_err(|e| row_error(NODES, 1, e))?;
+    let place = |name| header.iter().position(|c| c == name);
+    let places = NodeColumns::NAMES.map(place);
+    if let Some(name) = header.iter().skip(2).find(|c| !NodeColumns::NAMES.contains(c)) {
+        return Err(row_error(NODES, 1, format!("unknown column `{name}`")));
+    }
     rows(NODES, &mut from, |r| {
-        let mut v = [0.0; 9];
-        for (k, v) in v.iter_mut().enumerate() {
-            *v = parse(NODES, r, k + 2, NODE_COLUMNS[k + 2])?;
+        let mut v = [f64::NAN; NodeColumns::COUNT];
+        for ((v, place), name) in v.iter_mut().zip(places).zip(NodeColumns::NAMES) {
+            if let Some(k) = place {
+                *v = parse(NODES, r, k, name)?;
+            }
         }
-        let [arc_length_m, x_m, y_m, vx_m_per_s, vy_m_per_s, tension_n, strain, stress_pa, curvature_per_m] = v;
         out.push(NodeRow {
             time_s: parse(NODES, r, 0, "time_s")?,
             cable: r.get(1).unwrap_or_default().to_owned(),
-            node: Node {
-                arc_length_m,
-                x_m,
-                y_m,
-                vx_m_per_s,
-                vy_m_per_s,
-                tension_n,
-                strain,
-                stress_pa,
-                curvature_per_m,
-                ..Node::default()
-            },
+            node: node_of(v),
         });
         Ok(())
     })?;
     Ok(out)
 }
 
-/// Reads `events.csv`.
+/// Reads `events.csv` up to its last whole row.
 ///
 /// # Errors
 /// Where it is not such a table.
 pub fn read_events(from: impl Read) -> Result<Vec<Event>, ReadError> {
     let mut from = reader(from);
-    expect_columns(EVENTS, &mut from, &EVENT_COLUMNS)?;
     let mut out = Vec::new();
+    if !expect_columns(EVENTS, &mut from, &EVENT_COLUMNS)? {
+        return Ok(out);
+    }
     rows(EVENTS, &mut from, |r| {
         let line = r.position().map_or(1, csv::Position::line);
         out.push(Event {
@@ -438,15 +544,17 @@ pub fn read_events(from: impl Read) -> Result<Vec<Event>, ReadError> {
     Ok(out)
 }
 
-/// Reads `history.csv`.
+/// Reads `history.csv` up to its last whole row.
 ///
 /// # Errors
 /// Where it is not such a table.
 pub fn read_history(from: impl Read) -> Result<HistoryTable, ReadError> {
     let mut from = reader(from);
-    expect_columns(HISTORY, &mut from, &["time_s", "max_tension_n", "max_tension_arc_length_m"])?;
-    let header = from.headers().map_err(|e| row_error(HISTORY, 1, e))?.clone();
     let mut table = HistoryTable::default();
+    if !expect_columns(HISTORY, &mut from, &HISTORY_COLUMNS)? {
+        return Ok(table);
+    }
+    let header = from.headers().map_err(|e| row_error(HISTORY, 1, e))?.clone();
     // Reactions come in pairs of columns: x, y of each support. Then the extras, which older tables lack.
     let mut k = 3;
     while k < header.len() {

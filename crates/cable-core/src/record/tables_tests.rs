@@ -1,6 +1,6 @@
 use super::*;
 use crate::model::Model;
-use crate::solution::{CableSolution, Cost, Energy, SupportReaction};
+use crate::solution::{CableSolution, Cost, Energy, Node, SupportReaction};
 use proptest::prelude::*;
 
 fn solution(time_s: f64, values: [f64; 9], name: &str) -> Solution {
@@ -122,10 +122,109 @@ fn two_breaks_of_a_cable_are_two_events_with_their_own_times() {
 }
 
 #[test]
-fn a_table_cut_short_is_refused_with_its_line() {
+fn a_table_cut_short_is_read_up_to_its_last_whole_line() {
     let [_, n, _] = write(&[solution(0.0, [1.5; 9], "a"), solution(1.0, [2.5; 9], "a")]);
-    let error = read_nodes(&n[..n.len() - 12]).unwrap_err().to_string();
+    let rows = read_nodes(&n[..n.len() - 12]).unwrap();
+    assert_eq!(rows.iter().map(|r| r.time_s).collect::<Vec<_>>(), [0.0]);
+    // A line that is wrong, not cut, is refused with its number.
+    let text = String::from_utf8(n).unwrap().replace("2.5,2.5\n", "2.5\n");
+    let error = read_nodes(text.as_bytes()).unwrap_err().to_string();
     assert!(error.contains("line 3"), "{error}");
+}
+
+/// Each write of a run: which table, and what.
+#[derive(Clone, Default)]
+struct Journal(std::rc::Rc<std::cell::RefCell<Vec<(usize, Vec<u8>)>>>);
+struct Journalled(usize, Journal);
+impl Write for Journalled {
+    fn write(&mut self, data: &[u8]) -> std::io::Result<usize> {
+        self.1.0.borrow_mut().push((self.0, data.to_vec()));
+        Ok(data.len())
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Whatever byte is the last that reaches the disk, the tables read back, up to the last instant that is whole in all of them.
+#[test]
+fn a_run_cut_at_any_byte_is_read_up_to_its_last_whole_instant() {
+    let journal = Journal::default();
+    let [history, nodes, events] = [0, 1, 2].map(|k| Journalled(k, journal.clone()));
+    let mut w = RunWriter::new(history, nodes, events);
+    let solutions: Vec<Solution> = (0..5)
+        .map(|k| {
+            let mut s = solution(0.1 * f64::from(k), [0.5 + f64::from(k); 9], "a \"b\"");
+            s.cables[0].nodes = vec![s.cables[0].nodes[0]; 3];
+            s.warnings.retain(|_| k % 2 == 1);
+            s
+        })
+        .collect();
+    let mut scene = crate::scene::catalog::hanging_span();
+    scene.cables[0].supports.truncate(1);
+    scene.cables[0].supports[0].name = "a \"b\"".to_owned();
+    w.begin(&scene, false).unwrap();
+    for s in &solutions {
+        w.push(s).unwrap();
+    }
+    let writes = journal.0.borrow().clone();
+    let total: usize = writes.iter().map(|(_, data)| data.len()).sum();
+    let mut reached = Vec::new();
+    for cut in 0..=total {
+        let (mut tables, mut left) = ([Vec::new(), Vec::new(), Vec::new()], cut);
+        for (table, data) in &writes {
+            let part = &data[..data.len().min(left)];
+            tables[*table].extend_from_slice(part);
+            left -= part.len();
+        }
+        let [h, n, e] = &tables;
+        let run = crate::record::read_run(h.as_slice(), n.as_slice(), e.as_slice()).unwrap();
+        let instants = run.history.time_s.len();
+        assert_eq!(run.nodes.len(), 3 * instants, "cut at {cut}");
+        assert_eq!(run.events.len(), instants / 2, "cut at {cut}");
+        assert!(run.history.time_s.iter().zip(&solutions).all(|(t, s)| *t == s.time_s));
+        // Nothing is left out without a word.
+        let kept = write(&solutions[..instants]);
+        let all_kept = instants > 0 && [h, n, e].into_iter().zip(&kept).all(|(now, then)| now == then);
+        assert!(all_kept == run.left_out.is_empty() || instants == 0, "cut at {cut}: {:?}", run.left_out);
+        reached.push(instants);
+    }
+    assert!(reached.windows(2).all(|w| w[0] <= w[1]) && reached.last() == Some(&5));
+}
+
+#[test]
+fn chosen_nodes_are_written_and_read_back() {
+    let choice = |interval| NodeChoice { columns: NodeColumns::named(["tension_n", "x_m"]).unwrap(), interval };
+    let times: Vec<f64> = (0..=33).map(|k| f64::from(k) * 0.03).collect();
+    let written = |choice: NodeChoice| {
+        let (mut h, mut n, mut e) = (Vec::new(), Vec::new(), Vec::new());
+        let mut w = RunWriter::new(&mut h, &mut n, &mut e).with_nodes(choice);
+        for (k, t) in times.iter().enumerate() {
+            let s = solution(*t, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0], "a");
+            if k + 1 == times.len() { w.push_last(&s) } else { w.push(&s) }.unwrap();
+        }
+        drop(w);
+        assert_eq!(read_history(h.as_slice()).unwrap().time_s, times, "the history has every output");
+        (String::from_utf8(n.clone()).unwrap(), read_nodes(n.as_slice()).unwrap())
+    };
+    let (text, rows) = written(choice(NodeInterval::Seconds(0.3)));
+    assert!(text.starts_with("time_s,cable,x_m,tension_n\n0.0,a,2.0,6.0\n"), "{text}");
+    let at: Vec<f64> = rows.iter().map(|r| r.time_s).collect();
+    assert_eq!(at, [times[0], times[10], times[20], times[30], times[33]], "and the last");
+    assert_eq!([rows[0].node.x_m, rows[0].node.tension_n], [2.0, 6.0]);
+    assert!(rows[0].node.y_m.is_nan(), "what is not there is no number");
+    assert_eq!(written(choice(NodeInterval::EveryOutput)).1.len(), times.len());
+    assert_eq!(written(choice(NodeInterval::Never)).0, "time_s,cable,x_m,tension_n\n");
+    let error = NodeColumns::named(["tension"]).unwrap_err().to_string();
+    assert!(error.contains("`tension`") && error.contains("tension_n"), "{error}");
+}
+
+#[test]
+fn an_answer_with_other_supports_is_refused() {
+    let mut w = RunWriter::new(Vec::new(), Vec::new(), Vec::new());
+    w.push(&solution(0.0, [1.0; 9], "a")).unwrap();
+    let error = w.push(&solution(1.0, [1.0; 9], "b")).unwrap_err();
+    assert!(matches!(error, WriteError::Columns { .. }), "{error}");
 }
 
 /// Accepts everything until it is flushed, as a full disk behind a buffer does.

@@ -7,8 +7,8 @@
 
 use super::surroundings::{Near, Surroundings};
 use super::tolerance::{
-    BALANCE, COMPRESSION, CONE, DEPTH_DIAMETERS, DEPTH_M, FOLD, LENGTH, LUMPED, MATERIAL, MOMENT, REACH_DIAMETERS,
-    REACH_M, TURN,
+    BALANCE, COMPRESSION, CONE, DEPTH_DIAMETERS, DEPTH_M, FOLD, LEAST_STRAIN, LENGTH, LUMPED, MATERIAL, MOMENT,
+    REACH_DIAMETERS, REACH_M, SAME_NORMAL, TURN,
 };
 use super::{Balance, Depth, Finding, Law, Verification};
 use crate::math::{Vec2, cross, larger, vec2};
@@ -152,12 +152,12 @@ impl Subject<'_> {
         a.contacts.iter().find(|c| !contact(c)).map(|c| bad(0, &c.obstacle))
     }
 
-    /// The greatest force on or in the cable, N; a tenth of a millimetre of strain of one without any.
+    /// The greatest force on or in the cable, N; of one without any the least that anybody would read.
     fn forces_scale(&self) -> f64 {
         let tension = self.answer.nodes.iter().map(|n| n.force().norm()).fold(0.0, larger);
         let loads = self.point_forces().iter().map(|p| p.force.norm()).fold(0.0, larger);
         let load = self.body.norm() * self.cable.length_m;
-        larger(larger(tension, loads), larger(load, 1e-12 * self.cable.axial_stiffness_n))
+        larger(larger(tension, loads), larger(load, LEAST_STRAIN * self.cable.axial_stiffness_n))
     }
 
     /// Supports and loads. Wheels are among the obstacles.
@@ -316,7 +316,9 @@ impl Subject<'_> {
         // Forces of bodies that the scene does not hold still are known to a node's neighbourhood only.
         let cut = |k: usize| {
             let [before, after] = [k - 1, (k + 1).min(last)].map(|k| nodes[k].arc_length_m);
-            foreign.iter().all(|p| !(p.arc_length >= before - same && p.arc_length <= after + same))
+            // Nodes of one material point are one: where the cable turns round a point, it is not said what it does there.
+            nodes[k + 1].arc_length_m - nodes[k].arc_length_m > same
+                && foreign.iter().all(|p| !(p.arc_length >= before - same && p.arc_length <= after + same))
         };
         let mut out = Vec::with_capacity(nodes.len());
         let (mut from, mut acts) = (0, Vec2::zeros());
@@ -341,10 +343,10 @@ impl Subject<'_> {
         let points = self.point_forces();
         let limit = BALANCE * self.scale;
         let mut sums = Balance { scale_n: larger(found.balance.scale_n, self.scale), ..found.balance };
-        let (mut adrift, mut beyond, mut pressed): (Vec2, f64, f64) = (Vec2::zeros(), 0.0, 0.0);
+        let (mut adrift, mut beyond, mut pressed, mut lumped) = (Vec2::zeros(), 0.0, 0.0, 0.0);
         let (mut contacts, mut wheels, mut worst) = (Vec2::zeros(), Vec2::zeros(), (0.0, 0));
         for piece in self.pieces(&points) {
-            let rays = self.rays(near, &piece);
+            let (rays, turns) = self.rays(near, &piece);
             let excess = if rays.is_empty() && !self.floor_rubs() {
                 // In the air residuals add up: each may be small and the sum not.
                 adrift += piece.contact;
@@ -365,12 +367,13 @@ impl Subject<'_> {
             }
             beyond += excess;
             pressed += piece.contact.norm();
+            lumped += if turns { self.lumped_friction(&piece) } else { 0.0 };
             if excess > worst.0 || excess.is_nan() {
                 worst = (excess, piece.nodes[0]);
             }
         }
         sums.residual_n = larger(sums.residual_n, beyond);
-        let allowed = limit + CONE * pressed;
+        let allowed = limit + CONE * pressed + lumped;
         if !(beyond <= allowed) {
             let mut finding = self.finding(Law::Friction, worst.1, (beyond, allowed));
             let here = near.get(worst.1).and_then(|n| n.first());
@@ -439,11 +442,30 @@ impl Subject<'_> {
         self.wheels().any(|(center, radius, ..)| piece.nodes.iter().any(|&k| self.is_led(k, center, radius)))
     }
 
+    /// Friction that a bar's own weight may add or hide where the ground turns, N: the bar carries it to its ends, where it turns the
+    /// cable by weight over tension, and so presses as no edge does.
+    fn lumped_friction(&self, piece: &Piece) -> f64 {
+        let nodes = &self.answer.nodes;
+        let last = nodes.len() - 1;
+        let [from, to] = [piece.nodes[0].saturating_sub(1), (piece.nodes[1] + 1).min(last)];
+        let weight = self.body.norm() * (nodes[to].arc_length_m - nodes[from].arc_length_m);
+        let force = larger(nodes[piece.nodes[0]].force().norm(), nodes[piece.nodes[1]].force().norm());
+        let turn = if weight < force { weight / force } else { 1.0 };
+        LUMPED * self.greatest_friction() * weight * turn
+    }
+
+    /// The greatest friction coefficient that the cable may meet.
+    fn greatest_friction(&self) -> f64 {
+        self.scene.obstacles.iter().map(|o| o.friction.unwrap_or(self.cable.friction)).fold(0.0, larger)
+    }
+
     /// Unit vectors that bound the friction cones of all that touches a piece, its neighbours counted in: a force that is
     /// known at nodes only is known to a node's neighbourhood.
-    fn rays(&self, near: &[Vec<Near>], piece: &Piece) -> Vec<Vec2> {
-        let mut out: Vec<Vec2> = Vec::new();
+    /// Whether their normals differ, as at a corner, comes with them.
+    fn rays(&self, near: &[Vec<Near>], piece: &Piece) -> (Vec<Vec2>, bool) {
+        let (mut out, mut first, mut turns): (Vec<Vec2>, Option<Vec2>, bool) = (Vec::new(), None, false);
         let mut add = |normal: Vec2, friction: f64| {
+            turns |= cross(*first.get_or_insert(normal), normal).abs() > SAME_NORMAL;
             let along = Vec2::new(normal.y, -normal.x) * friction;
             for ray in [normal + along, normal - along] {
                 let ray = ray.normalize();
@@ -462,7 +484,7 @@ impl Subject<'_> {
                 add((self.answer.nodes[k].at() - center).try_normalize(0.0).unwrap_or_default(), friction);
             }
         }
-        out
+        (out, turns)
     }
 
     /// A flexible cable pulls along its way.

@@ -41,3 +41,9 @@ pub const CONE: f64 = 1e-3;
 
 /// Part of the cable's length by which arc lengths at the ends may miss 0 and the length.
 pub const MATERIAL: f64 = 1e-9;
+
+/// Turn between two normals from which on the ground turns there, rad: edges that rounding alone tells apart are one.
+pub const SAME_NORMAL: f64 = 1e-6;
+
+/// Strain whose force no residual of a cable without load is smaller than: a cable without weight has no other scale.
+pub const LEAST_STRAIN: f64 = 1e-7;

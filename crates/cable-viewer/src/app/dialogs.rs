@@ -25,7 +25,7 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
                 }
             }
             Dialog::SaveRun { path } => {
-                let note = "The scene and the tables history.csv, nodes.csv and events.csv; those of an earlier run there are replaced";
+                let note = "The scene and the tables history.csv, nodes.csv and events.csv, in a folder that is new, empty or of an earlier run, which is replaced once the new one is whole";
                 if let Some(path) = ask(ui, ("Save what was recorded", "Save"), ("A folder", note), path, commands) {
                     commands.push(Command::File(FileCommand::SaveRun(path)));
                 }

@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use cable_core::Scene;
+use cable_core::files::{RunEnd, RunFolder};
+use cable_core::record::{NodeChoice, RunRequest};
 use cable_core::scene::catalog;
-use cable_core::{Scene, files};
 
 use super::{Command, Effects, SceneCommand, import, submit_scene};
 use crate::dialog::Dialog;
@@ -124,6 +126,7 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
             Ok(opened) => {
                 open(state, opened.scene, None, effects);
                 state.reopened = opened.answers;
+                remark(state, &path, &opened.remarks);
             }
             Err(text) => complain(state, &format!("The run “{}” was not opened", path.display()), text),
         },
@@ -191,11 +194,19 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
     submit_scene(state, true, effects);
 }
 
+/// Says what a user should know about a run that was opened.
+fn remark(state: &mut AppState, path: &Path, remarks: &[String]) {
+    if !remarks.is_empty() {
+        complain(state, &format!("About the run “{}”", path.display()), remarks.join(" "));
+    }
+}
+
 fn hold(state: &mut AppState, path: &Path, opened: run::Opened) {
     let samples: Vec<Sample> = opened.answers.iter().map(Sample::of).collect();
     let events = opened.answers.iter().map(|a| a.warnings.len()).sum();
     let run = Run::of(samples.iter(), &opened.answers, events).map(Arc::new);
     state.dialog = None;
+    remark(state, path, &opened.remarks);
     if let (Some(solution), true) = (opened.answers.into_iter().next_back(), state.held.len() < Held::MOST) {
         let name = format!("{}, {}, {:.2} s", opened.scene.name, path.display(), solution.time_s);
         let (scene, solution) = (Arc::new(opened.scene), Arc::new(solution));
@@ -217,11 +228,18 @@ fn save(state: &mut AppState, path: &Path) {
 
 fn save_run(state: &AppState, path: &Path) -> Result<(), String> {
     let scene = state.live.scene.as_deref().ok_or("nothing was solved yet")?;
-    let mut folder = files::create_run(path, scene).map_err(|e| e.to_string())?;
+    let request =
+        RunRequest { program: format!("cable-viewer {}", env!("CARGO_PKG_VERSION")), ..RunRequest::default() };
+    let mut folder = RunFolder::create(path, scene, request, NodeChoice::default()).map_err(|e| e.to_string())?;
     for answer in state.recording.answers() {
-        folder.push(answer).map_err(|e| e.to_string())?;
+        if let Err(e) = folder.push(answer) {
+            let why = e.to_string();
+            // The tables are readable and marked as partial already, whether this can be noted or not.
+            let _ = folder.finish(RunEnd::Partial(why.clone()));
+            return Err(why);
+        }
     }
-    folder.flush().map_err(|e| e.to_string())
+    folder.finish(RunEnd::Complete).map(|_| ()).map_err(|e| e.to_string())
 }
 
 fn complain(state: &mut AppState, title: &str, text: String) {

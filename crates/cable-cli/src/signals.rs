@@ -1,0 +1,67 @@
+//! Signals that ask a run to end: noted, not obeyed at once, so that it ends in order.
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+
+/// One of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Signal {
+    /// Ctrl-C.
+    Interrupt,
+    /// `kill`, or a scheduler whose time is up.
+    Terminate,
+}
+
+impl Signal {
+    const ALL: [Self; 2] = [Self::Interrupt, Self::Terminate];
+
+    fn number(self) -> i32 {
+        match self {
+            Self::Interrupt => SIGINT,
+            Self::Terminate => SIGTERM,
+        }
+    }
+
+    /// As systems call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Interrupt => "SIGINT",
+            Self::Terminate => "SIGTERM",
+        }
+    }
+
+    /// As shells say that a program ended by it.
+    pub fn exit_code(self) -> u8 {
+        match self {
+            Self::Interrupt => 130,
+            Self::Terminate => 143,
+        }
+    }
+}
+
+/// Whether one has arrived. A second one ends the program at once, for when the disk does not answer.
+pub struct Signals(Arc<AtomicUsize>);
+
+impl Signals {
+    /// From now on signals are noted.
+    pub fn new() -> io::Result<Self> {
+        let (arrived, any) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicBool::new(false)));
+        for (k, signal) in Signal::ALL.into_iter().enumerate() {
+            // In this order: what is noted by the first signal is read by the second.
+            flag::register_conditional_shutdown(signal.number(), i32::from(signal.exit_code()), any.clone())?;
+            flag::register_usize(signal.number(), arrived.clone(), k + 1)?;
+            flag::register(signal.number(), any.clone())?;
+        }
+        Ok(Self(arrived))
+    }
+
+    /// The one that arrived last.
+    pub fn arrived(&self) -> Option<Signal> {
+        let k = self.0.load(Ordering::SeqCst).checked_sub(1)?;
+        Signal::ALL.get(k).copied()
+    }
+}
