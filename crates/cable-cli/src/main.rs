@@ -7,6 +7,7 @@ mod args;
 mod output;
 mod run;
 mod solve;
+mod summary;
 mod table;
 
 use std::process::ExitCode;

@@ -4,8 +4,11 @@ use std::fmt::Write as _;
 
 use cable_core::solution::{ContactState, Solution};
 
+use crate::answer::Figures;
+use crate::summary;
+
 /// A table with units. Writing to a `String` cannot fail, so its results are not looked at.
-pub fn table(s: &Solution) -> String {
+pub fn table(s: &Solution, figures: &Figures) -> String {
     let mut t = String::new();
     let top = s.max_tension();
     let _ = writeln!(t, "Model             {} ({})", s.model, s.reason);
@@ -28,6 +31,7 @@ pub fn table(s: &Solution) -> String {
         }
     }
     let _ = writeln!(t, "Residual          {:.2e} N after {} iterations", s.cost.residual_n, s.cost.iterations);
+    summary::write(&mut t, figures);
     for c in &s.cables {
         supports(&mut t, c);
         contacts(&mut t, c);

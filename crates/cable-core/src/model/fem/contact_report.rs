@@ -2,10 +2,11 @@
 
 use super::contact_set::{ContactSet, Rub, Touch};
 use super::dynamics::Dynamics;
-use super::sliding::Seat;
+use super::sliding::{Seat, Sliding};
 use crate::contact::friction;
 use crate::energy::bending::turn;
-use crate::math::Vec2;
+use crate::math::{Vec2, perp};
+use crate::model::arc_nodes;
 use crate::problem::Problem;
 use crate::solution::{CableSolution, ContactReport, ContactState, Node, SupportReaction};
 
@@ -124,7 +125,7 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
         stress_pa: t / area,
         curvature_per_m,
     };
-    let mut out = Vec::with_capacity(n + 2);
+    let mut out: Vec<Node> = Vec::with_capacity(n + 2);
     for k in 0..n {
         if let (Some(sliding), Some(load)) = (&mesh.sliding[k], d.load(k)) {
             let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
@@ -141,7 +142,16 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
                         if sliding.end.radius > 0.0 { stretch * sliding.end.sense / sliding.end.radius } else { 0.0 };
                     let t =
                         if load.tension[1] > load.tension[0] && arc == 0.0 { load.tension[1] } else { load.tension[j] };
-                    out.push(node(s, (at, velocity), t, curvature));
+                    let next = node(s, (at, velocity), t, curvature);
+                    // From where it meets the round, or from the mark before on it.
+                    let turn = match (j, same[0]) {
+                        (1, true) => paths[1].arcs[0],
+                        (1, false) => paths[0].arcs[1] + if same[1] { 0.0 } else { paths[1].arcs[0] },
+                        (_, true) => paths[0].arcs[0] + paths[0].arcs[1],
+                        _ => 0.0,
+                    };
+                    round_nodes(&mut out, &next, (sliding, turn), d.problem.radius);
+                    out.push(next);
                 }
             }
             continue;
@@ -164,6 +174,39 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
         out.push(node(mesh.arc_length[k], (x[k], v[k]), t, curvature));
     }
     out
+}
+
+/// Part of its radius by which a node may be off a round and be on it: rounding. Smaller: arcs far from the origin have no nodes;
+/// larger: a node beside a round is taken for one on it.
+const SAME_ROUND: f64 = 1e-6;
+
+/// Nodes between the last one and the next, which lie `turn` (rad) apart on the round of a sliding node: what they hold runs
+/// evenly from one to the other.
+fn round_nodes(out: &mut Vec<Node>, next: &Node, (sliding, turn): (&Sliding, f64), cable_radius: f64) {
+    let Some(last) = out.last().copied() else { return };
+    let end = &sliding.end;
+    let parts = arc_nodes::parts(end.radius, turn, cable_radius);
+    let spoke = last.at() - end.center;
+    if !(turn > 0.0) || (spoke.norm() - end.radius).abs() > SAME_ROUND * end.radius {
+        return;
+    }
+    for i in 1..parts {
+        let f = i as f64 / parts as f64;
+        let (sin, cos) = (end.sense * turn * f).sin_cos();
+        let at = end.center + spoke * cos + perp(spoke) * sin;
+        let mix = |of: fn(&Node) -> f64| of(&last) + (of(next) - of(&last)) * f;
+        out.push(Node {
+            arc_length_m: mix(|n| n.arc_length_m),
+            x_m: at.x,
+            y_m: at.y,
+            vx_m_per_s: mix(|n| n.vx_m_per_s),
+            vy_m_per_s: mix(|n| n.vy_m_per_s),
+            tension_n: mix(|n| n.tension_n),
+            strain: mix(|n| n.strain),
+            stress_pa: mix(|n| n.stress_pa),
+            ..*next
+        });
+    }
 }
 
 /// The force of the cable on a pulley with its tensions and arc length.

@@ -5,13 +5,12 @@ use super::pulley::Pulley;
 use super::{MassSpringModel, Touch};
 use crate::energy::bending::turn;
 use crate::math::{Vec2, angle, perp};
+use crate::model::arc_nodes;
 use crate::solution::{CableSolution, ContactReport, ContactState, Node, SupportReaction};
 use crate::state::State;
 
 /// Tensions of both sides of a point that are the same to this part make one node.
 const NO_JUMP: f64 = 1e-9;
-/// Nodes on a wheel, less one.
-const WHEEL_NODES: usize = 8;
 
 /// Below this speed (m/s) a held node does not rub.
 const RESTING_SPEED: f64 = 1e-9;
@@ -55,7 +54,7 @@ impl MassSpringModel {
         let [s0, s1] = self.on_wheel_from_to(&p);
         let (b, a) = (self.reach(p.node - 1), self.reach(p.node));
         let jump = (p.tension[1] - p.tension[0]).abs() > NO_JUMP * p.tension[0];
-        let count = if p.radius > 0.0 { WHEEL_NODES } else { 1 };
+        let count = arc_nodes::parts(p.radius, p.turn, self.problem.radius);
         for k in usize::from(p.radius == 0.0 && !jump)..=count {
             let f = k as f64 / count as f64;
             let (along, tension_n) = (p.radius * p.turn * f, self.tension_round(&p, f));

@@ -11,12 +11,11 @@ use super::strand::{Contact, Course, Strand, Tie};
 use super::weight;
 use crate::catenary::PointForce;
 use crate::math::{GAUSS, Vec2};
+use crate::model::arc_nodes;
 use crate::model::catenary::report::{Nodes, Point};
 use crate::solution::{ContactPart, ContactReport, ContactState, Node, SupportReaction};
 
-/// Nodes on a contact: one at least every so many radians of an arc …
-const ARC_STEP: f64 = 0.13;
-/// … and as many on each stretch of an edge.
+/// Nodes on each stretch of an edge.
 const EDGE_NODES: usize = 8;
 
 /// Longest stretch of an arc over which forces are summed with one rule of 5 Gauss points, rad: exact to 1e-11.
@@ -62,7 +61,7 @@ pub(super) fn report(layout: &Layout, network: &Network) -> Report {
             if let Some(c) = strand.contacts.get(k) {
                 let track = course.track(c).seen_from(c.ends.p[0]);
                 let stretches = stretches(&track, &c.history, c.ends.p);
-                contact_nodes(&mut nodes, &track, c, &stretches);
+                contact_nodes(&mut nodes, &track, (c, layout.problem.radius), &stretches);
                 if let Some(obstacle) = track.curve.obstacle {
                     let name = layout.problem.world.obstacle_name(obstacle);
                     contacts.push(match c.weight {
@@ -126,7 +125,7 @@ fn stretches(track: &Track<'_>, history: &History, [p1, p2]: [f64; 2]) -> Vec<St
     out
 }
 
-fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, c: &Contact, stretches: &[Stretch]) {
+fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, (c, cable_radius): (&Contact, f64), stretches: &[Stretch]) {
     let mut push = |place: &Place, (tension, s): (f64, f64)| {
         let curvature = if place.stretch > 0.0 { place.turn * track.law.stretch(tension) / place.stretch } else { 0.0 };
         nodes.push(Point { s, at: place.at, tension, curvature });
@@ -134,7 +133,8 @@ fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, c: &Contact, stretche
     push(&track.place(c.ends.p[0]), (c.ends.t[0], c.ends.s[0]));
     for stretch in stretches {
         let (a, b) = (stretch.from, stretch.to);
-        let count = if stretch.pivot.turns() { ((b - a) / ARC_STEP).ceil() as usize + 1 } else { EDGE_NODES };
+        let arc = |pivot: &Pivot| arc_nodes::parts(pivot.at.stretch, b - a, cable_radius);
+        let count = if stretch.pivot.turns() { arc(&stretch.pivot) } else { EDGE_NODES };
         let last = if b < c.ends.p[1] { count } else { count - 1 };
         for i in 1..=last {
             let p = if i == count { b } else { a + (b - a) * i as f64 / count as f64 };
