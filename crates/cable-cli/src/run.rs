@@ -5,10 +5,11 @@ use std::time::Instant;
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
 use cable_core::solution::{MaxTension, Solution, WarningKind};
-use cable_core::{Settings, Simulation, SolveError, files};
+use cable_core::summary::summaries;
+use cable_core::{Scene, Settings, Simulation, SolveError, files};
 
 use crate::Done;
-use crate::answer::answer;
+use crate::answer::{Figures, answer};
 use crate::args::RunArguments;
 use crate::output::{Failure, Printer, Progress};
 use crate::solve::{no_answer, read_scene, settings};
@@ -20,6 +21,7 @@ const MAX_OUTPUTS: f64 = 1e7;
 /// Where the answers of a run go.
 struct Outputs<'a> {
     arguments: &'a RunArguments,
+    scene: &'a Scene,
     folder: files::RunFolder,
     printer: Printer,
     progress: Progress,
@@ -30,7 +32,9 @@ struct Outputs<'a> {
 
 impl Outputs<'_> {
     fn push(&mut self, solution: &Solution, wall_time_s: f64) -> Done {
-        let printable = answer(solution, wall_time_s, Some(solution.time_s)).map_err(Failure::NonFinite)?;
+        let cables = if self.arguments.common.json { summaries(self.scene, solution) } else { Vec::new() };
+        let figures = Figures { cables, stiffness: None };
+        let printable = answer(solution, &figures, wall_time_s, Some(solution.time_s)).map_err(Failure::NonFinite)?;
         self.folder.push(solution).map_err(|e| Failure::Table(self.arguments.out.clone(), e))?;
         if self.arguments.common.json {
             self.printer.json(&printable)?;
@@ -108,6 +112,7 @@ pub fn run(a: &RunArguments) -> Done {
     let folder = files::create_run(&a.out, &scene).map_err(Failure::File)?;
     let mut outputs = Outputs {
         arguments: a,
+        scene: &scene,
         folder,
         printer: Printer::new(),
         progress: Progress::new(),
@@ -121,7 +126,9 @@ pub fn run(a: &RunArguments) -> Done {
     walked.and(closed)?;
     if !a.common.json {
         let out = &mut outputs.printer;
-        out.line(table(&simulation.solution()).trim_end())?;
+        let solution = simulation.solution();
+        let figures = Figures { cables: summaries(&scene, &solution), stiffness: None };
+        out.line(table(&solution, &figures).trim_end())?;
         let (peak, t) = (outputs.peak, outputs.peak_time_s);
         out.line(&format!(
             "\nGreatest tension of the run  {:.6} N at {t:.4} s, at {:.4} m",
