@@ -41,6 +41,7 @@ pub mod spread;
 pub mod state;
 mod strand;
 pub mod summary;
+pub mod verify;
 mod watch;
 
 pub use cable_linalg as linalg;

@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::shape::lies_on_something;
-use crate::math::{Vec2, perp};
+use crate::math::Vec2;
 use crate::problem::Series;
 use crate::scene::{Cable, Scene, SupportKind, View};
-use crate::solution::{CableSolution, ContactReport};
+use crate::solution::CableSolution;
 
 /// The forces on a cable, N, right and up. In motion what is left is what accelerates it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -43,7 +43,8 @@ pub(super) fn balance(scene: &Scene, cable: &Cable, answer: &CableSolution, time
         })
     };
     let supports = sum(&mut answer.supports.iter().map(|s| -Vec2::new(s.reaction_x_n, s.reaction_y_n)));
-    let contacts = sum(&mut answer.contacts.iter().filter(|c| lies_on_something(cable, c)).map(force_on_cable));
+    let contacts =
+        sum(&mut answer.contacts.iter().filter(|c| lies_on_something(cable, c)).map(|c| Vec2::from(c.force_n)));
     let loads = scene.loads.iter().filter(|l| l.cable == cable.name && !hangs_at_a_support(cable, l.arc_length_m));
     let loads = sum(&mut loads.map(|l| series(l.force_n, &l.times_s, &l.forces_n).at(time_s)));
     let residual = supports + contacts + loads + weight;
@@ -55,17 +56,6 @@ pub(super) fn balance(scene: &Scene, cable: &Cable, answer: &CableSolution, time
         residual_n: residual.into(),
         relative_residual: if largest > 0.0 { residual.norm() / largest } else { 0.0 },
     })
-}
-
-/// The force of an obstacle on the cable, N.
-fn force_on_cable(c: &ContactReport) -> Vec2 {
-    let normal = Vec2::from(c.normal);
-    // Along growing arc length the obstacle lies on one side: the turn says on which.
-    let along = perp(normal) * if c.turn_deg > 0.0 { 1.0 } else { -1.0 };
-    // Of pressure that turns by φ on its way sin(φ/2)/(φ/2) is left in the sum.
-    let half = 0.5 * c.turn_deg.to_radians();
-    let left = if half.abs() > 1e-6 { half.sin() / half } else { 1.0 };
-    (normal * c.normal_n + along * c.friction_n) * left
 }
 
 /// Whether a point load hangs where a dead load or nothing is: the force of that support is of all that hangs there.

@@ -10,7 +10,7 @@ use crate::problem::Problem;
 use crate::solution::{Node, SupportReaction};
 
 /// A point of the cable.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
     /// Arc length, m.
     pub arc_length: f64,
@@ -20,6 +20,8 @@ pub struct Point {
     pub tension: f64,
     /// d(angle)/d(arc length), 1/m.
     pub curvature: f64,
+    /// Internal force just beyond it, at the end of the cable just before it, N.
+    pub force: Vec2,
 }
 
 impl Point {
@@ -36,6 +38,7 @@ impl Point {
             strain: tension_n / problem.axial_stiffness,
             stress_pa: tension_n / area,
             curvature_per_m: self.curvature,
+            force_n: [self.force.x, self.force.y],
             ..Node::default()
         }
     }
@@ -65,7 +68,7 @@ pub fn points(network: &Network, cable_radius: f64, out: &mut Vec<Point>) {
         run(network, (last, end), start, network.forces[last][1], out);
         let load = layout.stops[end].load;
         let tip = out.last().map_or(start, |p| p.at) + last_chord(network, end);
-        out.push(Point { arc_length: layout.length, at: tip, tension: load.norm(), curvature: 0.0 });
+        out.push(Point { arc_length: layout.length, at: tip, tension: load.norm(), curvature: 0.0, force: load });
     }
 }
 
@@ -103,6 +106,7 @@ fn run(network: &Network, (first, last): (usize, usize), start: Vec2, force: Vec
                     at,
                     tension: larger(before.norm(), f.norm()),
                     curvature,
+                    force: f,
                 });
             }
             at += material.respond(ds, f - drop * 0.5).chord;
@@ -123,6 +127,7 @@ fn anchor(network: &Network, k: usize, cable_radius: f64, out: &mut Vec<Point>) 
                 at: point,
                 tension: force.norm(),
                 curvature,
+                force,
             };
             let turn = wheel::turn(&wheel, before);
             let curvature = turn / stop.lap;
@@ -146,6 +151,7 @@ fn anchor(network: &Network, k: usize, cable_radius: f64, out: &mut Vec<Point>) 
                 at: meets,
                 tension: larger(before.norm(), after.norm()),
                 curvature,
+                force: if k + 1 == network.layout.stops.len() { before } else { after },
             });
         }
     }

@@ -13,7 +13,7 @@ use crate::catenary::PointForce;
 use crate::math::{GAUSS, Vec2};
 use crate::model::arc_nodes;
 use crate::model::catenary::report::{Nodes, Point};
-use crate::solution::{ContactPart, ContactReport, ContactState, Node, SupportReaction};
+use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
 /// Nodes on each stretch of an edge.
 const EDGE_NODES: usize = 8;
@@ -60,8 +60,8 @@ pub(super) fn report(layout: &Layout, network: &Network) -> Report {
             }
             if let Some(c) = strand.contacts.get(k) {
                 let track = course.track(c).seen_from(c.ends.p[0]);
-                let stretches = stretches(&track, &c.history, c.ends.p);
-                contact_nodes(&mut nodes, &track, (c, layout.problem.radius), &stretches);
+                let stretches = stretches((&track, layout.problem.radius), &c.history, c.ends.p);
+                contact_nodes(&mut nodes, &track, c, &stretches);
                 if let Some(obstacle) = track.curve.obstacle {
                     let name = layout.problem.world.obstacle_name(obstacle);
                     contacts.push(match c.weight {
@@ -88,17 +88,28 @@ struct Stretch {
     /// Friction coefficient called upon.
     m: f64,
     pivot: Pivot,
+    /// Of the cable, m.
+    cable_radius: f64,
 }
 
 impl Stretch {
-    fn new(track: &Track<'_>, history: &History, [from, to]: [f64; 2]) -> Self {
+    fn new((track, cable_radius): (&Track<'_>, f64), history: &History, [from, to]: [f64; 2]) -> Self {
         let middle = 0.5 * (from + to);
         let (tension, s) = history.at(track, from);
         let pivot = match track.pivot {
             Some(pivot) if pivot.reaches(from) && pivot.reaches(to) => pivot,
             _ => Pivot::new(track.curve, track.home, &track.law, middle),
         };
-        Self { from, to, tension, s, m: history.called(track, middle), pivot }
+        Self { from, to, tension, s, m: history.called(track, middle), pivot, cable_radius }
+    }
+
+    /// Parts that nodes cut it into.
+    fn nodes(&self) -> usize {
+        if self.pivot.turns() {
+            arc_nodes::parts(self.pivot.at.stretch, self.to - self.from, self.cable_radius)
+        } else {
+            EDGE_NODES
+        }
     }
 
     /// Tension and material at p.
@@ -109,7 +120,7 @@ impl Stretch {
     }
 }
 
-fn stretches(track: &Track<'_>, history: &History, [p1, p2]: [f64; 2]) -> Vec<Stretch> {
+fn stretches((track, cable_radius): (&Track<'_>, f64), history: &History, [p1, p2]: [f64; 2]) -> Vec<Stretch> {
     let knots = history.knots();
     let mut out = Vec::with_capacity(knots.len() + 1);
     let (mut p, mut k) = (p1, 0);
@@ -119,22 +130,21 @@ fn stretches(track: &Track<'_>, history: &History, [p1, p2]: [f64; 2]) -> Vec<St
             k += 1;
         }
         let next = knots.get(k).map_or(border, |knot| if knot.p < border { knot.p } else { border });
-        out.push(Stretch::new(track, history, [p, next]));
+        out.push(Stretch::new((track, cable_radius), history, [p, next]));
         p = next;
     }
     out
 }
 
-fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, (c, cable_radius): (&Contact, f64), stretches: &[Stretch]) {
+fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, c: &Contact, stretches: &[Stretch]) {
     let mut push = |place: &Place, (tension, s): (f64, f64)| {
         let curvature = if place.stretch > 0.0 { place.turn * track.law.stretch(tension) / place.stretch } else { 0.0 };
-        nodes.push(Point { s, at: place.at, tension, curvature });
+        nodes.push(Point { s, at: place.at, force: place.tangent * tension, curvature });
     };
     push(&track.place(c.ends.p[0]), (c.ends.t[0], c.ends.s[0]));
     for stretch in stretches {
         let (a, b) = (stretch.from, stretch.to);
-        let arc = |pivot: &Pivot| arc_nodes::parts(pivot.at.stretch, b - a, cable_radius);
-        let count = if stretch.pivot.turns() { arc(&stretch.pivot) } else { EDGE_NODES };
+        let count = stretch.nodes();
         let last = if b < c.ends.p[1] { count } else { count - 1 };
         for i in 1..=last {
             let p = if i == count { b } else { a + (b - a) * i as f64 / count as f64 };
@@ -174,7 +184,7 @@ fn contact((track, name): (&Track<'_>, &str), c: &Contact, stretches: &[Stretch]
     let unit = if push.norm() > 0.0 { push.normalize() } else { middle.normal };
     let [t1, t2] = c.ends.t;
     let slips = friction <= 0.0 || matches!(c.mode, Mode::Slide(_));
-    ContactReport {
+    let mut report = ContactReport {
         obstacle: name.to_owned(),
         x_m: middle.at.x,
         y_m: middle.at.y,
@@ -189,7 +199,31 @@ fn contact((track, name): (&Track<'_>, &str), c: &Contact, stretches: &[Stretch]
         begins_m: c.ends.s[0],
         ends_m: c.ends.s[1],
         parts: if slips { Vec::new() } else { parts(c, friction, stretches) },
+        ..ContactReport::default()
+    };
+    report.set_samples(samples(track, stretches));
+    report
+}
+
+/// Forces of the obstacle on the cable between the nodes of a contact: N n on an edge or arc, less the friction called upon, m N t.
+fn samples(track: &Track<'_>, stretches: &[Stretch]) -> Vec<ContactSample> {
+    let mut out = Vec::with_capacity(EDGE_NODES * stretches.len());
+    for stretch in stretches {
+        let count = stretch.nodes();
+        let h = (stretch.to - stretch.from) / count as f64;
+        for k in 0..count {
+            let (mut force, mut middle) = (Vec2::zeros(), stretch.s);
+            for (u, weight) in THREE {
+                let p = stretch.from + (k as f64 + u) * h;
+                let (t, s) = stretch.at(track, p);
+                let place = stretch.pivot.place(p);
+                force += (place.normal - place.tangent * stretch.m) * (weight * h * track.law.press(&place, t));
+                middle = if u == 0.5 { s } else { middle };
+            }
+            out.push(ContactSample::new(middle, force));
+        }
     }
+    out
 }
 
 /// The contact of the load that is contact j.
@@ -197,6 +231,8 @@ fn load((strand, course, j): (&Strand, &Course, usize), (track, name): (&Track<'
     let c = &strand.contacts[j];
     let felt = weight::felt(strand, course, j);
     let at = track.place(c.ends.p[0]).at;
+    // The obstacle holds what all else does to the point.
+    let held = felt.normal * felt.press() - felt.tangent * felt.sum.dot(&felt.tangent);
     let slips = track.friction <= 0.0 || matches!(c.mode, Mode::Slide(_));
     ContactReport {
         obstacle: name.to_owned(),
@@ -212,7 +248,9 @@ fn load((strand, course, j): (&Strand, &Course, usize), (track, name): (&Track<'
         tension_after_n: c.ends.t[1],
         begins_m: c.ends.s[0],
         ends_m: c.ends.s[0],
-        parts: Vec::new(),
+        force_n: [held.x, held.y],
+        samples: vec![ContactSample::new(c.ends.s[0], held)],
+        ..ContactReport::default()
     }
 }
 
