@@ -141,11 +141,16 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
         if let (Some(sliding), Some(load)) = (&mesh.sliding[k], d.load(k)) {
             let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
             let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(sliding)));
+            // On a round the cable has the direction of the round, and half of the node's friction has acted.
+            let tension = (load.tension[0] * load.tension[1]).sqrt();
+            let tangent = perp(sliding.end.mark) * (sliding.end.sense * tension);
             for j in 0..2 {
                 // Where the cable meets the round and leaves it; one node where that is one place.
                 let arc = if same[j] { 0.0 } else { sliding.end.radius * paths[j].arcs[1 - j] };
                 let stretch = mesh.thermal_stretch * (1.0 + load.tension[j] / d.problem.axial_stiffness);
-                let s = mesh.arc_length[k] + [-1.0, 1.0][j] * arc / stretch;
+                let beyond = [-1.0, 1.0][j] * arc / stretch;
+                let force = if same[j] { tangent } else { load.force[j] - d.task.body * beyond };
+                let s = mesh.arc_length[k] + beyond;
                 if out.last().is_none_or(|l: &Node| s > l.arc_length_m + 1e-9) {
                     let at = if same[j] { sliding.position() } else { paths[j].ends[1 - j] };
                     let velocity = paths[j].direction * (-d.motion.w[k] * stretch);
@@ -153,7 +158,7 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
                         if sliding.end.radius > 0.0 { stretch * sliding.end.sense / sliding.end.radius } else { 0.0 };
                     let t =
                         if load.tension[1] > load.tension[0] && arc == 0.0 { load.tension[1] } else { load.tension[j] };
-                    let next = node(s, (at, velocity), t, (curvature, load.force[j]));
+                    let next = node(s, (at, velocity), t, (curvature, force));
                     // From where it meets the round, or from the mark before on it.
                     let turn = match (j, same[0]) {
                         (1, true) => paths[1].arcs[0],
@@ -164,7 +169,7 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
                     round_nodes(&mut out, &next, (sliding, turn), d.problem.radius);
                     out.push(next);
                 } else if let Some(last) = out.last_mut() {
-                    last.force_n = load.force[j].into();
+                    last.force_n = force.into();
                 }
             }
             continue;
