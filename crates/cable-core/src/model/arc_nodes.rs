@@ -32,6 +32,25 @@ pub(in crate::model) fn parts(radius: f64, turn: f64, cable_radius: f64) -> usiz
     }
 }
 
+/// The parts of the material of an arc that lie before each of its nodes but the first, from 0 to 1, for a strain along it: the more
+/// the cable is strained the less material there is, ds ~ dφ/(1 + ε). Simpson's rule for each part.
+pub(in crate::model) fn material(parts: usize, strain: impl Fn(f64) -> f64) -> Vec<f64> {
+    let rate = |f: f64| 1.0 / (1.0 + strain(f));
+    let step = 1.0 / parts as f64;
+    let mut sum = 0.0;
+    let mut out: Vec<f64> = (0..parts)
+        .map(|i| {
+            let [a, b] = [i, i + 1].map(|i| i as f64 * step);
+            sum += rate(a) + 4.0 * rate(0.5 * (a + b)) + rate(b);
+            sum
+        })
+        .collect();
+    for share in &mut out {
+        *share /= sum;
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -53,7 +72,18 @@ mod tests {
                 }
             }
         }
-        assert_eq!(parts(1.0, f64::NAN, 0.01), 1);
+        assert_eq!((parts(1.0, f64::NAN, 0.01), parts(0.0, 1.0, 0.01)), (1, 1));
         assert_eq!(parts(1e4, 1e9, 1e-5), MOST_PARTS as usize);
+    }
+
+    #[test]
+    fn there_is_less_material_where_it_is_strained() {
+        assert_eq!(material(4, |_| 0.3), [0.25, 0.5, 0.75, 1.0]);
+        // ∫ df/(1 + f) = ln(1 + f).
+        let shares = material(8, |f| f);
+        for (k, share) in shares.iter().enumerate() {
+            let exact = (1.0 + (k + 1) as f64 / 8.0).ln() / 2f64.ln();
+            assert!((share - exact).abs() < 1e-6, "{share} against {exact}");
+        }
     }
 }

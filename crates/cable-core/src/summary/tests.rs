@@ -2,6 +2,7 @@ use super::*;
 use crate::model::{Model, Settings};
 use crate::scene::{Motion, Support, catalog};
 use crate::simulation::Simulation;
+use crate::solution::{ContactReport, SupportReaction};
 
 fn answered(scene: &Scene, model: Model) -> Solution {
     Simulation::new(scene.clone(), model).unwrap().settle().unwrap()
@@ -201,4 +202,67 @@ fn a_dead_load_at_an_end_is_counted_once() {
         assert!(b.relative_residual < 1e-8, "{model}: {b:?}");
         assert_eq!(b.loads_n, [5.0, -20.0]);
     }
+}
+
+/// A parabola of depth 1 below a chord of 1 m with a slope.
+fn parabola(tilt: f64) -> (Cable, CableSolution) {
+    let node = |i: i32| {
+        let x = f64::from(i) / 10.0;
+        Node { arc_length_m: x, x_m: x, y_m: tilt * x - 4.0 * x * (1.0 - x), ..Node::default() }
+    };
+    let support = |x: f64| SupportReaction { x_m: x, y_m: tilt * x, arc_length_m: x, ..SupportReaction::default() };
+    let answer = CableSolution {
+        nodes: (0..=10).map(node).collect(),
+        supports: vec![support(0.0), support(1.0)],
+        ..CableSolution::default()
+    };
+    (catalog::hanging_span().cables.remove(0), answer)
+}
+
+#[test]
+fn sag_is_vertical_whatever_the_slope_and_square_to_the_line_in_plan() {
+    for tilt in [0.0, 3.0, -2.0] {
+        let (cable, answer) = parabola(tilt);
+        let s = sag(&cable, &answer, View::Elevation).unwrap();
+        assert!((s.sag_m - 1.0).abs() < 1e-12 && s.at.x_m == 0.5, "{tilt}: {s:?}");
+    }
+    let (cable, mut answer) = parabola(1.0);
+    assert!((sag(&cable, &answer, View::Plan).unwrap().sag_m - 0.5_f64.sqrt()).abs() < 1e-12);
+    answer.supports[1].x_m = 0.0;
+    assert!(sag(&cable, &answer, View::Elevation).is_none_or(|s| s.sag_m.is_finite()));
+}
+
+#[test]
+fn a_slack_cable_is_as_long_as_it_is_however_it_sags() {
+    let (_, mut answer) = parabola(0.0);
+    assert!((stretched_length_m(&answer, 1.0) - 1.0).abs() < 1e-12);
+    for node in &mut answer.nodes {
+        node.strain = 1e-3;
+    }
+    assert!((stretched_length_m(&answer, 1.002) - 1.002 * 1.001).abs() < 1e-12);
+}
+
+/// Contacts that overlap, touch, lie at an end and are points.
+#[test]
+fn lying_length_is_that_of_the_union_of_all_contacts() {
+    let (mut cable, mut answer) = parabola(0.0);
+    cable.length_m = 1.0;
+    let contact = |obstacle: &str, from: f64, to: f64| ContactReport {
+        obstacle: obstacle.to_owned(),
+        begins_m: from,
+        ends_m: to,
+        arc_length_m: 0.5 * (from + to),
+        ..ContactReport::default()
+    };
+    answer.contacts = vec![
+        contact("a", 0.0, 0.2),
+        contact("b", 0.15, 0.3),
+        contact("c", 0.3, 0.4),
+        contact("d", 0.6, 0.6),
+        contact(&cable.name, 0.5, 0.9),
+    ];
+    assert!((shape::lying_m(&cable, &answer) - 0.4).abs() < 1e-12);
+    let downs = shape::touchdowns(&cable, &answer);
+    let seen: Vec<_> = downs.iter().map(|d| (d.obstacle.as_str(), d.touch, d.at.arc_length_m)).collect();
+    assert_eq!(seen, [("c", Touch::Ends, 0.4), ("d", Touch::Point, 0.6)]);
 }

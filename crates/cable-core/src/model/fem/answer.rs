@@ -134,12 +134,18 @@ fn anchor(network: &Network, k: usize, cable_radius: f64, out: &mut Vec<Point>) 
             out.push(tangent(meets, stop.arc_length, before, curvature));
             let count = arc_nodes::parts(wheel.radius, turn, cable_radius);
             let start = wheel.contact[0].y.atan2(wheel.contact[0].x);
-            for i in 1..count {
+            let tension = |f: f64| wheel::tension(&wheel, &network.material, [before, after], f);
+            let material = arc_nodes::material(count, |f| tension(f) / network.material.axial_stiffness);
+            for (i, share) in (1..count).zip(material) {
                 let f = i as f64 / count as f64;
                 let n = Vec2::new((start + turn * f).cos(), (start + turn * f).sin());
-                let tension = wheel::tension(&wheel, &network.material, [before, after], f);
-                let force = perp(n) * (turn.signum() * tension);
-                out.push(tangent(wheel.center + n * wheel.radius, stop.arc_length + stop.lap * f, force, curvature));
+                let force = perp(n) * (turn.signum() * tension(f));
+                out.push(tangent(
+                    wheel.center + n * wheel.radius,
+                    stop.arc_length + stop.lap * share,
+                    force,
+                    curvature,
+                ));
             }
             out.push(tangent(leaves, stop.leaves(), after, curvature));
         }

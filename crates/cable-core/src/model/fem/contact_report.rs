@@ -1,11 +1,8 @@
 //! Reads tensions, reactions and contacts out of a state.
 
-use std::f64::consts::TAU;
-
 use super::assembly::Mesh;
 use super::contact_set::{ContactSet, Rub, Touch};
 use super::dynamics::Dynamics;
-use super::path::angle_between;
 use super::sliding::{Seat, Sliding};
 use crate::contact::friction;
 use crate::energy::bending::turn;
@@ -228,7 +225,8 @@ fn shear(mesh: &Mesh, moments: &[f64], e: usize, x: &[Vec2]) -> Vec2 {
 const SAME_ROUND: f64 = 1e-6;
 
 /// Nodes between the last one and the next, which lie `turn` (rad) apart on the round of a sliding node. Arc length and speed run
-/// evenly from one to the other, the internal force turns evenly, and its size is that of a cable that rubs evenly: T e^{mφ}.
+/// evenly from one to the other, the internal force has the direction of the round, and its size is that of a cable that rubs evenly:
+/// T e^{mφ}.
 fn round_nodes(out: &mut Vec<Node>, next: &Node, (sliding, turn): (&Sliding, f64), cable_radius: f64) {
     let Some(last) = out.last().copied() else { return };
     let end = &sliding.end;
@@ -238,21 +236,19 @@ fn round_nodes(out: &mut Vec<Node>, next: &Node, (sliding, turn): (&Sliding, f64
         return;
     }
     let whole = end.sense * turn;
-    let force = Vec2::from(last.force_n);
-    let by = angle_between(force, Vec2::from(next.force_n));
-    let by = by + TAU * ((whole - by) / TAU).round();
     let rotated = |v: Vec2, angle: f64| v * angle.cos() + perp(v) * angle.sin();
-    for i in 1..parts {
+    let grown = |a: f64, b: f64, f: f64| if a > 0.0 && b > 0.0 { a * (b / a).powf(f) } else { a + (b - a) * f };
+    let material = arc_nodes::material(parts, |f| grown(last.strain, next.strain, f));
+    for (i, share) in (1..parts).zip(material) {
         let f = i as f64 / parts as f64;
         let even = |a: f64, b: f64| a + (b - a) * f;
-        let grown = |a: f64, b: f64| if a > 0.0 && b > 0.0 { a * (b / a).powf(f) } else { even(a, b) };
-        let at = end.center + rotated(spoke, whole * f);
-        let size = grown(force.norm(), Vec2::from(next.force_n).norm());
-        let direction = force.try_normalize(0.0).unwrap_or_default();
+        let normal = rotated(spoke, whole * f);
+        let at = end.center + normal;
+        let size = grown(Vec2::from(last.force_n).norm(), Vec2::from(next.force_n).norm(), f);
         let mix = |of: fn(&Node) -> f64| even(of(&last), of(next));
-        let grow = |of: fn(&Node) -> f64| grown(of(&last), of(next));
+        let grow = |of: fn(&Node) -> f64| grown(of(&last), of(next), f);
         out.push(Node {
-            arc_length_m: mix(|n| n.arc_length_m),
+            arc_length_m: last.arc_length_m + (next.arc_length_m - last.arc_length_m) * share,
             x_m: at.x,
             y_m: at.y,
             vx_m_per_s: mix(|n| n.vx_m_per_s),
@@ -260,7 +256,7 @@ fn round_nodes(out: &mut Vec<Node>, next: &Node, (sliding, turn): (&Sliding, f64
             tension_n: grow(|n| n.tension_n),
             strain: grow(|n| n.strain),
             stress_pa: grow(|n| n.stress_pa),
-            force_n: (rotated(direction, by * f) * size).into(),
+            force_n: (perp(normal) * (end.sense * size / end.radius)).into(),
             ..*next
         });
     }

@@ -67,7 +67,10 @@ impl MassSpringModel {
         let (b, a) = (self.reach(p.node - 1), self.reach(p.node));
         let jump = (p.tension[1] - p.tension[0]).abs() > NO_JUMP * p.tension[0];
         let count = arc_nodes::parts(p.radius, p.turn, self.problem.radius);
+        let strain = |f: f64| self.tension_round(&p, f) / self.problem.axial_stiffness;
+        let material = arc_nodes::material(count, strain);
         for k in usize::from(p.radius == 0.0 && !jump)..=count {
+            let share = k.checked_sub(1).and_then(|k| material.get(k)).copied().unwrap_or(0.0);
             let f = k as f64 / count as f64;
             let (along, tension_n) = (p.radius * p.turn * f, self.tension_round(&p, f));
             let angle = p.mark + p.facing * (p.arc[0] - along) / p.radius;
@@ -87,7 +90,7 @@ impl MassSpringModel {
                     t
                 } * p.rate;
             out.push(Node {
-                arc_length_m: s0 + (s1 - s0) * f,
+                arc_length_m: s0 + (s1 - s0) * share,
                 x_m: at.x,
                 y_m: at.y,
                 vx_m_per_s: v.x,
