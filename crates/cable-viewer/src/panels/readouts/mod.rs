@@ -213,7 +213,7 @@ fn material(ui: &mut Ui, (cable, solved): (&Cable, &CableSolution), first: &Cabl
     if let Some(j) = judged {
         let help = format!(
             "Sharpest bend where something leads it, at sharp corners with a bending stiffness of {}: this is what is warned of",
-            unit::Unit::BENDING_STIFFNESS.text(j.bending_stiffness_n_m2)
+            unit::Unit::N_M2.text(j.bending_stiffness_n_m2)
         );
         let text = format!("{}{tight}", unit::length(j.bend.radius_m));
         figure(ui, "  as stiff as it is", text, &help, Some((&place(j.bend), &mut *commands)));
