@@ -3,6 +3,7 @@
 use cable_core::solution::{
     Bend, CableSolution, ContactReport, ContactSample, ContactState, Node, Pressure, Solution, SupportReaction, Warning,
 };
+use cable_core::summary::{CableSummary, EndStiffness};
 use cable_core::verify::Verification;
 use serde::Serialize;
 
@@ -25,12 +26,32 @@ pub struct Answer<'a> {
     pub tightest_bend: Option<OfCable<'a, Bend>>,
     /// Where a cable is pressed hardest against what leads it; null where nothing leads one round.
     pub sidewall_pressure: Option<OfCable<'a, Pressure>>,
+    /// What is read first, one a cable.
+    pub summary: Vec<Summary<'a>>,
     pub supports: Vec<Support<'a>>,
     pub nodes: Vec<NodeEntry<'a>>,
     pub contacts: Vec<Contact<'a>>,
     pub warnings: &'a [Warning],
     /// What the laws say of the answer.
     pub verification: Option<&'a Verification>,
+}
+
+/// The figures of a cable, and the stiffness of its ends where that was asked for.
+#[derive(Debug, Serialize)]
+pub struct Summary<'a> {
+    #[serde(flatten)]
+    pub figures: &'a CableSummary,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub end_stiffness: Option<Vec<&'a EndStiffness>>,
+}
+
+/// What is read first of a solution.
+#[derive(Debug, Default)]
+pub struct Figures {
+    /// One a cable.
+    pub cables: Vec<CableSummary>,
+    /// Of all held ends, where it was asked for.
+    pub stiffness: Option<Vec<EndStiffness>>,
 }
 
 /// Something of one cable, which is named where there are several.
@@ -96,7 +117,12 @@ pub struct NoAnswer<'a> {
 }
 
 /// The answer of a solution, or the name of the number in it that is not finite.
-pub fn answer<'a>(s: &'a Solution, wall_time_s: f64, time_s: Option<f64>) -> Result<Answer<'a>, String> {
+pub fn answer<'a>(
+    s: &'a Solution,
+    figures: &'a Figures,
+    wall_time_s: f64,
+    time_s: Option<f64>,
+) -> Result<Answer<'a>, String> {
     check_finite(s)?;
     let top = s.max_tension();
     let several = s.cables.len() > 1;
@@ -116,6 +142,7 @@ pub fn answer<'a>(s: &'a Solution, wall_time_s: f64, time_s: Option<f64>) -> Res
         max_tension_arc_length_m: top.arc_length_m,
         tightest_bend: bends.reduce(|a, b| if b.of.radius_m < a.of.radius_m { b } else { a }),
         sidewall_pressure: pressures.reduce(|a, b| if b.of.pressure_n_per_m > a.of.pressure_n_per_m { b } else { a }),
+        summary: figures.cables.iter().map(|of| summary(of, figures)).collect(),
         supports: Vec::new(),
         nodes: Vec::with_capacity(s.cables.iter().map(|c| c.nodes.len()).sum()),
         contacts: Vec::new(),
@@ -129,6 +156,11 @@ pub fn answer<'a>(s: &'a Solution, wall_time_s: f64, time_s: Option<f64>) -> Res
         out.contacts.extend(c.contacts.iter().map(|k| contact(cable, k)));
     }
     Ok(out)
+}
+
+fn summary<'a>(of: &'a CableSummary, figures: &'a Figures) -> Summary<'a> {
+    let own = |all: &'a Vec<EndStiffness>| all.iter().filter(|e| e.cable == of.cable).collect();
+    Summary { figures: of, end_stiffness: figures.stiffness.as_ref().map(own) }
 }
 
 fn node<'a>(cable: Option<&'a str>, n: &Node) -> NodeEntry<'a> {

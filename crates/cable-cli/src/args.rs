@@ -54,6 +54,9 @@ pub struct Common {
 pub struct SolveArguments {
     #[command(flatten)]
     pub common: Common,
+    /// Also say how stiffly the cable holds its ends: a dozen small moves of each, without inertia, friction remembered
+    #[arg(long)]
+    pub stiffness: bool,
 }
 
 #[derive(Debug, Args)]

@@ -8,6 +8,7 @@ mod output;
 mod run;
 mod signals;
 mod solve;
+mod summary;
 mod table;
 
 use std::process::ExitCode;

@@ -13,10 +13,11 @@ use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
 use cable_core::record::{RunRequest, WriteError};
 use cable_core::solution::{MaxTension, Solution, WarningKind};
-use cable_core::{Settings, Simulation, SolveError};
+use cable_core::summary::summaries;
+use cable_core::{Scene, Settings, Simulation, SolveError};
 
 use crate::Done;
-use crate::answer::answer;
+use crate::answer::{Figures, answer};
 use crate::args::RunArguments;
 use crate::output::{Failure, Printer, Progress};
 use crate::signals::Signals;
@@ -58,6 +59,7 @@ impl Shared {
 /// Where the answers of a run go.
 struct Outputs {
     arguments: RunArguments,
+    scene: Scene,
     folder: Shared,
     printing: Arc<Mutex<()>>,
     printer: Printer,
@@ -70,7 +72,9 @@ struct Outputs {
 
 impl Outputs {
     fn push(&mut self, solution: Solution, wall_time_s: f64, is_last: bool) -> Done {
-        let printable = answer(&solution, wall_time_s, Some(solution.time_s)).map_err(Failure::NonFinite)?;
+        let cables = if self.arguments.common.json { summaries(&self.scene, &solution) } else { Vec::new() };
+        let figures = Figures { cables, stiffness: None };
+        let printable = answer(&solution, &figures, wall_time_s, Some(solution.time_s)).map_err(Failure::NonFinite)?;
         let push = if is_last { RunFolder::push_last } else { RunFolder::push };
         self.folder.write(&self.arguments.out, |folder| push(folder, &solution))?;
         if self.arguments.common.json {
@@ -167,6 +171,7 @@ pub fn run(a: RunArguments) -> Done {
     let printing = Arc::new(Mutex::new(()));
     let outputs = Outputs {
         arguments: a,
+        scene,
         folder: shared.clone(),
         printing: printing.clone(),
         printer: Printer::new(),
@@ -229,9 +234,10 @@ fn follow(mut simulation: Simulation, inertia: Inertia, mut outputs: Outputs, be
     // Why the run stopped matters more than a folder that could not be closed after it.
     walked?;
     let place = finished.ok_or(Failure::Ended)??;
-    let Outputs { arguments, mut printer, last, .. } = outputs;
+    let Outputs { arguments, scene, mut printer, last, .. } = outputs;
     if let (false, Some(last)) = (arguments.common.json, last) {
-        printer.line(table(&last).trim_end())?;
+        let figures = Figures { cables: summaries(&scene, &last), stiffness: None };
+        printer.line(table(&last, &figures).trim_end())?;
         let (peak, t) = (outputs.peak, outputs.peak_time_s);
         printer.line(&format!(
             "\nGreatest tension of the run  {:.6} N at {t:.4} s, at {:.4} m",

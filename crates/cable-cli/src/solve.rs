@@ -4,10 +4,11 @@ use std::path::Path;
 use std::time::Instant;
 
 use cable_core::model::Settings;
+use cable_core::summary::{end_stiffness, summaries};
 use cable_core::{Model, Scene, Simulation, SolveError, files};
 
 use crate::Done;
-use crate::answer::{NoAnswer, answer};
+use crate::answer::{Figures, NoAnswer, answer};
 use crate::args::{Common, SolveArguments};
 use crate::output::{Failure, Printer};
 use crate::table::table;
@@ -30,21 +31,24 @@ pub fn no_answer(to: &mut Printer, model: Model, reason: &str, time_s: Option<f6
 }
 
 /// Finds where everything rests.
-pub fn solve(a: &SolveArguments) -> Done {
-    let a = &a.common;
+pub fn solve(arguments: &SolveArguments) -> Done {
+    let a = &arguments.common;
     let scene = read_scene(&a.scene)?;
     let mut out = Printer::new();
     let began = Instant::now();
-    let built = Simulation::with_settings(scene, a.model, settings(a));
+    let built = Simulation::with_settings(scene.clone(), a.model, settings(a));
     let solved = built.and_then(|mut s| s.settle().map_err(Into::into));
     let wall_time_s = began.elapsed().as_secs_f64();
     match solved {
         Ok(solution) => {
-            let printable = answer(&solution, wall_time_s, None).map_err(Failure::NonFinite)?;
+            let stiffness = arguments.stiffness.then(|| end_stiffness(&scene, a.model, settings(a))).transpose();
+            let stiffness = stiffness.map_err(|e| Failure::from_core(&a.scene, e))?;
+            let figures = Figures { cables: summaries(&scene, &solution), stiffness };
+            let printable = answer(&solution, &figures, wall_time_s, None).map_err(Failure::NonFinite)?;
             if a.json {
                 out.json(&printable)?;
             } else {
-                out.line(table(&solution).trim_end())?;
+                out.line(table(&solution, &figures).trim_end())?;
             }
             out.flush()
         }

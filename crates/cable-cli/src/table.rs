@@ -4,8 +4,11 @@ use std::fmt::Write as _;
 
 use cable_core::solution::{ContactState, Solution};
 
+use crate::answer::Figures;
+use crate::summary;
+
 /// A table with units. Writing to a `String` cannot fail, so its results are not looked at.
-pub fn table(s: &Solution) -> String {
+pub fn table(s: &Solution, figures: &Figures) -> String {
     let mut t = String::new();
     let top = s.max_tension();
     let _ = writeln!(t, "Model             {} ({})", s.model, s.reason);
@@ -33,11 +36,8 @@ pub fn table(s: &Solution) -> String {
         if v.folded_m > 0.0 {
             let _ = writeln!(t, "In folds          {:.4} m of cable beyond the way it lies on", v.folded_m);
         }
-        let b = &v.balance;
-        let force = |[x, y]: [f64; 2]| format!("({x:.4}, {y:.4}) N");
-        let (loads, supports, contacts) = (force(b.loads_n), force(b.supports_n), force(b.contacts_n));
-        let _ = writeln!(t, "Balance           supports {supports} + contacts {contacts} + weight and loads {loads}");
     }
+    summary::write(&mut t, figures);
     for c in &s.cables {
         supports(&mut t, c);
         contacts(&mut t, c);

@@ -131,6 +131,7 @@ fn solve_prints_one_object_with_the_stated_keys() {
         "max_tension_arc_length_m",
         "tightest_bend",
         "sidewall_pressure",
+        "summary",
         "supports",
         "nodes",
         "contacts",
@@ -141,8 +142,8 @@ fn solve_prints_one_object_with_the_stated_keys() {
     assert_eq!(v["converged"], true);
     let mut found = Vec::new();
     numbers("", &v, &mut found);
-    let unitless = ["iterations", "error_estimate", "strain", "value", "limit"];
-    let units = ["_n", "_m", "_s", "_pa", "_per_m", "_deg"];
+    let unitless = ["iterations", "error_estimate", "strain", "value", "limit", "relative_residual"];
+    let units = ["_n", "_m", "_s", "_pa", "_per_m", "_deg", "_n_m2", "_ratio"];
     for key in found {
         assert!(unitless.contains(&key.as_str()) || units.iter().any(|u| key.ends_with(u)), "{key} has no unit");
     }
@@ -239,6 +240,53 @@ fn solve_tells_the_tightest_bend_and_the_highest_pressure() {
     {
         assert!(said.contains(&line), "{line}\n{said}");
     }
+}
+
+/// What is read first is in JSON and text, and the tightest bend is the greatest curvature of the nodes.
+#[test]
+fn solve_tells_what_is_read_first() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = span(folder.path());
+    let o = cable(&["solve", file.to_str().unwrap(), "--json", "--stiffness"]);
+    assert_eq!(o.status.code(), Some(0), "{}", text(&o.stderr));
+    let v: Value = serde_json::from_slice(&o.stdout).unwrap();
+    let s = &v["summary"][0];
+    for key in [
+        "cable",
+        "ends",
+        "greatest_tension",
+        "least_tension",
+        "length_m",
+        "stretched_length_m",
+        "lying_m",
+        "suspended_m",
+        "touchdowns",
+        "sag",
+        "lowest",
+        "highest",
+        "tightest_bend",
+        "judged_bend",
+        "sidewall_pressure",
+        "utilisation",
+        "friction",
+        "balance",
+        "end_stiffness",
+    ] {
+        assert!(s.get(key).is_some(), "{key} is missing");
+    }
+    let curvatures = v["nodes"].as_array().unwrap().iter().map(|n| n["curvature_per_m"].as_f64().unwrap().abs());
+    let sharpest = 1.0 / curvatures.fold(0.0, f64::max);
+    assert_eq!(v["tightest_bend"]["radius_m"].as_f64().unwrap(), sharpest);
+    assert!((sharpest - 4.695).abs() < 1e-3, "{sharpest} m");
+    assert!((s["sag"]["sag_m"].as_f64().unwrap() - (5.0 - s["lowest"]["y_m"].as_f64().unwrap())).abs() < 1e-12);
+    assert!(s["balance"]["relative_residual"].as_f64().unwrap() < 1e-12);
+    assert_eq!(s["end_stiffness"].as_array().unwrap().len(), 2);
+    let o = cable(&["solve", file.to_str().unwrap()]);
+    let said = text(&o.stdout);
+    for line in ["what is read first", "Start ", "Sag ", "Used of limits", "Balance "] {
+        assert!(said.contains(line), "{line}\n{said}");
+    }
+    assert!(!said.contains("End stiffness"), "only when asked for");
 }
 
 /// A run that says a limit is exceeded says so once in its text, in its JSON with its place, and in its events.

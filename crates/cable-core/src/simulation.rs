@@ -117,6 +117,7 @@ impl Simulation {
         for (strand, answer) in self.cables.iter().zip(&mut self.answers) {
             let found = Bends::of(strand.problem(), answer);
             (answer.tightest_bend, answer.sidewall_pressure) = (found.tightest(), found.pressure);
+            (answer.free_bend, answer.judged_bend) = (found.free(), found.judged());
             bends.push(found);
         }
         let time_s = self.time_s();

@@ -59,9 +59,15 @@ pub struct CableSolution {
     pub contacts: Vec<ContactReport>,
     /// Estimated relative error of the largest tension; None = not estimated.
     pub error_estimate: Option<f64>,
-    /// Its sharpest bend: the cable's own curve where it is free, the round it is led by elsewhere; None = nearly straight.
+    /// The sharpest bend of its line: the cable's own curve where it is free, the round it is led by elsewhere; None = nearly straight.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tightest_bend: Option<Bend>,
+    /// Its sharpest bend where nothing leads it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub free_bend: Option<Bend>,
+    /// Its sharpest bend where something leads it, at a sharp corner as its bending stiffness lets it: what is warned of.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub judged_bend: Option<JudgedBend>,
     /// Where it is pressed hardest against what leads it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sidewall_pressure: Option<Pressure>,
@@ -105,6 +111,17 @@ pub struct Bend {
     pub x_m: f64,
     /// Where it is, m.
     pub y_m: f64,
+}
+
+/// A bend as the cable has it with its bending stiffness.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct JudgedBend {
+    /// Where and how sharp.
+    #[serde(flatten)]
+    pub bend: Bend,
+    /// The bending stiffness by which corners are judged, N·m²: the cable's own, of one taken as flexible that which its preset is likely
+    /// to have; 0 = none is known, and corners bend it to the radius of their own arc.
+    pub bending_stiffness_n_m2: f64,
 }
 
 /// Normal force per metre on what leads the cable.

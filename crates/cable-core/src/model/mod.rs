@@ -4,6 +4,7 @@
 //! rest ([`Mechanics::settle`]) and what happens next ([`Mechanics::advance`]). A model that cannot answer
 //! returns a typed error, never a guess.
 
+mod arc_nodes;
 pub mod auto;
 pub mod catenary;
 pub mod conformance;

@@ -64,4 +64,15 @@ impl Cable {
     pub fn area_m2(&self) -> f64 {
         std::f64::consts::FRAC_PI_4 * self.diameter_m * self.diameter_m
     }
+
+    /// The bending stiffness by which bends at sharp corners are judged, N·m²: its own, of a cable taken as perfectly flexible that
+    /// which its preset is likely to have, 0 where neither is known.
+    #[must_use]
+    pub fn likely_bending_stiffness_n_m2(&self) -> f64 {
+        if self.bending_stiffness_n_m2 > 0.0 {
+            return self.bending_stiffness_n_m2;
+        }
+        let preset = self.preset.as_deref().and_then(super::preset::cable_preset);
+        preset.map_or(0.0, |p| p.likely_bending_stiffness_n_m2.value)
+    }
 }

@@ -1,22 +1,40 @@
 //! Bends: how sharp, where, and what leads the cable there.
 //!
-//! Where the cable is free, its curvature is what the model answers. Where it is led round something, a flexible cable takes
-//! on the radius of that: of the centre line round a wheel or post, of the cable itself round a sharp corner (the corner's
-//! turn per element says only how fine the mesh is). Pressure on the round is q = T/R per metre.
+//! The tightest bend of an answer is the greatest curvature anywhere on its line, free or led. Where the cable is led round a wheel
+//! or a post its line has the radius of that, round a sharp corner its own radius (the corner's turn per element says only how
+//! fine a mesh is). Pressure on the round is q = T/R per metre.
+//!
+//! What bends a cable at a sharp corner is judged by its bending stiffness EI, known or estimated, also where the answer is that
+//! of a flexible line. Weightless beside the corner, with φ the angle to the direction in which it leaves far away and T the tension
+//! there, moments balance by EI φ'' = T sin φ. Times φ' and integrated from far away, where φ = φ' = 0:
+//!
+//! ```text
+//! EI φ'²/2 = T (1 − cos φ)    so    κ = φ' = 2 √(T/EI) sin(φ/2)
+//! ```
+//!
+//! and along the line the tension is T cos φ, so that T cos φ + EI κ²/2 = T holds everywhere (the first integral of Euler's elastica;
+//! A. E. H. Love, A Treatise on the Mathematical Theory of Elasticity, 4th ed., 1927, art. 262). A corner that turns the cable by θ
+//! pushes at the point where φ = θ/2 from both sides: there the bend is sharpest, with the radius ρ = ½ √(EI/T) / sin(θ/4). Where ρ
+//! is less than that of the corner's own arc, the cable lies on that arc.
 
 use super::tangle::turns;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-use crate::solution::{Bend, CableSolution, ContactReport, Node, Pressure, Warning, WarningKind};
+use crate::solution::{Bend, CableSolution, ContactReport, JudgedBend, Node, Pressure, Warning, WarningKind};
 
 /// Gap (m) within which an obstacle leads the cable. Smaller: a contact that a model holds a barrier's width off is missed;
 /// larger: what passes close by leads it. The models keep up to 1 mm.
 const TOUCH: f64 = 3e-3;
 
-/// Least turn at a sharp corner that bends the cable to the corner's radius, rad: 15°. Less is spread by the stiffness that
-/// every cable has; more lets sharp bends pass. Over 15° a cable of diameter d leaves the corner within d/4 of its line.
+/// Least turn at a sharp corner that bends a cable of unknown bending stiffness to the corner's radius, rad: 15°. Less is spread by the
+/// stiffness that every cable has; more lets sharp bends pass. Over 15° a cable of diameter d leaves the corner within d/4 of its line.
 const CORNER_TURN: f64 = 0.26;
+
+/// A stiff cable whose line has no more than this times the radius of a corner's own arc was given no moment there: its mesh follows
+/// the corner. Closer to 1: rounding passes for a moment; further: bends that are as sharp are judged by the formula, which
+/// says the same.
+const ON_CORNER: f64 = 1.05;
 
 /// Least turn between two elements of a flexible cable that is a bend, rad. Less is a radius of a hundred elements.
 const LEAST_TURN: f64 = 0.01;
@@ -30,8 +48,10 @@ const KINK_DIAMETERS: f64 = 1.0;
 pub(super) enum Lead {
     /// Nothing.
     Free,
-    /// Something round, or a corner: radius of the centre line (m), and least turn that counts (rad).
-    Round(f64, f64),
+    /// Something round: radius of the centre line, m.
+    Round(f64),
+    /// A sharp corner: radius of the arc on which the centre line can pass it, m.
+    Corner(f64),
     /// A point that holds it, or pulls at it: a flexible cable has a corner there by its nature.
     Held,
 }
@@ -39,8 +59,14 @@ pub(super) enum Lead {
 /// The sharpest bends of an answer, and the greatest pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Bends {
+    /// The sharpest of the answer's line where nothing leads it.
     free: Option<Bend>,
+    /// The sharpest of the answer's line where something leads it.
     led: Option<Bend>,
+    /// The sharpest led one that the cable has with its bending stiffness.
+    judged: Option<Bend>,
+    /// The bending stiffness by which it is judged, N·m²; 0 = none is known.
+    bending_stiffness: f64,
     /// The greatest pressure.
     pub pressure: Option<Pressure>,
 }
@@ -48,24 +74,30 @@ pub(crate) struct Bends {
 impl Bends {
     /// Looks for them.
     pub fn of(problem: &Problem, answer: &CableSolution) -> Self {
-        let mut this = Self::default();
-        let mut start = 0;
+        let bending_stiffness = problem.cable.likely_bending_stiffness_n_m2();
+        let mut this = Self { bending_stiffness, ..Self::default() };
+        let led = !answer.contacts.is_empty() || problem.supports.iter().any(|s| s.wheel_radius > 0.0);
+        let (mut sharpest, mut start) = (0.0, 0);
         for piece in answer.pieces() {
             let turns = turns(piece);
             for (k, n) in piece.iter().enumerate() {
                 let turn = |k: Option<usize>| k.and_then(|k| turns.get(k)).copied().unwrap_or(0.0);
-                let own = turn(Some(k));
-                if problem.bending_stiffness == 0.0
-                    && own.abs() < LEAST_TURN
-                    && !(n.curvature_per_m.abs() * problem.cable.min_bend_radius_m > 1.0)
-                {
+                let (own, curvature) = (turn(Some(k)), n.curvature_per_m.abs());
+                // What leads a node costs a search: it is asked where the answer can change what was found so far.
+                let presses = led && curvature * n.tension_n > this.pressure.map_or(0.0, |p| p.pressure_n_per_m);
+                if own.abs() < LEAST_TURN && !(curvature > sharpest) && !presses && problem.bending_stiffness == 0.0 {
                     continue;
                 }
                 // A corner between two nodes is shared by them, a round by all that lie on it.
                 let pair = (own + turn(k.checked_sub(1))).abs().max((own + turn(Some(k + 1))).abs());
                 let lead = lead(problem, answer, start + k);
-                let shared =
-                    if let Lead::Round(radius, _) = lead { pair.max(round(piece, &turns, k, radius)) } else { pair };
+                let shared = match lead {
+                    Lead::Round(radius) | Lead::Corner(radius) => larger(pair, round(piece, &turns, k, radius)),
+                    _ => pair,
+                };
+                if lead == Lead::Free && curvature > sharpest {
+                    sharpest = curvature;
+                }
                 this.add(problem, n, lead, shared);
             }
             start += piece.len();
@@ -73,7 +105,7 @@ impl Bends {
         this
     }
 
-    /// The sharpest of all.
+    /// The sharpest of the answer's line.
     pub fn tightest(&self) -> Option<Bend> {
         match (self.free, self.led) {
             (Some(a), Some(b)) => Some(if b.radius_m < a.radius_m { b } else { a }),
@@ -81,26 +113,58 @@ impl Bends {
         }
     }
 
+    /// The sharpest led bend that the cable has with its bending stiffness.
+    pub fn judged(&self) -> Option<JudgedBend> {
+        self.judged.map(|bend| JudgedBend { bend, bending_stiffness_n_m2: self.bending_stiffness })
+    }
+
+    /// The sharpest of the answer's line where nothing leads it.
+    pub fn free(&self) -> Option<Bend> {
+        self.free
+    }
+
     fn add(&mut self, problem: &Problem, n: &Node, lead: Lead, turn: f64) {
         let stiff = problem.bending_stiffness > 0.0;
         let own = 1.0 / n.curvature_per_m.abs();
-        let radius_m = match lead {
+        let line = match lead {
             Lead::Free => own,
             Lead::Held if !stiff => return,
-            Lead::Round(_, least) if !stiff && turn < least => return,
-            Lead::Round(radius, _) if !stiff => radius,
+            Lead::Round(_) if !stiff && turn < LEAST_TURN => return,
+            Lead::Round(radius) if !stiff => radius,
+            Lead::Corner(radius) if !stiff && turn >= CORNER_TURN && radius < own => radius,
             _ => own,
         };
-        if !radius_m.is_finite() || !(radius_m > 0.0) {
+        let bend = |radius_m: f64| Bend { radius_m, arc_length_m: n.arc_length_m, x_m: n.x_m, y_m: n.y_m };
+        let keep = |kept: &mut Option<Bend>, radius_m: f64| {
+            if radius_m.is_finite() && radius_m > 0.0 && kept.is_none_or(|b| radius_m < b.radius_m) {
+                *kept = Some(bend(radius_m));
+            }
+        };
+        if lead == Lead::Free {
+            keep(&mut self.free, line);
             return;
         }
-        let bend = Bend { radius_m, arc_length_m: n.arc_length_m, x_m: n.x_m, y_m: n.y_m };
-        let sharpest = if lead == Lead::Free { &mut self.free } else { &mut self.led };
-        if sharpest.is_none_or(|b| radius_m < b.radius_m) {
-            *sharpest = Some(bend);
-        }
+        keep(&mut self.led, line);
+        let judged = match lead {
+            Lead::Corner(radius) if stiff && own > ON_CORNER * radius => own,
+            Lead::Corner(radius) if self.bending_stiffness > 0.0 => {
+                larger(radius, corner_radius(self.bending_stiffness, n.tension_n, turn))
+            }
+            Lead::Corner(_) if turn < CORNER_TURN => f64::INFINITY,
+            _ => line,
+        };
+        keep(&mut self.judged, judged);
+        let round = match lead {
+            Lead::Round(radius) => Some(radius),
+            Lead::Corner(radius) if turn >= CORNER_TURN => Some(radius),
+            _ => None,
+        };
+        let Some(radius_m) = round.map(|radius| if stiff { own } else { radius }).filter(|r| r.is_finite() && *r > 0.0)
+        else {
+            return;
+        };
         let newtons_per_m = n.tension_n / radius_m;
-        if matches!(lead, Lead::Round(..)) && self.pressure.is_none_or(|p| newtons_per_m > p.pressure_n_per_m) {
+        if self.pressure.is_none_or(|p| newtons_per_m > p.pressure_n_per_m) {
             self.pressure = Some(Pressure {
                 pressure_n_per_m: newtons_per_m,
                 arc_length_m: n.arc_length_m,
@@ -109,6 +173,13 @@ impl Bends {
             });
         }
     }
+}
+
+/// Radius (m) of the sharpest bend of a cable with a bending stiffness (N·m²) and a tension (N) at a sharp corner that turns it by
+/// `turn` (rad), see the head of this file: infinite where it is not pulled.
+pub(super) fn corner_radius(bending_stiffness: f64, tension: f64, turn: f64) -> f64 {
+    let (pull, sine) = (larger(tension, 0.0), (0.25 * turn).sin().abs());
+    0.5 * (bending_stiffness / pull).sqrt() / sine
 }
 
 /// How far the nodes beside node `k` turn that are within a quarter of a round of a radius (m), rad.
@@ -132,8 +203,8 @@ pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Le
             && (s.wheel_radius > 0.0 || (r.arc_length_m - n.arc_length_m).abs() < 1e-3)
         {
             return match s.kind {
-                SupportKind::Pulley if s.wheel_radius > 0.0 => Lead::Round(s.wheel_radius, LEAST_TURN),
-                SupportKind::Pulley => Lead::Round(problem.radius, CORNER_TURN),
+                SupportKind::Pulley if s.wheel_radius > 0.0 => Lead::Round(s.wheel_radius),
+                SupportKind::Pulley => Lead::Corner(problem.radius),
                 _ => Lead::Held,
             };
         }
@@ -142,7 +213,7 @@ pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Le
         return Lead::Held;
     }
     if on_outline(problem, answer, node) {
-        return Lead::Round(problem.radius, CORNER_TURN);
+        return Lead::Corner(problem.radius);
     }
     if problem.world.is_empty() {
         return Lead::Free;
@@ -154,7 +225,7 @@ pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Le
         .world
         .geometry()
         .round_near(&chain, TOUCH)
-        .map_or(Lead::Free, |b| Lead::Round(b.offset, if b.center.is_some() { LEAST_TURN } else { CORNER_TURN }))
+        .map_or(Lead::Free, |b| if b.center.is_some() { Lead::Round(b.offset) } else { Lead::Corner(b.offset) })
 }
 
 /// Whether the cable lies on the outline of the robot at a node or beside it: that moves, and is not among the obstacles.
@@ -179,7 +250,7 @@ pub(super) fn warn(problem: &Problem, bends: &Bends, out: &mut Vec<Warning>) {
         let warning = Warning::new(kind, &cable.name, b.arc_length_m, [b.radius_m, limit], message);
         out.push(Warning { at_m: Some([b.x_m, b.y_m]), ..warning });
     };
-    if let Some(b) = bends.led.filter(|b| b.radius_m < stated) {
+    if let Some(b) = bends.judged.filter(|b| b.radius_m < stated) {
         say(WarningKind::BendRadius, b, stated, "its strands are overstretched there; lead it round something wider");
     }
     if let Some(b) = bends.free.filter(|b| b.radius_m < kink) {

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
+use cable_core::summary::sag;
 use cable_core::{Model, Scene, Solution};
 use egui::{Grid, Id, ProgressBar, RichText, Ui};
 
-use super::readouts::figures;
 use super::{field, translate, unit};
 use crate::background::Progress;
 use crate::colour::Quantity;
@@ -163,7 +163,12 @@ struct Figures {
 
 impl Figures {
     fn of(solution: &Solution, scene: &Scene, wall_s: f64) -> Self {
-        let sags = solution.cables.iter().filter_map(|c| figures::sag(c, scene.view)).map(|(depth, _)| depth);
+        let sags = scene
+            .cables
+            .iter()
+            .zip(&solution.cables)
+            .filter_map(|(cable, c)| sag(cable, c, scene.view))
+            .map(|s| s.sag_m);
         Self {
             tension_n: solution.max_tension().tension_n,
             sag_m: sags.reduce(f64::max),

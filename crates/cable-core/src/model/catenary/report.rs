@@ -6,6 +6,7 @@ use super::slide::Slide;
 use super::wheel::pass;
 use crate::catenary::Catenary;
 use crate::math::{Vec2, cross, perp};
+use crate::model::arc_nodes;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{Node, SupportReaction};
@@ -24,8 +25,6 @@ const SAME_TENSION: f64 = 1e-8;
 const LEAST_DEPTH: u32 = 2;
 /// Halvings of a catenary at most.
 const MOST_DEPTH: u32 = 12;
-/// Nodes on a wheel, less one.
-const WHEEL_NODES: usize = 24;
 
 /// A point of the answer.
 #[derive(Clone, Copy, Debug)]
@@ -153,8 +152,9 @@ fn wheel_nodes(nodes: &mut Nodes<'_>, slide: &Slide<'_>, e: &Equilibrium, k: usi
     let m = called_upon(slide, &e.stretches, k, e.modes[k]);
     let chain = slide.chain(0.0, 1.0);
     let from = e.sigma[k] - arc.split(a.facing).0;
-    for i in 0..=WHEEL_NODES {
-        let psi = arc.turn * i as f64 / WHEEL_NODES as f64;
+    let parts = arc_nodes::parts(a.radius, arc.turn, slide.problem.radius);
+    for i in 0..=parts {
+        let psi = arc.turn * i as f64 / parts as f64;
         let passed = pass(&chain, a, before.norm(), (arc.arrive, psi), m);
         let lambda = chain.thermal_stretch * (1.0 + passed.tension / chain.axial_stiffness);
         nodes.push(Point {

@@ -5,11 +5,9 @@ use super::network::Network;
 use super::span::elements;
 use super::wheel;
 use crate::math::{Vec2, cross, larger, perp};
+use crate::model::arc_nodes;
 use crate::problem::Problem;
 use crate::solution::{Node, SupportReaction};
-
-/// Nodes on a wheel for each radian the cable turns on it: the chord then lies within 0.1 % of the radius.
-const NODES_PER_RADIAN: f64 = 10.0;
 
 /// A point of the cable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -46,8 +44,8 @@ impl Point {
     }
 }
 
-/// All points of a solved network in order of arc length, appended to `out`.
-pub fn points(network: &Network, out: &mut Vec<Point>) {
+/// All points of a solved network in order of arc length, of a cable of a radius (m), appended to `out`.
+pub fn points(network: &Network, cable_radius: f64, out: &mut Vec<Point>) {
     out.clear();
     let layout = &network.layout;
     let Some((first, last)) = layout.anchored() else { return };
@@ -61,10 +59,10 @@ pub fn points(network: &Network, out: &mut Vec<Point>) {
     }
     for (&ends, span) in network.ends.iter().zip(&network.spans) {
         let start = layout.stops[ends.0].point(1).unwrap_or_default();
-        anchor(network, ends.0, out);
+        anchor(network, ends.0, cable_radius, out);
         run(network, ends, start, span.force, out);
     }
-    anchor(network, last, out);
+    anchor(network, last, cable_radius, out);
     if last < end {
         let start = layout.stops[last].point(1).unwrap_or_default();
         run(network, (last, end), start, network.forces[last][1], out);
@@ -118,7 +116,7 @@ fn run(network: &Network, (first, last): (usize, usize), start: Vec2, force: Vec
 }
 
 /// The points at an anchor: one, or those round a wheel.
-fn anchor(network: &Network, k: usize, out: &mut Vec<Point>) {
+fn anchor(network: &Network, k: usize, cable_radius: f64, out: &mut Vec<Point>) {
     let stop = &network.layout.stops[k];
     let [before, after] = network.forces[k];
     let (Some(meets), Some(leaves)) = (stop.point(0), stop.point(1)) else { return };
@@ -134,14 +132,20 @@ fn anchor(network: &Network, k: usize, out: &mut Vec<Point>) {
             let turn = wheel::turn(&wheel, before);
             let curvature = turn / stop.lap;
             out.push(tangent(meets, stop.arc_length, before, curvature));
-            let count = (turn.abs() * NODES_PER_RADIAN).ceil() as usize;
+            let count = arc_nodes::parts(wheel.radius, turn, cable_radius);
             let start = wheel.contact[0].y.atan2(wheel.contact[0].x);
-            for i in 1..count {
+            let tension = |f: f64| wheel::tension(&wheel, &network.material, [before, after], f);
+            let material = arc_nodes::material(count, |f| tension(f) / network.material.axial_stiffness);
+            for (i, share) in (1..count).zip(material) {
                 let f = i as f64 / count as f64;
                 let n = Vec2::new((start + turn * f).cos(), (start + turn * f).sin());
-                let tension = wheel::tension(&wheel, &network.material, [before, after], f);
-                let force = perp(n) * (turn.signum() * tension);
-                out.push(tangent(wheel.center + n * wheel.radius, stop.arc_length + stop.lap * f, force, curvature));
+                let force = perp(n) * (turn.signum() * tension(f));
+                out.push(tangent(
+                    wheel.center + n * wheel.radius,
+                    stop.arc_length + stop.lap * share,
+                    force,
+                    curvature,
+                ));
             }
             out.push(tangent(leaves, stop.leaves(), after, curvature));
         }

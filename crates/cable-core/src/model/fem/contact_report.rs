@@ -3,10 +3,11 @@
 use super::assembly::Mesh;
 use super::contact_set::{ContactSet, Rub, Touch};
 use super::dynamics::Dynamics;
-use super::sliding::Seat;
+use super::sliding::{Seat, Sliding};
 use crate::contact::friction;
 use crate::energy::bending::turn;
 use crate::math::{Vec2, perp};
+use crate::model::arc_nodes;
 use crate::problem::Problem;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
@@ -132,7 +133,7 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
         curvature_per_m,
         force_n: force.into(),
     };
-    let mut out = Vec::with_capacity(n + 2);
+    let mut out: Vec<Node> = Vec::with_capacity(n + 2);
     for k in 0..n {
         if let (Some(sliding), Some(load)) = (&mesh.sliding[k], d.load(k)) {
             let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
@@ -154,7 +155,16 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
                         if sliding.end.radius > 0.0 { stretch * sliding.end.sense / sliding.end.radius } else { 0.0 };
                     let t =
                         if load.tension[1] > load.tension[0] && arc == 0.0 { load.tension[1] } else { load.tension[j] };
-                    out.push(node(s, (at, velocity), t, (curvature, force)));
+                    let next = node(s, (at, velocity), t, (curvature, force));
+                    // From where it meets the round, or from the mark before on it.
+                    let turn = match (j, same[0]) {
+                        (1, true) => paths[1].arcs[0],
+                        (1, false) => paths[0].arcs[1] + if same[1] { 0.0 } else { paths[1].arcs[0] },
+                        (_, true) => paths[0].arcs[0] + paths[0].arcs[1],
+                        _ => 0.0,
+                    };
+                    round_nodes(&mut out, &next, (sliding, turn), d.problem.radius);
+                    out.push(next);
                 } else if let Some(last) = out.last_mut() {
                     last.force_n = force.into();
                 }
@@ -208,6 +218,48 @@ fn shear(mesh: &Mesh, moments: &[f64], e: usize, x: &[Vec2]) -> Vec2 {
     let (Some(before), Some(after)) = (moments.get(e), moments.get(e + 1)) else { return Vec2::zeros() };
     let path = mesh.path(e, x);
     if path.length > 0.0 { perp(path.direction) * ((before - after) / path.length) } else { Vec2::zeros() }
+}
+
+/// Part of its radius by which a node may be off a round and be on it: rounding. Smaller: arcs far from the origin have no nodes;
+/// larger: a node beside a round is taken for one on it.
+const SAME_ROUND: f64 = 1e-6;
+
+/// Nodes between the last one and the next, which lie `turn` (rad) apart on the round of a sliding node. Arc length and speed run
+/// evenly from one to the other, the internal force has the direction of the round, and its size is that of a cable that rubs evenly:
+/// T e^{mφ}.
+fn round_nodes(out: &mut Vec<Node>, next: &Node, (sliding, turn): (&Sliding, f64), cable_radius: f64) {
+    let Some(last) = out.last().copied() else { return };
+    let end = &sliding.end;
+    let parts = arc_nodes::parts(end.radius, turn, cable_radius);
+    let spoke = last.at() - end.center;
+    if !(turn > 0.0) || (spoke.norm() - end.radius).abs() > SAME_ROUND * end.radius {
+        return;
+    }
+    let whole = end.sense * turn;
+    let rotated = |v: Vec2, angle: f64| v * angle.cos() + perp(v) * angle.sin();
+    let grown = |a: f64, b: f64, f: f64| if a > 0.0 && b > 0.0 { a * (b / a).powf(f) } else { a + (b - a) * f };
+    let material = arc_nodes::material(parts, |f| grown(last.strain, next.strain, f));
+    for (i, share) in (1..parts).zip(material) {
+        let f = i as f64 / parts as f64;
+        let even = |a: f64, b: f64| a + (b - a) * f;
+        let normal = rotated(spoke, whole * f);
+        let at = end.center + normal;
+        let size = grown(Vec2::from(last.force_n).norm(), Vec2::from(next.force_n).norm(), f);
+        let mix = |of: fn(&Node) -> f64| even(of(&last), of(next));
+        let grow = |of: fn(&Node) -> f64| grown(of(&last), of(next), f);
+        out.push(Node {
+            arc_length_m: last.arc_length_m + (next.arc_length_m - last.arc_length_m) * share,
+            x_m: at.x,
+            y_m: at.y,
+            vx_m_per_s: mix(|n| n.vx_m_per_s),
+            vy_m_per_s: mix(|n| n.vy_m_per_s),
+            tension_n: grow(|n| n.tension_n),
+            strain: grow(|n| n.strain),
+            stress_pa: grow(|n| n.stress_pa),
+            force_n: (perp(normal) * (end.sense * size / end.radius)).into(),
+            ..*next
+        });
+    }
 }
 
 /// The force of the cable on a pulley with its tensions and arc length.

@@ -213,7 +213,7 @@ impl Statics {
                 *slid = Some(stop.arc_length + 0.5 * stop.lap);
             }
         }
-        answer::points(&network, &mut self.points);
+        answer::points(&network, self.problem.radius, &mut self.points);
         self.estimate = Some(estimate);
         self.rested = Some((network.layout.clone(), network.forces.clone()));
         let cost = Cost { iterations, residual_n: network.residual, ..Cost::default() };

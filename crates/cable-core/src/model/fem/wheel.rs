@@ -154,8 +154,11 @@ pub fn turn(wheel: &Wheel, before: Vec2) -> f64 {
     }
 }
 
-/// Tension at a fraction of the arc, N: weight and wind along the way from the first contact, and what friction adds in
-/// proportion.
+/// Friction over a wheel that adds less than this part of the tension adds evenly: the difference is its square, and the quotient of two
+/// small numbers is not formed.
+const EVEN: f64 = 1e-6;
+
+/// Tension at a fraction of the arc, N: weight and wind along the way from the first contact, and what friction adds.
 #[must_use]
 pub fn tension(wheel: &Wheel, material: &Material, [before, after]: [Vec2; 2], fraction: f64) -> f64 {
     let (first, last) = (before.norm(), after.norm());
@@ -164,5 +167,9 @@ pub fn tension(wheel: &Wheel, material: &Material, [before, after]: [Vec2; 2], f
     let angle = start + fraction * turn(wheel, before);
     let carried = |n: Vec2| material.body.dot(&(n - wheel.contact[0])) * wheel.radius / stretch;
     let rubbed = last - first + carried(wheel.contact[1]);
-    first - carried(Vec2::new(angle.cos(), angle.sin())) + fraction * rubbed
+    // Coulomb friction adds in proportion to what the tension is already: T e^{mφ}.
+    let whole = (first + rubbed) / first;
+    let even = !(whole > 0.0 && whole.is_finite() && (whole - 1.0).abs() > EVEN);
+    let share = if even { fraction } else { (whole.powf(fraction) - 1.0) / (whole - 1.0) };
+    first - carried(Vec2::new(angle.cos(), angle.sin())) + share * rubbed
 }

@@ -5,13 +5,12 @@ use super::pulley::Pulley;
 use super::{MassSpringModel, Touch};
 use crate::energy::bending::turn;
 use crate::math::{Vec2, angle, perp};
+use crate::model::arc_nodes;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 use crate::state::State;
 
 /// Tensions of both sides of a point that are the same to this part make one node.
 const NO_JUMP: f64 = 1e-9;
-/// Nodes on a wheel, less one.
-const WHEEL_NODES: usize = 8;
 
 /// Below this speed (m/s) a held node does not rub.
 const RESTING_SPEED: f64 = 1e-9;
@@ -67,8 +66,11 @@ impl MassSpringModel {
         let [s0, s1] = self.on_wheel_from_to(&p);
         let (b, a) = (self.reach(p.node - 1), self.reach(p.node));
         let jump = (p.tension[1] - p.tension[0]).abs() > NO_JUMP * p.tension[0];
-        let count = if p.radius > 0.0 { WHEEL_NODES } else { 1 };
+        let count = arc_nodes::parts(p.radius, p.turn, self.problem.radius);
+        let strain = |f: f64| self.tension_round(&p, f) / self.problem.axial_stiffness;
+        let material = arc_nodes::material(count, strain);
         for k in usize::from(p.radius == 0.0 && !jump)..=count {
+            let share = k.checked_sub(1).and_then(|k| material.get(k)).copied().unwrap_or(0.0);
             let f = k as f64 / count as f64;
             let (along, tension_n) = (p.radius * p.turn * f, self.tension_round(&p, f));
             let angle = p.mark + p.facing * (p.arc[0] - along) / p.radius;
@@ -88,7 +90,7 @@ impl MassSpringModel {
                     t
                 } * p.rate;
             out.push(Node {
-                arc_length_m: s0 + (s1 - s0) * f,
+                arc_length_m: s0 + (s1 - s0) * share,
                 x_m: at.x,
                 y_m: at.y,
                 vx_m_per_s: v.x,

@@ -11,12 +11,11 @@ use super::strand::{Contact, Course, Strand, Tie};
 use super::weight;
 use crate::catenary::PointForce;
 use crate::math::{GAUSS, Vec2};
+use crate::model::arc_nodes;
 use crate::model::catenary::report::{Nodes, Point};
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
-/// Nodes on a contact: one at least every so many radians of an arc …
-const ARC_STEP: f64 = 0.13;
-/// … and as many on each stretch of an edge.
+/// Nodes on each stretch of an edge.
 const EDGE_NODES: usize = 8;
 
 /// Longest stretch of an arc over which forces are summed with one rule of 5 Gauss points, rad: exact to 1e-11.
@@ -61,7 +60,7 @@ pub(super) fn report(layout: &Layout, network: &Network) -> Report {
             }
             if let Some(c) = strand.contacts.get(k) {
                 let track = course.track(c).seen_from(c.ends.p[0]);
-                let stretches = stretches(&track, &c.history, c.ends.p);
+                let stretches = stretches((&track, layout.problem.radius), &c.history, c.ends.p);
                 contact_nodes(&mut nodes, &track, c, &stretches);
                 if let Some(obstacle) = track.curve.obstacle {
                     let name = layout.problem.world.obstacle_name(obstacle);
@@ -89,22 +88,28 @@ struct Stretch {
     /// Friction coefficient called upon.
     m: f64,
     pivot: Pivot,
+    /// Of the cable, m.
+    cable_radius: f64,
 }
 
 impl Stretch {
-    fn new(track: &Track<'_>, history: &History, [from, to]: [f64; 2]) -> Self {
+    fn new((track, cable_radius): (&Track<'_>, f64), history: &History, [from, to]: [f64; 2]) -> Self {
         let middle = 0.5 * (from + to);
         let (tension, s) = history.at(track, from);
         let pivot = match track.pivot {
             Some(pivot) if pivot.reaches(from) && pivot.reaches(to) => pivot,
             _ => Pivot::new(track.curve, track.home, &track.law, middle),
         };
-        Self { from, to, tension, s, m: history.called(track, middle), pivot }
+        Self { from, to, tension, s, m: history.called(track, middle), pivot, cable_radius }
     }
 
     /// Parts that nodes cut it into.
     fn nodes(&self) -> usize {
-        if self.pivot.turns() { ((self.to - self.from) / ARC_STEP).ceil() as usize + 1 } else { EDGE_NODES }
+        if self.pivot.turns() {
+            arc_nodes::parts(self.pivot.at.stretch, self.to - self.from, self.cable_radius)
+        } else {
+            EDGE_NODES
+        }
     }
 
     /// Tension and material at p.
@@ -115,7 +120,7 @@ impl Stretch {
     }
 }
 
-fn stretches(track: &Track<'_>, history: &History, [p1, p2]: [f64; 2]) -> Vec<Stretch> {
+fn stretches((track, cable_radius): (&Track<'_>, f64), history: &History, [p1, p2]: [f64; 2]) -> Vec<Stretch> {
     let knots = history.knots();
     let mut out = Vec::with_capacity(knots.len() + 1);
     let (mut p, mut k) = (p1, 0);
@@ -125,7 +130,7 @@ fn stretches(track: &Track<'_>, history: &History, [p1, p2]: [f64; 2]) -> Vec<St
             k += 1;
         }
         let next = knots.get(k).map_or(border, |knot| if knot.p < border { knot.p } else { border });
-        out.push(Stretch::new(track, history, [p, next]));
+        out.push(Stretch::new((track, cable_radius), history, [p, next]));
         p = next;
     }
     out

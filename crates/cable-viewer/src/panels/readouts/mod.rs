@@ -6,6 +6,7 @@ mod reactions;
 use cable_core::Cable;
 use cable_core::scene::View;
 use cable_core::solution::{CableSolution, ContactState, Node};
+use cable_core::summary::{CableSummary, EndForce, Place, summary};
 use egui::{Color32, Grid, ProgressBar, RichText, Ui};
 
 use super::field;
@@ -42,11 +43,11 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     tension(ui, cable, solved, commands);
     ui.separator();
     Grid::new(("figures", index)).num_columns(3).spacing([10.0, 3.0]).show(ui, |ui| {
-        let heat_k = scene.environment.temperature_change_k;
-        let thermal = 1.0 + cable.thermal_expansion_per_k * heat_k;
-        shape(ui, scene.view, (cable, solved, thermal), commands);
-        material(ui, cable, solved, commands);
-        accuracy(ui, solved);
+        let first = summary(scene, cable, solved, answer.time_s);
+        ends(ui, &first);
+        shape(ui, scene.view, &first, commands);
+        material(ui, (cable, solved), &first, commands);
+        accuracy(ui, solved, &first);
     });
     ui.separator();
     reactions::ui(ui, cable, solved, commands);
@@ -118,24 +119,54 @@ fn place(ui: &mut Ui, label: &str, node: &Node, commands: &mut Vec<Command>) {
     }
 }
 
-fn shape(
-    ui: &mut Ui,
-    view: View,
-    (cable, solved, thermal): (&Cable, &CableSolution, f64),
-    commands: &mut Vec<Command>,
-) {
+/// A place of a summary as what a row's button shows.
+fn node(at: Place) -> Node {
+    Node { arc_length_m: at.arc_length_m, x_m: at.x_m, y_m: at.y_m, ..Node::default() }
+}
+
+/// Force and angle at both ends.
+fn ends(ui: &mut Ui, first: &CableSummary) {
+    for (name, end) in ["Start", "End"].into_iter().zip(&first.ends) {
+        figure(ui, name, pull(end), &explained(end), None);
+    }
+}
+
+fn pull(end: &EndForce) -> String {
+    let force = unit::force(end.tension_n);
+    match end.elevation_deg {
+        Some(d) => format!("{force}, {:.1}° {}", d.abs(), if d < 0.0 { "down" } else { "up" }),
+        None => force,
+    }
+}
+
+fn explained(end: &EndForce) -> String {
+    format!(
+        "Tension at `{}` and the angle above or below the horizontal in which the cable leaves it; it pulls with {} to the right and {} up",
+        end.support,
+        unit::force(end.horizontal_n),
+        unit::force(end.vertical_n)
+    )
+}
+
+fn shape(ui: &mut Ui, view: View, first: &CableSummary, commands: &mut Vec<Command>) {
     let help = match view {
         View::Elevation => "Greatest depth below the straight line between neighbouring supports",
         View::Plan => "Greatest distance from the straight line between neighbouring supports",
     };
-    match figures::sag(solved, view) {
-        Some((depth_m, node)) => figure(ui, "Sag", unit::length(depth_m), help, Some((&node, &mut *commands))),
+    match first.sag {
+        Some(sag) => figure(ui, "Sag", unit::length(sag.sag_m), help, Some((&node(sag.at), &mut *commands))),
         None => figure(ui, "Sag", "–".to_owned(), "No two neighbouring supports stand apart", None),
     }
-    let stretched_m = figures::stretched_length(solved, thermal);
-    let longer = stretched_m - cable.length_m;
-    let text =
-        format!("{} ({}{})", unit::length(stretched_m), if longer < 0.0 { "" } else { "+" }, unit::length(longer));
+    for (name, at) in [("Lowest", first.lowest), ("Highest", first.highest)] {
+        figure(ui, name, unit::length(at.y_m), "Height of that point", Some((&node(at), &mut *commands)));
+    }
+    let longer = first.stretched_length_m - first.length_m;
+    let text = format!(
+        "{} ({}{})",
+        unit::length(first.stretched_length_m),
+        if longer < 0.0 { "" } else { "+" },
+        unit::length(longer)
+    );
     figure(
         ui,
         "Length now",
@@ -143,9 +174,19 @@ fn shape(
         "Unstretched length with strain and heat, and how much that is above the unstretched length",
         None,
     );
+    let text = format!("{}, {} suspended", unit::length(first.lying_m), unit::length(first.suspended_m));
+    figure(ui, "Lying", text, "Unstretched length on ground and other obstacles, and the rest of it", None);
+    if let Some(down) = first.touchdowns.first() {
+        let text = format!("{}, first at {}", first.touchdowns.len(), unit::length(down.at.arc_length_m));
+        let help = "Places where it comes down on something or leaves it";
+        figure(ui, "Touchdowns", text, help, Some((&node(down.at), &mut *commands)));
+    }
+    let least = first.least_tension;
+    let help = "The least tension anywhere on the cable";
+    figure(ui, "Least tension", unit::force(least.tension_n), help, Some((&node(least.at), commands)));
 }
 
-fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Vec<Command>) {
+fn material(ui: &mut Ui, (cable, solved): (&Cable, &CableSolution), first: &CableSummary, commands: &mut Vec<Command>) {
     if let Some((stress_pa, node)) = figures::greatest(solved, |n| n.stress_pa) {
         let help = "Largest tension over the full round section (conductors alone carry more)";
         figure(ui, "Max stress", unit::stress(stress_pa), help, Some((&node, &mut *commands)));
@@ -159,28 +200,36 @@ fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut V
             Some((&node, &mut *commands)),
         );
     }
-    let Some((curvature, node)) = figures::greatest(solved, |n| n.curvature_per_m.abs()) else { return };
-    if curvature > 0.0 {
-        let radius_m = 1.0 / curvature;
-        let help = "Tightest bend of the cable's centre line; what a support of no radius turns sharply is not counted";
-        let limit = cable.min_bend_radius_m;
-        let text = format!("{}{}", unit::length(radius_m), if radius_m < limit { ", too tight" } else { "" });
-        figure(ui, "Min bend radius", text, help, Some((&node, commands)));
-        if limit > 0.0 {
-            figure(
-                ui,
-                "  allowed",
-                format!("≥ {}", unit::length(limit)),
-                "The cable's smallest allowed bend radius",
-                None,
-            );
-        }
-    } else {
+    let place = |b: cable_core::solution::Bend| node(Place { arc_length_m: b.arc_length_m, x_m: b.x_m, y_m: b.y_m });
+    let Some(bend) = first.tightest_bend else {
         figure(ui, "Min bend radius", "straight".to_owned(), "No bend anywhere", None);
+        return;
+    };
+    let help = "Tightest bend of the cable's line; what a support of no radius turns sharply is not counted";
+    let tight = if first.utilisation.bend_radius_ratio.is_some_and(|r| r > 1.0) { ", too tight" } else { "" };
+    let judged = first.judged_bend.filter(|j| j.bend.radius_m > bend.radius_m);
+    let text = format!("{}{}", unit::length(bend.radius_m), if judged.is_none() { tight } else { "" });
+    figure(ui, "Min bend radius", text, help, Some((&place(bend), &mut *commands)));
+    if let Some(j) = judged {
+        let help = format!(
+            "Sharpest bend where something leads it, at sharp corners with a bending stiffness of {}: this is what is warned of",
+            unit::Unit::N_M2.text(j.bending_stiffness_n_m2)
+        );
+        let text = format!("{}{tight}", unit::length(j.bend.radius_m));
+        figure(ui, "  as stiff as it is", text, &help, Some((&place(j.bend), &mut *commands)));
+    }
+    let limit = cable.min_bend_radius_m;
+    if limit > 0.0 {
+        figure(ui, "  allowed", format!("≥ {}", unit::length(limit)), "The cable's smallest allowed bend radius", None);
+    }
+    if let (Some(p), Some(ratio)) = (first.sidewall_pressure, first.utilisation.sidewall_pressure_ratio) {
+        let at = node(Place { arc_length_m: p.arc_length_m, x_m: p.x_m, y_m: p.y_m });
+        let help = "Pressure on what leads it round, of the most it stands";
+        figure(ui, "Sidewall pressure", unit::percent(ratio), help, Some((&at, commands)));
     }
 }
 
-fn accuracy(ui: &mut Ui, solved: &CableSolution) {
+fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
     let text = match solved.error_estimate {
         Some(0.0) => "exact for this model".to_owned(),
         Some(e) => format!("± {}", unit::percent(e)),
@@ -200,4 +249,21 @@ fn accuracy(ui: &mut Ui, solved: &CableSolution) {
         figure(ui, "Contacts", text, "Places where the cable touches an obstacle", None);
         figure(ui, "Contact force", unit::force(normal_n), "Sum of the normal forces", None);
     }
+    if let Some(f) = &first.friction {
+        let text = format!("{} of {}", unit::force(f.used_n), unit::force(f.available_n));
+        let help = format!(
+            "Friction called upon of all there is; `{}` uses {} of its own",
+            f.obstacle,
+            unit::percent(f.greatest_ratio)
+        );
+        figure(ui, "Friction used", text, &help, None);
+    }
+    let (text, help) = match &first.balance {
+        Some(b) => (
+            unit::percent(b.relative_residual),
+            "What is left of all forces on the cable, of the largest; in motion it accelerates it",
+        ),
+        None => ("not known".to_owned(), "The floor of a plan view rubs with a force that no answer holds"),
+    };
+    figure(ui, "Out of balance", text, help, None);
 }

@@ -1,0 +1,114 @@
+//! What is read first of an answer, as text.
+
+use std::fmt::Write as _;
+
+use cable_core::summary::{CableSummary, EndForce, EndStiffness, Place, Touch};
+
+use crate::answer::Figures;
+
+/// Appends a block a cable. Writing to a `String` cannot fail, so its results are not looked at.
+pub fn write(t: &mut String, figures: &Figures) {
+    for s in &figures.cables {
+        let _ = writeln!(t, "\nCable `{}`, what is read first", s.cable);
+        for (line, value) in lines(s) {
+            let _ = writeln!(t, "  {line:<17} {value}");
+        }
+        for e in figures.stiffness.iter().flatten().filter(|e| e.cable == s.cable) {
+            let _ = writeln!(t, "  {:<17} {}", "End stiffness", stiffness(e));
+        }
+    }
+}
+
+fn lines(s: &CableSummary) -> Vec<(&'static str, String)> {
+    let mut out: Vec<(&'static str, String)> =
+        ["Start", "End"].into_iter().zip(&s.ends).map(|(name, end)| (name, force(end))).collect();
+    let [most, least] = [s.greatest_tension, s.least_tension];
+    out.push(("Greatest tension", format!("{:.4} N {}", most.tension_n, at(most.at))));
+    out.push(("Least tension", format!("{:.4} N {}", least.tension_n, at(least.at))));
+    let longer = s.stretched_length_m - s.length_m;
+    out.push(("Length", format!("{:.4} m, now {:.6} m ({longer:+.3e} m)", s.length_m, s.stretched_length_m)));
+    out.push(("Lying", format!("{:.4} m, suspended {:.4} m", s.lying_m, s.suspended_m)));
+    for d in &s.touchdowns {
+        let touch = match d.touch {
+            Touch::Begins => "lies on",
+            Touch::Ends => "leaves",
+            Touch::Point => "touches",
+        };
+        out.push(("Touchdown", format!("{touch} `{}` with {:.4} N {}", d.obstacle, d.tension_n, at(d.at))));
+    }
+    if let Some(sag) = s.sag {
+        out.push(("Sag", format!("{:.4} m {}", sag.sag_m, at(sag.at))));
+    }
+    out.push(("Lowest", format!("{:.4} m {}", s.lowest.y_m, at(s.lowest))));
+    out.push(("Highest", format!("{:.4} m {}", s.highest.y_m, at(s.highest))));
+    let u = &s.utilisation;
+    let mut used = format!(
+        "service tension {}, breaking tension {}",
+        percent(u.service_tension_ratio),
+        percent(u.breaking_tension_ratio)
+    );
+    for (name, ratio) in [("bend radius", u.bend_radius_ratio), ("sidewall pressure", u.sidewall_pressure_ratio)] {
+        if let Some(ratio) = ratio {
+            let _ = write!(used, ", {name} {}", percent(ratio));
+        }
+    }
+    out.push(("Used of limits", used));
+    if let Some(j) = s.judged_bend {
+        let by = match j.bending_stiffness_n_m2 {
+            e if e > 0.0 => format!("with a bending stiffness of {e} N·m²"),
+            _ => "its bending stiffness is not known".to_owned(),
+        };
+        let b = j.bend;
+        let place = Place { arc_length_m: b.arc_length_m, x_m: b.x_m, y_m: b.y_m };
+        out.push(("Sharpest led bend", format!("radius {:.4} m {}, {by}", b.radius_m, at(place))));
+    }
+    if let Some(f) = &s.friction {
+        let text = format!(
+            "{:.4} of {:.4} N, most by `{}` at {:.4} m: {}",
+            f.used_n,
+            f.available_n,
+            f.obstacle,
+            f.arc_length_m,
+            percent(f.greatest_ratio)
+        );
+        out.push(("Friction used", text));
+    }
+    out.push((
+        "Balance",
+        match &s.balance {
+            Some(b) => format!(
+                "{:.2e} N right, {:.2e} N up are left of all forces: {:.1e} of the largest",
+                b.residual_n[0], b.residual_n[1], b.relative_residual
+            ),
+            None => "not known: the floor of a plan view rubs".to_owned(),
+        },
+    ));
+    out
+}
+
+fn force(e: &EndForce) -> String {
+    let angle = match e.elevation_deg {
+        Some(d) => format!(", leaves {:.3}° {} the horizontal", d.abs(), if d < 0.0 { "below" } else { "above" }),
+        None => String::new(),
+    };
+    format!(
+        "`{}` tension {:.4} N, pulls with {:.4} N right, {:.4} N up{angle}",
+        e.support, e.tension_n, e.horizontal_n, e.vertical_n
+    )
+}
+
+fn stiffness(e: &EndStiffness) -> String {
+    let [x, y] = e.stiffness_n_per_m;
+    format!(
+        "`{}` right {:.5e} N/m by moves right, {:.5e} N/m by moves up; up {:.5e} N/m, {:.5e} N/m (moved {:.1e} m)",
+        e.support, x[0], x[1], y[0], y[1], e.moved_m
+    )
+}
+
+fn at(p: Place) -> String {
+    format!("at {:.4} m ({:.4} m, {:.4} m)", p.arc_length_m, p.x_m, p.y_m)
+}
+
+fn percent(ratio: f64) -> String {
+    format!("{:.4} %", 100.0 * ratio)
+}

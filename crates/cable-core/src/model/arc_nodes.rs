@@ -1,0 +1,89 @@
+//! How many nodes an answer has on an arc: so many that the straight lines between them can be taken for the cable.
+//!
+//! A chord of an arc of radius r and turn φ comes inside it by its sagitta, r(1 − cos(φ/2)). With a the greatest one allowed,
+//! φ ≤ 2 acos(1 − a/r) = 4 asin √(a/2r): the second form keeps its digits where a ≪ r.
+
+use crate::math::smaller;
+
+/// Greatest sagitta, m, and as a part of the cable's diameter. An answer promises 1 mm and 2 %; the rest is for how far the
+/// ends of an arc themselves are off, and for circles that are themselves drawn. Larger: a reader of the nodes finds the cable
+/// inside a post. Smaller: nodes grow as the root of it, and show nothing more.
+const SAGITTA_M: f64 = 0.8e-3;
+const SAGITTA_DIAMETERS: f64 = 0.016;
+/// Greatest turn between two nodes, rad: tension that grows as e^{μφ} leaves a straight line by (μφ)²/8 of itself, 2e-3 at
+/// μ = 1. Larger: tension read between nodes is off by more; smaller: small corners fill the answer.
+const TURN: f64 = 0.13;
+/// Parts of one arc at most. More: a thin cable on a drum of kilometres fills the memory; fewer: chords of such a drum cut it by
+/// more than is promised.
+const MOST_PARTS: f64 = 8192.0;
+
+/// Parts that an arc of the centre line with a radius (m) and a turn (rad) is cut into, for a cable of a radius (m).
+pub(in crate::model) fn parts(radius: f64, turn: f64, cable_radius: f64) -> usize {
+    let sagitta = smaller(SAGITTA_M, 2.0 * SAGITTA_DIAMETERS * cable_radius);
+    let most = if radius > sagitta { smaller(TURN, 4.0 * (0.5 * sagitta / radius).sqrt().asin()) } else { TURN };
+    let parts = if radius > 0.0 { (turn.abs() / most).ceil() } else { 1.0 };
+    // What is not a number gives 1.
+    if parts > MOST_PARTS {
+        MOST_PARTS as usize
+    } else if parts > 1.0 {
+        parts as usize
+    } else {
+        1
+    }
+}
+
+/// The parts of the material of an arc that lie before each of its nodes but the first, from 0 to 1, for a strain along it: the more
+/// the cable is strained the less material there is, ds ~ dφ/(1 + ε). Simpson's rule for each part.
+pub(in crate::model) fn material(parts: usize, strain: impl Fn(f64) -> f64) -> Vec<f64> {
+    let rate = |f: f64| 1.0 / (1.0 + strain(f));
+    let step = 1.0 / parts as f64;
+    let mut sum = 0.0;
+    let mut out: Vec<f64> = (0..parts)
+        .map(|i| {
+            let [a, b] = [i, i + 1].map(|i| i as f64 * step);
+            sum += rate(a) + 4.0 * rate(0.5 * (a + b)) + rate(b);
+            sum
+        })
+        .collect();
+    for share in &mut out {
+        *share /= sum;
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chords_come_inside_by_no_more_than_is_allowed_and_by_not_much_less() {
+        for radius in [1e-4, 0.014, 0.16, 2.0, 300.0] {
+            for cable_radius in [1e-4, 0.005, 0.014, 0.1] {
+                for turn in [1e-3, 0.3, 3.0, 20.0] {
+                    let count = parts(radius, turn, cable_radius);
+                    if count as f64 >= MOST_PARTS {
+                        continue;
+                    }
+                    let sagitta = |count: usize| radius * (1.0 - (0.5 * turn / count as f64).cos());
+                    let allowed = (2.0 * SAGITTA_DIAMETERS * cable_radius).min(SAGITTA_M);
+                    assert!(sagitta(count) <= allowed * (1.0 + 1e-6), "{radius} {cable_radius} {turn}");
+                    let coarser = count == 1 || turn / (count - 1) as f64 > TURN || sagitta(count - 1) > allowed;
+                    assert!(coarser, "{radius} {cable_radius} {turn}: {count}");
+                }
+            }
+        }
+        assert_eq!((parts(1.0, f64::NAN, 0.01), parts(0.0, 1.0, 0.01)), (1, 1));
+        assert_eq!(parts(1e4, 1e9, 1e-5), MOST_PARTS as usize);
+    }
+
+    #[test]
+    fn there_is_less_material_where_it_is_strained() {
+        assert_eq!(material(4, |_| 0.3), [0.25, 0.5, 0.75, 1.0]);
+        // ∫ df/(1 + f) = ln(1 + f).
+        let shares = material(8, |f| f);
+        for (k, share) in shares.iter().enumerate() {
+            let exact = (1.0 + (k + 1) as f64 / 8.0).ln() / 2f64.ln();
+            assert!((share - exact).abs() < 1e-6, "{share} against {exact}");
+        }
+    }
+}

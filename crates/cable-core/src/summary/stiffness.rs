@@ -1,0 +1,125 @@
+//! How stiffly a cable holds its ends: the change of force per metre that an end is moved.
+//!
+//! Each end is moved a little right and left, up and down, without inertia and from the place of rest that was found, so that friction
+//! remembers: contacts that hold go on holding, and what slides on one of the ways there makes the figure the mean of two. The
+//! derivative is the central difference of the forces, K = −ΔR/2h with R the force of the cable on the support. All else stands
+//! still: motions, robots and loads are taken as they are at time 0.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::Error;
+use crate::math::{Point, Vec2, larger, vec2};
+use crate::model::auto::Question;
+use crate::model::{Inertia, Model, Settings};
+use crate::problem::Series;
+use crate::scene::{Scene, SupportKind};
+use crate::simulation::Simulation;
+
+/// The force changes by this part of the greatest tension on the way. Larger: the difference is no longer the derivative (its error is
+/// the square of this); smaller: what the solver leaves unbalanced, 1e-8 of the tension, is seen.
+const CHANGE: f64 = 1e-3;
+/// The first move, which tells how far the others go, in lengths of the cable. Larger: taut ropes of steel are overloaded; smaller: the
+/// answers of the mesh do not change.
+const PROBE: f64 = 1e-7;
+/// Longest move, in lengths of the cable: what gives way so easily is not stiff.
+const FARTHEST: f64 = 1e-3;
+/// Time for a move, s: without inertia any will do.
+const MOVE_S: f64 = 0.01;
+
+/// The stiffness of one end.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EndStiffness {
+    /// The cable's name.
+    pub cable: String,
+    /// The support's name.
+    pub support: String,
+    /// Change of the force with which the end must be held, right and up, for each metre it is moved: the first row is of the force to
+    /// the right by moves to the right and up, the second that of the force upwards.
+    pub stiffness_n_per_m: [[f64; 2]; 2],
+    /// How far it was moved for it, m.
+    pub moved_m: f64,
+}
+
+/// The stiffness of every held end of every cable, by the model that answers for rest.
+///
+/// # Errors
+/// As [`Simulation::settle`] and [`Simulation::step_quasi_static`].
+pub fn end_stiffness(scene: &Scene, model: Model, settings: Settings) -> Result<Vec<EndStiffness>, Error> {
+    let still = stilled(scene);
+    let question = if model == Model::Auto { Question::History(Inertia::QuasiStatic) } else { Question::Rest };
+    let mut rest = Simulation::for_question(still.clone(), model, settings, question)?;
+    let answer = rest.settle()?;
+    let mut out = Vec::new();
+    for (k, cable) in still.cables.iter().enumerate() {
+        let mut ends = vec![0, cable.supports.len().saturating_sub(1)];
+        ends.dedup();
+        for support in ends {
+            let Some(s) = cable.supports.get(support) else { continue };
+            let (Some(at), true) = (s.at_m, matches!(s.kind, SupportKind::Fixed | SupportKind::Clamped)) else {
+                continue;
+            };
+            let top = answer.cables.get(k).map_or(0.0, |c| c.nodes.iter().map(|n| n.tension_n).fold(0.0, larger));
+            let moved = |by: Vec2| -> Result<Vec2, Error> {
+                let mut run = rest.clone();
+                run.drag_support(k, support, vec2(at) + by);
+                run.step_quasi_static(MOVE_S)?;
+                let answer = run.solution();
+                let reaction = answer.cables.get(k).and_then(|c| c.supports.get(support));
+                Ok(reaction.map_or_else(Vec2::zeros, |r| Vec2::new(r.reaction_x_n, r.reaction_y_n)))
+            };
+            let difference = |way: Vec2, h: f64| Ok::<_, Error>((moved(way * -h)? - moved(way * h)?) / (2.0 * h));
+            let probe = PROBE * cable.length_m;
+            let stiffest = larger(difference(Vec2::x(), probe)?.norm(), difference(Vec2::y(), probe)?.norm());
+            let far = FARTHEST * cable.length_m;
+            let wanted = CHANGE * top / stiffest;
+            let h = if wanted < probe {
+                probe
+            } else if wanted < far {
+                wanted
+            } else {
+                far
+            };
+            let [by_x, by_y] = [difference(Vec2::x(), h)?, difference(Vec2::y(), h)?];
+            out.push(EndStiffness {
+                cable: cable.name.clone(),
+                support: s.name.clone(),
+                stiffness_n_per_m: [[by_x.x, by_y.x], [by_x.y, by_y.y]],
+                moved_m: h,
+            });
+        }
+    }
+    Ok(out)
+}
+
+/// The scene as it is at time 0, with nothing that moves or changes.
+fn stilled(scene: &Scene) -> Scene {
+    let mut still = scene.clone();
+    let hitch = scene.hitch_m();
+    still.robot = None;
+    let first = |times: &mut Vec<f64>, values: &mut Vec<Point>| {
+        let value = (!times.is_empty()).then(|| Series::new(times, values).at(0.0));
+        times.clear();
+        values.clear();
+        value.map(|v| [v.x, v.y])
+    };
+    for cable in &mut still.cables {
+        for s in &mut cable.supports {
+            if s.kind == SupportKind::Robot {
+                s.kind = SupportKind::Fixed;
+                s.at_m = hitch;
+            }
+            if let Some(motion) = s.motion.take() {
+                let at = motion.at(0.0).0;
+                s.at_m = Some([at.x, at.y]);
+            }
+            s.release_s = s.release_s.filter(|t| *t <= 0.0);
+            s.force_n = first(&mut s.times_s, &mut s.forces_n).or(s.force_n);
+        }
+    }
+    for load in &mut still.loads {
+        load.force_n = first(&mut load.times_s, &mut load.forces_n).or(load.force_n);
+    }
+    let e = &mut still.environment;
+    e.wind_n_per_m = first(&mut e.wind_times_s, &mut e.winds_n_per_m).unwrap_or(e.wind_n_per_m);
+    still
+}
