@@ -60,6 +60,7 @@ pub fn solve(a: &SolveArguments) -> Done {
 /// Says whether a scene can be solved.
 pub fn check(path: &Path) -> Done {
     let scene = read_scene(path)?;
+    let notes = cable_core::problem::check(&scene).map_err(|e| Failure::from_core(path, e.into()))?;
     let mut out = Printer::new();
     let count = |n: usize, one: &str, many: &str| format!("{n} {}", if n == 1 { one } else { many });
     out.line(&format!(
@@ -69,6 +70,9 @@ pub fn check(path: &Path) -> Done {
         count(scene.obstacles.len(), "obstacle", "obstacles"),
         count(scene.loads.len(), "load", "loads"),
     ))?;
+    for note in notes {
+        out.line(&format!("Note: {}", note.message))?;
+    }
     out.flush()
 }
 

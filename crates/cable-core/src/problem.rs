@@ -3,7 +3,10 @@
 //! Arc lengths are unstretched at rest temperature; temperature enters as the factor `thermal_stretch` on
 //! unstretched lengths: strain = length/(thermal_stretch·ds) − 1. Weight and wind are per metre of arc length.
 
+mod lift;
+mod place;
 mod route;
+mod seat;
 
 use std::sync::Arc;
 
@@ -12,6 +15,7 @@ use crate::contact::outline::Outline;
 use crate::error::SceneError;
 use crate::math::{Vec2, vec2};
 use crate::scene::{Cable, Motion, PulleySide, Scene, SupportKind, View};
+use crate::solution::Warning;
 
 /// One cable, resolved and validated.
 #[derive(Clone, Debug)]
@@ -48,6 +52,8 @@ pub struct Problem {
     pub floor_friction: Option<(f64, f64)>,
     /// The way it is first laid, m (empty: straight from support to support, lifted over what is in the way).
     pub route: Vec<Vec2>,
+    /// What of the scene was put elsewhere than it says: supports on a surface, routes below the ground.
+    pub notes: Vec<Warning>,
 }
 
 /// Times nearer than this are the same, s: sums of steps come as near to a time as rounding lets them.
@@ -186,6 +192,14 @@ impl Problem {
     }
 }
 
+/// Checks a scene as [`crate::Simulation::new`] does, without a model: what is put elsewhere than the scene says is handed back.
+///
+/// # Errors
+/// The first thing wrong with the scene.
+pub fn check(scene: &Scene) -> Result<Vec<Warning>, SceneError> {
+    Ok(problems(scene)?.iter().flat_map(|p| p.notes.iter().cloned()).collect())
+}
+
 /// Resolves every cable of a scene. The scene is validated first.
 ///
 /// # Errors
@@ -194,7 +208,9 @@ pub fn problems(scene: &Scene) -> Result<Vec<Arc<Problem>>, SceneError> {
     scene.validate()?;
     let mut out = Vec::with_capacity(scene.cables.len());
     for (index, cable) in scene.cables.iter().enumerate() {
-        let problem = problem(scene, index, cable)?;
+        let mut problem = problem(scene, index, cable)?;
+        seat::seat(&mut problem)?;
+        lift::lift(&mut problem);
         route::clear(&problem)?;
         out.push(Arc::new(problem));
     }
@@ -264,6 +280,7 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
         outline: scene.robot_outline(cable.friction).map(Arc::new),
         floor_friction,
         route: cable.route_m.iter().map(|p| vec2(*p)).collect(),
+        notes: Vec::new(),
         cable: cable.clone(),
     })
 }

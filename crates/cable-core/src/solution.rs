@@ -299,6 +299,8 @@ pub enum WarningKind {
     NotUnique,
     /// A support was stopped by an obstacle, or its speed was capped.
     SupportHeld,
+    /// The scene puts a support or the route into an obstacle: it was put outside.
+    InitialPenetration,
     /// It lies through the robot, of which the model knows nothing.
     ThroughRobot,
     /// Damping or velocity was raised to keep the motion stable.
@@ -309,7 +311,7 @@ pub enum WarningKind {
 
 impl WarningKind {
     /// Every kind.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::ServiceTension,
         Self::BreakingTension,
         Self::Broken,
@@ -323,6 +325,7 @@ impl WarningKind {
         Self::Snag,
         Self::NotUnique,
         Self::SupportHeld,
+        Self::InitialPenetration,
         Self::ThroughRobot,
         Self::Stabilised,
         Self::Accuracy,
@@ -345,6 +348,7 @@ impl WarningKind {
             Self::Snag => "snag",
             Self::NotUnique => "not-unique",
             Self::SupportHeld => "support-held",
+            Self::InitialPenetration => "initial-penetration",
             Self::ThroughRobot => "through-robot",
             Self::Stabilised => "stabilised",
             Self::Accuracy => "accuracy",

@@ -12,6 +12,9 @@ use crate::math::{Vec2, larger};
 use crate::model::{Model, StepReport};
 use crate::state::State;
 
+/// What is said of a way down that does not end.
+const STILL_MOVES: &str = "it never came to rest";
+
 /// Newton iterations of a step without inertia.
 const REST_ITERATIONS: usize = 150;
 
@@ -172,7 +175,7 @@ impl Dynamics {
         // Set where Newton without resistance has failed: then steps are solved exactly, until what resists is nothing.
         let mut stubborn = false;
         let mut total = 0;
-        let mut last = Failure { node: 0, residual: f64::NAN, cause: "it never came to rest" };
+        let mut last = Failure { node: 0, residual: f64::NAN, cause: STILL_MOVES };
         for round in 0..MAX_RELAX {
             self.prepare_task(to, Some(dragged));
             self.adapt_slip();
@@ -191,12 +194,16 @@ impl Dynamics {
             match done {
                 Ok(done) => {
                     total += done.iterations;
-                    let (mut moved, mut resists): (f64, f64) = (0.0, 0.0);
+                    let (mut moved, mut resists, mut slowest): (f64, f64, usize) = (0.0, 0.0, 0);
                     for (k, (a, b)) in pose.x.iter().zip(&self.motion.x).enumerate() {
                         let way = (a - b).norm().max(pose.slide[k].abs());
                         moved = moved.max(way);
-                        resists = resists.max(if self.mesh.held[k] { 0.0 } else { way * self.task.inertia[k] });
+                        let force = if self.mesh.held[k] { 0.0 } else { way * self.task.inertia[k] };
+                        if force > resists {
+                            (resists, slowest) = (force, k);
+                        }
                     }
+                    last = Failure { node: slowest, residual: done.residual + resists, cause: STILL_MOVES };
                     if self.accept_rest(&pose, self.motion.time) {
                         moved = moved.max(0.1);
                     } else if stubborn && resists <= exact && done.residual <= NEGLIGIBLE * exact {
@@ -256,8 +263,14 @@ impl Dynamics {
                     let why = format!("nothing holds the cable, it slides away: the search followed it for {way:.0} m");
                     return Err(SolveError::NoRestingPlace { why });
                 }
-                let (residual_n, node) = (f.residual, f.node);
-                Err(SolveError::NotConverged { model: Model::Fem, iterations: MAX_RELAX, residual_n, node, at_m })
+                let arc_length = self.mesh.arc_length.get(f.node).copied().unwrap_or(f64::NAN);
+                let place = self.problem.place(arc_length, at_m, self.motion.time);
+                Err(SolveError::NotConverged {
+                    model: Model::Fem,
+                    iterations: MAX_RELAX,
+                    residual_n: f.residual,
+                    place,
+                })
             }
         }
     }

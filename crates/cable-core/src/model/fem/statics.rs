@@ -11,7 +11,7 @@ use super::element::Material;
 use super::estimate;
 use super::layout::{Hold, Layout, place};
 use super::network::{Failure, Network};
-use crate::error::SolveError;
+use crate::error::{Place, SolveError};
 use crate::math::Vec2;
 use crate::model::{Model, Settings, StepReport};
 use crate::problem::Problem;
@@ -251,7 +251,7 @@ impl Statics {
         }
         match outcome {
             Outcome::Stable => {}
-            Outcome::Unstable => return Err(SolveError::Indefinite { model: Model::Fem, node: 0 }),
+            Outcome::Unstable => return Err(SolveError::Indefinite { model: Model::Fem }),
             Outcome::Failed => return Err(self.error(&network, Failure::Span(0, coarse.residual))),
         }
         self.time = time;
@@ -323,8 +323,9 @@ impl Statics {
             model: Model::Fem,
             iterations: network.steps,
             residual_n,
-            node: network.layout.stops.iter().take(k).map(|s| s.cells).sum(),
-            at_m: network.layout.stops.get(k).and_then(|s| s.point(0)).unwrap_or_default(),
+            place: network.layout.stops.get(k).map_or_else(Place::default, |s| {
+                self.problem.place(s.arc_length, s.point(0).unwrap_or(Vec2::repeat(f64::NAN)), self.time)
+            }),
         };
         match failure {
             Failure::Span(k, residual) | Failure::Unbalanced(k, residual) => not_converged(k, residual),
@@ -342,8 +343,8 @@ impl Statics {
     /// # Errors
     /// When a number is not finite or the state does not fit the cable.
     pub fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
-        if let Some(node) = state.first_non_finite() {
-            return Err(SolveError::NonFinite { quantity: "position or velocity", node, time_s: state.time_s });
+        if let Some(e) = state.refuse_non_finite() {
+            return Err(e);
         }
         let near = 1e-6 * self.problem.length;
         let fits = state.arc_length_m.len() == state.position_m.len()
