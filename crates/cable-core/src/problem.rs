@@ -14,6 +14,7 @@ use crate::contact::World;
 use crate::contact::outline::Outline;
 use crate::error::SceneError;
 use crate::math::{Vec2, vec2};
+use crate::scene::scaled::Similarity;
 use crate::scene::{Cable, Motion, PulleySide, Scene, SupportKind, View};
 use crate::solution::Warning;
 
@@ -54,6 +55,8 @@ pub struct Problem {
     pub route: Vec<Vec2>,
     /// What of the scene was put elsewhere than it says: supports on a surface, routes below the ground.
     pub notes: Vec<Warning>,
+    /// The same cable at the scale solvers are made for, where this one is much shorter, longer or farther away.
+    pub similar: Option<(Similarity, Arc<Problem>)>,
 }
 
 /// Times nearer than this are the same, s: sums of steps come as near to a time as rounding lets them.
@@ -208,13 +211,31 @@ pub fn problems(scene: &Scene) -> Result<Vec<Arc<Problem>>, SceneError> {
     scene.validate()?;
     let mut out = Vec::with_capacity(scene.cables.len());
     for (index, cable) in scene.cables.iter().enumerate() {
-        let mut problem = problem(scene, index, cable)?;
-        seat::seat(&mut problem)?;
-        lift::lift(&mut problem);
+        let problem = placed(scene, index, cable)?;
         route::clear(&problem)?;
         out.push(Arc::new(problem));
     }
     Ok(out)
+}
+
+/// A cable with its supports and route clear of what is solid, and its similar copy where it needs one.
+fn placed(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneError> {
+    let mut this = problem(scene, index, cable)?;
+    seat::seat(&mut this)?;
+    lift::lift(&mut this);
+    let origin = this.supports.iter().find_map(|s| s.at).or(this.route.first().copied()).unwrap_or_else(Vec2::zeros);
+    if scene.robot.is_none()
+        && let Some(by) = Similarity::to_natural(cable.length_m, origin)
+    {
+        let scaled = scene.scaled(&by);
+        if let Some(cable) = scaled.cables.get(index) {
+            let mut copy = problem(&scaled, index, cable)?;
+            seat::seat(&mut copy)?;
+            lift::lift(&mut copy);
+            this.similar = Some((by, Arc::new(copy)));
+        }
+    }
+    Ok(this)
 }
 
 fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, SceneError> {
@@ -281,6 +302,7 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
         floor_friction,
         route: cable.route_m.iter().map(|p| vec2(*p)).collect(),
         notes: Vec::new(),
+        similar: None,
         cable: cable.clone(),
     })
 }
