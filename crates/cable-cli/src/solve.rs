@@ -1,7 +1,9 @@
 //! `cable solve`, `cable check` and `cable schema`.
 
+use std::io::IsTerminal;
 use std::path::Path;
-use std::time::Instant;
+use std::sync::mpsc::{RecvTimeoutError, Sender};
+use std::time::{Duration, Instant};
 
 use cable_core::model::Settings;
 use cable_core::{Model, Scene, Simulation, SolveError, files};
@@ -36,7 +38,9 @@ pub fn solve(a: &SolveArguments) -> Done {
     let mut out = Printer::new();
     let began = Instant::now();
     let built = Simulation::with_settings(scene, a.model, settings(a));
+    let waiting = Waiting::begin();
     let solved = built.and_then(|mut s| s.settle().map_err(Into::into));
+    drop(waiting);
     let wall_time_s = began.elapsed().as_secs_f64();
     match solved {
         Ok(solution) => {
@@ -54,6 +58,32 @@ pub fn solve(a: &SolveArguments) -> Done {
             }
             Err(Failure::from_core(&a.scene, e))
         }
+    }
+}
+
+/// Says on a terminal, every few seconds, that there is no answer yet.
+struct Waiting {
+    /// Dropped at the end, which ends the thread that listens.
+    _end: Option<Sender<()>>,
+}
+
+impl Waiting {
+    /// Between two lines: shorter bothers, longer leaves a user alone.
+    const EVERY: Duration = Duration::from_secs(3);
+
+    fn begin() -> Self {
+        if !std::io::stderr().is_terminal() {
+            return Self { _end: None };
+        }
+        let (end, ended) = std::sync::mpsc::channel();
+        let began = Instant::now();
+        let tell = move || {
+            while ended.recv_timeout(Self::EVERY) == Err(RecvTimeoutError::Timeout) {
+                eprintln!("cable: no resting place yet after {:.0} s (Ctrl+C ends)", began.elapsed().as_secs_f64());
+            }
+        };
+        let told = std::thread::Builder::new().name("waiting".to_owned()).spawn(tell);
+        Self { _end: told.is_ok().then_some(end) }
     }
 }
 

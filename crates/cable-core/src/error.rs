@@ -217,6 +217,18 @@ pub enum SolveError {
         /// Where it acts.
         place: Place,
     },
+    /// The budget of work was spent before there was an answer.
+    #[error("{model} has found no resting place in {iterations} iterations with {segments} segments, which is all the work it does for one: {}. Give the cable fewer segments, or draw it a route_m nearer to where it will lie", left_over(*.residual_n))]
+    TooMuchWork {
+        /// The model.
+        model: Model,
+        /// Iterations done.
+        iterations: usize,
+        /// Segments of the cable.
+        segments: usize,
+        /// Largest unbalanced force, N.
+        residual_n: f64,
+    },
     /// The only equilibrium found carries compression, which a cable cannot.
     #[error("{model} found only a state in which the cable pushes{} {place}, and a cable cannot push: it needs more tension there, or another model", if .tension_n.is_finite() && *.tension_n < 0.0 { format!(" with {:.3e} N", -.tension_n) } else { String::new() })]
     Compressed {

@@ -85,7 +85,7 @@ impl Similar {
             SolveError::Neither { first, second } => {
                 SolveError::Neither { first: Box::new(self.error(*first)), second: Box::new(self.error(*second)) }
             }
-            error @ SolveError::Indefinite { .. } => error,
+            error @ (SolveError::Indefinite { .. } | SolveError::TooMuchWork { .. }) => error,
         }
     }
 

@@ -103,6 +103,8 @@ pub struct Dynamics {
     pub(super) tolerance: f64,
     pub(super) rested: bool,
     pub(super) held_back: Vec<usize>,
+    /// Iterations times nodes that the search for a resting place may still take.
+    pub(super) work_left: usize,
     /// Room for where hands draw supports in a part of a step.
     aims: Vec<Option<Vec2>>,
     /// The outline of the robot, if there is one.
@@ -172,6 +174,7 @@ impl Dynamics {
             tolerance: settings.tolerance,
             rested: false,
             held_back: Vec::new(),
+            work_left: usize::MAX,
             aims: Vec::new(),
             rider,
             touches: Vec::with_capacity(n),

@@ -3,6 +3,7 @@
 use super::carry::Rider;
 use super::contact_set::SLIDE;
 use super::contact_start::push_out;
+use super::contact_step::WORK_SPENT;
 use super::dynamics::{Dynamics, REACH};
 use super::integrate::PULLED;
 use super::prepare::{load_scale, tolerance};
@@ -14,6 +15,11 @@ use crate::state::State;
 
 /// What is said of a way down that does not end.
 const STILL_MOVES: &str = "it never came to rest";
+
+/// Work of one search for a resting place: iterations times nodes. Less: scenes that come to rest slowly are refused; more: nobody is
+/// told for minutes. It is
+/// 20 000 iterations of 200 nodes, and some 10 s.
+pub(super) const REST_WORK: usize = 4_000_000;
 
 /// Newton iterations of a step without inertia.
 const REST_ITERATIONS: usize = 150;
@@ -68,7 +74,7 @@ impl Dynamics {
             self.task.most_noise = NEGLIGIBLE * self.task.tolerance;
             let mut pose = self.still_pose();
             let mut done = self.lag(&mut pose, LAG_ROUNDS);
-            if done.is_err() && self.contacts.slip < SLIDE {
+            if done.is_err_and(|f| f.cause != WORK_SPENT) && self.contacts.slip < SLIDE {
                 // Where grips change all along the cable, as on a first lay, ground that gives way is easier to come to rest on.
                 self.contacts.set_slip(SLIDE);
                 pose = self.still_pose();
@@ -156,7 +162,7 @@ impl Dynamics {
         let kept = (self.saved.clone(), self.can_restore);
         self.save();
         let mut found = self.relax_within(f64::INFINITY, to, dragged);
-        if found.is_err_and(|failure| failure.residual > NEGLIGIBLE * self.task.tolerance) {
+        if found.is_err_and(|f| f.cause != WORK_SPENT && f.residual > NEGLIGIBLE * self.task.tolerance) {
             self.restore();
             found = self.relax_within(NEGLIGIBLE, to, dragged);
         }
@@ -214,6 +220,7 @@ impl Dynamics {
                     if resistance < floor || (moved < 1e-4 && round % 8 == 7) || moved < 1e-7 {
                         match self.rest_step(to, dragged) {
                             Ok(done) => return Ok(Done { iterations: total + done.iterations, ..done }),
+                            Err(failure) if failure.cause == WORK_SPENT => return Err(failure),
                             Err(failure) => {
                                 last = failure;
                                 stubborn = true;
@@ -222,6 +229,7 @@ impl Dynamics {
                         }
                     }
                 }
+                Err(failure) if failure.cause == WORK_SPENT => return Err(failure),
                 Err(failure) => {
                     last = failure;
                     resistance *= 8.0;
@@ -262,6 +270,11 @@ impl Dynamics {
                 if let Some(way) = self.ran_away(&sought) {
                     let why = format!("nothing holds the cable, it slides away: the search followed it for {way:.0} m");
                     return Err(SolveError::NoRestingPlace { why });
+                }
+                if f.cause == WORK_SPENT {
+                    let (model, segments) = (Model::Fem, self.mesh.rest_length.len());
+                    let iterations = REST_WORK / self.mesh.nodes().max(1);
+                    return Err(SolveError::TooMuchWork { model, iterations, segments, residual_n: f.residual });
                 }
                 let arc_length = self.mesh.arc_length.get(f.node).copied().unwrap_or(f64::NAN);
                 let place = self.problem.place(arc_length, at_m, self.motion.time);
