@@ -218,7 +218,7 @@ pub enum SolveError {
         place: Place,
     },
     /// The budget of work was spent before there was an answer.
-    #[error("{model} has found no resting place in {iterations} iterations with {segments} segments, which is all the work it does for one: {}. Give the cable fewer segments, or draw it a route_m nearer to where it will lie", left_over(*.residual_n))]
+    #[error("{model} has found no resting place in {iterations} iterations with {segments} segments, which is all the work it does for one: {} {place}. Draw the cable a route_m nearer to where it will lie, or give it fewer segments", left_over(*.residual_n))]
     TooMuchWork {
         /// The model.
         model: Model,
@@ -228,6 +228,8 @@ pub enum SolveError {
         segments: usize,
         /// Largest unbalanced force, N.
         residual_n: f64,
+        /// Where it acts.
+        place: Place,
     },
     /// The only equilibrium found carries compression, which a cable cannot.
     #[error("{model} found only a state in which the cable pushes{} {place}, and a cable cannot push: it needs more tension there, or another model", if .tension_n.is_finite() && *.tension_n < 0.0 { format!(" with {:.3e} N", -.tension_n) } else { String::new() })]

@@ -85,7 +85,10 @@ impl Similar {
             SolveError::Neither { first, second } => {
                 SolveError::Neither { first: Box::new(self.error(*first)), second: Box::new(self.error(*second)) }
             }
-            error @ (SolveError::Indefinite { .. } | SolveError::TooMuchWork { .. }) => error,
+            SolveError::TooMuchWork { model, iterations, segments, residual_n, place } => {
+                SolveError::TooMuchWork { model, iterations, segments, residual_n, place: self.place_back(&place) }
+            }
+            error @ SolveError::Indefinite { .. } => error,
         }
     }
 

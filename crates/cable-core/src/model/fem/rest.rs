@@ -274,7 +274,8 @@ impl Dynamics {
                 if f.cause == WORK_SPENT {
                     let (model, segments) = (Model::Fem, self.mesh.rest_length.len());
                     let iterations = REST_WORK / self.mesh.nodes().max(1);
-                    return Err(SolveError::TooMuchWork { model, iterations, segments, residual_n: f.residual });
+                    let (residual_n, place) = (f.residual, self.place(f.node));
+                    return Err(SolveError::TooMuchWork { model, iterations, segments, residual_n, place });
                 }
                 let arc_length = self.mesh.arc_length.get(f.node).copied().unwrap_or(f64::NAN);
                 let place = self.problem.place(arc_length, at_m, self.motion.time);

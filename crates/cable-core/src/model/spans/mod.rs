@@ -189,6 +189,9 @@ impl Mechanics for SpansModel {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
+        if self.layout.strands.is_empty() {
+            return Err(unsupported("no support holds the cable: two loads or loose ends, and obstacles at most"));
+        }
         let mut instant = Instant::default();
         self.layout.instant(&self.dragged, self.time_s, &mut instant);
         let mut work = std::mem::take(&mut self.work);
