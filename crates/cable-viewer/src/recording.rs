@@ -174,6 +174,7 @@ mod tests {
             cost: Cost::default(),
             energy: Energy::default(),
             robot: None,
+            verification: None,
         }
     }
 
