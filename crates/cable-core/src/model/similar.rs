@@ -88,7 +88,7 @@ impl Similar {
             SolveError::TooMuchWork { model, iterations, segments, residual_n, place } => {
                 SolveError::TooMuchWork { model, iterations, segments, residual_n, place: self.place_back(&place) }
             }
-            error @ SolveError::Indefinite { .. } => error,
+            error @ (SolveError::Indefinite { .. } | SolveError::Unsound { .. }) => error,
         }
     }
 
@@ -143,6 +143,7 @@ fn answer(mut a: CableSolution, l: f64, t: f64, place: impl Fn(Vec2) -> Vec2) ->
         n.stress_pa /= l * l;
         n.curvature_per_m /= l;
     }
+    a.assumptions.bending_stiffness_n_m2 *= l * l;
     for s in &mut a.supports {
         put(&mut s.x_m, &mut s.y_m);
         s.arc_length_m *= l;
@@ -156,6 +157,7 @@ fn answer(mut a: CableSolution, l: f64, t: f64, place: impl Fn(Vec2) -> Vec2) ->
             part.begins_m *= l;
             part.ends_m *= l;
         }
+        c.samples.iter_mut().for_each(|s| s.arc_length_m *= l);
     }
     if let Some(b) = &mut a.tightest_bend {
         put(&mut b.x_m, &mut b.y_m);
@@ -227,6 +229,10 @@ impl Mechanics for Similar {
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
         self.inner.drag_support(support, self.by.place(target_m));
+    }
+
+    fn fall_back(&mut self, why: &str) -> bool {
+        self.inner.fall_back(why)
     }
 
     fn solution(&self) -> CableSolution {
