@@ -29,7 +29,9 @@ const SAFETY: f64 = 0.5;
 const ORDER: f64 = 4.0;
 /// Rounds of mesh refinement.
 const MAX_MESHES: usize = 6;
-/// Weight given to a weightless cable, in parts of its loads (of EA without loads): where it is slack it has no shape
+/// Weight given to a weightless cable without loads, in parts of EA: far below the strain that rounding hides.
+const HINT_OF_WEIGHT_UNLOADED: f64 = 1e-18;
+/// Weight given to a weightless cable, in parts of its loads: where it is slack it has no shape
 /// of its own, this gives it that of a very light one. Far below any tension asked for.
 const HINT_OF_WEIGHT: f64 = 1e-12;
 /// Smoothing tension in parts of the load, see [`Material::smoothing`]. Seen only where the tension falls to it; at 1e-9
@@ -271,8 +273,9 @@ impl Statics {
         let loads: f64 = layout.stops.iter().map(|s| s.load.norm()).sum();
         let hinted = !(body.norm() > 0.0);
         if hinted {
-            let scale = if loads > 0.0 { loads } else { problem.axial_stiffness };
-            body = Vec2::new(0.0, -HINT_OF_WEIGHT * scale / problem.length);
+            let whole =
+                if loads > 0.0 { HINT_OF_WEIGHT * loads } else { HINT_OF_WEIGHT_UNLOADED * problem.axial_stiffness };
+            body = Vec2::new(0.0, -whole / problem.length);
         }
         let material = Material {
             axial_stiffness: problem.axial_stiffness,
