@@ -1,7 +1,9 @@
 //! `cable solve`, `cable check` and `cable schema`.
 
+use std::io::IsTerminal;
 use std::path::Path;
-use std::time::Instant;
+use std::sync::mpsc::{RecvTimeoutError, Sender};
+use std::time::{Duration, Instant};
 
 use cable_core::model::Settings;
 use cable_core::summary::{end_stiffness, summaries};
@@ -37,7 +39,9 @@ pub fn solve(arguments: &SolveArguments) -> Done {
     let mut out = Printer::new();
     let began = Instant::now();
     let built = Simulation::with_settings(scene.clone(), a.model, settings(a));
+    let waiting = Waiting::begin();
     let solved = built.and_then(|mut s| s.settle().map_err(Into::into));
+    drop(waiting);
     let wall_time_s = began.elapsed().as_secs_f64();
     match solved {
         Ok(solution) => {
@@ -64,12 +68,39 @@ pub fn solve(arguments: &SolveArguments) -> Done {
 /// Largest table of a run that is checked, bytes. More would not fit into the memory of a small machine.
 const MOST_TABLE_BYTES: u64 = 2 << 30;
 
+/// Says on a terminal, every few seconds, that there is no answer yet.
+struct Waiting {
+    /// Dropped at the end, which ends the thread that listens.
+    _end: Option<Sender<()>>,
+}
+
+impl Waiting {
+    /// Between two lines: shorter bothers, longer leaves a user alone.
+    const EVERY: Duration = Duration::from_secs(3);
+
+    fn begin() -> Self {
+        if !std::io::stderr().is_terminal() {
+            return Self { _end: None };
+        }
+        let (end, ended) = std::sync::mpsc::channel();
+        let began = Instant::now();
+        let tell = move || {
+            while ended.recv_timeout(Self::EVERY) == Err(RecvTimeoutError::Timeout) {
+                eprintln!("cable: no resting place yet after {:.0} s (Ctrl+C ends)", began.elapsed().as_secs_f64());
+            }
+        };
+        let told = std::thread::Builder::new().name("waiting".to_owned()).spawn(tell);
+        Self { _end: told.is_ok().then_some(end) }
+    }
+}
+
 /// Says whether a scene can be solved, or how far a run came.
 pub fn check(path: &Path) -> Done {
     if files::is_run(path) {
         return check_run(path);
     }
     let scene = read_scene(path)?;
+    let notes = cable_core::problem::check(&scene).map_err(|e| Failure::from_core(path, e.into()))?;
     let mut out = Printer::new();
     let count = |n: usize, one: &str, many: &str| format!("{n} {}", if n == 1 { one } else { many });
     out.line(&format!(
@@ -79,6 +110,9 @@ pub fn check(path: &Path) -> Done {
         count(scene.obstacles.len(), "obstacle", "obstacles"),
         count(scene.loads.len(), "load", "loads"),
     ))?;
+    for note in notes {
+        out.line(&format!("Note: {}", note.message))?;
+    }
     out.flush()
 }
 

@@ -95,6 +95,34 @@ pub enum SceneFault {
         /// Where, m.
         y_m: f64,
     },
+    /// A support inside something solid.
+    #[error(
+        "support `{name}` is {depth_m:.4} m inside `{obstacle}`{}", .clear_m.map(|[x, y]| format!(": the nearest place clear of it is [{x:.4}, {y:.4}]")).unwrap_or_default()
+    )]
+    SupportInside {
+        /// The support.
+        name: String,
+        /// The obstacle.
+        obstacle: String,
+        /// How deep the point is below the obstacle's surface, m.
+        depth_m: f64,
+        /// The nearest place where the cable's centre line touches nothing, m.
+        clear_m: Option<[f64; 2]>,
+    },
+    /// A wheel that the cable cannot reach from the support beside it.
+    #[error(
+        "`{from}` and `{to}` are {apart_m:.4} m apart, and no cable leads from one to the other: {reason}. Move one, make the wheel smaller, or leave one out"
+    )]
+    NoWay {
+        /// The support before.
+        from: String,
+        /// The support after.
+        to: String,
+        /// Distance of their centres, m.
+        apart_m: f64,
+        /// Why not.
+        reason: String,
+    },
     /// The cable is too short for the way between its supports.
     #[error(
         "the way between the supports is {way_m:.4} m, the cable is {length_m:.4} m long, and stretching to it takes {needed_n:.4e} N where it breaks at {breaking_n:.4e} N: make length_m at least {way_m:.4} m"
@@ -125,40 +153,102 @@ pub enum TensionLoss {
     Lay,
 }
 
-/// Why a model has no answer.
+/// A place on a cable, in words a user can find it by.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Place {
+    /// Arc length from the cable's start, m.
+    pub arc_length_m: f64,
+    /// Where that is, m.
+    pub at_m: Vec2,
+    /// The nearest support or obstacle by kind and name, and its distance, m; none where there is nothing.
+    pub near: Option<(String, f64)>,
+}
+
+impl std::fmt::Display for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.arc_length_m.is_finite() {
+            true => write!(f, "{} along the cable", metres(self.arc_length_m))?,
+            false => write!(f, "somewhere along the cable")?,
+        }
+        if self.at_m.iter().all(|c| c.is_finite()) {
+            write!(f, ", at ({}, {})", metres(self.at_m.x), metres(self.at_m.y))?;
+        }
+        match &self.near {
+            Some((name, distance)) if distance.is_finite() && *distance > 0.0 => {
+                write!(f, ", {} from {name}", metres(*distance))
+            }
+            Some((name, _)) => write!(f, ", at {name}"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A length in metres with three decimals, or three digits where it is small.
+fn metres(length_m: f64) -> String {
+    let size = length_m.abs();
+    if size > 0.0 && size < 0.01 || size >= 1e6 { format!("{length_m:.2e} m") } else { format!("{length_m:.3} m") }
+}
+
+/// A force that is left over, where a solver knows one: a figure that is not finite says nothing to anybody.
+fn left_over(residual_n: f64) -> String {
+    if residual_n.is_finite() {
+        format!("{residual_n:.3e} N stay unbalanced")
+    } else {
+        "no balance of forces was reached".to_owned()
+    }
+}
+
+/// A time in seconds, where it is one.
+fn seconds(time_s: f64) -> String {
+    if time_s.is_finite() { format!("{time_s} s") } else { "no finite time".to_owned() }
+}
+
+/// Why a model has no answer. Every text says where, in metres and names, and what can be done; none holds a number that is not finite.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SolveError {
     /// The iteration did not converge.
-    #[error("{model} did not converge in {iterations} iterations: unbalanced force {residual_n:.3e} N at node {node} ({:.3} m, {:.3} m)", .at_m.x, .at_m.y)]
+    #[error("{model} found no resting place in {iterations} iterations: {} {place}. Lay the cable by another way there (route_m), or ask another model", left_over(*.residual_n))]
     NotConverged {
         /// The model.
         model: Model,
         /// Iterations done.
         iterations: usize,
+        /// Largest unbalanced force, N; NaN where none is known.
+        residual_n: f64,
+        /// Where it acts.
+        place: Place,
+    },
+    /// The budget of work was spent before there was an answer.
+    #[error("{model} has found no resting place in {iterations} iterations with {segments} segments, which is all the work it does for one: {} {place}. Draw the cable a route_m nearer to where it will lie, or give it fewer segments", left_over(*.residual_n))]
+    TooMuchWork {
+        /// The model.
+        model: Model,
+        /// Iterations done.
+        iterations: usize,
+        /// Segments of the cable.
+        segments: usize,
         /// Largest unbalanced force, N.
         residual_n: f64,
-        /// The node it acts on.
-        node: usize,
-        /// Where that node is, m.
-        at_m: Vec2,
+        /// Where it acts.
+        place: Place,
     },
     /// The only equilibrium found carries compression, which a cable cannot.
-    #[error("{model} found only a state with compression {tension_n:.3e} N in element {element}: a cable cannot push")]
+    #[error("{model} found only a state in which the cable pushes{} {place}, and a cable cannot push: it needs more tension there, or another model", if .tension_n.is_finite() && *.tension_n < 0.0 { format!(" with {:.3e} N", -.tension_n) } else { String::new() })]
     Compressed {
         /// The model.
         model: Model,
-        /// The element.
-        element: usize,
         /// Its tension, N (negative).
         tension_n: f64,
+        /// Where.
+        place: Place,
     },
     /// The state found is not a stable equilibrium.
-    #[error("{model} found a state that is not stable (indefinite tangent at node {node})")]
+    #[error(
+        "{model} found only a shape that does not stay (it would snap to another): lay the cable on the side where it shall rest (route_m)"
+    )]
     Indefinite {
         /// The model.
         model: Model,
-        /// The node where the factorisation met a pivot ≤ 0.
-        node: usize,
     },
     /// The cable has no tension somewhere, and the model needs some everywhere.
     #[error("{model} follows a taut cable only: {loss} {arc_length_m:.3} m along it, at ({:.3} m, {:.3} m)", .at_m.x, .at_m.y)]
@@ -178,6 +268,14 @@ pub enum SolveError {
         /// What pulls it away.
         why: String,
     },
+    /// Two models were asked, and neither has an answer or a clear reason.
+    #[error("{second}; before that, {first}")]
+    Neither {
+        /// The model asked first.
+        first: Box<Self>,
+        /// The model asked then.
+        second: Box<Self>,
+    },
     /// The model cannot answer this kind of scene.
     #[error("{model} cannot answer this scene: {feature}")]
     Unsupported {
@@ -187,12 +285,12 @@ pub enum SolveError {
         feature: String,
     },
     /// A number blew up.
-    #[error("{quantity} of node {node} is not finite at {time_s} s")]
+    #[error("{quantity} is no finite number {} along the cable at {}: a time step, a load or a stiffness is far out of proportion to the others", metres(*.arc_length_m), seconds(*.time_s))]
     NonFinite {
         /// Which quantity.
         quantity: &'static str,
-        /// The node.
-        node: usize,
+        /// Where on the cable, m.
+        arc_length_m: f64,
         /// Time, s.
         time_s: f64,
     },
@@ -230,7 +328,7 @@ pub enum SolveError {
     },
     /// The step was halved down to its floor and still failed.
     #[error(
-        "{model} stopped at {time_s:.6} s: the step was halved to {dt_s:.3e} s and still failed at node {node} with {residual_n:.3e} N ({cause})"
+        "{model} stopped at {time_s:.6} s: the step was halved to {dt_s:.3e} s and still failed: {} {place} ({cause})", left_over(*.residual_n)
     )]
     StepFailed {
         /// The model.
@@ -239,11 +337,69 @@ pub enum SolveError {
         time_s: f64,
         /// Smallest step tried, s.
         dt_s: f64,
-        /// The worst node.
-        node: usize,
-        /// Its unbalanced force, N.
+        /// Largest unbalanced force, N; NaN where none is known.
         residual_n: f64,
+        /// Where it acts.
+        place: Place,
         /// Why the last try failed.
         cause: String,
     },
+}
+
+impl SolveError {
+    /// Of two models' reasons for one cable the one that a user can act on: what is so whatever the model is told alone; where
+    /// neither says that, both are.
+    #[must_use]
+    pub fn clearer(first: Self, second: Self) -> Self {
+        let certain = |e: &Self| matches!(e, Self::NoRestingPlace { .. } | Self::Buried { .. });
+        match (certain(&first), certain(&second)) {
+            (_, true) => second,
+            (true, false) => first,
+            (false, false) if first == second => second,
+            (false, false) => Self::Neither { first: Box::new(first), second: Box::new(second) },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every text with every figure not finite.
+    #[test]
+    fn no_text_holds_a_number_that_is_not_finite() {
+        let model = Model::Fem;
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let place =
+                || Place { arc_length_m: bad, at_m: Vec2::new(bad, 1.0), near: Some(("support `a`".to_owned(), bad)) };
+            let all = [
+                SolveError::NotConverged { model, iterations: 7, residual_n: bad, place: place() },
+                SolveError::Compressed { model, tension_n: bad, place: place() },
+                SolveError::StepFailed {
+                    model,
+                    time_s: 0.0,
+                    dt_s: 1e-3,
+                    residual_n: bad,
+                    place: place(),
+                    cause: String::new(),
+                },
+                SolveError::NonFinite { quantity: "position", arc_length_m: 1.0, time_s: bad },
+            ];
+            for error in all {
+                let text = error.to_string();
+                assert!(!text.contains("NaN") && !text.contains("inf "), "{text}");
+                assert!(!text.contains("node"), "{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_clearer_reason_of_two_models_is_told() {
+        let vague = |model| SolveError::NotConverged { model, iterations: 1, residual_n: 1.0, place: Place::default() };
+        let clear = SolveError::NoRestingPlace { why: "it slides".to_owned() };
+        assert_eq!(SolveError::clearer(clear.clone(), vague(Model::Fem)), clear);
+        assert_eq!(SolveError::clearer(vague(Model::Spans), clear.clone()), clear);
+        let both = SolveError::clearer(vague(Model::Spans), vague(Model::Fem)).to_string();
+        assert!(both.contains("spans") && both.contains("fem"), "{both}");
+    }
 }

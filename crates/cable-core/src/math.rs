@@ -37,6 +37,14 @@ pub fn cross(a: Vec2, b: Vec2) -> f64 {
 /// Tangent of the angles whose series of [`angle`] is as exact as numbers are: the next term is r¹¹/11.
 const SERIES: f64 = 0.05;
 
+/// The value brought between two bounds, whatever they are: unlike [`f64::clamp`] it does not panic where they are exchanged or no
+/// numbers, as bounds that a solver works out may be. The upper one wins.
+#[must_use]
+pub fn bounded(value: f64, low: f64, high: f64) -> f64 {
+    let above = if value < low { low } else { value };
+    if above > high { high } else { above }
+}
+
 /// The angle from `a` to `b`, rad in (−π, π]. Neighbouring elements turn little: there a series, as arctangents are dear.
 #[must_use]
 pub fn angle(a: Vec2, b: Vec2) -> f64 {

@@ -3,7 +3,10 @@
 //! Arc lengths are unstretched at rest temperature; temperature enters as the factor `thermal_stretch` on
 //! unstretched lengths: strain = length/(thermal_stretch·ds) − 1. Weight and wind are per metre of arc length.
 
+mod lift;
+mod place;
 mod route;
+mod seat;
 
 use std::sync::Arc;
 
@@ -11,7 +14,9 @@ use crate::contact::World;
 use crate::contact::outline::Outline;
 use crate::error::SceneError;
 use crate::math::{Vec2, vec2};
+use crate::scene::scaled::Similarity;
 use crate::scene::{Cable, Motion, PulleySide, Scene, SupportKind, View};
+use crate::solution::Warning;
 
 /// One cable, resolved and validated.
 #[derive(Clone, Debug)]
@@ -48,6 +53,10 @@ pub struct Problem {
     pub floor_friction: Option<(f64, f64)>,
     /// The way it is first laid, m (empty: straight from support to support, lifted over what is in the way).
     pub route: Vec<Vec2>,
+    /// What of the scene was put elsewhere than it says: supports on a surface, routes below the ground.
+    pub notes: Vec<Warning>,
+    /// The same cable at the scale solvers are made for, where this one is much shorter, longer or farther away.
+    pub similar: Option<(Similarity, Arc<Problem>)>,
 }
 
 /// Times nearer than this are the same, s: sums of steps come as near to a time as rounding lets them.
@@ -186,6 +195,14 @@ impl Problem {
     }
 }
 
+/// Checks a scene as [`crate::Simulation::new`] does, without a model: what is put elsewhere than the scene says is handed back.
+///
+/// # Errors
+/// The first thing wrong with the scene.
+pub fn check(scene: &Scene) -> Result<Vec<Warning>, SceneError> {
+    Ok(problems(scene)?.iter().flat_map(|p| p.notes.iter().cloned()).collect())
+}
+
 /// Resolves every cable of a scene. The scene is validated first.
 ///
 /// # Errors
@@ -194,11 +211,31 @@ pub fn problems(scene: &Scene) -> Result<Vec<Arc<Problem>>, SceneError> {
     scene.validate()?;
     let mut out = Vec::with_capacity(scene.cables.len());
     for (index, cable) in scene.cables.iter().enumerate() {
-        let problem = problem(scene, index, cable)?;
+        let problem = placed(scene, index, cable)?;
         route::clear(&problem)?;
         out.push(Arc::new(problem));
     }
     Ok(out)
+}
+
+/// A cable with its supports and route clear of what is solid, and its similar copy where it needs one.
+fn placed(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneError> {
+    let mut this = problem(scene, index, cable)?;
+    seat::seat(&mut this)?;
+    lift::lift(&mut this);
+    let origin = this.supports.iter().find_map(|s| s.at).or(this.route.first().copied()).unwrap_or_else(Vec2::zeros);
+    if scene.robot.is_none()
+        && let Some(by) = Similarity::to_natural(cable.length_m, origin)
+    {
+        let scaled = scene.scaled(&by);
+        if let Some(cable) = scaled.cables.get(index) {
+            let mut copy = problem(&scaled, index, cable)?;
+            seat::seat(&mut copy)?;
+            lift::lift(&mut copy);
+            this.similar = Some((by, Arc::new(copy)));
+        }
+    }
+    Ok(this)
 }
 
 fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, SceneError> {
@@ -264,6 +301,8 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
         outline: scene.robot_outline(cable.friction).map(Arc::new),
         floor_friction,
         route: cable.route_m.iter().map(|p| vec2(*p)).collect(),
+        notes: Vec::new(),
+        similar: None,
         cable: cable.clone(),
     })
 }

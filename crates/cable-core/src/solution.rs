@@ -373,6 +373,8 @@ pub enum WarningKind {
     NotUnique,
     /// A support was stopped by an obstacle, or its speed was capped.
     SupportHeld,
+    /// The scene puts a support or the route into an obstacle: it was put outside.
+    InitialPenetration,
     /// It lies through the robot, of which the model knows nothing.
     ThroughRobot,
     /// Damping or velocity was raised to keep the motion stable.
@@ -383,7 +385,7 @@ pub enum WarningKind {
 
 impl WarningKind {
     /// Every kind.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::ServiceTension,
         Self::BreakingTension,
         Self::Broken,
@@ -397,6 +399,7 @@ impl WarningKind {
         Self::Snag,
         Self::NotUnique,
         Self::SupportHeld,
+        Self::InitialPenetration,
         Self::ThroughRobot,
         Self::Stabilised,
         Self::Accuracy,
@@ -419,6 +422,7 @@ impl WarningKind {
             Self::Snag => "snag",
             Self::NotUnique => "not-unique",
             Self::SupportHeld => "support-held",
+            Self::InitialPenetration => "initial-penetration",
             Self::ThroughRobot => "through-robot",
             Self::Stabilised => "stabilised",
             Self::Accuracy => "accuracy",

@@ -1,5 +1,6 @@
 //! Where a cable is at an instant, in a form every model can give and take.
 
+use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::solution::Node;
 
@@ -41,6 +42,14 @@ impl State {
             !(self.position_m[i].iter().all(|v| v.is_finite())
                 && self.velocity_m_per_s.get(i).is_none_or(|v| v.iter().all(|c| c.is_finite())))
         })
+    }
+
+    /// The refusal of a state that holds a number that is not finite.
+    #[must_use]
+    pub fn refuse_non_finite(&self) -> Option<SolveError> {
+        let node = self.first_non_finite()?;
+        let arc_length_m = self.arc_length_m.get(node).copied().unwrap_or(f64::NAN);
+        Some(SolveError::NonFinite { quantity: "position or velocity", arc_length_m, time_s: self.time_s })
     }
 
     /// Arc length of the middle of what lies on a round of a radius (m); nearest to its centre if nothing does.

@@ -141,7 +141,14 @@ impl Recording {
 
 /// Whether a kind is something that happens, not a remark on the answer.
 fn marks(kind: WarningKind) -> bool {
-    !matches!(kind, WarningKind::NotUnique | WarningKind::Accuracy | WarningKind::Stabilised | WarningKind::SupportHeld)
+    !matches!(
+        kind,
+        WarningKind::NotUnique
+            | WarningKind::Accuracy
+            | WarningKind::Stabilised
+            | WarningKind::SupportHeld
+            | WarningKind::InitialPenetration
+    )
 }
 
 fn began(w: &Warning, now_s: f64) -> f64 {

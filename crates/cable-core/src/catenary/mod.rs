@@ -17,7 +17,7 @@ pub use chain::{Chain, ChainForce, PointForce};
 use kernel::Piece;
 
 use crate::error::SolveError;
-use crate::math::{Vec2, cross, perp};
+use crate::math::{Vec2, bounded, cross, perp};
 
 /// Below this ratio of load to EA the load cannot be told from none on a stretched cable (its square would
 /// leave the range of f64), and the span is a straight bar.
@@ -281,7 +281,7 @@ impl Catenary {
     pub fn lowest_s(&self) -> f64 {
         let w = self.span.weight.norm();
         if w > 0.0 {
-            (-self.va / w).clamp(0.0, self.span.length)
+            bounded(-self.va / w, 0.0, self.span.length)
         } else if self.span.chord.dot(&self.frame.up) < 0.0 {
             self.span.length
         } else {
@@ -301,7 +301,11 @@ impl Catenary {
     pub fn sag_s(&self) -> f64 {
         let w = self.span.weight.norm();
         let (x, z) = self.frame.split(self.span.chord);
-        if w > 0.0 && x > 0.0 { ((self.h * z / x - self.va) / w).clamp(0.0, self.span.length) } else { self.lowest_s() }
+        if w > 0.0 && x > 0.0 {
+            bounded((self.h * z / x - self.va) / w, 0.0, self.span.length)
+        } else {
+            self.lowest_s()
+        }
     }
 
     /// Greatest distance below the chord, measured along the load, m (below the lower end where the chord has

@@ -9,7 +9,7 @@
 //! ```
 //! After each accepted step the anchor follows: y ← clamp(y, ±ε) ([`return_map`]).
 
-use crate::math::{Mat2, Vec2};
+use crate::math::{Mat2, Vec2, bounded};
 
 /// Value, first and second derivative of D: J, N, N/m.
 #[must_use]
@@ -89,7 +89,7 @@ pub fn at_plane(y: Vec2, limit_force: f64, epsilon: f64) -> (f64, Vec2, Mat2) {
 /// Sliding kept after an accepted step.
 #[must_use]
 pub fn return_map(y: f64, epsilon: f64) -> f64 {
-    y.clamp(-epsilon, epsilon)
+    bounded(y, -epsilon, epsilon)
 }
 
 /// Sliding vector kept after an accepted step.

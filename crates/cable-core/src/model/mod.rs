@@ -13,6 +13,7 @@ pub mod fem;
 pub mod lay;
 pub mod mass_spring;
 pub mod relay;
+pub mod similar;
 pub mod spans;
 
 use std::sync::Arc;
@@ -202,6 +203,9 @@ pub trait Mechanics: Send {
 /// # Errors
 /// `Unsupported` when the model lacks what the scene needs.
 pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Box<dyn Mechanics>, SolveError> {
+    if let Some((by, copy)) = problem.similar.clone() {
+        return Ok(Box::new(similar::Similar::new(problem, by, build(model, copy, settings)?)));
+    }
     match model {
         Model::Catenary => Ok(Box::new(catenary::CatenaryModel::new(Problem::without_outline(problem), settings)?)),
         Model::Spans => Ok(Box::new(spans::SpansModel::new(Problem::without_outline(problem), settings)?)),

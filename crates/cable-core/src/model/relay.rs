@@ -195,6 +195,7 @@ impl Mechanics for Relay {
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
         let mut why = String::new();
+        let mut refused = None;
         if self.fem.is_none() {
             match self.spans.settle() {
                 Ok(_) if self.meets_robot(&self.spans.solution()) => TOUCHES.clone_into(&mut why),
@@ -203,11 +204,17 @@ impl Mechanics for Relay {
                     self.adopted = None;
                     return Ok(report);
                 }
-                Err(error) => why = error.to_string(),
+                Err(error) => {
+                    why = error.to_string();
+                    refused = Some(error);
+                }
             }
         }
         let first = self.fem.is_none();
-        let found = self.fem(why)?.settle();
+        let found = match (self.fem(why)?.settle(), refused) {
+            (Err(error), Some(before)) => Err(SolveError::clearer(before, error)),
+            (found, _) => found,
+        };
         match &found {
             Ok(_) => {
                 self.adopted = None;

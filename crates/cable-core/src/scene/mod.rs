@@ -17,6 +17,7 @@ pub mod preset;
 mod range;
 mod read;
 pub mod robot;
+pub mod scaled;
 pub mod schema;
 pub mod support;
 mod support_rules;

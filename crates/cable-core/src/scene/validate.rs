@@ -64,6 +64,7 @@ impl Scene {
             check_robot(robot, &root.key("robot"))?;
         }
         for (i, cable) in self.cables.iter().enumerate() {
+            way::lines_exist(self, cable, &root.key("cables").index(i))?;
             way::long_enough(self, cable, &root.key("cables").index(i).key("length_m"))?;
         }
         Ok(())

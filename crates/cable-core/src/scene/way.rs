@@ -43,6 +43,33 @@ pub(super) fn long_enough(scene: &Scene, cable: &Cable, at: &Path<'_>) -> Checke
     Ok(())
 }
 
+/// Part of the cable's length by which two supports beside each other on it must be clear of each other where one slides or turns.
+/// Smaller: what lies between them is lost in rounding. Larger: eyes set close together are refused.
+const LEAST_APART: f64 = 1e-9;
+
+/// Refuses neighbours along the cable without a straight line that touches both: a support inside the wheel beside it, a wheel inside
+/// the next one, an eye in the very place of what it stands beside.
+pub(super) fn lines_exist(scene: &Scene, cable: &Cable, at: &Path<'_>) -> Checked {
+    for (i, pair) in cable.supports.windows(2).enumerate() {
+        let [from, to] = pair else { continue };
+        let slides = from.kind == SupportKind::Pulley || to.kind == SupportKind::Pulley;
+        let (Some(a), Some(b)) = (Waypoint::of(scene, cable, from), Waypoint::of(scene, cable, to)) else { continue };
+        let apart_m = (b.at - a.at).norm();
+        if !slides || apart_m - (a.radius - b.radius).abs() > LEAST_APART * cable.length_m {
+            continue;
+        }
+        let (inner, outer) = if a.radius < b.radius { (from, to) } else { (to, from) };
+        let reason = if a.radius.max(b.radius) > 0.0 {
+            format!("`{}` lies inside the wheel of `{}`", inner.name, outer.name)
+        } else {
+            "they are in the same place".to_owned()
+        };
+        let (from, to) = (from.name.clone(), to.name.clone());
+        return Err(at.key("supports").index(i + 1).key("at_m").fault(SceneFault::NoWay { from, to, apart_m, reason }));
+    }
+    Ok(())
+}
+
 /// A known point of the way, with the radius the centre line turns about it.
 #[derive(Clone, Copy)]
 struct Waypoint {

@@ -129,7 +129,7 @@ impl Deal {
         cable.segments = Some(elements);
         // The ratio is that of the first axial mode, whose period goes with the length: the material stays the same.
         cable.damping_ratio *= whole.length / length;
-        Problem { length, supports, loads, route: route(state), cable, ..whole.clone() }
+        Problem { length, supports, loads, route: route(state), cable, similar: None, ..whole.clone() }
     }
 }
 

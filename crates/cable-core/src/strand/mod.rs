@@ -154,6 +154,7 @@ impl Strand {
             add(&mut sum, piece.mechanics.settle()?);
             piece.look();
         }
+        sum.warnings.extend(self.problem.notes.iter().cloned());
         Ok(sum)
     }
 

@@ -119,6 +119,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
         WarningKind::BendRadius => (Severity::Caution, "Bent too tightly"),
         WarningKind::Accuracy => (Severity::Caution, "Less accurate than asked"),
         WarningKind::SupportHeld => (Severity::Caution, "A support was held back"),
+        WarningKind::InitialPenetration => (Severity::Note, "Put outside of an obstacle"),
         WarningKind::ThroughRobot => (Severity::Caution, "Lies through the robot"),
         WarningKind::Stabilised => (Severity::Caution, "The motion was stabilised"),
         WarningKind::NotUnique => (Severity::Note, "One of several resting places"),
@@ -157,7 +158,11 @@ fn figures(warning: &Warning) -> Option<String> {
         WarningKind::Snag => Some(format!("tension ratio {value:.2}")),
         WarningKind::Loop => None,
         WarningKind::Accuracy => Some(format!("{} of {}", unit::percent(value), unit::percent(limit))),
-        WarningKind::NotUnique | WarningKind::SupportHeld | WarningKind::ThroughRobot | WarningKind::Stabilised => None,
+        WarningKind::InitialPenetration
+        | WarningKind::NotUnique
+        | WarningKind::SupportHeld
+        | WarningKind::ThroughRobot
+        | WarningKind::Stabilised => None,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::layout::{Anchor, Layout, angle_near, angle_of, unsupported};
 use super::slide::{Arc, Mode, Slide, Stretches};
-use crate::error::SolveError;
+use crate::error::{Place, SolveError};
 use crate::math::{Vec2, larger};
 use crate::model::Model;
 use crate::problem::Problem;
@@ -112,7 +112,7 @@ pub(super) fn solve(p: &Problem, layout: &Layout, start: Start<'_>) -> Result<Eq
             let name = p.supports.get(layout.anchors[k].support).map_or("", |s| s.name.as_str());
             Err(unsupported(format!("the cable lifts off the wheel of `{name}`")))
         }
-        None => Err(not_converged(layout, 0, iterations, f64::NAN)),
+        None => Err(not_converged(p, layout, 0, iterations, f64::NAN)),
     }
 }
 
@@ -128,9 +128,14 @@ pub(super) fn called_upon(slide: &Slide<'_>, s: &Stretches, k: usize, mode: Mode
     }
 }
 
-fn not_converged(layout: &Layout, node: usize, iterations: usize, residual_n: f64) -> SolveError {
-    let at_m = layout.anchors.get(node).map_or(Vec2::zeros(), |a| a.at);
-    SolveError::NotConverged { model: Model::Catenary, iterations, residual_n, node, at_m }
+fn not_converged(p: &Problem, layout: &Layout, anchor: usize, iterations: usize, residual_n: f64) -> SolveError {
+    let place = layout.anchors.get(anchor).map(|a| Place {
+        arc_length_m: a.held.unwrap_or(f64::NAN),
+        at_m: a.at,
+        near: p.supports.get(a.support).map(|s| (format!("support `{}`", s.name), 0.0)),
+    });
+    let place = place.unwrap_or_default();
+    SolveError::NotConverged { model: Model::Catenary, iterations, residual_n, place }
 }
 
 /// Balance with friction: pulleys hold or slip, each as its cone and its direction demand.
@@ -174,7 +179,7 @@ fn contact(
         }
         near = Some(found.stretches);
     }
-    Err(not_converged(layout, 0, iterations, f64::NAN))
+    Err(not_converged(slide.problem, layout, 0, iterations, f64::NAN))
 }
 
 /// Balance with the modes given, by way of slipping pulleys without friction (an energy to go down in, so any start
@@ -198,7 +203,7 @@ fn from_smooth(slide: &Slide<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equ
             Err(_) => rise *= 0.5,
         }
     }
-    Err(not_converged(slide.layout, 0, iterations, f64::NAN))
+    Err(not_converged(slide.problem, slide.layout, 0, iterations, f64::NAN))
 }
 
 /// One row of the three-diagonal system.
@@ -292,7 +297,7 @@ fn newton(
     let layout = slide.layout;
     let smooth = modes.iter().all(|m| matches!(m, Mode::Stick | Mode::Slip(0.0)));
     let mut sigma = sigma;
-    let lost = |iterations| not_converged(layout, 0, iterations, f64::NAN);
+    let lost = |iterations| not_converged(slide.problem, layout, 0, iterations, f64::NAN);
     let mut s = slide.stretches(&sigma, near).ok_or_else(|| lost(0))?;
     let mut iterations = s.iterations;
     for _ in 0..MAX_ITERATIONS {
@@ -333,7 +338,7 @@ fn newton(
         match next {
             Some((trial, t)) => (sigma, s) = (trial, t),
             None if worst <= BALANCE_ACCEPTED && (smooth || stable(&j)) => return Ok(end(sigma, s, newtons)),
-            None => return Err(not_converged(layout, 0, iterations, newtons)),
+            None => return Err(not_converged(slide.problem, layout, 0, iterations, newtons)),
         }
     }
     Err(lost(iterations))

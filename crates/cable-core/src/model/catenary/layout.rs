@@ -36,11 +36,22 @@ pub(super) struct Layout {
     pub loads: Vec<PointForce>,
     /// Load per metre of unstretched length, N/m.
     pub weight: Vec2,
+    /// Forces up to this come of the hint of weight that a weightless cable is given, N; 0 for one that has weight.
+    pub hint: f64,
     /// Whether the start and the end dangle.
     pub free: [bool; 2],
     /// Dead force on a dangling start and end, N.
     pub end_force: [Vec2; 2],
 }
+
+/// Weight of a weightless cable, in parts of its loads. Smaller: slack parts beside loaded ones have no direction that rounding
+/// leaves alone. Larger: it shows in the ninth digit.
+const HINT_OF_LOADS: f64 = 1e-15;
+/// The same in parts of EA where nothing is loaded: far below the strain that rounding hides.
+const HINT_OF_STIFFNESS: f64 = 1e-18;
+/// Tension that such a weight can make, in weights: a slack of 1e-9 of the length gives 6e3. Smaller: a trace of tension is told where
+/// there is none. Larger: tensions that loads make are told to be none.
+const HINT_SHOWS: f64 = 1e4;
 
 /// Where a support is now: by hand, by its motion, or not at all.
 fn place(s: &SupportPoint, dragged: Option<Vec2>, time_s: f64) -> Option<Vec2> {
@@ -86,6 +97,7 @@ impl Layout {
         let mut layout = Self {
             anchors,
             weight: p.body_force(time_s),
+            hint: 0.0,
             free: [!first_held, !last_held],
             end_force: [0.0, p.length]
                 .map(|end| loads.iter().filter(|l| l.arc_length == end).fold(Vec2::zeros(), |sum, l| sum + l.force)),
@@ -94,8 +106,21 @@ impl Layout {
         if layout.anchors.is_empty() {
             return Err(SolveError::NoRestingPlace { why: "nothing holds the cable".to_owned() });
         }
+        layout.hint_weight(p);
         layout.face_wheels(p);
         Ok(layout)
+    }
+
+    /// Gives a weightless cable so little weight that no force shows it: where it is slack any shape is at rest, and this one is
+    /// that of a very light cable.
+    fn hint_weight(&mut self, p: &Problem) {
+        if self.weight.norm() > 0.0 {
+            return;
+        }
+        let loads: f64 = self.loads.iter().map(|l| l.force.norm()).sum();
+        let whole = if loads > 0.0 { HINT_OF_LOADS * loads } else { HINT_OF_STIFFNESS * p.axial_stiffness };
+        self.weight = Vec2::new(0.0, -whole / p.length);
+        self.hint = HINT_SHOWS * whole;
     }
 
     /// Which side of its wheel the cable runs on, seen along it: over means above where it travels to the right.

@@ -20,7 +20,7 @@ use self::report::{report, straight};
 use self::slide::Mode;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::SolveError;
-use crate::math::Vec2;
+use crate::math::{Vec2, bounded};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, Node, SupportReaction, Warning, WarningKind};
 use crate::state::State;
@@ -131,7 +131,8 @@ impl CatenaryModel {
             if let Some(node) =
                 nodes.iter().position(|n| !(n.x_m.is_finite() && n.y_m.is_finite() && n.tension_n.is_finite()))
             {
-                return Err(SolveError::NonFinite { quantity: "position or tension", node, time_s });
+                let arc_length_m = nodes.get(node).map_or(0.0, |n| n.arc_length_m);
+                return Err(SolveError::NonFinite { quantity: "position or tension", arc_length_m, time_s });
             }
             self.refuse_contact(layout, &nodes)?;
             self.nodes = nodes;
@@ -248,6 +249,14 @@ impl Mechanics for CatenaryModel {
             let name = &self.problem.cable.name;
             report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
         }
+        if layout.hint > 0.0
+            && let Some(slack) = self.nodes.iter().find(|n| n.tension_n == 0.0)
+        {
+            let message = "The cable has no weight: where it is slack it has no tension and any shape is at rest; this one is that of a very light cable";
+            let name = &self.problem.cable.name;
+            let (kind, at) = (WarningKind::NotUnique, slack.arc_length_m);
+            report.warnings.push(Warning::new(kind, name, at, [0.0; 2], message.to_owned()));
+        }
         Ok(report)
     }
 
@@ -268,7 +277,7 @@ impl Mechanics for CatenaryModel {
                     total.cost.iterations += r.cost.iterations;
                     total.cost.residual_n = r.cost.residual_n;
                 }
-                Err(SolveError::NotConverged { node, residual_n, iterations, .. }) => {
+                Err(SolveError::NotConverged { place, residual_n, iterations, .. }) => {
                     halvings += 1;
                     step *= 0.5;
                     total.cost.halved_steps += 1;
@@ -280,8 +289,8 @@ impl Mechanics for CatenaryModel {
                             model: Model::Catenary,
                             time_s: self.time_s,
                             dt_s: step,
-                            node,
                             residual_n,
+                            place,
                             cause: format!("no balance in {iterations} iterations"),
                         });
                     }
@@ -306,8 +315,8 @@ impl Mechanics for CatenaryModel {
     }
 
     fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
-        if let Some(node) = state.first_non_finite() {
-            return Err(SolveError::NonFinite { quantity: "position", node, time_s: state.time_s });
+        if let Some(e) = state.refuse_non_finite() {
+            return Err(e);
         }
         self.time_s = state.time_s;
         let line = &state.position_m;
@@ -323,7 +332,7 @@ impl Mechanics for CatenaryModel {
                 let (Some(l0), Some(l1)) = (lengths.get(i - 1), lengths.get(i)) else { continue };
                 let (Some(s0), Some(s1)) = (state.arc_length_m.get(i - 1), state.arc_length_m.get(i)) else { continue };
                 let f = if l1 > l0 { (from - l0) / (l1 - l0) } else { 0.0 };
-                self.adopted[k] = Some((s0 + f * (s1 - s0)).clamp(0.0, self.problem.length));
+                self.adopted[k] = Some(bounded(s0 + f * (s1 - s0), 0.0, self.problem.length));
             }
         }
         self.balance = None;

@@ -142,8 +142,26 @@ pub(super) fn report(p: &Problem, layout: &Layout, e: &Equilibrium) -> (Vec<Node
             wheel_nodes(&mut nodes, &slide, e, i);
         }
     }
-    let reactions = reactions(p, &slide, e, &nodes.out);
+    let mut reactions = reactions(p, &slide, e, &nodes.out);
+    if layout.hint > 0.0 {
+        forget_hint(&mut nodes.out, &mut reactions, layout.hint);
+    }
     (nodes.out, reactions)
+}
+
+/// What only the hint of weight pulls is slack: its tension is 0.
+fn forget_hint(nodes: &mut [Node], reactions: &mut [SupportReaction], hint: f64) {
+    for n in nodes.iter_mut().filter(|n| n.tension_n <= hint) {
+        (n.tension_n, n.strain, n.stress_pa, n.force_n) = (0.0, 0.0, 0.0, [0.0; 2]);
+    }
+    for r in reactions {
+        let tensions = [&mut r.tension_before_n, &mut r.tension_after_n].into_iter().flatten();
+        for force in [&mut r.reaction_x_n, &mut r.reaction_y_n].into_iter().chain(tensions) {
+            if force.abs() <= hint {
+                *force = 0.0;
+            }
+        }
+    }
 }
 
 fn wheel_nodes(nodes: &mut Nodes<'_>, slide: &Slide<'_>, e: &Equilibrium, k: usize) {

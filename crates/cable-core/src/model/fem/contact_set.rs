@@ -7,7 +7,7 @@ use crate::contact::barrier::Barrier;
 use crate::contact::friction;
 use crate::contact::near::Near;
 use crate::contact::pairs::Pair;
-use crate::math::Vec2;
+use crate::math::{Vec2, bounded};
 use crate::problem::Problem;
 
 /// Sliding at which friction is fully mobilised (ε) in motion, and the most of it at rest, m. 1e-6 costs half as many iterations
@@ -27,7 +27,7 @@ const LEAST_SLIDE: f64 = 1e-9;
 pub fn slip_at_rest(problem: &Problem, force: f64) -> f64 {
     let stretch = force * problem.length / problem.axial_stiffness;
     // A force that is no number is none of a state to be kept.
-    (SLIDE_PART * stretch).clamp(LEAST_SLIDE, SLIDE)
+    bounded(SLIDE_PART * stretch, LEAST_SLIDE, SLIDE)
 }
 
 /// Steps for which a contact without load is remembered: fewer and trembling contacts creep; many more and a cable

@@ -44,6 +44,9 @@ const GAP_ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// more: iterations spent on what the next step does as well.
 const MAX_PUSHES: usize = 12;
 
+/// Why a search ends that has spent its work.
+pub(super) const WORK_SPENT: &str = "the work for one resting place is spent";
+
 /// Memory of the minimisation.
 #[derive(Debug)]
 pub struct Workspace {
@@ -70,6 +73,8 @@ pub struct Workspace {
     pub(super) branches: Vec<friction::Branch>,
     pub(super) begun: Pose,
     pub(super) near_enough: bool,
+    /// Iterations times nodes that may still be spent.
+    pub(super) work_left: usize,
     /// Iterations in a hurry of this step.
     pub(super) hurried: usize,
 }
@@ -98,6 +103,7 @@ impl Workspace {
             branches: Vec::with_capacity(mesh.nodes()),
             begun: Pose::default(),
             near_enough: false,
+            work_left: usize::MAX,
             hurried: 0,
             system,
             factor,
@@ -300,6 +306,10 @@ impl Workspace {
             if done.iterations >= task.max_iterations {
                 return failed("too many iterations");
             }
+            if self.work_left == 0 {
+                return failed(WORK_SPENT);
+            }
+            self.work_left = self.work_left.saturating_sub(mesh.nodes());
             done.iterations += 1;
             // The gradient is needed after pinning overwrote the Hessian only, so it stays valid.
             if !self.solve(mesh, task, (&pose.x, shift)) {

@@ -16,8 +16,8 @@ use super::sleep::Sleep;
 use super::sliding::Seat;
 use super::task::{Done, Failure, Pose, Task};
 use crate::contact::barrier::Barrier;
-use crate::error::SolveError;
-use crate::math::Vec2;
+use crate::error::{Place, SolveError};
+use crate::math::{Vec2, bounded};
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::{Problem, Series};
 use crate::scene::SupportKind;
@@ -103,6 +103,8 @@ pub struct Dynamics {
     pub(super) tolerance: f64,
     pub(super) rested: bool,
     pub(super) held_back: Vec<usize>,
+    /// Iterations times nodes that the search for a resting place may still take.
+    pub(super) work_left: usize,
     /// Room for where hands draw supports in a part of a step.
     aims: Vec<Option<Vec2>>,
     /// The outline of the robot, if there is one.
@@ -172,6 +174,7 @@ impl Dynamics {
             tolerance: settings.tolerance,
             rested: false,
             held_back: Vec::new(),
+            work_left: usize::MAX,
             aims: Vec::new(),
             rider,
             touches: Vec::with_capacity(n),
@@ -298,7 +301,7 @@ impl Dynamics {
         let least = STIFFNESS * self.bar_weight;
         let wanted = if TAUT_STIFFNESS * most > least { TAUT_STIFFNESS * most } else { least };
         let now = self.contacts.barrier.stiffness;
-        self.contacts.barrier.stiffness = (wanted * ahead).clamp(now * down, now * up);
+        self.contacts.barrier.stiffness = bounded(wanted * ahead, now * down, now * up);
     }
 
     /// The same for the sliding at which friction is fully mobilised, where inertia does not count.
@@ -404,14 +407,21 @@ impl Dynamics {
                             model: Model::Fem,
                             time_s: self.motion.time,
                             dt_s: size,
-                            node: f.node,
                             residual_n: f.residual,
+                            place: self.place(f.node),
                             cause: f.cause.to_owned(),
                         });
                     }
                 }
             }
         }
+    }
+
+    /// Where a node is, in the words of the scene.
+    pub(super) fn place(&self, node: usize) -> Place {
+        let arc_length = self.mesh.arc_length.get(node).copied().unwrap_or(f64::NAN);
+        let at = self.motion.x.get(node).copied().unwrap_or(Vec2::repeat(f64::NAN));
+        self.problem.place(arc_length, at, self.motion.time)
     }
 
     pub(super) fn report(&self, done: Done, halved_steps: usize, inner_step_s: f64) -> StepReport {

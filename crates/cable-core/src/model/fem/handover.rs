@@ -47,8 +47,8 @@ impl Dynamics {
     /// # Errors
     /// When a number is not finite, and `Buried` when it is so far inside an obstacle that nodes cannot be pushed out.
     pub fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
-        if let Some(node) = state.first_non_finite() {
-            return Err(SolveError::NonFinite { quantity: "position", node, time_s: state.time_s });
+        if let Some(e) = state.refuse_non_finite() {
+            return Err(e);
         }
         if state.arc_length_m.len() < 2 || state.position_m.len() != state.arc_length_m.len() {
             return Ok(());

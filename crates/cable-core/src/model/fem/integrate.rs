@@ -12,7 +12,7 @@ use super::contact_set::SLIDE;
 use super::dynamics::{Dynamics, REACH, STIFFNESS_CHANGE};
 use super::prepare::damping_time;
 use super::task::{Done, Failure, Pose};
-use crate::math::Vec2;
+use crate::math::{Vec2, bounded};
 use crate::model::drive::Follower;
 
 /// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
@@ -205,7 +205,7 @@ impl Dynamics {
         }
         let fastest = self.motion.v.iter().map(Vec2::norm).fold(0.0, |a: f64, b| if b <= a { a } else { b });
         let (wanted, now) = (if fastest > FAST { FAST_REACH } else { REACH }, self.contacts.barrier.reach);
-        self.set_reach(wanted.clamp(now / REACH_CHANGE, now * REACH_CHANGE));
+        self.set_reach(bounded(wanted, now / REACH_CHANGE, now * REACH_CHANGE));
     }
 
     /// Sets the gap at which contact begins, m, and with it how far out rounds of obstacles are.

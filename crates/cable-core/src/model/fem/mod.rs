@@ -69,6 +69,12 @@ const JAMMED: f64 = 0.1;
 /// The same of a stiff cable, which is laid as a flexible one: its bending takes part in what supports feel.
 const JAMMED_STIFF: f64 = 0.5;
 
+/// Segments from which a first rest begins at that of a coarser mesh. Fewer: meshes that need no help pay for two; more: the way down
+/// of a thousand bars takes minutes.
+const FINE: usize = 1000;
+/// How much coarser that mesh is. Less: more meshes, each nearer to the next; more: it lies otherwise than the fine one will.
+const COARSER: usize = 8;
+
 /// Which part holds the present state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
@@ -138,6 +144,41 @@ impl FemModel {
         None
     }
 
+    /// The resting place where something may be touched.
+    fn rest_in_touch(&mut self) -> Result<StepReport, SolveError> {
+        let begins = !self.dynamics.rested && self.dynamics.time() == 0.0;
+        let said = if begins && self.laid_evenly { self.lay() } else { None };
+        if begins && said.is_none() && self.statics.settle(&self.dragged).is_ok() {
+            self.dynamics.begin_at(&self.statics.state(), &self.dragged);
+        }
+        if begins && said.is_none() {
+            self.begin_coarse();
+        }
+        let mut report = self.dynamics.settle(&self.dragged)?;
+        report.warnings.extend(said.into_iter().flatten());
+        Ok(report)
+    }
+
+    /// Begins a first rest of a fine mesh at that of a coarse one (nested iteration): the way down takes as many steps as waves of slack
+    /// run along the bars, which a coarse mesh does cheaply.
+    fn begin_coarse(&mut self) {
+        let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
+        if fine <= FINE || self.led.is_some() {
+            return;
+        }
+        let settings = Settings { segments: Some(fine / COARSER), ..self.settings };
+        let Ok(coarse) = Self::new(self.problem.clone(), settings) else { return };
+        let mut coarse = Self { dragged: self.dragged.clone(), ..coarse.laid_alone() };
+        if coarse.settle().is_err() {
+            return;
+        }
+        let before = self.dynamics.clone();
+        let time_s = before.time();
+        if self.dynamics.take_over(&coarse.solution(), time_s, &self.dragged).is_err() {
+            self.dynamics = before;
+        }
+    }
+
     /// The same without sliding nodes at corners and posts: every node stays with its material. For models that take
     /// over its nodes.
     #[must_use]
@@ -178,17 +219,12 @@ impl Mechanics for FemModel {
     fn settle(&mut self) -> Result<StepReport, SolveError> {
         if touches_nothing(&self.problem) {
             self.ask(Part::Statics)?;
-            self.statics.settle(&self.dragged)
-        } else {
-            let begins = !self.dynamics.rested && self.dynamics.time() == 0.0;
-            let said = if begins && self.laid_evenly { self.lay() } else { None };
-            if begins && said.is_none() && self.statics.settle(&self.dragged).is_ok() {
-                self.dynamics.begin_at(&self.statics.state(), &self.dragged);
-            }
-            let mut report = self.dynamics.settle(&self.dragged)?;
-            report.warnings.extend(said.into_iter().flatten());
-            Ok(report)
+            return self.statics.settle(&self.dragged);
         }
+        self.dynamics.work_left = rest::REST_WORK;
+        let found = self.rest_in_touch();
+        self.dynamics.work_left = usize::MAX;
+        found
     }
 
     fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {

@@ -15,7 +15,7 @@
 use super::element::{Material, turn_between};
 use super::layout::{Hold, Layout, Wheel};
 use super::span::{self, Span, elements};
-use crate::math::{Vec2, larger, perp};
+use crate::math::{Vec2, bounded, larger, perp};
 
 /// Newton steps for the pulleys together. Measured: 3 to 8.
 const MAX_STEPS: usize = 40;
@@ -305,7 +305,7 @@ impl Network {
             let stops = &self.layout.stops;
             let down = ROOM * (from[i] - stops[k - 1].leaves());
             let up = ROOM * (stops[k + 1].arc_length - from[i] - stops[k].lap);
-            let mut move_by = (alpha * step[i]).clamp(-down, up);
+            let mut move_by = bounded(alpha * step[i], -down, up);
             let slid = self.slid(k);
             let friction = self.wheel(k).is_some_and(|w| w.friction > 0.0);
             if friction && slid * (slid + move_by) < 0.0 {

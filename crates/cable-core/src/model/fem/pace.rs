@@ -6,7 +6,7 @@
 //! the cable, which falls or is carried along.
 
 use super::dynamics::{Dynamics, INNER_STEP};
-use crate::math::Vec2;
+use crate::math::{Vec2, bounded};
 
 /// The shortest step is this part of the inner step: strings up to 17 Hz are in tune to 1e-3, of 40 Hz to 6e-3. Less: a cable that
 /// rings costs more than it tells; more: the tones that are in tune are lower.
@@ -78,7 +78,7 @@ impl Dynamics {
         let amplitude = (speeds / (time * length)).sqrt() / frequency;
         let matters = frequency.is_finite() && amplitude > LEAST * length;
         let wanted = if matters { (3.0 * self.tolerance).sqrt() / frequency } else { INNER_STEP };
-        let near = wanted.clamp(pace.step / CHANGE, pace.step * CHANGE);
+        let near = bounded(wanted, pace.step / CHANGE, pace.step * CHANGE);
         pace.step = near.clamp(SHORTEST * INNER_STEP, INNER_STEP);
         let left = (-dt / MEMORY).exp();
         pace.seen = pace.seen.map(|s| s * left);

@@ -195,7 +195,9 @@ impl Dynamics {
                 cause: "there is no memory for it",
             })?),
         };
+        memory.work_left = self.work_left;
         let done = memory.minimise((&self.problem, &self.mesh), &self.contacts, &self.task, pose);
+        self.work_left = memory.work_left;
         for k in 0..self.mesh.nodes() {
             let scale = self.task.scale.get(k.saturating_sub(1)).copied().unwrap_or(1.0);
             self.reaction[k] = -memory.gradient_at(k) / scale;

@@ -12,7 +12,7 @@
 use super::dynamics::Dynamics;
 use super::path::{End, Path, angle_between};
 use super::sliding::{Grip, Load, Seat, Sliding, round_of};
-use crate::math::{Vec2, perp};
+use crate::math::{Vec2, bounded, perp};
 
 /// Corners that turn by less (rad) are left to the barrier: there a chain jerks by less than 1e-3 of its tension.
 pub(super) const LEAST_TURN: f64 = 0.05;
@@ -354,7 +354,7 @@ impl Dynamics {
         let before = path.arcs[0] * mesh.end(bar, x).radius;
         let part = if path.length > 0.0 { (before + fraction * path.straight) / path.length } else { fraction };
         let least = 1e-3;
-        let arc_length = s[0] + part.clamp(least, 1.0 - least) * (s[1] - s[0]);
+        let arc_length = s[0] + bounded(part, least, 1.0 - least) * (s[1] - s[0]);
         let sliding = Sliding {
             end: End { center, radius, mark: gap.normal, sense },
             friction: gap.friction,
@@ -418,7 +418,7 @@ impl Dynamics {
                 };
                 let lead = path.arcs[0] * self.mesh.end(e, x).radius / path.length;
                 let straight = path.straight / path.length;
-                let fraction = (part / length).clamp(lead + 0.1 * straight, lead + 0.9 * straight);
+                let fraction = bounded(part / length, lead + 0.1 * straight, lead + 0.9 * straight);
                 let arc_length = self.mesh.arc_length[e] + fraction * length;
                 self.insert(e + 1, arc_length, None);
                 if slides[1] && !slides[0] {

@@ -3,6 +3,7 @@
 use super::carry::Rider;
 use super::contact_set::SLIDE;
 use super::contact_start::push_out;
+use super::contact_step::WORK_SPENT;
 use super::dynamics::{Dynamics, REACH};
 use super::integrate::PULLED;
 use super::prepare::{load_scale, tolerance};
@@ -11,6 +12,14 @@ use crate::error::SolveError;
 use crate::math::{Vec2, larger};
 use crate::model::{Model, StepReport};
 use crate::state::State;
+
+/// What is said of a way down that does not end.
+const STILL_MOVES: &str = "it never came to rest";
+
+/// Work of one search for a resting place: iterations times nodes. Less: scenes that come to rest slowly are refused; more: nobody is
+/// told for minutes. It is
+/// 20 000 iterations of 200 nodes, and some 10 s.
+pub(super) const REST_WORK: usize = 4_000_000;
 
 /// Newton iterations of a step without inertia.
 const REST_ITERATIONS: usize = 150;
@@ -65,7 +74,7 @@ impl Dynamics {
             self.task.most_noise = NEGLIGIBLE * self.task.tolerance;
             let mut pose = self.still_pose();
             let mut done = self.lag(&mut pose, LAG_ROUNDS);
-            if done.is_err() && self.contacts.slip < SLIDE {
+            if done.is_err_and(|f| f.cause != WORK_SPENT) && self.contacts.slip < SLIDE {
                 // Where grips change all along the cable, as on a first lay, ground that gives way is easier to come to rest on.
                 self.contacts.set_slip(SLIDE);
                 pose = self.still_pose();
@@ -153,7 +162,7 @@ impl Dynamics {
         let kept = (self.saved.clone(), self.can_restore);
         self.save();
         let mut found = self.relax_within(f64::INFINITY, to, dragged);
-        if found.is_err_and(|failure| failure.residual > NEGLIGIBLE * self.task.tolerance) {
+        if found.is_err_and(|f| f.cause != WORK_SPENT && f.residual > NEGLIGIBLE * self.task.tolerance) {
             self.restore();
             found = self.relax_within(NEGLIGIBLE, to, dragged);
         }
@@ -172,7 +181,7 @@ impl Dynamics {
         // Set where Newton without resistance has failed: then steps are solved exactly, until what resists is nothing.
         let mut stubborn = false;
         let mut total = 0;
-        let mut last = Failure { node: 0, residual: f64::NAN, cause: "it never came to rest" };
+        let mut last = Failure { node: 0, residual: f64::NAN, cause: STILL_MOVES };
         for round in 0..MAX_RELAX {
             self.prepare_task(to, Some(dragged));
             self.adapt_slip();
@@ -191,12 +200,16 @@ impl Dynamics {
             match done {
                 Ok(done) => {
                     total += done.iterations;
-                    let (mut moved, mut resists): (f64, f64) = (0.0, 0.0);
+                    let (mut moved, mut resists, mut slowest): (f64, f64, usize) = (0.0, 0.0, 0);
                     for (k, (a, b)) in pose.x.iter().zip(&self.motion.x).enumerate() {
                         let way = (a - b).norm().max(pose.slide[k].abs());
                         moved = moved.max(way);
-                        resists = resists.max(if self.mesh.held[k] { 0.0 } else { way * self.task.inertia[k] });
+                        let force = if self.mesh.held[k] { 0.0 } else { way * self.task.inertia[k] };
+                        if force > resists {
+                            (resists, slowest) = (force, k);
+                        }
                     }
+                    last = Failure { node: slowest, residual: done.residual + resists, cause: STILL_MOVES };
                     if self.accept_rest(&pose, self.motion.time) {
                         moved = moved.max(0.1);
                     } else if stubborn && resists <= exact && done.residual <= NEGLIGIBLE * exact {
@@ -207,6 +220,7 @@ impl Dynamics {
                     if resistance < floor || (moved < 1e-4 && round % 8 == 7) || moved < 1e-7 {
                         match self.rest_step(to, dragged) {
                             Ok(done) => return Ok(Done { iterations: total + done.iterations, ..done }),
+                            Err(failure) if failure.cause == WORK_SPENT => return Err(failure),
                             Err(failure) => {
                                 last = failure;
                                 stubborn = true;
@@ -215,6 +229,7 @@ impl Dynamics {
                         }
                     }
                 }
+                Err(failure) if failure.cause == WORK_SPENT => return Err(failure),
                 Err(failure) => {
                     last = failure;
                     resistance *= 8.0;
@@ -256,8 +271,20 @@ impl Dynamics {
                     let why = format!("nothing holds the cable, it slides away: the search followed it for {way:.0} m");
                     return Err(SolveError::NoRestingPlace { why });
                 }
-                let (residual_n, node) = (f.residual, f.node);
-                Err(SolveError::NotConverged { model: Model::Fem, iterations: MAX_RELAX, residual_n, node, at_m })
+                if f.cause == WORK_SPENT {
+                    let (model, segments) = (Model::Fem, self.mesh.rest_length.len());
+                    let iterations = REST_WORK / self.mesh.nodes().max(1);
+                    let (residual_n, place) = (f.residual, self.place(f.node));
+                    return Err(SolveError::TooMuchWork { model, iterations, segments, residual_n, place });
+                }
+                let arc_length = self.mesh.arc_length.get(f.node).copied().unwrap_or(f64::NAN);
+                let place = self.problem.place(arc_length, at_m, self.motion.time);
+                Err(SolveError::NotConverged {
+                    model: Model::Fem,
+                    iterations: MAX_RELAX,
+                    residual_n: f.residual,
+                    place,
+                })
             }
         }
     }

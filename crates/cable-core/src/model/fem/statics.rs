@@ -11,7 +11,7 @@ use super::element::Material;
 use super::estimate;
 use super::layout::{Hold, Layout, place};
 use super::network::{Failure, Network};
-use crate::error::SolveError;
+use crate::error::{Place, SolveError};
 use crate::math::Vec2;
 use crate::model::{Model, Settings, StepReport};
 use crate::problem::Problem;
@@ -29,7 +29,9 @@ const SAFETY: f64 = 0.5;
 const ORDER: f64 = 4.0;
 /// Rounds of mesh refinement.
 const MAX_MESHES: usize = 6;
-/// Weight given to a weightless cable, in parts of its loads (of EA without loads): where it is slack it has no shape
+/// Weight given to a weightless cable without loads, in parts of EA: far below the strain that rounding hides.
+const HINT_OF_WEIGHT_UNLOADED: f64 = 1e-18;
+/// Weight given to a weightless cable, in parts of its loads: where it is slack it has no shape
 /// of its own, this gives it that of a very light one. Far below any tension asked for.
 const HINT_OF_WEIGHT: f64 = 1e-12;
 /// Smoothing tension in parts of the load, see [`Material::smoothing`]. Seen only where the tension falls to it; at 1e-9
@@ -251,7 +253,7 @@ impl Statics {
         }
         match outcome {
             Outcome::Stable => {}
-            Outcome::Unstable => return Err(SolveError::Indefinite { model: Model::Fem, node: 0 }),
+            Outcome::Unstable => return Err(SolveError::Indefinite { model: Model::Fem }),
             Outcome::Failed => return Err(self.error(&network, Failure::Span(0, coarse.residual))),
         }
         self.time = time;
@@ -271,8 +273,9 @@ impl Statics {
         let loads: f64 = layout.stops.iter().map(|s| s.load.norm()).sum();
         let hinted = !(body.norm() > 0.0);
         if hinted {
-            let scale = if loads > 0.0 { loads } else { problem.axial_stiffness };
-            body = Vec2::new(0.0, -HINT_OF_WEIGHT * scale / problem.length);
+            let whole =
+                if loads > 0.0 { HINT_OF_WEIGHT * loads } else { HINT_OF_WEIGHT_UNLOADED * problem.axial_stiffness };
+            body = Vec2::new(0.0, -whole / problem.length);
         }
         let material = Material {
             axial_stiffness: problem.axial_stiffness,
@@ -323,8 +326,9 @@ impl Statics {
             model: Model::Fem,
             iterations: network.steps,
             residual_n,
-            node: network.layout.stops.iter().take(k).map(|s| s.cells).sum(),
-            at_m: network.layout.stops.get(k).and_then(|s| s.point(0)).unwrap_or_default(),
+            place: network.layout.stops.get(k).map_or_else(Place::default, |s| {
+                self.problem.place(s.arc_length, s.point(0).unwrap_or(Vec2::repeat(f64::NAN)), self.time)
+            }),
         };
         match failure {
             Failure::Span(k, residual) | Failure::Unbalanced(k, residual) => not_converged(k, residual),
@@ -342,8 +346,8 @@ impl Statics {
     /// # Errors
     /// When a number is not finite or the state does not fit the cable.
     pub fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
-        if let Some(node) = state.first_non_finite() {
-            return Err(SolveError::NonFinite { quantity: "position or velocity", node, time_s: state.time_s });
+        if let Some(e) = state.refuse_non_finite() {
+            return Err(e);
         }
         let near = 1e-6 * self.problem.length;
         let fits = state.arc_length_m.len() == state.position_m.len()

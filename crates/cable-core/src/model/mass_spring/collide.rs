@@ -3,7 +3,7 @@
 use super::pulley::NONE;
 use super::{MassSpringModel, Touch};
 use crate::error::SolveError;
-use crate::math::Vec2;
+use crate::math::{Vec2, bounded};
 use crate::model::Model;
 
 /// Distance kept ready for contact beside what is travelled, m.
@@ -97,7 +97,7 @@ impl MassSpringModel {
         let t = along.try_normalize(0.0).unwrap_or(Vec2::new(n.y, -n.x));
         let wanted = touch.friction - v.dot(&t) / w;
         let cone = touch.gap.friction * normal;
-        let friction = wanted.clamp(-cone, cone);
+        let friction = bounded(wanted, -cone, cone);
         touch.slips = wanted.abs() > cone;
         let j = n * change + t * (friction - touch.friction);
         (touch.normal, touch.friction) = (normal, friction);

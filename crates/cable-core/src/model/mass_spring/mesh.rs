@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::MassSpringModel;
 use super::pulley::{NONE, Pulley};
-use crate::math::Vec2;
+use crate::math::{Vec2, bounded};
 use crate::model::Settings;
 use crate::problem::Problem;
 use crate::solution::Cost;
@@ -33,7 +33,8 @@ impl MassSpringModel {
     pub(super) fn mesh_on(problem: Arc<Problem>, settings: Settings, slid: &[f64], own: Option<Vec<f64>>) -> Self {
         let wanted = settings.segments.or(problem.cable.segments).unwrap_or(DEFAULT_SEGMENTS).max(1);
         let mut pulleys = Pulley::all(&problem);
-        let sits = |k: usize| problem.supports[k].arc_length.or(slid.get(k).copied()).unwrap_or(0.0);
+        let seats = apart(&problem, slid, LEAST_SPACING * problem.length / wanted as f64);
+        let sits = |k: usize| seats.get(k).copied().unwrap_or(0.0);
         let mut marks: Vec<f64> = problem.supports.iter().filter_map(|s| s.arc_length).collect();
         marks.extend(pulleys.iter().map(|p| sits(p.support)));
         marks.extend(problem.loads.iter().map(|l| l.arc_length));
@@ -140,6 +141,30 @@ impl MassSpringModel {
     }
 }
 
+/// Where each support sits (m): as given, and what slides kept `least` (m), or its share of what room there is, from what it could
+/// run onto. Material lies on both sides of a pulley, however near to a support it stands.
+fn apart(p: &Problem, slid: &[f64], least: f64) -> Vec<f64> {
+    let mut out: Vec<f64> =
+        (0..p.supports.len()).map(|k| p.supports[k].arc_length.or(slid.get(k).copied()).unwrap_or(f64::NAN)).collect();
+    let slides: Vec<bool> = p.supports.iter().map(|s| s.arc_length.is_none()).collect();
+    let mut k = 0;
+    while k < out.len() {
+        let count = slides[k..].iter().take_while(|s| **s).count();
+        let low = if k > 0 { out[k - 1] } else { 0.0 };
+        let high = out.get(k + count).copied().unwrap_or(p.length);
+        let room = least.min(0.5 * (high - low) / (count + 1) as f64);
+        for i in 0..count {
+            let (floor, ceiling) = (low + room * (i + 1) as f64, high - room * (count - i) as f64);
+            let floor = if i > 0 { floor.max(out[k + i - 1] + room) } else { floor };
+            let even = low + (high - low) * (i + 1) as f64 / (count + 1) as f64;
+            let here = if out[k + i].is_finite() { out[k + i] } else { even };
+            out[k + i] = here.min(ceiling).max(floor);
+        }
+        k += count + 1;
+    }
+    out
+}
+
 /// Damping ζ of the first axial mode, ω₁ = π/L·√(EA/ρ): strain-rate force EA·τ·ε̇ with τ = 2ζ/ω₁. Mode k then has
 /// ζ_k = ζ·ω_k/ω₁, which for the fastest one is kept between [`MIN_MODE_DAMPING`] and [`MAX_MODE_DAMPING`].
 fn damping_time(p: &Problem, rest: &[f64]) -> f64 {
@@ -148,7 +173,7 @@ fn damping_time(p: &Problem, rest: &[f64]) -> f64 {
     let shortest = rest.iter().copied().fold(f64::INFINITY, f64::min);
     let fastest = 2.0 * c / shortest;
     let own = 2.0 * p.cable.damping_ratio / first;
-    own.clamp(2.0 * MIN_MODE_DAMPING / fastest, 2.0 * MAX_MODE_DAMPING / fastest)
+    bounded(own, 2.0 * MIN_MODE_DAMPING / fastest, 2.0 * MAX_MODE_DAMPING / fastest)
 }
 
 /// Where each support sits on the cable before anything is known, m: material even along the straight way between those
@@ -175,8 +200,8 @@ pub(super) fn lay_supports(p: &Problem) -> Vec<f64> {
             let before = (0..k).rev().find_map(|j| known(j).map(|s| (way[j], s)));
             let after = (k + 1..count).find_map(|j| known(j).map(|s| (way[j], s)));
             match (before, after) {
-                (Some((wa, sa)), Some((wb, sb))) => sa + (sb - sa) * (way[k] - wa) / (wb - wa),
-                (Some((wa, sa)), None) => sa + (way[k] - wa) * fits(p.length - sa, whole - wa),
+                (Some((wa, sa)), Some((wb, sb))) if wb > wa => sa + (sb - sa) * (way[k] - wa) / (wb - wa),
+                (Some((wa, sa)), _) => sa + (way[k] - wa) * fits(p.length - sa, whole - wa),
                 (None, Some((wb, sb))) => sb - (wb - way[k]) * fits(sb, wb),
                 (None, None) => {
                     let scale = fits(p.length, whole);

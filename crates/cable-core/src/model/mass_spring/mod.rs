@@ -230,7 +230,7 @@ impl MassSpringModel {
     /// What a sub-step cannot go beyond.
     fn non_finite(&self) -> Option<SolveError> {
         let bad = (0..self.x.len()).find(|&i| !(self.x[i] + self.v[i]).iter().all(|c| c.is_finite()))?;
-        Some(SolveError::NonFinite { quantity: "position or velocity", node: bad, time_s: self.time_s })
+        Some(SolveError::NonFinite { quantity: "position or velocity", arc_length_m: self.s[bad], time_s: self.time_s })
     }
 
     fn report(&mut self) -> StepReport {
@@ -278,12 +278,11 @@ impl Mechanics for MassSpringModel {
     }
 
     fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
-        let misfit = |node| SolveError::NonFinite { quantity: "adopted state", node, time_s: state.time_s };
-        if let Some(node) = state.first_non_finite() {
-            return Err(misfit(node));
+        if let Some(e) = state.refuse_non_finite() {
+            return Err(e);
         }
         let slid = self.slid_in(state);
-        let next = self.shaped(state, &slid).ok_or_else(|| misfit(0))?;
+        let next = self.shaped(state, &slid).ok_or_else(|| unsupported("a state of no nodes"))?;
         next.refuse_buried()?;
         *self = next;
         Ok(())

@@ -71,8 +71,7 @@ impl System {
     fn new(model: &MassSpringModel) -> Result<Self, SolveError> {
         let n = model.x.len();
         let band = if model.problem.bending_stiffness > 0.0 { BENDING_HALF_BANDWIDTH } else { BARS_HALF_BANDWIDTH };
-        let factor =
-            BandFactor::new(2 * n, band).map_err(|_| SolveError::Indefinite { model: Model::MassSpring, node: 0 })?;
+        let factor = BandFactor::new(2 * n, band).map_err(|_| SolveError::Indefinite { model: Model::MassSpring })?;
         Ok(Self {
             lent: model.tension.clone(),
             fade: 1.0,
@@ -199,8 +198,7 @@ impl MassSpringModel {
             model: Model::MassSpring,
             iterations: self.cost.iterations,
             residual_n: worst,
-            node,
-            at_m: self.x[node],
+            place: self.problem.place(self.s[node], self.x[node], self.time_s),
         })
     }
 

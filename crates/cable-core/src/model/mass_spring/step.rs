@@ -128,9 +128,9 @@ impl MassSpringModel {
                     model: crate::Model::MassSpring,
                     time_s: self.time_s,
                     dt_s: h,
-                    node,
                     residual_n: self.f[node].norm(),
-                    cause: format!("a node moves at {fastest:.3e} m/s"),
+                    place: self.problem.place(self.s[node], self.x[node], self.time_s),
+                    cause: format!("it moves at {fastest:.3e} m/s there"),
                 });
             }
             left -= h;

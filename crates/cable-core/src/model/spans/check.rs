@@ -5,7 +5,7 @@ use super::law::Track;
 use super::strand::{Contact, Course, Strand, Tie};
 use super::trouble::Trouble;
 use super::weight;
-use crate::math::{GAUSS, Vec2, cross};
+use crate::math::{GAUSS, Vec2, bounded, cross};
 
 /// Equations must hold to this part of the length, the tension, the angle. The solver stops at 1e-11.
 const HOLDS: f64 = 1e-7;
@@ -81,7 +81,7 @@ fn way(strand: &Strand, course: &Course, k: usize, [from, to]: [f64; 2]) -> Vec2
     let b = course.law.load.norm();
     let across = if b > 0.0 { cross(start, course.law.load).abs() / b } else { 0.0 };
     if !(across > FOLDED * b * (to - from)) {
-        let fold = if b > 0.0 { (from + start.dot(&course.law.load) / (b * b)).clamp(from, to) } else { to };
+        let fold = if b > 0.0 { bounded(from + start.dot(&course.law.load) / (b * b), from, to) } else { to };
         let straight = |a: f64, c: f64| if c > a { course.rate(force(0.5 * (a + c))) * (c - a) } else { Vec2::zeros() };
         return straight(from, fold) + straight(fold, to);
     }

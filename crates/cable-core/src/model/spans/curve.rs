@@ -18,7 +18,7 @@
 use std::sync::Arc;
 
 use crate::contact::geometry::{Body, Edge};
-use crate::math::{Vec2, cross, perp, sin_cos};
+use crate::math::{Vec2, bounded, cross, perp, sin_cos};
 
 /// An edge holds the cable if the load presses on it with more than this part of itself. Smaller: a wall that rounding
 /// tilts would hold a cable that hangs beside it. Larger: floors steeper than 89.99° would not hold.
@@ -331,7 +331,7 @@ impl Curve {
     pub fn project(&self, i: i64, at: Vec2) -> f64 {
         let piece = self.piece(i);
         let x = match piece.form {
-            Form::Edge { from, tangent } => (at - self.shift - from).dot(&tangent).clamp(0.0, piece.extent),
+            Form::Edge { from, tangent } => bounded((at - self.shift - from).dot(&tangent), 0.0, piece.extent),
             Form::Arc { center, from, .. } => {
                 // n = σ perp t, t at the angle from − σ x.
                 let n = at - self.shift - center;
@@ -372,7 +372,7 @@ impl Curve {
             // The far side of the arc is nearer to its end.
             extent
         } else {
-            x.clamp(0.0, extent)
+            bounded(x, 0.0, extent)
         }
     }
 }

@@ -23,7 +23,7 @@
 use super::arc::Way;
 use super::curve::{Curve, Home, Place};
 use super::piece::{OnPiece, Pivot};
-use crate::math::{Vec2, exp};
+use crate::math::{Vec2, bounded, exp};
 
 /// Load and stiffness of a cable at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -241,7 +241,7 @@ impl Track<'_> {
         if out_of == 0.0 {
             return 0.0;
         }
-        (-self.law.load.dot(&place.tangent) / out_of).clamp(-self.friction, self.friction)
+        bounded(-self.law.load.dot(&place.tangent) / out_of, -self.friction, self.friction)
     }
 
     /// From p₀ to p₁ (either way) with the tension as even as friction can keep it: as cable is laid down.

@@ -50,7 +50,7 @@ use self::newton::Work;
 use self::report::Report;
 use self::trouble::Trouble;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
-use crate::error::SolveError;
+use crate::error::{Place, SolveError};
 use crate::math::Vec2;
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
@@ -160,11 +160,10 @@ fn said(layout: &Layout, trouble: Trouble) -> SolveError {
             model: Model::Spans,
             iterations,
             residual_n: residual * layout.problem.force_scale(),
-            node: 0,
-            at_m: Vec2::new(s, 0.0),
+            place: Place { arc_length_m: s, at_m: Vec2::repeat(f64::NAN), near: None },
         },
-        Trouble::Compressed { tension, .. } => {
-            SolveError::Compressed { model: Model::Spans, element: 0, tension_n: tension }
+        Trouble::Compressed { s, at, tension } => {
+            SolveError::Compressed { model: Model::Spans, tension_n: tension, place: layout.problem.place(s, at, 0.0) }
         }
         Trouble::Restless { s } => unsupported(format!("contacts come and go without end near {s:.3} m")),
         Trouble::OffWheel { support } => unsupported(format!("the cable lifts off the wheel of `{}`", name(support))),
@@ -190,6 +189,9 @@ impl Mechanics for SpansModel {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
+        if self.layout.strands.is_empty() {
+            return Err(unsupported("no support holds the cable: two loads or loose ends, and obstacles at most"));
+        }
         let mut instant = Instant::default();
         self.layout.instant(&self.dragged, self.time_s, &mut instant);
         let mut work = std::mem::take(&mut self.work);
@@ -291,8 +293,8 @@ impl Mechanics for SpansModel {
     }
 
     fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
-        if let Some(node) = state.first_non_finite() {
-            return Err(SolveError::NonFinite { quantity: "position", node, time_s: state.time_s });
+        if let Some(e) = state.refuse_non_finite() {
+            return Err(e);
         }
         self.time_s = state.time_s;
         self.shown = self.look();

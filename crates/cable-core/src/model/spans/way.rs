@@ -2,7 +2,7 @@
 
 use super::instant::{Instant, Layout, Part};
 use crate::contact::World;
-use crate::math::Vec2;
+use crate::math::{Vec2, bounded};
 
 /// A route with the length along it.
 pub(super) struct Way {
@@ -32,7 +32,7 @@ impl Way {
             if l == 0.0 || self.along[k + 1] < from {
                 continue;
             }
-            let u = ((at - self.points[k]).dot(&d) / l).clamp(0.0, l);
+            let u = bounded((at - self.points[k]).dot(&d) / l, 0.0, l);
             let u = if self.along[k] + u < from { from - self.along[k] } else { u };
             let distance = (self.points[k] + d * (u / l) - at).norm();
             // Of equals the first, as a post is passed by several turns alike.
@@ -53,7 +53,7 @@ impl Way {
             if l == 0.0 || high <= low {
                 continue;
             }
-            let w = (self.along[k] + (at - self.points[k]).dot(&d) / l).clamp(low, high);
+            let w = bounded(self.along[k] + (at - self.points[k]).dot(&d) / l, low, high);
             let distance = (self.points[k] + d * ((w - self.along[k]) / l) - at).norm();
             if distance < best {
                 (best, found) = (distance, w);

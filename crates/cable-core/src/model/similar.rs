@@ -1,0 +1,249 @@
+//! Any model at the scale it was made for: it solves a similar copy of the cable ([`Similarity`]), this hands its answers back.
+//!
+//! Barriers, slips and gaps are lengths that solvers need as numbers, and were found on cables of 1 to 100 m. Instead of making each
+//! of them a part of something, the whole scene is brought there.
+
+use std::sync::Arc;
+
+use super::{Inertia, Mechanics, Model, StepReport};
+use crate::error::{Place, SolveError};
+use crate::math::Vec2;
+use crate::problem::Problem;
+use crate::scene::scaled::Similarity;
+use crate::solution::{CableSolution, Warning};
+use crate::state::State;
+
+/// Longest time of the copy taken in one step, s: every model takes that.
+const LONGEST_STEP_S: f64 = 30.0;
+
+/// A model of the similar copy of a cable.
+pub struct Similar {
+    problem: Arc<Problem>,
+    by: Similarity,
+    inner: Box<dyn Mechanics>,
+}
+
+impl Similar {
+    /// Wraps the model of the copy.
+    #[must_use]
+    pub fn new(problem: Arc<Problem>, by: Similarity, inner: Box<dyn Mechanics>) -> Self {
+        Self { problem, by, inner }
+    }
+
+    /// Text that was written at the copy's scale: where it may name lengths it says so.
+    fn told(&self, text: String) -> String {
+        let lengths = text.contains(" m") && text.bytes().any(|b| b.is_ascii_digit());
+        match lengths && self.by.length != 1.0 {
+            true => format!("{text} (in a copy of the scene {} times as large)", self.by.length),
+            false => text,
+        }
+    }
+
+    fn at_back(&self, at: Vec2) -> Vec2 {
+        self.by.place_back(at)
+    }
+
+    fn place_back(&self, place: &Place) -> Place {
+        self.problem.place(place.arc_length_m / self.by.length, self.at_back(place.at_m), self.time_s())
+    }
+
+    fn error(&self, error: SolveError) -> SolveError {
+        let (l, t) = (self.by.length, self.by.time);
+        match error {
+            SolveError::NotConverged { model, iterations, residual_n, place } => {
+                SolveError::NotConverged { model, iterations, residual_n, place: self.place_back(&place) }
+            }
+            SolveError::Compressed { model, tension_n, place } => {
+                SolveError::Compressed { model, tension_n, place: self.place_back(&place) }
+            }
+            SolveError::TensionLost { model, loss, arc_length_m, at_m } => {
+                SolveError::TensionLost { model, loss, arc_length_m: arc_length_m / l, at_m: self.at_back(at_m) }
+            }
+            SolveError::NoRestingPlace { why } => SolveError::NoRestingPlace { why: self.told(why) },
+            SolveError::Unsupported { model, feature } => {
+                SolveError::Unsupported { model, feature: self.told(feature) }
+            }
+            SolveError::NonFinite { quantity, arc_length_m, time_s } => {
+                SolveError::NonFinite { quantity, arc_length_m: arc_length_m / l, time_s: time_s / t }
+            }
+            SolveError::Buried { model, obstacle, depth_m, arc_length_m, at_m } => SolveError::Buried {
+                model,
+                obstacle,
+                depth_m: depth_m / l,
+                arc_length_m: arc_length_m / l,
+                at_m: self.at_back(at_m),
+            },
+            SolveError::TimeStep { dt_s, allowed } => SolveError::TimeStep { dt_s: dt_s / t, allowed },
+            SolveError::StepFailed { model, time_s, dt_s, residual_n, place, cause } => SolveError::StepFailed {
+                model,
+                time_s: time_s / t,
+                dt_s: dt_s / t,
+                residual_n,
+                place: self.place_back(&place),
+                cause: self.told(cause),
+            },
+            SolveError::Neither { first, second } => {
+                SolveError::Neither { first: Box::new(self.error(*first)), second: Box::new(self.error(*second)) }
+            }
+            SolveError::TooMuchWork { model, iterations, segments, residual_n, place } => {
+                SolveError::TooMuchWork { model, iterations, segments, residual_n, place: self.place_back(&place) }
+            }
+            error @ (SolveError::Indefinite { .. } | SolveError::Unsound { .. }) => error,
+        }
+    }
+
+    fn report(&self, report: StepReport) -> StepReport {
+        let mut cost = report.cost;
+        cost.inner_step_s /= self.by.time;
+        let warning = |w: Warning| Warning {
+            arc_length_m: w.arc_length_m / self.by.length,
+            at_m: w.at_m.map(|[x, y]| {
+                let at = self.at_back(Vec2::new(x, y));
+                [at.x, at.y]
+            }),
+            since_s: w.since_s.map(|s| s / self.by.time),
+            message: self.told(w.message),
+            ..w
+        };
+        StepReport { cost, warnings: report.warnings.into_iter().map(warning).collect() }
+    }
+
+    fn state_to(&self, state: &State) -> State {
+        let speed = self.by.length / self.by.time;
+        State {
+            time_s: state.time_s * self.by.time,
+            arc_length_m: state.arc_length_m.iter().map(|s| s * self.by.length).collect(),
+            position_m: state.position_m.iter().map(|p| self.by.place(*p)).collect(),
+            velocity_m_per_s: state.velocity_m_per_s.iter().map(|v| v * speed).collect(),
+        }
+    }
+
+    fn state_back(&self, state: &State) -> State {
+        let speed = self.by.time / self.by.length;
+        State {
+            time_s: state.time_s / self.by.time,
+            arc_length_m: state.arc_length_m.iter().map(|s| s / self.by.length).collect(),
+            position_m: state.position_m.iter().map(|p| self.by.place_back(*p)).collect(),
+            velocity_m_per_s: state.velocity_m_per_s.iter().map(|v| v * speed).collect(),
+        }
+    }
+}
+
+/// An answer with its lengths by `l`, its times by `t`, and its places by `place`. Forces and what has no unit stay.
+fn answer(mut a: CableSolution, l: f64, t: f64, place: impl Fn(Vec2) -> Vec2) -> CableSolution {
+    let put = |x: &mut f64, y: &mut f64| {
+        let at = place(Vec2::new(*x, *y));
+        (*x, *y) = (at.x, at.y);
+    };
+    for n in &mut a.nodes {
+        put(&mut n.x_m, &mut n.y_m);
+        n.arc_length_m *= l;
+        n.vx_m_per_s *= l / t;
+        n.vy_m_per_s *= l / t;
+        n.stress_pa /= l * l;
+        n.curvature_per_m /= l;
+    }
+    a.assumptions.bending_stiffness_n_m2 *= l * l;
+    for s in &mut a.supports {
+        put(&mut s.x_m, &mut s.y_m);
+        s.arc_length_m *= l;
+    }
+    for c in &mut a.contacts {
+        put(&mut c.x_m, &mut c.y_m);
+        for length in [&mut c.arc_length_m, &mut c.begins_m, &mut c.ends_m] {
+            *length *= l;
+        }
+        for part in &mut c.parts {
+            part.begins_m *= l;
+            part.ends_m *= l;
+        }
+        c.samples.iter_mut().for_each(|s| s.arc_length_m *= l);
+    }
+    if let Some(b) = &mut a.tightest_bend {
+        put(&mut b.x_m, &mut b.y_m);
+        b.radius_m *= l;
+        b.arc_length_m *= l;
+    }
+    if let Some(p) = &mut a.sidewall_pressure {
+        put(&mut p.x_m, &mut p.y_m);
+        p.pressure_n_per_m /= l;
+        p.arc_length_m *= l;
+    }
+    a
+}
+
+impl Mechanics for Similar {
+    fn model(&self) -> Model {
+        self.inner.model()
+    }
+
+    fn reason(&self) -> Option<&str> {
+        self.inner.reason()
+    }
+
+    fn settle(&mut self) -> Result<StepReport, SolveError> {
+        match self.inner.settle() {
+            Ok(report) => Ok(self.report(report)),
+            Err(e) => Err(self.error(e)),
+        }
+    }
+
+    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+        let whole = dt_s * self.by.time;
+        // A step that no model takes is refused by it.
+        let parts =
+            if whole > LONGEST_STEP_S && dt_s <= LONGEST_STEP_S { (whole / LONGEST_STEP_S).ceil() } else { 1.0 };
+        let mut sum = StepReport::default();
+        for _ in 0..parts as usize {
+            match self.inner.advance(whole / parts, inertia) {
+                Ok(report) => {
+                    let report = self.report(report);
+                    sum.cost.iterations += report.cost.iterations;
+                    sum.cost.halved_steps += report.cost.halved_steps;
+                    (sum.cost.residual_n, sum.cost.inner_step_s) = (report.cost.residual_n, report.cost.inner_step_s);
+                    sum.warnings = report.warnings;
+                }
+                Err(e) => return Err(self.error(e)),
+            }
+        }
+        Ok(sum)
+    }
+
+    fn state(&self) -> State {
+        self.state_back(&self.inner.state())
+    }
+
+    fn time_s(&self) -> f64 {
+        self.inner.time_s() / self.by.time
+    }
+
+    fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+        let to = self.state_to(state);
+        self.inner.adopt(&to).map_err(|e| self.error(e))
+    }
+
+    fn take_over(&mut self, given: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+        let to = answer(given.clone(), self.by.length, self.by.time, |p| self.by.place(p));
+        self.inner.take_over(&to, time_s * self.by.time).map_err(|e| self.error(e))
+    }
+
+    fn drag_support(&mut self, support: usize, target_m: Vec2) {
+        self.inner.drag_support(support, self.by.place(target_m));
+    }
+
+    fn fall_back(&mut self, why: &str) -> bool {
+        self.inner.fall_back(why)
+    }
+
+    fn solution(&self) -> CableSolution {
+        answer(self.inner.solution(), 1.0 / self.by.length, 1.0 / self.by.time, |p| self.by.place_back(p))
+    }
+
+    fn problem(&self) -> &Arc<Problem> {
+        &self.problem
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Mechanics> {
+        Box::new(Self { problem: self.problem.clone(), by: self.by, inner: self.inner.boxed_clone() })
+    }
+}

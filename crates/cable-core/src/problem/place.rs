@@ -1,0 +1,32 @@
+//! Places of a cable in the words of the scene: metres along it, and what is near by name.
+
+use super::Problem;
+use crate::error::Place;
+use crate::math::Vec2;
+
+impl Problem {
+    /// The place `arc_length` (m) along the cable, which lies at `at` (m), and the support or obstacle nearest to it.
+    #[must_use]
+    pub fn place(&self, arc_length: f64, at: Vec2, time_s: f64) -> Place {
+        let finite = at.iter().all(|c| c.is_finite());
+        let supports = self.supports.iter().filter_map(|s| {
+            let (place, _) = s.place_at(time_s)?;
+            let away = (at - place).norm() - s.wheel_radius;
+            Some((format!("support `{}`", s.name), if away > 0.0 { away } else { 0.0 }))
+        });
+        let ground = self.world.signed_gap(at, f64::INFINITY).filter(|_| finite);
+        let obstacle = ground.map(|g| {
+            let name = self.world.obstacle_name(g.obstacle);
+            (format!("obstacle `{name}`"), if g.gap_m > 0.0 { g.gap_m } else { 0.0 })
+        });
+        let near = if finite {
+            supports.chain(obstacle).fold(None, |best: Option<(String, f64)>, n| match best {
+                Some(b) if b.1 <= n.1 => Some(b),
+                _ => Some(n),
+            })
+        } else {
+            None
+        };
+        Place { arc_length_m: arc_length, at_m: at, near }
+    }
+}
