@@ -184,6 +184,9 @@ pub struct ContactReport {
     pub normal_n: f64,
     /// Friction force on the cable along growing arc length, integrated over the contact, N.
     pub friction_n: f64,
+    /// The whole force of the obstacle on the cable, N: normal force and friction, each with its direction where it acts.
+    #[serde(default)]
+    pub force_n: [f64; 2],
     /// Holds or slides.
     pub state: ContactState,
     /// Wrap: how far the cable turns on its way along growing arc length, °: positive anticlockwise (to the left), negative

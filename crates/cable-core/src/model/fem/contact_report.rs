@@ -368,6 +368,6 @@ fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> Conta
         tension_after_n: tension[after],
         begins_m: arc(first),
         ends_m: arc(last),
-        parts: Vec::new(),
+        ..ContactReport::default()
     }
 }

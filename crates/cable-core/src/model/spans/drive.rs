@@ -234,6 +234,10 @@ impl Network {
                 }
             }
         }
+        if let Err(trouble) = check::balanced(layout, self) {
+            self.undo(layout, work);
+            return Err(trouble);
+        }
         Ok(taken)
     }
 
