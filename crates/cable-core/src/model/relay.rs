@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use super::fem::FemModel;
-use super::lay::{is_buried, meets_outline};
+use super::lay::{is_buried, meets_outline, slid_first, slides_on};
 use super::spans::SpansModel;
 use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
 use crate::contact::outline::Placement;
@@ -180,7 +180,7 @@ impl Mechanics for Relay {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        let mut why = String::new();
+        let (mut why, mut slides) = (String::new(), None);
         if self.fem.is_none() {
             match self.spans.settle() {
                 Ok(_) if self.meets_robot(&self.spans.solution()) => TOUCHES.clone_into(&mut why),
@@ -189,11 +189,26 @@ impl Mechanics for Relay {
                     self.adopted = None;
                     return Ok(report);
                 }
-                Err(error) => why = error.to_string(),
+                Err(error) => {
+                    why = error.to_string();
+                    slides = Some(error).filter(|e| matches!(e, SolveError::NoRestingPlace { .. }));
+                }
             }
         }
         let first = self.fem.is_none();
-        let found = self.fem(why)?.settle();
+        let mut found = self.fem(why)?.settle();
+        // What slides from where it is laid may come to rest elsewhere.
+        if let (Some(slides), Some(fem)) = (slides, &self.fem) {
+            let (problem, settings) = (&self.problem, self.settings);
+            found = found
+                .ok()
+                .filter(|_| !slides_on(problem, settings, &fem.solution()))
+                .map(|mut report| {
+                    report.warnings.push(slid_first(problem, &slides));
+                    report
+                })
+                .ok_or(slides);
+        }
         match &found {
             Ok(_) => {
                 self.adopted = None;

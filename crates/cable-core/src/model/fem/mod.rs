@@ -53,7 +53,7 @@ mod wheel;
 
 use std::sync::Arc;
 
-use super::lay::least_sliding;
+use super::lay::{least_sliding, slid_first, slides_on};
 use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
@@ -122,8 +122,12 @@ impl FemModel {
 
     /// Lays the cable with the least sliding, if there is an answer to that. On its own way down slack comes to lie in folds, which
     /// friction then holds. Returns what there is to say of it.
-    fn lay(&mut self) -> Option<Vec<Warning>> {
-        let lay = least_sliding(&self.problem, self.settings, (&self.dragged, self.led))?;
+    ///
+    /// # Errors
+    /// That it slides from where it is laid.
+    fn lay(&mut self) -> Result<Option<Vec<Warning>>, SolveError> {
+        let laid = least_sliding(&self.problem, self.settings, (&self.dragged, self.led))?;
+        let Some(lay) = laid else { return Ok(None) };
         let before = self.dynamics.clone();
         let taken = self.dynamics.take_over(&lay.answer, before.time(), &self.dragged).is_ok() && self.dynamics.rested;
         let greatest = lay.answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
@@ -132,10 +136,10 @@ impl FemModel {
         let off = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
         let jammed = if self.problem.bending_stiffness > 0.0 { JAMMED_STIFF } else { JAMMED };
         if taken && off.fold(0.0, larger) <= jammed * greatest {
-            return Some(lay.warnings);
+            return Ok(Some(lay.warnings));
         }
         self.dynamics = before;
-        None
+        Ok(None)
     }
 
     /// The same without sliding nodes at corners and posts: every node stays with its material. For models that take
@@ -181,12 +185,25 @@ impl Mechanics for FemModel {
             self.statics.settle(&self.dragged)
         } else {
             let begins = !self.dynamics.rested && self.dynamics.time() == 0.0;
-            let said = if begins && self.laid_evenly { self.lay() } else { None };
-            if begins && said.is_none() && self.statics.settle(&self.dragged).is_ok() {
+            let laid = if begins && self.laid_evenly { self.lay() } else { Ok(None) };
+            if begins && matches!(laid, Ok(None)) && self.statics.settle(&self.dragged).is_ok() {
                 self.dynamics.begin_at(&self.statics.state(), &self.dragged);
             }
-            let mut report = self.dynamics.settle(&self.dragged)?;
-            report.warnings.extend(said.into_iter().flatten());
+            let before = if laid.is_err() { Some(self.dynamics.clone()) } else { None };
+            let found = self.dynamics.settle(&self.dragged);
+            let said = match laid {
+                Ok(said) => said.unwrap_or_default(),
+                // What slides from where it is laid may come to rest elsewhere.
+                Err(slides) => {
+                    if found.is_err() || slides_on(&self.problem, self.settings, &self.dynamics.solution()) {
+                        self.dynamics = before.unwrap_or_else(|| self.dynamics.clone());
+                        return Err(slides);
+                    }
+                    vec![slid_first(&self.problem, &slides)]
+                }
+            };
+            let mut report = found?;
+            report.warnings.extend(said);
             Ok(report)
         }
     }

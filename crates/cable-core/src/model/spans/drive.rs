@@ -55,6 +55,18 @@ const LARGEST_STEP: f64 = 0.2;
 /// stop anywhere, and Newton stalls. The first changes nothing that shows, the second holds a little first.
 const WITHIN: [f64; 3] = [1.0 - 1e-5, 1.0 - 1e-3, 0.99];
 
+/// Friction over what there is that is first tried where a cable slides, then twice that, and so on to the last, as parts of what
+/// there is. First smaller: more of them are tried. Last larger: dearer where no friction holds it.
+const FIRST_PART: f64 = 0.04;
+const MOST_PART: f64 = 1e4;
+/// Part of the friction that is missing to which it is found: three digits are shown.
+const NEEDED: f64 = 2e-4;
+/// Less than this part that is missing is none: rounding. Larger: a cable that slides by so little has no answer and no cause.
+const LEAST_PART: f64 = 1e-7;
+/// Part of the tensions by which a contact may be off sliding where less friction does not hold. Smaller: what is missing would
+/// have to be found to more digits. Larger: a failure to find an answer is taken for sliding.
+const MOBILISED: f64 = 2e-2;
+
 /// All strands of a cable at an instant.
 #[derive(Clone, Debug)]
 pub(super) struct Network {
@@ -113,6 +125,48 @@ impl Network {
             }
         }
         Err(stopped.or(first).unwrap_or((Trouble::Restless { s: 0.0 }, None)))
+    }
+
+    /// The part of its friction with which a cable that nothing holds but friction would rest as it is laid, where with all of
+    /// it it slides: just above the least one. None where it rests, or where it is not known to slide.
+    ///
+    /// With less than that part every contact of the strand slides the same way: that, found just above it, is what proves that it
+    /// is friction that is missing, not an answer.
+    pub fn friction_needed(layout: &Layout, instant: &Instant, work: &mut Work) -> Option<f64> {
+        let course = layout.course(layout.curves(), instant);
+        let mut rests = |part: f64, taut: Option<f64>| {
+            let begin = Instant { friction: part, ..instant.clone() };
+            let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
+            let taken = network.laid(layout, &begin, taut, work).ok()?;
+            (taken.ran == 0).then_some(network)
+        };
+        let (mut low, mut step) = (1.0, FIRST_PART);
+        let (mut high, taut) = loop {
+            if step > MOST_PART {
+                return None;
+            }
+            let high = 1.0 + step;
+            if let Some(taut) = [None, Some(TAUT)].into_iter().find(|taut| rests(high, *taut).is_some()) {
+                break (high, taut);
+            }
+            (low, step) = (high, 2.0 * step);
+        };
+        while high - low > NEEDED * (high - 1.0) {
+            let middle = 0.5 * (low + high);
+            if rests(middle, taut).is_some() {
+                high = middle;
+            } else {
+                low = middle;
+            }
+            if high - 1.0 < LEAST_PART {
+                return None;
+            }
+        }
+        let found = rests(high, taut)?;
+        let near = MOBILISED * (1.0 + NEEDED * (high - 1.0));
+        let slides = |s: &Strand| [1.0, -1.0].iter().any(|way| weight::mobilised(s, &found.course, *way, near));
+        let loose = layout.strands.iter().zip(&found.strands).filter(|(p, _)| p.supports.iter().all(Option::is_none));
+        loose.map(|(_, s)| s).any(slides).then_some(high)
     }
 
     /// As an answer of another model has it.

@@ -5,7 +5,7 @@ use super::curve::Home;
 use super::history::{Ends, History, Knot, Mode};
 use super::instant::{Instant, Layout, Part, Pulley};
 use super::strand::{Contact, Course, Strand, Tie};
-use super::taut::{self, Bend};
+use super::taut::{self, Bend, Ring};
 use super::tight;
 use super::way::{Way, way};
 use super::weight::LIFTS;
@@ -359,7 +359,7 @@ fn lying(course: &Course, world: &World, near: [f64; 2], (points, side): (&[Vec2
     (on.len() > 1 && p[1] > p[0]).then_some(Head { curve: curve_index, home, p, count: on.len() })
 }
 
-/// What the string bends round, pulleys among it.
+/// What the string bends round, pulleys among it. A cable that nothing else holds must lie on something.
 fn seats(
     layout: &Layout,
     part: &Part,
@@ -367,8 +367,27 @@ fn seats(
     instant: &Instant,
     (way, first, last): (&Way, usize, usize),
 ) -> Option<Vec<Seat>> {
+    let held = part.supports.iter().any(Option::is_some) || first > 0 || last + 1 < way.points.len();
+    let mut found = None;
+    for ring in taut::RINGS {
+        found = seats_seen(layout, part, (course, instant), (way, first, last), ring);
+        if held || found.as_ref().is_none_or(|seats| !seats.is_empty()) {
+            break;
+        }
+    }
+    found
+}
+
+/// As [`seats`], posts seen as a ring of points.
+fn seats_seen(
+    layout: &Layout,
+    part: &Part,
+    (course, instant): (&Course, &Instant),
+    (way, first, last): (&Way, usize, usize),
+    ring: Ring,
+) -> Option<Vec<Seat>> {
     let world = &layout.problem.world;
-    let corners = taut::corners(world);
+    let corners = taut::corners(world, ring);
     let mut out: Vec<Seat> = Vec::new();
     let mut reached = way.along[first];
     let mut begin = (way.points[first], first);

@@ -146,11 +146,31 @@ impl SpansModel {
         }
     }
 
+    /// Whether some of the cable is held by nothing but friction.
+    fn hangs_by_friction(&self) -> bool {
+        self.layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none))
+    }
+
     fn rubs(&self) -> bool {
         let p = &self.layout.problem;
         p.supports.iter().any(|s| s.friction > 0.0) || p.world.geometry().bodies().iter().any(|b| b.friction > 0.0)
     }
 }
+
+/// That a cable slides away, and by how much more friction, as a part of what there is, it would be held.
+fn slides_away(part: f64) -> SolveError {
+    let more = 100.0 * (part - 1.0);
+    // Three digits, the last one up: so much more does hold it.
+    let digits = (2.0 - more.log10().floor()).clamp(0.0, 9.0);
+    let unit = 10f64.powi(-(digits as i32));
+    let shown = (more / unit).ceil() * unit;
+    SolveError::NoRestingPlace {
+        why: format!("it slides: {shown:.0$} % more friction would hold it where it is laid", digits as usize),
+    }
+}
+
+/// Why a cable that nothing holds finds no rest where nothing rubs.
+const NOTHING_RUBS: &str = "it slides: nothing rubs that would hold it where it is laid";
 
 /// A trouble in the words everyone uses.
 fn said(layout: &Layout, trouble: Trouble) -> SolveError {
@@ -201,8 +221,16 @@ impl Mechanics for SpansModel {
             }),
         };
         let stable = self.network.as_ref().is_none_or(|n| n.stable(&mut work));
+        let slides = found.is_err() && self.network.is_none() && self.hangs_by_friction();
+        let needed = if slides { Network::friction_needed(&self.layout, &instant, &mut work) } else { None };
         self.work = work;
-        let taken = found.map_err(|(trouble, stopped)| self.said(stopped.as_deref(), trouble))?;
+        if let Some(part) = needed {
+            return Err(slides_away(part));
+        }
+        let taken = found.map_err(|(trouble, stopped)| match slides && !self.rubs() {
+            true => SolveError::NoRestingPlace { why: NOTHING_RUBS.to_owned() },
+            false => self.said(stopped.as_deref(), trouble),
+        })?;
         let mut report = self.report_of(taken);
         if !stable {
             let message = "This balance runs away at the least push: nothing rubs that would hold the cable in it";
