@@ -286,14 +286,20 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
         let (mut push, mut turn, mut slips) = (Vec2::zeros(), 0.0, true);
         for j in first..k {
             let (Some(load), Some(node)) = (d.load(j), &d.mesh.sliding[j]) else { continue };
-            let [a, b] = load.tension;
+            let [before, after] = load.tension;
+            // The law of friction holds between the pulls along the bars: what hangs across them is the cable's own weight, and
+            // what the floor takes of what slides here is not the round's.
+            let [a, b] = load.pull;
+            let floor = d.task.floor_limit.get(j).map_or(0.0, |&limit| {
+                friction::at_plane(d.contacts.floor_slid[j], limit, d.contacts.slip).1.x
+            });
             // ∫T dφ of a tension that grows evenly in its logarithm.
             let ratio = if a > 0.0 && b > 0.0 { (b / a).ln() } else { 0.0 };
             let mean = if ratio.abs() > 1e-6 { (b - a) / ratio } else { 0.5 * (a + b) };
             r.normal_n += mean * load.turn;
             push += node.end.mark * (mean * load.turn);
             turn += load.turn;
-            r.friction_n += a - b;
+            r.friction_n += a - b - floor;
             slips &= !node.sticks();
             // The round's own arc on either side of the node is of the contact.
             let lap = |e: usize, side: usize| {
@@ -301,11 +307,11 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
                 node.end.radius * d.mesh.path(e, x).arcs[1 - side] / stretch
             };
             if j == first {
-                r.tension_before_n = a;
+                r.tension_before_n = before;
                 r.begins_m = d.mesh.arc_length[j] - lap(j - 1, 0);
             }
             r.ends_m = d.mesh.arc_length[j] + lap(j, 1);
-            r.tension_after_n = b;
+            r.tension_after_n = after;
         }
         let normal = if push.norm() > 0.0 { push.normalize() } else { node.end.mark };
         let at = node.end.center + normal * node.end.radius;

@@ -13,6 +13,7 @@ use super::pass;
 use super::pocket;
 use super::strand::{Course, Strand};
 use super::take;
+use super::taut::{RINGS, Ring};
 use super::tight;
 use super::trouble::Trouble;
 use super::weight;
@@ -78,6 +79,19 @@ pub(super) struct Network {
 /// Why no rest was found, and how far the cable was let out.
 pub(super) type Unfound = (Trouble, Option<Box<Network>>);
 
+/// How a route is seen: what stands for a post, and the tension (of the weight) to which the cable is shrunk at first.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    ring: Ring,
+    cooled: Option<f64>,
+}
+
+impl Default for Seen {
+    fn default() -> Self {
+        Self { ring: RINGS[0], cooled: None }
+    }
+}
+
 /// What a step took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Taken {
@@ -105,10 +119,13 @@ impl Network {
             [(instant, None), (&smooth, None), (&smooth, Some(TAUT)), (instant, Some(TAUT)), (&smooth, Some(TAUTER))];
         // What is not held at both ends would run to where it needs no friction.
         let held = layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
+        let seen = ways.map(|(begin, cooled)| (begin, Seen { cooled, ..Seen::default() }));
+        let nearer = Self::seen(layout).into_iter().skip(1).map(|seen| (instant, seen));
         let (mut first, mut stopped) = (None, None);
-        for (begin, cooled) in ways.into_iter().filter(|(begin, _)| held || begin.friction > 0.0) {
+        for (begin, seen) in seen.into_iter().chain(nearer).filter(|(begin, _)| held || begin.friction > 0.0) {
+            let cooled = seen.cooled;
             let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
-            match network.laid(layout, begin, cooled, work).and_then(|taken| {
+            match network.laid(layout, begin, seen, work).and_then(|taken| {
                 if begin.friction < instant.friction {
                     network.rub(layout, instant, work).map(|more| Taken { eased: true, ..taken.and(more) })
                 } else {
@@ -127,6 +144,14 @@ impl Network {
         Err(stopped.or(first).unwrap_or((Trouble::Restless { s: 0.0 }, None)))
     }
 
+    /// How a cable can be laid as it is: posts seen nearer, too, where it lies on something and nothing else holds it.
+    fn seen(layout: &Layout) -> Vec<Seen> {
+        let loose = layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none));
+        let rings = if loose { &RINGS[..] } else { &RINGS[..1] };
+        let laid = rings.iter().map(|ring| Seen { ring: *ring, cooled: None });
+        laid.chain(loose.then_some(Seen { cooled: Some(TAUT), ..Seen::default() })).collect()
+    }
+
     /// The part of its friction with which a cable that nothing holds but friction would rest as it is laid, where with all of
     /// it it slides: just above the least one. None where it rests, or where it is not known to slide.
     ///
@@ -134,26 +159,26 @@ impl Network {
     /// is friction that is missing, not an answer.
     pub fn friction_needed(layout: &Layout, instant: &Instant, work: &mut Work) -> Option<f64> {
         let course = layout.course(layout.curves(), instant);
-        let mut rests = |part: f64, taut: Option<f64>| {
+        let mut rests = |part: f64, seen: Seen| {
             let begin = Instant { friction: part, ..instant.clone() };
             let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
-            let taken = network.laid(layout, &begin, taut, work).ok()?;
+            let taken = network.laid(layout, &begin, seen, work).ok()?;
             (taken.ran == 0).then_some(network)
         };
         let (mut low, mut step) = (1.0, FIRST_PART);
-        let (mut high, taut) = loop {
+        let (mut high, seen) = loop {
             if step > MOST_PART {
                 return None;
             }
             let high = 1.0 + step;
-            if let Some(taut) = [None, Some(TAUT)].into_iter().find(|taut| rests(high, *taut).is_some()) {
-                break (high, taut);
+            if let Some(seen) = Self::seen(layout).into_iter().find(|seen| rests(high, *seen).is_some()) {
+                break (high, seen);
             }
             (low, step) = (high, 2.0 * step);
         };
         while high - low > NEEDED * (high - 1.0) {
             let middle = 0.5 * (low + high);
-            if rests(middle, taut).is_some() {
+            if rests(middle, seen).is_some() {
                 high = middle;
             } else {
                 low = middle;
@@ -162,7 +187,7 @@ impl Network {
                 return None;
             }
         }
-        let found = rests(high, taut)?;
+        let found = rests(high, seen)?;
         let near = MOBILISED * (1.0 + NEEDED * (high - 1.0));
         let slides = |s: &Strand| [1.0, -1.0].iter().any(|way| weight::mobilised(s, &found.course, *way, near));
         let loose = layout.strands.iter().zip(&found.strands).filter(|(p, _)| p.supports.iter().all(Option::is_none));
@@ -189,13 +214,14 @@ impl Network {
     }
 
     /// Lays it along the route as it is, or shrunk until it is taut and then let out again.
-    fn laid(&mut self, layout: &Layout, goal: &Instant, taut: Option<f64>, work: &mut Work) -> Result<Taken, Trouble> {
+    fn laid(&mut self, layout: &Layout, goal: &Instant, seen: Seen, work: &mut Work) -> Result<Taken, Trouble> {
+        let taut = seen.cooled;
         let mut begin = goal.clone();
         layout.give(&mut self.course, &begin);
         self.strands.clear();
         let mut came = Vec::new();
         for k in 0..layout.strands.len() {
-            let laid = lay::lay(layout, k, &self.course, &begin);
+            let laid = lay::lay(layout, k, (&self.course, &begin), seen.ring);
             let no_way = Trouble::NoSeat { s: layout.strands[k].material[0], at: goal.places[0] };
             let (strand, way) = laid.ok_or(no_way)?;
             self.strands.push(strand);

@@ -51,12 +51,22 @@ struct Seat {
 }
 
 /// The strand at its route, and the route. None where the string of the route finds no end.
-pub(super) fn lay(layout: &Layout, index: usize, course: &Course, instant: &Instant) -> Option<(Strand, Vec<Vec2>)> {
+pub(super) fn lay(
+    layout: &Layout,
+    index: usize,
+    (course, instant): (&Course, &Instant),
+    ring: Ring,
+) -> Option<(Strand, Vec<Vec2>)> {
     let way = way(layout, layout.strands.get(index)?, instant);
-    Some((along(layout, index, course, instant, &way)?, way.points))
+    Some((along(layout, index, (course, instant), (&way, ring))?, way.points))
 }
 
-fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way: &Way) -> Option<Strand> {
+fn along(
+    layout: &Layout,
+    index: usize,
+    (course, instant): (&Course, &Instant),
+    (way, ring): (&Way, Ring),
+) -> Option<Strand> {
     let part = layout.strands.get(index)?;
     let [from, to] = part.material;
     let total = way.total();
@@ -114,7 +124,7 @@ fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way:
     if first > last {
         return None;
     }
-    let mut contacts = bends(layout, part, (course, instant), (way, first, last), (&at, tension))?;
+    let mut contacts = bends(layout, part, (course, instant), (way, first, last, ring), (&at, tension))?;
     let join = joint(course, &heads, (first == last, tension));
     for (side, h) in heads.iter().enumerate() {
         let Some(h) = h else { continue };
@@ -185,10 +195,10 @@ fn bends(
     layout: &Layout,
     part: &Part,
     (course, instant): (&Course, &Instant),
-    (way, first, last): (&Way, usize, usize),
+    (way, first, last, ring): (&Way, usize, usize, Ring),
     (at, tension): (&dyn Fn(f64) -> f64, f64),
 ) -> Option<Vec<Contact>> {
-    let mut seats = seats(layout, part, course, instant, (way, first, last))?;
+    let mut seats = seats(layout, part, (course, instant), (way, first, last), ring)?;
     let mut contacts = Vec::with_capacity(seats.len() + 2);
     let rounds = stretched(course, &mut seats, (way.points[first], way.points[last]));
     for (k, seat) in seats.iter().enumerate() {
@@ -359,27 +369,8 @@ fn lying(course: &Course, world: &World, near: [f64; 2], (points, side): (&[Vec2
     (on.len() > 1 && p[1] > p[0]).then_some(Head { curve: curve_index, home, p, count: on.len() })
 }
 
-/// What the string bends round, pulleys among it. A cable that nothing else holds must lie on something.
+/// What the string bends round, pulleys among it; posts are seen as rings of points.
 fn seats(
-    layout: &Layout,
-    part: &Part,
-    course: &Course,
-    instant: &Instant,
-    (way, first, last): (&Way, usize, usize),
-) -> Option<Vec<Seat>> {
-    let held = part.supports.iter().any(Option::is_some) || first > 0 || last + 1 < way.points.len();
-    let mut found = None;
-    for ring in taut::RINGS {
-        found = seats_seen(layout, part, (course, instant), (way, first, last), ring);
-        if held || found.as_ref().is_none_or(|seats| !seats.is_empty()) {
-            break;
-        }
-    }
-    found
-}
-
-/// As [`seats`], posts seen as a ring of points.
-fn seats_seen(
     layout: &Layout,
     part: &Part,
     (course, instant): (&Course, &Instant),
