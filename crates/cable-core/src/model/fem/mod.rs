@@ -69,6 +69,16 @@ const JAMMED: f64 = 0.1;
 /// The same of a stiff cable, which is laid as a flexible one: its bending takes part in what supports feel.
 const JAMMED_STIFF: f64 = 0.5;
 
+/// What `spans` says of where the cable is laid.
+enum Laid {
+    /// It rests there, and so does the mesh: what there is to say of it.
+    TakenOver(Vec<Warning>),
+    /// It rests there, but the mesh does not: it lays itself.
+    Alone,
+    /// Nothing.
+    Unknown,
+}
+
 /// Which part holds the present state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
@@ -125,9 +135,9 @@ impl FemModel {
     ///
     /// # Errors
     /// That it slides from where it is laid.
-    fn lay(&mut self) -> Result<Option<Vec<Warning>>, SolveError> {
+    fn lay(&mut self) -> Result<Laid, SolveError> {
         let laid = least_sliding(&self.problem, self.settings, (&self.dragged, self.led))?;
-        let Some(lay) = laid else { return Ok(None) };
+        let Some(lay) = laid else { return Ok(Laid::Unknown) };
         let before = self.dynamics.clone();
         let taken = self.dynamics.take_over(&lay.answer, before.time(), &self.dragged).is_ok() && self.dynamics.rested;
         let greatest = lay.answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
@@ -136,10 +146,10 @@ impl FemModel {
         let off = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
         let jammed = if self.problem.bending_stiffness > 0.0 { JAMMED_STIFF } else { JAMMED };
         if taken && off.fold(0.0, larger) <= jammed * greatest {
-            return Ok(Some(lay.warnings));
+            return Ok(Laid::TakenOver(lay.warnings));
         }
         self.dynamics = before;
-        Ok(None)
+        Ok(Laid::Alone)
     }
 
     /// The same without sliding nodes at corners and posts: every node stays with its material. For models that take
@@ -185,23 +195,33 @@ impl Mechanics for FemModel {
             self.statics.settle(&self.dragged)
         } else {
             let begins = !self.dynamics.rested && self.dynamics.time() == 0.0;
-            let laid = if begins && self.laid_evenly { self.lay() } else { Ok(None) };
-            if begins && matches!(laid, Ok(None)) && self.statics.settle(&self.dragged).is_ok() {
+            let laid = if begins && self.laid_evenly { self.lay() } else { Ok(Laid::Unknown) };
+            if begins && !matches!(laid, Ok(Laid::TakenOver(_))) && self.statics.settle(&self.dragged).is_ok() {
                 self.dynamics.begin_at(&self.statics.state(), &self.dragged);
             }
-            let before = if laid.is_err() { Some(self.dynamics.clone()) } else { None };
-            let found = self.dynamics.settle(&self.dragged);
+            let known = matches!(laid, Ok(Laid::TakenOver(_) | Laid::Alone));
+            let before = if known { None } else { Some(self.dynamics.clone()) };
+            let mut found = self.dynamics.settle(&self.dragged);
+            let slid = if known || found.is_err() { None } else { self.dynamics.slides_as_a_whole() };
+            if let Some(why) = slid {
+                found = Err(SolveError::NoRestingPlace { why });
+            }
             let said = match laid {
-                Ok(said) => said.unwrap_or_default(),
+                Ok(Laid::TakenOver(said)) => said,
+                Ok(Laid::Alone | Laid::Unknown) => Vec::new(),
                 // What slides from where it is laid may come to rest elsewhere.
                 Err(slides) => {
                     if found.is_err() || slides_on(&self.problem, self.settings, &self.dynamics.solution()) {
-                        self.dynamics = before.unwrap_or_else(|| self.dynamics.clone());
-                        return Err(slides);
+                        found = Err(slides);
+                        Vec::new()
+                    } else {
+                        vec![slid_first(&self.problem, &slides)]
                     }
-                    vec![slid_first(&self.problem, &slides)]
                 }
             };
+            if let (Err(_), Some(before)) = (&found, before) {
+                self.dynamics = before;
+            }
             let mut report = found?;
             report.warnings.extend(said);
             Ok(report)
