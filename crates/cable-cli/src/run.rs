@@ -11,7 +11,7 @@ use crate::Done;
 use crate::answer::answer;
 use crate::args::RunArguments;
 use crate::output::{Failure, Printer, Progress};
-use crate::solve::{no_answer, read_scene, settings};
+use crate::solve::{asked_scene, no_answer, settings};
 use crate::table::table;
 
 /// Most output times of a run: 1e7 of them with 100 nodes are 100 GB of tables, which nobody meant.
@@ -99,7 +99,7 @@ pub fn run(a: &RunArguments) -> Done {
             a.duration_s
         )));
     }
-    let scene = read_scene(&a.common.scene)?;
+    let scene = asked_scene(&a.common)?;
     let inertia = if a.quasi_static { Inertia::QuasiStatic } else { Inertia::Dynamic };
     let began = Instant::now();
     let settings = Settings { stepping: a.stepping, ..settings(&a.common) };

@@ -17,6 +17,8 @@ pub enum Question {
 pub fn choose(problem: &Problem, question: Question) -> (Model, String) {
     if question == Question::History(Inertia::Dynamic) {
         (Model::Fem, "masses move".to_owned())
+    } else if !problem.cable.friction_mobilised.is_default() {
+        (Model::Spans, "friction is fully mobilised towards one end".to_owned())
     } else if problem.bending_stiffness > 0.0 {
         (Model::Fem, "the cable has bending stiffness".to_owned())
     } else if problem.cable.self_contact {

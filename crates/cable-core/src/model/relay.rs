@@ -9,7 +9,7 @@ use std::sync::Arc;
 use super::fem::FemModel;
 use super::lay::{is_buried, meets_outline, slid_first, slides_on};
 use super::spans::SpansModel;
-use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
+use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport, refuse_mobilised};
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
 use crate::math::Vec2;
@@ -110,6 +110,7 @@ impl Relay {
 
     /// `fem` at the route, the robot where it is.
     fn new_fem(&self) -> Result<FemModel, SolveError> {
+        refuse_mobilised(Model::Fem, &self.problem)?;
         let mut fem = FemModel::new(self.problem.clone(), self.settings)?.laid_alone();
         if let Some(led) = self.led {
             fem.lead_outline(led);
@@ -189,6 +190,7 @@ impl Mechanics for Relay {
                     self.adopted = None;
                     return Ok(report);
                 }
+                Err(error) if !self.problem.cable.friction_mobilised.is_default() => return Err(error),
                 Err(error) => {
                     why = error.to_string();
                     slides = Some(error).filter(|e| matches!(e, SolveError::NoRestingPlace { .. }));

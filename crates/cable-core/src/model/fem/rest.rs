@@ -264,7 +264,8 @@ impl Dynamics {
                 let sought = self.motion.x.clone();
                 self.restore();
                 if self.ran_away(&sought).is_some() {
-                    let why = "nothing holds the cable where it is laid: it slides away by more than its length".to_owned();
+                    let why =
+                        "nothing holds the cable where it is laid: it slides away by more than its length".to_owned();
                     return Err(SolveError::NoRestingPlace { why });
                 }
                 let (residual_n, node) = (f.residual, f.node);

@@ -351,7 +351,7 @@ impl Network {
         let strand = &mut self.strands[k];
         place_ends(layout, k, strand, &self.course, &self.instant)?;
         moved.clone_from(strand);
-        if came.is_none() {
+        if came.is_none() && self.course.mobilised == 0.0 {
             foresee(strand, &self.course, &mut work.foresight);
         }
         let mut found = events::solve(strand, &mut self.course, (world, &layout.corners), came, work);

@@ -237,7 +237,8 @@ impl Mechanics for SpansModel {
             let name = &self.layout.problem.cable.name;
             report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
         }
-        if self.rubs() {
+        let mobilised = self.layout.problem.cable.friction_mobilised;
+        if self.rubs() && mobilised.is_default() {
             let message = if taken.eased {
                 "With friction the resting place depends on how the cable was laid. None was found by laying it along its way: this is the one it finds without friction, which friction then holds"
             } else {
