@@ -408,7 +408,10 @@ fn seats(
         if let Some(q) = pulley {
             let curve = q.curve + usize::from(q.facing < 0.0);
             let home = Home { first: 0, last: 0 };
-            out.push(Seat { curve, home, pieces: [0, 0], wheel: Some(q.support), way: [w, w], turn: 0.0 });
+            // Tangents say how far it turns but for whole turns. A wheel passed on its side turns it by −90° (it lifts off, almost) to
+            // 270°: half a turn, two tails that hang from it, lies in the middle of that.
+            let turn = if q.facing == 0.0 { 0.0 } else { std::f64::consts::FRAC_PI_2 };
+            out.push(Seat { curve, home, pieces: [0, 0], wheel: Some(q.support), way: [w, w], turn });
             (begin, reached) = ((stop, leg), w);
         }
     }
