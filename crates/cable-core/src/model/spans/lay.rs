@@ -215,7 +215,7 @@ fn bends(
         // Round a post the string's points are not those of the cable: where it comes and goes on the route itself.
         let seen = |p: f64, w: f64| {
             let place = curve.place(p, seat.home);
-            if curve.is_round() && seat.wheel.is_none() { way.close(place.at, w, ROUND * place.stretch) } else { w }
+            if curve.is_round() { way.close(place.at, w, ROUND * place.stretch) } else { w }
         };
         let s = at(0.5 * (seen(p1, seat.way[0]) + seen(p2, seat.way[1])));
         let mut c = contact(course, (seat.curve, seat.home), ([p1, p2], [s - half, s + half]), tension);
