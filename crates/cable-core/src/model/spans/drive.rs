@@ -152,6 +152,16 @@ impl Network {
         laid.chain(loose.then_some(Seen { cooled: Some(TAUT), ..Seen::default() })).collect()
     }
 
+    /// The same cable where all friction acts against it as it is drawn one way (1: towards its end, −1: towards its start): what it
+    /// comes to where a history ends so. None where there is no such balance.
+    pub fn drawn(&self, layout: &Layout, way: f64, work: &mut Work) -> Option<Self> {
+        let mut network = self.clone();
+        network.course.mobilised = way;
+        let instant = self.instant.clone();
+        network.step(layout, &instant, work).ok()?;
+        Some(network)
+    }
+
     /// The part of its friction with which a cable that nothing holds but friction would rest as it is laid, where with all of
     /// it it slides: just above the least one. None where it rests, or where it is not known to slide.
     ///

@@ -51,7 +51,7 @@ use self::report::Report;
 use self::trouble::Trouble;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::SolveError;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger, smaller};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
 use crate::state::State;
@@ -146,6 +146,27 @@ impl SpansModel {
         }
     }
 
+    /// What other histories would have left in the cable, in words: as it was laid, and drawn towards either end.
+    fn histories(&self, work: &mut Work) -> String {
+        let Some(network) = &self.network else { return String::new() };
+        let laid = report::tensions(network);
+        let drawn = [-1.0, 1.0].map(|way| network.drawn(&self.layout, way, work).map(|n| report::tensions(&n)));
+        let all = || std::iter::once(laid).chain(drawn.into_iter().flatten());
+        let range = |k: usize| {
+            let (low, high) = all().map(|t| t[k]).fold((laid[k], laid[k]), |(a, b), t| (smaller(a, t), larger(b, t)));
+            format!("{low:.2} to {high:.2} N")
+        };
+        let figure = |of: Option<[f64; 3]>| of.map_or("no balance".to_owned(), |t| format!("{:.2} N", t[2]));
+        format!(
+            ". Greatest tension: {:.2} N as laid; {} with all friction against a cable drawn towards its start, {} towards its end. So it has {} at its start and {} at its end, by its history",
+            laid[2],
+            figure(drawn[0]),
+            figure(drawn[1]),
+            range(0),
+            range(1),
+        )
+    }
+
     /// Whether some of the cable is held by nothing but friction.
     fn hangs_by_friction(&self) -> bool {
         self.layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none))
@@ -223,6 +244,7 @@ impl Mechanics for SpansModel {
         let stable = self.network.as_ref().is_none_or(|n| n.stable(&mut work));
         let slides = found.is_err() && self.network.is_none() && self.hangs_by_friction();
         let needed = if slides { Network::friction_needed(&self.layout, &instant, &mut work) } else { None };
+        let range = if found.is_ok() && self.rubs() { self.histories(&mut work) } else { String::new() };
         self.work = work;
         if let Some(part) = needed {
             return Err(slides_away(part));
@@ -245,7 +267,8 @@ impl Mechanics for SpansModel {
                 "With friction the resting place depends on how the cable was laid: this is the one laid along its way with the least sliding"
             };
             let name = &self.layout.problem.cable.name;
-            report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
+            let message = format!("{message}{range}");
+            report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message));
         }
         Ok(report)
     }

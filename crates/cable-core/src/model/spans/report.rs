@@ -10,7 +10,7 @@ use super::seek;
 use super::strand::{Contact, Course, Strand, Tie};
 use super::weight;
 use crate::catenary::PointForce;
-use crate::math::{GAUSS, Vec2};
+use crate::math::{GAUSS, Vec2, larger};
 use crate::model::catenary::report::{Nodes, Point};
 use crate::solution::{ContactPart, ContactReport, ContactState, Node, SupportReaction};
 
@@ -225,6 +225,23 @@ fn heap((strand, course, j): (&Strand, &Course, usize), (track, name): (&Track<'
 pub(super) fn loose(strand: &Strand, j: usize) -> Option<[f64; 2]> {
     let (c, next) = (strand.contacts.get(j)?, strand.contacts.get(j + 1)?);
     (c.pocket && next.ends.s[0] > c.ends.s[1]).then_some([c.ends.s[1], next.ends.s[0]])
+}
+
+/// Tension at the start, at the end, and the greatest, N.
+pub(super) fn tensions(network: &Network) -> [f64; 3] {
+    let course = &network.course;
+    let end = |strand: Option<&Strand>, side| strand.map_or(0.0, |s| end_force(network, s, side).norm());
+    let [start, last] = [end(network.strands.first(), 0), end(network.strands.last(), 1)];
+    let mut greatest = larger(start, last);
+    for strand in &network.strands {
+        for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
+            let (from, to) = strand.material(k);
+            let ends = [from, to].map(|s| strand.force(course, k, s).norm());
+            greatest = larger(greatest, larger(ends[0], ends[1]));
+        }
+        greatest = strand.contacts.iter().flat_map(|c| c.ends.t).fold(greatest, larger);
+    }
+    [start, last, greatest]
 }
 
 /// What is left of all forces on the cable as they are reported, and their size, N: supports and contacts hold weight and loads.
