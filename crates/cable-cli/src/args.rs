@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use cable_core::Model;
 use cable_core::model::mass_spring::Stepping;
 use cable_core::record::{NodeChoice, NodeColumns, NodeInterval};
+use cable_core::scene::FrictionMobilised;
 use clap::{Args, Parser, Subcommand};
 
 #[derive(Debug, Parser)]
@@ -45,6 +46,10 @@ pub struct Common {
     /// Relative accuracy asked of the tension
     #[arg(long, default_value_t = 1e-3, value_parser = tolerance)]
     pub tolerance: f64,
+    /// How much friction acts on every cable at rest: least-sliding, or all of it against a cable drawn towards-start or towards-end
+    /// [default: what the scene says]
+    #[arg(long, value_parser = mobilised)]
+    pub mobilised: Option<FrictionMobilised>,
     /// Print JSON objects (one a line) instead of text
     #[arg(long)]
     pub json: bool,
@@ -118,6 +123,11 @@ impl RunArguments {
 
 fn stepping(text: &str) -> Result<Stepping, String> {
     Stepping::from_name(text).ok_or_else(|| "the ways are auto, explicit and preview".to_owned())
+}
+
+fn mobilised(text: &str) -> Result<FrictionMobilised, String> {
+    let names = || "the ways are least-sliding, towards-start and towards-end".to_owned();
+    FrictionMobilised::from_name(text).ok_or_else(names)
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

@@ -21,7 +21,7 @@ use crate::answer::{Figures, answer};
 use crate::args::RunArguments;
 use crate::output::{Failure, Printer, Progress};
 use crate::signals::Signals;
-use crate::solve::{no_answer, read_scene, settings};
+use crate::solve::{asked_scene, no_answer, settings};
 use crate::table::table;
 
 /// Most output times of a run: 1e7 of them with 100 nodes are 100 GB of tables, which nobody meant.
@@ -148,7 +148,7 @@ pub fn run(a: RunArguments) -> Done {
         )));
     }
     let choice = a.node_choice().map_err(Failure::Argument)?;
-    let scene = read_scene(&a.common.scene)?;
+    let scene = asked_scene(&a.common)?;
     let inertia = if a.quasi_static { Inertia::QuasiStatic } else { Inertia::Dynamic };
     let began = Instant::now();
     let settings = Settings { stepping: a.stepping, ..settings(&a.common) };

@@ -20,6 +20,15 @@ pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
     files::load_scene(path).map_err(Failure::File)
 }
 
+/// The scene, with what arguments say of it.
+pub fn asked_scene(a: &Common) -> Result<Scene, Failure> {
+    let mut scene = read_scene(&a.scene)?;
+    if let Some(mobilised) = a.mobilised {
+        scene.cables.iter_mut().for_each(|cable| cable.friction_mobilised = mobilised);
+    }
+    Ok(scene)
+}
+
 /// The settings that arguments ask for.
 pub fn settings(a: &Common) -> Settings {
     Settings { tolerance: a.tolerance, ..Settings::default() }
@@ -35,7 +44,7 @@ pub fn no_answer(to: &mut Printer, model: Model, reason: &str, time_s: Option<f6
 /// Finds where everything rests.
 pub fn solve(arguments: &SolveArguments) -> Done {
     let a = &arguments.common;
-    let scene = read_scene(&a.scene)?;
+    let scene = asked_scene(a)?;
     let mut out = Printer::new();
     let began = Instant::now();
     let built = Simulation::with_settings(scene.clone(), a.model, settings(a));

@@ -16,7 +16,7 @@ use crate::error::SceneError;
 use crate::math::{Vec2, vec2};
 use crate::scene::scaled::Similarity;
 use crate::scene::{Cable, Motion, PulleySide, Scene, SupportKind, View};
-use crate::solution::Warning;
+use crate::solution::{CableSolution, Warning};
 
 /// One cable, resolved and validated.
 #[derive(Clone, Debug)]
@@ -329,6 +329,19 @@ impl Problem {
     #[must_use]
     pub fn body_force(&self, time_s: f64) -> Vec2 {
         self.weight + self.wind.at(time_s)
+    }
+
+    /// Whether friction takes part in where an answer of this cable rests, and the scene does not say how much of it.
+    #[must_use]
+    pub fn rubs(&self, answer: &CableSolution) -> bool {
+        let bodies = self.world.geometry().bodies();
+        let touches =
+            |name: &str| bodies.iter().any(|b| b.friction > 0.0 && self.world.obstacle_name(b.obstacle) == name);
+        let given = self.cable.friction_mobilised.is_default();
+        given
+            && (self.floor_friction.is_some_and(|(friction, _)| friction > 0.0)
+                || self.supports.iter().any(|s| s.friction > 0.0)
+                || answer.contacts.iter().any(|c| touches(&c.obstacle)))
     }
 
     /// What hangs on a free support at a time, N: its load, the weight of its lump, point loads at the same place. At rest the

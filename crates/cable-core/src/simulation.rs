@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::error::{Error, SolveError};
 use crate::math::{Vec2, larger};
 use crate::model::auto::{self, Question};
+use crate::model::lay::least_sliding;
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::problems;
 use crate::robot::{self, Vehicle};
@@ -196,6 +197,7 @@ impl Simulation {
             self.look(false);
         }
         found?;
+        self.say_where_friction_chose();
         if self.start.is_none() {
             self.start = Some(self.cables.clone());
         }
@@ -248,6 +250,28 @@ impl Simulation {
         (self.cables, self.built, self.model) = (next, Model::Fem, Model::Fem);
         self.lead_outline();
         true
+    }
+
+    /// With friction a resting place is one of many: said of every cable that rubs where it rests, whichever model answered, with what
+    /// other histories would have left in it where `spans` knows.
+    fn say_where_friction_chose(&mut self) {
+        for (strand, answer) in self.cables.iter().zip(&self.answers) {
+            let problem = strand.problem();
+            let said = |w: &Warning| w.kind == WarningKind::NotUnique && w.cable == problem.cable.name;
+            if !problem.rubs(answer) || self.warnings.iter().any(said) {
+                continue;
+            }
+            let whole = Arc::new(problem.clone());
+            let known = least_sliding(&whole, Settings::default(), (&[], None)).ok().flatten();
+            let mut known: Vec<Warning> = known.map(|lay| lay.warnings).unwrap_or_default();
+            known.retain(said);
+            if known.is_empty() {
+                let message = "With friction the resting place depends on how the cable was laid: this is the one found from its way, no other was sought";
+                let name = &problem.cable.name;
+                known.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
+            }
+            self.warnings.append(&mut known);
+        }
     }
 
     /// Advances time with inertia by `dt_s` (s).

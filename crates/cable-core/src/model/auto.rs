@@ -1,7 +1,8 @@
 //! Chooses the cheapest model that can answer, and says why.
 
 use super::{Inertia, Model};
-use crate::problem::Problem;
+use crate::problem::{Problem, SupportPoint};
+use crate::scene::SupportKind;
 
 /// What is asked of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,11 +13,19 @@ pub enum Question {
     History(Inertia),
 }
 
+/// Whether nothing but pulleys holds the cable.
+fn runs_free(problem: &Problem) -> bool {
+    let held = |s: &SupportPoint| s.at.is_some() && s.kind != SupportKind::Pulley;
+    problem.supports.iter().any(|s| s.kind == SupportKind::Pulley) && !problem.supports.iter().any(held)
+}
+
 /// The model for a question, and the reason in one sentence.
 #[must_use]
 pub fn choose(problem: &Problem, question: Question) -> (Model, String) {
     if question == Question::History(Inertia::Dynamic) {
         (Model::Fem, "masses move".to_owned())
+    } else if !problem.cable.friction_mobilised.is_default() {
+        (Model::Spans, "friction is fully mobilised towards one end".to_owned())
     } else if problem.bending_stiffness > 0.0 {
         (Model::Fem, "the cable has bending stiffness".to_owned())
     } else if problem.cable.self_contact {
@@ -25,6 +34,8 @@ pub fn choose(problem: &Problem, question: Question) -> (Model, String) {
         (Model::Fem, "in plan view the floor rubs everywhere".to_owned())
     } else if !problem.world.is_empty() || problem.outline.is_some() {
         (Model::Spans, "a taut cable among obstacles: contacts as intervals have no discretisation error".to_owned())
+    } else if runs_free(problem) {
+        (Model::Spans, "an end hangs over pulleys: contacts as intervals find where it stops running".to_owned())
     } else if problem.supports.iter().any(|s| s.wheel_radius > 0.0 && s.friction > 0.0) {
         // `catenary` keeps the friction of a whole wheel as one number: it finds some motions slowly and some not at all.
         (Model::Spans, "the cable rubs on wheels: contacts as intervals have no discretisation error".to_owned())

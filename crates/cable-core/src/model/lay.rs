@@ -5,9 +5,10 @@ use std::sync::Arc;
 use super::spans::SpansModel;
 use super::{Mechanics, Settings};
 use crate::contact::outline::Placement;
+use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::problem::{Problem, SupportPoint};
-use crate::solution::{CableSolution, Node, Warning};
+use crate::solution::{CableSolution, Node, Warning, WarningKind};
 
 /// A cable this near to the robot is answered by the model that knows of it, m. Less: a step passes it unseen.
 const ROOM_M: f64 = 0.02;
@@ -28,22 +29,44 @@ pub struct Lay {
 
 /// Where the cable comes to lie with the least sliding, supports `dragged` (m) and the robot led to where it is; None where `spans`
 /// does not know.
-#[must_use]
+///
+/// # Errors
+/// That it slides from where it is laid.
 pub fn least_sliding(
     problem: &Arc<Problem>,
     settings: Settings,
     (dragged, led): (&[Option<Vec2>], Option<Placement>),
-) -> Option<Lay> {
-    let mut spans = SpansModel::new(laid_flexible(problem), settings).ok()?;
+) -> Result<Option<Lay>, SolveError> {
+    let Ok(mut spans) = SpansModel::new(laid_flexible(problem), settings) else { return Ok(None) };
     for (k, at) in dragged.iter().enumerate() {
         if let Some(at) = at {
             spans.drag_support(k, *at);
         }
     }
-    let warnings = spans.settle().ok()?.warnings;
+    let warnings = match spans.settle() {
+        Ok(report) => report.warnings,
+        Err(slides @ SolveError::NoRestingPlace { .. }) => return Err(slides),
+        Err(_) => return Ok(None),
+    };
     let answer = spans.solution();
     let clear = !meets_outline(problem, led, &answer) && !is_buried(problem, &answer);
-    clear.then_some(Lay { answer, warnings })
+    Ok(clear.then_some(Lay { answer, warnings }))
+}
+
+/// Whether a flexible cable that slid from where it was laid slides on from where it is said to rest: that was no rest then.
+#[must_use]
+pub fn slides_on(problem: &Arc<Problem>, settings: Settings, answer: &CableSolution) -> bool {
+    let route = answer.nodes.iter().map(Node::at).collect();
+    let there = Arc::new(Problem { route, ..Problem::clone(&Problem::without_outline(problem.clone())) });
+    let slides = least_sliding(&there, settings, (&[], None));
+    problem.bending_stiffness == 0.0 && matches!(slides, Err(SolveError::NoRestingPlace { .. }))
+}
+
+/// What there is to say of a rest that was found where a cable slid to.
+#[must_use]
+pub fn slid_first(problem: &Problem, slides: &SolveError) -> Warning {
+    let message = format!("This is not where the cable was laid: from there {slides}. How it moved there is not shown");
+    Warning::new(WarningKind::Stabilised, &problem.cable.name, 0.0, [0.0; 2], message)
 }
 
 /// The cable as `spans` can lay it: without the robot, which moves; a stiff one as a flexible one, it bends from there; and supports that

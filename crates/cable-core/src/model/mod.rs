@@ -197,6 +197,20 @@ pub trait Mechanics: Send {
     fn boxed_clone(&self) -> Box<dyn Mechanics>;
 }
 
+/// Refuses friction that is fully mobilised towards one end for a model that finds its own.
+///
+/// # Errors
+/// `Unsupported`.
+fn refuse_mobilised(model: Model, problem: &Problem) -> Result<(), SolveError> {
+    let mobilised = problem.cable.friction_mobilised;
+    if mobilised.is_default() {
+        return Ok(());
+    }
+    let feature =
+        format!("friction mobilised {} (only spans answers that, of a flexible cable at rest)", mobilised.name());
+    Err(SolveError::Unsupported { model, feature })
+}
+
 /// Builds the mechanics of one cable. `Auto` is resolved for rest (see [`auto::choose`]); where it chooses `spans`, `fem`
 /// stands behind it ([`relay::Relay`]).
 ///
@@ -205,6 +219,9 @@ pub trait Mechanics: Send {
 pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Box<dyn Mechanics>, SolveError> {
     if let Some((by, copy)) = problem.similar.clone() {
         return Ok(Box::new(similar::Similar::new(problem, by, build(model, copy, settings)?)));
+    }
+    if !matches!(model, Model::Spans | Model::Auto) {
+        refuse_mobilised(model, &problem)?;
     }
     match model {
         Model::Catenary => Ok(Box::new(catenary::CatenaryModel::new(Problem::without_outline(problem), settings)?)),

@@ -7,9 +7,9 @@
 use std::sync::Arc;
 
 use super::fem::FemModel;
-use super::lay::{is_buried, meets_outline};
+use super::lay::{is_buried, meets_outline, slid_first, slides_on};
 use super::spans::SpansModel;
-use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
+use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport, refuse_mobilised};
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
 use crate::math::Vec2;
@@ -110,6 +110,7 @@ impl Relay {
 
     /// `fem` at the route, the robot where it is.
     fn new_fem(&self) -> Result<FemModel, SolveError> {
+        refuse_mobilised(Model::Fem, &self.problem)?;
         let mut fem = FemModel::new(self.problem.clone(), self.settings)?.laid_alone();
         if let Some(led) = self.led {
             fem.lead_outline(led);
@@ -194,8 +195,7 @@ impl Mechanics for Relay {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        let mut why = String::new();
-        let mut refused = None;
+        let (mut why, mut slides, mut refused) = (String::new(), None, None);
         if self.fem.is_none() {
             match self.spans.settle() {
                 Ok(_) if self.meets_robot(&self.spans.solution()) => TOUCHES.clone_into(&mut why),
@@ -204,17 +204,31 @@ impl Mechanics for Relay {
                     self.adopted = None;
                     return Ok(report);
                 }
+                Err(error) if !self.problem.cable.friction_mobilised.is_default() => return Err(error),
                 Err(error) => {
                     why = error.to_string();
+                    slides = Some(error.clone()).filter(|e| matches!(e, SolveError::NoRestingPlace { .. }));
                     refused = Some(error);
                 }
             }
         }
         let first = self.fem.is_none();
-        let found = match (self.fem(why)?.settle(), refused) {
+        let mut found = match (self.fem(why)?.settle(), refused) {
             (Err(error), Some(before)) => Err(SolveError::clearer(before, error)),
             (found, _) => found,
         };
+        // What slides from where it is laid may come to rest elsewhere.
+        if let (Some(slides), Some(fem)) = (slides, &self.fem) {
+            let (problem, settings) = (&self.problem, self.settings);
+            found = found
+                .ok()
+                .filter(|_| !slides_on(problem, settings, &fem.solution()))
+                .map(|mut report| {
+                    report.warnings.push(slid_first(problem, &slides));
+                    report
+                })
+                .ok_or(slides);
+        }
         match &found {
             Ok(_) => {
                 self.adopted = None;

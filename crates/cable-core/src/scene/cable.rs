@@ -45,6 +45,9 @@ pub struct Cable {
     /// Coulomb friction with what does not say otherwise.
     #[serde(default)]
     pub friction: f64,
+    /// Which of the many balances that friction allows is asked for; left out, that of the least sliding.
+    #[serde(default, skip_serializing_if = "FrictionMobilised::is_default")]
+    pub friction_mobilised: FrictionMobilised,
     /// Elements; left out, the model chooses.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub segments: Option<usize>,
@@ -56,6 +59,56 @@ pub struct Cable {
     pub route_m: Vec<Point>,
     /// Supports in order along the cable; the first is its start, the last its end.
     pub supports: Vec<Support>,
+}
+
+/// How much of the friction is called upon where the cable rests.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FrictionMobilised {
+    /// What the cable laid along its way needs.
+    #[default]
+    LeastSliding,
+    /// All of it, against a cable that is drawn towards its start.
+    TowardsStart,
+    /// All of it, against a cable that is drawn towards its end, as mooring tools assume of the end at the vessel.
+    TowardsEnd,
+}
+
+impl FrictionMobilised {
+    /// Every choice.
+    pub const ALL: [Self; 3] = [Self::LeastSliding, Self::TowardsStart, Self::TowardsEnd];
+
+    /// Whether it is what a scene that says nothing asks for.
+    #[must_use]
+    pub fn is_default(&self) -> bool {
+        *self == Self::LeastSliding
+    }
+
+    /// The name used in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::LeastSliding => "least-sliding",
+            Self::TowardsStart => "towards-start",
+            Self::TowardsEnd => "towards-end",
+        }
+    }
+
+    /// The choice of a name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|c| c.name() == name)
+    }
+
+    /// Which way the cable is drawn: 1 towards its end, −1 towards its start, 0 neither.
+    #[must_use]
+    pub fn way(self) -> f64 {
+        match self {
+            Self::LeastSliding => 0.0,
+            Self::TowardsStart => -1.0,
+            Self::TowardsEnd => 1.0,
+        }
+    }
 }
 
 impl Cable {

@@ -175,6 +175,7 @@ fn cable() -> impl Strategy<Value = Cable> {
                 min_bend_radius_m: value(8, 0.0),
                 sidewall_limit_n_per_m: None,
                 friction: value(9, 0.0) / 1000.0,
+                friction_mobilised: cable_core::scene::FrictionMobilised::ALL[segments.unwrap_or(0) % 3],
                 segments,
                 self_contact,
                 route_m: route.unwrap_or_default(),

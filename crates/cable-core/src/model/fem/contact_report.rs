@@ -112,6 +112,40 @@ fn ground_force(d: &Dynamics, node: usize, x: &[Vec2]) -> Vec2 {
     sum
 }
 
+/// What is left of all forces on a cable that no support holds, N: weight, loads, and what obstacles and floor do to it. Between its
+/// bars nothing is left, whatever their tension: this has none of the rounding of their forces, and tells what slides from what
+/// rests where each node alone is let off with a little.
+pub(super) fn unbalanced(d: &Dynamics, x: &[Vec2], time_s: f64) -> Vec2 {
+    let problem = &d.problem;
+    let hung: Vec2 = (0..problem.supports.len()).map(|k| problem.hung_on(k, time_s)).sum();
+    let at_support =
+        |s: f64| problem.supports.iter().any(|p| p.arc_length.is_some_and(|a| (a - s).abs() <= 1e-9 * problem.length));
+    let loads: Vec2 = problem.loads.iter().filter(|l| !at_support(l.arc_length)).map(|l| l.force.at(time_s)).sum();
+    let mut sum = problem.body_force(time_s) * problem.length + hung + loads;
+    let mut touches: Vec<Touch> = Vec::new();
+    d.contacts.find(problem, &d.mesh, x, &mut touches);
+    for touch in &touches {
+        sum += touch.pair.gap.normal * touch.load(&d.contacts.barrier);
+    }
+    for rub in &d.contacts.rubs {
+        sum += rub_force(&d.contacts, rub, x);
+    }
+    for k in 0..x.len() {
+        let floor =
+            d.task.floor_limit.get(k).map(|&l| friction::at_plane(d.contacts.floor_slid[k], l, d.contacts.slip).1);
+        if d.mesh.sliding[k].is_some() && k > 0 && k + 1 < x.len() {
+            let [before, after] = [k - 1, k].map(|e| {
+                let path = d.mesh.path(e, x);
+                path.direction * d.mesh.bar(e).tension(path.length)
+            });
+            sum += before - after - problem.body_force(time_s) * d.mesh.share(k);
+        } else {
+            sum -= floor.unwrap_or_default();
+        }
+    }
+    sum
+}
+
 /// Friction force on the cable, N.
 pub(super) fn rub_force(contacts: &ContactSet, rub: &Rub, x: &[Vec2]) -> Vec2 {
     -rub.tangent * friction::at(rub.sliding(x), rub.limit, contacts.slip).1
@@ -385,8 +419,17 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
         let (mut push, mut turn, mut slips, mut samples) = (Vec2::zeros(), 0.0, true, Vec::new());
         for j in first..k {
             let (Some(load), Some(node)) = (d.load(j), &d.mesh.sliding[j]) else { continue };
-            let [a, b] = load.tension;
+            let [before, after] = load.tension;
+            // The law of friction holds between the pulls along the bars: what hangs across them is the cable's own weight, and
+            // what the floor takes of what slides here is not the round's.
+            let [a, b] = load.pull;
+            let floor = d
+                .task
+                .floor_limit
+                .get(j)
+                .map_or(0.0, |&limit| friction::at_plane(d.contacts.floor_slid[j], limit, d.contacts.slip).1.x);
             // ∫T dφ of a tension that grows evenly in its logarithm.
+            let a = a - floor;
             let ratio = if a > 0.0 && b > 0.0 { (b / a).ln() } else { 0.0 };
             let mean = if ratio.abs() > 1e-6 { (b - a) / ratio } else { 0.5 * (a + b) };
             r.normal_n += mean * load.turn;
@@ -400,12 +443,12 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
                 node.end.radius * d.mesh.path(e, x).arcs[1 - side] / stretch
             };
             if j == first {
-                r.tension_before_n = a;
+                r.tension_before_n = before;
                 r.begins_m = d.mesh.arc_length[j] - lap(j - 1, 0);
             }
             r.ends_m = d.mesh.arc_length[j] + lap(j, 1);
             samples.push(ContactSample::new(d.mesh.arc_length[j], -load.jump));
-            r.tension_after_n = b;
+            r.tension_after_n = after;
         }
         let normal = if push.norm() > 0.0 { push.normalize() } else { node.end.mark };
         let at = node.end.center + normal * node.end.radius;

@@ -53,7 +53,7 @@ mod wheel;
 
 use std::sync::Arc;
 
-use super::lay::least_sliding;
+use super::lay::{least_sliding, slid_first, slides_on};
 use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
@@ -74,6 +74,16 @@ const JAMMED_STIFF: f64 = 0.5;
 const FINE: usize = 1000;
 /// How much coarser that mesh is. Less: more meshes, each nearer to the next; more: it lies otherwise than the fine one will.
 const COARSER: usize = 8;
+
+/// What `spans` says of where the cable is laid.
+enum Laid {
+    /// It rests there, and so does the mesh: what there is to say of it.
+    TakenOver(Vec<Warning>),
+    /// It rests there, but the mesh does not: it lays itself.
+    Alone,
+    /// Nothing.
+    Unknown,
+}
 
 /// Which part holds the present state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,8 +138,12 @@ impl FemModel {
 
     /// Lays the cable with the least sliding, if there is an answer to that. On its own way down slack comes to lie in folds, which
     /// friction then holds. Returns what there is to say of it.
-    fn lay(&mut self) -> Option<Vec<Warning>> {
-        let lay = least_sliding(&self.problem, self.settings, (&self.dragged, self.led))?;
+    ///
+    /// # Errors
+    /// That it slides from where it is laid.
+    fn lay(&mut self) -> Result<Laid, SolveError> {
+        let laid = least_sliding(&self.problem, self.settings, (&self.dragged, self.led))?;
+        let Some(lay) = laid else { return Ok(Laid::Unknown) };
         let before = self.dynamics.clone();
         let taken = self.dynamics.take_over(&lay.answer, before.time(), &self.dragged).is_ok() && self.dynamics.rested;
         let greatest = lay.answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
@@ -138,24 +152,48 @@ impl FemModel {
         let off = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
         let jammed = if self.problem.bending_stiffness > 0.0 { JAMMED_STIFF } else { JAMMED };
         if taken && off.fold(0.0, larger) <= jammed * greatest {
-            return Some(lay.warnings);
+            return Ok(Laid::TakenOver(lay.warnings));
         }
         self.dynamics = before;
-        None
+        Ok(Laid::Alone)
     }
 
     /// The resting place where something may be touched.
     fn rest_in_touch(&mut self) -> Result<StepReport, SolveError> {
         let begins = !self.dynamics.rested && self.dynamics.time() == 0.0;
-        let said = if begins && self.laid_evenly { self.lay() } else { None };
-        if begins && said.is_none() && self.statics.settle(&self.dragged).is_ok() {
+        let laid = if begins && self.laid_evenly { self.lay() } else { Ok(Laid::Unknown) };
+        let taken = matches!(laid, Ok(Laid::TakenOver(_)));
+        if begins && !taken && self.statics.settle(&self.dragged).is_ok() {
             self.dynamics.begin_at(&self.statics.state(), &self.dragged);
         }
-        if begins && said.is_none() {
+        if begins && !taken {
             self.begin_coarse();
         }
-        let mut report = self.dynamics.settle(&self.dragged)?;
-        report.warnings.extend(said.into_iter().flatten());
+        let known = matches!(laid, Ok(Laid::TakenOver(_) | Laid::Alone));
+        let before = if known { None } else { Some(self.dynamics.clone()) };
+        let mut found = self.dynamics.settle(&self.dragged);
+        let slid = if known || found.is_err() { None } else { self.dynamics.slides_as_a_whole() };
+        if let Some(why) = slid {
+            found = Err(SolveError::NoRestingPlace { why });
+        }
+        let said = match laid {
+            Ok(Laid::TakenOver(said)) => said,
+            Ok(Laid::Alone | Laid::Unknown) => Vec::new(),
+            // What slides from where it is laid may come to rest elsewhere.
+            Err(slides) => {
+                if found.is_err() || slides_on(&self.problem, self.settings, &self.dynamics.solution()) {
+                    found = Err(slides);
+                    Vec::new()
+                } else {
+                    vec![slid_first(&self.problem, &slides)]
+                }
+            }
+        };
+        if let (Err(_), Some(before)) = (&found, before) {
+            self.dynamics = before;
+        }
+        let mut report = found?;
+        report.warnings.extend(said);
         Ok(report)
     }
 

@@ -1,7 +1,10 @@
 //! The check of an answer that does not use the solver: lengths by quadrature of the law of the free cable, balance of
 //! each contact from its ends, the cone of friction along it. That nothing is inside an obstacle is looked at in `gaps`.
 
+use super::drive::Network;
+use super::instant::Layout;
 use super::law::Track;
+use super::report;
 use super::strand::{Contact, Course, Strand, Tie};
 use super::trouble::Trouble;
 use super::weight;
@@ -51,6 +54,18 @@ pub(super) fn sound(strand: &Strand, course: &Course) -> Result<(), Trouble> {
         }
     }
     Ok(())
+}
+
+/// Whether supports and contacts, as they are reported, hold all of the weight and the loads: what no part of the network asked
+/// for is missed by each part's own check.
+pub(super) fn balanced(layout: &Layout, network: &Network) -> Result<(), Trouble> {
+    let (left, size) = report::unbalanced(layout, network);
+    if left.norm() <= HOLDS * size {
+        return Ok(());
+    }
+    let strand = network.strands.first();
+    let at = strand.and_then(|s| s.ends_of(&network.course, 0)[0]).unwrap_or_default();
+    Err(Trouble::Unsound { what: "supports and contacts do not hold the weight and the loads", s: 0.0, at })
 }
 
 /// The span closes.

@@ -13,6 +13,7 @@ use super::pass;
 use super::pocket;
 use super::strand::{Course, Strand};
 use super::take;
+use super::taut::{RINGS, Ring};
 use super::tight;
 use super::trouble::Trouble;
 use super::weight;
@@ -55,6 +56,18 @@ const LARGEST_STEP: f64 = 0.2;
 /// stop anywhere, and Newton stalls. The first changes nothing that shows, the second holds a little first.
 const WITHIN: [f64; 3] = [1.0 - 1e-5, 1.0 - 1e-3, 0.99];
 
+/// Friction over what there is that is first tried where a cable slides, then twice that, and so on to the last, as parts of what
+/// there is. First smaller: more of them are tried. Last larger: dearer where no friction holds it.
+const FIRST_PART: f64 = 0.04;
+const MOST_PART: f64 = 1e4;
+/// Part of the friction that is missing to which it is found: three digits are shown.
+const NEEDED: f64 = 2e-4;
+/// Less than this part that is missing is none: rounding. Larger: a cable that slides by so little has no answer and no cause.
+const LEAST_PART: f64 = 1e-7;
+/// Part of the tensions by which a contact may be off sliding where less friction does not hold. Smaller: what is missing would
+/// have to be found to more digits. Larger: a failure to find an answer is taken for sliding.
+const MOBILISED: f64 = 2e-2;
+
 /// All strands of a cable at an instant.
 #[derive(Clone, Debug)]
 pub(super) struct Network {
@@ -65,6 +78,19 @@ pub(super) struct Network {
 
 /// Why no rest was found, and how far the cable was let out.
 pub(super) type Unfound = (Trouble, Option<Box<Network>>);
+
+/// How a route is seen: what stands for a post, and the tension (of the weight) to which the cable is shrunk at first.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    ring: Ring,
+    cooled: Option<f64>,
+}
+
+impl Default for Seen {
+    fn default() -> Self {
+        Self { ring: RINGS[0], cooled: None }
+    }
+}
 
 /// What a step took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -93,10 +119,13 @@ impl Network {
             [(instant, None), (&smooth, None), (&smooth, Some(TAUT)), (instant, Some(TAUT)), (&smooth, Some(TAUTER))];
         // What is not held at both ends would run to where it needs no friction.
         let held = layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
+        let seen = ways.map(|(begin, cooled)| (begin, Seen { cooled, ..Seen::default() }));
+        let nearer = Self::seen(layout).into_iter().skip(1).map(|seen| (instant, seen));
         let (mut first, mut stopped) = (None, None);
-        for (begin, cooled) in ways.into_iter().filter(|(begin, _)| held || begin.friction > 0.0) {
+        for (begin, seen) in seen.into_iter().chain(nearer).filter(|(begin, _)| held || begin.friction > 0.0) {
+            let cooled = seen.cooled;
             let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
-            match network.laid(layout, begin, cooled, work).and_then(|taken| {
+            match network.laid(layout, begin, seen, work).and_then(|taken| {
                 if begin.friction < instant.friction {
                     network.rub(layout, instant, work).map(|more| Taken { eased: true, ..taken.and(more) })
                 } else {
@@ -113,6 +142,66 @@ impl Network {
             }
         }
         Err(stopped.or(first).unwrap_or((Trouble::Restless { s: 0.0 }, None)))
+    }
+
+    /// How a cable can be laid as it is: posts seen nearer, too, where it lies on something and nothing else holds it.
+    fn seen(layout: &Layout) -> Vec<Seen> {
+        let loose = layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none));
+        let rings = if loose { &RINGS[..] } else { &RINGS[..1] };
+        let laid = rings.iter().map(|ring| Seen { ring: *ring, cooled: None });
+        laid.chain(loose.then_some(Seen { cooled: Some(TAUT), ..Seen::default() })).collect()
+    }
+
+    /// The same cable where all friction acts against it as it is drawn one way (1: towards its end, −1: towards its start): what it
+    /// comes to where a history ends so. None where there is no such balance.
+    pub fn drawn(&self, layout: &Layout, way: f64, work: &mut Work) -> Option<Self> {
+        let mut network = self.clone();
+        network.course.mobilised = way;
+        let instant = self.instant.clone();
+        network.step(layout, &instant, work).ok()?;
+        Some(network)
+    }
+
+    /// The part of its friction with which a cable that nothing holds but friction would rest as it is laid, where with all of
+    /// it it slides: just above the least one. None where it rests, or where it is not known to slide.
+    ///
+    /// With less than that part every contact of the strand slides the same way: that, found just above it, is what proves that it
+    /// is friction that is missing, not an answer.
+    pub fn friction_needed(layout: &Layout, instant: &Instant, work: &mut Work) -> Option<f64> {
+        let course = layout.course(layout.curves(), instant);
+        let mut rests = |part: f64, seen: Seen| {
+            let begin = Instant { friction: part, ..instant.clone() };
+            let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
+            let taken = network.laid(layout, &begin, seen, work).ok()?;
+            (taken.ran == 0).then_some(network)
+        };
+        let (mut low, mut step) = (1.0, FIRST_PART);
+        let (mut high, seen) = loop {
+            if step > MOST_PART {
+                return None;
+            }
+            let high = 1.0 + step;
+            if let Some(seen) = Self::seen(layout).into_iter().find(|seen| rests(high, *seen).is_some()) {
+                break (high, seen);
+            }
+            (low, step) = (high, 2.0 * step);
+        };
+        while high - low > NEEDED * (high - 1.0) {
+            let middle = 0.5 * (low + high);
+            if rests(middle, seen).is_some() {
+                high = middle;
+            } else {
+                low = middle;
+            }
+            if high - 1.0 < LEAST_PART {
+                return None;
+            }
+        }
+        let found = rests(high, seen)?;
+        let near = MOBILISED * (1.0 + NEEDED * (high - 1.0));
+        let slides = |s: &Strand| [1.0, -1.0].iter().any(|way| weight::mobilised(s, &found.course, *way, near));
+        let loose = layout.strands.iter().zip(&found.strands).filter(|(p, _)| p.supports.iter().all(Option::is_none));
+        loose.map(|(_, s)| s).any(slides).then_some(high)
     }
 
     /// As an answer of another model has it.
@@ -135,13 +224,14 @@ impl Network {
     }
 
     /// Lays it along the route as it is, or shrunk until it is taut and then let out again.
-    fn laid(&mut self, layout: &Layout, goal: &Instant, taut: Option<f64>, work: &mut Work) -> Result<Taken, Trouble> {
+    fn laid(&mut self, layout: &Layout, goal: &Instant, seen: Seen, work: &mut Work) -> Result<Taken, Trouble> {
+        let taut = seen.cooled;
         let mut begin = goal.clone();
         layout.give(&mut self.course, &begin);
         self.strands.clear();
         let mut came = Vec::new();
         for k in 0..layout.strands.len() {
-            let laid = lay::lay(layout, k, &self.course, &begin);
+            let laid = lay::lay(layout, k, (&self.course, &begin), seen.ring);
             let no_way = Trouble::NoSeat { s: layout.strands[k].material[0], at: goal.places[0] };
             let (strand, way) = laid.ok_or(no_way)?;
             self.strands.push(strand);
@@ -234,6 +324,10 @@ impl Network {
                 }
             }
         }
+        if let Err(trouble) = check::balanced(layout, self) {
+            self.undo(layout, work);
+            return Err(trouble);
+        }
         Ok(taken)
     }
 
@@ -267,7 +361,7 @@ impl Network {
         let strand = &mut self.strands[k];
         place_ends(layout, k, strand, &self.course, &self.instant)?;
         moved.clone_from(strand);
-        if came.is_none() {
+        if came.is_none() && self.course.mobilised == 0.0 {
             foresee(strand, &self.course, &mut work.foresight);
         }
         let mut found = events::solve(strand, &mut self.course, (world, &layout.corners), came, work);

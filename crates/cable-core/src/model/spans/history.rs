@@ -333,8 +333,30 @@ impl History {
         }
         match mode {
             Mode::Slide(m) => {
+                let from = if m > 0.0 { last } else { first };
+                let to = if m > 0.0 { first } else { last };
+                let loose = match track.floored && m != 0.0 {
+                    true => track.slide_floored(from.p, to.p, from.tension, m).1,
+                    false => None,
+                };
                 self.clear();
-                self.knots.extend([Knot { m, ..first }, last]);
+                let Some((p, material)) = loose else {
+                    self.knots.extend([Knot { m, ..first }, last]);
+                    return;
+                };
+                // Loose from there to the end that is not drawn, as even as friction keeps it: without tension.
+                let end = Knot { p, s: from.s + material, tension: 0.0, m };
+                let [a, b] = if m > 0.0 { [first, end] } else { [end, last] };
+                let ends = Ends { p: [a.p, b.p], s: [a.s, b.s], t: [0.0; 2] };
+                let laid = Self::laid(track, &ends);
+                if m < 0.0 {
+                    self.push(Knot { m, ..first });
+                }
+                laid.knots.iter().for_each(|knot| self.push(*knot));
+                if m > 0.0 {
+                    self.push(end);
+                    self.push(last);
+                }
             }
             Mode::Hold => match held.unwrap_or_else(|| self.hold(track, e)) {
                 Held::Between([left, right]) => {

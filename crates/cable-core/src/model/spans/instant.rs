@@ -189,7 +189,13 @@ impl Layout {
     pub fn course(&self, curves: Vec<Curve>, instant: &Instant) -> Course {
         let loads = self.loads.iter().map(|l| PointForce { arc_length: l.arc_length, force: Vec2::zeros() });
         let law = Law::new(instant.load, instant.thermal, self.problem.axial_stiffness);
-        let mut course = Course { curves, law, drag: 0.0, loads: loads.collect() };
+        let mut course = Course {
+            curves,
+            law,
+            drag: 0.0,
+            mobilised: self.problem.cable.friction_mobilised.way(),
+            loads: loads.collect(),
+        };
         self.give(&mut course, instant);
         course
     }

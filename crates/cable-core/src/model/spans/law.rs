@@ -163,6 +163,8 @@ pub(super) struct Track<'a> {
     pub friction: f64,
     /// See [`Course`](super::strand::Course).
     pub drag: f64,
+    /// Whether all of it slides away from the end that is drawn as far as there is tension, and lies loose beyond that.
+    pub floored: bool,
     /// A point of it from which what lies on the same piece is seen.
     pub pivot: Option<Pivot>,
 }
@@ -229,6 +231,32 @@ impl Track<'_> {
             i += if i < last { 1 } else { -1 };
             at = to;
         }
+    }
+
+    /// Slides with m from p₀, the end that is drawn, to p₁; from where no tension is left on an edge the cable lies loose to p₁. Where
+    /// that is, and the material up to there.
+    pub fn slide_floored(&self, p0: f64, p1: f64, t: f64, m: f64) -> (Step, Option<(f64, f64)>) {
+        let (mut at, mut sum, mut loose) = (p0, Step::none(t), None);
+        while at != p1 {
+            let next = self.next_border(at, p1);
+            let edge = !self.turns(0.5 * (at + next));
+            let way = self.slide(at, next, sum.tension, m);
+            if !(edge && way.tension < 0.0) {
+                sum = sum.then(way);
+                // Drawn down a slope it has tension again.
+                loose = loose.filter(|_| !(sum.tension > 0.0));
+            } else {
+                let thetas = [self.law.theta(sum.tension), self.law.theta(way.tension)];
+                let q = at + (next - at) * (thetas[0] / (thetas[0] - thetas[1])).clamp(0.0, 1.0);
+                sum = sum.then(self.slide(at, q, sum.tension, m));
+                loose = loose.or(Some((q, sum.material)));
+                let rest = Step::none(0.0);
+                let material = self.slide(q, next, 0.0, self.even(0.5 * (q + next))).material;
+                sum = sum.then(Step { material, by_tension: 0.0, ..rest });
+            }
+            at = next;
+        }
+        (sum, loose)
     }
 
     /// The m that keeps tension even where p is, as far as friction can: −b·t − m b·n = 0 on an edge; 0 on an arc.

@@ -5,7 +5,7 @@ use super::curve::Home;
 use super::history::{Ends, History, Knot, Mode};
 use super::instant::{Instant, Layout, Part, Pulley};
 use super::strand::{Contact, Course, Strand, Tie};
-use super::taut::{self, Bend};
+use super::taut::{self, Bend, Ring};
 use super::tight;
 use super::way::{Way, way};
 use super::weight::LIFTS;
@@ -51,12 +51,22 @@ struct Seat {
 }
 
 /// The strand at its route, and the route. None where the string of the route finds no end.
-pub(super) fn lay(layout: &Layout, index: usize, course: &Course, instant: &Instant) -> Option<(Strand, Vec<Vec2>)> {
+pub(super) fn lay(
+    layout: &Layout,
+    index: usize,
+    (course, instant): (&Course, &Instant),
+    ring: Ring,
+) -> Option<(Strand, Vec<Vec2>)> {
     let way = way(layout, layout.strands.get(index)?, instant);
-    Some((along(layout, index, course, instant, &way)?, way.points))
+    Some((along(layout, index, (course, instant), (&way, ring))?, way.points))
 }
 
-fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way: &Way) -> Option<Strand> {
+fn along(
+    layout: &Layout,
+    index: usize,
+    (course, instant): (&Course, &Instant),
+    (way, ring): (&Way, Ring),
+) -> Option<Strand> {
     let part = layout.strands.get(index)?;
     let [from, to] = part.material;
     let total = way.total();
@@ -114,7 +124,7 @@ fn along(layout: &Layout, index: usize, course: &Course, instant: &Instant, way:
     if first > last {
         return None;
     }
-    let mut contacts = bends(layout, part, (course, instant), (way, first, last), (&at, tension))?;
+    let mut contacts = bends(layout, part, (course, instant), (way, first, last, ring), (&at, tension))?;
     let join = joint(course, &heads, (first == last, tension));
     for (side, h) in heads.iter().enumerate() {
         let Some(h) = h else { continue };
@@ -185,10 +195,10 @@ fn bends(
     layout: &Layout,
     part: &Part,
     (course, instant): (&Course, &Instant),
-    (way, first, last): (&Way, usize, usize),
+    (way, first, last, ring): (&Way, usize, usize, Ring),
     (at, tension): (&dyn Fn(f64) -> f64, f64),
 ) -> Option<Vec<Contact>> {
-    let mut seats = seats(layout, part, course, instant, (way, first, last))?;
+    let mut seats = seats(layout, part, (course, instant), (way, first, last), ring)?;
     let mut contacts = Vec::with_capacity(seats.len() + 2);
     let rounds = stretched(course, &mut seats, (way.points[first], way.points[last]));
     for (k, seat) in seats.iter().enumerate() {
@@ -205,7 +215,7 @@ fn bends(
         // Round a post the string's points are not those of the cable: where it comes and goes on the route itself.
         let seen = |p: f64, w: f64| {
             let place = curve.place(p, seat.home);
-            if curve.is_round() && seat.wheel.is_none() { way.close(place.at, w, ROUND * place.stretch) } else { w }
+            if curve.is_round() { way.close(place.at, w, ROUND * place.stretch) } else { w }
         };
         let s = at(0.5 * (seen(p1, seat.way[0]) + seen(p2, seat.way[1])));
         let mut c = contact(course, (seat.curve, seat.home), ([p1, p2], [s - half, s + half]), tension);
@@ -359,16 +369,16 @@ fn lying(course: &Course, world: &World, near: [f64; 2], (points, side): (&[Vec2
     (on.len() > 1 && p[1] > p[0]).then_some(Head { curve: curve_index, home, p, count: on.len() })
 }
 
-/// What the string bends round, pulleys among it.
+/// What the string bends round, pulleys among it; posts are seen as rings of points.
 fn seats(
     layout: &Layout,
     part: &Part,
-    course: &Course,
-    instant: &Instant,
+    (course, instant): (&Course, &Instant),
     (way, first, last): (&Way, usize, usize),
+    ring: Ring,
 ) -> Option<Vec<Seat>> {
     let world = &layout.problem.world;
-    let corners = taut::corners(world);
+    let corners = taut::corners(world, ring);
     let mut out: Vec<Seat> = Vec::new();
     let mut reached = way.along[first];
     let mut begin = (way.points[first], first);
@@ -398,7 +408,10 @@ fn seats(
         if let Some(q) = pulley {
             let curve = q.curve + usize::from(q.facing < 0.0);
             let home = Home { first: 0, last: 0 };
-            out.push(Seat { curve, home, pieces: [0, 0], wheel: Some(q.support), way: [w, w], turn: 0.0 });
+            // Tangents say how far it turns but for whole turns. A wheel passed on its side turns it by −90° (it lifts off, almost) to
+            // 270°: half a turn, two tails that hang from it, lies in the middle of that.
+            let turn = if q.facing == 0.0 { 0.0 } else { std::f64::consts::FRAC_PI_2 };
+            out.push(Seat { curve, home, pieces: [0, 0], wheel: Some(q.support), way: [w, w], turn });
             (begin, reached) = ((stop, leg), w);
         }
     }

@@ -20,11 +20,15 @@ pub(super) fn lost(strands: &[Strand], course: &Course, trouble: &Trouble) -> Op
         return None;
     }
     let b = course.law.load;
+    // What weighs nothing hangs in no bight.
+    if b.norm() == 0.0 {
+        return None;
+    }
     for strand in strands {
         for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
             let (from, to) = strand.material(k);
             let force = strand.force(course, k, from);
-            let across = cross(force, b).abs() / b.norm().max(f64::MIN_POSITIVE);
+            let across = cross(force, b).abs() / b.norm();
             if across > SLACK * b.norm() * (to - from) {
                 continue;
             }

@@ -51,7 +51,7 @@ use self::report::Report;
 use self::trouble::Trouble;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::{Place, SolveError};
-use crate::math::Vec2;
+use crate::math::{Vec2, larger, smaller};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
 use crate::state::State;
@@ -146,11 +146,52 @@ impl SpansModel {
         }
     }
 
+    /// What other histories would have left in the cable, in words: as it was laid, and drawn towards either end.
+    fn histories(&self, work: &mut Work) -> String {
+        let Some(network) = &self.network else { return String::new() };
+        let laid = report::tensions(network);
+        let drawn = [-1.0, 1.0].map(|way| network.drawn(&self.layout, way, work).map(|n| report::tensions(&n)));
+        let all = || std::iter::once(laid).chain(drawn.into_iter().flatten());
+        let range = |k: usize| {
+            let (low, high) = all().map(|t| t[k]).fold((laid[k], laid[k]), |(a, b), t| (smaller(a, t), larger(b, t)));
+            format!("{low:.2} to {high:.2} N")
+        };
+        let figure = |of: Option<[f64; 3]>| of.map_or("no balance".to_owned(), |t| format!("{:.2} N", t[2]));
+        format!(
+            ". Greatest tension: {:.2} N as laid; {} with all friction against a cable drawn towards its start, {} towards its end. So it has {} at its start and {} at its end, by its history",
+            laid[2],
+            figure(drawn[0]),
+            figure(drawn[1]),
+            range(0),
+            range(1),
+        )
+    }
+
+    /// Whether some of the cable is held by nothing but friction.
+    fn hangs_by_friction(&self) -> bool {
+        self.layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none))
+    }
+
     fn rubs(&self) -> bool {
         let p = &self.layout.problem;
         p.supports.iter().any(|s| s.friction > 0.0) || p.world.geometry().bodies().iter().any(|b| b.friction > 0.0)
     }
 }
+
+/// That a cable slides away, and by how much more friction, as a part of what there is, it would be held.
+fn slides_away(part: f64) -> SolveError {
+    let more = 100.0 * (part - 1.0);
+    // Three digits, the last one up: so much more does hold it.
+    let digits = (2.0 - more.log10().floor()).clamp(0.0, 9.0);
+    let unit = 10f64.powi(-(digits as i32));
+    let shown = (more / unit).ceil() * unit;
+    SolveError::NoRestingPlace {
+        why: format!("it slides: {shown:.0$} % more friction would hold it where it is laid", digits as usize),
+    }
+}
+
+/// Why a cable that nothing holds finds no rest where nothing rubs.
+const NOTHING_RUBS: &str = "it slides: nothing rubs that would hold it where it is laid";
 
 /// A trouble in the words everyone uses.
 fn said(layout: &Layout, trouble: Trouble) -> SolveError {
@@ -203,22 +244,33 @@ impl Mechanics for SpansModel {
             }),
         };
         let stable = self.network.as_ref().is_none_or(|n| n.stable(&mut work));
+        let slides = found.is_err() && self.network.is_none() && self.hangs_by_friction();
+        let needed = if slides { Network::friction_needed(&self.layout, &instant, &mut work) } else { None };
+        let range = if found.is_ok() && self.rubs() { self.histories(&mut work) } else { String::new() };
         self.work = work;
-        let taken = found.map_err(|(trouble, stopped)| self.said(stopped.as_deref(), trouble))?;
+        if let Some(part) = needed {
+            return Err(slides_away(part));
+        }
+        let taken = found.map_err(|(trouble, stopped)| match slides && !self.rubs() {
+            true => SolveError::NoRestingPlace { why: NOTHING_RUBS.to_owned() },
+            false => self.said(stopped.as_deref(), trouble),
+        })?;
         let mut report = self.report_of(taken);
         if !stable {
             let message = "This balance runs away at the least push: nothing rubs that would hold the cable in it";
             let name = &self.layout.problem.cable.name;
             report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
         }
-        if self.rubs() {
+        let mobilised = self.layout.problem.cable.friction_mobilised;
+        if self.rubs() && mobilised.is_default() {
             let message = if taken.eased {
                 "With friction the resting place depends on how the cable was laid. None was found by laying it along its way: this is the one it finds without friction, which friction then holds"
             } else {
                 "With friction the resting place depends on how the cable was laid: this is the one laid along its way with the least sliding"
             };
             let name = &self.layout.problem.cable.name;
-            report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
+            let message = format!("{message}{range}");
+            report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message));
         }
         Ok(report)
     }

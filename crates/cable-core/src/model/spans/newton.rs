@@ -202,6 +202,9 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
     strand.take_tensions(course);
     for c in &mut strand.contacts {
         c.flips = 0;
+        if course.mobilised != 0.0 && c.kink.is_none() {
+            c.mode = Mode::Slide(course.mobilised * course.friction(c));
+        }
     }
     let (mut best, mut stalled, mut iterations) = (f64::INFINITY, 0, 0);
     assemble(strand, course, &mut work.sheet);
@@ -251,6 +254,9 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
 /// The mode that the state of contact j asks for.
 fn asked(strand: &Strand, course: &Course, (sheet, j): (&Sheet, usize), patience: f64) -> Mode {
     let c = &strand.contacts[j];
+    if course.mobilised != 0.0 && c.kink.is_none() {
+        return Mode::Slide(course.mobilised * course.friction(c));
+    }
     if c.weight {
         return weight::next_mode(strand, course, j, patience);
     }

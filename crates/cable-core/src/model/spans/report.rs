@@ -10,7 +10,7 @@ use super::seek;
 use super::strand::{Contact, Course, Strand, Tie};
 use super::weight;
 use crate::catenary::PointForce;
-use crate::math::{GAUSS, Vec2};
+use crate::math::{GAUSS, Vec2, larger};
 use crate::model::arc_nodes;
 use crate::model::catenary::report::{Nodes, Point};
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
@@ -68,6 +68,7 @@ pub(super) fn report(layout: &Layout, network: &Network) -> Report {
                         true => load((strand, course, k), (&track, name)),
                         false => contact((&track, name), c, &stretches),
                     });
+                    contacts.extend(heap((strand, course, k), (&track, name)));
                 }
             }
         }
@@ -192,6 +193,7 @@ fn contact((track, name): (&Track<'_>, &str), c: &Contact, stretches: &[Stretch]
         normal: [unit.x, unit.y],
         normal_n,
         friction_n: t1 - t2 - along,
+        force_n: held_by(track, c).into(),
         state: if slips { ContactState::Slip } else { ContactState::Stick },
         turn_deg: turned.to_degrees(),
         tension_before_n: t1,
@@ -224,6 +226,89 @@ fn samples(track: &Track<'_>, stretches: &[Stretch]) -> Vec<ContactSample> {
         }
     }
     out
+}
+
+/// The force of an obstacle on what lies on it, N: it holds the load there and what the tensions at both ends leave over.
+fn held_by(track: &Track<'_>, c: &Contact) -> Vec2 {
+    let [before, after] = [0, 1].map(|side| track.place(c.ends.p[side]).tangent * c.ends.t[side]);
+    before - after - track.law.load * (c.ends.s[1] - c.ends.s[0])
+}
+
+/// The loose cable in the kink behind contact j: both edges hold its weight.
+fn heap((strand, course, j): (&Strand, &Course, usize), (track, name): (&Track<'_>, &str)) -> Option<ContactReport> {
+    let [begins_m, ends_m] = loose(strand, j)?;
+    let force = -course.load_between(begins_m, ends_m);
+    let normal = if force.norm() > 0.0 { force.normalize() } else { Vec2::zeros() };
+    let place = track.place(strand.contacts[j].ends.p[1]);
+    Some(ContactReport {
+        obstacle: name.to_owned(),
+        x_m: place.at.x,
+        y_m: place.at.y,
+        arc_length_m: 0.5 * (begins_m + ends_m),
+        normal: normal.into(),
+        normal_n: force.norm(),
+        force_n: force.into(),
+        state: ContactState::Stick,
+        begins_m,
+        ends_m,
+        ..ContactReport::default()
+    })
+}
+
+/// The material that lies loose in the kink behind contact j, m.
+pub(super) fn loose(strand: &Strand, j: usize) -> Option<[f64; 2]> {
+    let (c, next) = (strand.contacts.get(j)?, strand.contacts.get(j + 1)?);
+    (c.pocket && next.ends.s[0] > c.ends.s[1]).then_some([c.ends.s[1], next.ends.s[0]])
+}
+
+/// Tension at the start, at the end, and the greatest, N.
+pub(super) fn tensions(network: &Network) -> [f64; 3] {
+    let course = &network.course;
+    let end = |strand: Option<&Strand>, side| strand.map_or(0.0, |s| end_force(network, s, side).norm());
+    let [start, last] = [end(network.strands.first(), 0), end(network.strands.last(), 1)];
+    let mut greatest = larger(start, last);
+    for strand in &network.strands {
+        for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
+            let (from, to) = strand.material(k);
+            let ends = [from, to].map(|s| strand.force(course, k, s).norm());
+            greatest = larger(greatest, larger(ends[0], ends[1]));
+        }
+        greatest = strand.contacts.iter().flat_map(|c| c.ends.t).fold(greatest, larger);
+    }
+    [start, last, greatest]
+}
+
+/// What is left of all forces on the cable as they are reported, and their size, N: supports and contacts hold weight and loads.
+pub(super) fn unbalanced(layout: &Layout, network: &Network) -> (Vec2, f64) {
+    let (p, course) = (&layout.problem, &network.course);
+    let mut sum = course.law.load * p.length;
+    let mut size = sum.norm();
+    for load in &course.loads {
+        sum += load.force;
+        size += load.force.norm();
+    }
+    let mut add = |force: Vec2| {
+        sum += force;
+        size += force.norm();
+    };
+    for (strand, part) in network.strands.iter().zip(&layout.strands) {
+        for side in 0..2 {
+            if part.supports[side].is_some() {
+                add(end_force(network, strand, side) * if side == 0 { -1.0 } else { 1.0 });
+            }
+        }
+        for (j, c) in strand.contacts.iter().enumerate() {
+            add(match (c.wheel, c.weight) {
+                (Some(_), _) => -wheel_force(course, strand, j).0,
+                (None, true) => -weight::felt(strand, course, j).sum,
+                (None, false) => held_by(&course.track(c), c),
+            });
+            if let (Some([from, to]), None) = (loose(strand, j), c.wheel) {
+                add(-course.load_between(from, to));
+            }
+        }
+    }
+    (sum, size)
 }
 
 /// The contact of the load that is contact j.
@@ -327,13 +412,16 @@ fn supports(layout: &Layout, network: &Network, nodes: &[Node]) -> Vec<SupportRe
 }
 
 fn wheel(r: &mut SupportReaction, network: &Network, strand: &Strand, c: &Contact) {
-    let course = &network.course;
     let j = strand.contacts.iter().position(|d| std::ptr::eq(d, c)).unwrap_or(0);
-    let force = |side: usize| strand.force_at_contact(course, j, side).unwrap_or_default();
-    let (before, after) = (force(0), force(1));
-    let own = course.load_between(c.ends.s[0], c.ends.s[1]);
-    let sum = after - before + own;
+    let (sum, [before, after]) = wheel_force(&network.course, strand, j);
     (r.reaction_x_n, r.reaction_y_n) = (sum.x, sum.y);
     r.arc_length_m = 0.5 * (c.ends.s[0] + c.ends.s[1]);
     (r.tension_before_n, r.tension_after_n) = (Some(before.norm()), Some(after.norm()));
+}
+
+/// The force of the cable on the wheel that is contact j, and the forces in the cable before and after it, N.
+fn wheel_force(course: &Course, strand: &Strand, j: usize) -> (Vec2, [Vec2; 2]) {
+    let [before, after] = [0, 1].map(|side| strand.force_at_contact(course, j, side).unwrap_or_default());
+    let [from, to] = strand.contacts[j].ends.s;
+    (after - before + course.load_between(from, to), [before, after])
 }

@@ -36,6 +36,7 @@ pub(super) fn rows(
     // Lifted (Newton looks there): a point without friction.
     let mode = if e.p[1] < e.p[0] { Mode::Slide(0.0) } else { mode };
     match mode {
+        Mode::Slide(m) if track.floored && m != 0.0 => (drawn(track, e, spots, m), None),
         Mode::Slide(m) => (sliding(track, (history, e), spots, m), None),
         Mode::Hold => {
             let held = history.hold(track, e);
@@ -146,6 +147,29 @@ fn sliding(track: &Track<'_>, (history, e): (&History, &Ends), [a, b]: &[Place; 
         ],
         of_tension: [false, true],
     }
+}
+
+/// Friction fully mobilised: from the end that is drawn the tension falls by the law, to nothing at most.
+fn drawn(track: &Track<'_>, e: &Ends, spots: &[Place; 2], m: f64) -> Rows {
+    let from = usize::from(m > 0.0);
+    let to = 1 - from;
+    let (way, _) = track.slide_floored(e.p[from], e.p[to], e.t[from], m);
+    let (start, end) = (&spots[from], &spots[to]);
+    let slope = track.law.slope(start, e.t[from], m);
+    let falls = if way.by_tension == 0.0 { 0.0 } else { track.law.slope(end, way.tension, m) };
+    let mut rows = Rows { of_tension: [false, true], ..Rows::default() };
+    rows.residual = [e.s[to] - e.s[from] - way.material, e.t[to] - way.tension];
+    let [lengths, tensions] = &mut rows.by;
+    lengths[3 * from] = start.stretch / track.law.stretch(e.t[from]) + way.material_by_tension * slope;
+    lengths[3 * from + 1] = -1.0;
+    lengths[3 * from + 2] = -way.material_by_tension;
+    lengths[3 * to] = -end.stretch / track.law.stretch(way.tension);
+    lengths[3 * to + 1] = 1.0;
+    tensions[3 * from] = way.by_tension * slope;
+    tensions[3 * from + 2] = -way.by_tension;
+    tensions[3 * to] = -falls;
+    tensions[3 * to + 2] = 1.0;
+    rows
 }
 
 fn holding(track: &Track<'_>, e: &Ends, spots: &[Place; 2], fronts: &[Front; 2]) -> Rows {

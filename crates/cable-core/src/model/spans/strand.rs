@@ -20,6 +20,9 @@ pub(super) struct Course {
     pub law: Law,
     /// What sliding is resisted with besides friction while a cable that runs away is followed, N per m of slip; else 0.
     pub drag: f64,
+    /// Which way friction is fully mobilised at every contact: 1 against a cable drawn towards its end, −1 towards its start; 0 where
+    /// friction does what the contact's past asks for.
+    pub mobilised: f64,
     /// Dead loads inside the cable, in order, N.
     pub loads: Vec<PointForce>,
 }
@@ -119,7 +122,15 @@ impl Course {
     /// The chain a contact lies on.
     pub fn track(&self, c: &Contact) -> Track<'_> {
         let curve = &self.curves[c.curve];
-        Track { curve, home: c.home, law: self.law, friction: self.friction(c), drag: self.drag, pivot: None }
+        Track {
+            curve,
+            home: c.home,
+            law: self.law,
+            friction: self.friction(c),
+            drag: self.drag,
+            floored: self.mobilised != 0.0,
+            pivot: None,
+        }
     }
 
     /// Friction of a contact.

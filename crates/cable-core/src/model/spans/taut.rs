@@ -8,9 +8,18 @@
 use crate::contact::World;
 use crate::math::{Vec2, cross};
 
-/// Points that stand for a post, and how far inside it they are: routes drawn as polygons cut into a post.
-const POST_POINTS: usize = 12;
-const INSIDE: f64 = 0.5;
+/// Points that stand for a post.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Ring {
+    pub points: usize,
+    /// Part of its radius on which they lie: inside it, as routes drawn as polygons cut into a post.
+    pub part: f64,
+}
+
+/// How posts are seen at first, and how they are where that shows nothing to lie on and nothing else holds the cable: a string that
+/// hardly bends round a post passes between few points far inside it. Nearer at once: routes drawn roughly pass on the wrong side.
+pub(super) const RINGS: [Ring; 3] =
+    [Ring { points: 12, part: 0.5 }, Ring { points: 24, part: 0.9 }, Ring { points: 96, part: 0.99 }];
 /// A move of the end smaller than this part of a leg is no move: the corner just left is not met again by rounding.
 const SAME: f64 = 1e-12;
 /// Corners met or left along one leg at most, times the number of corners.
@@ -38,13 +47,13 @@ pub(super) struct Bend {
 }
 
 /// Convex corners and posts.
-pub(super) fn corners(world: &World) -> Vec<Corner> {
+pub(super) fn corners(world: &World, ring: Ring) -> Vec<Corner> {
     let mut out = Vec::new();
     for (body, b) in world.geometry().bodies().iter().enumerate() {
         if let Some(center) = b.center {
-            for k in 0..POST_POINTS {
-                let (sin, cos) = (std::f64::consts::TAU * k as f64 / POST_POINTS as f64).sin_cos();
-                let at = center + Vec2::new(cos, sin) * (INSIDE * b.offset);
+            for k in 0..ring.points {
+                let (sin, cos) = (std::f64::consts::TAU * k as f64 / ring.points as f64).sin_cos();
+                let at = center + Vec2::new(cos, sin) * (ring.part * b.offset);
                 out.push(Corner { at, body, feature: b.first + 1 });
             }
         }

@@ -128,6 +128,23 @@ pub(super) fn fresh(strand: &Strand, course: &Course) -> f64 {
     (0..strand.contacts.len()).map(missing).fold(0.0, larger)
 }
 
+/// Whether all of a strand is about to slide one way (1: towards its end, −1: towards its start): at each contact the tensions are
+/// those of sliding, but for this part of them.
+pub(super) fn mobilised(strand: &Strand, course: &Course, way: f64, near: f64) -> bool {
+    let slides = |(j, c): (usize, &Contact)| {
+        let m = way * course.friction(c);
+        if c.weight {
+            let felt = felt(strand, course, j);
+            return felt.sum.dot(&(felt.tangent + felt.normal * m)).abs() <= near * felt.size;
+        }
+        let [t1, t2] = c.ends.t;
+        let reached = course.track(c).slide(c.ends.p[0], c.ends.p[1], t1, m).tension;
+        let laid = course.law.load.norm() * (c.ends.s[1] - c.ends.s[0]);
+        (t2 - reached).abs() <= near * larger(larger(t1.abs(), t2.abs()), laid)
+    };
+    !strand.contacts.is_empty() && strand.contacts.iter().enumerate().all(slides)
+}
+
 /// Where a load was last, p.
 pub(super) fn held_at(c: &Contact) -> f64 {
     c.history.knots().first().map_or(c.ends.p[0], |k| k.p)

@@ -10,7 +10,7 @@ fn law(stiffness: f64) -> Law {
 const ROUND: Home = Home { first: 0, last: 0 };
 
 fn on(curve: &Curve, home: Home, law: Law, friction: f64) -> Track<'_> {
-    Track { curve, home, law, friction, drag: 0.0, pivot: None }
+    Track { curve, home, law, friction, drag: 0.0, floored: false, pivot: None }
 }
 
 /// dT/dψ = mT − (c/λ)(b·t + m b·n) and ds/dψ = c/λ by 4th-order Runge–Kutta.
