@@ -101,9 +101,9 @@ pub enum SceneFault {
     )]
     SupportInside {
         /// The support.
-        name: String,
+        name: Box<str>,
         /// The obstacle.
-        obstacle: String,
+        obstacle: Box<str>,
         /// How deep the point is below the obstacle's surface, m.
         depth_m: f64,
         /// The nearest place where the cable's centre line touches nothing, m.
@@ -115,13 +115,13 @@ pub enum SceneFault {
     )]
     NoWay {
         /// The support before.
-        from: String,
+        from: Box<str>,
         /// The support after.
-        to: String,
+        to: Box<str>,
         /// Distance of their centres, m.
         apart_m: f64,
         /// Why not.
-        reason: String,
+        reason: Box<str>,
     },
     /// The cable is too short for the way between its supports.
     #[error(
@@ -216,7 +216,7 @@ pub enum SolveError {
         /// Largest unbalanced force, N; NaN where none is known.
         residual_n: f64,
         /// Where it acts.
-        place: Place,
+        place: Box<Place>,
     },
     /// The budget of work was spent before there was an answer.
     #[error("{model} has found no resting place in {iterations} iterations with {segments} segments, which is all the work it does for one: {} {place}. Draw the cable a route_m nearer to where it will lie, or give it fewer segments", left_over(*.residual_n))]
@@ -230,7 +230,7 @@ pub enum SolveError {
         /// Largest unbalanced force, N.
         residual_n: f64,
         /// Where it acts.
-        place: Place,
+        place: Box<Place>,
     },
     /// The only equilibrium found carries compression, which a cable cannot.
     #[error("{model} found only a state in which the cable pushes{} {place}, and a cable cannot push: it needs more tension there, or another model", if .tension_n.is_finite() && *.tension_n < 0.0 { format!(" with {:.3e} N", -.tension_n) } else { String::new() })]
@@ -240,7 +240,7 @@ pub enum SolveError {
         /// Its tension, N (negative).
         tension_n: f64,
         /// Where.
-        place: Place,
+        place: Box<Place>,
     },
     /// The state found is not a stable equilibrium.
     #[error(
@@ -340,7 +340,7 @@ pub enum SolveError {
         /// Largest unbalanced force, N; NaN where none is known.
         residual_n: f64,
         /// Where it acts.
-        place: Place,
+        place: Box<Place>,
         /// Why the last try failed.
         cause: String,
     },
@@ -370,8 +370,13 @@ mod tests {
     fn no_text_holds_a_number_that_is_not_finite() {
         let model = Model::Fem;
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            let place =
-                || Place { arc_length_m: bad, at_m: Vec2::new(bad, 1.0), near: Some(("support `a`".to_owned(), bad)) };
+            let place = || {
+                Box::new(Place {
+                    arc_length_m: bad,
+                    at_m: Vec2::new(bad, 1.0),
+                    near: Some(("support `a`".to_owned(), bad)),
+                })
+            };
             let all = [
                 SolveError::NotConverged { model, iterations: 7, residual_n: bad, place: place() },
                 SolveError::Compressed { model, tension_n: bad, place: place() },
@@ -395,7 +400,7 @@ mod tests {
 
     #[test]
     fn the_clearer_reason_of_two_models_is_told() {
-        let vague = |model| SolveError::NotConverged { model, iterations: 1, residual_n: 1.0, place: Place::default() };
+        let vague = |model| SolveError::NotConverged { model, iterations: 1, residual_n: 1.0, place: Box::default() };
         let clear = SolveError::NoRestingPlace { why: "it slides".to_owned() };
         assert_eq!(SolveError::clearer(clear.clone(), vague(Model::Fem)), clear);
         assert_eq!(SolveError::clearer(vague(Model::Spans), clear.clone()), clear);

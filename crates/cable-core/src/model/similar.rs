@@ -43,7 +43,7 @@ impl Similar {
         self.by.place_back(at)
     }
 
-    fn place_back(&self, place: &Place) -> Place {
+    fn place_back(&self, place: &Place) -> Box<Place> {
         self.problem.place(place.arc_length_m / self.by.length, self.at_back(place.at_m), self.time_s())
     }
 

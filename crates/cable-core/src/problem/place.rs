@@ -7,7 +7,7 @@ use crate::math::Vec2;
 impl Problem {
     /// The place `arc_length` (m) along the cable, which lies at `at` (m), and the support or obstacle nearest to it.
     #[must_use]
-    pub fn place(&self, arc_length: f64, at: Vec2, time_s: f64) -> Place {
+    pub fn place(&self, arc_length: f64, at: Vec2, time_s: f64) -> Box<Place> {
         let finite = at.iter().all(|c| c.is_finite());
         let supports = self.supports.iter().filter_map(|s| {
             let (place, _) = s.place_at(time_s)?;
@@ -27,6 +27,6 @@ impl Problem {
         } else {
             None
         };
-        Place { arc_length_m: arc_length, at_m: at, near }
+        Box::new(Place { arc_length_m: arc_length, at_m: at, near })
     }
 }

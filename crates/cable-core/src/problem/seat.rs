@@ -41,7 +41,12 @@ pub(super) fn seat(problem: &mut Problem) -> Result<(), SceneError> {
             || Path::Root.key("cables").index(problem.cable_index).key("supports").index(k).key("at_m").to_string();
         if depth > most {
             let clear_m = out.map(|p| [p.x, p.y]);
-            let fault = SceneFault::SupportInside { name: support.name.clone(), obstacle, depth_m: depth, clear_m };
+            let fault = SceneFault::SupportInside {
+                name: support.name.as_str().into(),
+                obstacle: obstacle.into(),
+                depth_m: depth,
+                clear_m,
+            };
             return Err(SceneError { path: path(), fault, at: None });
         }
         let Some(out) = out else {

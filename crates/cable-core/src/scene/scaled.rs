@@ -32,7 +32,7 @@ impl Similarity {
     /// for; None where it has it. Factors are powers of two: no digit is lost by them.
     #[must_use]
     pub fn to_natural(length_m: f64, origin: Vec2) -> Option<Self> {
-        let natural = NATURAL_M[0] <= length_m && length_m <= NATURAL_M[1];
+        let natural = (NATURAL_M[0]..=NATURAL_M[1]).contains(&length_m);
         if natural && origin.amax() <= FAR * length_m {
             return None;
         }

@@ -64,7 +64,8 @@ pub(super) fn lines_exist(scene: &Scene, cable: &Cable, at: &Path<'_>) -> Checke
         } else {
             "they are in the same place".to_owned()
         };
-        let (from, to) = (from.name.clone(), to.name.clone());
+        let (from, to) = (from.name.as_str().into(), to.name.as_str().into());
+        let reason = reason.into();
         return Err(at.key("supports").index(i + 1).key("at_m").fault(SceneFault::NoWay { from, to, apart_m, reason }));
     }
     Ok(())

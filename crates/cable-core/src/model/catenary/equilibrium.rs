@@ -134,7 +134,7 @@ fn not_converged(p: &Problem, layout: &Layout, anchor: usize, iterations: usize,
         at_m: a.at,
         near: p.supports.get(a.support).map(|s| (format!("support `{}`", s.name), 0.0)),
     });
-    let place = place.unwrap_or_default();
+    let place = Box::new(place.unwrap_or_default());
     SolveError::NotConverged { model: Model::Catenary, iterations, residual_n, place }
 }
 

@@ -418,7 +418,7 @@ impl Dynamics {
     }
 
     /// Where a node is, in the words of the scene.
-    pub(super) fn place(&self, node: usize) -> Place {
+    pub(super) fn place(&self, node: usize) -> Box<Place> {
         let arc_length = self.mesh.arc_length.get(node).copied().unwrap_or(f64::NAN);
         let at = self.motion.x.get(node).copied().unwrap_or(Vec2::repeat(f64::NAN));
         self.problem.place(arc_length, at, self.motion.time)

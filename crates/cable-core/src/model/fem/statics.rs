@@ -326,7 +326,7 @@ impl Statics {
             model: Model::Fem,
             iterations: network.steps,
             residual_n,
-            place: network.layout.stops.get(k).map_or_else(Place::default, |s| {
+            place: network.layout.stops.get(k).map_or_else(Box::<Place>::default, |s| {
                 self.problem.place(s.arc_length, s.point(0).unwrap_or(Vec2::repeat(f64::NAN)), self.time)
             }),
         };

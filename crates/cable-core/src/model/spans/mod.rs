@@ -201,7 +201,7 @@ fn said(layout: &Layout, trouble: Trouble) -> SolveError {
             model: Model::Spans,
             iterations,
             residual_n: residual * layout.problem.force_scale(),
-            place: Place { arc_length_m: s, at_m: Vec2::repeat(f64::NAN), near: None },
+            place: Box::new(Place { arc_length_m: s, at_m: Vec2::repeat(f64::NAN), near: None }),
         },
         Trouble::Compressed { s, at, tension } => {
             SolveError::Compressed { model: Model::Spans, tension_n: tension, place: layout.problem.place(s, at, 0.0) }
