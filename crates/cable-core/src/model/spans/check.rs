@@ -2,6 +2,7 @@
 //! each contact from its ends, the cone of friction along it. That nothing is inside an obstacle is looked at in `gaps`.
 
 use super::law::Track;
+use super::pocket;
 use super::strand::{Contact, Course, Strand, Tie};
 use super::trouble::Trouble;
 use super::weight;
@@ -128,6 +129,9 @@ fn contact(strand: &Strand, course: &Course, (j, greatest): (usize, f64)) -> Res
         } else if strand.in_pocket(j, side) {
             if e.t[side] != 0.0 {
                 return Err(unsound("slack has tension", e.p[side], e.s[side]));
+            }
+            if side == 1 && pocket::heap(strand, course, j + 1).is_none() {
+                return Err(unsound("what lies loose slides", e.p[side], e.s[side]));
             }
         } else if strand.is_joined(j, side) {
             // The load beside it is looked at by itself.

@@ -6,6 +6,7 @@ use super::history::{History, Mode};
 use super::instant::Layout;
 use super::law::Track;
 use super::piece::{OnPiece, Pivot};
+use super::pocket;
 use super::seek;
 use super::strand::{Contact, Course, Strand, Tie};
 use super::weight;
@@ -69,6 +70,9 @@ pub(super) fn report(layout: &Layout, network: &Network) -> Report {
                         true => load((strand, course, k), (&track, name)),
                         false => contact((&track, name), c, &stretches),
                     });
+                    if c.pocket {
+                        contacts.extend(heap((strand, course, k), name));
+                    }
                 }
             }
         }
@@ -214,6 +218,28 @@ fn load((strand, course, j): (&Strand, &Course, usize), (track, name): (&Track<'
         ends_m: c.ends.s[0],
         parts: Vec::new(),
     }
+}
+
+/// The contacts of the heap in the pocket after contact j: one with each edge that carries a part of it.
+fn heap((strand, course, j): (&Strand, &Course, usize), name: &str) -> Vec<ContactReport> {
+    let ([before, after], at) = match (&strand.contacts[j], strand.contacts.get(j + 1)) {
+        (c, Some(next)) => ([c.ends.s[1], next.ends.s[0]], course.track(c).place(c.ends.p[1]).at),
+        (_, None) => return Vec::new(),
+    };
+    let edge = |b: pocket::Borne| ContactReport {
+        obstacle: name.to_owned(),
+        x_m: at.x,
+        y_m: at.y,
+        arc_length_m: 0.5 * (before + after),
+        normal: [b.normal.x, b.normal.y],
+        normal_n: b.press,
+        friction_n: b.friction,
+        begins_m: before,
+        ends_m: after,
+        ..ContactReport::default()
+    };
+    let borne = pocket::heap(strand, course, j + 1).into_iter().flatten();
+    borne.filter(|b| b.press > 0.0).map(edge).collect()
 }
 
 /// Stretches that stick and stretches at the limit of friction, neighbours alike joined; none where all is alike.
