@@ -24,13 +24,13 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
     }
 }
 
-/// Tension of each bar, N (a slack one pushes a little: 0 is reported).
+/// Tension of each bar, N; a flexible one only pulls.
 fn bar_tensions(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
     let mesh = &d.mesh;
     (0..mesh.rest_length.len())
         .map(|e| {
             let t = mesh.bar(e).tension(mesh.path(e, x).length);
-            if t < 0.0 { 0.0 } else { t }
+            if t < 0.0 && mesh.is_flexible() { 0.0 } else { t }
         })
         .collect()
 }
