@@ -3,12 +3,15 @@
 use super::assembly::Mesh;
 use super::contact_set::{ContactSet, Rub, Touch};
 use super::dynamics::Dynamics;
-use super::sliding::Seat;
+use super::sliding::{Load, Seat, Sliding};
 use crate::contact::friction;
 use crate::energy::bending::turn;
-use crate::math::{Vec2, perp};
+use crate::math::{Vec2, larger, perp};
 use crate::problem::Problem;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
+
+/// Nodes on a round: one at least every so many radians.
+const ARC_STEP: f64 = 0.13;
 
 /// The answer at positions `x` and velocities `v`.
 #[must_use]
@@ -135,23 +138,14 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
     let mut out = Vec::with_capacity(n + 2);
     for k in 0..n {
         if let (Some(sliding), Some(load)) = (&mesh.sliding[k], d.load(k)) {
-            let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
-            let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(sliding)));
-            for j in 0..2 {
-                // Where the cable meets the round and leaves it; one node where that is one place.
-                let arc = if same[j] { 0.0 } else { sliding.end.radius * paths[j].arcs[1 - j] };
-                let stretch = mesh.thermal_stretch * (1.0 + load.tension[j] / d.problem.axial_stiffness);
-                let s = mesh.arc_length[k] + [-1.0, 1.0][j] * arc / stretch;
-                if out.last().is_none_or(|l: &Node| s > l.arc_length_m + 1e-9) {
-                    let at = if same[j] { sliding.position() } else { paths[j].ends[1 - j] };
-                    let velocity = paths[j].direction * (-d.motion.w[k] * stretch);
-                    let curvature =
-                        if sliding.end.radius > 0.0 { stretch * sliding.end.sense / sliding.end.radius } else { 0.0 };
-                    let t =
-                        if load.tension[1] > load.tension[0] && arc == 0.0 { load.tension[1] } else { load.tension[j] };
-                    out.push(node(s, (at, velocity), t, (curvature, load.force[j])));
+            for p in on_round(d, (k, sliding, &load), x, tension) {
+                let velocity = p.force.try_normalize(0.0).unwrap_or_default() * (-d.motion.w[k] * p.stretch);
+                let curvature =
+                    if sliding.end.radius > 0.0 { p.stretch * sliding.end.sense / sliding.end.radius } else { 0.0 };
+                if out.last().is_none_or(|l: &Node| p.arc_length > l.arc_length_m + 1e-9) {
+                    out.push(node(p.arc_length, (p.at, velocity), p.tension, (curvature, p.force)));
                 } else if let Some(last) = out.last_mut() {
-                    last.force_n = load.force[j].into();
+                    last.force_n = p.force.into();
                 }
             }
             continue;
@@ -172,6 +166,52 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
         out.push(node(mesh.arc_length[k], (x[k], v[k]), t, (curvature_at(mesh, k, x), force)));
     }
     out
+}
+
+/// A point of the cable on a round.
+struct OnRound {
+    arc_length: f64,
+    at: Vec2,
+    tension: f64,
+    /// Internal force just beyond it, N.
+    force: Vec2,
+    /// Length of a metre of arc length.
+    stretch: f64,
+}
+
+/// The cable round a corner, post or pulley, from where it meets the round, or from halfway to the sliding node before, to where it
+/// leaves it, or halfway to the next. Its tension grows evenly in its logarithm, as friction makes it.
+fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2], tension: &[f64]) -> Vec<OnRound> {
+    let mesh = &d.mesh;
+    let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
+    let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(node)));
+    let stretch = [0, 1].map(|j| paths[j].length / (mesh.arc_length[k + j] - mesh.arc_length[k + j - 1]));
+    let [before, after] = [paths[0].arcs[1], paths[1].arcs[0]];
+    let whole = before + after;
+    let (mark, sense, radius) = (node.end.mark, node.end.sense, node.end.radius);
+    if !(whole > 0.0 && radius > 0.0) {
+        return vec![OnRound {
+            arc_length: mesh.arc_length[k],
+            at: node.position(),
+            tension: larger(load.tension[0], load.tension[1]),
+            force: load.force[1],
+            stretch: stretch[1],
+        }];
+    }
+    let [a, b] = [0, 1].map(|j| if same[j] { tension[k + j - 1] } else { load.tension[j] });
+    let count = (whole / ARC_STEP).ceil();
+    let at = |i: f64| {
+        let f = i / count;
+        let turned = f * whole - before;
+        let stretch = stretch[usize::from(turned > 0.0)];
+        let (sin, cos) = (sense * turned).sin_cos();
+        let normal = Vec2::new(cos * mark.x - sin * mark.y, sin * mark.x + cos * mark.y);
+        let tension = if a > 0.0 && b > 0.0 { a * (b / a).powf(f) } else { a + (b - a) * f };
+        let force = perp(normal) * (sense * tension);
+        let arc_length = mesh.arc_length[k] + turned * radius / stretch;
+        OnRound { arc_length, at: node.end.center + normal * radius, tension, force, stretch }
+    };
+    (0..=count as usize).map(|i| at(i as f64)).collect()
 }
 
 /// d(angle)/d(arc length) at a node, 1/m.
@@ -277,12 +317,12 @@ fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64], lain: &[Option<Lain>; 2])
         let mut stretch: Vec<Touch> = Vec::new();
         for t in touches.iter().filter(|t| t.pair.gap.obstacle == obstacle) {
             if stretch.last().is_some_and(|l| t.node > l.node + 1) {
-                out.push(report(d, x, tension, &stretch));
+                out.push(report(d, x, (tension, lain), &stretch));
                 stretch.clear();
             }
             stretch.push(*t);
         }
-        out.push(report(d, x, tension, &stretch));
+        out.push(report(d, x, (tension, lain), &stretch));
     }
     for end in lain.iter().flatten() {
         let (tip, at) = (d.mesh.arc_length[end.node], d.mesh.arc_length[end.next]);
@@ -298,6 +338,22 @@ fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64], lain: &[Option<Lain>; 2])
             c.arc_length_m += 0.5 * (tip - at);
             let half = (x[end.node] - x[end.next]) * 0.5;
             (c.x_m, c.y_m) = (c.x_m + half.x, c.y_m + half.y);
+        } else {
+            // Only its end lies there.
+            let mut c = ContactReport {
+                obstacle: name.to_owned(),
+                x_m: x[end.node].x,
+                y_m: x[end.node].y,
+                arc_length_m: tip,
+                normal: [end.normal.x, end.normal.y],
+                normal_n: end.force.dot(&end.normal),
+                friction_n: end.force.dot(&end.along),
+                begins_m: tip,
+                ends_m: tip,
+                ..ContactReport::default()
+            };
+            c.set_samples(vec![ContactSample::new(tip, end.force)]);
+            out.push(c);
         }
     }
     rounds(d, x, &mut out);
@@ -328,7 +384,8 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
         let (mut push, mut turn, mut slips, mut samples) = (Vec2::zeros(), 0.0, true, Vec::new());
         for j in first..k {
             let (Some(load), Some(node)) = (d.load(j), &d.mesh.sliding[j]) else { continue };
-            let [a, b] = load.tension;
+            // Friction is found from the pulls: the tensions differ by weight, too, where slack bars sag.
+            let [a, b] = load.pull;
             // ∫T dφ of a tension that grows evenly in its logarithm.
             let ratio = if a > 0.0 && b > 0.0 { (b / a).ln() } else { 0.0 };
             let mean = if ratio.abs() > 1e-6 { (b - a) / ratio } else { 0.5 * (a + b) };
@@ -343,12 +400,12 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
                 node.end.radius * d.mesh.path(e, x).arcs[1 - side] / stretch
             };
             if j == first {
-                r.tension_before_n = a;
+                r.tension_before_n = load.tension[0];
                 r.begins_m = d.mesh.arc_length[j] - lap(j - 1, 0);
             }
             r.ends_m = d.mesh.arc_length[j] + lap(j, 1);
             samples.push(ContactSample::new(d.mesh.arc_length[j], -load.jump));
-            r.tension_after_n = b;
+            r.tension_after_n = load.tension[1];
         }
         let normal = if push.norm() > 0.0 { push.normalize() } else { node.end.mark };
         let at = node.end.center + normal * node.end.radius;
@@ -360,7 +417,7 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
     }
 }
 
-fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> ContactReport {
+fn report(d: &Dynamics, x: &[Vec2], (tension, lain): (&[f64], &[Option<Lain>; 2]), stretch: &[Touch]) -> ContactReport {
     let (Some(first), Some(last)) = (stretch.first(), stretch.last()) else {
         return ContactReport::default();
     };
@@ -368,8 +425,14 @@ fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> Conta
     let before = if first.on_segment { first.node } else { first.node.saturating_sub(1) };
     let after = last.node.min(bars - 1);
     let (mut normal, mut normal_n, mut friction_n) = (Vec2::zeros(), 0.0, 0.0);
+    // What presses on a node that stays where it is, over a round or as an end that lies, is of that round, or of the end.
+    let stays = |k: usize| d.mesh.sliding[k].is_some() || lain.iter().flatten().any(|l| l.node == k);
+    let part = |t: &Touch| {
+        let [a, b] = t.shares();
+        (if stays(t.node) { 0.0 } else { a }) + (if b != 0.0 && !stays(t.node + 1) { b } else { 0.0 })
+    };
     for t in stretch {
-        let load = t.load(&d.contacts.barrier);
+        let load = t.load(&d.contacts.barrier) * part(t);
         normal_n += load;
         normal += t.pair.gap.normal * load;
     }
@@ -380,7 +443,7 @@ fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> Conta
     for rub in rubs.clone() {
         let e = rub.touch.node.min(bars - 1);
         let along = d.mesh.path(e, x).direction;
-        friction_n += rub_force(&d.contacts, rub, x).dot(&along);
+        friction_n += rub_force(&d.contacts, rub, x).dot(&along) * part(&rub.touch);
         if rub.sliding(x).abs() > 0.999 * d.contacts.slip {
             slips += rub.limit;
         }
@@ -415,10 +478,10 @@ fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> Conta
         ends_m: arc(last),
         ..ContactReport::default()
     };
-    let mut samples: Vec<ContactSample> =
-        stretch.iter().map(|t| ContactSample::new(arc(t), t.pair.gap.normal * t.load(&d.contacts.barrier))).collect();
+    let press = |t: &Touch| t.pair.gap.normal * (t.load(&d.contacts.barrier) * part(t));
+    let mut samples: Vec<ContactSample> = stretch.iter().map(|t| ContactSample::new(arc(t), press(t))).collect();
     for rub in rubs {
-        samples.push(ContactSample::new(arc(&rub.touch), rub_force(&d.contacts, rub, x)));
+        samples.push(ContactSample::new(arc(&rub.touch), rub_force(&d.contacts, rub, x) * part(&rub.touch)));
     }
     samples.sort_by(|a, b| a.arc_length_m.total_cmp(&b.arc_length_m));
     out.set_samples(samples);

@@ -33,6 +33,13 @@ const LOADED: f64 = 2.0;
 /// squeezes find none.
 const NEGLIGIBLE: f64 = 1e3;
 
+/// Unbalanced force of a polished rest, in tolerances. More: what is left at a hundred nodes of a lay that all but slides is seen in
+/// the balance of the whole; less: nothing but rounding is gained.
+const POLISHED: f64 = 1e-2;
+
+/// Newton iterations of each round of polishing: it starts beside its end.
+const POLISH_ITERATIONS: usize = 30;
+
 /// Times a resting place is sought again because corners were met or left on the way to it.
 const CORNER_ROUNDS: usize = 8;
 
@@ -80,11 +87,40 @@ impl Dynamics {
             }
             let done = done?;
             total = Done { iterations: total.iterations + done.iterations, ..done };
-            if !self.accept_rest(&pose, to) {
+            self.accept_pose(&pose, to);
+            // Where corners are met and left by turns to the last, the mesh stays as it balances.
+            if round + 1 == CORNER_ROUNDS || !self.remesh(true) {
                 break;
             }
         }
         Ok(total)
+    }
+
+    /// Brings what is left unbalanced at a rest, which adds up along the cable, down to what can be told from rounding: on from where
+    /// the cable lies, or not at all where that does not come to an end.
+    fn polish(&mut self, found: Done, dragged: &[Option<Vec2>]) -> Done {
+        let kept = (self.saved.clone(), self.can_restore);
+        let exact = self.task.tolerance;
+        let to = self.motion.time;
+        self.save();
+        self.prepare_way([to, to], Some(dragged));
+        self.task.tolerance = POLISHED * exact;
+        self.task.max_iterations = POLISH_ITERATIONS;
+        self.task.most_noise = exact;
+        let mut pose = self.still_pose();
+        let polished = self.lag(&mut pose, LAG_ROUNDS);
+        self.task.tolerance = exact;
+        let done = match polished {
+            Ok(done) if done.residual < found.residual && !self.accept_rest(&pose, to) => {
+                Done { iterations: found.iterations + done.iterations, residual: done.residual }
+            }
+            _ => {
+                self.restore();
+                found
+            }
+        };
+        (self.saved, self.can_restore) = kept;
+        done
     }
 
     /// Brings straight bars to rest that were laid on the sagging ones of statics: a step of the second order in their
@@ -123,6 +159,12 @@ impl Dynamics {
 
     /// Takes a pose as the state at rest at the time `to`; returns whether what the cable runs over changed.
     fn accept_rest(&mut self, pose: &Pose, to: f64) -> bool {
+        self.accept_pose(pose, to);
+        self.remesh(true)
+    }
+
+    /// The same, corners as they are.
+    fn accept_pose(&mut self, pose: &Pose, to: f64) {
         self.contacts.commit(&self.problem, &self.mesh, &pose.x, &self.motion.x, &pose.slide);
         self.contacts.carriage = None;
         self.motion.x.clone_from(&pose.x);
@@ -131,7 +173,6 @@ impl Dynamics {
         self.motion.time = to;
         self.slide(&pose.slide);
         self.forget_history();
-        self.remesh(true)
     }
 
     /// Weight of an element over a tenth of a metre: enough to keep slack nodes from wandering.
@@ -246,6 +287,7 @@ impl Dynamics {
         match self.find_rest(dragged)? {
             Ok(done) => {
                 self.rested = true;
+                let done = self.polish(done, dragged);
                 Ok(self.report(done, 0, 0.0))
             }
             Err(f) => {

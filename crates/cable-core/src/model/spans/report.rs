@@ -259,17 +259,22 @@ fn heap((strand, course, j): (&Strand, &Course, usize), name: &str) -> Vec<Conta
         (c, Some(next)) => ([c.ends.s[1], next.ends.s[0]], course.track(c).place(c.ends.p[1]).at),
         (_, None) => return Vec::new(),
     };
-    let edge = |b: pocket::Borne| ContactReport {
-        obstacle: name.to_owned(),
-        x_m: at.x,
-        y_m: at.y,
-        arc_length_m: 0.5 * (before + after),
-        normal: [b.normal.x, b.normal.y],
-        normal_n: b.press,
-        friction_n: b.friction,
-        begins_m: before,
-        ends_m: after,
-        ..ContactReport::default()
+    let edge = |b: pocket::Borne| {
+        let middle = 0.5 * (before + after);
+        let mut report = ContactReport {
+            obstacle: name.to_owned(),
+            x_m: at.x,
+            y_m: at.y,
+            arc_length_m: middle,
+            normal: [b.normal.x, b.normal.y],
+            normal_n: b.press,
+            friction_n: b.friction,
+            begins_m: before,
+            ends_m: after,
+            ..ContactReport::default()
+        };
+        report.set_samples(vec![ContactSample::new(middle, b.normal * b.press + b.tangent * b.friction)]);
+        report
     };
     let borne = pocket::heap(strand, course, j + 1).into_iter().flatten();
     borne.filter(|b| b.press > 0.0).map(edge).collect()
