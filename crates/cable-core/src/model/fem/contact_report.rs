@@ -3,6 +3,7 @@
 use super::assembly::Mesh;
 use super::contact_set::{ContactSet, Rub, Touch};
 use super::dynamics::Dynamics;
+use super::path::angle_between;
 use super::sliding::{Load, Seat, Sliding};
 use crate::contact::friction;
 use crate::energy::bending::turn;
@@ -12,6 +13,9 @@ use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, 
 
 /// Nodes on a round: one at least every so many radians.
 const ARC_STEP: f64 = 0.13;
+
+/// Most that a bar sags where it leaves a round and is drawn so, rad. More: slack bars, whose sag is not known, lead away from it.
+const MOST_SAG: f64 = 0.5;
 
 /// The answer at positions `x` and velocities `v`.
 #[must_use]
@@ -186,9 +190,15 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
     let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
     let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(node)));
     let stretch = [0, 1].map(|j| paths[j].length / (mesh.arc_length[k + j] - mesh.arc_length[k + j - 1]));
-    let [before, after] = [paths[0].arcs[1], paths[1].arcs[0]];
-    let whole = before + after;
     let (mark, sense, radius) = (node.end.mark, node.end.sense, node.end.radius);
+    // It leaves where its force does: what sags turns further round than the straight bar that stands for it.
+    let sag = |j: usize, from: Vec2, to: Vec2| {
+        let sag = sense * angle_between(from, to);
+        if same[j] || sag.abs() > MOST_SAG { 0.0 } else { sag }
+    };
+    let before = paths[0].arcs[1] + sag(0, load.force[0], paths[0].direction);
+    let after = paths[1].arcs[0] + sag(1, paths[1].direction, load.force[1]);
+    let whole = before + after;
     if !(whole > 0.0 && radius > 0.0) {
         return vec![OnRound {
             arc_length: mesh.arc_length[k],

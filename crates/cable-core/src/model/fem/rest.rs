@@ -89,7 +89,8 @@ impl Dynamics {
             total = Done { iterations: total.iterations + done.iterations, ..done };
             self.accept_pose(&pose, to);
             // Where corners are met and left by turns to the last, the mesh stays as it balances.
-            if round + 1 == CORNER_ROUNDS || !self.remesh(true) {
+            let nodes = self.mesh.nodes();
+            if round + 1 == CORNER_ROUNDS || !self.remesh(true) && self.mesh.nodes() == nodes {
                 break;
             }
         }
@@ -104,17 +105,23 @@ impl Dynamics {
         let to = self.motion.time;
         self.save();
         self.prepare_way([to, to], Some(dragged));
-        self.task.tolerance = POLISHED * exact;
         self.task.max_iterations = POLISH_ITERATIONS;
         self.task.most_noise = exact;
-        let mut pose = self.still_pose();
-        let polished = self.lag(&mut pose, LAG_ROUNDS);
-        self.task.tolerance = exact;
-        let done = match polished {
-            Ok(done) if done.residual < found.residual && !self.accept_rest(&pose, to) => {
-                Done { iterations: found.iterations + done.iterations, residual: done.residual }
+        let mut done = None;
+        for part in [POLISHED, 1.0] {
+            self.task.tolerance = part * exact;
+            let mut pose = self.still_pose();
+            done = self.lag(&mut pose, LAG_ROUNDS).ok();
+            if done.is_some() {
+                // With the bars it balances on: new ones would have to be brought to rest again.
+                self.accept_pose(&pose, to);
+                break;
             }
-            _ => {
+        }
+        self.task.tolerance = exact;
+        let done = match done {
+            Some(done) => Done { iterations: found.iterations + done.iterations, residual: done.residual },
+            None => {
                 self.restore();
                 found
             }
