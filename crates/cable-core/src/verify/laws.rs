@@ -7,8 +7,8 @@
 
 use super::surroundings::{Near, Surroundings};
 use super::tolerance::{
-    BALANCE, COMPRESSION, CONE, DEPTH_DIAMETERS, DEPTH_M, FOLD, LENGTH, MATERIAL, MOMENT, REACH_DIAMETERS, REACH_M,
-    TURN,
+    BALANCE, COMPRESSION, CONE, DEPTH_DIAMETERS, DEPTH_M, FOLD, LENGTH, LUMPED, MATERIAL, MOMENT, REACH_DIAMETERS,
+    REACH_M, TURN,
 };
 use super::{Balance, Depth, Finding, Law, Verification};
 use crate::math::{Vec2, cross, larger, vec2};
@@ -72,7 +72,7 @@ pub(super) fn check(found: &mut Verification, mut subject: Subject<'_>, depth: D
         found.not_checked.push(format!("balance and length of `{}`: it moves", cable.name));
     } else {
         subject.balance(found, &near);
-        subject.length(found);
+        subject.length(found, &near);
         if answer.assumptions.bending_stiffness_n_m2 > 0.0 {
             subject.moments(found);
         } else {
@@ -389,7 +389,9 @@ impl Subject<'_> {
         (points, contacts, wheels): (&[PointForce], Vec2, Vec2),
     ) {
         let limit = BALANCE * self.scale;
-        let reported: Vec2 = self.answer.contacts.iter().map(|c| vec2(c.force_n)).sum();
+        let known_here = |c: &&ContactReport| self.surroundings.find(&c.obstacle).is_some();
+        let reported: Vec2 = self.answer.contacts.iter().filter(known_here).map(|c| vec2(c.force_n)).sum::<Vec2>()
+            + self.foreign().map(|p| p.force).sum::<Vec2>();
         let led: Vec2 = self.wheels().map(|(.., r)| -Vec2::new(r.reaction_x_n, r.reaction_y_n)).sum();
         let known: Vec2 = points.iter().map(|p| p.force).sum();
         let weight = self.body * self.cable.length_m;
@@ -435,9 +437,7 @@ impl Subject<'_> {
     }
 
     fn on_wheel(&self, piece: &Piece) -> bool {
-        let reach = self.reach() - 0.5 * self.cable.diameter_m;
-        let [a, b] = piece.nodes.map(|k| self.answer.nodes[k].at());
-        self.wheels().any(|(center, radius, ..)| [a, b].iter().any(|p| (p - center).norm() <= radius + reach))
+        self.wheels().any(|(center, radius, ..)| piece.nodes.iter().any(|&k| self.is_led(k, center, radius)))
     }
 
     /// Unit vectors that bound the friction cones of all that touches a piece, its neighbours counted in: a force that is
@@ -458,13 +458,9 @@ impl Subject<'_> {
         for n in around.iter().flatten() {
             add(n.normal, self.surroundings.friction(n.body, self.cable.friction));
         }
-        let reach = self.reach() - 0.5 * self.cable.diameter_m;
         for (center, radius, friction, _) in self.wheels() {
-            for k in from..=to {
-                let off = self.answer.nodes[k].at() - center;
-                if off.norm() <= radius + reach {
-                    add(off.try_normalize(0.0).unwrap_or_default(), friction);
-                }
+            for k in (from..=to).filter(|&k| self.is_led(k, center, radius)) {
+                add((self.answer.nodes[k].at() - center).try_normalize(0.0).unwrap_or_default(), friction);
             }
         }
         out
@@ -493,13 +489,16 @@ impl Subject<'_> {
     }
 
     /// The way from each node to the next is what its material and force make of it.
-    fn length(&self, found: &mut Verification) {
+    fn length(&self, found: &mut Verification, near: &[Vec<Near>]) {
         found.ask(Law::Length);
         let stiff = self.answer.assumptions.bending_stiffness_n_m2 > 0.0;
         for k in 0..self.answer.nodes.len() - 1 {
             let asked = match stiff {
                 true => vec![self.stiff_length(k)],
-                false => self.forces_at_end(k).map(|end| self.flexible_length(k, end)).to_vec(),
+                false => {
+                    let touches = self.touches(near, k);
+                    self.forces_at_end(k).map(|end| self.flexible_length(k, end, touches)).to_vec()
+                }
             };
             let off = |l: &Lengths| l.value / l.limit;
             let Some(best) = asked.into_iter().reduce(|a, b| if off(&b) < off(&a) { b } else { a }) else { continue };
@@ -511,7 +510,7 @@ impl Subject<'_> {
     }
 
     /// The piece from node k of a flexible cable, whose internal force is `end` (N) at its end.
-    fn flexible_length(&self, k: usize, end: Vec2) -> Lengths {
+    fn flexible_length(&self, k: usize, end: Vec2, touches: bool) -> Lengths {
         let [a, b] = [&self.answer.nodes[k], &self.answer.nodes[k + 1]];
         let (compliance, start) = (1.0 / self.cable.axial_stiffness_n, a.force());
         let material = self.thermal * (b.arc_length_m - a.arc_length_m);
@@ -523,10 +522,28 @@ impl Subject<'_> {
             // Simpson's rule for ∫ F/|F| (1 + |F|/EA) ds with F linear in s.
             let rate = |f: Vec2| f * (1.0 / f.norm() + compliance);
             let exact = (rate(start) + rate((start + end) * 0.5) * 4.0 + rate(end)) * (material / 6.0);
-            return Lengths { value: (way - exact).norm(), limit: slack + TURN * turn * turn * material, folded: 0.0 };
+            // Weight that a bar carries beyond its straight part turns it by as much.
+            let bar = self.answer.nodes[(k + 2).min(self.answer.nodes.len() - 1)].arc_length_m
+                - self.answer.nodes[k.saturating_sub(1)].arc_length_m;
+            let lumped = if touches { LUMPED * self.body.norm() * bar / larger(p, q) } else { 0.0 };
+            let limit = slack + (TURN * turn * turn + lumped) * material;
+            return Lengths { value: (way - exact).norm(), limit, folded: 0.0 };
         }
         let stretched = material * (1.0 + larger(p, q) * compliance);
         Lengths { value: way.norm() - stretched, limit: slack, folded: larger(stretched - way.norm(), 0.0) }
+    }
+
+    /// Whether something touches a piece or a neighbour.
+    fn touches(&self, near: &[Vec<Near>], k: usize) -> bool {
+        let around = near.get(k.saturating_sub(1)..(k + 2).min(near.len())).unwrap_or_default();
+        let led = || [k, k + 1].iter().any(|&k| self.wheels().any(|w| self.is_led(k, w.0, w.1)));
+        around.iter().any(|n| !n.is_empty()) || led()
+    }
+
+    /// Whether a node is on a wheel.
+    fn is_led(&self, node: usize, center: Vec2, radius: f64) -> bool {
+        let reach = self.reach() - 0.5 * self.cable.diameter_m;
+        (self.answer.nodes[node].at() - center).norm() <= radius + reach
     }
 
     /// The piece from node k of a stiff cable: its way is an arc.

@@ -19,6 +19,10 @@ pub const LENGTH: f64 = 1e-6;
 /// linear forces are of the second order with 1/24, arcs with 1/8.
 pub const TURN: f64 = 0.25;
 
+/// Part of the turn that the weight of a bar and its neighbours makes, by which a bar beside a contact may be off: weight that lies on a round
+/// is carried half by the bar beside it.
+pub const LUMPED: f64 = 0.5;
+
 /// Turn of the force between two nodes above which nothing is asked of the direction of their way: the fold of a slack cable.
 pub const FOLD: f64 = 0.5;
 

@@ -223,7 +223,10 @@ impl Dynamics {
             if let Some(report) = out.last_mut() {
                 let force = pair.normal * load - pair.tangent() * rubbing;
                 report.force_n = [report.force_n[0] + force.x, report.force_n[1] + force.y];
-                report.samples.push(ContactSample::new(self.mesh.arc_length[k], force));
+                // The other side of the contact feels the opposite.
+                for (node, part) in pair.shares() {
+                    report.samples.push(ContactSample::new(self.mesh.arc_length[node], force * part));
+                }
                 report.normal_n += load;
                 report.ends_m = self.mesh.arc_length[k];
                 report.friction_n -= rubbing * pair.tangent().dot(&along);

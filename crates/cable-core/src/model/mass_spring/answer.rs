@@ -55,6 +55,13 @@ impl MassSpringModel {
         out
     }
 
+    /// Internal force where the bar `e` beside a pulley meets it, N: that of its middle and the load on the way, `side` −1 before the
+    /// pulley and 1 beyond it; the bar's end lies `arc` (m) on the wheel.
+    fn beside_pulley(&self, e: usize, side: f64, arc: f64) -> Vec2 {
+        let way = 0.5 * self.span[e] - arc / self.problem.thermal_stretch;
+        self.bar_force(e) + self.problem.body_force(self.time_s) * (side * way)
+    }
+
     /// Tension along the arc grows exponentially from one end to the other.
     fn wheel_nodes(&self, p: Pulley, out: &mut Vec<Node>) {
         let [s0, s1] = self.on_wheel_from_to(&p);
@@ -66,7 +73,11 @@ impl MassSpringModel {
             let (along, tension_n) = (p.radius * p.turn * f, self.tension_round(&p, f));
             let angle = p.mark + p.facing * (p.arc[0] - along) / p.radius;
             let (sin, cos) = angle.sin_cos();
-            let t = if p.radius > 0.0 { Vec2::new(cos, sin) } else { b.direction };
+            let t = match (p.radius > 0.0, k == count) {
+                (true, _) => Vec2::new(cos, sin),
+                (false, true) => a.direction,
+                (false, false) => b.direction,
+            };
             let at = if p.radius > 0.0 { self.x[p.node] + perp(t) * (p.facing * p.radius) } else { self.x[p.node] };
             let v = self.v[p.node]
                 - if k == 0 {
@@ -86,7 +97,12 @@ impl MassSpringModel {
                 strain: tension_n / self.problem.axial_stiffness,
                 stress_pa: tension_n / self.problem.cable.area_m2(),
                 curvature_per_m: if p.radius > 0.0 { -p.facing / p.radius } else { 0.0 },
-                force_n: (t * tension_n).into(),
+                force_n: match k {
+                    0 => self.beside_pulley(p.node - 1, -1.0, p.arc[0]),
+                    k if k == count => self.beside_pulley(p.node, 1.0, p.arc[1]),
+                    _ => t * tension_n,
+                }
+                .into(),
             });
         }
     }
