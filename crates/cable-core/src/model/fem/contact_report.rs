@@ -184,20 +184,23 @@ struct OnRound {
 }
 
 /// The cable round a corner, post or pulley, from where it meets the round, or from halfway to the sliding node before, to where it
-/// leaves it, or halfway to the next. Its tension grows evenly in its logarithm, as friction makes it.
+/// leaves it, or halfway to the next. Its tension is that of its weight, and beyond that grows evenly in its logarithm, as friction makes it.
 fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2], tension: &[f64]) -> Vec<OnRound> {
     let mesh = &d.mesh;
     let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
     let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(node)));
     let stretch = [0, 1].map(|j| paths[j].length / (mesh.arc_length[k + j] - mesh.arc_length[k + j - 1]));
     let (mark, sense, radius) = (node.end.mark, node.end.sense, node.end.radius);
+    // What lies between the node and where the cable meets or leaves the round has its own weight.
+    let lap = [0, 1].map(|j| paths[j].arcs[1 - j] * radius / stretch[j] * [-1.0, 1.0][j]);
+    let ends = [0, 1].map(|j| load.force[j] - d.task.body * lap[j]);
     // It leaves where its force does: what sags turns further round than the straight bar that stands for it.
     let sag = |j: usize, from: Vec2, to: Vec2| {
         let sag = sense * angle_between(from, to);
         if same[j] || sag.abs() > MOST_SAG { 0.0 } else { sag }
     };
-    let before = paths[0].arcs[1] + sag(0, load.force[0], paths[0].direction);
-    let after = paths[1].arcs[0] + sag(1, paths[1].direction, load.force[1]);
+    let before = paths[0].arcs[1] + sag(0, ends[0], paths[0].direction);
+    let after = paths[1].arcs[0] + sag(1, paths[1].direction, ends[1]);
     let whole = before + after;
     if !(whole > 0.0 && radius > 0.0) {
         return vec![OnRound {
@@ -208,15 +211,24 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
             stretch: stretch[1],
         }];
     }
-    let [a, b] = [0, 1].map(|j| if same[j] { tension[k + j - 1] } else { load.tension[j] });
+    let [a, b] = [0, 1].map(|j| if same[j] { tension[k + j - 1] } else { ends[j].norm() });
     let count = (whole / ARC_STEP).ceil();
+    let normal = |turned: f64| {
+        let (sin, cos) = (sense * turned).sin_cos();
+        Vec2::new(cos * mark.x - sin * mark.y, sin * mark.x + cos * mark.y)
+    };
+    // dT = −b·dx without friction.
+    let first = normal(-before);
+    let unrubbed = |normal: Vec2| a - d.task.body.dot(&(normal - first)) * radius / mesh.thermal_stretch;
+    let last = unrubbed(normal(after));
     let at = |i: f64| {
         let f = i / count;
         let turned = f * whole - before;
         let stretch = stretch[usize::from(turned > 0.0)];
-        let (sin, cos) = (sense * turned).sin_cos();
-        let normal = Vec2::new(cos * mark.x - sin * mark.y, sin * mark.x + cos * mark.y);
-        let tension = if a > 0.0 && b > 0.0 { a * (b / a).powf(f) } else { a + (b - a) * f };
+        let normal = normal(turned);
+        let smooth = unrubbed(normal);
+        let rubbed = a > 0.0 && b > 0.0 && smooth > 0.0 && last > 0.0;
+        let tension = if rubbed { smooth * (b / last).powf(f) } else { a + (b - a) * f };
         let force = perp(normal) * (sense * tension);
         let arc_length = mesh.arc_length[k] + turned * radius / stretch;
         OnRound { arc_length, at: node.end.center + normal * radius, tension, force, stretch }
