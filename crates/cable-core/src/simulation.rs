@@ -207,7 +207,7 @@ impl Simulation {
         loop {
             let found = self.each(Strand::settle).and_then(|()| {
                 self.look(false);
-                if std::env::var("NOSOUND").is_ok() { Ok(()) } else { self.sound() }
+                self.sound()
             });
             let Err(error) = found else { return Ok(()) };
             // What is said to have no resting place is not sought one by another model.

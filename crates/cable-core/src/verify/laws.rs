@@ -338,7 +338,6 @@ impl Subject<'_> {
 
     fn balance(&self, found: &mut Verification, near: &[Vec<Near>]) {
         found.ask(Law::Balance);
-        found.ask(Law::End);
         let points = self.point_forces();
         let limit = BALANCE * self.scale;
         let mut sums = Balance { scale_n: larger(found.balance.scale_n, self.scale), ..found.balance };

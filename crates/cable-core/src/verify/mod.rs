@@ -33,7 +33,7 @@ pub enum Law {
     Finite,
     /// Arc length grows from 0 to the cable's length.
     Material,
-    /// Supports, contacts, loads and weight add up to nothing, of the whole cable and of every piece.
+    /// Supports, contacts, loads and weight add up to nothing, of the whole cable and of every piece, its free ends with it.
     Balance,
     /// The stiff cable's moments balance its shear.
     Moment,
@@ -47,13 +47,28 @@ pub enum Law {
     Push,
     /// Friction lies within its cone.
     Friction,
-    /// The force at an end is what hangs there.
-    End,
     /// The cable does not run through itself.
     SelfContact,
 }
 
 impl Law {
+    /// Its name in a sentence.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Finite => "finite numbers",
+            Self::Material => "material from end to end",
+            Self::Balance => "balance of forces",
+            Self::Moment => "balance of moments",
+            Self::Compression => "no compression",
+            Self::Length => "length",
+            Self::Penetration => "nothing inside obstacles",
+            Self::Push => "contacts push",
+            Self::Friction => "friction within its cone",
+            Self::SelfContact => "nothing through itself",
+        }
+    }
+
     /// The law in words, as it is broken.
     #[must_use]
     pub fn broken(self) -> &'static str {
@@ -67,7 +82,6 @@ impl Law {
             Self::Penetration => "the cable lies inside an obstacle",
             Self::Push => "a contact pulls",
             Self::Friction => "friction exceeds its cone",
-            Self::End => "an end is not pulled by what hangs there",
             Self::SelfContact => "the cable runs through itself",
         }
     }
@@ -79,7 +93,7 @@ impl Law {
             Self::Finite => "",
             Self::Material | Self::Length | Self::Penetration | Self::SelfContact => "m",
             Self::Moment => "N m",
-            Self::Balance | Self::Compression | Self::Push | Self::Friction | Self::End => "N",
+            Self::Balance | Self::Compression | Self::Push | Self::Friction => "N",
         }
     }
 }
@@ -172,6 +186,21 @@ impl Verification {
     #[must_use]
     pub fn worst(&self) -> Option<&Finding> {
         self.findings.first()
+    }
+
+    /// The verdict in a line: sound or not, the balance, and what was not asked.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let share = if self.balance.scale_n > 0.0 { self.balance.residual_n / self.balance.scale_n } else { 0.0 };
+        let mut line = match self.worst() {
+            None => format!("sound, forces balance within {share:.0e} of {:.4} N", self.balance.scale_n),
+            Some(worst) => format!("NOT SOUND: {worst}"),
+        };
+        for what in &self.not_checked {
+            line.push_str("; not checked: ");
+            line.push_str(what);
+        }
+        line
     }
 
     fn ask(&mut self, law: Law) {

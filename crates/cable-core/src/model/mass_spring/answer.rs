@@ -58,7 +58,7 @@ impl MassSpringModel {
     /// Internal force where the bar `e` beside a pulley meets it, N: that of its middle and the load on the way, `side` −1 before the
     /// pulley and 1 beyond it; the bar's end lies `arc` (m) on the wheel.
     fn beside_pulley(&self, e: usize, side: f64, arc: f64) -> Vec2 {
-        let way = 0.5 * self.span[e] - arc / self.problem.thermal_stretch;
+        let way = self.span[e] - 0.5 * self.share[e] - arc / self.problem.thermal_stretch;
         self.bar_force(e) + self.problem.body_force(self.time_s) * (side * way)
     }
 
@@ -181,7 +181,7 @@ impl MassSpringModel {
     fn internal_force(&self, i: usize) -> Vec2 {
         match (i, i < self.rest.len()) {
             (0, _) => self.end_force(i),
-            (_, true) => self.bar_force(i) + self.problem.body_force(self.time_s) * (0.5 * self.span[i]),
+            (_, true) => self.bar_force(i) + self.problem.body_force(self.time_s) * (0.5 * self.share[i]),
             (_, false) => -self.end_force(i),
         }
     }
