@@ -39,9 +39,8 @@ pub(super) fn slack(problem: &Problem, answer: &CableSolution, out: &mut Vec<War
 /// What lies without tension on less ground than it is long.
 fn folds(problem: &Problem, answer: &CableSolution) -> Option<Warning> {
     let limit_n = SLACK_TENSION * problem.force_scale();
-    let lies = |s: f64| {
-        problem.floor_friction.is_some() || answer.contacts.iter().any(|c| c.begins_m <= s && s <= c.ends_m)
-    };
+    let lies =
+        |s: f64| problem.floor_friction.is_some() || answer.contacts.iter().any(|c| c.begins_m <= s && s <= c.ends_m);
     let (mut material, mut ground, mut most) = (0.0, 0.0, 0.0);
     let mut middle = None;
     for pair in answer.pieces().flat_map(|p| p.windows(2)) {

@@ -414,7 +414,8 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
             r.normal_n += mean * load.turn;
             push += node.end.mark * (mean * load.turn);
             turn += load.turn;
-            r.friction_n += a - b;
+            // Without friction what they differ by is weight alone.
+            r.friction_n += if node.friction > 0.0 { a - b } else { 0.0 };
             slips &= !node.sticks();
             // The round's own arc on either side of the node is of the contact.
             let lap = |e: usize, side: usize| {

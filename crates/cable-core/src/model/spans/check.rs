@@ -163,7 +163,11 @@ fn along(track: &Track<'_>, c: &Contact, (greatest, length): (f64, f64)) -> Resu
     if let (0.0, [first, .., last]) = (track.drag, c.history.knots())
         && (lost(first.s, c.ends.s[0]) || lost(last.s, c.ends.s[1]))
     {
-        return Err(Trouble::Unsound { what: "material is lost at an end of a contact", s: first.s, at: track.place(first.p).at });
+        return Err(Trouble::Unsound {
+            what: "material is lost at an end of a contact",
+            s: first.s,
+            at: track.place(first.p).at,
+        });
     }
     for pair in c.history.knots().windows(2) {
         let (knot, next) = (&pair[0], &pair[1]);
