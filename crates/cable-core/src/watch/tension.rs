@@ -63,7 +63,7 @@ fn folds(problem: &Problem, answer: &CableSolution) -> Option<Warning> {
         at.arc_length_m, at.x_m, at.y_m
     );
     let warning = Warning::new(WarningKind::Slack, name, at.arc_length_m, [over, least], message);
-    (over > least).then(|| Warning { at_m: Some([at.x_m, at.y_m]), ..warning })
+    (over > least).then_some(Warning { at_m: Some([at.x_m, at.y_m]), ..warning })
 }
 
 /// Appends the longest part without tension.

@@ -255,7 +255,7 @@ fn moments(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
         return Vec::new();
     }
     let slides = |k: usize| mesh.sliding.get(k).is_some_and(Option::is_some);
-    let carries = |k: usize| !slides(k) && !slides(k + 1) && !(k > 0 && slides(k - 1));
+    let carries = |k: usize| !(slides(k) || slides(k + 1) || k > 0 && slides(k - 1));
     let stiffness = mesh.bending_stiffness / mesh.thermal_stretch;
     (0..x.len()).map(|k| if carries(k) { stiffness * curvature_at(mesh, k, x) } else { 0.0 }).collect()
 }
