@@ -155,8 +155,10 @@ fn lying_over_the_robot_the_forces_balance() {
     assert!(r.push_y_n < -0.05 * weight, "{r:?}");
     let sideways = sum(|s| s.reaction_x_n) + r.push_x_n;
     assert!(sideways.abs() <= ground.x + 2e-3 * weight, "{sideways}: {r:?} {:?}", cable.contacts);
-    // What it turns round on the deck leads it: sharp, but no kink of a free cable.
-    assert!(answer.warnings.iter().all(|w| w.kind != WarningKind::Kink), "{:?}", answer.warnings);
+    // What it turns round on the deck leads it: sharp, but no kink of a free cable, as there may be in what hangs slack behind it.
+    let on_deck = |w: &&cable_core::solution::Warning| w.at_m.is_some_and(|at| at[1] > 1.0);
+    let kinks = answer.warnings.iter().filter(on_deck).filter(|w| w.kind == WarningKind::Kink).count();
+    assert_eq!(kinks, 0, "{:?}", answer.warnings);
     assert!(answer.warnings.iter().any(|w| w.kind == WarningKind::BendRadius), "{:?}", answer.warnings);
     // The robot drives on under it and back.
     drive(&mut s, 0.6, 2.0);

@@ -244,7 +244,12 @@ impl Body {
             Some(_) => -1.0,
             None => (p - e.p).dot(&e.normal()).signum(),
         };
-        let normal = unit_or((p - at) * side, e.normal());
+        // Beside an edge it is the edge's own: at a point on the edge p − at is what rounding left of it.
+        let normal = match corner {
+            Some(_) => unit_or((p - at) * side, e.normal()),
+            None if self.solid || (p - e.p).dot(&e.normal()) >= 0.0 => e.normal(),
+            None => -e.normal(),
+        };
         let gap = self.gap(corner.map_or(self.first + 2 * k, |c| c.feature), d * side, normal, at);
         Some(gap)
     }

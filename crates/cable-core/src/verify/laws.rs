@@ -12,7 +12,7 @@ use super::tolerance::{
 };
 use super::{Balance, Depth, Finding, Law, Verification};
 use crate::math::{Vec2, cross, larger, vec2};
-use crate::scene::{Cable, Scene, SupportKind, View};
+use crate::scene::{Cable, Scene, Support, SupportKind, View};
 use crate::solution::{CableSolution, ContactReport, Node, SupportReaction};
 
 /// One cable with what there is to know of it.
@@ -252,8 +252,14 @@ impl Subject<'_> {
         let radius = 0.5 * self.cable.diameter_m;
         let allowed = (DEPTH_DIAMETERS * self.cable.diameter_m).min(DEPTH_M);
         let nodes = &self.answer.nodes;
+        // Where the scene itself holds the axis on a surface, the cable is as deep there as it is thick.
+        let held = self.held_at();
+        let on_surface = MATERIAL * self.cable.length_m;
         for (k, n) in nodes.iter().enumerate() {
             if let Some((body, depth)) = self.surroundings.inside(n.at()) {
+                if depth <= on_surface && held.contains(&n.at()) {
+                    continue;
+                }
                 let mut finding = self.finding(Law::Penetration, k, (depth + radius, allowed));
                 self.surroundings.name(body).clone_into(&mut finding.with);
                 found.report(finding);
@@ -266,7 +272,8 @@ impl Subject<'_> {
             for n in near {
                 let value = radius - n.distance;
                 let end = n.at == pair[0].at() || n.at == pair[1].at();
-                let limit = allowed + if end { 0.0 } else { sagitta };
+                let given = if held.contains(&n.at) { radius } else { 0.0 };
+                let limit = allowed + given + if end { 0.0 } else { sagitta };
                 if !(value <= limit) {
                     let mut finding = self.finding(Law::Penetration, k, (value, limit));
                     self.surroundings.name(n.body).clone_into(&mut finding.with);
@@ -275,6 +282,13 @@ impl Subject<'_> {
                 }
             }
         }
+    }
+
+    /// Where supports hold the cable by its axis, m.
+    fn held_at(&self) -> Vec<Vec2> {
+        let held = |s: &&Support| matches!(s.kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Robot);
+        let given = self.cable.supports.iter().zip(&self.answer.supports);
+        given.filter(|(s, _)| held(s)).map(|(_, r)| Vec2::new(r.x_m, r.y_m)).collect()
     }
 
     /// Contacts as they are reported: they push, within their cone.

@@ -13,6 +13,14 @@ const SLACK_TENSION: f64 = 0.01;
 /// that a robot can run over are not. The low point of a hanging span, however deep, is slack over 2 % of it at most.
 const SLACK_PART: f64 = 0.05;
 
+/// Material between two nodes that lies in folds is longer than their distance by more than this part of itself. Smaller: rounding;
+/// larger: folds spread over much ground are not seen.
+const FOLDED_PART: f64 = 1e-3;
+
+/// Material that lies in folds beyond the ground it has, of the cable's length, that is worth a word. Smaller: every lay that was
+/// pushed together a little; larger: 10 m lie on 9.9 m of ground without a word.
+const FOLDED_LENGTH: f64 = 5e-3;
+
 /// Appends the tension limit that is exceeded, at the worst place.
 pub(super) fn limits(cable: &Cable, answer: &CableSolution, out: &mut Vec<Warning>) {
     if let Some(top) = worst(&answer.nodes, |n| n.tension_n) {
@@ -20,8 +28,46 @@ pub(super) fn limits(cable: &Cable, answer: &CableSolution, out: &mut Vec<Warnin
     }
 }
 
-/// Appends the longest part without tension.
+/// Appends how much cable lies in folds, or else the longest part without tension.
 pub(super) fn slack(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
+    match folds(problem, answer) {
+        Some(warning) => out.push(warning),
+        None => loose(problem, answer, out),
+    }
+}
+
+/// What lies without tension on less ground than it is long.
+fn folds(problem: &Problem, answer: &CableSolution) -> Option<Warning> {
+    let limit_n = SLACK_TENSION * problem.force_scale();
+    let lies =
+        |s: f64| problem.floor_friction.is_some() || answer.contacts.iter().any(|c| c.begins_m <= s && s <= c.ends_m);
+    let (mut material, mut ground, mut most) = (0.0, 0.0, 0.0);
+    let mut middle = None;
+    for pair in answer.pieces().flat_map(|p| p.windows(2)) {
+        let [a, b] = pair else { continue };
+        let (length, way) = (b.arc_length_m - a.arc_length_m, (b.at() - a.at()).norm());
+        let over = length * problem.thermal_stretch - way;
+        let slack = a.tension_n < limit_n && b.tension_n < limit_n;
+        if slack && over > FOLDED_PART * length && lies(0.5 * (a.arc_length_m + b.arc_length_m)) {
+            material += length;
+            ground += way;
+            if over > most {
+                (most, middle) = (over, Some(a));
+            }
+        }
+    }
+    let (over, least, at) = (material - ground, FOLDED_LENGTH * problem.length, middle?);
+    let name = &problem.cable.name;
+    let message = format!(
+        "{material:.2} m of `{name}` lie without tension in folds on {ground:.2} m of ground, most of it at {:.3} m ({:.3} m, {:.3} m): in a plane layers and loops cannot be seen, so how they lie is left open; shorten the cable or give it more ground",
+        at.arc_length_m, at.x_m, at.y_m
+    );
+    let warning = Warning::new(WarningKind::Slack, name, at.arc_length_m, [over, least], message);
+    (over > least).then_some(Warning { at_m: Some([at.x_m, at.y_m]), ..warning })
+}
+
+/// Appends the longest part without tension.
+fn loose(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
     let limit_n = SLACK_TENSION * problem.force_scale();
     let mut longest: Option<(f64, &[Node])> = None;
     for piece in answer.pieces() {

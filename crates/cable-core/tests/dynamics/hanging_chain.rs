@@ -5,6 +5,10 @@ use cable_core::scene::{Support, SupportKind};
 
 use super::measure::{G, bdf2_slows, cable, ladder, masses, ring, sampled, started};
 
+/// Swing of each mode in lengths of the chain. Larger: the lowest bars, which only pull, go slack in the third mode; smaller: what a
+/// step leaves unbalanced shows in the first.
+const SWING: [f64; 3] = [5e-3, 5e-3, 1e-3];
+
 /// Zeros of J₀ (M. Abramowitz, I. Stegun, "Handbook of mathematical functions", 1964, table 9.5).
 pub const ZEROS: [f64; 3] = [2.404825557695773, 5.520078110286311, 8.653727912911013];
 
@@ -27,7 +31,7 @@ fn frequency(k: usize, segments: usize) -> f64 {
     let shape = |s: f64| j0(ZEROS[k] * (1.0 - s / length).max(0.0).sqrt());
     let mut sim = started(&scene, |state| {
         for (p, s) in state.position_m.iter_mut().zip(&state.arc_length_m) {
-            p.x = 5e-3 * length * shape(*s);
+            p.x = SWING[k] * length * shape(*s);
         }
     });
     let mass = masses(&scene, &sim.states()[0]);

@@ -90,6 +90,12 @@ impl Mesh {
         self.arc_length.len()
     }
 
+    /// Whether nothing resists bending.
+    #[must_use]
+    pub fn is_flexible(&self) -> bool {
+        self.bending_stiffness == 0.0
+    }
+
     /// Half-bandwidth of the Hessian.
     #[must_use]
     pub fn half_bandwidth(&self) -> usize {

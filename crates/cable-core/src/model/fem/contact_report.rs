@@ -3,13 +3,20 @@
 use super::assembly::Mesh;
 use super::contact_set::{ContactSet, Rub, Touch};
 use super::dynamics::Dynamics;
-use super::sliding::{Seat, Sliding};
+use super::path::angle_between;
+use super::sliding::{Load, Seat, Sliding};
 use crate::contact::friction;
 use crate::energy::bending::turn;
-use crate::math::{Vec2, perp};
+use crate::math::{Vec2, larger, perp};
 use crate::model::arc_nodes;
 use crate::problem::Problem;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
+
+/// Nodes on a round: one at least every so many radians.
+const ARC_STEP: f64 = 0.13;
+
+/// Most that a bar sags where it leaves a round and is drawn so, rad. More: slack bars, whose sag is not known, lead away from it.
+const MOST_SAG: f64 = 0.5;
 
 /// The answer at positions `x` and velocities `v`.
 #[must_use]
@@ -31,13 +38,13 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
     }
 }
 
-/// Tension of each bar, N (a slack one pushes a little: 0 is reported).
+/// Tension of each bar, N; a flexible one only pulls.
 fn bar_tensions(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
     let mesh = &d.mesh;
     (0..mesh.rest_length.len())
         .map(|e| {
             let t = mesh.bar(e).tension(mesh.path(e, x).length);
-            if t < 0.0 { 0.0 } else { t }
+            if t < 0.0 && mesh.is_flexible() { 0.0 } else { t }
         })
         .collect()
 }
@@ -170,37 +177,14 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
     let mut out: Vec<Node> = Vec::with_capacity(n + 2);
     for k in 0..n {
         if let (Some(sliding), Some(load)) = (&mesh.sliding[k], d.load(k)) {
-            let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
-            let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(sliding)));
-            // On a round the cable has the direction of the round, and half of the node's friction has acted.
-            let tension = (load.tension[0] * load.tension[1]).sqrt();
-            let tangent = perp(sliding.end.mark) * (sliding.end.sense * tension);
-            for j in 0..2 {
-                // Where the cable meets the round and leaves it; one node where that is one place.
-                let arc = if same[j] { 0.0 } else { sliding.end.radius * paths[j].arcs[1 - j] };
-                let stretch = mesh.thermal_stretch * (1.0 + load.tension[j] / d.problem.axial_stiffness);
-                let beyond = [-1.0, 1.0][j] * arc / stretch;
-                let force = if same[j] { tangent } else { load.force[j] - d.task.body * beyond };
-                let s = mesh.arc_length[k] + beyond;
-                if out.last().is_none_or(|l: &Node| s > l.arc_length_m + 1e-9) {
-                    let at = if same[j] { sliding.position() } else { paths[j].ends[1 - j] };
-                    let velocity = paths[j].direction * (-d.motion.w[k] * stretch);
-                    let curvature =
-                        if sliding.end.radius > 0.0 { stretch * sliding.end.sense / sliding.end.radius } else { 0.0 };
-                    let t =
-                        if load.tension[1] > load.tension[0] && arc == 0.0 { load.tension[1] } else { load.tension[j] };
-                    let next = node(s, (at, velocity), t, (curvature, force));
-                    // From where it meets the round, or from the mark before on it.
-                    let turn = match (j, same[0]) {
-                        (1, true) => paths[1].arcs[0],
-                        (1, false) => paths[0].arcs[1] + if same[1] { 0.0 } else { paths[1].arcs[0] },
-                        (_, true) => paths[0].arcs[0] + paths[0].arcs[1],
-                        _ => 0.0,
-                    };
-                    round_nodes(&mut out, &next, (sliding, turn), d.problem.radius);
-                    out.push(next);
+            for p in on_round(d, (k, sliding, &load), x, tension) {
+                let velocity = p.force.try_normalize(0.0).unwrap_or_default() * (-d.motion.w[k] * p.stretch);
+                let curvature =
+                    if sliding.end.radius > 0.0 { p.stretch * sliding.end.sense / sliding.end.radius } else { 0.0 };
+                if out.last().is_none_or(|l: &Node| p.arc_length > l.arc_length_m + 1e-9) {
+                    out.push(node(p.arc_length, (p.at, velocity), p.tension, (curvature, p.force)));
                 } else if let Some(last) = out.last_mut() {
-                    last.force_n = force.into();
+                    last.force_n = p.force.into();
                 }
             }
             continue;
@@ -223,6 +207,71 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
     out
 }
 
+/// A point of the cable on a round.
+struct OnRound {
+    arc_length: f64,
+    at: Vec2,
+    tension: f64,
+    /// Internal force just beyond it, N.
+    force: Vec2,
+    /// Length of a metre of arc length.
+    stretch: f64,
+}
+
+/// The cable round a corner, post or pulley, from where it meets the round, or from halfway to the sliding node before, to where it
+/// leaves it, or halfway to the next. Its tension is that of its weight, and beyond that grows evenly in its logarithm, as friction makes it.
+fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2], tension: &[f64]) -> Vec<OnRound> {
+    let mesh = &d.mesh;
+    let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
+    let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(node)));
+    let stretch = [0, 1].map(|j| paths[j].length / (mesh.arc_length[k + j] - mesh.arc_length[k + j - 1]));
+    let (mark, sense, radius) = (node.end.mark, node.end.sense, node.end.radius);
+    // What lies between the node and where the cable meets or leaves the round has its own weight.
+    let lap = [0, 1].map(|j| paths[j].arcs[1 - j] * radius / stretch[j] * [-1.0, 1.0][j]);
+    let ends = [0, 1].map(|j| load.force[j] - d.task.body * lap[j]);
+    // It leaves where its force does: what sags turns further round than the straight bar that stands for it.
+    let sag = |j: usize, from: Vec2, to: Vec2| {
+        let sag = sense * angle_between(from, to);
+        if same[j] || sag.abs() > MOST_SAG { 0.0 } else { sag }
+    };
+    let before = paths[0].arcs[1] + sag(0, ends[0], paths[0].direction);
+    let after = paths[1].arcs[0] + sag(1, paths[1].direction, ends[1]);
+    let whole = before + after;
+    if !(whole > 0.0 && radius > 0.0) {
+        return vec![OnRound {
+            arc_length: mesh.arc_length[k],
+            at: node.position(),
+            tension: larger(load.tension[0], load.tension[1]),
+            force: load.force[1],
+            stretch: stretch[1],
+        }];
+    }
+    let [a, b] = [0, 1].map(|j| if same[j] { tension[k + j - 1] } else { ends[j].norm() });
+    let chords = arc_nodes::parts(radius, whole, d.problem.radius) as f64;
+    let count = larger((whole / ARC_STEP).ceil(), chords);
+    let normal = |turned: f64| {
+        let (sin, cos) = (sense * turned).sin_cos();
+        Vec2::new(cos * mark.x - sin * mark.y, sin * mark.x + cos * mark.y)
+    };
+    // dT = −b·dx without friction.
+    let first = normal(-before);
+    let unrubbed = |normal: Vec2| a - d.task.body.dot(&(normal - first)) * radius / mesh.thermal_stretch;
+    let last = unrubbed(normal(after));
+    let at = |i: f64| {
+        let f = i / count;
+        let turned = f * whole - before;
+        let stretch = stretch[usize::from(turned > 0.0)];
+        let normal = normal(turned);
+        let smooth = unrubbed(normal);
+        let rubbed = a > 0.0 && b > 0.0 && smooth > 0.0 && last > 0.0;
+        let tension = if rubbed { smooth * (b / last).powf(f) } else { a + (b - a) * f };
+        let force = perp(normal) * (sense * tension);
+        let arc_length = mesh.arc_length[k] + turned * radius / stretch;
+        OnRound { arc_length, at: node.end.center + normal * radius, tension, force, stretch }
+    };
+    (0..=count as usize).map(|i| at(i as f64)).collect()
+}
+
 /// d(angle)/d(arc length) at a node, 1/m.
 fn curvature_at(mesh: &Mesh, k: usize, x: &[Vec2]) -> f64 {
     if k > 0 && k + 1 < x.len() {
@@ -242,7 +291,7 @@ fn moments(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
         return Vec::new();
     }
     let slides = |k: usize| mesh.sliding.get(k).is_some_and(Option::is_some);
-    let carries = |k: usize| !slides(k) && !slides(k + 1) && !(k > 0 && slides(k - 1));
+    let carries = |k: usize| !(slides(k) || slides(k + 1) || k > 0 && slides(k - 1));
     let stiffness = mesh.bending_stiffness / mesh.thermal_stretch;
     (0..x.len()).map(|k| if carries(k) { stiffness * curvature_at(mesh, k, x) } else { 0.0 }).collect()
 }
@@ -252,48 +301,6 @@ fn shear(mesh: &Mesh, moments: &[f64], e: usize, x: &[Vec2]) -> Vec2 {
     let (Some(before), Some(after)) = (moments.get(e), moments.get(e + 1)) else { return Vec2::zeros() };
     let path = mesh.path(e, x);
     if path.length > 0.0 { perp(path.direction) * ((before - after) / path.length) } else { Vec2::zeros() }
-}
-
-/// Part of its radius by which a node may be off a round and be on it: rounding. Smaller: arcs far from the origin have no nodes;
-/// larger: a node beside a round is taken for one on it.
-const SAME_ROUND: f64 = 1e-6;
-
-/// Nodes between the last one and the next, which lie `turn` (rad) apart on the round of a sliding node. Arc length and speed run
-/// evenly from one to the other, the internal force has the direction of the round, and its size is that of a cable that rubs evenly:
-/// T e^{mφ}.
-fn round_nodes(out: &mut Vec<Node>, next: &Node, (sliding, turn): (&Sliding, f64), cable_radius: f64) {
-    let Some(last) = out.last().copied() else { return };
-    let end = &sliding.end;
-    let parts = arc_nodes::parts(end.radius, turn, cable_radius);
-    let spoke = last.at() - end.center;
-    if !(turn > 0.0) || (spoke.norm() - end.radius).abs() > SAME_ROUND * end.radius {
-        return;
-    }
-    let whole = end.sense * turn;
-    let rotated = |v: Vec2, angle: f64| v * angle.cos() + perp(v) * angle.sin();
-    let grown = |a: f64, b: f64, f: f64| if a > 0.0 && b > 0.0 { a * (b / a).powf(f) } else { a + (b - a) * f };
-    let material = arc_nodes::material(parts, |f| grown(last.strain, next.strain, f));
-    for (i, share) in (1..parts).zip(material) {
-        let f = i as f64 / parts as f64;
-        let even = |a: f64, b: f64| a + (b - a) * f;
-        let normal = rotated(spoke, whole * f);
-        let at = end.center + normal;
-        let size = grown(Vec2::from(last.force_n).norm(), Vec2::from(next.force_n).norm(), f);
-        let mix = |of: fn(&Node) -> f64| even(of(&last), of(next));
-        let grow = |of: fn(&Node) -> f64| grown(of(&last), of(next), f);
-        out.push(Node {
-            arc_length_m: last.arc_length_m + (next.arc_length_m - last.arc_length_m) * share,
-            x_m: at.x,
-            y_m: at.y,
-            vx_m_per_s: mix(|n| n.vx_m_per_s),
-            vy_m_per_s: mix(|n| n.vy_m_per_s),
-            tension_n: grow(|n| n.tension_n),
-            strain: grow(|n| n.strain),
-            stress_pa: grow(|n| n.stress_pa),
-            force_n: (perp(normal) * (end.sense * size / end.radius)).into(),
-            ..*next
-        });
-    }
 }
 
 /// The force of the cable on a pulley with its tensions and arc length.
@@ -368,12 +375,12 @@ fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64], lain: &[Option<Lain>; 2])
         let mut stretch: Vec<Touch> = Vec::new();
         for t in touches.iter().filter(|t| t.pair.gap.obstacle == obstacle) {
             if stretch.last().is_some_and(|l| t.node > l.node + 1) {
-                out.push(report(d, x, tension, &stretch));
+                out.push(report(d, x, (tension, lain), &stretch));
                 stretch.clear();
             }
             stretch.push(*t);
         }
-        out.push(report(d, x, tension, &stretch));
+        out.push(report(d, x, (tension, lain), &stretch));
     }
     for end in lain.iter().flatten() {
         let (tip, at) = (d.mesh.arc_length[end.node], d.mesh.arc_length[end.next]);
@@ -389,6 +396,22 @@ fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64], lain: &[Option<Lain>; 2])
             c.arc_length_m += 0.5 * (tip - at);
             let half = (x[end.node] - x[end.next]) * 0.5;
             (c.x_m, c.y_m) = (c.x_m + half.x, c.y_m + half.y);
+        } else {
+            // Only its end lies there.
+            let mut c = ContactReport {
+                obstacle: name.to_owned(),
+                x_m: x[end.node].x,
+                y_m: x[end.node].y,
+                arc_length_m: tip,
+                normal: [end.normal.x, end.normal.y],
+                normal_n: end.force.dot(&end.normal),
+                friction_n: end.force.dot(&end.along),
+                begins_m: tip,
+                ends_m: tip,
+                ..ContactReport::default()
+            };
+            c.set_samples(vec![ContactSample::new(tip, end.force)]);
+            out.push(c);
         }
     }
     rounds(d, x, &mut out);
@@ -435,7 +458,8 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
             r.normal_n += mean * load.turn;
             push += node.end.mark * (mean * load.turn);
             turn += load.turn;
-            r.friction_n += a - b;
+            // Without friction what they differ by is weight alone.
+            r.friction_n += if node.friction > 0.0 { a - b } else { 0.0 };
             slips &= !node.sticks();
             // The round's own arc on either side of the node is of the contact.
             let lap = |e: usize, side: usize| {
@@ -460,7 +484,7 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
     }
 }
 
-fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> ContactReport {
+fn report(d: &Dynamics, x: &[Vec2], (tension, lain): (&[f64], &[Option<Lain>; 2]), stretch: &[Touch]) -> ContactReport {
     let (Some(first), Some(last)) = (stretch.first(), stretch.last()) else {
         return ContactReport::default();
     };
@@ -468,8 +492,14 @@ fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> Conta
     let before = if first.on_segment { first.node } else { first.node.saturating_sub(1) };
     let after = last.node.min(bars - 1);
     let (mut normal, mut normal_n, mut friction_n) = (Vec2::zeros(), 0.0, 0.0);
+    // What presses on a node that stays where it is, over a round or as an end that lies, is of that round, or of the end.
+    let stays = |k: usize| d.mesh.sliding[k].is_some() || lain.iter().flatten().any(|l| l.node == k);
+    let part = |t: &Touch| {
+        let [a, b] = t.shares();
+        (if stays(t.node) { 0.0 } else { a }) + (if b != 0.0 && !stays(t.node + 1) { b } else { 0.0 })
+    };
     for t in stretch {
-        let load = t.load(&d.contacts.barrier);
+        let load = t.load(&d.contacts.barrier) * part(t);
         normal_n += load;
         normal += t.pair.gap.normal * load;
     }
@@ -480,7 +510,7 @@ fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> Conta
     for rub in rubs.clone() {
         let e = rub.touch.node.min(bars - 1);
         let along = d.mesh.path(e, x).direction;
-        friction_n += rub_force(&d.contacts, rub, x).dot(&along);
+        friction_n += rub_force(&d.contacts, rub, x).dot(&along) * part(&rub.touch);
         if rub.sliding(x).abs() > 0.999 * d.contacts.slip {
             slips += rub.limit;
         }
@@ -515,10 +545,10 @@ fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> Conta
         ends_m: arc(last),
         ..ContactReport::default()
     };
-    let mut samples: Vec<ContactSample> =
-        stretch.iter().map(|t| ContactSample::new(arc(t), t.pair.gap.normal * t.load(&d.contacts.barrier))).collect();
+    let press = |t: &Touch| t.pair.gap.normal * (t.load(&d.contacts.barrier) * part(t));
+    let mut samples: Vec<ContactSample> = stretch.iter().map(|t| ContactSample::new(arc(t), press(t))).collect();
     for rub in rubs {
-        samples.push(ContactSample::new(arc(&rub.touch), rub_force(&d.contacts, rub, x)));
+        samples.push(ContactSample::new(arc(&rub.touch), rub_force(&d.contacts, rub, x) * part(&rub.touch)));
     }
     samples.sort_by(|a, b| a.arc_length_m.total_cmp(&b.arc_length_m));
     out.set_samples(samples);

@@ -47,6 +47,12 @@ const NEGLIGIBLE: f64 = 1e3;
 /// refused for what its nodes are let off with. Of slopes, posts, beams and drapes at random those that held left up to 4e-5,
 /// those with 0.3 % too little friction 3e-4 and more.
 const WHOLE: f64 = 1e-4;
+/// Unbalanced force of a polished rest, in tolerances. More: what is left at a hundred nodes of a lay that all but slides is seen in
+/// the balance of the whole; less: nothing but rounding is gained.
+const POLISHED: f64 = 1e-2;
+
+/// Newton iterations of each round of polishing: it starts beside its end.
+const POLISH_ITERATIONS: usize = 30;
 
 /// Times a resting place is sought again because corners were met or left on the way to it.
 const CORNER_ROUNDS: usize = 8;
@@ -95,11 +101,47 @@ impl Dynamics {
             }
             let done = done?;
             total = Done { iterations: total.iterations + done.iterations, ..done };
-            if !self.accept_rest(&pose, to) {
+            self.accept_pose(&pose, to);
+            // Where corners are met and left by turns to the last, the mesh stays as it balances.
+            let nodes = self.mesh.nodes();
+            if round + 1 == CORNER_ROUNDS || !self.remesh(true) && self.mesh.nodes() == nodes {
                 break;
             }
         }
         Ok(total)
+    }
+
+    /// Brings what is left unbalanced at a rest, which adds up along the cable, down to what can be told from rounding: on from where
+    /// the cable lies, or not at all where that does not come to an end.
+    fn polish(&mut self, found: Done, dragged: &[Option<Vec2>]) -> Done {
+        let kept = (self.saved.clone(), self.can_restore);
+        let exact = self.task.tolerance;
+        let to = self.motion.time;
+        self.save();
+        self.prepare_way([to, to], Some(dragged));
+        self.task.max_iterations = POLISH_ITERATIONS;
+        self.task.most_noise = exact;
+        let mut done = None;
+        for part in [POLISHED, 1.0] {
+            self.task.tolerance = part * exact;
+            let mut pose = self.still_pose();
+            done = self.lag(&mut pose, LAG_ROUNDS).ok();
+            if done.is_some() {
+                // With the bars it balances on: new ones would have to be brought to rest again.
+                self.accept_pose(&pose, to);
+                break;
+            }
+        }
+        self.task.tolerance = exact;
+        let done = match done {
+            Some(done) => Done { iterations: found.iterations + done.iterations, residual: done.residual },
+            None => {
+                self.restore();
+                found
+            }
+        };
+        (self.saved, self.can_restore) = kept;
+        done
     }
 
     /// Brings straight bars to rest that were laid on the sagging ones of statics: a step of the second order in their
@@ -138,6 +180,12 @@ impl Dynamics {
 
     /// Takes a pose as the state at rest at the time `to`; returns whether what the cable runs over changed.
     fn accept_rest(&mut self, pose: &Pose, to: f64) -> bool {
+        self.accept_pose(pose, to);
+        self.remesh(true)
+    }
+
+    /// The same, corners as they are.
+    fn accept_pose(&mut self, pose: &Pose, to: f64) {
         self.contacts.commit(&self.problem, &self.mesh, &pose.x, &self.motion.x, &pose.slide);
         self.contacts.carriage = None;
         self.motion.x.clone_from(&pose.x);
@@ -146,7 +194,6 @@ impl Dynamics {
         self.motion.time = to;
         self.slide(&pose.slide);
         self.forget_history();
-        self.remesh(true)
     }
 
     /// Weight of an element over a tenth of a metre: enough to keep slack nodes from wandering.
@@ -272,6 +319,7 @@ impl Dynamics {
         match self.find_rest(dragged)? {
             Ok(done) => {
                 self.rested = true;
+                let done = self.polish(done, dragged);
                 Ok(self.report(done, 0, 0.0))
             }
             Err(f) => {

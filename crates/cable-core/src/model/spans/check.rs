@@ -4,6 +4,7 @@
 use super::drive::Network;
 use super::instant::Layout;
 use super::law::Track;
+use super::pocket;
 use super::report;
 use super::strand::{Contact, Course, Strand, Tie};
 use super::trouble::Trouble;
@@ -144,6 +145,9 @@ fn contact(strand: &Strand, course: &Course, (j, greatest): (usize, f64)) -> Res
             if e.t[side] != 0.0 {
                 return Err(unsound("slack has tension", e.p[side], e.s[side]));
             }
+            if side == 1 && pocket::heap(strand, course, j + 1).is_none() {
+                return Err(unsound("what lies loose slides", e.p[side], e.s[side]));
+            }
         } else if strand.is_joined(j, side) {
             // The load beside it is looked at by itself.
         } else if let Tie::Loose(force) = strand.ties[side] {
@@ -161,14 +165,25 @@ fn contact(strand: &Strand, course: &Course, (j, greatest): (usize, f64)) -> Res
     {
         return Err(Trouble::LoadLies { s: l.arc_length });
     }
-    along(&track, c, greatest)
+    along(&track, c, (greatest, strand.to - strand.from))
 }
 
 /// Along a contact friction keeps its cone, nothing pushes along it and nothing pulls it off. On each stretch between two knots
-/// one part of friction is called upon: what holds for that and at the next knot holds all along.
-fn along(track: &Track<'_>, c: &Contact, greatest: f64) -> Result<(), Trouble> {
+/// one part of friction is called upon: what holds for that and at the next knot holds all along. No material of the strand's
+/// `length` (m) is lost between two knots, nor between the ends and the first and last of them.
+fn along(track: &Track<'_>, c: &Contact, (greatest, length): (f64, f64)) -> Result<(), Trouble> {
     let friction = track.friction;
     let room = HOLDS * (greatest + 1e-9);
+    let lost = |found: f64, kept: f64| !((found - kept).abs() <= HOLDS * length);
+    if let (0.0, [first, .., last]) = (track.drag, c.history.knots())
+        && (lost(first.s, c.ends.s[0]) || lost(last.s, c.ends.s[1]))
+    {
+        return Err(Trouble::Unsound {
+            what: "material is lost at an end of a contact",
+            s: first.s,
+            at: track.place(first.p).at,
+        });
+    }
     for pair in c.history.knots().windows(2) {
         let (knot, next) = (&pair[0], &pair[1]);
         let (mut p, mut t, mut s) = (knot.p, knot.tension, knot.s);
@@ -199,6 +214,9 @@ fn along(track: &Track<'_>, c: &Contact, greatest: f64) -> Result<(), Trouble> {
         }
         if !(knot.m.abs() <= friction * (1.0 + HOLDS)) {
             return unsound("friction beyond its cone");
+        }
+        if lost(s, next.s) {
+            return unsound("material is lost along a contact");
         }
         if !((t - next.tension).abs() <= room) {
             return sampled(track, c, friction, room);

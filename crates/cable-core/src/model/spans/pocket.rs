@@ -6,10 +6,14 @@
 //! both, with as much material between them as there is over, surplus = s₁ − s₂ ≥ 0. Where the surplus is used up the cable
 //! draws a span across the kink again. Between the two nothing jumps: T → 0 as surplus → 0.
 //!
+//! What is over is a heap in the kink that weighs B = −b·surplus and more where dead loads are in it. The two edges have to carry
+//! it: pressed alone, N₁n₁ + N₂n₂ = −B, where −B is between their normals; else by the one edge it lies on, within its cone.
+//! A heap that neither carries slides on down (see [`heap`]).
+//!
 //! The span that replaces a surplus of −e: an arc tangent to both edges x from the kink is δ x/tan(δ/2) long, and so
 //! e = x (2 − δ/tan(δ/2)), the tension being w x/tan(δ/2).
 
-use super::strand::{Course, Strand};
+use super::strand::{Contact, Course, Strand};
 use crate::math::{Vec2, cross};
 
 /// A pocket opens when material is short by this part of the strand. Smaller: rounding opens it. Larger: the cable there is
@@ -20,6 +24,8 @@ const SHORT: f64 = 1e-11;
 const LOOSE: f64 = 1e-2;
 /// Ends of two chains this near to each other (m) are one kink.
 const ONE: f64 = 1e-9;
+/// Part of a heap's weight by which it may leave the cone of what it lies on: rounding.
+const CONE: f64 = 1e-9;
 /// A span drawn across a kink takes at most this part of the contacts beside it.
 const PART: f64 = 0.3;
 
@@ -61,6 +67,41 @@ pub(super) fn fill(strand: &mut Strand, course: &Course, k: usize) {
     }
     strand.contacts[k - 1].pocket = true;
     strand.forces[k] = Vec2::zeros();
+}
+
+/// The force of an edge on the heap in a pocket.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Borne {
+    /// The contact whose edge it is.
+    pub contact: usize,
+    /// Normal of the edge, and its direction of growing arc length.
+    pub normal: Vec2,
+    pub tangent: Vec2,
+    /// Force on the cable along both, N.
+    pub press: f64,
+    pub friction: f64,
+}
+
+/// What carries the heap between contacts k − 1 and k; None where nothing does, and it slides.
+pub(super) fn heap(strand: &Strand, course: &Course, k: usize) -> Option<[Borne; 2]> {
+    let (a, b) = (&strand.contacts[k - 1], &strand.contacts[k]);
+    let edge = |c: &Contact, contact: usize, end: usize| {
+        let place = course.track(c).place(c.ends.p[end]);
+        Borne { contact, normal: place.normal, tangent: place.tangent, press: 0.0, friction: 0.0 }
+    };
+    let mut borne = [edge(a, k - 1, 1), edge(b, k, 0)];
+    let held = -course.load_between(a.ends.s[1], b.ends.s[0]);
+    let both = cross(borne[0].normal, borne[1].normal);
+    let press = [cross(held, borne[1].normal) / both, cross(borne[0].normal, held) / both];
+    if press.iter().all(|n| *n >= 0.0) {
+        (borne[0].press, borne[1].press) = (press[0], press[1]);
+        return Some(borne);
+    }
+    let side = usize::from(!(press[1] < 0.0));
+    let edge = &mut borne[side];
+    (edge.press, edge.friction) = (held.dot(&edge.normal), held.dot(&edge.tangent));
+    let most = course.friction([a, b][side]) * edge.press + CONE * held.norm();
+    (edge.press >= 0.0 && edge.friction.abs() <= most).then_some(borne)
 }
 
 /// U: draws a span across the kink whose material is shortest.

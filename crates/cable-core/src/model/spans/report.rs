@@ -6,6 +6,7 @@ use super::history::{History, Mode};
 use super::instant::Layout;
 use super::law::Track;
 use super::piece::{OnPiece, Pivot};
+use super::pocket;
 use super::seek;
 use super::strand::{Contact, Course, Strand, Tie};
 use super::weight;
@@ -68,7 +69,9 @@ pub(super) fn report(layout: &Layout, network: &Network) -> Report {
                         true => load((strand, course, k), (&track, name)),
                         false => contact((&track, name), c, &stretches),
                     });
-                    contacts.extend(heap((strand, course, k), (&track, name)));
+                    if c.pocket {
+                        contacts.extend(heap((strand, course, k), name));
+                    }
                 }
             }
         }
@@ -234,27 +237,6 @@ fn held_by(track: &Track<'_>, c: &Contact) -> Vec2 {
     before - after - track.law.load * (c.ends.s[1] - c.ends.s[0])
 }
 
-/// The loose cable in the kink behind contact j: both edges hold its weight.
-fn heap((strand, course, j): (&Strand, &Course, usize), (track, name): (&Track<'_>, &str)) -> Option<ContactReport> {
-    let [begins_m, ends_m] = loose(strand, j)?;
-    let force = -course.load_between(begins_m, ends_m);
-    let normal = if force.norm() > 0.0 { force.normalize() } else { Vec2::zeros() };
-    let place = track.place(strand.contacts[j].ends.p[1]);
-    Some(ContactReport {
-        obstacle: name.to_owned(),
-        x_m: place.at.x,
-        y_m: place.at.y,
-        arc_length_m: 0.5 * (begins_m + ends_m),
-        normal: normal.into(),
-        normal_n: force.norm(),
-        force_n: force.into(),
-        state: ContactState::Stick,
-        begins_m,
-        ends_m,
-        ..ContactReport::default()
-    })
-}
-
 /// The material that lies loose in the kink behind contact j, m.
 pub(super) fn loose(strand: &Strand, j: usize) -> Option<[f64; 2]> {
     let (c, next) = (strand.contacts.get(j)?, strand.contacts.get(j + 1)?);
@@ -337,6 +319,33 @@ fn load((strand, course, j): (&Strand, &Course, usize), (track, name): (&Track<'
         samples: vec![ContactSample::new(c.ends.s[0], held)],
         ..ContactReport::default()
     }
+}
+
+/// The contacts of the heap in the pocket after contact j: one with each edge that carries a part of it.
+fn heap((strand, course, j): (&Strand, &Course, usize), name: &str) -> Vec<ContactReport> {
+    let ([before, after], at) = match (&strand.contacts[j], strand.contacts.get(j + 1)) {
+        (c, Some(next)) => ([c.ends.s[1], next.ends.s[0]], course.track(c).place(c.ends.p[1]).at),
+        (_, None) => return Vec::new(),
+    };
+    let edge = |b: pocket::Borne| {
+        let middle = 0.5 * (before + after);
+        let mut report = ContactReport {
+            obstacle: name.to_owned(),
+            x_m: at.x,
+            y_m: at.y,
+            arc_length_m: middle,
+            normal: [b.normal.x, b.normal.y],
+            normal_n: b.press,
+            friction_n: b.friction,
+            begins_m: before,
+            ends_m: after,
+            ..ContactReport::default()
+        };
+        report.set_samples(vec![ContactSample::new(middle, b.normal * b.press + b.tangent * b.friction)]);
+        report
+    };
+    let borne = pocket::heap(strand, course, j + 1).into_iter().flatten();
+    borne.filter(|b| b.press > 0.0).map(edge).collect()
 }
 
 /// Stretches that stick and stretches at the limit of friction, neighbours alike joined; none where all is alike.

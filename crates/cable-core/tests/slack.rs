@@ -1,0 +1,161 @@
+//! Random scenes of slack cables: on floors, in pits, over crests, up slopes, seen from above, ends near the ground, above each
+//! other and in one place. Each has a resting place; what is found is looked at with what is written here alone: contacts and
+//! supports carry the weight, nothing pushes, no support is pushed, and no bar is longer than its material.
+
+use cable_core::scene::{Cable, Obstacle, Scene, Shape, Support, View, catalog};
+use cable_core::{Model, Simulation};
+
+const GRAVITY: f64 = 9.80665;
+
+/// Numbers in [0, 1): a linear congruential generator (D. Knuth, "The art of computer programming", volume 2, 1981, 3.3.4).
+struct Chance(u64);
+
+impl Chance {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+
+    /// Evenly in the logarithm.
+    fn scale(&mut self, low: f64, high: f64) -> f64 {
+        self.within(low.ln(), high.ln()).exp()
+    }
+}
+
+/// A scene of family `seed` modulo their number, and its name.
+fn scene(seed: u64) -> (&'static str, Scene) {
+    let mut r = Chance(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) + 1);
+    for _ in 0..8 {
+        r.next();
+    }
+    let mut s = catalog::hanging_span();
+    s.loads.clear();
+    let (width, friction) = (r.within(2.0, 20.0), r.within(0.0, 1.0));
+    let rise = 0.014_1 + r.scale(1e-2, 3.0);
+    let (mut a, mut b) = ([0.0, 0.014_1 + r.scale(1e-2, 3.0)], [width, rise]);
+    let names = ["floor", "pit", "crest", "slope", "plan", "vertical", "near the ground"];
+    let name = names[(seed % names.len() as u64) as usize];
+    let ground = match name {
+        "pit" => {
+            let (at, depth) = (width * r.within(0.2, 0.8), width * r.within(0.05, 0.5));
+            vec![[-50.0, 0.0], [0.0, 0.0], [at, -depth], [width, 0.0], [width + 50.0, 0.0]]
+        }
+        "crest" => {
+            let (at, height) = (width * r.within(0.4, 0.6), 0.2 * width * r.next());
+            vec![
+                [-50.0, 0.0],
+                [at - 2.0 * height - 0.1, 0.0],
+                [at, height],
+                [at + 2.0 * height + 0.1, 0.0],
+                [width + 50.0, 0.0],
+            ]
+        }
+        "slope" => {
+            let tilt = r.within(0.02, 0.3);
+            b[1] += tilt * width;
+            vec![[-50.0, 50.0], [0.0, 0.0], [width + 20.0, tilt * (width + 20.0)]]
+        }
+        _ => vec![[-50.0, 0.0], [width + 50.0, 0.0]],
+    };
+    match name {
+        "vertical" => b[0] = if r.next() < 0.5 { 0.0 } else { r.scale(1e-9, 1e-1) },
+        "near the ground" => (a[1], b[1]) = (0.014_1, 0.02),
+        _ => {}
+    }
+    let along = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
+    let inner = ground.iter().filter(|p| p[0] > a[0] && p[0] < b[0]).copied();
+    let way: Vec<[f64; 2]> = std::iter::once(a).chain(inner).chain(std::iter::once(b)).collect();
+    let over: f64 = way.windows(2).map(|p| along(p[0], p[1])).sum();
+    let c: &mut Cable = &mut s.cables[0];
+    (c.bending_stiffness_n_m2, c.diameter_m, c.segments) = (0.0, 0.028, None);
+    c.axial_stiffness_n = r.scale(1e4, 1e8);
+    c.linear_density_kg_per_m = r.scale(0.1, 10.0);
+    c.friction = friction;
+    c.length_m = (over + 0.1) * (1.0 + r.scale(1e-2, 3.0));
+    c.supports = vec![Support::fixed("a", a), Support::fixed("b", b)];
+    s.obstacles.clear();
+    if name == "plan" {
+        s.view = View::Plan;
+    } else {
+        let shape = Shape::Terrain { points_m: ground };
+        s.obstacles.push(Obstacle { name: "ground".to_owned(), shape, friction: Some(friction) });
+    }
+    (name, s)
+}
+
+/// What is wrong with the answer of a scene; `Err`: it was refused.
+fn faults(s: &Scene) -> Result<Vec<String>, String> {
+    let mut sim = Simulation::new(s.clone(), Model::Auto).map_err(|e| e.to_string())?;
+    let answer = sim.settle().map_err(|e| e.to_string())?;
+    let (c, found) = (&s.cables[0], &answer.cables[0]);
+    let weight = c.length_m * c.linear_density_kg_per_m * GRAVITY;
+    let mut out = Vec::new();
+    let top = found.nodes.iter().map(|n| n.tension_n).fold(0.0, f64::max);
+    if !(found.nodes.iter().all(|n| n.tension_n >= -1e-9 * weight) && top.is_finite()) {
+        out.push("it pushes".to_owned());
+    }
+    if s.view != View::Plan {
+        let sum = |axis: usize| -> f64 {
+            let felt = |r: &cable_core::solution::SupportReaction| [r.reaction_x_n, r.reaction_y_n][axis];
+            found.contacts.iter().map(|c| c.force_n[axis]).sum::<f64>() - found.supports.iter().map(felt).sum::<f64>()
+        };
+        let off = sum(0).hypot(sum(1) - weight);
+        // A rest that could not be polished keeps what `fem` stops at: 1 in 50 of these scenes, up to 3e-6.
+        if !(off <= 1e-5 * weight.max(top)) {
+            out.push(format!("{off:.2e} N of {weight:.2e} N are not carried"));
+        }
+    }
+    let nodes = &found.nodes;
+    let mut way = 0.0;
+    for pair in nodes.windows(2) {
+        let (ds, d) = (pair[1].arc_length_m - pair[0].arc_length_m, (pair[1].at() - pair[0].at()).norm());
+        let strain = pair[0].tension_n.max(pair[1].tension_n) / c.axial_stiffness_n;
+        way += d;
+        if d > ds * (1.0 + strain) + 1e-4 * ds + 1e-4 {
+            out.push(format!("{ds:.3} m of material are {d:.3} m long at {:.3} m", pair[0].arc_length_m));
+        }
+    }
+    for (k, r) in [(0, &found.supports[0]), (nodes.len() - 1, &found.supports[1])] {
+        let to = (nodes[if k == 0 { 1 } else { k - 1 }].at() - nodes[k].at()).try_normalize(0.0).unwrap_or_default();
+        let pull = r.reaction_x_n * to.x + r.reaction_y_n * to.y;
+        if !(pull >= -2e-2 * weight / nodes.len() as f64 - 1e-6 * weight) {
+            out.push(format!("`{}` is pushed by {:.2e} N", r.name, -pull));
+        }
+    }
+    let word = answer.warnings.iter().any(|w| w.message.contains("in folds"));
+    if way < 0.9 * c.length_m && !word {
+        out.push(format!("{:.2} m of {:.2} m are gone without a word", c.length_m - way, c.length_m));
+    }
+    Ok(out)
+}
+
+fn campaign(seeds: std::ops::Range<u64>) {
+    let (mut wrong, mut refused) = (Vec::new(), Vec::new());
+    let count = seeds.end - seeds.start;
+    for seed in seeds {
+        let (name, s) = scene(seed);
+        match faults(&s) {
+            Ok(faults) if faults.is_empty() => {}
+            Ok(faults) => wrong.push(format!("{name} {seed}: {faults:?}")),
+            Err(why) => refused.push(format!("{name} {seed}: {why}")),
+        }
+    }
+    println!("{count} scenes, {} wrong, {} refused\n{wrong:#?}\n{refused:#?}", wrong.len(), refused.len());
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    assert!(refused.len() as u64 * 50 <= count, "{refused:#?}");
+}
+
+#[test]
+fn slack_lies() {
+    campaign(0..56);
+}
+
+#[test]
+#[ignore = "takes minutes: cargo test -p cable-core --test slack -- --ignored --nocapture"]
+fn slack_lies_in_seven_hundred_scenes() {
+    campaign(1000..1700);
+}
