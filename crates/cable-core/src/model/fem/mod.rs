@@ -38,6 +38,7 @@ mod path;
 mod prepare;
 mod remesh;
 mod rest;
+mod rubbing;
 mod rush;
 mod sleep;
 mod sliding;

@@ -12,7 +12,8 @@ use super::estimate;
 use super::layout::{Hold, Layout, place};
 use super::network::{Failure, Network};
 use crate::error::SolveError;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
+use crate::model::lay::least_sliding;
 use crate::model::{Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
@@ -57,6 +58,8 @@ pub struct Statics {
     rested: Option<(Layout, Vec<[Vec2; 2]>)>,
     points: Vec<Point>,
     estimate: Option<f64>,
+    /// Whether it was put where it is: then it is not as it was laid.
+    adopted: bool,
 }
 
 impl Statics {
@@ -78,6 +81,7 @@ impl Statics {
             rested: None,
             points: Vec::new(),
             estimate: None,
+            adopted: false,
             time: 0.0,
             problem,
             settings,
@@ -187,12 +191,14 @@ impl Statics {
         if let Some(old) = &self.network {
             network.start_from(old);
         }
-        network.solve().map_err(|f| self.error(&network, f))?;
+        let rubs = network.rubs() && self.problem.bending_stiffness == 0.0;
+        let first = if rubs { self.begin_rubbing(&mut network, dragged) } else { network.solve().map(|()| true) };
+        let first = first.map_err(|f| self.error(&network, f))?;
         iterations += network.steps;
         if self.problem.bending_stiffness > 0.0 {
             return self.bend(network, time, hinted);
         }
-        let mut estimate = estimate::relative_error(&network);
+        let mut estimate = estimate::relative_error(&mut network);
         for _ in 0..MAX_MESHES {
             if !(adaptive && estimate > SAFETY * self.settings.tolerance && segments < MOST_SEGMENTS) {
                 break;
@@ -200,9 +206,15 @@ impl Statics {
             let factor = (estimate / (SAFETY * self.settings.tolerance)).powf(1.0 / ORDER);
             segments = ((segments as f64 * factor.clamp(1.2, 4.0)).ceil() as usize).min(MOST_SEGMENTS);
             network.layout.cut(segments);
-            network.solve().map_err(|f| self.error(&network, f))?;
+            if rubs { network.rub() } else { network.solve() }.map_err(|f| self.error(&network, f))?;
             iterations += network.steps;
-            estimate = estimate::relative_error(&network);
+            estimate = estimate::relative_error(&mut network);
+        }
+        if rubs {
+            network.commit_friction();
+            // What friction remembers is as wrong as the steps it remembers were.
+            let before = if first { None } else { self.estimate };
+            estimate = before.map_or(estimate, |e| larger(e, estimate));
         }
         self.time = time;
         self.segments = segments;
@@ -219,6 +231,28 @@ impl Statics {
         let cost = Cost { iterations, residual_n: network.residual, ..Cost::default() };
         self.network = Some(network);
         Ok(StepReport { cost, warnings: self.warnings(hinted) })
+    }
+
+    /// The balance of pulleys that rub: from what they remember, else as the cable was laid; whether it was laid anew.
+    fn begin_rubbing(&self, network: &mut Network, dragged: &[Option<Vec2>]) -> Result<bool, Failure> {
+        if let Some(old) = &self.network
+            && network.remember_from(old)
+        {
+            return network.rub().map(|()| false);
+        }
+        if self.time == 0.0
+            && !self.adopted
+            && let Some(lay) = least_sliding(&self.problem, self.settings, (dragged, None))
+        {
+            let mut laid = network.clone();
+            if laid.remember_answer(&lay.answer) && laid.rub().is_ok() {
+                *network = laid;
+                return Ok(true);
+            }
+        }
+        network.solve()?;
+        network.remember();
+        network.rub().map(|()| true)
     }
 
     /// Rest with bending stiffness, from the flexible cable: on a mesh and on that of half the bars, whose difference
@@ -360,6 +394,7 @@ impl Statics {
             }
         }
         self.network = None;
+        self.adopted = true;
         self.rested = None;
         self.estimate = None;
         self.points.clear();

@@ -1,0 +1,129 @@
+//! What `fem` says of its own error beside answers without one: free spans of every kind beside the catenary.
+//!
+//! `FEM_SPANS=1000 cargo test -p cable-core --test fem_estimate -- --nocapture` prints what came of more of them;
+//! `FEM_FIRST` says from which.
+
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
+use cable_core::scene::{Scene, Support, catalog};
+use cable_core::solution::{CableSolution, WarningKind};
+use cable_core::{Load, Model, Settings, Simulation, Solution};
+
+/// SplitMix64: G. L. Steele, D. Lea and C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
+struct Dice(u64);
+
+impl Dice {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    fn log(&mut self, low: f64, high: f64) -> f64 {
+        self.within(low.ln(), high.ln()).exp()
+    }
+}
+
+fn number(name: &str, other: u64) -> u64 {
+    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(other)
+}
+
+/// A free span: 0.1 m to 10 km, 0.9 to 30 times its chord, level to plumb, EA from 1e3 to 1e9 times its weight, here and there with
+/// wind, warmth, point loads, and a mesh that is given.
+fn span(case: u64) -> (Scene, Settings) {
+    let mut dice = Dice(0x5a1e_0000 + case);
+    let mut scene = catalog::hanging_span();
+    scene.environment.gravity_m_per_s2 = 9.80665;
+    scene.environment.temperature_change_k = 0.0;
+    scene.loads.clear();
+    let chord = dice.log(0.1, 1e4);
+    let slope = if dice.unit() < 0.2 { dice.within(1.4, 1.57) } else { dice.within(-1.2, 1.2) };
+    let end = [chord * f64::cos(slope), chord * f64::sin(slope)];
+    let ratio = match case % 4 {
+        0 => 1.0 + dice.log(1e-6, 1e-2),
+        1 => 1.0 + dice.log(1e-2, 1.0),
+        2 => dice.log(2.0, 30.0),
+        _ => 1.0 - dice.log(1e-5, 0.05),
+    };
+    let density = dice.log(0.01, 50.0);
+    let weight = density * 9.80665 * chord * ratio;
+    if dice.unit() < 0.3 {
+        let size = 0.5 * density * 9.80665;
+        scene.environment.wind_n_per_m = [dice.within(-size, size), dice.within(-size, size)];
+    }
+    let c = &mut scene.cables[0];
+    c.length_m = chord * ratio;
+    c.linear_density_kg_per_m = density;
+    c.axial_stiffness_n = (weight * dice.log(1e3, 1e9)).clamp(1.0, 1e12);
+    (c.bending_stiffness_n_m2, c.thermal_expansion_per_k) = (0.0, 0.0);
+    (c.service_tension_n, c.breaking_tension_n, c.segments) = (1e15, 1e15, None);
+    c.diameter_m = 1e-3 * chord;
+    c.route_m.clear();
+    c.supports = vec![Support::fixed("A", [0.0, 0.0]), Support::fixed("B", end)];
+    if dice.unit() < 0.3 {
+        let (name, at) = (c.name.clone(), dice.within(0.1, 0.9) * c.length_m);
+        let force_n = [dice.within(-1.0, 1.0) * weight, -dice.within(0.0, 2.0) * weight];
+        scene.loads.push(Load { cable: name, arc_length_m: at, force_n: Some(force_n), times_s: vec![], forces_n: vec![] });
+    }
+    let tolerance = [1e-3, 1e-4, 1e-5][(case % 3) as usize];
+    let segments = (dice.unit() < 0.3).then(|| dice.within(8.0, 60.0) as usize);
+    (scene, Settings { tolerance, segments, ..Settings::default() })
+}
+
+fn settle(scene: &Scene, model: Model, settings: Settings) -> Result<Solution, String> {
+    let mut sim = Simulation::with_settings(scene.clone(), model, settings).map_err(|e| e.to_string())?;
+    sim.settle().map_err(|e| e.to_string())
+}
+
+/// Greatest error of a force on a support, in parts of the greatest tension.
+fn error(found: &CableSolution, exact: &CableSolution) -> f64 {
+    let most = exact.nodes.iter().map(|n| n.tension_n).fold(0.0, f64::max);
+    let off = found.supports.iter().zip(&exact.supports).map(|(a, b)| {
+        (a.reaction_x_n - b.reaction_x_n).abs().max((a.reaction_y_n - b.reaction_y_n).abs())
+    });
+    off.fold(0.0, f64::max) / most
+}
+
+#[test]
+fn every_force_of_a_free_span_is_within_what_is_said() {
+    let (first, cases) = (number("FEM_FIRST", 0), number("FEM_SPANS", 200));
+    let (mut wrong, mut loose, mut coarse, mut refused) = (Vec::new(), 0, 0, 0);
+    for case in first..first + cases {
+        let (scene, settings) = span(case);
+        let exact = match settle(&scene, Model::Catenary, settings) {
+            Ok(exact) => exact,
+            Err(e) => panic!("{case}: {e}"),
+        };
+        let found = match settle(&scene, Model::Fem, settings) {
+            Ok(found) => found,
+            Err(e) => {
+                println!("{case}: refused: {e}");
+                refused += 1;
+                continue;
+            }
+        };
+        let said = found.cables[0].error_estimate.unwrap_or(f64::NAN);
+        let off = error(&found.cables[0], &exact.cables[0]);
+        // Two answers, each with its rounding.
+        if !(off <= said) {
+            if std::env::var("FEM_SHOW").is_ok() {
+                println!("{case}: {}", found.cables[0].nodes.len());
+                found.cables[0].supports.iter().zip(&exact.cables[0].supports).for_each(|(a, b)| println!("{a:?}\n{b:?}"));
+                println!("{}", scene.to_toml());
+            }
+            wrong.push((case, off, said));
+        }
+        loose += usize::from(said > 10.0 * off && said > 1e-9);
+        let warned = found.warnings.iter().any(|w| w.kind == WarningKind::Accuracy);
+        assert!(said <= settings.tolerance || warned, "{case}: {said:.1e} and no warning");
+        coarse += usize::from(said > settings.tolerance && settings.segments.is_none());
+    }
+    println!("{cases}: {} outside what they say, {loose} say ten times too much, {coarse} coarser than asked, {refused} refused: {wrong:.1?}", wrong.len());
+    assert!(wrong.is_empty() && refused == 0, "{wrong:?}");
+}
