@@ -5,7 +5,7 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
-use cable_core::scene::{Scene, Support, catalog};
+use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};
 use cable_core::solution::{CableSolution, WarningKind};
 use cable_core::{Load, Model, Settings, Simulation, Solution};
 
@@ -126,4 +126,103 @@ fn every_force_of_a_free_span_is_within_what_is_said() {
     }
     println!("{cases}: {} outside what they say, {loose} say ten times too much, {coarse} coarser than asked, {refused} refused: {wrong:.1?}", wrong.len());
     assert!(wrong.is_empty() && refused == 0, "{wrong:?}");
+}
+
+/// A cable in contact: on a bed (level or sloped, straight or with corners), over a post or over the corner of a block; friction 0 to 1, taut to
+/// a twentieth longer than its way.
+fn in_contact(case: u64) -> Scene {
+    let mut dice = Dice(0x00be_d000 + 31 * case);
+    let mut scene = catalog::hanging_span();
+    scene.environment.gravity_m_per_s2 = 9.80665;
+    (scene.environment.temperature_change_k, scene.environment.wind_n_per_m) = (0.0, [0.0, 0.0]);
+    scene.loads.clear();
+    let size = dice.log(2.0, 60.0);
+    let friction = Some(if dice.unit() < 0.3 { 0.0 } else { dice.within(0.05, 1.0) });
+    let density = dice.log(0.1, 3.0);
+    let diameter = 0.004;
+    let r = 0.5 * diameter;
+    let (shape, route) = match case % 4 {
+        // One end on a bed, the other above it.
+        0 => {
+            let slope = dice.within(-0.1, 0.1);
+            let y = |x: f64| slope * x;
+            let up = r * (1.0 + slope * slope).sqrt();
+            let b = [size, y(size) + size * dice.log(0.005, 0.5)];
+            let line = vec![[-size, y(-size)], [3.0 * size, y(3.0 * size)]];
+            (Shape::Terrain { points_m: line }, vec![[0.0, up], b])
+        }
+        // Both above it.
+        1 => {
+            let rise = dice.log(0.01, 0.1) * size;
+            let bump = dice.within(0.0, 0.5) * rise;
+            let points_m = vec![[-size, 0.0], [0.4 * size, bump], [0.5 * size, 1.2 * bump], [2.0 * size, 0.0]];
+            (Shape::Terrain { points_m }, vec![[0.0, rise + bump], [size, dice.within(0.5, 2.0) * rise + bump]])
+        }
+        2 => {
+            let radius_m = dice.log(0.01, 0.1) * size;
+            let at = [dice.within(0.3, 0.7) * size, 0.0];
+            let top = [at[0], radius_m + r];
+            let shape = Shape::Circle { center_m: at, radius_m };
+            (shape, vec![[0.0, -dice.within(0.0, 0.3) * size], top, [size, -dice.within(0.0, 0.3) * size]])
+        }
+        _ => {
+            let (left, right) = (dice.within(0.3, 0.45) * size, dice.within(0.5, 0.7) * size);
+            let low = -0.4 * size;
+            let points_m = vec![[left, low], [right, low], [right, 0.0], [left, 0.0]];
+            let ends = [-dice.within(0.02, 0.3) * size, -dice.within(0.02, 0.3) * size];
+            (Shape::Polygon { points_m }, vec![[0.0, ends[0]], [left, r], [right, r], [size, ends[1]]])
+        }
+    };
+    scene.obstacles = vec![Obstacle { name: "thing".to_owned(), shape, friction }];
+    let way: f64 = route.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1])).sum();
+    let c = &mut scene.cables[0];
+    c.length_m = way * (1.0 + dice.log(1e-4, 0.05));
+    (c.linear_density_kg_per_m, c.diameter_m) = (density, diameter);
+    c.axial_stiffness_n = dice.log(1e4, 1e8);
+    (c.bending_stiffness_n_m2, c.thermal_expansion_per_k) = (0.0, 0.0);
+    (c.service_tension_n, c.breaking_tension_n, c.segments) = (1e15, 1e15, None);
+    c.supports = vec![Support::fixed("A", route[0]), Support::fixed("B", route[route.len() - 1])];
+    c.route_m = route;
+    scene
+}
+
+/// Contact scenes by number: how many say an error, how many of those lie within it, how many are coarser than asked.
+fn contact_campaign(first: u64, cases: u64) -> [usize; 5] {
+    let [mut compared, mut said_so, mut within, mut met, mut refused] = [0; 5];
+    let segments = std::env::var("FEM_SEGMENTS").ok().and_then(|v| v.parse().ok());
+    let settings = Settings { segments, ..Settings::default() };
+    for case in first..first + cases {
+        let scene = in_contact(case);
+        let Ok(exact) = settle(&scene, Model::Spans, settings) else { continue };
+        let found = match settle(&scene, Model::Fem, settings) {
+            Ok(found) => found,
+            Err(e) => {
+                println!("{case}: refused: {e}");
+                refused += 1;
+                continue;
+            }
+        };
+        compared += 1;
+        let off = error(&found.cables[0], &exact.cables[0]);
+        let Some(said) = found.cables[0].error_estimate else {
+            println!("{case}: says nothing, {off:.1e}");
+            continue;
+        };
+        said_so += 1;
+        within += usize::from(off <= said);
+        met += usize::from(off <= settings.tolerance);
+        if !(off <= said) || std::env::var("FEM_SHOW").is_ok() {
+            println!("{case}: {off:.1e}, says {said:.1e}, {} nodes", found.cables[0].nodes.len());
+        }
+    }
+    println!("{compared} compared: {said_so} say an error, {within} within it, {met} within 1e-3; {refused} refused");
+    [compared, said_so, within, met, refused]
+}
+
+#[test]
+fn the_error_of_a_cable_in_contact_is_said() {
+    let [compared, said, within, _, refused] = contact_campaign(number("FEM_FIRST", 0), number("FEM_CONTACTS", 24));
+    assert!(refused * 50 <= compared, "{refused} refused");
+    assert_eq!(said, compared);
+    assert!(within as f64 >= 0.95 * compared as f64, "{within} of {compared}");
 }

@@ -50,17 +50,19 @@ mod stop;
 mod take_over;
 mod task;
 mod touch;
+mod two_meshes;
 mod wheel;
 
 use std::sync::Arc;
 
+use self::two_meshes::TwoMeshes;
 use super::lay::least_sliding;
 use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Warning};
+use crate::solution::{CableSolution, Warning, WarningKind};
 use crate::state::State;
 
 /// Part of the greatest tension by which the force on a support may change when a first lay is taken over. Less: coarse meshes lay themselves, in folds; more:
@@ -89,6 +91,8 @@ pub struct FemModel {
     /// Whether a first rest with contact goes on from that of `spans`, where there is one.
     laid_evenly: bool,
     settings: Settings,
+    /// What another mesh says of the error in contact.
+    meshes: TwoMeshes,
     /// Where the outline of the robot was led.
     led: Option<Placement>,
 }
@@ -108,6 +112,7 @@ impl FemModel {
             dynamics,
             present,
             laid_evenly: true,
+            meshes: TwoMeshes::default(),
             settings,
             led: problem.outline.as_ref().map(|o| o.placement),
             problem,
@@ -145,6 +150,24 @@ impl FemModel {
     pub fn with_material_nodes(mut self) -> Self {
         self.dynamics.slides = false;
         self
+    }
+
+    /// Looks at the cable in contact on another mesh, and makes its own finer where the scene leaves that open.
+    fn compare_meshes(&mut self) {
+        let given = self.settings.segments.or(self.problem.cable.segments).is_some();
+        self.meshes.compare(&self.problem, (self.settings, !given), &mut self.dynamics, &self.dragged);
+    }
+
+    /// What there is to say of a mesh that is coarser than the tolerance asks for.
+    fn coarse_warning(&self) -> Option<Warning> {
+        let (estimate, asked) = (self.meshes.estimate?, self.settings.tolerance);
+        (estimate > asked).then(|| {
+            let message = format!(
+                "{} elements give the forces to about {estimate:.1e} of the greatest tension; {asked:.1e} was asked for: use more segments",
+                self.dynamics.even_bars
+            );
+            Warning::new(WarningKind::Accuracy, &self.problem.cable.name, 0.0, [estimate, asked], message)
+        })
     }
 
     /// Makes `part` the one that holds the present state.
@@ -188,6 +211,8 @@ impl Mechanics for FemModel {
             }
             let mut report = self.dynamics.settle(&self.dragged)?;
             report.warnings.extend(said.into_iter().flatten());
+            self.compare_meshes();
+            report.warnings.extend(self.coarse_warning());
             Ok(report)
         }
     }
@@ -201,7 +226,9 @@ impl Mechanics for FemModel {
             self.statics.advance(dt_s, &self.dragged)
         } else {
             self.ask(Part::Dynamics)?;
-            self.dynamics.advance(dt_s, inertia, &self.dragged)
+            let report = self.dynamics.advance(dt_s, inertia, &self.dragged)?;
+            self.meshes.follow(&self.dynamics, dt_s, inertia, &self.dragged);
+            Ok(report)
         }
     }
 
@@ -213,6 +240,7 @@ impl Mechanics for FemModel {
     }
 
     fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+        self.meshes = TwoMeshes::default();
         // Statics has no velocities: what moves is taken over by the part that can move.
         if self.present == Part::Statics && state.velocity_m_per_s.iter().any(|v| v.norm() > 0.0) {
             self.dynamics.adopt(state)?;
@@ -228,7 +256,10 @@ impl Mechanics for FemModel {
     fn take_over(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         match self.present {
             Part::Statics => self.adopt(&State::of_nodes(&answer.nodes, time_s)),
-            Part::Dynamics => self.dynamics.take_over(answer, time_s, &self.dragged),
+            Part::Dynamics => {
+                self.meshes = TwoMeshes::default();
+                self.dynamics.take_over(answer, time_s, &self.dragged)
+            }
         }
     }
 
@@ -250,7 +281,9 @@ impl Mechanics for FemModel {
     fn solution(&self) -> CableSolution {
         match self.present {
             Part::Statics => self.statics.solution(),
-            Part::Dynamics => self.dynamics.solution(),
+            Part::Dynamics => {
+                CableSolution { error_estimate: self.meshes.estimate, ..self.dynamics.solution() }
+            }
         }
     }
 

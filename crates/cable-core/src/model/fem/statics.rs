@@ -54,6 +54,8 @@ pub struct Statics {
     slid: Vec<Option<f64>>,
     /// The flexible cable of the last answer: where the next one starts.
     network: Option<Network>,
+    /// The same on a finer mesh where pulleys rub: it tells what the mesh does to what friction remembers.
+    finer: Option<Network>,
     /// The stops of the last answer and the tension forces before and after them, N.
     rested: Option<(Layout, Vec<[Vec2; 2]>)>,
     points: Vec<Point>,
@@ -78,6 +80,7 @@ impl Statics {
             segments: given.unwrap_or(FIRST_SEGMENTS),
             slid: vec![None; problem.supports.len()],
             network: None,
+            finer: None,
             rested: None,
             points: Vec::new(),
             estimate: None,
@@ -143,9 +146,16 @@ impl Statics {
         let steps = if rubs { self.slow_steps(start, end, dragged) } else { 1.0 };
         let mut report = StepReport::default();
         let (mut step, mut halvings) = (dt_s / steps, 0);
+        // A hand goes straight.
+        let from: Vec<Option<Vec2>> = (0..dragged.len()).map(|k| self.support_at(k)).collect();
+        let drawn = |time: f64| -> Vec<Option<Vec2>> {
+            let part = if time < end { (time - start) / dt_s } else { 1.0 };
+            let at = |to: Vec2, from: &Option<Vec2>| from.map_or(to, |f| f + (to - f) * part);
+            dragged.iter().zip(&from).map(|(to, from)| to.map(|to| at(to, from))).collect()
+        };
         while self.time < end {
             let next = if self.time + 1.5 * step >= end { end } else { self.time + step };
-            match self.rest_at(next, dragged) {
+            match self.rest_at(next, &drawn(next)) {
                 Ok(r) => {
                     report.cost.iterations += r.cost.iterations;
                     report.cost.residual_n = r.cost.residual_n;
@@ -166,9 +176,7 @@ impl Statics {
     fn slow_steps(&self, start: f64, end: f64, dragged: &[Option<Vec2>]) -> f64 {
         let mut longest: f64 = 0.0;
         for k in 0..self.problem.supports.len() {
-            let from =
-                self.network.as_ref().and_then(|n| n.layout.stops.iter().find(|s| s.support == Some(k))?.point(0));
-            let from = from.or(place(&self.problem, k, start, &[]));
+            let from = self.support_at(k).or(place(&self.problem, k, start, &[]));
             let to = place(&self.problem, k, end, dragged);
             if let (Some(a), Some(b)) = (from, to) {
                 longest = longest.max((b - a).norm());
@@ -211,6 +219,7 @@ impl Statics {
             estimate = estimate::relative_error(&mut network);
         }
         if rubs {
+            estimate += self.follow_finer(&network, (time, dragged), first);
             network.commit_friction();
             // What friction remembers is as wrong as the steps it remembers were.
             let before = if first { None } else { self.estimate };
@@ -253,6 +262,70 @@ impl Statics {
         network.solve()?;
         network.remember();
         network.rub().map(|()| true)
+    }
+
+    /// Goes the same way with bars half as long in steps half as long and with a memory of its own: by how much the forces differ, in
+    /// parts of the greatest. What mesh and steps do to friction adds up in what friction remembers, of which the present balance
+    /// knows nothing.
+    fn follow_finer(&mut self, network: &Network, (time, dragged): (f64, &[Option<Vec2>]), first: bool) -> f64 {
+        let Some(finer) = self.finer(network, (time, dragged), first) else {
+            // It begins anew from here.
+            self.finer = None;
+            return 0.0;
+        };
+        let off = estimate::difference(network, &finer);
+        self.finer = Some(finer);
+        off
+    }
+
+    fn finer(&self, network: &Network, (time, dragged): (f64, &[Option<Vec2>]), first: bool) -> Option<Network> {
+        let segments: usize = network.layout.stops.iter().map(|s| s.cells).sum();
+        let cut = |mut layout: Layout| {
+            layout.cut(2 * segments);
+            layout
+        };
+        let mut half = None;
+        if let Some(old) = self.finer.as_ref().filter(|_| !first && time > self.time) {
+            let middle = 0.5 * (self.time + time);
+            let halfway: Vec<Option<Vec2>> = (0..dragged.len())
+                .map(|k| Some((dragged[k]? + self.support_at(k).or(dragged[k])?) * 0.5))
+                .collect();
+            let layout = cut(Layout::new(&self.problem, middle, &halfway, &self.slid));
+            let (material, _) = self.material(middle, &layout);
+            let mut step = Network::new(layout, material);
+            step.start_from(old);
+            if !step.remember_from(old) {
+                return None;
+            }
+            step.rub().ok()?;
+            step.commit_friction();
+            half = Some(step);
+        }
+        let mut finer = Network::new(cut(network.layout.clone()), network.material);
+        match half.as_ref().or(self.finer.as_ref().filter(|_| !first)) {
+            Some(old) => {
+                finer.start_from(old);
+                if !finer.remember_from(old) {
+                    return None;
+                }
+            }
+            None => {
+                finer.start_from(network);
+                finer.rubbing.clone_from(&network.rubbing);
+            }
+        }
+        finer.rub().ok()?;
+        finer.commit_friction();
+        Some(finer)
+    }
+
+    /// Where a support was in the last answer, of a wheel its centre (where the cable meets it is no move of the support), m.
+    fn support_at(&self, support: usize) -> Option<Vec2> {
+        let stop = self.network.as_ref()?.layout.stops.iter().find(|s| s.support == Some(support))?;
+        match stop.hold {
+            Hold::Pulley(wheel) => Some(wheel.center),
+            _ => stop.point(0),
+        }
     }
 
     /// Rest with bending stiffness, from the flexible cable: on a mesh and on that of half the bars, whose difference
