@@ -35,6 +35,9 @@ const ROUNDING: f64 = 8.0;
 /// (up to 8e-8 in 300); more: nobody asks for less.
 const MEMORY: f64 = 1e-7;
 
+/// The same without friction: tensions of stiff cables beside pulleys agree to that.
+const BALANCE: f64 = 1e-10;
+
 /// Estimated error of the force vector on any stop, in parts of the greatest tension.
 #[must_use]
 pub fn relative_error(network: &mut Network) -> f64 {
@@ -48,7 +51,11 @@ pub fn relative_error(network: &mut Network) -> f64 {
         // On a pulley both pull.
         error = larger(error, (change[1] - change[0]).norm());
     }
-    let memory = if network.rubbing.is_empty() { 0.0 } else { MEMORY * largest };
+    let memory = match (network.pulleys().is_empty(), network.rubbing.is_empty()) {
+        (true, _) => 0.0,
+        (false, true) => BALANCE * largest,
+        (false, false) => MEMORY * largest,
+    };
     let error = error + rounding(network) + memory;
     // In parts of what the greatest tension is at least.
     let least = if error < 0.5 * largest { largest - error } else { largest };

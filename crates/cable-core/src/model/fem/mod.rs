@@ -127,9 +127,13 @@ impl FemModel {
     }
 
     /// Lays the cable with the least sliding, if there is an answer to that. On its own way down slack comes to lie in folds, which
-    /// friction then holds. Returns what there is to say of it.
-    fn lay(&mut self) -> Option<Vec<Warning>> {
-        let lay = least_sliding(&self.problem, self.settings, (&self.dragged, self.led))?;
+    /// friction then holds. Returns what there is to say of it, and the answer without a mesh.
+    fn lay(&mut self) -> (Option<Vec<Warning>>, Option<CableSolution>) {
+        let Some(lay) = least_sliding(&self.problem, self.settings, (&self.dragged, self.led)) else {
+            return (None, None);
+        };
+        // A stiff cable is laid as a flexible one: that is where it begins, not how it lies.
+        let exact = (self.problem.bending_stiffness == 0.0).then(|| lay.answer.clone());
         let before = self.dynamics.clone();
         let taken = self.dynamics.take_over(&lay.answer, before.time(), &self.dragged).is_ok() && self.dynamics.rested;
         let greatest = lay.answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
@@ -138,10 +142,10 @@ impl FemModel {
         let off = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
         let jammed = if self.problem.bending_stiffness > 0.0 { JAMMED_STIFF } else { JAMMED };
         if taken && off.fold(0.0, larger) <= jammed * greatest {
-            return Some(lay.warnings);
+            return (Some(lay.warnings), exact);
         }
         self.dynamics = before;
-        None
+        (None, exact)
     }
 
     /// The same without sliding nodes at corners and posts: every node stays with its material. For models that take
@@ -152,10 +156,11 @@ impl FemModel {
         self
     }
 
-    /// Looks at the cable in contact on another mesh, and makes its own finer where the scene leaves that open.
-    fn compare_meshes(&mut self) {
+    /// Looks at the cable in contact beside an answer without a mesh, or on another one, and makes its own finer where the scene
+    /// leaves that open.
+    fn compare_meshes(&mut self, exact: Option<&CableSolution>) {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
-        self.meshes.compare(&self.problem, (self.settings, !given), &mut self.dynamics, &self.dragged);
+        self.meshes.compare(&self.problem, (self.settings, !given), (&mut self.dynamics, exact), &self.dragged);
     }
 
     /// What there is to say of a mesh that is coarser than the tolerance asks for.
@@ -205,13 +210,13 @@ impl Mechanics for FemModel {
             self.statics.settle(&self.dragged)
         } else {
             let begins = !self.dynamics.rested && self.dynamics.time() == 0.0;
-            let said = if begins && self.laid_evenly { self.lay() } else { None };
+            let (said, exact) = if begins && self.laid_evenly { self.lay() } else { (None, None) };
             if begins && said.is_none() && self.statics.settle(&self.dragged).is_ok() {
                 self.dynamics.begin_at(&self.statics.state(), &self.dragged);
             }
             let mut report = self.dynamics.settle(&self.dragged)?;
             report.warnings.extend(said.into_iter().flatten());
-            self.compare_meshes();
+            self.compare_meshes(exact.as_ref());
             report.warnings.extend(self.coarse_warning());
             Ok(report)
         }
