@@ -266,3 +266,47 @@ fn fem_is_within_what_it_says_of_spans() {
     assert!(came.wrong.is_empty(), "{:?}", came.wrong);
     assert!(came.refused.len() * 50 <= came.compared, "{:?}", came.refused);
 }
+
+/// The same for many more scenes: `cargo test --locked -p cable-core --test wheels_random -- --ignored --nocapture`. What remains of 292 is
+/// one or two histories in which the tension falls to a third within a step.
+#[test]
+#[ignore = "300 histories, some seconds"]
+fn fem_is_within_what_it_says_of_spans_in_300_scenes() {
+    let came = campaign(Model::Fem, 1000, 300);
+    assert!(came.wrong.len() * 100 <= came.compared, "{:?}", came.wrong);
+    assert!(came.refused.len() * 50 <= came.compared, "{:?}", came.refused);
+}
+
+/// A cable with a dead load on one end goes over a wheel that rubs and is drawn at the other, with looks every 1/60 s: where the cable
+/// meets the wheel wandered, that was taken for sliding, and friction came out the other way round in every other step (29.0 N at B).
+#[test]
+fn friction_of_a_wheel_stays_on_its_side() {
+    let mut scene = catalog::hanging_span();
+    scene.environment.temperature_change_k = 0.0;
+    scene.loads.clear();
+    let c = &mut scene.cables[0];
+    (c.length_m, c.linear_density_kg_per_m) = (4.5604174137050695, 0.3762420449247834);
+    (c.axial_stiffness_n, c.bending_stiffness_n_m2) = (525_053.841_295_094_2, 0.0);
+    (c.diameter_m, c.thermal_expansion_per_k, c.segments) = (CABLE_DIAMETER, 0.0, None);
+    (c.service_tension_n, c.breaking_tension_n) = (1e15, 1e15);
+    c.route_m.clear();
+    let mut load = Support::new("A", SupportKind::Load);
+    load.force_n = Some([-42.798_397_531_889_65, 13.837_628_129_883_733]);
+    let mut wheel = Support::new("o0", SupportKind::Pulley);
+    wheel.at_m = Some([3.0713385901373744, -1.3063035944685173]);
+    (wheel.radius_m, wheel.friction) = (Some(0.7294691177953251), Some(0.9611657543789922));
+    let mut hand = Support::fixed("B", [4.174107003751589, -0.9462101876301872]);
+    let at = hand.at_m.unwrap();
+    hand.motion =
+        Some(Motion { times_s: vec![0.0, 0.1, 1.1], points_m: vec![at, at, [4.4198909965636205, -1.0281653206841306]] });
+    c.supports = vec![load, wheel, hand];
+    let [mut fem, mut spans] = [Model::Fem, Model::Spans].map(|m| Simulation::new(scene.clone(), m).unwrap());
+    (fem.settle().unwrap(), spans.settle().unwrap());
+    for _ in 0..72 {
+        fem.step_quasi_static(1.0 / 60.0).unwrap();
+        spans.step_quasi_static(1.0 / 60.0).unwrap();
+        let (found, exact) = (fem.solution().cables[0].clone(), spans.solution().cables[0].clone());
+        let (off, said) = (difference(&found, &exact), found.error_estimate.unwrap());
+        assert!(off <= said && said < 1e-3, "{off:.1e} {said:.1e}");
+    }
+}

@@ -51,15 +51,16 @@ pub fn relative_error(network: &mut Network) -> f64 {
         // On a pulley both pull.
         error = larger(error, (change[1] - change[0]).norm());
     }
-    let memory = match (network.pulleys().is_empty(), network.rubbing.is_empty()) {
+    let memory = match (network.pulleys().is_empty(), network.rubs()) {
         (true, _) => 0.0,
-        (false, true) => BALANCE * largest,
-        (false, false) => MEMORY * largest,
+        (false, false) => BALANCE * largest,
+        (false, true) => MEMORY * largest,
     };
     let error = error + rounding(network) + memory;
     // In parts of what the greatest tension is at least.
     let least = if error < 0.5 * largest { largest - error } else { largest };
-    if least > 0.0 { error / least } else { error }
+    let share = if least > 0.0 { error / least } else { error };
+    share * (1.0 + SETTLED)
 }
 
 /// What rounding of lengths does to the stiffest span, N.

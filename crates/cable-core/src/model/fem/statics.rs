@@ -43,6 +43,20 @@ const MAX_SLOW_STEPS: f64 = 400.0;
 /// How often a slow step may be halved.
 const MAX_HALVINGS: usize = 8;
 
+/// The balance of pulleys without friction. On wheels it is found with the material on them by a mean of the tension (to 1e-7 of it),
+/// and then exactly.
+fn solve_smooth(network: &mut Network) -> Result<bool, Failure> {
+    network.solve()?;
+    if network.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.radius > 0.0)) {
+        let mut exact = network.clone();
+        exact.remember();
+        if exact.rub().is_ok() {
+            *network = exact;
+        }
+    }
+    Ok(true)
+}
+
 /// A cable at rest on its supports.
 #[derive(Clone, Debug)]
 pub struct Statics {
@@ -200,7 +214,7 @@ impl Statics {
             network.start_from(old);
         }
         let rubs = network.rubs() && self.problem.bending_stiffness == 0.0;
-        let first = if rubs { self.begin_rubbing(&mut network, dragged) } else { network.solve().map(|()| true) };
+        let first = if rubs { self.begin_rubbing(&mut network, dragged) } else { solve_smooth(&mut network) };
         let first = first.map_err(|f| self.error(&network, f))?;
         iterations += network.steps;
         if self.problem.bending_stiffness > 0.0 {
@@ -214,7 +228,7 @@ impl Statics {
             let factor = (estimate / (SAFETY * self.settings.tolerance)).powf(1.0 / ORDER);
             segments = ((segments as f64 * factor.clamp(1.2, 4.0)).ceil() as usize).min(MOST_SEGMENTS);
             network.layout.cut(segments);
-            if rubs { network.rub() } else { network.solve() }.map_err(|f| self.error(&network, f))?;
+            if network.rubbing.is_empty() { network.solve() } else { network.rub() }.map_err(|f| self.error(&network, f))?;
             iterations += network.steps;
             estimate = estimate::relative_error(&mut network);
         }
