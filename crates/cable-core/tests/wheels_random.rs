@@ -140,8 +140,7 @@ fn scene(case: u64) -> Scene {
                 let mut end = Support::new("A", SupportKind::Load);
                 if dice.chance(0.3) {
                     let f = dice.within(0.6, 1.6);
-                    (end.times_s, end.forces_n) =
-                        (vec![0.0, 1.0, 2.0], vec![force_n, force_n.map(|v| v * f), force_n]);
+                    (end.times_s, end.forces_n) = (vec![0.0, 1.0, 2.0], vec![force_n, force_n.map(|v| v * f), force_n]);
                 } else {
                     end.force_n = Some(force_n);
                 }
@@ -243,7 +242,8 @@ fn campaign(model: Model, first: u64, cases: u64) -> Came {
         if let Some(bad) = bad {
             came.wrong.push(bad);
             if std::env::var("WHEELS_SHOW").is_ok() {
-                std::fs::write(std::env::temp_dir().join(format!("wheels_{model}_{case}.toml")), scene.to_toml()).unwrap();
+                std::fs::write(std::env::temp_dir().join(format!("wheels_{model}_{case}.toml")), scene.to_toml())
+                    .unwrap();
             }
         }
     }
@@ -297,8 +297,10 @@ fn friction_of_a_wheel_stays_on_its_side() {
     (wheel.radius_m, wheel.friction) = (Some(0.7294691177953251), Some(0.9611657543789922));
     let mut hand = Support::fixed("B", [4.174107003751589, -0.9462101876301872]);
     let at = hand.at_m.unwrap();
-    hand.motion =
-        Some(Motion { times_s: vec![0.0, 0.1, 1.1], points_m: vec![at, at, [4.4198909965636205, -1.0281653206841306]] });
+    hand.motion = Some(Motion {
+        times_s: vec![0.0, 0.1, 1.1],
+        points_m: vec![at, at, [4.4198909965636205, -1.0281653206841306]],
+    });
     c.supports = vec![load, wheel, hand];
     let [mut fem, mut spans] = [Model::Fem, Model::Spans].map(|m| Simulation::new(scene.clone(), m).unwrap());
     (fem.settle().unwrap(), spans.settle().unwrap());

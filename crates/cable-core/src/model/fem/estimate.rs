@@ -26,6 +26,8 @@ const SETTLED: f64 = 0.01;
 /// By how much finer elements are made where the lack of the present ones says nothing, and how often at most: 4⁵ = 1024 times.
 const FINER: usize = 4;
 const MOST_FINER: usize = 5;
+/// Most elements of a span that is only solved for its error: some milliseconds.
+const MOST_CELLS: usize = 1 << 15;
 /// Rounding errors of a span's closure, in units of the last place of its length. Measured against the closed form: up to 5,
 /// of two answers.
 const ROUNDING: f64 = 8.0;
@@ -101,6 +103,9 @@ fn closing_force(network: &Network, ends: (usize, usize), span: &Span) -> Vec2 {
     let mut force = span.force;
     for _ in 0..MOST_FINER {
         layout.stops[ends.0..ends.1].iter_mut().for_each(|s| s.cells *= FINER);
+        if layout.stops[ends.0..ends.1].iter().map(|s| s.cells).sum::<usize>() > MOST_CELLS {
+            break;
+        }
         let guess = span::first_guess(material, &layout, ends, goal);
         let solve = |start| span::solve(material, &layout, ends, goal, start);
         let Some(fine) = solve(force).or_else(|| solve(guess)) else { continue };
@@ -114,12 +119,7 @@ fn closing_force(network: &Network, ends: (usize, usize), span: &Span) -> Vec2 {
 }
 
 /// The same by rounds of the correction; None where they do not settle.
-fn correction(
-    material: &Material,
-    layout: &Layout,
-    ends: (usize, usize),
-    (force, goal): (Vec2, Vec2),
-) -> Option<Vec2> {
+fn correction(material: &Material, layout: &Layout, ends: (usize, usize), (force, goal): (Vec2, Vec2)) -> Option<Vec2> {
     let (mut off, mut before) = (Vec2::zeros(), f64::INFINITY);
     for _ in 0..ROUNDS {
         let mut lack = Vec2::zeros();

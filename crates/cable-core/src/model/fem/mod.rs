@@ -286,9 +286,7 @@ impl Mechanics for FemModel {
     fn solution(&self) -> CableSolution {
         match self.present {
             Part::Statics => self.statics.solution(),
-            Part::Dynamics => {
-                CableSolution { error_estimate: self.meshes.estimate, ..self.dynamics.solution() }
-            }
+            Part::Dynamics => CableSolution { error_estimate: self.meshes.estimate, ..self.dynamics.solution() },
         }
     }
 

@@ -263,7 +263,11 @@ impl Network {
         let stops = &self.layout.stops;
         let runs_out = (1..stops.len()).find(|&k| !(stops[k].arc_length > stops[k - 1].leaves()));
         if let Some(k) = runs_out {
-            return Err(Failure::RunsOut(if stops[k].support.is_some() && self.wheel(k).is_some() { k } else { k - 1 }));
+            return Err(Failure::RunsOut(if stops[k].support.is_some() && self.wheel(k).is_some() {
+                k
+            } else {
+                k - 1
+            }));
         }
         self.solve_spans()
     }

@@ -228,7 +228,8 @@ impl Statics {
             let factor = (estimate / (SAFETY * self.settings.tolerance)).powf(1.0 / ORDER);
             segments = ((segments as f64 * factor.clamp(1.2, 4.0)).ceil() as usize).min(MOST_SEGMENTS);
             network.layout.cut(segments);
-            if network.rubbing.is_empty() { network.solve() } else { network.rub() }.map_err(|f| self.error(&network, f))?;
+            if network.rubbing.is_empty() { network.solve() } else { network.rub() }
+                .map_err(|f| self.error(&network, f))?;
             iterations += network.steps;
             estimate = estimate::relative_error(&mut network);
         }
@@ -301,9 +302,8 @@ impl Statics {
         let mut half = None;
         if let Some(old) = self.finer.as_ref().filter(|_| !first && time > self.time) {
             let middle = 0.5 * (self.time + time);
-            let halfway: Vec<Option<Vec2>> = (0..dragged.len())
-                .map(|k| Some((dragged[k]? + self.support_at(k).or(dragged[k])?) * 0.5))
-                .collect();
+            let halfway: Vec<Option<Vec2>> =
+                (0..dragged.len()).map(|k| Some((dragged[k]? + self.support_at(k).or(dragged[k])?) * 0.5)).collect();
             let layout = cut(Layout::new(&self.problem, middle, &halfway, &self.slid));
             let (material, _) = self.material(middle, &layout);
             let mut step = Network::new(layout, material);

@@ -43,7 +43,6 @@ mod wedge;
 mod weight;
 pub(in crate::model) mod wheel_friction;
 
-
 use std::sync::Arc;
 
 use self::drive::{Network, Taken};
