@@ -91,8 +91,8 @@ fn ladder(length: f64, end: [f64; 2], ea: f64, bounds: [[f64; 2]; 4], estimate_w
         let e = errors(&cable, u, w, ea);
         let force = [cable.supports[0].reaction_x_n, cable.supports[0].reaction_y_n];
         let largest = u[0].hypot(u[1].abs().max((u[1] + w * length).abs()));
-        let tension = |f: [f64; 2]| f[0].hypot(f[1]).max(f[0].hypot(f[1] + w * length));
-        let ends = (tension(force) - tension(u)).abs() / largest;
+        // The whole force on the ends, which differ by the weight alone.
+        let ends = (force[0] - u[0]).hypot(force[1] - u[1]) / largest;
         let estimate = cable.error_estimate.unwrap();
         println!(
             "L {length} n {n}: position {:.2e}, tension {:.2e}, end {ends:.2e}, estimate {estimate:.2e}",

@@ -64,7 +64,7 @@ const ITERATIONS: [(&str, Model, usize); 11] = [
     ("near-taut", Model::Fem, 2),
     // A wheel: its touch points are found in rounds, each a balance of its own.
     ("pulley-waypoints", Model::Catenary, 226),
-    ("pulley-waypoints", Model::Fem, 375),
+    ("pulley-waypoints", Model::Fem, 18),
     ("clamped-stiff", Model::Fem, 10),
     ("loads-wind-heat", Model::Catenary, 5),
     ("loads-wind-heat", Model::Fem, 5),

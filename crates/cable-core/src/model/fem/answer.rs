@@ -139,13 +139,10 @@ fn anchor(network: &Network, k: usize, cable_radius: f64, out: &mut Vec<Point>) 
             for (i, share) in (1..count).zip(material) {
                 let f = i as f64 / count as f64;
                 let n = Vec2::new((start + turn * f).cos(), (start + turn * f).sin());
-                let force = perp(n) * (turn.signum() * tension(f));
-                out.push(tangent(
-                    wheel.center + n * wheel.radius,
-                    stop.arc_length + stop.lap * share,
-                    force,
-                    curvature,
-                ));
+                let (n, arc_length, tension) =
+                    remembered(network, k, f).unwrap_or_else(|| (n, stop.arc_length + stop.lap * share, tension(f)));
+                let force = perp(n) * (turn.signum() * tension);
+                out.push(tangent(wheel.center + n * wheel.radius, arc_length, force, curvature));
             }
             out.push(tangent(leaves, stop.leaves(), after, curvature));
         }
@@ -161,6 +158,14 @@ fn anchor(network: &Network, k: usize, cable_radius: f64, out: &mut Vec<Point>) 
             });
         }
     }
+}
+
+/// Outward normal, arc length (m) and tension (N) at a fraction of the arc of a wheel whose friction remembers them.
+fn remembered(network: &Network, stop: usize, fraction: f64) -> Option<(Vec2, f64, f64)> {
+    let k = network.pulleys().iter().position(|&k| k == stop)?;
+    let pulley = network.rubbing.get(k)?;
+    let (tension, normal) = pulley.tension_at(network, fraction)?;
+    Some((normal, pulley.material_at(network, fraction)?, tension))
 }
 
 /// Force of the cable on a stop, N: it is pulled back along the cable before it and on along the cable after it, and

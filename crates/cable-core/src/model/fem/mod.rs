@@ -38,6 +38,7 @@ mod path;
 mod prepare;
 mod remesh;
 mod rest;
+mod rubbing;
 mod rush;
 mod sleep;
 mod sliding;
@@ -49,17 +50,19 @@ mod stop;
 mod take_over;
 mod task;
 mod touch;
+mod two_meshes;
 mod wheel;
 
 use std::sync::Arc;
 
+use self::two_meshes::TwoMeshes;
 use super::lay::{least_sliding, slid_first, slides_on};
 use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Warning};
+use crate::solution::{CableSolution, Warning, WarningKind};
 use crate::state::State;
 
 /// Part of the greatest tension by which the force on a support may change when a first lay is taken over. Less: coarse meshes lay themselves, in folds; more:
@@ -104,6 +107,8 @@ pub struct FemModel {
     /// Whether a first rest with contact goes on from that of `spans`, where there is one.
     laid_evenly: bool,
     settings: Settings,
+    /// What another mesh says of the error in contact.
+    meshes: TwoMeshes,
     /// Where the outline of the robot was led.
     led: Option<Placement>,
 }
@@ -123,6 +128,7 @@ impl FemModel {
             dynamics,
             present,
             laid_evenly: true,
+            meshes: TwoMeshes::default(),
             settings,
             led: problem.outline.as_ref().map(|o| o.placement),
             problem,
@@ -137,13 +143,15 @@ impl FemModel {
     }
 
     /// Lays the cable with the least sliding, if there is an answer to that. On its own way down slack comes to lie in folds, which
-    /// friction then holds. Returns what there is to say of it.
+    /// friction then holds. Returns what there is to say of it, and the answer without a mesh.
     ///
     /// # Errors
     /// That it slides from where it is laid.
-    fn lay(&mut self) -> Result<Laid, SolveError> {
+    fn lay(&mut self) -> Result<(Laid, Option<CableSolution>), SolveError> {
         let laid = least_sliding(&self.problem, self.settings, (&self.dragged, self.led))?;
-        let Some(lay) = laid else { return Ok(Laid::Unknown) };
+        let Some(lay) = laid else { return Ok((Laid::Unknown, None)) };
+        // A stiff cable is laid as a flexible one: that is where it begins, not how it lies.
+        let exact = (self.problem.bending_stiffness == 0.0).then(|| lay.answer.clone());
         let before = self.dynamics.clone();
         let taken = self.dynamics.take_over(&lay.answer, before.time(), &self.dragged).is_ok() && self.dynamics.rested;
         let greatest = lay.answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
@@ -152,16 +160,19 @@ impl FemModel {
         let off = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
         let jammed = if self.problem.bending_stiffness > 0.0 { JAMMED_STIFF } else { JAMMED };
         if taken && off.fold(0.0, larger) <= jammed * greatest {
-            return Ok(Laid::TakenOver(lay.warnings));
+            return Ok((Laid::TakenOver(lay.warnings), exact));
         }
         self.dynamics = before;
-        Ok(Laid::Alone)
+        Ok((Laid::Alone, exact))
     }
 
     /// The resting place where something may be touched.
     fn rest_in_touch(&mut self) -> Result<StepReport, SolveError> {
         let begins = !self.dynamics.rested && self.dynamics.time() == 0.0;
-        let laid = if begins && self.laid_evenly { self.lay() } else { Ok(Laid::Unknown) };
+        let (laid, exact) = match begins && self.laid_evenly {
+            true => self.lay().map_or_else(|slides| (Err(slides), None), |(laid, exact)| (Ok(laid), exact)),
+            false => (Ok(Laid::Unknown), None),
+        };
         let taken = matches!(laid, Ok(Laid::TakenOver(_)));
         if begins && !taken && self.statics.settle(&self.dragged).is_ok() {
             self.dynamics.begin_at(&self.statics.state(), &self.dragged);
@@ -194,6 +205,8 @@ impl FemModel {
         }
         let mut report = found?;
         report.warnings.extend(said);
+        self.compare_meshes(exact.as_ref());
+        report.warnings.extend(self.coarse_warning());
         Ok(report)
     }
 
@@ -223,6 +236,25 @@ impl FemModel {
     pub fn with_material_nodes(mut self) -> Self {
         self.dynamics.slides = false;
         self
+    }
+
+    /// Looks at the cable in contact beside an answer without a mesh, or on another one, and makes its own finer where the scene
+    /// leaves that open.
+    fn compare_meshes(&mut self, exact: Option<&CableSolution>) {
+        let given = self.settings.segments.or(self.problem.cable.segments).is_some();
+        self.meshes.compare(&self.problem, (self.settings, !given), (&mut self.dynamics, exact), &self.dragged);
+    }
+
+    /// What there is to say of a mesh that is coarser than the tolerance asks for.
+    fn coarse_warning(&self) -> Option<Warning> {
+        let (estimate, asked) = (self.meshes.estimate?, self.settings.tolerance);
+        (estimate > asked).then(|| {
+            let message = format!(
+                "{} elements give the forces to about {estimate:.1e} of the greatest tension; {asked:.1e} was asked for: use more segments",
+                self.dynamics.even_bars
+            );
+            Warning::new(WarningKind::Accuracy, &self.problem.cable.name, 0.0, [estimate, asked], message)
+        })
     }
 
     /// Makes `part` the one that holds the present state.
@@ -274,7 +306,9 @@ impl Mechanics for FemModel {
             self.statics.advance(dt_s, &self.dragged)
         } else {
             self.ask(Part::Dynamics)?;
-            self.dynamics.advance(dt_s, inertia, &self.dragged)
+            let report = self.dynamics.advance(dt_s, inertia, &self.dragged)?;
+            self.meshes.follow(&self.dynamics, dt_s, inertia, &self.dragged);
+            Ok(report)
         }
     }
 
@@ -286,6 +320,7 @@ impl Mechanics for FemModel {
     }
 
     fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+        self.meshes = TwoMeshes::default();
         // Statics has no velocities: what moves is taken over by the part that can move.
         if self.present == Part::Statics && state.velocity_m_per_s.iter().any(|v| v.norm() > 0.0) {
             self.dynamics.adopt(state)?;
@@ -301,7 +336,10 @@ impl Mechanics for FemModel {
     fn take_over(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         match self.present {
             Part::Statics => self.adopt(&State::of_nodes(&answer.nodes, time_s)),
-            Part::Dynamics => self.dynamics.take_over(answer, time_s, &self.dragged),
+            Part::Dynamics => {
+                self.meshes = TwoMeshes::default();
+                self.dynamics.take_over(answer, time_s, &self.dragged)
+            }
         }
     }
 
@@ -323,7 +361,7 @@ impl Mechanics for FemModel {
     fn solution(&self) -> CableSolution {
         match self.present {
             Part::Statics => self.statics.solution(),
-            Part::Dynamics => self.dynamics.solution(),
+            Part::Dynamics => CableSolution { error_estimate: self.meshes.estimate, ..self.dynamics.solution() },
         }
     }
 

@@ -14,6 +14,7 @@
 
 use super::element::{Material, turn_between};
 use super::layout::{Hold, Layout, Wheel};
+use super::rubbing::Rubbing;
 use super::span::{self, Span, elements};
 use crate::math::{Vec2, bounded, larger, perp};
 
@@ -65,6 +66,8 @@ pub struct Network {
     /// Arc length at each stop before anything slid (friction remembers it), m.
     held_at: Vec<f64>,
     warm: bool,
+    /// Every pulley with what friction remembers of it, in order; empty until it was asked for (`rubbing`).
+    pub rubbing: Vec<Rubbing>,
 }
 
 /// The law of a pulley at the present forces.
@@ -90,6 +93,7 @@ impl Network {
             steps: 0,
             residual: 0.0,
             warm: false,
+            rubbing: Vec::new(),
         };
         network.meet_wheels_straight();
         network
@@ -103,7 +107,12 @@ impl Network {
         }
     }
 
-    /// Solves everything.
+    /// The next solve may start from the present forces.
+    pub(super) fn warm_now(&mut self) {
+        self.warm = true;
+    }
+
+    /// Solves everything, friction from where the material was laid.
     ///
     /// # Errors
     /// Why there is no answer.
@@ -120,7 +129,7 @@ impl Network {
     }
 
     /// Solves the spans for the present arc lengths.
-    fn solve_spans(&mut self) -> Result<(), Failure> {
+    pub(super) fn solve_spans(&mut self) -> Result<(), Failure> {
         self.residual = 0.0;
         for i in 0..self.ends.len() {
             self.solve_span(i)?;

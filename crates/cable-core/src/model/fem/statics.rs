@@ -12,7 +12,8 @@ use super::estimate;
 use super::layout::{Hold, Layout, place};
 use super::network::{Failure, Network};
 use crate::error::{Place, SolveError};
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
+use crate::model::lay::least_sliding;
 use crate::model::{Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
@@ -44,6 +45,20 @@ const MAX_SLOW_STEPS: f64 = 400.0;
 /// How often a slow step may be halved.
 const MAX_HALVINGS: usize = 8;
 
+/// The balance of pulleys without friction. On wheels it is found with the material on them by a mean of the tension (to 1e-7 of it),
+/// and then exactly.
+fn solve_smooth(network: &mut Network) -> Result<bool, Failure> {
+    network.solve()?;
+    if network.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.radius > 0.0)) {
+        let mut exact = network.clone();
+        exact.remember();
+        if exact.rub().is_ok() {
+            *network = exact;
+        }
+    }
+    Ok(true)
+}
+
 /// A cable at rest on its supports.
 #[derive(Clone, Debug)]
 pub struct Statics {
@@ -55,10 +70,14 @@ pub struct Statics {
     slid: Vec<Option<f64>>,
     /// The flexible cable of the last answer: where the next one starts.
     network: Option<Network>,
+    /// The same on a finer mesh where pulleys rub: it tells what the mesh does to what friction remembers.
+    finer: Option<Network>,
     /// The stops of the last answer and the tension forces before and after them, N.
     rested: Option<(Layout, Vec<[Vec2; 2]>)>,
     points: Vec<Point>,
     estimate: Option<f64>,
+    /// Whether it was put where it is: then it is not as it was laid.
+    adopted: bool,
 }
 
 impl Statics {
@@ -77,9 +96,11 @@ impl Statics {
             segments: given.unwrap_or(FIRST_SEGMENTS),
             slid: vec![None; problem.supports.len()],
             network: None,
+            finer: None,
             rested: None,
             points: Vec::new(),
             estimate: None,
+            adopted: false,
             time: 0.0,
             problem,
             settings,
@@ -141,9 +162,16 @@ impl Statics {
         let steps = if rubs { self.slow_steps(start, end, dragged) } else { 1.0 };
         let mut report = StepReport::default();
         let (mut step, mut halvings) = (dt_s / steps, 0);
+        // A hand goes straight.
+        let from: Vec<Option<Vec2>> = (0..dragged.len()).map(|k| self.support_at(k)).collect();
+        let drawn = |time: f64| -> Vec<Option<Vec2>> {
+            let part = if time < end { (time - start) / dt_s } else { 1.0 };
+            let at = |to: Vec2, from: &Option<Vec2>| from.map_or(to, |f| f + (to - f) * part);
+            dragged.iter().zip(&from).map(|(to, from)| to.map(|to| at(to, from))).collect()
+        };
         while self.time < end {
             let next = if self.time + 1.5 * step >= end { end } else { self.time + step };
-            match self.rest_at(next, dragged) {
+            match self.rest_at(next, &drawn(next)) {
                 Ok(r) => {
                     report.cost.iterations += r.cost.iterations;
                     report.cost.residual_n = r.cost.residual_n;
@@ -164,9 +192,7 @@ impl Statics {
     fn slow_steps(&self, start: f64, end: f64, dragged: &[Option<Vec2>]) -> f64 {
         let mut longest: f64 = 0.0;
         for k in 0..self.problem.supports.len() {
-            let from =
-                self.network.as_ref().and_then(|n| n.layout.stops.iter().find(|s| s.support == Some(k))?.point(0));
-            let from = from.or(place(&self.problem, k, start, &[]));
+            let from = self.support_at(k).or(place(&self.problem, k, start, &[]));
             let to = place(&self.problem, k, end, dragged);
             if let (Some(a), Some(b)) = (from, to) {
                 longest = longest.max((b - a).norm());
@@ -189,12 +215,14 @@ impl Statics {
         if let Some(old) = &self.network {
             network.start_from(old);
         }
-        network.solve().map_err(|f| self.error(&network, f))?;
+        let rubs = network.rubs() && self.problem.bending_stiffness == 0.0;
+        let first = if rubs { self.begin_rubbing(&mut network, dragged) } else { solve_smooth(&mut network) };
+        let first = first.map_err(|f| self.error(&network, f))?;
         iterations += network.steps;
         if self.problem.bending_stiffness > 0.0 {
             return self.bend(network, time, hinted);
         }
-        let mut estimate = estimate::relative_error(&network);
+        let mut estimate = estimate::relative_error(&mut network);
         for _ in 0..MAX_MESHES {
             if !(adaptive && estimate > SAFETY * self.settings.tolerance && segments < MOST_SEGMENTS) {
                 break;
@@ -202,9 +230,17 @@ impl Statics {
             let factor = (estimate / (SAFETY * self.settings.tolerance)).powf(1.0 / ORDER);
             segments = ((segments as f64 * factor.clamp(1.2, 4.0)).ceil() as usize).min(MOST_SEGMENTS);
             network.layout.cut(segments);
-            network.solve().map_err(|f| self.error(&network, f))?;
+            if network.rubbing.is_empty() { network.solve() } else { network.rub() }
+                .map_err(|f| self.error(&network, f))?;
             iterations += network.steps;
-            estimate = estimate::relative_error(&network);
+            estimate = estimate::relative_error(&mut network);
+        }
+        if rubs {
+            estimate += self.follow_finer(&network, (time, dragged), first);
+            network.commit_friction();
+            // What friction remembers is as wrong as the steps it remembers were.
+            let before = if first { None } else { self.estimate };
+            estimate = before.map_or(estimate, |e| larger(e, estimate));
         }
         self.time = time;
         self.segments = segments;
@@ -221,6 +257,91 @@ impl Statics {
         let cost = Cost { iterations, residual_n: network.residual, ..Cost::default() };
         self.network = Some(network);
         Ok(StepReport { cost, warnings: self.warnings(hinted) })
+    }
+
+    /// The balance of pulleys that rub: from what they remember, else as the cable was laid; whether it was laid anew.
+    fn begin_rubbing(&self, network: &mut Network, dragged: &[Option<Vec2>]) -> Result<bool, Failure> {
+        if let Some(old) = &self.network
+            && network.remember_from(old)
+        {
+            return network.rub().map(|()| false);
+        }
+        if self.time == 0.0
+            && !self.adopted
+            && let Ok(Some(lay)) = least_sliding(&self.problem, self.settings, (dragged, None))
+        {
+            let mut laid = network.clone();
+            if laid.remember_answer(&lay.answer) && laid.rub().is_ok() {
+                *network = laid;
+                return Ok(true);
+            }
+        }
+        network.solve()?;
+        network.remember();
+        network.rub().map(|()| true)
+    }
+
+    /// Goes the same way with bars half as long in steps half as long and with a memory of its own: by how much the forces differ, in
+    /// parts of the greatest. What mesh and steps do to friction adds up in what friction remembers, of which the present balance
+    /// knows nothing.
+    fn follow_finer(&mut self, network: &Network, (time, dragged): (f64, &[Option<Vec2>]), first: bool) -> f64 {
+        let Some(finer) = self.finer(network, (time, dragged), first) else {
+            // It begins anew from here.
+            self.finer = None;
+            return 0.0;
+        };
+        let off = estimate::difference(network, &finer);
+        self.finer = Some(finer);
+        off
+    }
+
+    fn finer(&self, network: &Network, (time, dragged): (f64, &[Option<Vec2>]), first: bool) -> Option<Network> {
+        let segments: usize = network.layout.stops.iter().map(|s| s.cells).sum();
+        let cut = |mut layout: Layout| {
+            layout.cut(2 * segments);
+            layout
+        };
+        let mut half = None;
+        if let Some(old) = self.finer.as_ref().filter(|_| !first && time > self.time) {
+            let middle = 0.5 * (self.time + time);
+            let halfway: Vec<Option<Vec2>> =
+                (0..dragged.len()).map(|k| Some((dragged[k]? + self.support_at(k).or(dragged[k])?) * 0.5)).collect();
+            let layout = cut(Layout::new(&self.problem, middle, &halfway, &self.slid));
+            let (material, _) = self.material(middle, &layout);
+            let mut step = Network::new(layout, material);
+            step.start_from(old);
+            if !step.remember_from(old) {
+                return None;
+            }
+            step.rub().ok()?;
+            step.commit_friction();
+            half = Some(step);
+        }
+        let mut finer = Network::new(cut(network.layout.clone()), network.material);
+        match half.as_ref().or(self.finer.as_ref().filter(|_| !first)) {
+            Some(old) => {
+                finer.start_from(old);
+                if !finer.remember_from(old) {
+                    return None;
+                }
+            }
+            None => {
+                finer.start_from(network);
+                finer.rubbing.clone_from(&network.rubbing);
+            }
+        }
+        finer.rub().ok()?;
+        finer.commit_friction();
+        Some(finer)
+    }
+
+    /// Where a support was in the last answer, of a wheel its centre (where the cable meets it is no move of the support), m.
+    fn support_at(&self, support: usize) -> Option<Vec2> {
+        let stop = self.network.as_ref()?.layout.stops.iter().find(|s| s.support == Some(support))?;
+        match stop.hold {
+            Hold::Pulley(wheel) => Some(wheel.center),
+            _ => stop.point(0),
+        }
     }
 
     /// Rest with bending stiffness, from the flexible cable: on a mesh and on that of half the bars, whose difference
@@ -364,6 +485,7 @@ impl Statics {
             }
         }
         self.network = None;
+        self.adopted = true;
         self.rested = None;
         self.estimate = None;
         self.points.clear();

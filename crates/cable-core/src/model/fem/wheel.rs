@@ -56,6 +56,11 @@ impl Network {
         }
     }
 
+    /// The same at a stop, by the anchors before and after it.
+    pub(super) fn clockwise_at(&self, stop: usize, wheel: &Wheel) -> f64 {
+        self.clockwise(wheel, self.passing(stop))
+    }
+
     /// The way the cable passes a stop, from the anchor before to the anchor after.
     fn passing(&self, stop: usize) -> Vec2 {
         let near = |k: usize| match self.layout.stops[k].hold {

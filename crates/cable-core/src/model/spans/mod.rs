@@ -41,6 +41,7 @@ mod trouble;
 mod way;
 mod wedge;
 mod weight;
+pub(in crate::model) mod wheel_friction;
 
 use std::sync::Arc;
 
