@@ -20,6 +20,7 @@ pub mod contact_step;
 #[cfg(test)]
 mod contact_tests;
 pub mod dynamics;
+mod elastica;
 pub mod element;
 mod estimate;
 mod foresee;
@@ -59,8 +60,10 @@ use crate::contact::outline::Placement;
 use crate::error::SolveError;
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Warning};
+use crate::scene::SupportKind;
+use crate::solution::{CableSolution, Cost, Warning};
 use crate::state::State;
+use elastica::Elastica;
 
 /// Part of the greatest tension by which the force on a support may change when a first lay is taken over. Less: coarse meshes lay themselves, in folds; more:
 /// bars too long for the ground, held by friction at both ends, keep a pull that nothing else asks for (25 bars on a robot's ground: 220 %).
@@ -68,6 +71,9 @@ const JAMMED: f64 = 0.1;
 
 /// The same of a stiff cable, which is laid as a flexible one: its bending takes part in what supports feel.
 const JAMMED_STIFF: f64 = 0.5;
+
+/// Part of the tolerance that the error of a stiff cable's rest must stay below.
+const SAFETY: f64 = 0.5;
 
 /// Which part holds the present state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,6 +96,8 @@ pub struct FemModel {
     settings: Settings,
     /// Where the outline of the robot was led.
     led: Option<Placement>,
+    /// The rest of a stiff cable in contact, until something moves.
+    bent: Option<CableSolution>,
 }
 
 impl FemModel {
@@ -109,6 +117,7 @@ impl FemModel {
             laid_evenly: true,
             settings,
             led: problem.outline.as_ref().map(|o| o.placement),
+            bent: None,
             problem,
         })
     }
@@ -136,6 +145,24 @@ impl FemModel {
         }
         self.dynamics = before;
         None
+    }
+
+    /// The resting place of a stiff cable in contact as an elastica, from that of a flexible one; None where this finds none.
+    fn bend(&mut self) -> Option<StepReport> {
+        if !(self.problem.bending_stiffness > 0.0) {
+            return None;
+        }
+        let time = self.dynamics.time();
+        let lay = least_sliding(&self.problem, self.settings, (&self.dragged, self.led))?;
+        let mut found = Elastica::from_flexible(&self.problem, time, &self.dragged, &lay.answer)?;
+        if !found.stiffen(&self.problem) {
+            return None;
+        }
+        let estimate = found.refine(&self.problem, SAFETY * self.settings.tolerance)?;
+        let (iterations, residual_n) = found.cost();
+        self.bent = Some(CableSolution { error_estimate: Some(estimate), ..found.solution(&self.problem) });
+        let cost = Cost { iterations, residual_n, ..Cost::default() };
+        Some(StepReport { cost, warnings: lay.warnings })
     }
 
     /// The same without sliding nodes at corners and posts: every node stays with its material. For models that take
@@ -168,6 +195,7 @@ fn touches_nothing(problem: &Problem) -> bool {
         && problem.outline.is_none()
         && problem.floor_friction.is_none()
         && !problem.cable.self_contact
+        && !(problem.bending_stiffness > 0.0 && problem.supports.iter().any(|s| s.kind == SupportKind::Pulley))
 }
 
 impl Mechanics for FemModel {
@@ -180,6 +208,10 @@ impl Mechanics for FemModel {
             self.ask(Part::Statics)?;
             self.statics.settle(&self.dragged)
         } else {
+            self.bent = None;
+            if let Some(report) = self.bend() {
+                return Ok(report);
+            }
             let begins = !self.dynamics.rested && self.dynamics.time() == 0.0;
             let said = if begins && self.laid_evenly { self.lay() } else { None };
             if begins && said.is_none() && self.statics.settle(&self.dragged).is_ok() {
@@ -200,11 +232,17 @@ impl Mechanics for FemModel {
             self.statics.advance(dt_s, &self.dragged)
         } else {
             self.ask(Part::Dynamics)?;
+            if let Some(answer) = self.bent.take() {
+                self.dynamics.take_over(&answer, self.dynamics.time(), &self.dragged)?;
+            }
             self.dynamics.advance(dt_s, inertia, &self.dragged)
         }
     }
 
     fn state(&self) -> State {
+        if let Some(answer) = &self.bent {
+            return State::of_nodes(&answer.nodes, self.dynamics.time());
+        }
         match self.present {
             Part::Statics => self.statics.state(),
             Part::Dynamics => self.dynamics.state(),
@@ -212,6 +250,7 @@ impl Mechanics for FemModel {
     }
 
     fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+        self.bent = None;
         // Statics has no velocities: what moves is taken over by the part that can move.
         if self.present == Part::Statics && state.velocity_m_per_s.iter().any(|v| v.norm() > 0.0) {
             self.dynamics.adopt(state)?;
@@ -225,6 +264,7 @@ impl Mechanics for FemModel {
     }
 
     fn take_over(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+        self.bent = None;
         match self.present {
             Part::Statics => self.adopt(&State::of_nodes(&answer.nodes, time_s)),
             Part::Dynamics => self.dynamics.take_over(answer, time_s, &self.dragged),
@@ -247,6 +287,9 @@ impl Mechanics for FemModel {
     }
 
     fn solution(&self) -> CableSolution {
+        if let Some(answer) = &self.bent {
+            return answer.clone();
+        }
         match self.present {
             Part::Statics => self.statics.solution(),
             Part::Dynamics => self.dynamics.solution(),
