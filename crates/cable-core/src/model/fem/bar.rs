@@ -16,9 +16,13 @@ use super::task::{Pose, Task};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 
-/// Part of EA that resists shortening: none, as a flexible cable gives way sideways between the nodes instead of pushing. With any
-/// part of it slack cables stand in arches on the ground and push their supports (0.01: 5.7 kN of a power cable that lies loose).
-pub const PUSH: f64 = 0.0;
+/// Part of EA that resists shortening. A flexible cable gives way sideways between the nodes instead of pushing: with any part of it slack
+/// cables stand in arches on the ground and push their supports (0.01: 5.7 kN of a power cable that lies loose). A stiff one pushes with
+/// all of it until it buckles, which its nodes show: bars in a row give way at 4EI/l².
+#[must_use]
+pub fn push_part(mesh: &Mesh) -> f64 {
+    if mesh.bending_stiffness > 0.0 { 1.0 } else { 0.0 }
+}
 
 /// What is carried of a bar from one iteration to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +43,7 @@ pub fn rest_length(mesh: &Mesh, e: usize, slide: &[f64]) -> f64 {
 #[must_use]
 pub fn pull(mesh: &Mesh, task: &Task, (e, taut): (usize, bool), p: f64) -> (f64, f64) {
     let l = mesh.rest_length[e];
-    let stiffness = mesh.axial_stiffness * if taut { 1.0 } else { PUSH };
+    let stiffness = mesh.axial_stiffness * if taut { 1.0 } else { push_part(mesh) };
     let c = task.damping / l;
     (stiffness * (p / l - 1.0) + c * (p - task.predicted_length[e]), stiffness / l + c)
 }
@@ -60,7 +64,7 @@ pub fn add(
     let (p, l, scale) = (d.norm(), mesh.rest_length[e], task.scale[e]);
     let t = if p > 0.0 { d / p } else { Vec2::x() };
     let taut = carried.map_or(!(p < l), |c| c.taut);
-    let stiffness = mesh.axial_stiffness * if taut { 1.0 } else { PUSH } / l;
+    let stiffness = mesh.axial_stiffness * if taut { 1.0 } else { push_part(mesh) } / l;
     let c = task.damping / l;
     let late = p - task.predicted_length[e];
     let pull = stiffness * (p - l) + c * late;
@@ -88,7 +92,7 @@ fn add_sliding(
     let (p, l, scale) = (path.length, rest_length(mesh, e, &pose.slide), task.scale[e]);
     let strain = p / l - 1.0;
     let slides = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
-    let stiffness = mesh.axial_stiffness * if strain < 0.0 { PUSH } else { 1.0 };
+    let stiffness = mesh.axial_stiffness * if strain < 0.0 { push_part(mesh) } else { 1.0 };
     let tension = stiffness * strain;
     // Damping: ½ c (P − p̂ L)², c = EA τ a/L₀, p̂ the predicted ratio P/L.
     let c = task.damping / mesh.rest_length[e];

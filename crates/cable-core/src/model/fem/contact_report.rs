@@ -1,5 +1,6 @@
 //! Reads tensions, reactions and contacts out of a state.
 
+use super::bar;
 use super::contact_set::{ContactSet, Rub, Touch};
 use super::dynamics::Dynamics;
 use super::sliding::Seat;
@@ -24,13 +25,13 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
     }
 }
 
-/// Tension of each bar, N (a slack one pushes a little: 0 is reported).
+/// Tension of each bar, N; a stiff cable's may be less than zero.
 fn bar_tensions(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
     let mesh = &d.mesh;
     (0..mesh.rest_length.len())
         .map(|e| {
             let t = mesh.bar(e).tension(mesh.path(e, x).length);
-            if t < 0.0 { 0.0 } else { t }
+            if t < 0.0 { t * bar::push_part(mesh) } else { t }
         })
         .collect()
 }

@@ -15,7 +15,7 @@
 //! once, say) the minimiser of contact steps takes over from the same start.
 
 use super::assembly::Mesh;
-use super::bar::PUSH;
+use super::bar::push_part;
 use super::task::{Done, Pose, Task};
 use crate::energy::Curvature;
 use crate::math::{Vec2, larger};
@@ -119,7 +119,7 @@ impl FreeStep {
         for (e, (pull, taut)) in self.pull.iter_mut().zip(&mut self.taut).enumerate() {
             let strain = (task.start[e + 1] - task.start[e]).norm() / mesh.rest_length[e] - 1.0;
             *taut = strain >= 0.0;
-            *pull = mesh.axial_stiffness * if *taut { strain } else { PUSH * strain };
+            *pull = mesh.axial_stiffness * if *taut { strain } else { push_part(mesh) * strain };
         }
     }
 
@@ -137,7 +137,7 @@ impl FreeStep {
         for e in 0..mesh.rest_length.len() {
             let (d, l) = (x[e + 1] - x[e], mesh.rest_length[e]);
             let p = d.norm();
-            let elastic = mesh.axial_stiffness * if self.taut[e] { 1.0 } else { PUSH } / l;
+            let elastic = mesh.axial_stiffness * if self.taut[e] { 1.0 } else { push_part(mesh) } / l;
             let stiffness = elastic + task.damping / l;
             let now = elastic * (p - l) + task.damping / l * (p - task.predicted_length[e]);
             let t = if p > 0.0 { d / p } else { Vec2::x() };

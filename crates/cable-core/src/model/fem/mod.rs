@@ -61,7 +61,7 @@ use crate::error::SolveError;
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-use crate::solution::{CableSolution, Cost, Warning};
+use crate::solution::{CableSolution, Cost, Node, Warning};
 use crate::state::State;
 use elastica::Elastica;
 
@@ -74,6 +74,10 @@ const JAMMED_STIFF: f64 = 0.5;
 
 /// Part of the tolerance that the error of a stiff cable's rest must stay below.
 const SAFETY: f64 = 0.5;
+
+/// Part of its length by which a stiff cable may lie elsewhere than where its mesh has it at rest. Less: coarse meshes are left as they are;
+/// more: another resting place is taken for the same.
+const STRAY: f64 = 0.05;
 
 /// Which part holds the present state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -152,17 +156,41 @@ impl FemModel {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let time = self.dynamics.time();
         let lay = least_sliding(&self.problem, self.settings, (&self.dragged, self.led))?;
-        let mut found = Elastica::from_flexible(&self.problem, time, &self.dragged, &lay.answer)?;
+        let found = Elastica::from_flexible(&self.problem, self.dynamics.time(), &self.dragged, &lay.answer)?;
+        let cost = self.take_bent(found)?;
+        Some(StepReport { cost, warnings: lay.warnings })
+    }
+
+    /// The same from the rest that the mesh has found.
+    fn bend_on(&mut self) -> Option<Cost> {
+        if !(self.problem.bending_stiffness > 0.0) {
+            return None;
+        }
+        let answer = self.dynamics.solution();
+        let bar = self.dynamics.even();
+        let found = Elastica::from_mesh(&self.problem, self.dynamics.time(), &self.dragged, (&answer, bar))?;
+        let cost = self.take_bent(found)?;
+        // What the mesh found is followed, not left: places that differ by more are another rest.
+        let near = |n: &Node| {
+            let at = self.bent.as_ref().and_then(|b| State::of_nodes(&b.nodes, 0.0).position_at(n.arc_length_m));
+            at.is_some_and(|at| (at - n.at()).norm() <= STRAY * self.problem.length)
+        };
+        if !answer.nodes.iter().all(near) {
+            self.bent = None;
+            return None;
+        }
+        Some(cost)
+    }
+
+    fn take_bent(&mut self, mut found: Elastica) -> Option<Cost> {
         if !found.stiffen(&self.problem) {
             return None;
         }
         let estimate = found.refine(&self.problem, SAFETY * self.settings.tolerance)?;
         let (iterations, residual_n) = found.cost();
         self.bent = Some(CableSolution { error_estimate: Some(estimate), ..found.solution(&self.problem) });
-        let cost = Cost { iterations, residual_n, ..Cost::default() };
-        Some(StepReport { cost, warnings: lay.warnings })
+        Some(Cost { iterations, residual_n, ..Cost::default() })
     }
 
     /// The same without sliding nodes at corners and posts: every node stays with its material. For models that take
@@ -219,6 +247,9 @@ impl Mechanics for FemModel {
             }
             let mut report = self.dynamics.settle(&self.dragged)?;
             report.warnings.extend(said.into_iter().flatten());
+            if let Some(cost) = self.bend_on() {
+                report.cost = Cost { iterations: report.cost.iterations + cost.iterations, ..cost };
+            }
             Ok(report)
         }
     }

@@ -103,7 +103,7 @@ impl Workspace {
         for (e, l) in mesh.rest_length.iter().enumerate() {
             let strain = (pose.x[e + 1] - pose.x[e]).norm() / l - 1.0;
             let taut = strain >= 0.0;
-            let pull = mesh.axial_stiffness * if taut { strain } else { bar::PUSH * strain };
+            let pull = mesh.axial_stiffness * if taut { strain } else { bar::push_part(mesh) * strain };
             self.carried.push(bar::Carried { pull, taut });
         }
     }

@@ -24,27 +24,82 @@ const POINT: f64 = 1e-4;
 /// Part by which a cable may be more bent than the round it touches, or pull at it in parts of the scene's forces.
 const SLACK: f64 = 1e-7;
 
+/// The same for the bend of what was found to be no stretch: at the very limit it is either, and would go to and fro.
+const POINT_SLACK: f64 = 1e-3;
+
+/// A piece cut at a node, both parts free.
+fn split(piece: &Piece, node: usize) -> (Piece, Piece) {
+    let cut = piece.grid[node];
+    let part = |nodes: &[[f64; STATES]], grid: &[f64], from: f64, to: f64| Piece {
+        lies: None,
+        grid: grid.iter().map(|g| (g - from) / (to - from)).collect(),
+        nodes: nodes
+            .iter()
+            .map(|u| {
+                let mut u = *u;
+                u[LENGTH] *= to - from;
+                u
+            })
+            .collect(),
+    };
+    (
+        part(&piece.nodes[..=node], &piece.grid[..=node], 0.0, cut),
+        part(&piece.nodes[node..], &piece.grid[node..], cut, 1.0),
+    )
+}
+
 impl Elastica {
     /// Solves with the right set of contacts; false where none is found.
     pub(super) fn settle(&mut self, problem: &Problem) -> bool {
+        // Stretches that were found to be points.
+        let mut points = Vec::new();
         for _ in 0..MAX_CHANGES {
-            if !self.newton() {
-                // A stretch that wants to be shorter than nothing is a point.
-                let Some(k) = self.vanishing(problem) else { return false };
+            let saved = self.clone();
+            let solved = self.newton();
+            if let Some(k) = self.shrinking.take().or_else(|| self.vanishing(problem)) {
+                points.extend(self.pieces[k].lies);
+                if !solved {
+                    *self = Self { steps: self.steps, ..saved };
+                }
                 self.contract(k);
-                continue;
-            }
-            if let Some(k) = self.vanishing(problem) {
-                self.contract(k);
-                continue;
-            }
-            match self.exchange(problem) {
-                Some(true) => {}
-                Some(false) => return true,
-                None => return false,
+            } else if !solved {
+                if !self.lift(&saved) {
+                    return false;
+                }
+            } else {
+                match self.exchange(problem, &points) {
+                    Some(true) => {}
+                    Some(false) => return true,
+                    None => return false,
+                }
             }
         }
         false
+    }
+
+    /// Back to a guess, with less of what lies on lines between free pieces: a stretch becomes a point, a point is left out, as a cable that
+    /// bends round what is before and behind it is lifted off. Where that is wrong it will be met again. Returns whether there was any.
+    fn lift(&mut self, from: &Self) -> bool {
+        let line = |k: usize| from.contacts.get(k).is_some_and(|c| c.radius.is_none());
+        let inner = |k: usize| k > 0 && k + 1 < from.pieces.len();
+        let stretch = (0..from.pieces.len()).find(|&k| inner(k) && from.pieces[k].lies.is_some_and(line));
+        let point = from.joints.iter().position(|j| matches!(j, Joint::Touch(k) if line(*k)));
+        if stretch.is_none() && point.is_none() {
+            return false;
+        }
+        *self = Self { steps: self.steps, ..from.clone() };
+        if let Some(k) = stretch {
+            let Some(contact) = self.pieces[k].lies else { return false };
+            let middle = self.pieces[k].nodes.len() / 2;
+            let (before, after) = split(&self.pieces[k], middle);
+            self.pieces.splice(k..=k, [before, after]);
+            self.joints.insert(k, Joint::Touch(contact));
+            self.release(k + 1);
+            self.release(k - 1);
+        } else if let Some(j) = point {
+            self.release(j);
+        }
+        true
     }
 
     /// The first piece that lies on hardly anything.
@@ -71,7 +126,9 @@ impl Elastica {
         let (Some(mut u), Some(v)) = (before.nodes.last().copied(), after.nodes.first().copied()) else { return };
         let beside = before.nodes[0][LENGTH].min(v[LENGTH]);
         let c = self.contacts[contact];
-        let l = NEW * c.radius.filter(|r| *r < beside).unwrap_or(beside);
+        let room = c.radius.filter(|r| *r < beside).unwrap_or(beside);
+        let over = c.sense * (u[MOMENT] / self.bending - c.curvature()) * room;
+        let l = room * if over < NEW { over } else { NEW };
         let t = tangent(&u);
         let f = t * (0.5 * (force(&u) + force(&v)).dot(&t));
         (u[4], u[5], u[LENGTH]) = (f.x, f.y, l);
@@ -106,7 +163,7 @@ impl Elastica {
     }
 
     /// Changes one contact that is not as it has to be; returns whether there was any, None where this can do nothing about it.
-    fn exchange(&mut self, problem: &Problem) -> Option<bool> {
+    fn exchange(&mut self, problem: &Problem, points: &[usize]) -> Option<bool> {
         let size = self.scale + self.bending / (self.length * self.length);
         for j in 0..self.joints.len() {
             let Joint::Touch(k) = self.joints[j] else { continue };
@@ -123,7 +180,8 @@ impl Elastica {
             let bent = c.sense * (u[MOMENT] / self.bending - c.curvature());
             let least = 1.0 / self.length;
             let limit = if c.curvature().abs() > least { c.curvature().abs() } else { least };
-            if bent > SLACK * limit {
+            let slack = if points.contains(&k) { POINT_SLACK } else { SLACK };
+            if bent > slack * limit {
                 self.stretch(j, k);
                 return Some(true);
             }
@@ -150,6 +208,7 @@ impl Elastica {
     fn release(&mut self, joint: usize) {
         let after = self.pieces.remove(joint + 1);
         self.joints.remove(joint);
+        self.pieces[joint].lies = None;
         let before = &mut self.pieces[joint];
         let (a, b) = (before.nodes[0][LENGTH], after.nodes[0][LENGTH]);
         let whole = a + b;
@@ -192,22 +251,7 @@ impl Elastica {
             contact.slips = known != 0.0;
         }
         self.contacts.push(contact);
-        let piece = self.pieces[k].clone();
-        let cut = piece.grid[i];
-        let part = |nodes: &[[f64; STATES]], grid: &[f64], from: f64, to: f64| Piece {
-            lies: None,
-            grid: grid.iter().map(|g| (g - from) / (to - from)).collect(),
-            nodes: nodes
-                .iter()
-                .map(|u| {
-                    let mut u = *u;
-                    u[LENGTH] *= to - from;
-                    u
-                })
-                .collect(),
-        };
-        let before = part(&piece.nodes[..=i], &piece.grid[..=i], 0.0, cut);
-        let after = part(&piece.nodes[i..], &piece.grid[i..], cut, 1.0);
+        let (before, after) = split(&self.pieces[k], i);
         self.pieces.splice(k..=k, [before, after]);
         self.joints.insert(k, Joint::Touch(self.contacts.len() - 1));
         Some(true)

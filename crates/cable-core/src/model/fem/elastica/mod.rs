@@ -47,6 +47,10 @@ const LONGEST_TURN: f64 = 0.4;
 /// Part of its length that a piece may lose in one step: it must not turn over.
 const MOST_OF_LENGTH: f64 = 0.6;
 
+/// Steps in which a stretch of contact wants to be shorter than nothing before it is taken for a point. Fewer: first guesses that are too
+/// long are; more: all others wait for it.
+const PATIENCE: usize = 3;
+
 /// Newton has ended where no unknown moves by more than this part of its size.
 const STILL: f64 = 1e-10;
 
@@ -155,6 +159,8 @@ pub struct Elastica {
     /// Newton steps so far.
     pub steps: usize,
     residual: f64,
+    /// The piece that Newton's method wanted to be shorter than nothing.
+    shrinking: Option<usize>,
 }
 
 fn place(u: &[f64; STATES]) -> Vec2 {
@@ -295,6 +301,8 @@ impl Elastica {
 
     /// Solves all equations at the present set of contacts; false where that does not end.
     fn newton(&mut self) -> bool {
+        let mut wanting = vec![0; self.pieces.len()];
+        self.shrinking = None;
         for _ in 0..MAX_STEPS {
             let sizes = self.sizes();
             let Some(step) = self.step(&sizes) else { return false };
@@ -311,6 +319,16 @@ impl Elastica {
                 }
             }
             if !most.is_finite() {
+                return false;
+            }
+            let mut at = 0;
+            for (k, p) in self.pieces.iter().enumerate() {
+                let gone = p.lies.is_some() && k > 0 && k + 1 < wanting.len() && -step[at + LENGTH] > p.nodes[0][LENGTH];
+                wanting[k] = if gone { wanting[k] + 1 } else { 0 };
+                at += STATES * p.nodes.len();
+            }
+            self.shrinking = wanting.iter().position(|w| *w >= PATIENCE);
+            if self.shrinking.is_some() {
                 return false;
             }
             part = if turn * part > LONGEST_TURN { LONGEST_TURN / turn } else { part };

@@ -118,6 +118,26 @@ impl Elastica {
         dragged: &[Option<Vec2>],
         answer: &CableSolution,
     ) -> Option<Self> {
+        Self::guess(problem, (time_s, dragged), answer, None)
+    }
+
+    /// The same from the answer of a mesh for the cable as stiff as it is; `bar`: the length of its bars, m, over which it knows where
+    /// contacts are.
+    pub fn from_mesh(
+        problem: &Problem,
+        time_s: f64,
+        dragged: &[Option<Vec2>],
+        (answer, bar): (&CableSolution, f64),
+    ) -> Option<Self> {
+        Self::guess(problem, (time_s, dragged), answer, Some(bar))
+    }
+
+    fn guess(
+        problem: &Problem,
+        (time_s, dragged): (f64, &[Option<Vec2>]),
+        answer: &CableSolution,
+        bar: Option<f64>,
+    ) -> Option<Self> {
         let alone = problem.outline.is_none() && problem.floor_friction.is_none() && !problem.cable.self_contact;
         if !alone || answer.nodes.len() < 2 || !answer.breaks.is_empty() {
             return None;
@@ -167,12 +187,88 @@ impl Elastica {
             contacts: Vec::new(),
             steps: 0,
             residual: 0.0,
+            shrinking: None,
         };
-        this.find_contacts(problem, (time_s, dragged), answer, &curve, &mut events);
+        match bar {
+            None => this.find_contacts(problem, (time_s, dragged), answer, &curve, &mut events),
+            Some(bar) => this.read_contacts(problem, answer, &curve, bar, &mut events),
+        }
         events.sort_by(|a, b| a.from.total_cmp(&b.from));
-        this.begin_softly(&events);
+        if bar.is_none() {
+            this.begin_softly(&events);
+        }
         this.lay(&curve, &mut events)?;
+        match bar {
+            None => this.bend_layers()?,
+            Some(_) => this.bend_as(&curve)?,
+        }
         Some(this)
+    }
+
+    /// The contacts that the answer of a mesh reports.
+    fn read_contacts(
+        &mut self,
+        problem: &Problem,
+        answer: &CableSolution,
+        curve: &Curve<'_>,
+        bar: f64,
+        events: &mut Vec<Event>,
+    ) {
+        for report in &answer.contacts {
+            let [from, to] = report.extent_m();
+            let s = report.arc_length_m;
+            let angle = curve.angle(s, [s - bar, s + bar]);
+            let x = Vec2::new(report.x_m, report.y_m);
+            // The middle of a wrap lies off its round.
+            let gap = problem.world.signed_gap(x, bar).filter(|g| problem.world.obstacle_name(g.obstacle) == report.obstacle);
+            let t = Vec2::new(angle.cos(), angle.sin());
+            let Some(mut contact) = gap.and_then(|g| contact_at(problem, &g, x, t)) else { continue };
+            self.mobilise(problem, answer, &mut contact, s);
+            let k = self.contacts.len();
+            self.contacts.push(contact);
+            let long = to - from > 3.0 * bar;
+            // What lies to the end of the cable lies there whole.
+            let to = if long && self.length - to < bar { self.length } else { to };
+            let from = if long && from < bar { 0.0 } else { from };
+            let [from, to] = if long { [from, to] } else { [s, s] };
+            events.push(Event { from, to, joint: if long { Joint::Begin(k) } else { Joint::Touch(k) } });
+        }
+    }
+
+    /// Gives all nodes the bends and forces of the answer of a mesh.
+    fn bend_as(&mut self, curve: &Curve<'_>) -> Option<()> {
+        use super::super::beam::nearest_turn;
+        for (which, u) in [(0, self.pieces.first()?.nodes.first()?[ANGLE]), (1, self.pieces.last()?.nodes.last()?[ANGLE])] {
+            if let End::Held(_, Some(angle)) = &mut self.ends[which] {
+                *angle = nearest_turn(*angle, u);
+            }
+        }
+        for k in 0..self.joints.len() {
+            let u = *self.pieces[k].nodes.last()?;
+            if let Joint::Held(_, _, _, Some(angle)) = &mut self.joints[k] {
+                *angle = nearest_turn(*angle, u[ANGLE]);
+            }
+        }
+        for piece in self.pieces.iter_mut().filter(|p| p.lies.is_none()) {
+            for u in &mut piece.nodes {
+                let k = curve.chord(u[ARC]);
+                let (a, b) = (&curve.nodes[k], &curve.nodes[k + 1]);
+                let d = b.arc_length_m - a.arc_length_m;
+                let f = if d > 0.0 { ((u[ARC] - a.arc_length_m) / d).clamp(0.0, 1.0) } else { 0.5 };
+                let bend = a.curvature_per_m + (b.curvature_per_m - a.curvature_per_m) * f;
+                u[MOMENT] = self.bending * bend / self.thermal_stretch;
+            }
+            // Shear, from how the moment changes.
+            for i in 0..piece.nodes.len() {
+                let (a, b) = (piece.nodes[i.saturating_sub(1)], piece.nodes[(i + 1).min(piece.nodes.len() - 1)]);
+                let d = b[ARC] - a[ARC];
+                let shear = if d > 0.0 { -(b[MOMENT] - a[MOMENT]) / d } else { 0.0 };
+                let u = &mut piece.nodes[i];
+                let f = force(u) + perp(tangent(u)) * shear;
+                (u[4], u[5]) = (f.x, f.y);
+            }
+        }
+        Some(())
     }
 
     /// The stretches of the answer's nodes that lie on something, as contacts and events.
@@ -332,6 +428,22 @@ impl Elastica {
                 }
             }
         }
+        // Between two rounds the layers lift a cable off a line by λ/2 times their turn, its weight sags by wl²/8T.
+        let lifted = |i: usize| {
+            let Joint::Begin(k) = events[i].joint else { return false };
+            let beside = |j: Option<usize>| {
+                let e = events.get(j?)?;
+                let (Joint::Begin(k) | Joint::Touch(k)) = e.joint else { return None };
+                self.contacts[k].radius?;
+                Some((curve.angle(e.from, [0.0, e.from]) - curve.angle(e.to, [e.to, length])).abs())
+            };
+            let (Some(a), Some(b)) = (beside(i.checked_sub(1)), beside(Some(i + 1))) else { return false };
+            let (l, pull) = (events[i].to - events[i].from, curve.at(0.5 * (events[i].from + events[i].to)).1);
+            self.contacts[k].radius.is_none() && self.body.norm() * l * l / (8.0 * pull) < 0.25 * self.layer(pull) * (a + b)
+        };
+        let kept: Vec<bool> = (0..events.len()).map(|i| !lifted(i)).collect();
+        let mut keep = kept.iter();
+        events.retain(|_| keep.next().copied().unwrap_or(true));
         // Some cable between any two.
         for i in 1..events.len() {
             let need = 0.5 * self.layer(curve.at(events[i].from).1);
@@ -357,7 +469,7 @@ impl Elastica {
             if let Joint::Begin(k) = e.joint {
                 self.pieces.push(self.piece(curve, Some(k), [e.from, e.to]));
                 if ends {
-                    return self.bend_layers();
+                    return Some(());
                 }
                 self.joints.push(Joint::End(k));
             }
@@ -367,7 +479,7 @@ impl Elastica {
             return None;
         }
         self.pieces.push(self.piece(curve, None, [free_from, length]));
-        self.bend_layers()
+        Some(())
     }
 
     fn piece(&self, curve: &Curve<'_>, lies: Option<usize>, [from, to]: [f64; 2]) -> Piece {
