@@ -273,7 +273,7 @@ impl Shooting<'_> {
         let n = y.len();
         let sizes: Vec<f64> = y.iter().map(|v| 1e-7 * (v.abs() + 1e-2)).collect();
         let mut step_before = f64::INFINITY;
-        for _ in 0..60 {
+        for _ in 0..25 {
             let (r, forces, normals) = self.residual(&y);
             let mut jacobian = DMatrix::zeros(n, n);
             for j in 0..n {
@@ -330,7 +330,14 @@ fn root(case: &Case, cable: &CableSolution, steps: usize) -> Result<(Vec<V>, Vec
         }
         let stretch = c.ends_m > c.begins_m;
         let ends = if stretch { [0.1, 0.1] } else { [1.0, 0.0] };
-        marks.push(Mark { shape, stretch, sense, friction, s: [c.begins_m, c.ends_m], push: ends.map(|e| e * c.normal_n) });
+        marks.push(Mark {
+            shape,
+            stretch,
+            sense,
+            friction,
+            s: [c.begins_m, c.ends_m],
+            push: ends.map(|e| e * c.normal_n),
+        });
         events.push((c.begins_m, Event::Contact(k)));
     }
     events.extend(case.load.map(|(s, f)| (s, Event::Load(s, f))));
@@ -359,7 +366,7 @@ fn root(case: &Case, cable: &CableSolution, steps: usize) -> Result<(Vec<V>, Vec
             Some(Event::Load(s, _)) => (*s, *s),
             None => (case.length, case.length),
         };
-        let cuts = ((to - s) / (3.0 * (case.ei / most).sqrt())).ceil().clamp(2.0, 12.0) as usize;
+        let cuts = ((to - s) / (3.0 * (case.ei / most).sqrt())).ceil().clamp(2.0, 16.0) as usize;
         shooting.cuts.push(cuts);
         for c in 0..cuts {
             let here = s + (to - s) * c as f64 / cuts as f64;
@@ -440,10 +447,14 @@ fn over_a_post(r: &mut Random, k: usize) -> Case {
     let angle = left.to_degrees() + r.between(-20.0, 20.0);
     let mut text = cable_text(r, length, ei, ea, w, friction, diameter);
     let turns = (0..=8).map(|i| round(-left + (left + right) * f64::from(i) / 8.0) * 1.05);
-    let route: Vec<String> = [a].into_iter().chain(turns).chain([b]).map(|p| format!("[{:?}, {:?}]", p.x, p.y)).collect();
+    let route: Vec<String> =
+        [a].into_iter().chain(turns).chain([b]).map(|p| format!("[{:?}, {:?}]", p.x, p.y)).collect();
     text += &format!("route_m = [{}]\n", route.join(", "));
     text += &if clamp {
-        format!("[[cables.supports]]\nname = \"A\"\nkind = \"clamped\"\nat_m = [{:?}, {:?}]\nangle_deg = {angle:?}\n", a.x, a.y)
+        format!(
+            "[[cables.supports]]\nname = \"A\"\nkind = \"clamped\"\nat_m = [{:?}, {:?}]\nangle_deg = {angle:?}\n",
+            a.x, a.y
+        )
     } else {
         format!("[[cables.supports]]\nname = \"A\"\nkind = \"fixed\"\nat_m = [{:?}, {:?}]\n", a.x, a.y)
     };
@@ -453,7 +464,8 @@ fn over_a_post(r: &mut Random, k: usize) -> Case {
         text += &format!("[[cables.supports]]\nname = \"B\"\nkind = \"fixed\"\nat_m = [{:?}, {:?}]\n", b.x, b.y);
         Tip::Pinned(b)
     } else {
-        text += &format!("[[cables.supports]]\nname = \"B\"\nkind = \"load\"\nforce_n = [{:?}, {:?}]\n", force.x, force.y);
+        text +=
+            &format!("[[cables.supports]]\nname = \"B\"\nkind = \"load\"\nforce_n = [{:?}, {:?}]\n", force.x, force.y);
         Tip::Loaded(force)
     };
     text += &format!(
@@ -492,10 +504,14 @@ fn over_corners(r: &mut Random, k: usize) -> Case {
     let clamp = k % 5 == 3;
     let angle = left.to_degrees() + r.between(-15.0, 15.0);
     let mut text = cable_text(r, length, ei, 1e6, w, friction, diameter);
-    let route: Vec<String> = [a, corners[0] + lift, corners[1] + lift, b].iter().map(|p| format!("[{:?}, {:?}]", p.x, p.y)).collect();
+    let route: Vec<String> =
+        [a, corners[0] + lift, corners[1] + lift, b].iter().map(|p| format!("[{:?}, {:?}]", p.x, p.y)).collect();
     text += &format!("route_m = [{}]\n", route.join(", "));
     text += &if clamp {
-        format!("[[cables.supports]]\nname = \"A\"\nkind = \"clamped\"\nat_m = [{:?}, {:?}]\nangle_deg = {angle:?}\n", a.x, a.y)
+        format!(
+            "[[cables.supports]]\nname = \"A\"\nkind = \"clamped\"\nat_m = [{:?}, {:?}]\nangle_deg = {angle:?}\n",
+            a.x, a.y
+        )
     } else {
         format!("[[cables.supports]]\nname = \"A\"\nkind = \"fixed\"\nat_m = [{:?}, {:?}]\n", a.x, a.y)
     };
@@ -537,12 +553,19 @@ fn to_a_floor(r: &mut Random, k: usize) -> Case {
     let angle = r.between(-80.0, -10.0);
     let mut text = cable_text(r, length, ei, 1e6, w, friction, diameter);
     text += &if clamp {
-        format!("[[cables.supports]]\nname = \"A\"\nkind = \"clamped\"\nat_m = [{:?}, {:?}]\nangle_deg = {angle:?}\n", a.x, a.y)
+        format!(
+            "[[cables.supports]]\nname = \"A\"\nkind = \"clamped\"\nat_m = [{:?}, {:?}]\nangle_deg = {angle:?}\n",
+            a.x, a.y
+        )
     } else {
         format!("[[cables.supports]]\nname = \"A\"\nkind = \"fixed\"\nat_m = [{:?}, {:?}]\n", a.x, a.y)
     };
     text += &format!("[[cables.supports]]\nname = \"B\"\nkind = \"load\"\nforce_n = [{pull:?}, 0.0]\n");
-    let lay = format!("route_m = [[0.0, {height:?}], [{:?}, {diameter:?}], [{:?}, {diameter:?}]]\nfriction =", 0.7 * height, length - 0.3 * height);
+    let lay = format!(
+        "route_m = [[0.0, {height:?}], [{:?}, {diameter:?}], [{:?}, {diameter:?}]]\nfriction =",
+        0.7 * height,
+        length - 0.3 * height
+    );
     text = text.replacen("friction =", &lay, 1);
     text += &format!(
         "[[obstacles]]\nname = \"floor\"\nkind = \"terrain\"\npoints_m = [[-50.0, 0.0], [200.0, 0.0]]\nfriction = {friction:?}\n"
@@ -577,7 +600,7 @@ fn error(case: &Case) -> Result<(f64, f64), String> {
     if cable.contacts.is_empty() {
         return Err("no contact".to_owned());
     }
-    let (forces, normals) = root(case, &cable, 200)?;
+    let (forces, normals) = root(case, &cable, 40)?;
     let found = [0, 1].map(|k| {
         let s = &cable.supports[k];
         V::new(s.reaction_x_n, s.reaction_y_n) * if k == 0 { 1.0 } else { -1.0 }

@@ -61,7 +61,7 @@ use crate::error::SolveError;
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-use crate::solution::{CableSolution, Cost, Node, Warning};
+use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
 use crate::state::State;
 use elastica::Elastica;
 
@@ -102,6 +102,8 @@ pub struct FemModel {
     led: Option<Placement>,
     /// The rest of a stiff cable in contact, until something moves.
     bent: Option<CableSolution>,
+    /// What the mesh's rest of a stiff cable may be off by, in parts of the greatest tension, until something moves.
+    unbent: Option<f64>,
 }
 
 impl FemModel {
@@ -122,6 +124,7 @@ impl FemModel {
             settings,
             led: problem.outline.as_ref().map(|o| o.placement),
             bent: None,
+            unbent: None,
             problem,
         })
     }
@@ -237,6 +240,7 @@ impl Mechanics for FemModel {
             self.statics.settle(&self.dragged)
         } else {
             self.bent = None;
+            self.unbent = None;
             if let Some(report) = self.bend() {
                 return Ok(report);
             }
@@ -249,6 +253,18 @@ impl Mechanics for FemModel {
             report.warnings.extend(said.into_iter().flatten());
             if let Some(cost) = self.bend_on() {
                 report.cost = Cost { iterations: report.cost.iterations + cost.iterations, ..cost };
+            } else if self.problem.bending_stiffness > 0.0 {
+                let (off, s) = self.dynamics.bending_error();
+                self.unbent = Some(off);
+                if !(off <= self.settings.tolerance) {
+                    let message = format!(
+                        "{} bars show the bend of a stiff cable where it is led round something to {:.1e} of the greatest tension only; {:.1e} was asked for: use more segments",
+                        self.dynamics.even_bars, off, self.settings.tolerance
+                    );
+                    let name = &self.problem.cable.name;
+                    let limit = self.settings.tolerance;
+                    report.warnings.push(Warning::new(WarningKind::Accuracy, name, s, [off, limit], message));
+                }
             }
             Ok(report)
         }
@@ -263,6 +279,7 @@ impl Mechanics for FemModel {
             self.statics.advance(dt_s, &self.dragged)
         } else {
             self.ask(Part::Dynamics)?;
+            self.unbent = None;
             if let Some(answer) = self.bent.take() {
                 self.dynamics.take_over(&answer, self.dynamics.time(), &self.dragged)?;
             }
@@ -282,6 +299,7 @@ impl Mechanics for FemModel {
 
     fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
         self.bent = None;
+        self.unbent = None;
         // Statics has no velocities: what moves is taken over by the part that can move.
         if self.present == Part::Statics && state.velocity_m_per_s.iter().any(|v| v.norm() > 0.0) {
             self.dynamics.adopt(state)?;
@@ -296,6 +314,7 @@ impl Mechanics for FemModel {
 
     fn take_over(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         self.bent = None;
+        self.unbent = None;
         match self.present {
             Part::Statics => self.adopt(&State::of_nodes(&answer.nodes, time_s)),
             Part::Dynamics => self.dynamics.take_over(answer, time_s, &self.dragged),
@@ -323,7 +342,7 @@ impl Mechanics for FemModel {
         }
         match self.present {
             Part::Statics => self.statics.solution(),
-            Part::Dynamics => self.dynamics.solution(),
+            Part::Dynamics => CableSolution { error_estimate: self.unbent, ..self.dynamics.solution() },
         }
     }
 

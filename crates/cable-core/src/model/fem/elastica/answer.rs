@@ -109,7 +109,9 @@ impl Elastica {
     }
 
     fn supports(&self, problem: &Problem, nodes: &[Node]) -> Vec<SupportReaction> {
-        let ends = |k: usize| (self.pieces.get(k).and_then(|p| p.nodes.last()), self.pieces.get(k + 1).and_then(|p| p.nodes.first()));
+        let ends = |k: usize| {
+            (self.pieces.get(k).and_then(|p| p.nodes.last()), self.pieces.get(k + 1).and_then(|p| p.nodes.first()))
+        };
         let last = problem.supports.len() - 1;
         let mut out = Vec::with_capacity(last + 1);
         for (k, s) in problem.supports.iter().enumerate() {
@@ -185,7 +187,8 @@ impl Elastica {
                 let l = p.nodes[0][LENGTH];
                 for (e, pair) in p.nodes.windows(2).enumerate() {
                     let half = self.read(p, 0.5 * (p.grid[e] + p.grid[e + 1]));
-                    let pressed = self.pressure(c, &pair[0]) + 4.0 * self.pressure(c, &half) + self.pressure(c, &pair[1]);
+                    let pressed =
+                        self.pressure(c, &pair[0]) + 4.0 * self.pressure(c, &half) + self.pressure(c, &pair[1]);
                     r.normal_n += pressed * l * (p.grid[e + 1] - p.grid[e]) / 6.0;
                 }
                 let (Some(first), Some(last)) = (p.nodes.first(), p.nodes.last()) else { continue };

@@ -291,8 +291,11 @@ impl Elastica {
 
     /// The size by which each unknown is measured.
     fn sizes(&self) -> [f64; STATES] {
-        let moment =
-            self.pieces.iter().flat_map(|p| &p.nodes).fold(0.0f64, |m, u| if u[MOMENT].abs() > m { u[MOMENT].abs() } else { m });
+        let moment = self
+            .pieces
+            .iter()
+            .flat_map(|p| &p.nodes)
+            .fold(0.0f64, |m, u| if u[MOMENT].abs() > m { u[MOMENT].abs() } else { m });
         let least = self.bending / self.length;
         let moment = if moment > least { moment } else { least };
         let f = self.scale + self.bending / (self.length * self.length);
@@ -323,7 +326,8 @@ impl Elastica {
             }
             let mut at = 0;
             for (k, p) in self.pieces.iter().enumerate() {
-                let gone = p.lies.is_some() && k > 0 && k + 1 < wanting.len() && -step[at + LENGTH] > p.nodes[0][LENGTH];
+                let gone =
+                    p.lies.is_some() && k > 0 && k + 1 < wanting.len() && -step[at + LENGTH] > p.nodes[0][LENGTH];
                 wanting[k] = if gone { wanting[k] + 1 } else { 0 };
                 at += STATES * p.nodes.len();
             }

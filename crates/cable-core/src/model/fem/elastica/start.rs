@@ -220,7 +220,8 @@ impl Elastica {
             let angle = curve.angle(s, [s - bar, s + bar]);
             let x = Vec2::new(report.x_m, report.y_m);
             // The middle of a wrap lies off its round.
-            let gap = problem.world.signed_gap(x, bar).filter(|g| problem.world.obstacle_name(g.obstacle) == report.obstacle);
+            let gap =
+                problem.world.signed_gap(x, bar).filter(|g| problem.world.obstacle_name(g.obstacle) == report.obstacle);
             let t = Vec2::new(angle.cos(), angle.sin());
             let Some(mut contact) = gap.and_then(|g| contact_at(problem, &g, x, t)) else { continue };
             self.mobilise(problem, answer, &mut contact, s);
@@ -238,7 +239,9 @@ impl Elastica {
     /// Gives all nodes the bends and forces of the answer of a mesh.
     fn bend_as(&mut self, curve: &Curve<'_>) -> Option<()> {
         use super::super::beam::nearest_turn;
-        for (which, u) in [(0, self.pieces.first()?.nodes.first()?[ANGLE]), (1, self.pieces.last()?.nodes.last()?[ANGLE])] {
+        for (which, u) in
+            [(0, self.pieces.first()?.nodes.first()?[ANGLE]), (1, self.pieces.last()?.nodes.last()?[ANGLE])]
+        {
             if let End::Held(_, Some(angle)) = &mut self.ends[which] {
                 *angle = nearest_turn(*angle, u);
             }
@@ -376,7 +379,8 @@ impl Elastica {
                 let (Some(a), Some(b)) = (r.tension_before_n, r.tension_after_n) else { return };
                 if support.friction > 0.0 && a > 0.0 && b > 0.0 {
                     // Rubbing wheels hold or slip as a whole: to which the greater part of e^{μφ} is nearer is not told.
-                    let turn = (Vec2::new(r.reaction_x_n, r.reaction_y_n).norm() / (a + b)).clamp(0.0, 1.0).asin() * 2.0;
+                    let turn =
+                        (Vec2::new(r.reaction_x_n, r.reaction_y_n).norm() / (a + b)).clamp(0.0, 1.0).asin() * 2.0;
                     let part = if turn > 0.0 { (a / b).ln() / turn } else { 0.0 };
                     contact.mobilised = part.clamp(-support.friction, support.friction);
                     contact.slips = part.abs() >= 0.999 * support.friction;
@@ -420,7 +424,9 @@ impl Elastica {
                 let pull = curve.at(0.5 * (e.from + e.to)).1;
                 let point = match c.radius {
                     Some(r) => 1.0 - (0.5 * turn).min(std::f64::consts::PI).cos() < self.bending / (2.0 * pull * r * r),
-                    None => e.to - e.from < 4.0 * self.layer(pull) && e.to < (1.0 - 1e-9) * length && e.from > 1e-9 * length,
+                    None => {
+                        e.to - e.from < 4.0 * self.layer(pull) && e.to < (1.0 - 1e-9) * length && e.from > 1e-9 * length
+                    }
                 };
                 if point {
                     let middle = 0.5 * (e.from + e.to);
@@ -439,7 +445,8 @@ impl Elastica {
             };
             let (Some(a), Some(b)) = (beside(i.checked_sub(1)), beside(Some(i + 1))) else { return false };
             let (l, pull) = (events[i].to - events[i].from, curve.at(0.5 * (events[i].from + events[i].to)).1);
-            self.contacts[k].radius.is_none() && self.body.norm() * l * l / (8.0 * pull) < 0.25 * self.layer(pull) * (a + b)
+            self.contacts[k].radius.is_none()
+                && self.body.norm() * l * l / (8.0 * pull) < 0.25 * self.layer(pull) * (a + b)
         };
         let kept: Vec<bool> = (0..events.len()).map(|i| !lifted(i)).collect();
         let mut keep = kept.iter();
