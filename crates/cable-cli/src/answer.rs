@@ -1,8 +1,9 @@
 //! The JSON object of an answer: SI units in the key names, never a number that is not finite.
 
 use cable_core::solution::{
-    Bend, CableSolution, ContactReport, ContactState, Node, Pressure, Solution, SupportReaction, Warning,
+    Bend, CableSolution, ContactReport, ContactSample, ContactState, Node, Pressure, Solution, SupportReaction, Warning,
 };
+use cable_core::verify::Verification;
 use serde::Serialize;
 
 /// What `solve --json` prints, and `run --json` for each time.
@@ -28,6 +29,8 @@ pub struct Answer<'a> {
     pub nodes: Vec<NodeEntry<'a>>,
     pub contacts: Vec<Contact<'a>>,
     pub warnings: &'a [Warning],
+    /// What the laws say of the answer.
+    pub verification: Option<&'a Verification>,
 }
 
 /// Something of one cable, which is named where there are several.
@@ -58,6 +61,7 @@ pub struct NodeEntry<'a> {
     strain: f64,
     stress_pa: f64,
     curvature_per_m: f64,
+    force_n: [f64; 2],
 }
 
 #[derive(Debug, Serialize)]
@@ -74,6 +78,10 @@ pub struct Contact<'a> {
     turn_deg: f64,
     tension_before_n: f64,
     tension_after_n: f64,
+    begins_m: f64,
+    ends_m: f64,
+    force_n: [f64; 2],
+    samples: &'a [ContactSample],
 }
 
 /// What `--json` prints where there is no answer.
@@ -112,6 +120,7 @@ pub fn answer<'a>(s: &'a Solution, wall_time_s: f64, time_s: Option<f64>) -> Res
         nodes: Vec::with_capacity(s.cables.iter().map(|c| c.nodes.len()).sum()),
         contacts: Vec::new(),
         warnings: &s.warnings,
+        verification: s.verification.as_ref(),
     };
     for c in &s.cables {
         let cable = name(c);
@@ -132,6 +141,7 @@ fn node<'a>(cable: Option<&'a str>, n: &Node) -> NodeEntry<'a> {
         strain: n.strain,
         stress_pa: n.stress_pa,
         curvature_per_m: n.curvature_per_m,
+        force_n: n.force_n,
     }
 }
 
@@ -148,6 +158,10 @@ fn contact<'a>(cable: Option<&'a str>, k: &'a ContactReport) -> Contact<'a> {
         turn_deg: k.turn_deg,
         tension_before_n: k.tension_before_n,
         tension_after_n: k.tension_after_n,
+        begins_m: k.begins_m,
+        ends_m: k.ends_m,
+        force_n: k.force_n,
+        samples: &k.samples,
     }
 }
 

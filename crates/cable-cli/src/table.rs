@@ -28,6 +28,16 @@ pub fn table(s: &Solution) -> String {
         }
     }
     let _ = writeln!(t, "Residual          {:.2e} N after {} iterations", s.cost.residual_n, s.cost.iterations);
+    if let Some(v) = &s.verification {
+        let _ = writeln!(t, "Laws              {}", v.summary());
+        if v.folded_m > 0.0 {
+            let _ = writeln!(t, "In folds          {:.4} m of cable beyond the way it lies on", v.folded_m);
+        }
+        let b = &v.balance;
+        let force = |[x, y]: [f64; 2]| format!("({x:.4}, {y:.4}) N");
+        let (loads, supports, contacts) = (force(b.loads_n), force(b.supports_n), force(b.contacts_n));
+        let _ = writeln!(t, "Balance           supports {supports} + contacts {contacts} + weight and loads {loads}");
+    }
     for c in &s.cables {
         supports(&mut t, c);
         contacts(&mut t, c);

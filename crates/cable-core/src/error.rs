@@ -5,6 +5,7 @@ use thiserror::Error;
 use crate::files::FileError;
 use crate::math::Vec2;
 use crate::model::Model;
+use crate::verify::Finding;
 
 /// Anything the three-line user can meet.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -210,6 +211,14 @@ pub enum SolveError {
         arc_length_m: f64,
         /// Where that is, m.
         at_m: Vec2,
+    },
+    /// The answer breaks a law: see [`crate::verify`].
+    #[error("the answer of {model} is not sound: {finding}")]
+    Unsound {
+        /// The model.
+        model: Model,
+        /// The law, the place and the figure.
+        finding: Box<Finding>,
     },
     /// A time step that cannot be taken.
     #[error("a time step of {dt_s} s cannot be taken: it must lie in {allowed}")]

@@ -40,6 +40,7 @@ pub mod solution;
 pub mod spread;
 pub mod state;
 mod strand;
+pub mod verify;
 mod watch;
 
 pub use cable_linalg as linalg;

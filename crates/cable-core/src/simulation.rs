@@ -1,5 +1,7 @@
 //! A scene, a model and its state: the object users hold.
 
+use std::sync::Arc;
+
 use crate::error::{Error, SolveError};
 use crate::math::{Vec2, larger};
 use crate::model::auto::{self, Question};
@@ -10,6 +12,7 @@ use crate::scene::{Scene, SupportKind};
 use crate::solution::{CableSolution, Cost, Energy, Node, Solution, Warning, WarningKind};
 use crate::state::State;
 use crate::strand::Strand;
+use crate::verify::{Depth, Verification, Verifier};
 use crate::watch::{Bends, Subject, Watch};
 
 /// Longest step a display frame takes, s: longer makes one slow frame cause the next, shorter slows time at 10 Hz.
@@ -19,6 +22,8 @@ pub const MAX_FRAME_S: f64 = 0.1;
 #[derive(Clone)]
 pub struct Simulation {
     scene: Scene,
+    /// What the user asked for.
+    asked: Model,
     /// As it was built: `Auto` where two models may take turns.
     built: Model,
     /// The one in use: of several cables the highest rung.
@@ -33,6 +38,8 @@ pub struct Simulation {
     energy: Energy,
     cost: Cost,
     warnings: Vec<Warning>,
+    verifier: Arc<Verifier>,
+    verification: Verification,
 }
 
 impl Simulation {
@@ -85,7 +92,10 @@ impl Simulation {
         let answers = cables.iter().map(Strand::answer).collect();
         Ok(Self {
             vehicle: Vehicle::of(&scene),
+            verifier: Arc::new(Verifier::new(&scene)),
+            verification: Verification::default(),
             scene,
+            asked: model,
             built,
             model: chosen,
             reason,
@@ -120,6 +130,7 @@ impl Simulation {
             self.watch.at_rest(&subjects, time_s)
         }
         self.look_for_robot();
+        self.verification = self.verifier.check_cables(&self.scene, &self.answers, time_s, Depth::Always);
     }
 
     /// Says where an answer lies through the robot: models other than `fem` know nothing of it.
@@ -177,12 +188,65 @@ impl Simulation {
     /// # Errors
     /// A typed reason when there is no resting place, or none was found; the state is then as before.
     pub fn settle(&mut self) -> Result<Solution, SolveError> {
-        self.each(Strand::settle)?;
-        self.look(false);
+        let before = self.cables.clone();
+        let found = self.settle_soundly();
+        if found.is_err() {
+            self.cables = before;
+            self.look(false);
+        }
+        found?;
         if self.start.is_none() {
             self.start = Some(self.cables.clone());
         }
         Ok(self.solution())
+    }
+
+    /// Settles by one model after the other until the answer obeys every law.
+    fn settle_soundly(&mut self) -> Result<(), SolveError> {
+        let mut first: Option<SolveError> = None;
+        loop {
+            let found = self.each(Strand::settle).and_then(|()| {
+                self.look(false);
+                self.sound()
+            });
+            let Err(error) = found else { return Ok(()) };
+            // What is said to have no resting place is not sought one by another model.
+            let last = matches!(error, SolveError::NoRestingPlace { .. } | SolveError::Unsupported { .. });
+            let next = !last && self.next_model(&error.to_string());
+            let clearer = first.filter(|f| clarity(f) >= clarity(&error));
+            first = Some(clearer.unwrap_or(error));
+            if !next {
+                return first.map_or(Ok(()), Err);
+            }
+        }
+    }
+
+    /// What the laws say of the present answers.
+    fn sound(&self) -> Result<(), SolveError> {
+        match self.verification.worst() {
+            None => Ok(()),
+            Some(finding) => Err(SolveError::Unsound { model: self.model, finding: Box::new(finding.clone()) }),
+        }
+    }
+
+    /// Gives the scene to the next model, where the user left the choice; returns whether there was one.
+    fn next_model(&mut self, why: &str) -> bool {
+        if self.asked != Model::Auto {
+            return false;
+        }
+        let mut other = false;
+        for cable in &mut self.cables {
+            other |= cable.fall_back(why);
+        }
+        if other || self.built == Model::Fem {
+            return other;
+        }
+        let fem = self.cables.iter().map(|c| c.by_model(Model::Fem));
+        let Ok(next) = fem.collect::<Result<Vec<_>, SolveError>>() else { return false };
+        self.reason = format!("{} gave no sound answer: {why}", self.model);
+        (self.cables, self.built, self.model) = (next, Model::Fem, Model::Fem);
+        self.lead_outline();
+        true
     }
 
     /// Advances time with inertia by `dt_s` (s).
@@ -208,7 +272,16 @@ impl Simulation {
         };
         // A cable alone that fails stays where it came: that is what there is to see then.
         self.look(true);
-        done
+        done?;
+        // In motion nothing else is there to go back to: the verdict stands with the answer.
+        if inertia == Inertia::Dynamic {
+            return Ok(());
+        }
+        let Err(error) = self.sound() else { return Ok(()) };
+        if !self.next_model(&error.to_string()) {
+            return Err(error);
+        }
+        self.settle_soundly()
     }
 
     /// Advances robot and cables in turn: the robot under the pull of the cables as they are, then the cables with
@@ -377,6 +450,7 @@ impl Simulation {
             warnings,
             cost: self.cost,
             energy: self.energy,
+            verification: Some(self.verification.clone()),
             robot: self.vehicle.as_ref().map(Vehicle::report),
         }
     }
@@ -446,6 +520,16 @@ impl Simulation {
         }
         self.lead_outline();
         self.adopt(&states)
+    }
+}
+
+/// How much a user can do with an error: of several causes the clearest is told.
+fn clarity(error: &SolveError) -> usize {
+    match error {
+        SolveError::NoRestingPlace { .. } => 3,
+        SolveError::Unsupported { .. } | SolveError::Buried { .. } => 2,
+        SolveError::Unsound { .. } => 1,
+        _ => 0,
     }
 }
 

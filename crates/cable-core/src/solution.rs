@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::math::Vec2;
 use crate::model::Model;
 use crate::robot::RobotReport;
+use crate::verify::Verification;
 
 /// The answer of a model at an instant, all cables of the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,6 +25,9 @@ pub struct Solution {
     /// Energy of all cables.
     #[serde(default)]
     pub energy: Energy,
+    /// What the laws say of it; None where nobody asked (a model's own answer, a run read from files).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub verification: Option<Verification>,
     /// The robot, where the scene has one that can move.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot: Option<RobotReport>,
@@ -65,6 +69,20 @@ pub struct CableSolution {
     /// node of one piece and the first of the next are the same point of the cable, at two places.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub breaks: Vec<usize>,
+    /// What the answer took into account.
+    #[serde(default)]
+    pub assumptions: Assumptions,
+}
+
+/// What an answer took into account of its cable. What it left out is an error of the model, not an unbalanced force.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Assumptions {
+    /// Bending stiffness EI, N·m²; 0 = perfectly flexible.
+    pub bending_stiffness_n_m2: f64,
+    /// Whether the cable is an obstacle to itself.
+    pub self_contact: bool,
+    /// Whether masses accelerate: forces on a piece of cable then do not add up to nothing.
+    pub inertia: bool,
 }
 
 impl CableSolution {
@@ -123,6 +141,10 @@ pub struct Node {
     pub stress_pa: f64,
     /// d(angle)/d(unstretched length), 1/m.
     pub curvature_per_m: f64,
+    /// Internal force just beyond this node (at the last one just before it), N: what the cable of greater arc length does to the
+    /// cable before it. Its size is the tension of a flexible cable; a stiff one has shear as well.
+    #[serde(default)]
+    pub force_n: [f64; 2],
 }
 
 impl Node {
@@ -130,6 +152,12 @@ impl Node {
     #[must_use]
     pub fn at(&self) -> Vec2 {
         Vec2::new(self.x_m, self.y_m)
+    }
+
+    /// Internal force, N.
+    #[must_use]
+    pub fn force(&self) -> Vec2 {
+        Vec2::new(self.force_n[0], self.force_n[1])
     }
 }
 
@@ -203,6 +231,29 @@ pub struct ContactReport {
     /// does what `state` says, and where the model does not know.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub parts: Vec<ContactPart>,
+    /// Whole force of the obstacle on the cable, N: normal force and friction.
+    #[serde(default)]
+    pub force_n: [f64; 2],
+    /// The same along the contact, in order of arc length: it adds up to `force_n`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub samples: Vec<ContactSample>,
+}
+
+/// Force of an obstacle on a short stretch of the cable.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContactSample {
+    /// Arc length of its middle, m.
+    pub arc_length_m: f64,
+    /// Force on the cable, N.
+    pub force_n: [f64; 2],
+}
+
+impl ContactSample {
+    /// A force (N) at an arc length (m).
+    #[must_use]
+    pub fn new(arc_length_m: f64, force: Vec2) -> Self {
+        Self { arc_length_m, force_n: [force.x, force.y] }
+    }
 }
 
 /// A stretch of a contact that holds or has slid.
@@ -217,6 +268,12 @@ pub struct ContactPart {
 }
 
 impl ContactReport {
+    /// Sets the forces along the contact and their sum.
+    pub(crate) fn set_samples(&mut self, samples: Vec<ContactSample>) {
+        self.force_n = samples.iter().fold([0.0; 2], |sum, s| [sum[0] + s.force_n[0], sum[1] + s.force_n[1]]);
+        self.samples = samples;
+    }
+
     /// Where on the cable it begins and ends, m: never empty of its middle.
     #[must_use]
     pub fn extent_m(&self) -> [f64; 2] {

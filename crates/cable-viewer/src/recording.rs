@@ -167,6 +167,7 @@ mod tests {
             cost: Cost::default(),
             energy: Energy::default(),
             robot: None,
+            verification: None,
         }
     }
 

@@ -152,6 +152,7 @@ fn answers(scene: &Scene, history: &HistoryTable, nodes: Vec<NodeRow>, events: &
             model: Model::Auto,
             reason: "read from a run".to_owned(),
             robot: robot(scene, history, k, &cables),
+            verification: None,
             cables,
             warnings: warnings(history, events, k),
             cost: Cost::default(),

@@ -179,6 +179,12 @@ pub trait Mechanics: Send {
         None
     }
 
+    /// Gives the cable to the next model, where there is one behind this one, because of what the laws say of its answer; the next
+    /// [`Self::settle`] is that model's. Returns whether there was one.
+    fn fall_back(&mut self, _why: &str) -> bool {
+        false
+    }
+
     /// The answer at this instant.
     fn solution(&self) -> CableSolution;
 

@@ -117,6 +117,20 @@ impl Relay {
         Ok(fem)
     }
 
+    /// The same, supports drawn to where they are to be, and the cable put where it was adopted.
+    fn new_fem_with_hands(&self) -> Result<FemModel, SolveError> {
+        let mut fem = self.new_fem()?;
+        if let Some(state) = &self.adopted {
+            fem.adopt(state)?;
+        }
+        for (k, target) in self.dragged.iter().enumerate() {
+            if let Some(target) = target {
+                fem.drag_support(k, *target);
+            }
+        }
+        Ok(fem)
+    }
+
     /// Whether the cable is in touch with the robot, or in its place.
     fn meets_robot(&self, answer: &CableSolution) -> bool {
         meets_outline(&self.problem, self.led, answer)
@@ -296,6 +310,17 @@ impl Mechanics for Relay {
         self.led = self.led.map(|_| to);
         if let Some(fem) = &mut self.fem {
             fem.lead_outline(to);
+        }
+    }
+
+    fn fall_back(&mut self, why: &str) -> bool {
+        // Refused as it is, the answer is no place to go on from: the cable is laid anew where it was, or where it was put.
+        self.fem.is_none() && {
+            let time_s = self.spans.time_s();
+            let fresh = if time_s > 0.0 { self.handed_over() } else { self.new_fem_with_hands() };
+            self.fem = fresh.ok();
+            self.reason = self.fem.is_some().then(|| format!("the answer of spans is not sound: {why}"));
+            self.fem.is_some()
         }
     }
 

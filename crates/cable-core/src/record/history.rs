@@ -115,6 +115,7 @@ mod tests {
             cost: Cost::default(),
             energy: Energy::default(),
             robot: None,
+            verification: None,
         }
     }
 

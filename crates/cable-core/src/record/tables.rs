@@ -403,6 +403,7 @@ pub fn read_nodes(from: impl Read) -> Result<Vec<NodeRow>, ReadError> {
                 strain,
                 stress_pa,
                 curvature_per_m,
+                ..Node::default()
             },
         });
         Ok(())

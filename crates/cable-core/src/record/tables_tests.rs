@@ -5,7 +5,18 @@ use proptest::prelude::*;
 
 fn solution(time_s: f64, values: [f64; 9], name: &str) -> Solution {
     let [arc_length_m, x_m, y_m, vx_m_per_s, vy_m_per_s, tension_n, strain, stress_pa, curvature_per_m] = values;
-    let node = Node { arc_length_m, x_m, y_m, vx_m_per_s, vy_m_per_s, tension_n, strain, stress_pa, curvature_per_m };
+    let node = Node {
+        arc_length_m,
+        x_m,
+        y_m,
+        vx_m_per_s,
+        vy_m_per_s,
+        tension_n,
+        strain,
+        stress_pa,
+        curvature_per_m,
+        ..Node::default()
+    };
     let support = SupportReaction { name: name.to_owned(), reaction_x_n: x_m, reaction_y_n: y_m, ..Default::default() };
     let warning = Warning {
         kind: WarningKind::BendRadius,
@@ -31,6 +42,7 @@ fn solution(time_s: f64, values: [f64; 9], name: &str) -> Solution {
         cost: Cost::default(),
         energy: Energy { kinetic_j: x_m, gravity_j: y_m, stretch_j: strain, bending_j: stress_pa },
         robot: None,
+        verification: None,
     }
 }
 

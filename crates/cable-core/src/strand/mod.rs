@@ -108,6 +108,20 @@ impl Strand {
         Ok(Self { problem, asked: model, settings, pieces: vec![piece], breaks: Vec::new(), dragged, led: None })
     }
 
+    /// The same cable by another model: where it is, or at its route where it has not begun.
+    pub fn by_model(&self, model: Model) -> Result<Self, SolveError> {
+        let mut next = Self::new(model, self.problem.clone(), self.settings)?;
+        if self.time_s() > 0.0 {
+            next.carry(self)?;
+        }
+        for (k, target) in self.dragged.iter().enumerate() {
+            if let Some(target) = target {
+                next.drag_support(k, *target);
+            }
+        }
+        Ok(next)
+    }
+
     /// The model in use: of several pieces that of the first.
     pub fn model(&self) -> Model {
         self.pieces.first().map_or(self.asked, |p| p.mechanics.model())
@@ -285,6 +299,14 @@ impl Strand {
         self.led = Some(to);
         for piece in &mut self.pieces {
             piece.mechanics.lead_outline(to);
+        }
+    }
+
+    /// Gives the whole cable to the next model: see [`Mechanics::fall_back`](crate::model::Mechanics::fall_back).
+    pub fn fall_back(&mut self, why: &str) -> bool {
+        match self.pieces.as_mut_slice() {
+            [whole] if self.breaks.is_empty() => whole.mechanics.fall_back(why),
+            _ => false,
         }
     }
 

@@ -1,6 +1,7 @@
 //! The menu bar and the status line.
 
 use cable_core::scene::catalog;
+use cable_core::verify::Verification;
 use egui::{Button, KeyboardShortcut, MenuBar, Ui};
 
 use super::keys;
@@ -8,6 +9,7 @@ use crate::colour::{ColourMap, Quantity};
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::dialog::Dialog;
 use crate::panels::system::System;
+use crate::panels::translate;
 use crate::state::{AppState, WorkerStatus};
 use crate::units;
 
@@ -225,6 +227,18 @@ fn scenes(ui: &mut Ui, commands: &mut Vec<Command>) {
     }
 }
 
+/// Whether the answer obeys the laws of mechanics, as they were checked independently of the model that gave it.
+fn light(ui: &mut Ui, verification: &Verification) {
+    let (colour, text) = match (verification.is_sound(), verification.not_checked.is_empty()) {
+        (true, true) => (ui.visuals().text_color(), "● checked: sound"),
+        (true, false) => (ui.visuals().weak_text_color(), "◐ checked in part: sound"),
+        (false, _) => (ui.visuals().error_fg_color, "■ NOT SOUND"),
+    };
+    let laws: Vec<&str> = verification.checked.iter().map(|l| l.name()).collect();
+    let help = format!("{}. Checked: {}", translate::shown(&verification.summary()), laws.join(", "));
+    ui.colored_label(colour, text).on_hover_text(help);
+}
+
 /// The status line: cursor, model, time taken.
 pub fn status(ui: &mut Ui, state: &AppState) {
     ui.horizontal(|ui| {
@@ -237,6 +251,10 @@ pub fn status(ui: &mut Ui, state: &AppState) {
         if let Some(solution) = &state.snapshot.solution {
             ui.label(format!("{} model", solution.model)).on_hover_text(&solution.reason);
             ui.separator();
+            if let Some(verification) = &solution.verification {
+                light(ui, verification);
+                ui.separator();
+            }
             ui.label(format!("t = {:.3} s", solution.time_s));
             ui.separator();
         }

@@ -32,7 +32,8 @@ const WHEEL_NODES: usize = 24;
 pub(in crate::model) struct Point {
     pub s: f64,
     pub at: Vec2,
-    pub tension: f64,
+    /// Internal force, N.
+    pub force: Vec2,
     pub curvature: f64,
 }
 
@@ -52,17 +53,19 @@ impl<'a> Nodes<'a> {
 
     /// Adds a point.
     pub fn push(&mut self, p: Point) {
-        let strain = p.tension / self.problem.axial_stiffness;
+        let tension = p.force.norm();
+        let strain = tension / self.problem.axial_stiffness;
         // Where a span meets a wheel each has its own rounding of the same point.
         let before = self.out.last().map_or(p.s, |n| n.arc_length_m);
         let node = Node {
             arc_length_m: if p.s < before { before } else { p.s },
             x_m: p.at.x,
             y_m: p.at.y,
-            tension_n: p.tension,
+            tension_n: tension,
             strain,
-            stress_pa: p.tension / self.problem.cable.area_m2(),
+            stress_pa: tension / self.problem.cable.area_m2(),
             curvature_per_m: p.curvature,
+            force_n: [p.force.x, p.force.y],
             ..Node::default()
         };
         // A node twice at the same material point only where the tension jumps (a load, a rubbing pulley).
@@ -71,6 +74,7 @@ impl<'a> Nodes<'a> {
             && (node.tension_n - last.tension_n).abs() <= SAME_TENSION * node.tension_n
         {
             last.curvature_per_m = node.curvature_per_m;
+            last.force_n = node.force_n;
             return;
         }
         self.out.push(node);
@@ -83,7 +87,7 @@ impl<'a> Nodes<'a> {
             let square = force.norm_squared();
             // A fold is a point without tension: its direction turns at once, and no number says how sharply.
             let curvature = if square > 0.0 { -cross(force, c.span().weight) / square } else { 0.0 };
-            Point { s: s0 + s, at: at + c.position_at(s), tension: square.sqrt(), curvature }
+            Point { s: s0 + s, at: at + c.position_at(s), force, curvature }
         };
         let (a, b) = (point(0.0), point(c.span().length));
         self.push(a);
@@ -95,8 +99,9 @@ impl<'a> Nodes<'a> {
         let s = 0.5 * (s0 + s1);
         let middle = point(s);
         let off = ((ends.0.at + ends.1.at) * 0.5 - middle.at).norm();
-        let tension = (0.5 * (ends.0.tension + ends.1.tension) - middle.tension).abs();
-        let scale = if middle.tension > self.least_tension { middle.tension } else { self.least_tension };
+        let [before, after, here] = [ends.0, ends.1, middle].map(|p| p.force.norm());
+        let tension = (0.5 * (before + after) - here).abs();
+        let scale = if here > self.least_tension { here } else { self.least_tension };
         // What is off falls to a quarter with the node in the middle, which is known already.
         let rough = off > 4.0 * self.flat || tension > 4.0 * TENSION_FLATNESS * scale;
         let deeper = depth + 1 < LEAST_DEPTH || rough && depth + 1 < MOST_DEPTH;
@@ -155,7 +160,7 @@ fn wheel_nodes(nodes: &mut Nodes<'_>, slide: &Slide<'_>, e: &Equilibrium, k: usi
         nodes.push(Point {
             s: from + passed.material,
             at: a.touch(arc.arrive - a.facing * psi),
-            tension: passed.tension,
+            force: perp(a.touch(arc.arrive - a.facing * psi) - a.at) * (-a.facing / a.radius * passed.tension),
             curvature: -a.facing * lambda / a.radius,
         });
     }

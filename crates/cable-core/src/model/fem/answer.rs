@@ -12,7 +12,7 @@ use crate::solution::{Node, SupportReaction};
 const NODES_PER_RADIAN: f64 = 10.0;
 
 /// A point of the cable.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
     /// Arc length, m.
     pub arc_length: f64,
@@ -22,6 +22,8 @@ pub struct Point {
     pub tension: f64,
     /// d(angle)/d(arc length), 1/m.
     pub curvature: f64,
+    /// Internal force just beyond it, at the end of the cable just before it, N.
+    pub force: Vec2,
 }
 
 impl Point {
@@ -38,6 +40,7 @@ impl Point {
             strain: tension_n / problem.axial_stiffness,
             stress_pa: tension_n / area,
             curvature_per_m: self.curvature,
+            force_n: [self.force.x, self.force.y],
             ..Node::default()
         }
     }
@@ -67,7 +70,7 @@ pub fn points(network: &Network, out: &mut Vec<Point>) {
         run(network, (last, end), start, network.forces[last][1], out);
         let load = layout.stops[end].load;
         let tip = out.last().map_or(start, |p| p.at) + last_chord(network, end);
-        out.push(Point { arc_length: layout.length, at: tip, tension: load.norm(), curvature: 0.0 });
+        out.push(Point { arc_length: layout.length, at: tip, tension: load.norm(), curvature: 0.0, force: load });
     }
 }
 
@@ -105,6 +108,7 @@ fn run(network: &Network, (first, last): (usize, usize), start: Vec2, force: Vec
                     at,
                     tension: larger(before.norm(), f.norm()),
                     curvature,
+                    force: f,
                 });
             }
             at += material.respond(ds, f - drop * 0.5).chord;
@@ -125,6 +129,7 @@ fn anchor(network: &Network, k: usize, out: &mut Vec<Point>) {
                 at: point,
                 tension: force.norm(),
                 curvature,
+                force,
             };
             let turn = wheel::turn(&wheel, before);
             let curvature = turn / stop.lap;
@@ -148,6 +153,7 @@ fn anchor(network: &Network, k: usize, out: &mut Vec<Point>) {
                 at: meets,
                 tension: larger(before.norm(), after.norm()),
                 curvature,
+                force: if k + 1 == network.layout.stops.len() { before } else { after },
             });
         }
     }

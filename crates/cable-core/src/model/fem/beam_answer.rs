@@ -69,7 +69,8 @@ impl Beam {
             } else {
                 larger(before.dot(&t), after.dot(&t))
             };
-            out.push(Point { arc_length, at, tension, curvature: curvatures[v] });
+            let force = if v == n { before } else { after };
+            out.push(Point { arc_length, at, tension, curvature: curvatures[v], force });
             if v < n {
                 if smooth {
                     self.between(v, at, [curvatures[v], curvatures[v + 1]], &starts, &mut out);
@@ -96,10 +97,12 @@ impl Beam {
                 let stretched = 1.0 + self.force(bar, x, starts).dot(&t) / self.material.axial_stiffness;
                 at += t * (weight * step * self.rest(e) * stretched);
             }
+            let force = self.force(bar, x, starts);
             out.push(Point {
                 arc_length: bar.start + x * bar.ds,
                 at,
-                tension: self.force(bar, x, starts).dot(&self.tangent(self.angle(e, x))),
+                force,
+                tension: force.dot(&self.tangent(self.angle(e, x))),
                 curvature: curvatures[0] + x * (curvatures[1] - curvatures[0]),
             });
         }

@@ -1,14 +1,15 @@
 //! Reads tensions, reactions and contacts out of a state.
 
+use super::assembly::Mesh;
 use super::bar;
 use super::contact_set::{ContactSet, Rub, Touch};
 use super::dynamics::Dynamics;
 use super::sliding::Seat;
 use crate::contact::friction;
 use crate::energy::bending::turn;
-use crate::math::{Vec2, larger};
+use crate::math::{Vec2, larger, perp};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, ContactReport, ContactState, Node, SupportReaction};
+use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
 /// The answer at positions `x` and velocities `v`.
 #[must_use]
@@ -21,6 +22,11 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
         nodes: nodes(d, (x, v), &tension, &ends),
         supports: supports(d, x, &ends, &tension),
         contacts: contacts(d, x, &tension, &lain),
+        assumptions: Assumptions {
+            bending_stiffness_n_m2: problem.bending_stiffness,
+            self_contact: problem.cable.self_contact,
+            inertia: d.inertia_counts(),
+        },
         ..CableSolution::default()
     }
 }
@@ -82,9 +88,11 @@ struct Lain {
     node: usize,
     next: usize,
     obstacle: usize,
-    normal_n: f64,
-    /// Along the cable.
-    friction_n: f64,
+    /// Along the cable, unit vector.
+    along: Vec2,
+    normal: Vec2,
+    /// On the cable, N.
+    force: Vec2,
 }
 
 /// Tension force (N) at the start of the first bar and at the end of the last: what hangs there on a free end, else that of
@@ -109,18 +117,16 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
         // What lies on an edge up to its end presses on the edge alone; the barrier's width would tilt the last bar.
         let beyond = d.problem.world.signed_gap(x[next], 3.0 * d.contacts.barrier.reach);
         let along = ground.feature % 2 == 0 && beyond.is_some_and(|g| g.feature == ground.feature);
-        if !along {
-            return force;
-        }
-        let lift = force.dot(&ground.normal) * sign;
+        let lift = ground.normal * if along { force.dot(&ground.normal) } else { 0.0 };
         lain[usize::from(sign < 0.0)] = Some(Lain {
             node,
             next,
             obstacle: ground.obstacle,
-            normal_n: grounded.dot(&ground.normal) - lift,
-            friction_n: grounded.dot(&d.mesh.path(e, x).direction),
+            along: d.mesh.path(e, x).direction,
+            normal: ground.normal,
+            force: grounded - lift * sign,
         });
-        force - ground.normal * (lift * sign)
+        force - lift
     };
     if n < 3 {
         return ([Vec2::zeros(); 2], lain);
@@ -154,7 +160,8 @@ pub(super) fn rub_force(contacts: &ContactSet, rub: &Rub, x: &[Vec2]) -> Vec2 {
 fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2; 2]) -> Vec<Node> {
     let (mesh, n) = (&d.mesh, x.len());
     let area = d.problem.cable.area_m2();
-    let node = |s: f64, (x, v): (Vec2, Vec2), t: f64, curvature_per_m: f64| Node {
+    let moments = moments(d, x);
+    let node = |s: f64, (x, v): (Vec2, Vec2), t: f64, (curvature_per_m, force): (f64, Vec2)| Node {
         arc_length_m: s,
         x_m: x.x,
         y_m: x.y,
@@ -164,17 +171,23 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
         strain: t / d.problem.axial_stiffness,
         stress_pa: t / area,
         curvature_per_m,
+        force_n: force.into(),
     };
     let mut out = Vec::with_capacity(n + 2);
     for k in 0..n {
         if let (Some(sliding), Some(load)) = (&mesh.sliding[k], d.load(k)) {
             let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
             let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(sliding)));
+            // On a round the cable has the direction of the round, and half of the node's friction has acted.
+            let tension = (load.tension[0] * load.tension[1]).sqrt();
+            let tangent = perp(sliding.end.mark) * (sliding.end.sense * tension);
             for j in 0..2 {
                 // Where the cable meets the round and leaves it; one node where that is one place.
                 let arc = if same[j] { 0.0 } else { sliding.end.radius * paths[j].arcs[1 - j] };
                 let stretch = mesh.thermal_stretch * (1.0 + load.tension[j] / d.problem.axial_stiffness);
-                let s = mesh.arc_length[k] + [-1.0, 1.0][j] * arc / stretch;
+                let beyond = [-1.0, 1.0][j] * arc / stretch;
+                let force = if same[j] { tangent } else { load.force[j] - d.task.body * beyond };
+                let s = mesh.arc_length[k] + beyond;
                 if out.last().is_none_or(|l: &Node| s > l.arc_length_m + 1e-9) {
                     let at = if same[j] { sliding.position() } else { paths[j].ends[1 - j] };
                     let velocity = paths[j].direction * (-d.motion.w[k] * stretch);
@@ -182,7 +195,9 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
                         if sliding.end.radius > 0.0 { stretch * sliding.end.sense / sliding.end.radius } else { 0.0 };
                     let t =
                         if load.tension[1] > load.tension[0] && arc == 0.0 { load.tension[1] } else { load.tension[j] };
-                    out.push(node(s, (at, velocity), t, curvature));
+                    out.push(node(s, (at, velocity), t, (curvature, force)));
+                } else if let Some(last) = out.last_mut() {
+                    last.force_n = force.into();
                 }
             }
             continue;
@@ -192,19 +207,48 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
             k if k + 1 == n => ends[1].norm(),
             k => 0.5 * (tension[k - 1] + tension[k]),
         };
-        let mut curvature = 0.0;
-        if k > 0 && k + 1 < n {
-            let rest = 0.5 * (mesh.arc_length[k + 1] - mesh.arc_length[k - 1]);
-            curvature = turn(mesh.path(k - 1, x).direction, mesh.path(k, x).direction) / rest;
-        } else if let Some(clamp) = mesh.clamps.iter().find(|c| c.node == k) {
-            let e = if k == 0 { 0 } else { k - 1 };
-            let bend = turn(clamp.direction, x[e + 1] - x[e]);
-            let sign = if k == 0 { 1.0 } else { -1.0 };
-            curvature = sign * bend / (0.5 * (mesh.arc_length[e + 1] - mesh.arc_length[e]));
-        }
-        out.push(node(mesh.arc_length[k], (x[k], v[k]), t, curvature));
+        let body = d.task.body;
+        let half = |e: usize| body * (0.5 * (mesh.arc_length[e + 1] - mesh.arc_length[e]));
+        let bar = |e: usize| mesh.path(e, x).direction * tension[e] + shear(mesh, &moments, e, x);
+        let force = match k {
+            0 => ends[0] + shear(mesh, &moments, 0, x),
+            k if k + 1 == n => ends[1] + shear(mesh, &moments, k - 1, x),
+            k => bar(k) + half(k),
+        };
+        out.push(node(mesh.arc_length[k], (x[k], v[k]), t, (curvature_at(mesh, k, x), force)));
     }
     out
+}
+
+/// d(angle)/d(arc length) at a node, 1/m.
+fn curvature_at(mesh: &Mesh, k: usize, x: &[Vec2]) -> f64 {
+    if k > 0 && k + 1 < x.len() {
+        let rest = 0.5 * (mesh.arc_length[k + 1] - mesh.arc_length[k - 1]);
+        return turn(mesh.path(k - 1, x).direction, mesh.path(k, x).direction) / rest;
+    }
+    let Some(clamp) = mesh.clamps.iter().find(|c| c.node == k) else { return 0.0 };
+    let e = if k == 0 { 0 } else { k - 1 };
+    let sign = if k == 0 { 1.0 } else { -1.0 };
+    sign * turn(clamp.direction, x[e + 1] - x[e]) / (0.5 * (mesh.arc_length[e + 1] - mesh.arc_length[e]))
+}
+
+/// Bending moment at each node, N·m; empty for a flexible cable.
+fn moments(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
+    let mesh = &d.mesh;
+    if !(mesh.bending_stiffness > 0.0) {
+        return Vec::new();
+    }
+    let slides = |k: usize| mesh.sliding.get(k).is_some_and(Option::is_some);
+    let carries = |k: usize| !slides(k) && !slides(k + 1) && !(k > 0 && slides(k - 1));
+    let stiffness = mesh.bending_stiffness / mesh.thermal_stretch;
+    (0..x.len()).map(|k| if carries(k) { stiffness * curvature_at(mesh, k, x) } else { 0.0 }).collect()
+}
+
+/// Shear force of bar e, N: what balances the moments at its nodes.
+fn shear(mesh: &Mesh, moments: &[f64], e: usize, x: &[Vec2]) -> Vec2 {
+    let (Some(before), Some(after)) = (moments.get(e), moments.get(e + 1)) else { return Vec2::zeros() };
+    let path = mesh.path(e, x);
+    if path.length > 0.0 { perp(path.direction) * ((before - after) / path.length) } else { Vec2::zeros() }
 }
 
 /// The force of the cable on a pulley with its tensions and arc length.
@@ -291,8 +335,11 @@ fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64], lain: &[Option<Lain>; 2])
         let name = d.problem.world.obstacle_name(end.obstacle);
         let holds = |c: &&mut ContactReport| c.obstacle == name && c.begins_m <= at && c.ends_m >= at;
         if let Some(c) = out.iter_mut().find(holds) {
-            c.normal_n += end.normal_n;
-            c.friction_n += end.friction_n;
+            c.normal_n += end.force.dot(&end.normal);
+            c.friction_n += end.force.dot(&end.along);
+            let mut samples = std::mem::take(&mut c.samples);
+            samples.insert(if tip < at { 0 } else { samples.len() }, ContactSample::new(0.5 * (tip + at), end.force));
+            c.set_samples(samples);
             (c.begins_m, c.ends_m) = (c.begins_m.min(tip), c.ends_m.max(tip));
             c.arc_length_m += 0.5 * (tip - at);
             let half = (x[end.node] - x[end.next]) * 0.5;
@@ -324,7 +371,7 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
             ..ContactReport::default()
         };
         // A wrap slips when all of it does: one place that holds is enough for the cable to stay.
-        let (mut push, mut turn, mut slips) = (Vec2::zeros(), 0.0, true);
+        let (mut push, mut turn, mut slips, mut samples) = (Vec2::zeros(), 0.0, true, Vec::new());
         for j in first..k {
             let (Some(load), Some(node)) = (d.load(j), &d.mesh.sliding[j]) else { continue };
             let [a, b] = load.tension;
@@ -346,6 +393,7 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
                 r.begins_m = d.mesh.arc_length[j] - lap(j - 1, 0);
             }
             r.ends_m = d.mesh.arc_length[j] + lap(j, 1);
+            samples.push(ContactSample::new(d.mesh.arc_length[j], -load.jump));
             r.tension_after_n = b;
         }
         let normal = if push.norm() > 0.0 { push.normalize() } else { node.end.mark };
@@ -353,6 +401,7 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
         (r.x_m, r.y_m, r.normal) = (at.x, at.y, [normal.x, normal.y]);
         r.turn_deg = node.end.sense * turn.to_degrees();
         r.state = if slips { ContactState::Slip } else { ContactState::Stick };
+        r.set_samples(samples);
         out.push(r);
     }
 }
@@ -371,9 +420,10 @@ fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> Conta
         normal += t.pair.gap.normal * load;
     }
     let mut slips = 0.0;
-    for rub in d.contacts.rubs.iter().filter(|r| {
+    let rubs = d.contacts.rubs.iter().filter(|r| {
         r.touch.pair.gap.obstacle == first.pair.gap.obstacle && (first.node..=last.node).contains(&r.touch.node)
-    }) {
+    });
+    for rub in rubs.clone() {
         let e = rub.touch.node.min(bars - 1);
         let along = d.mesh.path(e, x).direction;
         friction_n += rub_force(&d.contacts, rub, x).dot(&along);
@@ -395,7 +445,7 @@ fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> Conta
         .map(|e| turn(d.mesh.path(e, x).direction, d.mesh.path(e + 1, x).direction))
         .sum();
     let frictionless = first.pair.gap.friction == 0.0;
-    ContactReport {
+    let mut out = ContactReport {
         obstacle: d.problem.world.obstacle_name(first.pair.gap.obstacle).to_owned(),
         x_m: middle.x,
         y_m: middle.y,
@@ -409,6 +459,14 @@ fn report(d: &Dynamics, x: &[Vec2], tension: &[f64], stretch: &[Touch]) -> Conta
         tension_after_n: tension[after],
         begins_m: arc(first),
         ends_m: arc(last),
-        parts: Vec::new(),
+        ..ContactReport::default()
+    };
+    let mut samples: Vec<ContactSample> =
+        stretch.iter().map(|t| ContactSample::new(arc(t), t.pair.gap.normal * t.load(&d.contacts.barrier))).collect();
+    for rub in rubs {
+        samples.push(ContactSample::new(arc(&rub.touch), rub_force(&d.contacts, rub, x)));
     }
+    samples.sort_by(|a, b| a.arc_length_m.total_cmp(&b.arc_length_m));
+    out.set_samples(samples);
+    out
 }

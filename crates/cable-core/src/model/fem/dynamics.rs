@@ -436,6 +436,11 @@ impl Dynamics {
         StepReport { cost, warnings }
     }
 
+    /// Whether masses accelerate: it moves, or came here in a step with inertia.
+    pub(super) fn inertia_counts(&self) -> bool {
+        self.motion.step_before > 0.0 || self.motion.v.iter().any(|v| v.norm_squared() > 0.0)
+    }
+
     /// Time reached, s.
     #[must_use]
     pub fn time(&self) -> f64 {

@@ -10,7 +10,7 @@ use crate::contact::friction;
 use crate::contact::own::{Order, OwnPair, OwnShape};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
-use crate::solution::{ContactReport, ContactState};
+use crate::solution::{ContactReport, ContactSample, ContactState};
 
 /// Friction of one contact of the cable with itself during a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -221,6 +221,12 @@ impl Dynamics {
                 });
             }
             if let Some(report) = out.last_mut() {
+                let force = pair.normal * load - pair.tangent() * rubbing;
+                report.force_n = [report.force_n[0] + force.x, report.force_n[1] + force.y];
+                // The other side of the contact feels the opposite.
+                for (node, part) in pair.shares() {
+                    report.samples.push(ContactSample::new(self.mesh.arc_length[node], force * part));
+                }
                 report.normal_n += load;
                 report.ends_m = self.mesh.arc_length[k];
                 report.friction_n -= rubbing * pair.tangent().dot(&along);

@@ -99,6 +99,10 @@ pub struct Load {
     pub turn: f64,
     /// Normal force, N.
     pub normal: f64,
+    /// Internal force just before and just after, N.
+    pub force: [Vec2; 2],
+    /// Change of the internal force there, N: the opposite of what it runs over does to the cable.
+    pub jump: Vec2,
 }
 
 impl Load {
@@ -119,7 +123,7 @@ impl Load {
         } else {
             angle_between(force[0], force[1]).abs()
         };
-        Self { tension: ends, pull, turn, normal: 0.5 * (ends[0] + ends[1]) * turn }
+        Self { tension: ends, pull, turn, normal: 0.5 * (ends[0] + ends[1]) * turn, force, jump: force[1] - force[0] }
     }
 
     /// What the law says of the grip: `slid` is how far the arc length moved in this step (m), `inertia` the force

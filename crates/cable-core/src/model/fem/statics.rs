@@ -16,7 +16,7 @@ use crate::math::Vec2;
 use crate::model::{Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-use crate::solution::{CableSolution, Cost, Warning, WarningKind};
+use crate::solution::{Assumptions, CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
 
 /// Elements to start with where nothing says how many: 1e-6 for a usual span, and 50 µs.
@@ -103,7 +103,7 @@ impl Statics {
             let f = if width > 0.0 { (stops[k].arc_length - stops[a].arc_length) / width } else { 0.0 };
             anchor(a) + (anchor(b) - anchor(a)) * f
         };
-        let point = |arc_length: f64, at: Vec2| Point { arc_length, at, tension: 0.0, curvature: 0.0 };
+        let point = |arc_length: f64, at: Vec2| Point { arc_length, at, ..Point::default() };
         self.points.clear();
         for k in 0..stops.len() - 1 {
             let (a, b, s, d) = (at(k), at(k + 1), stops[k].arc_length, stops[k + 1].arc_length - stops[k].arc_length);
@@ -365,8 +365,7 @@ impl Statics {
         self.points.extend(state.arc_length_m.iter().zip(&state.position_m).map(|(&arc_length, &at)| Point {
             arc_length,
             at,
-            tension: 0.0,
-            curvature: 0.0,
+            ..Point::default()
         }));
         Ok(())
     }
@@ -395,6 +394,10 @@ impl Statics {
             supports,
             contacts: Vec::new(),
             error_estimate: self.estimate,
+            assumptions: Assumptions {
+                bending_stiffness_n_m2: self.problem.bending_stiffness,
+                ..Assumptions::default()
+            },
             ..CableSolution::default()
         }
     }

@@ -5,7 +5,7 @@ use super::pulley::Pulley;
 use super::{MassSpringModel, Touch};
 use crate::energy::bending::turn;
 use crate::math::{Vec2, angle, perp};
-use crate::solution::{CableSolution, ContactReport, ContactState, Node, SupportReaction};
+use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 use crate::state::State;
 
 /// Tensions of both sides of a point that are the same to this part make one node.
@@ -24,6 +24,11 @@ impl MassSpringModel {
             nodes: self.nodes(),
             supports: (0..self.node_of.len()).map(|k| self.reaction(k)).collect(),
             error_estimate: self.uncertain(),
+            assumptions: Assumptions {
+                bending_stiffness_n_m2: self.problem.bending_stiffness,
+                inertia: self.v.iter().any(|v| v.norm_squared() > 0.0),
+                ..Assumptions::default()
+            },
             contacts: self.wraps().into_iter().map(|(contact, _)| contact).collect(),
             ..CableSolution::default()
         }
@@ -50,6 +55,13 @@ impl MassSpringModel {
         out
     }
 
+    /// Internal force where the bar `e` beside a pulley meets it, N: that of its middle and the load on the way, `side` −1 before the
+    /// pulley and 1 beyond it; the bar's end lies `arc` (m) on the wheel.
+    fn beside_pulley(&self, e: usize, side: f64, arc: f64) -> Vec2 {
+        let way = self.span[e] - 0.5 * self.share[e] - arc / self.problem.thermal_stretch;
+        self.bar_force(e) + self.problem.body_force(self.time_s) * (side * way)
+    }
+
     /// Tension along the arc grows exponentially from one end to the other.
     fn wheel_nodes(&self, p: Pulley, out: &mut Vec<Node>) {
         let [s0, s1] = self.on_wheel_from_to(&p);
@@ -61,7 +73,11 @@ impl MassSpringModel {
             let (along, tension_n) = (p.radius * p.turn * f, self.tension_round(&p, f));
             let angle = p.mark + p.facing * (p.arc[0] - along) / p.radius;
             let (sin, cos) = angle.sin_cos();
-            let t = if p.radius > 0.0 { Vec2::new(cos, sin) } else { b.direction };
+            let t = match (p.radius > 0.0, k == count) {
+                (true, _) => Vec2::new(cos, sin),
+                (false, true) => a.direction,
+                (false, false) => b.direction,
+            };
             let at = if p.radius > 0.0 { self.x[p.node] + perp(t) * (p.facing * p.radius) } else { self.x[p.node] };
             let v = self.v[p.node]
                 - if k == 0 {
@@ -81,6 +97,12 @@ impl MassSpringModel {
                 strain: tension_n / self.problem.axial_stiffness,
                 stress_pa: tension_n / self.problem.cable.area_m2(),
                 curvature_per_m: if p.radius > 0.0 { -p.facing / p.radius } else { 0.0 },
+                force_n: match k {
+                    0 => self.beside_pulley(p.node - 1, -1.0, p.arc[0]),
+                    k if k == count => self.beside_pulley(p.node, 1.0, p.arc[1]),
+                    _ => t * tension_n,
+                }
+                .into(),
             });
         }
     }
@@ -140,15 +162,7 @@ impl MassSpringModel {
             (Some(e), false) => self.free_end_tension(i, e),
             (None, _) => self.free_end_tension(i, 0),
         };
-        let curvature_per_m = match (i.checked_sub(1), self.x.get(i + 1)) {
-            (Some(e), Some(next)) => {
-                let (a, b) = (self.x[i] - self.x[e], next - self.x[i]);
-                angle(a, b) / (0.5 * (self.span[e] + self.span[i]))
-            }
-            (None, Some(next)) => self.clamp_curvature(i, 0, *next - self.x[i]),
-            (Some(e), None) => -self.clamp_curvature(i, e, self.x[i] - self.x[e]),
-            (None, None) => 0.0,
-        };
+        let curvature_per_m = self.node_curvature(i);
         Node {
             arc_length_m: self.s[i],
             x_m: self.x[i].x,
@@ -159,6 +173,47 @@ impl MassSpringModel {
             strain: tension_n / self.problem.axial_stiffness,
             stress_pa: tension_n / self.problem.cable.area_m2(),
             curvature_per_m,
+            force_n: self.internal_force(i).into(),
+        }
+    }
+
+    /// Internal force just beyond a node, at the end of the cable just before it, N: that of the bar's middle and half of its load.
+    fn internal_force(&self, i: usize) -> Vec2 {
+        match (i, i < self.rest.len()) {
+            (0, _) => self.end_force(i),
+            (_, true) => self.bar_force(i) + self.problem.body_force(self.time_s) * (0.5 * self.share[i]),
+            (_, false) => -self.end_force(i),
+        }
+    }
+
+    /// Force of the cable on what holds or loads an end, N.
+    fn end_force(&self, i: usize) -> Vec2 {
+        match self.node_of.iter().position(|&n| n == i) {
+            Some(k) if !self.held[i] => -self.problem.hung_on(k, self.time_s),
+            _ => self.on_support(i),
+        }
+    }
+
+    /// Force of an element, its shear with it, N.
+    fn bar_force(&self, e: usize) -> Vec2 {
+        let pull = self.element_force(e);
+        let d = self.x[e + 1] - self.x[e];
+        if !(self.problem.bending_stiffness > 0.0 && d.norm_squared() > 0.0) {
+            return pull;
+        }
+        let moment = |i: usize| self.problem.bending_stiffness * self.node_curvature(i) / self.problem.thermal_stretch;
+        pull + perp(d) * ((moment(e) - moment(e + 1)) / d.norm_squared())
+    }
+
+    fn node_curvature(&self, i: usize) -> f64 {
+        match (i.checked_sub(1), self.x.get(i + 1)) {
+            (Some(e), Some(next)) => {
+                let (a, b) = (self.x[i] - self.x[e], next - self.x[i]);
+                angle(a, b) / (0.5 * (self.span[e] + self.span[i]))
+            }
+            (None, Some(next)) => self.clamp_curvature(i, 0, *next - self.x[i]),
+            (Some(e), None) => -self.clamp_curvature(i, e, self.x[i] - self.x[e]),
+            (None, None) => 0.0,
         }
     }
 
@@ -269,6 +324,10 @@ impl MassSpringModel {
         let e = t.element;
         let at = self.s[e] + self.span[e] * t.gap.fraction;
         // The middle, weighted by force.
+        let n = t.gap.normal;
+        let force = (n * t.normal + Vec2::new(n.y, -n.x) * t.friction) / h;
+        r.force_n = [r.force_n[0] + force.x, r.force_n[1] + force.y];
+        r.samples.push(ContactSample::new(at, force));
         let before = r.normal_n;
         r.normal_n += t.normal / h;
         r.arc_length_m = (r.arc_length_m * before + at * (t.normal / h)) / r.normal_n;

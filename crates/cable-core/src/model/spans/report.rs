@@ -12,7 +12,7 @@ use super::weight;
 use crate::catenary::PointForce;
 use crate::math::{GAUSS, Vec2};
 use crate::model::catenary::report::{Nodes, Point};
-use crate::solution::{ContactPart, ContactReport, ContactState, Node, SupportReaction};
+use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
 /// Nodes on a contact: one at least every so many radians of an arc …
 const ARC_STEP: f64 = 0.13;
@@ -102,6 +102,11 @@ impl Stretch {
         Self { from, to, tension, s, m: history.called(track, middle), pivot }
     }
 
+    /// Parts that nodes cut it into.
+    fn nodes(&self) -> usize {
+        if self.pivot.turns() { ((self.to - self.from) / ARC_STEP).ceil() as usize + 1 } else { EDGE_NODES }
+    }
+
     /// Tension and material at p.
     fn at(&self, track: &Track<'_>, p: f64) -> (f64, f64) {
         let piece = OnPiece { law: &track.law, from: self.pivot.spot(self.from), p0: self.from };
@@ -129,12 +134,12 @@ fn stretches(track: &Track<'_>, history: &History, [p1, p2]: [f64; 2]) -> Vec<St
 fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, c: &Contact, stretches: &[Stretch]) {
     let mut push = |place: &Place, (tension, s): (f64, f64)| {
         let curvature = if place.stretch > 0.0 { place.turn * track.law.stretch(tension) / place.stretch } else { 0.0 };
-        nodes.push(Point { s, at: place.at, tension, curvature });
+        nodes.push(Point { s, at: place.at, force: place.tangent * tension, curvature });
     };
     push(&track.place(c.ends.p[0]), (c.ends.t[0], c.ends.s[0]));
     for stretch in stretches {
         let (a, b) = (stretch.from, stretch.to);
-        let count = if stretch.pivot.turns() { ((b - a) / ARC_STEP).ceil() as usize + 1 } else { EDGE_NODES };
+        let count = stretch.nodes();
         let last = if b < c.ends.p[1] { count } else { count - 1 };
         for i in 1..=last {
             let p = if i == count { b } else { a + (b - a) * i as f64 / count as f64 };
@@ -174,7 +179,7 @@ fn contact((track, name): (&Track<'_>, &str), c: &Contact, stretches: &[Stretch]
     let unit = if push.norm() > 0.0 { push.normalize() } else { middle.normal };
     let [t1, t2] = c.ends.t;
     let slips = friction <= 0.0 || matches!(c.mode, Mode::Slide(_));
-    ContactReport {
+    let mut report = ContactReport {
         obstacle: name.to_owned(),
         x_m: middle.at.x,
         y_m: middle.at.y,
@@ -189,7 +194,31 @@ fn contact((track, name): (&Track<'_>, &str), c: &Contact, stretches: &[Stretch]
         begins_m: c.ends.s[0],
         ends_m: c.ends.s[1],
         parts: if slips { Vec::new() } else { parts(c, friction, stretches) },
+        ..ContactReport::default()
+    };
+    report.set_samples(samples(track, stretches));
+    report
+}
+
+/// Forces of the obstacle on the cable between the nodes of a contact: N n on an edge or arc, less the friction called upon, m N t.
+fn samples(track: &Track<'_>, stretches: &[Stretch]) -> Vec<ContactSample> {
+    let mut out = Vec::with_capacity(EDGE_NODES * stretches.len());
+    for stretch in stretches {
+        let count = stretch.nodes();
+        let h = (stretch.to - stretch.from) / count as f64;
+        for k in 0..count {
+            let (mut force, mut middle) = (Vec2::zeros(), stretch.s);
+            for (u, weight) in THREE {
+                let p = stretch.from + (k as f64 + u) * h;
+                let (t, s) = stretch.at(track, p);
+                let place = stretch.pivot.place(p);
+                force += (place.normal - place.tangent * stretch.m) * (weight * h * track.law.press(&place, t));
+                middle = if u == 0.5 { s } else { middle };
+            }
+            out.push(ContactSample::new(middle, force));
+        }
     }
+    out
 }
 
 /// The contact of the load that is contact j.
@@ -197,6 +226,8 @@ fn load((strand, course, j): (&Strand, &Course, usize), (track, name): (&Track<'
     let c = &strand.contacts[j];
     let felt = weight::felt(strand, course, j);
     let at = track.place(c.ends.p[0]).at;
+    // The obstacle holds what all else does to the point.
+    let held = felt.normal * felt.press() - felt.tangent * felt.sum.dot(&felt.tangent);
     let slips = track.friction <= 0.0 || matches!(c.mode, Mode::Slide(_));
     ContactReport {
         obstacle: name.to_owned(),
@@ -212,7 +243,9 @@ fn load((strand, course, j): (&Strand, &Course, usize), (track, name): (&Track<'
         tension_after_n: c.ends.t[1],
         begins_m: c.ends.s[0],
         ends_m: c.ends.s[0],
-        parts: Vec::new(),
+        force_n: [held.x, held.y],
+        samples: vec![ContactSample::new(c.ends.s[0], held)],
+        ..ContactReport::default()
     }
 }
 

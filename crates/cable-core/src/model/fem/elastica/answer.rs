@@ -1,9 +1,9 @@
 //! From a solved elastica to an answer.
 
-use super::{ANGLE, ARC, Elastica, End, Joint, LENGTH, MOMENT, Owner, force, place, tangent, tension};
+use super::{ANGLE, ARC, Elastica, End, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, place, tangent, tension};
 use crate::math::{Vec2, larger, perp};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, ContactReport, ContactState, Node, SupportReaction};
+use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
 /// Most nodes of a piece in an answer.
 const MOST_PARTS: f64 = 400.0;
@@ -54,6 +54,7 @@ impl Elastica {
             supports: self.supports(problem, &nodes),
             contacts: self.contact_reports(problem),
             nodes,
+            assumptions: Assumptions { bending_stiffness_n_m2: self.bending, ..Assumptions::default() },
             ..CableSolution::default()
         }
     }
@@ -85,14 +86,16 @@ impl Elastica {
                         strain: t / problem.axial_stiffness,
                         stress_pa: t / area,
                         curvature_per_m: self.thermal_stretch * u[MOMENT] / self.bending,
+                        force_n: force(&u).into(),
                         ..Node::default()
                     };
                     match out.last_mut() {
-                        // Where two pieces meet the greater tension counts.
+                        // Where two pieces meet the greater tension counts, and the force beyond.
                         Some(l) if node.arc_length_m <= l.arc_length_m + 1e-12 * self.length => {
                             if node.tension_n > l.tension_n {
                                 *l = node;
                             }
+                            l.force_n = node.force_n;
                         }
                         _ => out.push(node),
                     }
@@ -182,6 +185,19 @@ impl Elastica {
                 state: if c.slips || c.mobilised == 0.0 { ContactState::Slip } else { ContactState::Stick },
                 ..ContactReport::default()
             };
+            let mut samples = vec![ContactSample::new(a[ARC], force(a) - force(b))];
+            if let (Joint::End(_), Some(p)) = (joint, stretch) {
+                // The point force comes after what lies.
+                samples = self.along(p);
+                samples.push(ContactSample::new(a[ARC], force(a) - force(b)));
+            } else if let Some(p) = stretch {
+                samples.extend(self.along(p));
+                if let (Some(last), Some(next)) = (p.nodes.last(), self.pieces.get(j + 2).and_then(|p| p.nodes.first()))
+                {
+                    samples.push(ContactSample::new(last[ARC], force(last) - force(next)));
+                }
+            }
+            r.set_samples(samples);
             let (mut middle, mut normal) = (place(a), perp(tangent(a)) * -c.sense);
             if let Some(p) = stretch {
                 let l = p.nodes[0][LENGTH];
@@ -211,6 +227,16 @@ impl Elastica {
             out.push(r);
         }
         out
+    }
+
+    /// What a contact does to the elements of a piece that lies on it.
+    fn along(&self, piece: &Piece) -> Vec<ContactSample> {
+        let of = |pair: &[[f64; STATES]]| {
+            let (a, b) = (&pair[0], &pair[1]);
+            let on = force(a) - force(b) - self.body * (b[ARC] - a[ARC]);
+            ContactSample::new(0.5 * (a[ARC] + b[ARC]), on)
+        };
+        piece.nodes.windows(2).map(of).collect()
     }
 
     /// Newton steps and the largest imbalance of the equations that is left.

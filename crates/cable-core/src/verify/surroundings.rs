@@ -1,0 +1,219 @@
+//! Obstacles as the checker sees them: edges and rounds, distances by brute force.
+//!
+//! Edges are sorted by their left end, so that those in a box are found without looking at all; nothing else is clever.
+
+use crate::math::{Vec2, cross, vec2};
+use crate::scene::{Obstacle, Scene, Shape};
+
+/// An edge of an obstacle, or a round (both ends in its centre).
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    from: Vec2,
+    to: Vec2,
+    /// Distance of the surface from the line or centre, m.
+    thickness: f64,
+    /// Index of the obstacle.
+    body: usize,
+}
+
+/// An obstacle.
+#[derive(Clone, Debug)]
+struct Body {
+    name: String,
+    /// Its own friction coefficient, where it has one.
+    friction: Option<f64>,
+    kind: Kind,
+}
+
+/// Where an obstacle is solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// Below a line that runs from left to right.
+    Below,
+    /// Inside a closed line.
+    Inside,
+    /// The line itself, or what is round about it.
+    Line,
+}
+
+/// An obstacle near a piece of cable.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Near {
+    /// Index of the obstacle.
+    pub body: usize,
+    /// Distance of the centre line from the surface, m; 0 where they cross.
+    pub distance: f64,
+    /// Unit vector from the obstacle to the cable; zero where they cross.
+    pub normal: Vec2,
+    /// Nearest point of the cable, m.
+    pub at: Vec2,
+}
+
+/// The obstacles of a scene.
+#[derive(Clone, Debug)]
+pub(super) struct Surroundings {
+    bodies: Vec<Body>,
+    edges: Vec<Edge>,
+    /// Greatest reach of an edge and its thickness along x, m: how far left of a box edges that meet it begin.
+    widest: f64,
+}
+
+impl Surroundings {
+    pub fn new(scene: &Scene) -> Self {
+        let mut edges = Vec::new();
+        let bodies = scene.obstacles.iter().enumerate().map(|(k, o)| body(o, k, &mut edges)).collect();
+        edges.sort_by(|a: &Edge, b: &Edge| left(a).total_cmp(&left(b)));
+        let widest = edges.iter().map(|e| (e.to.x - e.from.x).abs() + 2.0 * e.thickness).fold(0.0, f64::max);
+        Self { bodies, edges, widest }
+    }
+
+    pub fn name(&self, body: usize) -> &str {
+        self.bodies.get(body).map_or("", |b| &b.name)
+    }
+
+    /// Index of the obstacle of a name.
+    pub fn find(&self, name: &str) -> Option<usize> {
+        self.bodies.iter().position(|b| b.name == name)
+    }
+
+    /// Coulomb friction of an obstacle with a cable whose own coefficient is `cable`.
+    pub fn friction(&self, body: usize, cable: f64) -> f64 {
+        self.bodies.get(body).and_then(|b| b.friction).unwrap_or(cable)
+    }
+
+    /// Appends what is within `reach` (m) of the straight line between two points, nearest point by nearest point: for each edge the
+    /// nearest points of both, and those seen from the two ends.
+    pub fn near(&self, a: Vec2, b: Vec2, reach: f64, out: &mut Vec<Near>) {
+        let (low, high) = (a.inf(&b) - Vec2::repeat(reach), a.sup(&b) + Vec2::repeat(reach));
+        let first = self.edges.partition_point(|e| left(e) < low.x - self.widest);
+        for e in self.edges.iter().skip(first).take_while(|e| left(e) <= high.x) {
+            let (l, h) = (e.from.inf(&e.to), e.from.sup(&e.to));
+            let t = e.thickness;
+            if h.x + t < low.x || l.y - t > high.y || h.y + t < low.y {
+                continue;
+            }
+            if crosses(a, b, e.from, e.to) {
+                out.push(Near { body: e.body, distance: -t, normal: Vec2::zeros(), at: crossing(a, b, e) });
+                continue;
+            }
+            for (p, q) in closest(a, b, e.from, e.to) {
+                let distance = (p - q).norm() - t;
+                if distance <= reach {
+                    let normal = (p - q).try_normalize(0.0).unwrap_or_default();
+                    out.push(Near { body: e.body, distance, normal, at: p });
+                }
+            }
+        }
+    }
+
+    /// The obstacle in whose solid a point lies, and how deep, m.
+    pub fn inside(&self, p: Vec2) -> Option<(usize, f64)> {
+        // Each edge above the point counts: where it runs to the right its solid side is below it, where to the left above.
+        let mut above: Option<(usize, i32)> = None;
+        let mut counts: Vec<(usize, i32)> = Vec::new();
+        let first = self.edges.partition_point(|e| left(e) < p.x - self.widest);
+        for e in self.edges.iter().skip(first).take_while(|e| left(e) <= p.x) {
+            if self.bodies.get(e.body).is_none_or(|b| b.kind == Kind::Line) {
+                continue;
+            }
+            let to_right = e.from.x <= p.x && p.x < e.to.x;
+            let to_left = e.to.x <= p.x && p.x < e.from.x;
+            if !(to_right || to_left) {
+                continue;
+            }
+            let y = e.from.y + (e.to.y - e.from.y) * ((p.x - e.from.x) / (e.to.x - e.from.x));
+            if y > p.y {
+                let sign = if to_right { 1 } else { -1 };
+                match &mut above {
+                    None => above = Some((e.body, sign)),
+                    Some((body, sum)) if *body == e.body => *sum += sign,
+                    Some(_) => counts.push((e.body, sign)),
+                }
+            }
+        }
+        let mut all: Vec<(usize, i32)> = above.into_iter().collect();
+        for (body, sign) in counts {
+            match all.iter_mut().find(|c| c.0 == body) {
+                Some(c) => c.1 += sign,
+                None => all.push((body, sign)),
+            }
+        }
+        let solid = |&(body, sum): &(usize, i32)| match self.bodies.get(body).map(|b| b.kind) {
+            Some(Kind::Below) => sum > 0,
+            Some(Kind::Inside) => sum != 0,
+            _ => false,
+        };
+        let (body, _) = all.into_iter().find(solid)?;
+        let distance = |e: &Edge| {
+            let q = nearest(p, e.from, e.to);
+            (p - q).norm() - e.thickness
+        };
+        let depth = self.edges.iter().filter(|e| e.body == body).map(distance).fold(f64::INFINITY, f64::min);
+        Some((body, depth))
+    }
+}
+
+fn left(e: &Edge) -> f64 {
+    if e.from.x < e.to.x { e.from.x - e.thickness } else { e.to.x - e.thickness }
+}
+
+fn body(o: &Obstacle, index: usize, edges: &mut Vec<Edge>) -> Body {
+    let mut line = |points: &[[f64; 2]], closed: bool, thickness: f64| {
+        let n = points.len();
+        for k in 0..if closed { n } else { n.saturating_sub(1) } {
+            let (from, to) = (vec2(points[k]), vec2(points[(k + 1) % n]));
+            edges.push(Edge { from, to, thickness, body: index });
+        }
+    };
+    let kind = match &o.shape {
+        Shape::Terrain { points_m } => {
+            line(points_m, false, 0.0);
+            Kind::Below
+        }
+        Shape::Polygon { points_m } => {
+            line(points_m, true, 0.0);
+            Kind::Inside
+        }
+        Shape::Polyline { points_m, thickness_m } => {
+            line(points_m, false, 0.5 * thickness_m);
+            Kind::Line
+        }
+        Shape::Circle { center_m, radius_m } => {
+            edges.push(Edge { from: vec2(*center_m), to: vec2(*center_m), thickness: *radius_m, body: index });
+            Kind::Line
+        }
+    };
+    Body { name: o.name.clone(), friction: o.friction, kind }
+}
+
+/// The point of a straight line nearest to another, m.
+fn nearest(p: Vec2, a: Vec2, b: Vec2) -> Vec2 {
+    let d = b - a;
+    let square = d.norm_squared();
+    let f = if square > 0.0 { ((p - a).dot(&d) / square).clamp(0.0, 1.0) } else { 0.0 };
+    a + d * f
+}
+
+/// Pairs of nearest points of two lines that do not cross: seen from each end of the first, and from each end of the second.
+fn closest(a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> [(Vec2, Vec2); 4] {
+    [(a, nearest(a, c, d)), (b, nearest(b, c, d)), (nearest(c, a, b), c), (nearest(d, a, b), d)]
+}
+
+/// Whether two lines cross in their insides.
+fn crosses(a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> bool {
+    let side = |p: Vec2, q: Vec2, r: Vec2| cross(q - p, r - p);
+    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
+}
+
+fn crossing(a: Vec2, b: Vec2, e: &Edge) -> Vec2 {
+    let (d, g) = (b - a, e.to - e.from);
+    a + d * (cross(e.from - a, g) / cross(d, g))
+}
+
+/// Distance of two lines, m; 0 where they cross.
+pub(super) fn distance(a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> f64 {
+    if crosses(a, b, c, d) {
+        return 0.0;
+    }
+    closest(a, b, c, d).into_iter().map(|(p, q)| (p - q).norm()).fold(f64::INFINITY, f64::min)
+}

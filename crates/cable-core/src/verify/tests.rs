@@ -1,0 +1,189 @@
+//! Sound answers pass; each kind of fault, put into a sound answer by hand, is seen and named.
+
+use super::{Depth, Law, Verification, Verifier};
+use crate::scene::Scene;
+use crate::solution::{CableSolution, ContactReport, Solution};
+use crate::{Model, Simulation};
+
+const SPAN: &str = r#"
+version = 1
+[[cables]]
+name = "cable"
+preset = "soow-6-4"
+length_m = 11.0
+supports = [ { name = "a", kind = "fixed", at_m = [0.0, 5.0] }, { name = "b", kind = "fixed", at_m = [10.0, 6.0] } ]
+[[loads]]
+cable = "cable"
+arc_length_m = 4.0
+force_n = [3.0, -20.0]
+"#;
+
+const OVER_POST: &str = r#"
+version = 1
+[[cables]]
+name = "cable"
+preset = "soow-6-4"
+length_m = 14.0
+friction = 0.3
+supports = [ { name = "a", kind = "fixed", at_m = [0.0, 3.0] }, { name = "b", kind = "fixed", at_m = [10.0, 2.0] } ]
+[[obstacles]]
+name = "post"
+kind = "circle"
+center_m = [5.0, 4.0]
+radius_m = 0.3
+[[obstacles]]
+name = "floor"
+kind = "terrain"
+points_m = [[-5.0, 0.0], [15.0, 0.0]]
+"#;
+
+fn solved(text: &str, model: Model) -> (Scene, Solution) {
+    let scene = Scene::from_toml(text).unwrap();
+    let solution = Simulation::new(scene.clone(), model).unwrap().settle().unwrap();
+    (scene, solution)
+}
+
+fn check(scene: &Scene, solution: &Solution) -> Verification {
+    Verifier::new(scene).check(scene, solution, Depth::Full)
+}
+
+/// The laws that are broken once the answer is changed.
+fn broken(text: &str, change: impl Fn(&mut CableSolution)) -> Vec<Law> {
+    let (scene, mut solution) = solved(text, Model::Auto);
+    assert_eq!(check(&scene, &solution).findings, [], "sound before");
+    change(&mut solution.cables[0]);
+    check(&scene, &solution).findings.iter().map(|f| f.law).collect()
+}
+
+#[track_caller]
+fn sees(law: Law, text: &str, change: impl Fn(&mut CableSolution)) {
+    let found = broken(text, change);
+    assert!(found.contains(&law), "{law:?} is not in {found:?}");
+}
+
+#[test]
+fn sound_answers_of_every_model_pass() {
+    for (text, models) in
+        [(SPAN, &[Model::Catenary, Model::Fem, Model::MassSpring][..]), (OVER_POST, &[Model::Spans, Model::Fem])]
+    {
+        for &model in models {
+            let (scene, solution) = solved(text, model);
+            let found = check(&scene, &solution);
+            assert!(found.is_sound(), "{model}: {:?}", found.findings);
+            assert!(found.checked.contains(&Law::Balance) && found.balance.residual_n <= 1e-5 * found.balance.scale_n);
+        }
+    }
+}
+
+#[test]
+fn a_number_that_is_none_is_seen() {
+    sees(Law::Finite, SPAN, |c| c.nodes[3].tension_n = f64::NAN);
+    sees(Law::Finite, SPAN, |c| c.supports[1].reaction_x_n = f64::INFINITY);
+    sees(Law::Finite, OVER_POST, |c| c.contacts[0].normal_n = f64::NEG_INFINITY);
+    sees(Law::Finite, SPAN, |c| c.nodes.clear());
+}
+
+#[test]
+fn material_that_is_missing_is_seen() {
+    sees(Law::Material, SPAN, |c| {
+        c.nodes.pop();
+    });
+    sees(Law::Material, SPAN, |c| c.nodes.swap(4, 9));
+}
+
+#[test]
+fn a_thousandth_of_a_force_that_is_missing_is_seen() {
+    sees(Law::Balance, SPAN, |c| c.supports[0].reaction_y_n *= 1.001);
+    sees(Law::Balance, SPAN, |c| c.nodes.iter_mut().take(8).for_each(|n| n.force_n[0] *= 1.001));
+    sees(Law::Balance, OVER_POST, |c| c.contacts[0].force_n[1] *= 1.001);
+    // A contact that nobody reports.
+    sees(Law::Balance, OVER_POST, |c| c.contacts.clear());
+}
+
+#[test]
+fn a_contact_in_the_air_is_seen() {
+    let (scene, solution) = solved(OVER_POST, Model::Auto);
+    let mut elsewhere = scene.clone();
+    elsewhere.obstacles.remove(0);
+    let found = Verifier::new(&elsewhere).check(&elsewhere, &solution, Depth::Always);
+    assert!(found.findings.iter().any(|f| f.law == Law::Balance), "{:?}", found.findings);
+}
+
+#[test]
+fn compression_is_seen() {
+    // A bar between supports that pushes them apart, its weight balanced at every node.
+    sees(Law::Compression, SPAN, |c| {
+        let turn = |f: &mut [f64; 2]| f[0] = -f[0];
+        c.nodes.iter_mut().for_each(|n| turn(&mut n.force_n));
+    });
+}
+
+#[test]
+fn a_way_that_is_not_the_material_is_seen() {
+    sees(Law::Length, SPAN, |c| c.nodes.iter_mut().for_each(|n| n.y_m = 5.0 + 1.01 * (n.y_m - 5.0)));
+    // Arches at no tension: more way than material.
+    sees(Law::Length, SPAN, |c| {
+        c.nodes.iter_mut().for_each(|n| {
+            n.force_n = [0.0; 2];
+            n.x_m *= 1.5;
+        });
+    });
+}
+
+#[test]
+fn what_lies_inside_an_obstacle_is_seen() {
+    sees(Law::Penetration, OVER_POST, |c| c.nodes.iter_mut().for_each(|n| n.y_m -= 0.01));
+    let deep = OVER_POST.replace("center_m = [5.0, 4.0]", "center_m = [5.0, 4.1]");
+    let (_, solution) = solved(OVER_POST, Model::Auto);
+    let scene = Scene::from_toml(&deep).unwrap();
+    let found = check(&scene, &solution);
+    assert!(found.findings.iter().any(|f| f.law == Law::Penetration), "{:?}", found.findings);
+    // Under the floor, further than any reach.
+    sees(Law::Penetration, SPAN_OVER_FLOOR, |c| c.nodes.iter_mut().for_each(|n| n.y_m -= 40.0));
+}
+
+const SPAN_OVER_FLOOR: &str = r#"
+version = 1
+[[cables]]
+name = "cable"
+preset = "soow-6-4"
+length_m = 11.0
+supports = [ { name = "a", kind = "fixed", at_m = [0.0, 5.0] }, { name = "b", kind = "fixed", at_m = [10.0, 6.0] } ]
+[[obstacles]]
+name = "floor"
+kind = "terrain"
+points_m = [[-50.0, 0.0], [50.0, 0.0]]
+"#;
+
+#[test]
+fn a_contact_that_pulls_is_seen() {
+    sees(Law::Push, OVER_POST, |c| c.contacts[0].normal_n *= -1.0);
+}
+
+#[test]
+fn friction_beyond_the_cone_is_seen() {
+    // As it is reported …
+    sees(Law::Friction, OVER_POST, |c: &mut CableSolution| {
+        let worst = |c: &mut ContactReport| c.friction_n = 0.31 * c.normal_n;
+        c.contacts.iter_mut().for_each(worst);
+    });
+    // … and as the forces in the cable ask for it.
+    let (scene, solution) = solved(&OVER_POST.replace("at_m = [10.0, 2.0]", "at_m = [9.0, 0.3]"), Model::Auto);
+    let mut smooth = scene.clone();
+    smooth.obstacles[0].friction = Some(0.0);
+    let found = Verifier::new(&smooth).check(&smooth, &solution, Depth::Always);
+    assert!(found.findings.iter().any(|f| f.law == Law::Friction), "{:?}", found.findings);
+}
+
+#[test]
+fn a_moment_that_nothing_balances_is_seen() {
+    let stiff = SPAN.replace("length_m = 11.0", "length_m = 11.0\nbending_stiffness_n_m2 = 5.0");
+    sees(Law::Moment, &stiff, |c| c.nodes.iter_mut().for_each(|n| n.curvature_per_m *= -1.0));
+}
+
+#[test]
+fn a_free_end_that_is_pulled_is_seen() {
+    let free =
+        SPAN.replace(r#"{ name = "b", kind = "fixed", at_m = [10.0, 6.0] }"#, r#"{ name = "b", kind = "free" }"#);
+    sees(Law::Balance, &free, |c| c.nodes.iter_mut().for_each(|n| n.force_n[1] += 0.1));
+}

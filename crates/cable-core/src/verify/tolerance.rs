@@ -1,0 +1,43 @@
+//! Every tolerance of the checker. They are pinned: an answer that fails is wrong or its model coarse, never the tolerance.
+
+/// Unbalanced force of the whole and of any piece, of the greatest force in the scene. Smaller: the models' own stopping rules
+/// (1e-6 of the whole load for `fem`, over some tens of nodes) are refused; larger: cables that slide away pass (0.3 % were missing).
+pub const BALANCE: f64 = 1e-5;
+
+/// Unbalanced moment of a piece, of the greatest moment. A discrete rod balances moments about its nodes exactly, the mean of forces
+/// beside a node is of the second order: 5 % for ten nodes on a bend.
+pub const MOMENT: f64 = 5e-2;
+
+/// Compression of a flexible cable, of the greatest force: as the balance.
+pub const COMPRESSION: f64 = 1e-5;
+
+/// Length that is missing or too much, of the material between two nodes. Smaller: rounding of stiff, nearly taut cables, where
+/// a strain of 1e-9 is 1 N at EA 1e9; larger: folds that stand for a stretch.
+pub const LENGTH: f64 = 1e-6;
+
+/// Part of the square of the turn of the force between two nodes, by which their way may differ from the exact one: straight bars and
+/// linear forces are of the second order with 1/24, arcs with 1/8.
+pub const TURN: f64 = 0.25;
+
+/// Part of the turn that the weight of a bar and its neighbours makes, by which a bar beside a contact may be off: weight that lies on a round
+/// is carried half by the bar beside it.
+pub const LUMPED: f64 = 0.5;
+
+/// Turn of the force between two nodes above which nothing is asked of the direction of their way: the fold of a slack cable.
+pub const FOLD: f64 = 0.5;
+
+/// Depth inside an obstacle, of the diameter …
+pub const DEPTH_DIAMETERS: f64 = 0.02;
+/// … and at most this, m (RELIABILITY: what a picture to scale does not show, and less than the cable's own roundness).
+pub const DEPTH_M: f64 = 1e-3;
+
+/// Gap up to which an obstacle may push, of the diameter: barriers push from 1e-4 m off, jackets give way by more.
+pub const REACH_DIAMETERS: f64 = 0.05;
+/// … and at least this, m: the reach of a barrier in motion.
+pub const REACH_M: f64 = 1.2e-3;
+
+/// Friction beyond the cone, of the normal force: contacts of `fem` stop at 1e-4 of their forces.
+pub const CONE: f64 = 1e-3;
+
+/// Part of the cable's length by which arc lengths at the ends may miss 0 and the length.
+pub const MATERIAL: f64 = 1e-9;
