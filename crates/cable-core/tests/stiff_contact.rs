@@ -273,7 +273,7 @@ impl Shooting<'_> {
         let n = y.len();
         let sizes: Vec<f64> = y.iter().map(|v| 1e-7 * (v.abs() + 1e-2)).collect();
         let mut step_before = f64::INFINITY;
-        for _ in 0..25 {
+        for _ in 0..40 {
             let (r, forces, normals) = self.residual(&y);
             let mut jacobian = DMatrix::zeros(n, n);
             for j in 0..n {
@@ -306,13 +306,19 @@ fn normal_of(mark: &Mark, u: &State) -> V {
     perp(unit(u[2])) * -mark.sense
 }
 
+/// Place, direction and curvature at an arc length (m); directions run on from chord to chord.
 fn at(cable: &CableSolution, s: f64) -> (V, f64, f64) {
     let n = &cable.nodes;
     let k = n.partition_point(|p| p.arc_length_m <= s).clamp(1, n.len() - 1);
     let (a, b) = (&n[k - 1], &n[k]);
-    let f = (s - a.arc_length_m) / (b.arc_length_m - a.arc_length_m);
+    let l = b.arc_length_m - a.arc_length_m;
+    let f = (s - a.arc_length_m) / l;
     let d = b.at() - a.at();
-    (a.at() + d * f, d.y.atan2(d.x), a.curvature_per_m + (b.curvature_per_m - a.curvature_per_m) * f)
+    // From the middle of the chord to s the cable turns by what its curvature says.
+    let (p, q) = (a.curvature_per_m, b.curvature_per_m);
+    let turn = l * (p * (f - 0.5) + (q - p) * (0.5 * f * f - 1.0 / 6.0));
+    let bulge = perp(d) * (-0.5 * f * (1.0 - f) * l * 0.5 * (p + q));
+    (a.at() + d * f + bulge, d.y.atan2(d.x) + turn, p + (q - p) * f)
 }
 
 /// The root near an answer, with `steps` of each shot.

@@ -62,43 +62,29 @@ impl Elastica {
     fn nodes(&self, problem: &Problem) -> Vec<Node> {
         let mut out: Vec<Node> = Vec::new();
         let area = problem.cable.area_m2();
-        let flat = (FLATNESS[0] * 2.0 * problem.radius).min(FLATNESS[1]);
         for piece in &self.pieces {
-            for (e, pair) in piece.nodes.windows(2).enumerate() {
-                let (a, b) = (&pair[0], &pair[1]);
-                // A sagitta of length times turn over 8.
-                let off = (b[ANGLE] - a[ANGLE]).abs() * (b[ARC] - a[ARC]) / 8.0;
-                let parts = (off / flat).sqrt().ceil().clamp(1.0, MOST_PARTS) as usize;
-                for i in 0..=parts {
-                    let f = i as f64 / parts as f64;
-                    let x = piece.grid[e] + f * (piece.grid[e + 1] - piece.grid[e]);
-                    let u = match i {
-                        0 => *a,
-                        i if i == parts => *b,
-                        _ => self.read(piece, x),
-                    };
-                    let t = tension(&u);
-                    let node = Node {
-                        arc_length_m: u[ARC],
-                        x_m: u[0],
-                        y_m: u[1],
-                        tension_n: t,
-                        strain: t / problem.axial_stiffness,
-                        stress_pa: t / area,
-                        curvature_per_m: self.thermal_stretch * u[MOMENT] / self.bending,
-                        force_n: force(&u).into(),
-                        ..Node::default()
-                    };
-                    match out.last_mut() {
-                        // Where two pieces meet the greater tension counts, and the force beyond.
-                        Some(l) if node.arc_length_m <= l.arc_length_m + 1e-12 * self.length => {
-                            if node.tension_n > l.tension_n {
-                                *l = node;
-                            }
-                            l.force_n = node.force_n;
+            for u in self.drawn(problem, piece) {
+                let t = tension(&u);
+                let node = Node {
+                    arc_length_m: u[ARC],
+                    x_m: u[0],
+                    y_m: u[1],
+                    tension_n: t,
+                    strain: t / problem.axial_stiffness,
+                    stress_pa: t / area,
+                    curvature_per_m: self.thermal_stretch * u[MOMENT] / self.bending,
+                    force_n: force(&u).into(),
+                    ..Node::default()
+                };
+                match out.last_mut() {
+                    // Where two pieces meet the greater tension counts, and the force beyond.
+                    Some(l) if node.arc_length_m <= l.arc_length_m + 1e-12 * self.length => {
+                        if node.tension_n > l.tension_n {
+                            *l = node;
                         }
-                        _ => out.push(node),
+                        l.force_n = node.force_n;
                     }
+                    _ => out.push(node),
                 }
             }
         }
@@ -188,10 +174,10 @@ impl Elastica {
             let mut samples = vec![ContactSample::new(a[ARC], force(a) - force(b))];
             if let (Joint::End(_), Some(p)) = (joint, stretch) {
                 // The point force comes after what lies.
-                samples = self.along(p);
+                samples = self.along(problem, p);
                 samples.push(ContactSample::new(a[ARC], force(a) - force(b)));
             } else if let Some(p) = stretch {
-                samples.extend(self.along(p));
+                samples.extend(self.along(problem, p));
                 if let (Some(last), Some(next)) = (p.nodes.last(), self.pieces.get(j + 2).and_then(|p| p.nodes.first()))
                 {
                     samples.push(ContactSample::new(last[ARC], force(last) - force(next)));
@@ -229,14 +215,29 @@ impl Elastica {
         out
     }
 
-    /// What a contact does to the elements of a piece that lies on it.
-    fn along(&self, piece: &Piece) -> Vec<ContactSample> {
+    /// A piece at as many places as it takes to draw it with straight lines.
+    fn drawn(&self, problem: &Problem, piece: &Piece) -> Vec<[f64; STATES]> {
+        let flat = (FLATNESS[0] * 2.0 * problem.radius).min(FLATNESS[1]);
+        let mut out: Vec<[f64; STATES]> = piece.nodes.first().copied().into_iter().collect();
+        for (pair, g) in piece.nodes.windows(2).zip(piece.grid.windows(2)) {
+            let (a, b) = (&pair[0], &pair[1]);
+            // A sagitta of length times turn over 8.
+            let off = (b[ANGLE] - a[ANGLE]).abs() * (b[ARC] - a[ARC]) / 8.0;
+            let parts = (off / flat).sqrt().ceil().clamp(1.0, MOST_PARTS) as usize;
+            out.extend((1..parts).map(|i| self.read(piece, g[0] + i as f64 / parts as f64 * (g[1] - g[0]))));
+            out.push(*b);
+        }
+        out
+    }
+
+    /// What a contact does to a piece that lies on it, from place to place.
+    fn along(&self, problem: &Problem, piece: &Piece) -> Vec<ContactSample> {
         let of = |pair: &[[f64; STATES]]| {
             let (a, b) = (&pair[0], &pair[1]);
             let on = force(a) - force(b) - self.body * (b[ARC] - a[ARC]);
             ContactSample::new(0.5 * (a[ARC] + b[ARC]), on)
         };
-        piece.nodes.windows(2).map(of).collect()
+        self.drawn(problem, piece).windows(2).map(of).collect()
     }
 
     /// Newton steps and the largest imbalance of the equations that is left.
