@@ -11,6 +11,9 @@ const MOST_PARTS: f64 = 400.0;
 /// Part of its diameter, and m, by which a line between two nodes may leave the cable.
 const FLATNESS: [f64; 2] = [0.01, 5e-4];
 
+/// Part of a piece that lies by which a node stands before its end.
+const AT_THE_END: f64 = 1e-6;
+
 /// Elements of all pieces together that are refined to.
 const MOST_ELEMENTS: usize = 4000;
 
@@ -225,6 +228,10 @@ impl Elastica {
             let off = (b[ANGLE] - a[ANGLE]).abs() * (b[ARC] - a[ARC]) / 8.0;
             let parts = (off / flat).sqrt().ceil().clamp(1.0, MOST_PARTS) as usize;
             out.extend((1..parts).map(|i| self.read(piece, g[0] + i as f64 / parts as f64 * (g[1] - g[0]))));
+            // What is spread along it and the point force at its end are told apart by a node just before that.
+            if piece.lies.is_some() && g[1] >= 1.0 {
+                out.push(self.read(piece, 1.0 - AT_THE_END));
+            }
             out.push(*b);
         }
         out
