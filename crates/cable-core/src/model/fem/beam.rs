@@ -451,7 +451,7 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// `angle` plus the whole turns that bring it nearest to `to`, rad.
-fn nearest_turn(angle: f64, to: f64) -> f64 {
+pub(super) fn nearest_turn(angle: f64, to: f64) -> f64 {
     angle + ((to - angle) / std::f64::consts::TAU).round() * std::f64::consts::TAU
 }
 

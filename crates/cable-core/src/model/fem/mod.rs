@@ -20,6 +20,7 @@ pub mod contact_step;
 #[cfg(test)]
 mod contact_tests;
 pub mod dynamics;
+mod elastica;
 pub mod element;
 mod estimate;
 mod foresee;
@@ -62,8 +63,10 @@ use crate::contact::outline::Placement;
 use crate::error::SolveError;
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Warning, WarningKind};
+use crate::scene::SupportKind;
+use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
 use crate::state::State;
+use elastica::Elastica;
 
 /// Part of the greatest tension by which the force on a support may change when a first lay is taken over. Less: coarse meshes lay themselves, in folds; more:
 /// bars too long for the ground, held by friction at both ends, keep a pull that nothing else asks for (25 bars on a robot's ground: 220 %).
@@ -88,6 +91,13 @@ enum Laid {
     Unknown,
 }
 
+/// Part of the tolerance that the error of a stiff cable's rest must stay below.
+const SAFETY: f64 = 0.5;
+
+/// Part of its length by which a stiff cable may lie elsewhere than where its mesh has it at rest. Less: coarse meshes are left as they are;
+/// more: another resting place is taken for the same.
+const STRAY: f64 = 0.05;
+
 /// Which part holds the present state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
@@ -111,6 +121,10 @@ pub struct FemModel {
     meshes: TwoMeshes,
     /// Where the outline of the robot was led.
     led: Option<Placement>,
+    /// The rest of a stiff cable in contact, until something moves.
+    bent: Option<CableSolution>,
+    /// What the mesh's rest of a stiff cable may be off by, in parts of the greatest tension, until something moves.
+    unbent: Option<f64>,
 }
 
 impl FemModel {
@@ -131,6 +145,8 @@ impl FemModel {
             meshes: TwoMeshes::default(),
             settings,
             led: problem.outline.as_ref().map(|o| o.placement),
+            bent: None,
+            unbent: None,
             problem,
         })
     }
@@ -205,9 +221,32 @@ impl FemModel {
         }
         let mut report = found?;
         report.warnings.extend(said);
+        if let Some(cost) = self.bend_on() {
+            report.cost = Cost { iterations: report.cost.iterations + cost.iterations, ..cost };
+            return Ok(report);
+        }
+        report.warnings.extend(self.bend_warning());
         self.compare_meshes(exact.as_ref());
         report.warnings.extend(self.coarse_warning());
         Ok(report)
+    }
+
+    /// What the mesh leaves out of the bend of a stiff cable; says so where that is more than was asked for.
+    fn bend_warning(&mut self) -> Option<Warning> {
+        if !(self.problem.bending_stiffness > 0.0) {
+            return None;
+        }
+        let (off, s) = self.dynamics.bending_error();
+        self.unbent = Some(off);
+        let limit = self.settings.tolerance;
+        if off <= limit {
+            return None;
+        }
+        let message = format!(
+            "{} bars show the bend of a stiff cable where it is led round something to {off:.1e} of the greatest tension only; {limit:.1e} was asked for: use more segments",
+            self.dynamics.even_bars
+        );
+        Some(Warning::new(WarningKind::Accuracy, &self.problem.cable.name, s, [off, limit], message))
     }
 
     /// Begins a first rest of a fine mesh at that of a coarse one (nested iteration): the way down takes as many steps as waves of slack
@@ -228,6 +267,48 @@ impl FemModel {
         if self.dynamics.take_over(&coarse.solution(), time_s, &self.dragged).is_err() {
             self.dynamics = before;
         }
+    }
+
+    /// The resting place of a stiff cable in contact as an elastica, from that of a flexible one; None where this finds none.
+    fn bend(&mut self) -> Option<StepReport> {
+        if !(self.problem.bending_stiffness > 0.0) {
+            return None;
+        }
+        let lay = least_sliding(&self.problem, self.settings, (&self.dragged, self.led)).ok()??;
+        let found = Elastica::from_flexible(&self.problem, self.dynamics.time(), &self.dragged, &lay.answer)?;
+        let cost = self.take_bent(found)?;
+        Some(StepReport { cost, warnings: lay.warnings })
+    }
+
+    /// The same from the rest that the mesh has found.
+    fn bend_on(&mut self) -> Option<Cost> {
+        if !(self.problem.bending_stiffness > 0.0) {
+            return None;
+        }
+        let answer = self.dynamics.solution();
+        let bar = self.dynamics.even();
+        let found = Elastica::from_mesh(&self.problem, self.dynamics.time(), &self.dragged, (&answer, bar))?;
+        let cost = self.take_bent(found)?;
+        // What the mesh found is followed, not left: places that differ by more are another rest.
+        let near = |n: &Node| {
+            let at = self.bent.as_ref().and_then(|b| State::of_nodes(&b.nodes, 0.0).position_at(n.arc_length_m));
+            at.is_some_and(|at| (at - n.at()).norm() <= STRAY * self.problem.length)
+        };
+        if !answer.nodes.iter().all(near) {
+            self.bent = None;
+            return None;
+        }
+        Some(cost)
+    }
+
+    fn take_bent(&mut self, mut found: Elastica) -> Option<Cost> {
+        if !found.stiffen(&self.problem) {
+            return None;
+        }
+        let estimate = found.refine(&self.problem, SAFETY * self.settings.tolerance)?;
+        let (iterations, residual_n) = found.cost();
+        self.bent = Some(CableSolution { error_estimate: Some(estimate), ..found.solution(&self.problem) });
+        Some(Cost { iterations, residual_n, ..Cost::default() })
     }
 
     /// The same without sliding nodes at corners and posts: every node stays with its material. For models that take
@@ -279,6 +360,7 @@ fn touches_nothing(problem: &Problem) -> bool {
         && problem.outline.is_none()
         && problem.floor_friction.is_none()
         && !problem.cable.self_contact
+        && !(problem.bending_stiffness > 0.0 && problem.supports.iter().any(|s| s.kind == SupportKind::Pulley))
 }
 
 impl Mechanics for FemModel {
@@ -290,6 +372,11 @@ impl Mechanics for FemModel {
         if touches_nothing(&self.problem) {
             self.ask(Part::Statics)?;
             return self.statics.settle(&self.dragged);
+        }
+        self.bent = None;
+        self.unbent = None;
+        if let Some(report) = self.bend() {
+            return Ok(report);
         }
         self.dynamics.work_left = rest::REST_WORK;
         let found = self.rest_in_touch();
@@ -306,6 +393,10 @@ impl Mechanics for FemModel {
             self.statics.advance(dt_s, &self.dragged)
         } else {
             self.ask(Part::Dynamics)?;
+            self.unbent = None;
+            if let Some(answer) = self.bent.take() {
+                self.dynamics.take_over(&answer, self.dynamics.time(), &self.dragged)?;
+            }
             let report = self.dynamics.advance(dt_s, inertia, &self.dragged)?;
             self.meshes.follow(&self.dynamics, dt_s, inertia, &self.dragged);
             Ok(report)
@@ -313,6 +404,9 @@ impl Mechanics for FemModel {
     }
 
     fn state(&self) -> State {
+        if let Some(answer) = &self.bent {
+            return State::of_nodes(&answer.nodes, self.dynamics.time());
+        }
         match self.present {
             Part::Statics => self.statics.state(),
             Part::Dynamics => self.dynamics.state(),
@@ -321,6 +415,8 @@ impl Mechanics for FemModel {
 
     fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
         self.meshes = TwoMeshes::default();
+        self.bent = None;
+        self.unbent = None;
         // Statics has no velocities: what moves is taken over by the part that can move.
         if self.present == Part::Statics && state.velocity_m_per_s.iter().any(|v| v.norm() > 0.0) {
             self.dynamics.adopt(state)?;
@@ -334,6 +430,8 @@ impl Mechanics for FemModel {
     }
 
     fn take_over(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+        self.bent = None;
+        self.unbent = None;
         match self.present {
             Part::Statics => self.adopt(&State::of_nodes(&answer.nodes, time_s)),
             Part::Dynamics => {
@@ -359,9 +457,15 @@ impl Mechanics for FemModel {
     }
 
     fn solution(&self) -> CableSolution {
+        if let Some(answer) = &self.bent {
+            return answer.clone();
+        }
         match self.present {
             Part::Statics => self.statics.solution(),
-            Part::Dynamics => CableSolution { error_estimate: self.meshes.estimate, ..self.dynamics.solution() },
+            Part::Dynamics => {
+                let estimates = [self.unbent, self.meshes.estimate].into_iter().flatten();
+                CableSolution { error_estimate: estimates.reduce(larger), ..self.dynamics.solution() }
+            }
         }
     }
 

@@ -36,6 +36,10 @@ const SLACK: f64 = 2.0;
 /// tangents would lie inside the obstacle.
 const WRONG_TURN: f64 = 0.02;
 
+/// √(EI/T), in even bars, beyond which a cable's bend is seen by the mesh. Less: chains jerk at corners, node by node; more: what a corner's bend
+/// costs is left out where it need not be.
+const BENT_OVER: f64 = 0.5;
+
 /// Half of the turn (rad) up to which a slack cable may leave a round with one node.
 const MOST_BEND: f64 = 1.0;
 
@@ -345,11 +349,8 @@ impl Dynamics {
         if (from_start < near && !self.removable(bar)) || (from_end < near && !self.removable(bar + 1)) {
             return None;
         }
-        if mesh.bending_stiffness > 0.0 {
-            let rounding = (mesh.bending_stiffness / if tension > 0.0 { tension } else { 1.0 }).sqrt();
-            if rounding > 0.5 * self.even() {
-                return None;
-            }
+        if self.bends_visibly(tension) {
+            return None;
         }
         let before = path.arcs[0] * mesh.end(bar, x).radius;
         let part = if path.length > 0.0 { (before + fraction * path.straight) / path.length } else { fraction };
@@ -364,6 +365,14 @@ impl Dynamics {
             exponent: 0.0,
         };
         Some((bar, arc_length, sliding))
+    }
+
+    /// Whether the bend of a cable under a tension (N) is longer than bars are: then nodes that move with their material show it, and a
+    /// sliding node, which carries no moment, would leave it out.
+    pub(super) fn bends_visibly(&self, tension: f64) -> bool {
+        let stiffness = self.mesh.bending_stiffness;
+        let least = self.bar_weight + stiffness / (self.problem.length * self.problem.length);
+        stiffness > 0.0 && (stiffness / if tension > least { tension } else { least }).sqrt() > BENT_OVER * self.even()
     }
 
     /// Takes out plain nodes in the way of a new sliding node.

@@ -86,11 +86,6 @@ impl Statics {
     /// # Errors
     /// `Unsupported` when the scene needs what it lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
-        let slides = problem.supports.iter().any(|s| s.kind == SupportKind::Pulley);
-        if problem.bending_stiffness > 0.0 && slides {
-            let feature = "bending stiffness over pulleys (set bending_stiffness_n_m2 = 0)".to_owned();
-            return Err(SolveError::Unsupported { model: Model::Fem, feature });
-        }
         let given = settings.segments.or(problem.cable.segments);
         let mut new = Self {
             segments: given.unwrap_or(FIRST_SEGMENTS),
@@ -220,6 +215,10 @@ impl Statics {
         let first = first.map_err(|f| self.error(&network, f))?;
         iterations += network.steps;
         if self.problem.bending_stiffness > 0.0 {
+            if self.problem.supports.iter().any(|s| s.kind == SupportKind::Pulley) {
+                let feature = "bending stiffness over pulleys".to_owned();
+                return Err(SolveError::Unsupported { model: Model::Fem, feature });
+            }
             return self.bend(network, time, hinted);
         }
         let mut estimate = estimate::relative_error(&mut network);

@@ -159,6 +159,9 @@ impl Dynamics {
             return;
         }
         for arc in self.arcs_told(told) {
+            if self.bends_visibly(told.tension(0.5 * (arc.material[0] + arc.material[1]))) {
+                continue;
+            }
             let round = arc.node.end.radius * arc.turn;
             let many = 0.5 * arc.turn > WIDE && 0.5 * round > SMALL * self.even();
             let bars = if many { (MARKS * round / self.even()).round() } else { 1.0 };

@@ -1,0 +1,259 @@
+//! Which contacts there are, and which of them are a point and which a stretch.
+
+use super::start::contact_at;
+use super::{Contact, Elastica, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, place, tangent};
+use crate::math::{Vec2, perp};
+use crate::problem::Problem;
+
+/// Changes of the set of contacts before it is given up. 1 to 4 are usual.
+const MAX_CHANGES: usize = 60;
+
+/// Part of the cable's radius by which a cable may lie in an obstacle: what elements are off between their ends.
+const DEEP: f64 = 1e-3;
+
+/// Elements of a new stretch of contact.
+const ELEMENTS: usize = 8;
+
+/// Length of a new stretch of contact in parts of its radius, or of the shorter free piece beside it. Newton's method finds the right one;
+/// far more than that turns over on the way.
+const NEW: f64 = 0.05;
+
+/// Length, in parts of the radius (of the cable for a line), below which a stretch of contact is a point.
+const POINT: f64 = 1e-4;
+
+/// Part by which a cable may be more bent than the round it touches, or pull at it in parts of the scene's forces.
+const SLACK: f64 = 1e-7;
+
+/// The same for the bend of what was found to be no stretch: at the very limit it is either, and would go to and fro.
+const POINT_SLACK: f64 = 1e-3;
+
+/// A piece cut at a node, both parts free.
+fn split(piece: &Piece, node: usize) -> (Piece, Piece) {
+    let cut = piece.grid[node];
+    let part = |nodes: &[[f64; STATES]], grid: &[f64], from: f64, to: f64| Piece {
+        lies: None,
+        grid: grid.iter().map(|g| (g - from) / (to - from)).collect(),
+        nodes: nodes
+            .iter()
+            .map(|u| {
+                let mut u = *u;
+                u[LENGTH] *= to - from;
+                u
+            })
+            .collect(),
+    };
+    (
+        part(&piece.nodes[..=node], &piece.grid[..=node], 0.0, cut),
+        part(&piece.nodes[node..], &piece.grid[node..], cut, 1.0),
+    )
+}
+
+impl Elastica {
+    /// Solves with the right set of contacts; false where none is found.
+    pub(super) fn settle(&mut self, problem: &Problem) -> bool {
+        // Stretches that were found to be points.
+        let mut points = Vec::new();
+        for _ in 0..MAX_CHANGES {
+            let saved = self.clone();
+            let solved = self.newton();
+            if let Some(k) = self.shrinking.take().or_else(|| self.vanishing(problem)) {
+                points.extend(self.pieces[k].lies);
+                if !solved {
+                    *self = Self { steps: self.steps, ..saved };
+                }
+                self.contract(k);
+            } else if !solved {
+                if !self.lift(&saved) {
+                    return false;
+                }
+            } else {
+                match self.exchange(problem, &points) {
+                    Some(true) => {}
+                    Some(false) => return true,
+                    None => return false,
+                }
+            }
+        }
+        false
+    }
+
+    /// Back to a guess, with less of what lies on lines between free pieces: a stretch becomes a point, a point is left out, as a cable that
+    /// bends round what is before and behind it is lifted off. Where that is wrong it will be met again. Returns whether there was any.
+    fn lift(&mut self, from: &Self) -> bool {
+        let line = |k: usize| from.contacts.get(k).is_some_and(|c| c.radius.is_none());
+        let inner = |k: usize| k > 0 && k + 1 < from.pieces.len();
+        let stretch = (0..from.pieces.len()).find(|&k| inner(k) && from.pieces[k].lies.is_some_and(line));
+        let point = from.joints.iter().position(|j| matches!(j, Joint::Touch(k) if line(*k)));
+        if stretch.is_none() && point.is_none() {
+            return false;
+        }
+        *self = Self { steps: self.steps, ..from.clone() };
+        if let Some(k) = stretch {
+            let Some(contact) = self.pieces[k].lies else { return false };
+            let middle = self.pieces[k].nodes.len() / 2;
+            let (before, after) = split(&self.pieces[k], middle);
+            self.pieces.splice(k..=k, [before, after]);
+            self.joints.insert(k, Joint::Touch(contact));
+            self.release(k + 1);
+            self.release(k - 1);
+        } else if let Some(j) = point {
+            self.release(j);
+        }
+        true
+    }
+
+    /// The first piece that lies on hardly anything.
+    fn vanishing(&self, problem: &Problem) -> Option<usize> {
+        let short = |p: &Piece| {
+            let c = p.lies.and_then(|k| self.contacts.get(k));
+            c.is_some_and(|c| p.nodes[0][LENGTH] < POINT * c.radius.unwrap_or(problem.radius))
+        };
+        let inner = |k: usize| k > 0 && k + 1 < self.pieces.len();
+        (0..self.pieces.len()).find(|&k| inner(k) && short(&self.pieces[k]))
+    }
+
+    /// A stretch becomes a point.
+    fn contract(&mut self, k: usize) {
+        let Some(contact) = self.pieces[k].lies else { return };
+        self.pieces.remove(k);
+        self.joints.remove(k);
+        self.joints[k - 1] = Joint::Touch(contact);
+    }
+
+    /// A point becomes a stretch.
+    fn stretch(&mut self, joint: usize, contact: usize) {
+        let (before, after) = (&self.pieces[joint], &self.pieces[joint + 1]);
+        let (Some(mut u), Some(v)) = (before.nodes.last().copied(), after.nodes.first().copied()) else { return };
+        let beside = before.nodes[0][LENGTH].min(v[LENGTH]);
+        let c = self.contacts[contact];
+        let room = c.radius.filter(|r| *r < beside).unwrap_or(beside);
+        let over = c.sense * (u[MOMENT] / self.bending - c.curvature()) * room;
+        let l = room * if over < NEW { over } else { NEW };
+        let t = tangent(&u);
+        let f = t * (0.5 * (force(&u) + force(&v)).dot(&t));
+        (u[4], u[5], u[LENGTH]) = (f.x, f.y, l);
+        u[MOMENT] = self.bending * c.curvature();
+        let start = u[6] - 0.5 * l;
+        let nodes = (0..=ELEMENTS).map(|i| {
+            let way = l * i as f64 / ELEMENTS as f64;
+            let mut node = u;
+            node[6] = start + way;
+            let off = t * (way - 0.5 * l);
+            (node[0], node[1]) = (u[0] + off.x, u[1] + off.y);
+            node[2] += c.curvature() * (way - 0.5 * l);
+            node
+        });
+        let piece = Piece {
+            lies: Some(contact),
+            nodes: nodes.collect(),
+            grid: (0..=ELEMENTS).map(|i| i as f64 / ELEMENTS as f64).collect(),
+        };
+        self.pieces.insert(joint + 1, piece);
+        self.joints[joint] = Joint::Begin(contact);
+        self.joints.insert(joint + 1, Joint::End(contact));
+    }
+
+    /// Force of the contact at a joint along its normal, N.
+    pub(super) fn push(&self, joint: usize) -> f64 {
+        let (Joint::Touch(k) | Joint::Begin(k) | Joint::End(k)) = self.joints[joint] else { return 0.0 };
+        let ends = (self.pieces[joint].nodes.last(), self.pieces[joint + 1].nodes.first());
+        let (Some(a), Some(b)) = ends else { return 0.0 };
+        let normal = perp(tangent(a)) * -self.contacts[k].sense;
+        -(force(b) - force(a)).dot(&normal)
+    }
+
+    /// Changes one contact that is not as it has to be; returns whether there was any, None where this can do nothing about it.
+    fn exchange(&mut self, problem: &Problem, points: &[usize]) -> Option<bool> {
+        let size = self.scale + self.bending / (self.length * self.length);
+        for j in 0..self.joints.len() {
+            let Joint::Touch(k) = self.joints[j] else { continue };
+            let c = self.contacts[k];
+            let u = *self.pieces[j].nodes.last()?;
+            let pulley = matches!(c.owner, Owner::Pulley(_));
+            if !pulley && self.push(j) < -SLACK * size {
+                self.release(j);
+                return Some(true);
+            }
+            if c.is_point() {
+                continue;
+            }
+            let bent = c.sense * (u[MOMENT] / self.bending - c.curvature());
+            let least = 1.0 / self.length;
+            let limit = if c.curvature().abs() > least { c.curvature().abs() } else { least };
+            let slack = if points.contains(&k) { POINT_SLACK } else { SLACK };
+            if bent > slack * limit {
+                self.stretch(j, k);
+                return Some(true);
+            }
+            if !pulley && let Some(other) = self.better(problem, &c, place(&u), tangent(&u)) {
+                self.contacts[k] = other;
+                return Some(true);
+            }
+        }
+        // A stretch that would have to pull, or that leaves its feature.
+        for k in 0..self.pieces.len() {
+            let Some(c) = self.pieces[k].lies.and_then(|c| self.contacts.get(c)) else { continue };
+            let pulley = matches!(c.owner, Owner::Pulley(_));
+            for u in &self.pieces[k].nodes {
+                let deeper = !pulley && self.better(problem, c, place(u), tangent(u)).is_some();
+                if deeper || (!pulley && self.pressure(c, u) * self.length < -SLACK * size) {
+                    return None;
+                }
+            }
+        }
+        self.meet(problem)
+    }
+
+    /// Takes a contact in one point away.
+    fn release(&mut self, joint: usize) {
+        let after = self.pieces.remove(joint + 1);
+        self.joints.remove(joint);
+        self.pieces[joint].lies = None;
+        let before = &mut self.pieces[joint];
+        let (a, b) = (before.nodes[0][LENGTH], after.nodes[0][LENGTH]);
+        let whole = a + b;
+        let mut grid: Vec<f64> = before.grid.iter().map(|g| g * a / whole).collect();
+        grid.extend(after.grid.iter().skip(1).map(|g| (a + g * b) / whole));
+        before.grid = grid;
+        before.nodes.extend(after.nodes.iter().skip(1));
+        for u in &mut before.nodes {
+            u[LENGTH] = whole;
+        }
+    }
+
+    /// What a place on a contact lies deeper in than in that contact.
+    fn better(&self, problem: &Problem, c: &Contact, x: Vec2, t: Vec2) -> Option<Contact> {
+        let deep = DEEP * problem.radius;
+        let gap = problem.world.signed_gap(x, 0.0).filter(|g| g.gap_m < -deep)?;
+        let other = contact_at(problem, &gap, x, t)?;
+        Some(Contact { mobilised: c.mobilised, slips: c.slips, sense: c.sense, ..other })
+    }
+
+    /// Looks for what free pieces run into; a contact in one point where they are deepest.
+    fn meet(&mut self, problem: &Problem) -> Option<bool> {
+        let deep = DEEP * problem.radius;
+        let mut worst: Option<(f64, usize, usize, crate::contact::Gap)> = None;
+        for (k, piece) in self.pieces.iter().enumerate().filter(|(_, p)| p.lies.is_none()) {
+            for i in 1..piece.nodes.len() - 1 {
+                let Some(gap) = problem.world.signed_gap(place(&piece.nodes[i]), 0.0) else { continue };
+                if gap.gap_m < -deep && worst.is_none_or(|w| gap.gap_m < w.0) {
+                    worst = Some((gap.gap_m, k, i, gap));
+                }
+            }
+        }
+        let Some((_, k, i, gap)) = worst else { return Some(false) };
+        let u = self.pieces[k].nodes[i];
+        let mut contact = contact_at(problem, &gap, place(&u), tangent(&u))?;
+        if gap.friction > 0.0 {
+            // What the cable did not lie on while it was flexible slips as its neighbours do.
+            let known = self.contacts.iter().find(|c| c.slips).map_or(0.0, |c| c.mobilised.signum());
+            contact.mobilised = gap.friction * known;
+            contact.slips = known != 0.0;
+        }
+        self.contacts.push(contact);
+        let (before, after) = split(&self.pieces[k], i);
+        self.pieces.splice(k..=k, [before, after]);
+        self.joints.insert(k, Joint::Touch(self.contacts.len() - 1));
+        Some(true)
+    }
+}

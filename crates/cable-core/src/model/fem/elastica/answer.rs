@@ -1,0 +1,255 @@
+//! From a solved elastica to an answer.
+
+use super::{ANGLE, ARC, Elastica, End, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, place, tangent, tension};
+use crate::math::{Vec2, larger, perp};
+use crate::problem::Problem;
+use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
+
+/// Most nodes of a piece in an answer.
+const MOST_PARTS: f64 = 400.0;
+
+/// Part of its diameter, and m, by which a line between two nodes may leave the cable.
+const FLATNESS: [f64; 2] = [0.01, 5e-4];
+
+/// Part of a piece that lies by which a node stands before its end.
+const AT_THE_END: f64 = 1e-6;
+
+/// Elements of all pieces together that are refined to.
+const MOST_ELEMENTS: usize = 4000;
+
+impl Elastica {
+    /// Halves the elements until the forces change by less than `tolerance` of the greatest; returns what error is left, in
+    /// parts of the greatest tension.
+    pub fn refine(&mut self, problem: &Problem, tolerance: f64) -> Option<f64> {
+        loop {
+            let mut fine = self.halved();
+            fine.regrid();
+            if !fine.settle(problem) {
+                return None;
+            }
+            let (mut change, mut largest): (f64, f64) = (0.0, 0.0);
+            if fine.joints == self.joints {
+                for (a, b) in self.pieces.iter().zip(&fine.pieces) {
+                    for (u, v) in [(a.nodes.first(), b.nodes.first()), (a.nodes.last(), b.nodes.last())] {
+                        let (Some(u), Some(v)) = (u, v) else { return None };
+                        change = larger(change, (force(u) - force(v)).norm());
+                        largest = larger(largest, force(v).norm());
+                    }
+                }
+            } else {
+                change = f64::INFINITY;
+            }
+            let estimate = if largest > 0.0 { change / (15.0 * largest) } else { change };
+            *self = fine;
+            let count: usize = self.pieces.iter().map(|p| p.nodes.len()).sum();
+            if estimate <= tolerance || count > MOST_ELEMENTS {
+                return estimate.is_finite().then_some(estimate);
+            }
+        }
+    }
+
+    /// The answer.
+    #[must_use]
+    pub fn solution(&self, problem: &Problem) -> CableSolution {
+        let nodes = self.nodes(problem);
+        CableSolution {
+            name: problem.cable.name.clone(),
+            supports: self.supports(problem, &nodes),
+            contacts: self.contact_reports(problem),
+            nodes,
+            assumptions: Assumptions { bending_stiffness_n_m2: self.bending, ..Assumptions::default() },
+            ..CableSolution::default()
+        }
+    }
+
+    fn nodes(&self, problem: &Problem) -> Vec<Node> {
+        let mut out: Vec<Node> = Vec::new();
+        let area = problem.cable.area_m2();
+        for piece in &self.pieces {
+            for u in self.drawn(problem, piece) {
+                let t = tension(&u);
+                let node = Node {
+                    arc_length_m: u[ARC],
+                    x_m: u[0],
+                    y_m: u[1],
+                    tension_n: t,
+                    strain: t / problem.axial_stiffness,
+                    stress_pa: t / area,
+                    curvature_per_m: self.thermal_stretch * u[MOMENT] / self.bending,
+                    force_n: force(&u).into(),
+                    ..Node::default()
+                };
+                match out.last_mut() {
+                    // Where two pieces meet the greater tension counts, and the force beyond.
+                    Some(l) if node.arc_length_m <= l.arc_length_m + 1e-12 * self.length => {
+                        if node.tension_n > l.tension_n {
+                            *l = node;
+                        }
+                        l.force_n = node.force_n;
+                    }
+                    _ => out.push(node),
+                }
+            }
+        }
+        if let Some(first) = out.first_mut() {
+            first.arc_length_m = 0.0;
+        }
+        if let Some(last) = out.last_mut() {
+            last.arc_length_m = self.length;
+        }
+        out
+    }
+
+    fn supports(&self, problem: &Problem, nodes: &[Node]) -> Vec<SupportReaction> {
+        let ends = |k: usize| {
+            (self.pieces.get(k).and_then(|p| p.nodes.last()), self.pieces.get(k + 1).and_then(|p| p.nodes.first()))
+        };
+        let last = problem.supports.len() - 1;
+        let mut out = Vec::with_capacity(last + 1);
+        for (k, s) in problem.supports.iter().enumerate() {
+            let mut r = SupportReaction { name: s.name.clone(), ..SupportReaction::default() };
+            let mut put = |f: Vec2, x: Vec2, arc: f64| {
+                (r.reaction_x_n, r.reaction_y_n, r.x_m, r.y_m, r.arc_length_m) = (f.x, f.y, x.x, x.y, arc);
+            };
+            if k == 0 || k == last {
+                let which = usize::from(k > 0);
+                let (u, node) = if which == 0 {
+                    (self.pieces.first().and_then(|p| p.nodes.first()), nodes.first())
+                } else {
+                    (self.pieces.last().and_then(|p| p.nodes.last()), nodes.last())
+                };
+                if let (Some(u), Some(node)) = (u, node) {
+                    let f = match self.ends[which] {
+                        End::Held(..) => force(u) * if which == 0 { 1.0 } else { -1.0 },
+                        End::Loaded(load) => -load,
+                    };
+                    put(f, node.at(), node.arc_length_m);
+                }
+            } else {
+                for (j, joint) in self.joints.iter().enumerate() {
+                    let (Some(a), Some(b)) = ends(j) else { continue };
+                    match *joint {
+                        Joint::Held(of, ..) if of == k => put(force(b) - force(a), place(b), b[ARC]),
+                        Joint::Load(Some(of), _, load) if of == k => put(-load, place(b), b[ARC]),
+                        _ => {}
+                    }
+                }
+            }
+            let pulley = |c: usize| self.contacts.get(c).is_some_and(|c| c.owner == Owner::Pulley(k));
+            let begins = self.joints.iter().position(|j| matches!(j, Joint::Touch(c) | Joint::Begin(c) if pulley(*c)));
+            let stops = self.joints.iter().rposition(|j| matches!(j, Joint::Touch(c) | Joint::End(c) if pulley(*c)));
+            if let (Some(i), Some(j)) = (begins, stops)
+                && let ((Some(a), _), (_, Some(b))) = (ends(i), ends(j))
+            {
+                let on = self.body * (b[ARC] - a[ARC]);
+                let at = s.at.unwrap_or_default();
+                put(force(b) - force(a) + on, at, 0.5 * (a[ARC] + b[ARC]));
+                (r.tension_before_n, r.tension_after_n) = (Some(tension(a)), Some(tension(b)));
+            }
+            out.push(r);
+        }
+        out
+    }
+
+    fn contact_reports(&self, problem: &Problem) -> Vec<ContactReport> {
+        let mut out = Vec::new();
+        for (j, joint) in self.joints.iter().enumerate() {
+            let (k, stretch) = match *joint {
+                Joint::Touch(k) => (k, None),
+                Joint::Begin(k) => (k, self.pieces.get(j + 1)),
+                // The stretch that the cable begins with.
+                Joint::End(k) if j == 0 => (k, self.pieces.first()),
+                _ => continue,
+            };
+            let Some(c) = self.contacts.get(k) else { continue };
+            let Owner::Obstacle(obstacle) = c.owner else { continue };
+            let (Some(a), Some(b)) = (self.pieces[j].nodes.last(), self.pieces[j + 1].nodes.first()) else { continue };
+            let mut r = ContactReport {
+                obstacle: problem.world.obstacle_name(obstacle).to_owned(),
+                normal_n: self.push(j),
+                tension_before_n: tension(a),
+                tension_after_n: tension(b),
+                begins_m: a[ARC],
+                ends_m: b[ARC],
+                state: if c.slips || c.mobilised == 0.0 { ContactState::Slip } else { ContactState::Stick },
+                ..ContactReport::default()
+            };
+            let mut samples = vec![ContactSample::new(a[ARC], force(a) - force(b))];
+            if let (Joint::End(_), Some(p)) = (joint, stretch) {
+                // The point force comes after what lies.
+                samples = self.along(problem, p);
+                samples.push(ContactSample::new(a[ARC], force(a) - force(b)));
+            } else if let Some(p) = stretch {
+                samples.extend(self.along(problem, p));
+                if let (Some(last), Some(next)) = (p.nodes.last(), self.pieces.get(j + 2).and_then(|p| p.nodes.first()))
+                {
+                    samples.push(ContactSample::new(last[ARC], force(last) - force(next)));
+                }
+            }
+            r.set_samples(samples);
+            let (mut middle, mut normal) = (place(a), perp(tangent(a)) * -c.sense);
+            if let Some(p) = stretch {
+                let l = p.nodes[0][LENGTH];
+                for (e, pair) in p.nodes.windows(2).enumerate() {
+                    let half = self.read(p, 0.5 * (p.grid[e] + p.grid[e + 1]));
+                    let pressed =
+                        self.pressure(c, &pair[0]) + 4.0 * self.pressure(c, &half) + self.pressure(c, &pair[1]);
+                    r.normal_n += pressed * l * (p.grid[e + 1] - p.grid[e]) / 6.0;
+                }
+                let (Some(first), Some(last)) = (p.nodes.first(), p.nodes.last()) else { continue };
+                if let (Joint::Begin(_), Some(next)) = (joint, self.pieces.get(j + 2).and_then(|p| p.nodes.first())) {
+                    r.normal_n += self.push(j + 1);
+                    r.tension_after_n = tension(next);
+                } else if *joint == Joint::Begin(k) {
+                    r.tension_after_n = tension(last);
+                } else {
+                    r.tension_before_n = tension(first);
+                }
+                (r.begins_m, r.ends_m) = (first[ARC], last[ARC]);
+                r.turn_deg = (last[ANGLE] - first[ANGLE]).to_degrees();
+                let u = self.read(p, 0.5);
+                (middle, normal) = (place(&u), perp(tangent(&u)) * -c.sense);
+            }
+            r.friction_n = c.mobilised * r.normal_n;
+            r.arc_length_m = 0.5 * (r.begins_m + r.ends_m);
+            (r.x_m, r.y_m, r.normal) = (middle.x, middle.y, [normal.x, normal.y]);
+            out.push(r);
+        }
+        out
+    }
+
+    /// A piece at as many places as it takes to draw it with straight lines.
+    fn drawn(&self, problem: &Problem, piece: &Piece) -> Vec<[f64; STATES]> {
+        let flat = (FLATNESS[0] * 2.0 * problem.radius).min(FLATNESS[1]);
+        let mut out: Vec<[f64; STATES]> = piece.nodes.first().copied().into_iter().collect();
+        for (pair, g) in piece.nodes.windows(2).zip(piece.grid.windows(2)) {
+            let (a, b) = (&pair[0], &pair[1]);
+            // A sagitta of length times turn over 8.
+            let off = (b[ANGLE] - a[ANGLE]).abs() * (b[ARC] - a[ARC]) / 8.0;
+            let parts = (off / flat).sqrt().ceil().clamp(1.0, MOST_PARTS) as usize;
+            out.extend((1..parts).map(|i| self.read(piece, g[0] + i as f64 / parts as f64 * (g[1] - g[0]))));
+            // What is spread along it and the point force at its end are told apart by a node just before that.
+            if piece.lies.is_some() && g[1] >= 1.0 {
+                out.push(self.read(piece, 1.0 - AT_THE_END));
+            }
+            out.push(*b);
+        }
+        out
+    }
+
+    /// What a contact does to a piece that lies on it, from place to place.
+    fn along(&self, problem: &Problem, piece: &Piece) -> Vec<ContactSample> {
+        let of = |pair: &[[f64; STATES]]| {
+            let (a, b) = (&pair[0], &pair[1]);
+            let on = force(a) - force(b) - self.body * (b[ARC] - a[ARC]);
+            ContactSample::new(0.5 * (a[ARC] + b[ARC]), on)
+        };
+        self.drawn(problem, piece).windows(2).map(of).collect()
+    }
+
+    /// Newton steps and the largest imbalance of the equations that is left.
+    #[must_use]
+    pub fn cost(&self) -> (usize, f64) {
+        (self.steps, self.residual)
+    }
+}
