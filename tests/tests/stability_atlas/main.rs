@@ -76,6 +76,9 @@ impl Verdict {
             SolveError::Buried { .. } => "inside an obstacle",
             SolveError::TimeStep { .. } => "time step",
             SolveError::StepFailed { .. } => "step failed",
+            SolveError::TooMuchWork { .. } => "too much work",
+            SolveError::Neither { .. } => "no model",
+            SolveError::Unsound { .. } => "not sound",
         })
     }
 }

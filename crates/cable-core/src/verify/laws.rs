@@ -507,6 +507,10 @@ impl Subject<'_> {
         let limit = COMPRESSION * self.scale;
         for k in 0..self.answer.nodes.len() - 1 {
             let [a, b] = [&self.answer.nodes[k], &self.answer.nodes[k + 1]];
+            // Nodes of one material point have no way between them.
+            if b.arc_length_m - a.arc_length_m <= MATERIAL * self.cable.length_m {
+                continue;
+            }
             let way = (b.at() - a.at()).try_normalize(0.0).unwrap_or_default();
             let pulls = self.forces_at_end(k).map(|end| (a.force() + end).dot(&way) * 0.5);
             let pushes = -larger(pulls[0], pulls[1]);

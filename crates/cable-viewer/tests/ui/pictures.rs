@@ -120,6 +120,7 @@ fn contacts_dark() {
         cost: Cost::default(),
         energy: cable_core::solution::Energy::default(),
         robot: None,
+        verification: None,
     }));
     compare("contacts_dark", state, Theme::Dark);
 }

@@ -286,6 +286,7 @@ impl Dynamics {
             self.set_pace(dt_s);
             self.watch();
         } else {
+            total = self.polish(total, dragged);
             self.wake();
         }
         Ok(self.report(total, halved, h))

@@ -113,7 +113,7 @@ impl Dynamics {
 
     /// Brings what is left unbalanced at a rest, which adds up along the cable, down to what can be told from rounding: on from where
     /// the cable lies, or not at all where that does not come to an end.
-    fn polish(&mut self, found: Done, dragged: &[Option<Vec2>]) -> Done {
+    pub(super) fn polish(&mut self, found: Done, dragged: &[Option<Vec2>]) -> Done {
         let kept = (self.saved.clone(), self.can_restore);
         let exact = self.task.tolerance;
         let to = self.motion.time;
