@@ -124,11 +124,14 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
         // What lies on an edge up to its end presses on the edge alone; the barrier's width would tilt the last bar.
         let beyond = d.problem.world.signed_gap(x[next], 3.0 * d.contacts.barrier.reach);
         let along = ground.feature % 2 == 0 && beyond.is_some_and(|g| g.feature == ground.feature);
-        let lift = ground.normal * if along { force.dot(&ground.normal) } else { 0.0 };
+        // No more than what presses: beyond that the support is pulled off the edge.
+        let pressed = larger(grounded.dot(&ground.normal), 0.0);
+        let tilt = force.dot(&ground.normal) * sign;
+        let lift = if along { if tilt < pressed { tilt } else { pressed } } else { 0.0 };
         // The next node presses more by what the tilt lifts here, and rubs more: with less normal force this half rubs less.
-        let pressed = grounded.dot(&ground.normal);
-        let kept = if pressed > 0.0 { (1.0 - lift.dot(&ground.normal) * sign / pressed).clamp(0.0, 1.0) } else { 1.0 };
+        let kept = if pressed > 0.0 { (1.0 - lift / pressed).clamp(0.0, 1.0) } else { 1.0 };
         let rubbed = (grounded - ground.normal * pressed) * (1.0 - kept);
+        let lift = ground.normal * (lift * sign);
         let (grounded, force) = (grounded - rubbed, force - rubbed * sign);
         lain[usize::from(sign < 0.0)] = Some(Lain {
             node,
