@@ -226,7 +226,10 @@ impl Simulation {
 
     /// What the laws say of the present answers.
     fn sound(&self) -> Result<(), SolveError> {
-        match self.verification.worst() {
+        // Masses and springs are a quick look and a second opinion, asked for by name: their coarse meshes are told, not refused. A
+        // cable that broke at rest is where it was when it broke.
+        let told = self.asked == Model::MassSpring || self.cables.iter().any(|c| !c.breaks().is_empty());
+        match self.verification.worst().filter(|_| !told) {
             None => Ok(()),
             Some(finding) => Err(SolveError::Unsound { model: self.model, finding: Box::new(finding.clone()) }),
         }

@@ -47,3 +47,13 @@ pub const SAME_NORMAL: f64 = 1e-6;
 
 /// Strain whose force no residual of a cable without load is smaller than: a cable without weight has no other scale.
 pub const LEAST_STRAIN: f64 = 1e-7;
+
+/// What contacts and supports as they are reported may leave of the whole, of the greatest force. `fem` lags the normal forces that
+/// friction uses by a round, and its contacts at corners are read off bars beside them: up to 1.8e-3 was seen. That every piece is
+/// balanced by what touches it is asked to [`BALANCE`]. Smaller: slow draws under beams by `fem` are refused; larger: a report that
+/// leaves a contact out passes.
+pub const REPORTED: f64 = 2e-3;
+
+/// Distance along a bar that touches by which its ends may be elsewhere, of the diameter: a sagging cable leaves a round a little before
+/// or after the straight bar that stands for it.
+pub const ASIDE: f64 = 1e-2;

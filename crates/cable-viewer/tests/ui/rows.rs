@@ -128,7 +128,7 @@ fn s04_the_cable_stays_out_of_the_robot() {
     // Whatever it is warned of, the largest tension stays in sight.
     let warnings = answer(&harness).warnings.len();
     let read = harness.get_by_label("Max tension").rect();
-    assert!(warnings >= 3 && read.bottom() < 500.0, "{warnings} warnings, {read}");
+    assert!(warnings >= 2 && read.bottom() < 500.0, "{warnings} warnings, {read}");
 }
 
 /// How deep a point is in a polygon, m; 0 outside.
