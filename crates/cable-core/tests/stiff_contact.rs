@@ -269,6 +269,7 @@ impl Shooting<'_> {
         out.extend([a.x, a.y, last]);
     }
 
+    #[allow(clippy::type_complexity)]
     fn newton(&self, mut y: Vec<f64>) -> Result<(Vec<V>, Vec<f64>, Vec<f64>), String> {
         let n = y.len();
         let sizes: Vec<f64> = y.iter().map(|v| 1e-7 * (v.abs() + 1e-2)).collect();
@@ -442,11 +443,11 @@ fn over_a_post(r: &mut Random, k: usize) -> Case {
     let round = |a: f64| V::new(a.sin(), a.cos()) * center_radius;
     let a = round(-left) - V::new(left.cos(), left.sin()) * spans[0];
     let b = round(right) + V::new(right.cos(), -right.sin()) * spans[1];
-    let w = if k % 4 == 0 { 1e-5 } else { pull * r.log(1e-3, 0.1) };
+    let w = if k.is_multiple_of(4) { 1e-5 } else { pull * r.log(1e-3, 0.1) };
     let way = spans[0] + center_radius * (left + right) + spans[1];
     let ea = 1e6;
     // Held at both ends its tension comes of its stretch.
-    let length = if k % 2 == 0 { way } else { way * (1.0 - pull / ea) };
+    let length = if k.is_multiple_of(2) { way } else { way * (1.0 - pull / ea) };
     let clamp = k % 5 == 4;
     let angle = left.to_degrees() + r.between(-20.0, 20.0);
     let mut text = cable_text(length, ei, ea, w, friction, diameter);
@@ -501,7 +502,7 @@ fn over_corners(r: &mut Random, k: usize) -> Case {
     let spans = [r.between(1.5, 3.0), r.between(1.5, 3.0)];
     let a = corners[0] + V::new(-left.cos(), -left.sin()) * spans[0] + V::new(0.0, diameter);
     let force = V::new(right.cos(), -right.sin()) * pull;
-    let w = if k % 4 == 0 { 1e-5 } else { pull * r.log(1e-3, 0.1) };
+    let w = if k.is_multiple_of(4) { 1e-5 } else { pull * r.log(1e-3, 0.1) };
     let b = corners[1] + force / pull * spans[1];
     let lift = V::new(0.0, 2.0 * diameter);
     let length = spans[0] + width + spans[1];

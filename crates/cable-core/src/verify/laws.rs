@@ -431,8 +431,8 @@ impl Subject<'_> {
     /// Forces of supports on the cable that are not dead loads, N.
     fn support_forces(&self) -> Vec2 {
         let held = self.cable.supports.iter().zip(&self.answer.supports).filter(|(s, _)| {
-            !matches!(s.kind, SupportKind::Load | SupportKind::Free)
-                && !(s.kind == SupportKind::Pulley && s.radius_m.is_some_and(|r| r > 0.0))
+            let led = s.kind == SupportKind::Pulley && s.radius_m.is_some_and(|r| r > 0.0);
+            !(matches!(s.kind, SupportKind::Load | SupportKind::Free) || led)
                 && s.release_s.is_none_or(|t| self.time_s < t - 1e-9)
         });
         held.map(|(_, r)| -Vec2::new(r.reaction_x_n, r.reaction_y_n)).sum()

@@ -55,6 +55,7 @@ enum Point {
 
 /// What friction does at a pulley.
 #[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant)] // A handful of them in a scene.
 enum Law {
     /// Of a wheel.
     Wheel(WheelFriction),
@@ -78,6 +79,9 @@ enum Unknown {
     Material(usize),
     Both,
 }
+
+/// Entries that a pulley changes: two indices and a force each.
+type Touched = Vec<(usize, usize, Vec2)>;
 
 impl Rubbing {
     fn unknowns(&self) -> &'static [Unknown] {
@@ -364,7 +368,7 @@ impl Network {
     }
 
     /// The whole derivative of the equations, and the slopes of the forces by each unknown.
-    fn tangent(&self, pulleys: &[usize], e: &Equations) -> (DMatrix<f64>, Vec<Vec<(usize, usize, Vec2)>>) {
+    fn tangent(&self, pulleys: &[usize], e: &Equations) -> (DMatrix<f64>, Vec<Touched>) {
         let mut matrix = e.own.clone();
         let mut slopes = Vec::with_capacity(matrix.ncols());
         for (&k, r) in pulleys.iter().zip(&self.rubbing) {

@@ -83,6 +83,9 @@ enum Owner {
     Pulley(usize),
 }
 
+/// Residuals of some states, appended.
+type Residual<'a> = dyn Fn(&[[f64; STATES]], &mut Vec<f64>) + 'a;
+
 impl Contact {
     /// Gap (m) and outward normal at a place.
     fn gap(&self, x: Vec2) -> (f64, Vec2) {
@@ -357,7 +360,7 @@ impl Elastica {
         let last = self.pieces.len() - 1;
         let (mut first, mut column) = (Vec::new(), 0);
         // The equations of one place as a function of one or two nodes, with their slopes.
-        let mut add = |column: usize, near: &[[f64; STATES]], of: &dyn Fn(&[[f64; STATES]], &mut Vec<f64>)| {
+        let mut add = |column: usize, near: &[[f64; STATES]], of: &Residual<'_>| {
             let row = right.len();
             of(near, &mut right);
             let rows = right.len() - row;

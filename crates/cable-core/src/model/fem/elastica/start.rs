@@ -52,7 +52,7 @@ pub(super) fn contact_at(problem: &Problem, gap: &Gap, x: Vec2, t: Vec2) -> Opti
         mobilised: 0.0,
         slips: false,
     };
-    if gap.feature % 2 == 0 {
+    if gap.feature.is_multiple_of(2) {
         return Some(line);
     }
     let (center, radius) = round_of(problem.world.geometry(), gap.feature, 0.0, 0.0)?;
