@@ -132,9 +132,12 @@ fn a_table_cut_short_is_read_up_to_its_last_whole_line() {
     assert!(error.contains("line 3"), "{error}");
 }
 
+/// Places and bytes of writes.
+type Writes = Vec<(usize, Vec<u8>)>;
+
 /// Each write of a run: which table, and what.
 #[derive(Clone, Default)]
-struct Journal(std::rc::Rc<std::cell::RefCell<Vec<(usize, Vec<u8>)>>>);
+struct Journal(std::rc::Rc<std::cell::RefCell<Writes>>);
 struct Journalled(usize, Journal);
 impl Write for Journalled {
     fn write(&mut self, data: &[u8]) -> std::io::Result<usize> {
