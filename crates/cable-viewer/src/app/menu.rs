@@ -2,7 +2,7 @@
 
 use cable_core::scene::catalog;
 use cable_core::verify::Verification;
-use egui::{Button, KeyboardShortcut, MenuBar, Ui};
+use egui::{Button, Color32, KeyboardShortcut, MenuBar, Sense, Ui, Vec2};
 
 use super::keys;
 use crate::colour::{ColourMap, Quantity};
@@ -227,15 +227,24 @@ fn scenes(ui: &mut Ui, commands: &mut Vec<Command>) {
     }
 }
 
+/// Diameter of the light that shows the verdict, points.
+const LIGHT_SIZE: f32 = 9.0;
+/// Colour of the light where every law was asked and none is broken: green, told from red by its brightness too.
+const SOUND: Color32 = Color32::from_rgb(64, 170, 110);
+
 /// Whether the answer obeys the laws of mechanics, as they were checked independently of the model that gave it.
 fn light(ui: &mut Ui, verification: &Verification) {
-    let (colour, text) = match (verification.is_sound(), verification.not_checked.is_empty()) {
-        (true, true) => (ui.visuals().text_color(), "● checked: sound"),
-        (true, false) => (ui.visuals().weak_text_color(), "◐ checked in part: sound"),
-        (false, _) => (ui.visuals().error_fg_color, "■ NOT SOUND"),
+    let visuals = ui.visuals();
+    let (lamp, colour, text) = match (verification.is_sound(), verification.not_checked.is_empty()) {
+        (true, true) => (SOUND, visuals.text_color(), "checked: sound"),
+        (true, false) => (visuals.weak_text_color(), visuals.weak_text_color(), "checked in part: sound"),
+        (false, _) => (visuals.error_fg_color, visuals.error_fg_color, "NOT SOUND"),
     };
     let laws: Vec<&str> = verification.checked.iter().map(|l| l.name()).collect();
     let help = format!("{}. Checked: {}", translate::shown(&verification.summary()), laws.join(", "));
+    // The font has no signs for this: the light is painted, and the words say the same without its colour.
+    let (place, _) = ui.allocate_exact_size(Vec2::splat(LIGHT_SIZE), Sense::hover());
+    ui.painter().circle_filled(place.center(), 0.5 * LIGHT_SIZE, lamp);
     ui.colored_label(colour, text).on_hover_text(help);
 }
 

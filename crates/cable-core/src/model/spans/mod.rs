@@ -157,10 +157,16 @@ impl SpansModel {
             let (low, high) = all().map(|t| t[k]).fold((laid[k], laid[k]), |(a, b), t| (smaller(a, t), larger(b, t)));
             format!("{low:.2} to {high:.2} N")
         };
-        let figure = |of: Option<[f64; 3]>| of.map_or("no balance".to_owned(), |t| format!("{:.2} N", t[2]));
+        let most = laid[2];
+        // A range of one history says nothing about the others.
+        if drawn.iter().all(Option::is_none) {
+            return format!(
+                ". The greatest tension is {most:.2} N as laid; by how much another history would change it was not found"
+            );
+        }
+        let figure = |of: Option<[f64; 3]>| of.map_or("no balance was found".to_owned(), |t| format!("{:.2} N", t[2]));
         format!(
-            ". Greatest tension: {:.2} N as laid; {} with all friction against a cable drawn towards its start, {} towards its end. So it has {} at its start and {} at its end, by its history",
-            laid[2],
+            ". The greatest tension is {most:.2} N as laid; with friction fully mobilised towards the start: {}, towards the end: {}. Among the histories that were found the tension is {} at the start and {} at the end",
             figure(drawn[0]),
             figure(drawn[1]),
             range(0),
