@@ -2,7 +2,8 @@
 //! Runge–Kutta steps, its own geometry, dense Newton with differences. Scenes are drawn at random.
 //!
 //! A guess is read off the answer, and with it which contacts are a point; the shooting then finds the root of its own equations near it,
-//! and what makes it right is asked of the root: contacts push, a point contact is less bent than its round, nothing lies inside.
+//! and it is asked that its contacts push. That the root is the only one, that a point contact is less bent than its round and that nothing
+//! lies inside is not asked here.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

@@ -268,7 +268,7 @@ fn fem_is_within_what_it_says_of_spans() {
 }
 
 /// The same for many more scenes: `cargo test --locked -p cable-core --test wheels_random -- --ignored --nocapture`. What remains (5 of 285: four by
-/// less than 1e-7, one by 1.4e-2 where `spans` took another step) is less than 2 %.
+/// 1.3e-7 at most, one by 1.4e-2 for a cause that was not found) is less than 2 %.
 #[test]
 #[ignore = "300 histories, some seconds"]
 fn fem_is_within_what_it_says_of_spans_in_300_scenes() {
