@@ -127,6 +127,6 @@ fn other_histories_are_said_of_every_rest_that_rubs() {
     for (scene, model) in scenes {
         let answer = settle(&scene, model).unwrap();
         let said = answer.warnings.iter().find(|w| w.kind == WarningKind::NotUnique).expect("said");
-        assert!(said.message.contains("towards its end"), "{model}: {}", said.message);
+        assert!(said.message.contains("towards the end: "), "{model}: {}", said.message);
     }
 }
