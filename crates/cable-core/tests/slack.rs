@@ -104,8 +104,7 @@ fn faults(s: &Scene) -> Result<Vec<String>, String> {
             found.contacts.iter().map(|c| c.force_n[axis]).sum::<f64>() - found.supports.iter().map(felt).sum::<f64>()
         };
         let off = sum(0).hypot(sum(1) - weight);
-        // 1e-6 is asked for; of 756 scenes one was 2.2e-6 off.
-        if !(off <= 1e-5 * weight.max(top)) {
+        if !(off <= 1e-6 * weight.max(top)) {
             out.push(format!("{off:.2e} N of {weight:.2e} N are not carried"));
         }
     }
@@ -154,8 +153,54 @@ fn slack_lies() {
     campaign(0..56);
 }
 
+/// Material that hangs plumb over a height, by bisection of h = s + w s²/2EA.
+fn plumb(height: f64, weight: f64, stiffness: f64) -> f64 {
+    let (mut low, mut high) = (0.0, height);
+    for _ in 0..200 {
+        let s = 0.5 * (low + high);
+        if s + weight * s * s / (2.0 * stiffness) < height { low = s } else { high = s }
+    }
+    low
+}
+
 #[test]
-#[ignore = "takes minutes: cargo test -p cable-core --test slack -- --ignored --nocapture"]
-fn slack_lies_in_seven_hundred_scenes() {
-    campaign(1000..1700);
+fn the_ends_of_a_loose_cable_feel_what_hangs_on_them() {
+    for seed in 0..200 {
+        // Floors alone.
+        let (_, s) = scene(7 * seed);
+        let c = &s.cables[0];
+        let w = c.linear_density_kg_per_m * GRAVITY;
+        let [a, b] = [0, 1].map(|k| c.supports[k].at_m.unwrap());
+        let hangs = [a[1], b[1]].map(|y| plumb(y - 0.5 * c.diameter_m, w, c.axial_stiffness_n));
+        let loose = hangs[0] + hangs[1] + b[0] - a[0] <= c.length_m;
+        let answer = Simulation::new(s.clone(), Model::Auto).unwrap().settle().unwrap();
+        let found = &answer.cables[0];
+        for (r, s) in found.supports.iter().zip(hangs).filter(|_| loose) {
+            let off = r.reaction_x_n.hypot(r.reaction_y_n + w * s);
+            assert!(off <= 1e-10 * w * c.length_m, "{seed}: {off:e} N of {:e} N", w * s);
+        }
+        let carried: f64 = found.contacts.iter().map(|c| c.force_n[1]).sum();
+        let felt: f64 = found.supports.iter().map(|r| -r.reaction_y_n).sum();
+        assert!((carried + felt - w * c.length_m).abs() <= 1e-9 * w * c.length_m, "{seed}");
+    }
+}
+
+#[test]
+fn a_slack_cable_over_a_beam_stays_on_it() {
+    let (_, mut s) = scene(0);
+    let c = &mut s.cables[0];
+    (c.length_m, c.diameter_m, c.friction) = (30.0, 0.028, 0.4);
+    c.supports = vec![Support::fixed("a", [0.0, 2.0]), Support::fixed("b", [10.0, 2.0])];
+    c.route_m = vec![[0.0, 2.0], [5.0, 2.5], [10.0, 2.0]];
+    let points_m = vec![[4.0, 0.5], [6.0, 0.5], [6.0, 1.0], [4.0, 1.0]];
+    s.obstacles.push(Obstacle { name: "beam".to_owned(), shape: Shape::Polygon { points_m }, friction: Some(0.4) });
+    let answer = Simulation::new(s, Model::Auto).unwrap().settle().unwrap();
+    let over = answer.cables[0].nodes.iter().filter(|n| (4.1..5.9).contains(&n.x_m));
+    assert!(over.clone().count() > 0 && over.clone().all(|n| n.y_m > 1.0), "{:?}", over.collect::<Vec<_>>());
+}
+
+#[test]
+#[ignore = "half a minute: cargo test -p cable-core --test slack -- --ignored --nocapture"]
+fn slack_lies_in_three_thousand_scenes() {
+    campaign(1000..4000);
 }

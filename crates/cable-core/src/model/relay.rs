@@ -191,7 +191,7 @@ impl Mechanics for Relay {
     }
 
     fn reason(&self) -> Option<&str> {
-        self.reason.as_deref()
+        self.reason.as_deref().or_else(|| self.fem.is_none().then(|| self.spans.reason()).flatten())
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {

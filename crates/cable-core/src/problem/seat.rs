@@ -16,6 +16,8 @@ use crate::solution::{Warning, WarningKind};
 const ON: f64 = 1e-3;
 /// The same in parts of the coordinates, for cables much thinner than their scene.
 const ROUNDING: f64 = 1e-9;
+/// The same of a place that is clear: some roundings.
+const CLEAR: f64 = 1e-14;
 /// Times a support is pushed out of one obstacle and into the next; in a corner of 30° twenty leave a millionth of the way.
 const MOST_PUSHES: usize = 40;
 
@@ -55,9 +57,8 @@ pub(super) fn seat(problem: &mut Problem) -> Result<(), SceneError> {
             return Err(SceneError { path: path(), fault: SceneFault::Shape { what }, at: None });
         };
         let by = out - at;
-        if by.norm() <= most {
-            continue;
-        }
+        // Rounding is put right without a word.
+        let told = by.norm() > most;
         let message = format!(
             "Support `{}` is on the surface of `{obstacle}`: the cable's centre line is held {:.4} m off it, at ({:.4} m, {:.4} m)",
             support.name,
@@ -68,7 +69,7 @@ pub(super) fn seat(problem: &mut Problem) -> Result<(), SceneError> {
         let s = support.arc_length.unwrap_or(0.0);
         let value = [by.norm(), problem.radius];
         let note = Warning::new(WarningKind::InitialPenetration, &problem.cable.name, s, value, message);
-        problem.notes.push(note);
+        problem.notes.extend(told.then_some(note));
         if let Some(support) = problem.supports.get_mut(k) {
             support.at = Some(out);
             if let Some(motion) = &mut support.motion {
@@ -95,7 +96,7 @@ fn pushed_out(problem: &Problem, from: Vec2) -> Option<Vec2> {
     let mut at = from;
     for _ in 0..MOST_PUSHES {
         match problem.world.signed_gap(at, f64::INFINITY) {
-            Some(gap) if gap.gap_m < -ROUNDING * (problem.radius + at.amax()) => at -= gap.normal * gap.gap_m,
+            Some(gap) if gap.gap_m < -CLEAR * (problem.radius + at.amax()) => at -= gap.normal * gap.gap_m,
             _ => return Some(at),
         }
     }

@@ -169,6 +169,16 @@ impl Curve {
         matches!(self.pieces[..], [Piece { form: Form::Arc { .. }, .. }])
     }
 
+    /// The numbers of its pieces in the first turn.
+    pub fn pieces(&self) -> impl Iterator<Item = i64> + use<> {
+        0..self.pieces.len() as i64
+    }
+
+    /// Whether it comes back to where it starts.
+    pub fn is_closed(&self) -> bool {
+        self.period.is_some()
+    }
+
     /// The piece of a number that counts on over the turns.
     pub fn piece(&self, i: i64) -> &Piece {
         // Without a division in the first turn.

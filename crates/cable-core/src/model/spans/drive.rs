@@ -7,6 +7,7 @@ use super::gaps;
 use super::history::Mode;
 use super::instant::{Instant, Layout, place_ends};
 use super::lay;
+use super::loose::{self, Loose};
 use super::loss;
 use super::newton::{self, Solved, Work};
 use super::pass;
@@ -231,6 +232,11 @@ impl Network {
         self.strands.clear();
         let mut came = Vec::new();
         for k in 0..layout.strands.len() {
+            if let Some(strand) = loose::lay(layout, k, (&self.course, &begin)).filter(|_| taut.is_none()) {
+                self.strands.push(strand);
+                came.push(Vec::new());
+                continue;
+            }
             let laid = lay::lay(layout, k, (&self.course, &begin), seen.ring);
             let no_way = Trouble::NoSeat { s: layout.strands[k].material[0], at: goal.places[0] };
             let (strand, way) = laid.ok_or(no_way)?;
@@ -357,6 +363,9 @@ impl Network {
         came: Option<&[Vec2]>,
         ([start, moved], work): ([&mut Strand; 2], &mut Work),
     ) -> Result<Taken, Trouble> {
+        if self.strands[k].loose.is_some() {
+            return self.lie(layout, k);
+        }
         let world = &layout.problem.world;
         let strand = &mut self.strands[k];
         place_ends(layout, k, strand, &self.course, &self.instant)?;
@@ -425,6 +434,24 @@ impl Network {
             }
         }
         Ok(taken)
+    }
+
+    /// A strand that lies loose goes on lying so while its supports stay where they are: as they move they draw its folds over
+    /// the ground, and what that takes is not known here.
+    fn lie(&mut self, layout: &Layout, k: usize) -> Result<Taken, Trouble> {
+        let found = loose::lay(layout, k, (&self.course, &self.instant));
+        let strand = &mut self.strands[k];
+        let Some(found) = found.filter(|f| f.ties == strand.ties) else {
+            return Err(Trouble::Drawn { s: strand.from });
+        };
+        *strand = found;
+        Ok(Taken::default())
+    }
+
+    /// Material that lies loose and the length of ground it lies on, m; None where none does.
+    pub fn loose(&self) -> Option<[f64; 2]> {
+        let lies = self.strands.iter().filter_map(|s| s.loose.as_ref()).map(Loose::lies);
+        lies.reduce(|[a, b], [c, d]| [a + c, b + d])
     }
 
     /// To an instant that no balance near by leads to: the cable slides under a drag that is taken away as it comes to rest.

@@ -102,7 +102,7 @@ fn along(
         (false, true) => from + w / stretch,
         _ => from + (to - from) * w / total,
     };
-    let mut strand = Strand { from, to, ties, contacts: Vec::new(), forces: Vec::new() };
+    let mut strand = Strand { from, to, ties, contacts: Vec::new(), forces: Vec::new(), loose: None };
     let slack = total / ((to - from) * course.law.thermal) - 1.0;
     let tension = if loose(0) || loose(1) {
         drawn
@@ -230,7 +230,14 @@ fn bare(part: &Part, instant: &Instant) -> Option<Strand> {
     let [a, b] = part.supports;
     let [from, to] = part.material;
     let ties = [Tie::Held(instant.places[a?]), Tie::Held(instant.places[b?])];
-    part.pulleys.is_empty().then(|| Strand { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()] })
+    part.pulleys.is_empty().then(|| Strand {
+        from,
+        to,
+        ties,
+        contacts: Vec::new(),
+        forces: vec![Vec2::zeros()],
+        loose: None,
+    })
 }
 
 /// Material as it lies along the taut string, strained by `stretch`, from the end that is held; from the first contact as

@@ -24,6 +24,7 @@ mod instant;
 mod landing;
 mod law;
 mod lay;
+mod loose;
 mod loss;
 mod newton;
 mod pass;
@@ -225,6 +226,7 @@ fn said(layout: &Layout, trouble: Trouble) -> SolveError {
         Trouble::NoSeat { s, at } => {
             unsupported(format!("an obstacle is met {s:.3} m along the cable at ({:.3} m, {:.3} m)", at.x, at.y))
         }
+        Trouble::Drawn { s } => unsupported(format!("the cable lies loose and is drawn along, from {s:.3} m")),
         Trouble::Unsound { what, s, at } => {
             unsupported(format!("{what} {s:.3} m along it at ({:.3} m, {:.3} m)", at.x, at.y))
         }
@@ -236,6 +238,11 @@ impl Mechanics for SpansModel {
         Model::Spans
     }
 
+    fn reason(&self) -> Option<&str> {
+        let loose = self.network.as_ref().is_some_and(|n| n.loose().is_some());
+        loose.then_some("the cable lies loose: what hangs is plumb, what lies has no tension")
+    }
+
     fn settle(&mut self) -> Result<StepReport, SolveError> {
         if self.layout.strands.is_empty() {
             return Err(unsupported("no support holds the cable: two loads or loose ends, and obstacles at most"));
@@ -243,6 +250,8 @@ impl Mechanics for SpansModel {
         let mut instant = Instant::default();
         self.layout.instant(&self.dragged, self.time_s, &mut instant);
         let mut work = std::mem::take(&mut self.work);
+        // What lies loose remembers nothing.
+        self.network = self.network.take().filter(|n| n.loose().is_none());
         let found = match &mut self.network {
             Some(network) => network.travel(&self.layout, &instant, 1.0, &mut work).map_err(|t| (t.0, None)),
             None => Network::rest(&self.layout, &instant, &mut work).map(|(network, taken)| {
@@ -253,7 +262,9 @@ impl Mechanics for SpansModel {
         let stable = self.network.as_ref().is_none_or(|n| n.stable(&mut work));
         let slides = found.is_err() && self.network.is_none() && self.hangs_by_friction();
         let needed = if slides { Network::friction_needed(&self.layout, &instant, &mut work) } else { None };
-        let range = if found.is_ok() && self.rubs() { self.histories(&mut work) } else { String::new() };
+        let loose = self.network.as_ref().and_then(Network::loose);
+        let range =
+            if found.is_ok() && loose.is_none() && self.rubs() { self.histories(&mut work) } else { String::new() };
         self.work = work;
         if let Some(part) = needed {
             return Err(slides_away(part));
@@ -269,7 +280,13 @@ impl Mechanics for SpansModel {
             report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
         }
         let mobilised = self.layout.problem.cable.friction_mobilised;
-        if self.rubs() && mobilised.is_default() {
+        if let Some([material, ground]) = loose {
+            let name = &self.layout.problem.cable.name;
+            let message = format!(
+                "The cable lies loose: {material:.3} m of it on {ground:.3} m of ground, without tension, and its ends feel only what hangs on them. How it is folded there is not known: it is shown spread evenly. Laid otherwise it may lie elsewhere, and pull by what friction holds"
+            );
+            report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message));
+        } else if self.rubs() && mobilised.is_default() {
             let message = if taken.eased {
                 "With friction the resting place depends on how the cable was laid. None was found by laying it along its way: this is the one it finds without friction, which friction then holds"
             } else {

@@ -51,10 +51,21 @@ pub(super) fn report(layout: &Layout, network: &Network) -> Report {
         for t in strand.contacts.iter().flat_map(|c| c.ends.t) {
             greatest = if t > greatest { t } else { greatest };
         }
+        if let Some(loose) = &strand.loose {
+            greatest = [0, 1].iter().map(|side| loose.end_force((course, strand), *side).norm()).fold(greatest, larger);
+        }
     }
     let mut nodes = Nodes::new(&layout.problem, greatest);
     let mut contacts = Vec::new();
     for strand in &network.strands {
+        if let Some(loose) = &strand.loose {
+            let found = loose.report((course, strand), &mut nodes, layout.problem.radius);
+            contacts.extend(found.map(|(obstacle, report)| {
+                let obstacle = layout.problem.world.obstacle_name(obstacle).to_owned();
+                ContactReport { obstacle, ..report }
+            }));
+            continue;
+        }
         for k in 0..strand.spans() {
             if strand.has_span(k) {
                 seek::shapes(strand, course, k, |s0, at, shape| nodes.catenary(s0, at, shape));
@@ -279,6 +290,9 @@ pub(super) fn unbalanced(layout: &Layout, network: &Network) -> (Vec2, f64) {
                 add(end_force(network, strand, side) * if side == 0 { -1.0 } else { 1.0 });
             }
         }
+        if let Some(loose) = &strand.loose {
+            add(loose.held(course));
+        }
         for (j, c) in strand.contacts.iter().enumerate() {
             add(match (c.wheel, c.weight) {
                 (Some(_), _) => -wheel_force(course, strand, j).0,
@@ -369,6 +383,9 @@ fn parts(c: &Contact, friction: f64, stretches: &[Stretch]) -> Vec<ContactPart> 
 /// Force of the cable at an end of a strand (pulling along growing arc length), N.
 fn end_force(network: &Network, strand: &Strand, side: usize) -> Vec2 {
     let course = &network.course;
+    if let Some(loose) = &strand.loose {
+        return loose.end_force((course, strand), side);
+    }
     let (k, s) = if side == 0 { (0, strand.from) } else { (strand.contacts.len(), strand.to) };
     match strand.ties[side] {
         Tie::Held(_) | Tie::Hangs(_) => strand.force(course, k, s),

@@ -8,6 +8,7 @@
 use super::curve::{Curve, Home};
 use super::history::{Ends, Held, History, Mode};
 use super::law::{Law, Track};
+use super::loose::Loose;
 use super::wedge::Kink;
 use crate::catenary::{Chain, PointForce};
 use crate::math::Vec2;
@@ -85,6 +86,8 @@ pub(super) struct Strand {
     pub contacts: Vec<Contact>,
     /// G of each span, N; one more than contacts.
     pub forces: Vec<Vec2>,
+    /// How it lies without tension, where it does: it has neither contacts nor spans then.
+    pub loose: Option<Loose>,
 }
 
 impl Default for Tie {
@@ -108,11 +111,13 @@ impl Clone for Contact {
 
 impl Clone for Strand {
     fn clone(&self) -> Self {
-        Self { contacts: self.contacts.clone(), forces: self.forces.clone(), ..*self }
+        let (contacts, forces) = (self.contacts.clone(), self.forces.clone());
+        Self { contacts, forces, loose: self.loose.clone(), ..*self }
     }
 
     fn clone_from(&mut self, other: &Self) {
         (self.from, self.to, self.ties) = (other.from, other.to, other.ties);
+        self.loose.clone_from(&other.loose);
         self.contacts.clone_from(&other.contacts);
         self.forces.clone_from(&other.forces);
     }
@@ -181,6 +186,9 @@ impl Strand {
 
     /// Whether span k is there.
     pub fn has_span(&self, k: usize) -> bool {
+        if self.loose.is_some() {
+            return false;
+        }
         let none = k.checked_sub(1).and_then(|j| self.contacts.get(j)).is_some_and(|c| c.pocket || c.joined);
         !none && (k > 0 || self.ties[0].has_span()) && (k < self.contacts.len() || self.ties[1].has_span())
     }

@@ -131,7 +131,7 @@ fn laid(
         Some(k) => Tie::Held(instant.places[k]),
         None => Tie::Hangs(layout.end_force(instant, part.material[side])),
     });
-    let mut strand = Strand { from, to, ties, contacts: Vec::new(), forces: Vec::new() };
+    let mut strand = Strand { from, to, ties, contacts: Vec::new(), forces: Vec::new(), loose: None };
     let last = stations.len() - 1;
     let mut k = 0;
     while k <= last {

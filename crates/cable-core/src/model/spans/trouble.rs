@@ -21,6 +21,8 @@ pub(super) enum Trouble {
     LoadLies { s: f64 },
     /// An obstacle is met where this model cannot lay the cable.
     NoSeat { s: f64, at: Vec2 },
+    /// What lies loose is drawn along: material point, m.
+    Drawn { s: f64 },
     /// The answer does not pass the check that does not use the solver.
     Unsound { what: &'static str, s: f64, at: Vec2 },
 }
