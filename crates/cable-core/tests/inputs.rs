@@ -4,10 +4,9 @@
 #![allow(clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use cable_core::error::SceneFault;
-use cable_core::model::{self, Model, Settings};
-use cable_core::problem::problems;
+use cable_core::model::Model;
 use cable_core::scene::scaled::Similarity;
-use cable_core::solution::{CableSolution, Warning, WarningKind};
+use cable_core::solution::{CableSolution, Solution, WarningKind};
 use cable_core::{Error, Scene, Simulation, Vec2};
 
 const SOLVERS: [Model; 3] = [Model::Auto, Model::Fem, Model::MassSpring];
@@ -16,24 +15,8 @@ fn scene(text: &str) -> Scene {
     Scene::from_toml(text).unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
-/// What a model itself finds, before its answer is judged by the laws.
-struct Rest {
-    cables: Vec<CableSolution>,
-    warnings: Vec<Warning>,
-}
-
-impl Rest {
-    fn greatest_n(&self) -> f64 {
-        self.cables.iter().flat_map(|c| &c.nodes).fold(f64::NEG_INFINITY, |m, n| m.max(n.tension_n))
-    }
-}
-
-fn rest(scene: &Scene, model: Model) -> Result<Rest, Error> {
-    let problem = problems(scene)?.remove(0);
-    let mut mechanics = model::build(model, problem.clone(), Settings::default())?;
-    let mut warnings = mechanics.settle()?.warnings;
-    warnings.extend(problem.notes.iter().cloned());
-    Ok(Rest { cables: vec![mechanics.solution()], warnings })
+fn rest(scene: &Scene, model: Model) -> Result<Solution, Error> {
+    Ok(Simulation::new(scene.clone(), model)?.settle()?)
 }
 
 /// A cable of rubber between supports.
@@ -108,7 +91,7 @@ fn a_weightless_cable_is_slack_or_straight_and_says_so() {
             );
             let s = rest(&scene(&(text.replace("[[cables]]", &format!("{still}[[cables]]")))), model).unwrap();
             assert!(is_finite(&s.cables));
-            let greatest = s.greatest_n();
+            let greatest = s.max_tension().tension_n;
             let stretch = scene(&text).cables[0].axial_stiffness_n * (10.0 / length - 1.0);
             if tension {
                 assert!((greatest / stretch - 1.0).abs() < 1e-9, "{model}: {greatest} N for {stretch} N");
@@ -193,11 +176,11 @@ fn copies(l: f64, f: f64) -> Vec<(&'static str, Scene)> {
 }
 
 /// The greatest difference of a force on a support, of the greatest tension.
-fn apart(a: &Rest, b: &Rest, force: f64) -> f64 {
+fn apart(a: &Solution, b: &Solution, force: f64) -> f64 {
     let pairs = a.cables[0].supports.iter().zip(&b.cables[0].supports);
     let off =
         pairs.flat_map(|(a, b)| [b.reaction_x_n / force - a.reaction_x_n, b.reaction_y_n / force - a.reaction_y_n]);
-    off.fold(0.0, |m: f64, d| m.max(d.abs())) / a.greatest_n()
+    off.fold(0.0, |m: f64, d| m.max(d.abs())) / a.max_tension().tension_n
 }
 
 #[test]
@@ -223,7 +206,7 @@ fn one_millimetre_of_cable_five_metres_up_weighs_what_it_weighs() {
     let text = cable(0.001, 1e-5, "", &format!("{}, {}", fixed("a", 0.0, 5.0), fixed("b", 0.0009, 5.0)));
     for model in SOLVERS {
         let s = rest(&scene(&text), model).unwrap();
-        assert!((s.greatest_n() / 0.009174 - 1.0).abs() < 1e-3, "{model}: {}", s.greatest_n());
+        assert!((s.max_tension().tension_n / 0.009174 - 1.0).abs() < 1e-3, "{model}: {}", s.max_tension().tension_n);
     }
 }
 
@@ -321,11 +304,12 @@ fn extreme_values_are_answered_or_refused_in_words() {
                 }
                 Err(e) => {
                     assert_clean(&e.to_string());
+                    println!("seed {seed}, {model}: {e}\n{text}");
                     refused += 1;
                 }
             }
         }
     }
     println!("{answered} answered, {refused} refused");
-    assert!(answered > 50, "{answered} answered, {refused} refused");
+    assert!(answered > 10 * refused, "{answered} answered, {refused} refused");
 }
