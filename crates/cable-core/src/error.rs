@@ -268,13 +268,13 @@ pub enum SolveError {
         /// What pulls it away.
         why: String,
     },
-    /// Two models were asked, and neither has an answer or a clear reason.
-    #[error("{second}; before that, {first}")]
+    /// Two models were asked, and neither has an answer or a reason that is one for every model.
+    #[error("{told}; and {other}")]
     Neither {
-        /// The model asked first.
-        first: Box<Self>,
-        /// The model asked then.
-        second: Box<Self>,
+        /// What says more of the scene.
+        told: Box<Self>,
+        /// What the other model said.
+        other: Box<Self>,
     },
     /// The model cannot answer this kind of scene.
     #[error("{model} cannot answer this scene: {feature}")]
@@ -352,11 +352,16 @@ impl SolveError {
     #[must_use]
     pub fn clearer(first: Self, second: Self) -> Self {
         let certain = |e: &Self| matches!(e, Self::NoRestingPlace { .. } | Self::Buried { .. });
+        // That a search ended says nothing of the scene.
+        let ended = |e: &Self| matches!(e, Self::NotConverged { .. } | Self::TooMuchWork { .. });
         match (certain(&first), certain(&second)) {
             (_, true) => second,
             (true, false) => first,
             (false, false) if first == second => second,
-            (false, false) => Self::Neither { first: Box::new(first), second: Box::new(second) },
+            (false, false) => {
+                let (told, other) = if ended(&first) { (second, first) } else { (first, second) };
+                Self::Neither { told: Box::new(told), other: Box::new(other) }
+            }
         }
     }
 }

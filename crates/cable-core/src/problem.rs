@@ -15,7 +15,7 @@ use crate::contact::outline::Outline;
 use crate::error::SceneError;
 use crate::math::{Vec2, vec2};
 use crate::scene::scaled::Similarity;
-use crate::scene::{Cable, Motion, PulleySide, Scene, SupportKind, View};
+use crate::scene::{Cable, FrictionMobilised, Motion, PulleySide, Scene, SupportKind, View};
 use crate::solution::{CableSolution, Warning};
 
 /// One cable, resolved and validated.
@@ -247,7 +247,7 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
         View::Plan => (Vec2::zeros(), Some((cable.friction, weight_per_m))),
     };
     let last = cable.supports.len().saturating_sub(1);
-    let supports = cable
+    let supports: Vec<SupportPoint> = cable
         .supports
         .iter()
         .enumerate()
@@ -285,6 +285,15 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
         .map(|l| PointLoad { arc_length: l.arc_length_m, force: force_series(l.force_n, &l.times_s, &l.forces_n) })
         .collect();
     loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
+    let world = World::new(&scene.obstacles, cable.friction, radius);
+    let mut cable = cable.clone();
+    let rubs = world.geometry().bodies().iter().any(|b| b.friction > 0.0)
+        || supports.iter().any(|s| s.friction > 0.0)
+        || floor_friction.is_some_and(|(friction, _)| friction > 0.0);
+    // Of friction that is not there nothing can be mobilised.
+    if !rubs {
+        cable.friction_mobilised = FrictionMobilised::default();
+    }
     Ok(Problem {
         cable_index,
         length: cable.length_m,
@@ -297,13 +306,13 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
         radius,
         supports,
         loads,
-        world: Arc::new(World::new(&scene.obstacles, cable.friction, radius)),
+        world: Arc::new(world),
         outline: scene.robot_outline(cable.friction).map(Arc::new),
         floor_friction,
         route: cable.route_m.iter().map(|p| vec2(*p)).collect(),
         notes: Vec::new(),
         similar: None,
-        cable: cable.clone(),
+        cable,
     })
 }
 

@@ -82,8 +82,8 @@ impl Similar {
                 place: self.place_back(&place),
                 cause: self.told(cause),
             },
-            SolveError::Neither { first, second } => {
-                SolveError::Neither { first: Box::new(self.error(*first)), second: Box::new(self.error(*second)) }
+            SolveError::Neither { told, other } => {
+                SolveError::Neither { told: Box::new(self.error(*told)), other: Box::new(self.error(*other)) }
             }
             SolveError::TooMuchWork { model, iterations, segments, residual_n, place } => {
                 SolveError::TooMuchWork { model, iterations, segments, residual_n, place: self.place_back(&place) }

@@ -19,14 +19,14 @@ use crate::solution::{CableSolution, ContactReport, Node, SupportReaction};
 pub(super) struct Subject<'a> {
     surroundings: &'a Surroundings,
     scene: &'a Scene,
-    cable: &'a Cable,
-    answer: &'a CableSolution,
+    pub cable: &'a Cable,
+    pub answer: &'a CableSolution,
     /// Time, s.
-    time_s: f64,
+    pub time_s: f64,
     /// Weight and wind, N/m.
     body: Vec2,
     /// 1 + αΔT.
-    thermal: f64,
+    pub thermal: f64,
     /// Greatest of the forces, N: what a residual is compared with.
     scale: f64,
 }
@@ -71,10 +71,12 @@ pub(super) fn check(found: &mut Verification, mut subject: Subject<'_>, depth: D
     if answer.assumptions.inertia || !answer.breaks.is_empty() {
         found.not_checked.push(format!("balance and length of `{}`: it moves", cable.name));
     } else {
+        subject.supports(found);
         subject.balance(found, &near);
         subject.length(found, &near);
         if answer.assumptions.bending_stiffness_n_m2 > 0.0 {
             subject.moments(found);
+            subject.stability(found, &near);
         } else {
             subject.compression(found);
         }
@@ -107,7 +109,7 @@ impl<'a> Subject<'a> {
 }
 
 impl Subject<'_> {
-    fn finding(&self, law: Law, node: usize, (value, limit): (f64, f64)) -> Finding {
+    pub fn finding(&self, law: Law, node: usize, (value, limit): (f64, f64)) -> Finding {
         let n = self.answer.nodes.get(node).or(self.answer.nodes.last()).copied().unwrap_or_default();
         Finding {
             law,
@@ -200,7 +202,7 @@ impl Subject<'_> {
     }
 
     /// Wheels that lead the cable now: centre, radius of the centre line and friction, with the name.
-    fn wheels(&self) -> impl Iterator<Item = (Vec2, f64, f64, &SupportReaction)> {
+    pub fn wheels(&self) -> impl Iterator<Item = (Vec2, f64, f64, &SupportReaction)> {
         let radius = 0.5 * self.cable.diameter_m;
         self.cable.supports.iter().zip(&self.answer.supports).filter_map(move |(s, r)| {
             let wheel = s.radius_m.filter(|r| *r > 0.0 && s.kind == SupportKind::Pulley)?;
@@ -232,7 +234,7 @@ impl Subject<'_> {
     }
 
     /// Distance of the centre line from a surface at which they may push, m.
-    fn reach(&self) -> f64 {
+    pub fn reach(&self) -> f64 {
         0.5 * self.cable.diameter_m + larger(REACH_M, REACH_DIAMETERS * self.cable.diameter_m)
     }
 
@@ -529,7 +531,7 @@ impl Subject<'_> {
     }
 
     /// Internal force at the end of the piece from node k, N: as what touches it is spread along it, and as it is all at the end.
-    fn forces_at_end(&self, k: usize) -> [Vec2; 2] {
+    pub fn forces_at_end(&self, k: usize) -> [Vec2; 2] {
         let [a, b] = [&self.answer.nodes[k], &self.answer.nodes[k + 1]];
         [b.force(), a.force() - self.body * (b.arc_length_m - a.arc_length_m)]
     }
@@ -582,14 +584,14 @@ impl Subject<'_> {
     }
 
     /// Whether something touches a piece or a neighbour.
-    fn touches(&self, near: &[Vec<Near>], k: usize) -> bool {
+    pub fn touches(&self, near: &[Vec<Near>], k: usize) -> bool {
         let around = near.get(k.saturating_sub(1)..(k + 2).min(near.len())).unwrap_or_default();
         let led = || [k, k + 1].iter().any(|&k| self.wheels().any(|w| self.is_led(k, w.0, w.1)));
         around.iter().any(|n| !n.is_empty()) || led()
     }
 
     /// Whether a node is on a wheel.
-    fn is_led(&self, node: usize, center: Vec2, radius: f64) -> bool {
+    pub fn is_led(&self, node: usize, center: Vec2, radius: f64) -> bool {
         let reach = self.reach() - 0.5 * self.cable.diameter_m;
         (self.answer.nodes[node].at() - center).norm() <= radius + reach
     }

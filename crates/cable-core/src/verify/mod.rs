@@ -5,6 +5,7 @@
 //! | `mod.rs` | [`Verifier`], [`Verification`]: which laws were asked, what was found |
 //! | `laws.rs` | one function a law, over one cable |
 //! | `surroundings.rs` | obstacles as the checker sees them: distances by brute force, normals, friction |
+//! | `stability.rs` | whether a stiff cable holds what it pushes with; whether it is where it is held |
 //! | `tolerance.rs` | every tolerance, each with its reason |
 //!
 //! Nothing here is shared with the models or with their contact geometry: a fault there cannot hide itself here. What is asked:
@@ -13,6 +14,7 @@
 //! material with its strain; a flexible cable does not push; nothing lies inside anything.
 
 mod laws;
+mod stability;
 mod surroundings;
 #[cfg(test)]
 mod tests;
@@ -37,8 +39,12 @@ pub enum Law {
     Balance,
     /// The stiff cable's moments balance its shear.
     Moment,
+    /// The cable is where its supports hold it.
+    Support,
     /// A flexible cable does not push.
     Compression,
+    /// A stiff cable pushes with no more than what would bend it aside.
+    Stability,
     /// Tension is strain times axial stiffness, and the nodes' way is the stretched material.
     Length,
     /// Nothing is inside an obstacle.
@@ -60,7 +66,9 @@ impl Law {
             Self::Material => "material from end to end",
             Self::Balance => "balance of forces",
             Self::Moment => "balance of moments",
+            Self::Support => "held by its supports",
             Self::Compression => "no compression",
+            Self::Stability => "stability",
             Self::Length => "length",
             Self::Penetration => "nothing inside obstacles",
             Self::Push => "contacts push",
@@ -77,7 +85,9 @@ impl Law {
             Self::Material => "the nodes do not run from one end of the material to the other",
             Self::Balance => "forces are out of balance",
             Self::Moment => "moments are out of balance",
+            Self::Support => "the cable is not where it is held",
             Self::Compression => "a flexible cable pushes",
+            Self::Stability => "a stiff cable pushes with more than would bend it aside",
             Self::Length => "the way of the nodes is not the length of the cable",
             Self::Penetration => "the cable lies inside an obstacle",
             Self::Push => "a contact pulls",
@@ -91,9 +101,9 @@ impl Law {
     pub fn unit(self) -> &'static str {
         match self {
             Self::Finite => "",
-            Self::Material | Self::Length | Self::Penetration | Self::SelfContact => "m",
+            Self::Material | Self::Support | Self::Length | Self::Penetration | Self::SelfContact => "m",
             Self::Moment => "N m",
-            Self::Balance | Self::Compression | Self::Push | Self::Friction => "N",
+            Self::Balance | Self::Compression | Self::Stability | Self::Push | Self::Friction => "N",
         }
     }
 }

@@ -192,3 +192,23 @@ fn a_free_end_that_is_pulled_is_seen() {
         SPAN.replace(r#"{ name = "b", kind = "fixed", at_m = [10.0, 6.0] }"#, r#"{ name = "b", kind = "free" }"#);
     sees(Law::Balance, &free, |c| c.nodes.iter_mut().for_each(|n| n.force_n[1] += 0.1));
 }
+
+#[test]
+fn a_cable_that_is_not_where_it_is_held_is_seen() {
+    sees(Law::Support, SPAN, |c| c.supports[1].x_m += 1e-3);
+    sees(Law::Support, OVER_POST, |c| c.nodes.iter_mut().for_each(|n| n.y_m += 1e-3));
+    let eye = SPAN.replace(r#"{ name = "b""#, r#"{ name = "eye", kind = "pulley", at_m = [5.0, 4.0] }, { name = "b""#);
+    sees(Law::Support, &eye, |c| (c.supports[1].x_m, c.supports[1].y_m) = (0.0, 0.0));
+}
+
+#[test]
+fn a_stiff_cable_that_would_bend_aside_is_seen() {
+    // Straight between points nearer than it is long, EI/L² some hundredths of a newton.
+    let stiff = SPAN.replace("length_m = 11.0", "length_m = 11.0\nbending_stiffness_n_m2 = 5.0");
+    sees(Law::Stability, &stiff, |c| {
+        for n in &mut c.nodes {
+            (n.x_m, n.y_m) = (n.arc_length_m * 10.0 / 11.0, 5.0 + n.arc_length_m / 11.0);
+            (n.force_n, n.tension_n, n.curvature_per_m) = ([-1e3, -1e2], -1e3, 0.0);
+        }
+    });
+}

@@ -57,3 +57,6 @@ pub const REPORTED: f64 = 2e-3;
 /// Distance along a bar that touches by which its ends may be elsewhere, of the diameter: a sagging cable leaves a round a little before
 /// or after the straight bar that stands for it.
 pub const ASIDE: f64 = 1e-2;
+
+/// Distance from its support at which a cable is held by it, of the cable's length: what nobody sees.
+pub const HELD: f64 = 1e-6;

@@ -39,15 +39,16 @@ pub(super) fn slack(problem: &Problem, answer: &CableSolution, out: &mut Vec<War
 /// What lies without tension on less ground than it is long.
 fn folds(problem: &Problem, answer: &CableSolution) -> Option<Warning> {
     let limit_n = SLACK_TENSION * problem.force_scale();
-    let lies =
-        |s: f64| problem.floor_friction.is_some() || answer.contacts.iter().any(|c| c.begins_m <= s && s <= c.ends_m);
+    // Seen from above, and where nothing weighs, it can lie anywhere.
+    let anywhere = problem.weight.norm() == 0.0;
+    let lies = |s: f64| anywhere || answer.contacts.iter().any(|c| c.begins_m <= s && s <= c.ends_m);
     let (mut material, mut ground, mut most) = (0.0, 0.0, 0.0);
     let mut middle = None;
     for pair in answer.pieces().flat_map(|p| p.windows(2)) {
         let [a, b] = pair else { continue };
         let (length, way) = (b.arc_length_m - a.arc_length_m, (b.at() - a.at()).norm());
         let over = length * problem.thermal_stretch - way;
-        let slack = a.tension_n < limit_n && b.tension_n < limit_n;
+        let slack = a.tension_n <= limit_n && b.tension_n <= limit_n;
         if slack && over > FOLDED_PART * length && lies(0.5 * (a.arc_length_m + b.arc_length_m)) {
             material += length;
             ground += way;
@@ -58,8 +59,9 @@ fn folds(problem: &Problem, answer: &CableSolution) -> Option<Warning> {
     }
     let (over, least, at) = (material - ground, FOLDED_LENGTH * problem.length, middle?);
     let name = &problem.cable.name;
+    let what = if anywhere { "way" } else { "ground" };
     let message = format!(
-        "{material:.2} m of `{name}` lie without tension in folds on {ground:.2} m of ground, most of it at {:.3} m ({:.3} m, {:.3} m): in a plane layers and loops cannot be seen, so how they lie is left open; shorten the cable or give it more ground",
+        "{material:.2} m of `{name}` lie without tension in folds on {ground:.2} m of {what}, most of it at {:.3} m ({:.3} m, {:.3} m): in a plane layers and loops cannot be seen, so how they lie is left open; shorten the cable or give it more ground",
         at.arc_length_m, at.x_m, at.y_m
     );
     let warning = Warning::new(WarningKind::Slack, name, at.arc_length_m, [over, least], message);

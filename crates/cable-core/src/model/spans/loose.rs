@@ -57,7 +57,7 @@ pub(super) fn lay(layout: &Layout, index: usize, (course, instant): (&Course, &I
     let part = layout.strands.get(index)?;
     let (load, [from, to]) = (course.law.load, part.material);
     let loaded = course.loads.iter().any(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0);
-    if !(load.norm() > 0.0) || loaded || !part.pulleys.is_empty() || course.mobilised != 0.0 {
+    if !(load.norm() > 0.0) || loaded || !part.pulleys.is_empty() {
         return None;
     }
     let [Some(a), Some(b)] = part.supports.map(|s| s.and_then(|k| instant.places.get(k).copied())) else { return None };

@@ -73,7 +73,11 @@ pub(super) fn report(layout: &Layout, network: &Network) -> Report {
             if let Some(c) = strand.contacts.get(k) {
                 let track = course.track(c).seen_from(c.ends.p[0]);
                 let stretches = stretches((&track, layout.problem.radius), &c.history, c.ends.p);
-                contact_nodes(&mut nodes, &track, c, &stretches);
+                if c.weight {
+                    load_nodes(&mut nodes, (strand, course, k), &track);
+                } else {
+                    contact_nodes(&mut nodes, &track, c, &stretches);
+                }
                 if let Some(obstacle) = track.curve.obstacle {
                     let name = layout.problem.world.obstacle_name(obstacle);
                     contacts.push(match c.weight {
@@ -167,6 +171,20 @@ fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, c: &Contact, stretche
         }
     }
     push(&track.place(c.ends.p[1]), (c.ends.t[1], c.ends.s[1]));
+}
+
+/// The nodes of the load that is contact j: what comes down on it from the air pulls as it comes, what lies beside it along the ground.
+fn load_nodes(nodes: &mut Nodes<'_>, (strand, course, j): (&Strand, &Course, usize), track: &Track<'_>) {
+    let c = &strand.contacts[j];
+    let place = track.place(c.ends.p[0]);
+    let pulls = |side: usize| strand.force_at_contact(course, j, side);
+    for side in 0..2 {
+        // Beyond an end there is nothing: it has what comes to it.
+        let ends = (j + side == 0 || j + side == strand.contacts.len()) && !strand.has_span(j + side);
+        let along = || place.tangent * c.ends.t[side];
+        let force = pulls(side).or_else(|| pulls(1 - side).filter(|_| ends)).unwrap_or_else(along);
+        nodes.push(Point { s: c.ends.s[side], at: place.at, force, curvature: 0.0 });
+    }
 }
 
 /// Normal force summed over a contact, its direction, the pull of the load along it, and how far it turns.

@@ -1,0 +1,224 @@
+//! Whether a stiff cable holds what it pushes with, or bends aside.
+//!
+//! Turned by η(s), a cable that cannot stretch changes its energy by ½ ∫ (EI η'² + T η²) ds, T the force along it, as long as every
+//! part between two places that are held keeps its chord: two conditions each (R. Levien, "The elastica: a mathematical
+//! history", 2008; J. H. Maddocks, "Stability of nonlinearly elastic rods", Arch. Rational Mech. Anal. 85, 1984). As many directions
+//! as there are conditions may lower the energy without being open to the cable; one more, and it leaves.
+
+use super::laws::Subject;
+use super::surroundings::Near;
+use super::tolerance::HELD;
+use super::{Law, Verification};
+use crate::math::{Vec2, larger, smaller};
+use crate::scene::SupportKind;
+use crate::solution::Node;
+
+impl Subject<'_> {
+    /// Whether what pushes stays.
+    pub fn stability(&self, found: &mut Verification, near: &[Vec<Near>]) {
+        found.ask(Law::Stability);
+        let nodes = &self.answer.nodes;
+        let same = 1e-9 * self.cable.length_m;
+        let last = self.cable.supports.len().saturating_sub(1);
+        // What holds a node, and whether it may turn there.
+        let mut holds = vec![None; nodes.len()];
+        for (k, (s, r)) in self.cable.supports.iter().zip(&self.answer.supports).enumerate() {
+            let loose = matches!(s.kind, SupportKind::Load | SupportKind::Free);
+            if loose || s.release_s.is_some_and(|t| self.time_s >= t - 1e-9) {
+                continue;
+            }
+            let arc_length = match k {
+                0 => 0.0,
+                k if k == last => self.cable.length_m,
+                _ => r.arc_length_m,
+            };
+            let node = nodes.partition_point(|n| n.arc_length_m < arc_length - same);
+            if let Some(held) = holds.get_mut(node) {
+                *held = Some(s.kind == SupportKind::Clamped);
+            }
+        }
+        let mut bars = Vec::with_capacity(nodes.len());
+        let mut first_node = Vec::with_capacity(nodes.len());
+        for (k, pair) in nodes.windows(2).enumerate() {
+            let length = self.thermal * (pair[1].arc_length_m - pair[0].arc_length_m);
+            let Some(way) = (pair[1].at() - pair[0].at()).try_normalize(0.0).filter(|_| length > same) else {
+                // Two nodes of one material point: what holds either holds both.
+                holds[k + 1] = holds[k + 1].or(holds[k]);
+                continue;
+            };
+            let pulls = self.forces_at_end(k).map(|end| (pair[0].force() + end).dot(&way) * 0.5);
+            bars.push(Bar {
+                length,
+                pull: larger(pulls[0], pulls[1]),
+                held: self.touches(near, k),
+                pinned: holds[k] == Some(false),
+                clamped: [holds[k] == Some(true), holds[k + 1] == Some(true)],
+            });
+            first_node.push(k);
+        }
+        let ends = [holds.first(), holds.last()].map(|h| h.copied().flatten().is_some());
+        let stiffness = self.answer.assumptions.bending_stiffness_n_m2 / self.thermal;
+        if let Some((bar, push, most)) = excess(&bars, stiffness, ends) {
+            found.report(self.finding(Law::Stability, first_node[bar], (push, most)));
+        }
+    }
+
+    /// The cable is where its supports hold it, and runs past its pulleys.
+    pub fn supports(&self, found: &mut Verification) {
+        found.ask(Law::Support);
+        let nodes = &self.answer.nodes;
+        let last = self.cable.supports.len().saturating_sub(1);
+        let limit = HELD * self.cable.length_m;
+        for (k, (s, r)) in self.cable.supports.iter().zip(&self.answer.supports).enumerate() {
+            let released = s.release_s.is_some_and(|t| self.time_s >= t - 1e-9);
+            let at = Vec2::new(r.x_m, r.y_m);
+            let to_line = |(a, b): (Vec2, Vec2)| super::surroundings::distance(at, at, a, b);
+            let (off, limit) = match s.kind {
+                SupportKind::Load | SupportKind::Free => continue,
+                _ if released => continue,
+                SupportKind::Pulley => {
+                    let near = nodes.windows(2).map(|p| to_line((p[0].at(), p[1].at()))).fold(f64::INFINITY, smaller);
+                    let wheel = s.radius_m.filter(|r| *r > 0.0).map_or(0.0, |r| r + 0.5 * self.cable.diameter_m);
+                    (near - wheel, larger(limit, self.reach()))
+                }
+                SupportKind::Fixed | SupportKind::Clamped | SupportKind::Robot => {
+                    let arc_length = match k {
+                        0 => 0.0,
+                        k if k == last => self.cable.length_m,
+                        _ => r.arc_length_m,
+                    };
+                    let near = |n: &&Node| (n.arc_length_m - arc_length).abs() <= limit;
+                    let off = nodes.iter().filter(near).map(|n| (n.at() - at).norm()).fold(f64::INFINITY, smaller);
+                    (off, limit)
+                }
+            };
+            if !(off <= limit) {
+                let node = nodes.partition_point(|n| n.arc_length_m < r.arc_length_m);
+                let mut finding = self.finding(Law::Support, node, (off, limit));
+                finding.with.clone_from(&s.name);
+                found.report(finding);
+            }
+        }
+    }
+}
+
+/// A part of the cable between two nodes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bar {
+    /// Material, m.
+    pub length: f64,
+    /// Force along it, N; negative: it pushes.
+    pub pull: f64,
+    /// Whether something touches it: it does not turn then.
+    pub held: bool,
+    /// Whether the node before it is a support that lets it turn.
+    pub pinned: bool,
+    /// Whether the node before it and the one after it are clamped.
+    pub clamped: [bool; 2],
+}
+
+/// The push of the bar that pushes most, N, and how much of that the cable can hold at most; None where it holds all. `ends`: whether
+/// the cable's ends are held in their places.
+pub(super) fn excess(bars: &[Bar], stiffness: f64, ends: [bool; 2]) -> Option<(usize, f64, f64)> {
+    let (worst, most) = bars.iter().enumerate().min_by(|a, b| a.1.pull.total_cmp(&b.1.pull))?;
+    if !(most.pull < 0.0) || bars.iter().any(|b| !(b.length > 0.0)) {
+        return None;
+    }
+    let open = conditions(bars, ends);
+    let holds = |part: f64| lowered(bars, stiffness, part) <= open;
+    if holds(1.0) {
+        return None;
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    // A kilonewton for what holds a millinewton, to three digits.
+    for _ in 0..32 {
+        let middle = 0.5 * (low + high);
+        if holds(middle) { low = middle } else { high = middle }
+    }
+    Some((worst, -most.pull, -most.pull * low))
+}
+
+/// Two for each part between places that are held.
+fn conditions(bars: &[Bar], ends: [bool; 2]) -> usize {
+    let mut count = 0;
+    let mut begun = ends[0];
+    for (k, bar) in bars.iter().enumerate() {
+        if bar.pinned && k > 0 && !bar.held && !bars[k - 1].held {
+            count += if begun { 2 } else { 0 };
+            begun = true;
+        }
+        if bar.held {
+            // What is free before it ends here.
+            count += if begun && k > 0 && !bars[k - 1].held { 2 } else { 0 };
+            begun = true;
+        }
+    }
+    let free = bars.last().is_some_and(|b| !b.held);
+    count + if begun && free && ends[1] { 2 } else { 0 }
+}
+
+/// Directions in which the energy falls, with that part of each push: negative pivots of the tridiagonal second variation (Sylvester).
+fn lowered(bars: &[Bar], stiffness: f64, part: f64) -> usize {
+    let (mut count, mut before) = (0, None);
+    for (k, bar) in bars.iter().enumerate() {
+        if bar.held {
+            before = None;
+            continue;
+        }
+        let spring = |other: Option<&Bar>| other.map_or(0.0, |o| 2.0 * stiffness / (bar.length + o.length));
+        let [left, right] = [spring(k.checked_sub(1).and_then(|i| bars.get(i))), spring(bars.get(k + 1))];
+        let clamp = |on: bool, beside: f64| if on { 2.0 * stiffness / bar.length } else { beside };
+        let pull = if bar.pull < 0.0 { part * bar.pull } else { bar.pull };
+        let mut pivot = pull * bar.length + clamp(bar.clamped[0], left) + clamp(bar.clamped[1], right);
+        if let Some(before) = before.filter(|_| !bar.clamped[0]) {
+            pivot -= left * left / before;
+        }
+        // A zero is on the safe side.
+        pivot = if pivot == 0.0 { f64::MIN_POSITIVE } else { pivot };
+        count += usize::from(pivot < 0.0);
+        before = Some(pivot);
+    }
+    count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn straight(n: usize, length: f64, push: f64, clamped: bool) -> Vec<Bar> {
+        let bar = Bar { length: length / n as f64, pull: -push, held: false, pinned: false, clamped: [false; 2] };
+        let mut bars = vec![bar; n];
+        if clamped {
+            (bars[0].clamped[0], bars[n - 1].clamped[1]) = (true, true);
+        }
+        bars
+    }
+
+    #[test]
+    fn what_is_asked_lies_above_eulers_loads_and_far_below_ten_times_them() {
+        let (n, length, stiffness) = (200, 3.0, 2.0);
+        let euler = std::f64::consts::PI.powi(2) * stiffness / (length * length);
+        // Both ends pinned: π²; clamped: 4π². With two conditions more than needed up to (3π)² may pass.
+        for (clamped, least, most) in [(false, 1.0, 4.1), (true, 4.0, 9.1)] {
+            let passes = |f: f64| excess(&straight(n, length, f * euler, clamped), stiffness, [true; 2]).is_none();
+            assert!(passes(0.99 * least) && !passes(most), "{clamped}");
+        }
+        let free = |f: f64| excess(&straight(n, length, f * euler, false), stiffness, [true, false]).is_none();
+        assert!(!free(0.01), "nothing holds the far end");
+    }
+
+    #[test]
+    fn what_lies_in_a_groove_holds_any_push() {
+        let mut bars = straight(50, 3.0, 1e6, false);
+        bars.iter_mut().for_each(|b| b.held = true);
+        assert!(excess(&bars, 1.0, [true; 2]).is_none());
+        bars[20..30].iter_mut().for_each(|b| b.held = false);
+        let (_, push, holds) = excess(&bars, 1.0, [true; 2]).unwrap();
+        assert!(push == 1e6 && holds > 30.0 && holds < 600.0, "{push} {holds}");
+    }
+
+    #[test]
+    fn what_pulls_is_never_asked() {
+        assert!(excess(&straight(9, 1.0, -5.0, false), 1.0, [true; 2]).is_none());
+    }
+}
