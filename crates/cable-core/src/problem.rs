@@ -3,7 +3,7 @@
 //! Arc lengths are unstretched at rest temperature; temperature enters as the factor `thermal_stretch` on
 //! unstretched lengths: strain = length/(thermal_stretch·ds) − 1. Weight and wind are per metre of arc length.
 
-mod lift;
+pub(crate) mod lift;
 mod place;
 mod route;
 mod seat;

@@ -127,6 +127,58 @@ fn a_support_on_a_surface_is_held_off_it_and_a_buried_one_refused() {
 }
 
 #[test]
+fn a_support_that_rounding_leaves_inside_is_put_out() {
+    let post =
+        "[[obstacles]]\nname = \"post\"\nkind = \"circle\"\ncenter_m = [0.0, 2.0]\nradius_m = 0.5\nfriction = 0.3\n";
+    let slope = ground("[[-5000.0, 250.0], [5000.0, -250.0]]");
+    for depth in [0.0, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4] {
+        let ends = format!("{}, {}", fixed("a", 0.0, 2.514 - depth), fixed("b", 4.0, 3.0));
+        let s = rest(&scene(&(cable(4.5, 0.028, "", &ends) + post)), Model::Auto);
+        assert!(s.is_ok(), "{depth}: {}", s.unwrap_err());
+        let y = 0.014 * (1.0f64 + 0.05 * 0.05).sqrt();
+        let ends = format!("{}, {}", fixed("a", 0.0, y - depth), fixed("b", 40.0, 9.0));
+        let s = rest(&scene(&(cable(43.5, 0.028, "", &ends) + &slope)), Model::Auto);
+        assert!(s.is_ok(), "{depth}: {}", s.unwrap_err());
+    }
+}
+
+#[test]
+fn ends_that_nothing_holds_come_down_on_what_is_below_them() {
+    let floor = ground("[[-10.0, 0.0], [10.0, 0.0]]");
+    for end in ["kind = \"free\"", "kind = \"load\", force_n = [0.0, -20.0]"] {
+        let ends = format!("{}, {{ name = \"b\", {end} }}", fixed("a", 0.0, 2.0));
+        for more in ["", "route_m = [[0.0, 2.0], [0.3, 0.3], [0.4, -1.0]]"] {
+            let s = rest(&scene(&(cable(3.0, 0.028, more, &ends) + &floor)), Model::Auto);
+            let s = s.unwrap_or_else(|e| panic!("{end}, {more}: {e}"));
+            // What hangs is 1.986 m at most, and the load lies.
+            let top = -s.cables[0].supports[0].reaction_y_n;
+            assert!((24.0..24.6).contains(&top), "{end}, {more}: {top} N");
+        }
+    }
+}
+
+#[test]
+fn slack_that_weighs_nothing_is_told() {
+    let still = "[environment]\ngravity_m_per_s2 = 0.0\n";
+    let beam = "[[obstacles]]\nname = \"o\"\nkind = \"polygon\"\npoints_m = [[2.0, 1.0], [3.0, 1.0], [3.0, 2.0], [2.0, 2.0]]\n";
+    let text = cable(12.0, 0.028, "", &format!("{}, {}", fixed("a", 0.0, 0.1), fixed("b", 5.0, 3.0)));
+    let s = rest(&scene(&(text.replace("[[cables]]", &format!("{still}[[cables]]")) + beam)), Model::Auto).unwrap();
+    assert!(s.warnings.iter().any(|w| w.kind == WarningKind::Slack), "{:?}", s.warnings);
+}
+
+#[test]
+fn a_loaded_end_on_the_ground_has_the_force_that_comes_to_it() {
+    let ends = format!("{}, {{ name = \"b\", kind = \"load\", force_n = [60.0, -200.0] }}", fixed("a", 0.0, 3.0));
+    let text =
+        cable(4.3, 0.028, "friction = 0.0", &ends) + &ground("[[-10.0, 0.0], [20.0, 0.0]]").replace("0.5", "0.0");
+    let s = rest(&scene(&text), Model::Spans).unwrap();
+    let nodes = &s.cables[0].nodes;
+    let [before, last] = [nodes[nodes.len() - 2], nodes[nodes.len() - 1]];
+    let off = (last.force_n[0] - before.force_n[0]).hypot(last.force_n[1] - before.force_n[1]);
+    assert!(off < 1.0 && (last.force_n[0] - 60.0).abs() < 1e-6, "{:?} after {:?}", last.force_n, before.force_n);
+}
+
+#[test]
 fn a_route_below_sloping_ground_ends_above_it() {
     let route = "route_m = [[0.0, 4.0], [0.6, 0.9], [1.4, 0.1], [6.6, 0.1], [7.4, 0.9], [8.0, 4.0]]\nsegments = 100";
     let text = cable(14.0, 0.028, route, &format!("{}, {}", fixed("left", 0.0, 4.0), fixed("right", 8.0, 4.0)));

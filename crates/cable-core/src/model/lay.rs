@@ -9,6 +9,7 @@ use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::problem::{Problem, SupportPoint};
 use crate::solution::{CableSolution, Node, Warning, WarningKind};
+use crate::state::State;
 
 /// A cable this near to the robot is answered by the model that knows of it, m. Less: a step passes it unseen.
 const ROOM_M: f64 = 0.02;
@@ -43,14 +44,25 @@ pub fn least_sliding(
             spans.drag_support(k, *at);
         }
     }
-    let warnings = match spans.settle() {
+    let mut warnings = match spans.settle() {
         Ok(report) => report.warnings,
         Err(slides @ SolveError::NoRestingPlace { .. }) => return Err(slides),
         Err(_) => return Ok(None),
     };
+    if problem.bending_stiffness > 0.0 {
+        warnings.iter_mut().filter(|w| w.kind == WarningKind::NotUnique).for_each(of_flexible);
+    }
     let answer = spans.solution();
     let clear = !meets_outline(problem, led, &answer) && !is_buried(problem, &answer);
     Ok(clear.then_some(Lay { answer, warnings }))
+}
+
+/// Says of which cable the histories are that are known.
+fn of_flexible(warning: &mut Warning) {
+    let figures = warning.message.split_once(". ").map_or("", |(_, figures)| figures);
+    warning.message = format!(
+        "With friction the resting place depends on how the cable was laid: this is the one found from its way. Of a flexible cable in its place: {figures}"
+    );
 }
 
 /// Whether a flexible cable that slid from where it was laid slides on from where it is said to rest: that was no rest then.
@@ -60,6 +72,26 @@ pub fn slides_on(problem: &Arc<Problem>, settings: Settings, answer: &CableSolut
     let there = Arc::new(Problem { route, ..Problem::clone(&Problem::without_outline(problem.clone())) });
     let slides = least_sliding(&there, settings, (&[], None));
     problem.bending_stiffness == 0.0 && matches!(slides, Err(SolveError::NoRestingPlace { .. }))
+}
+
+/// Work of the weight and the dead loads of a cable on its way from one shape to another, J. What slides away to where it rests comes
+/// down: friction only takes.
+#[must_use]
+pub fn work(problem: &Problem, from: &State, to: &CableSolution, time_s: f64) -> f64 {
+    let moved = |n: &Node| from.position_at(n.arc_length_m).map_or_else(Vec2::zeros, |before| n.at() - before);
+    let at = |s: f64| {
+        let k = to.nodes.partition_point(|n| n.arc_length_m < s);
+        to.nodes.get(k).or(to.nodes.last()).map_or_else(Vec2::zeros, moved)
+    };
+    let body = problem.body_force(time_s);
+    let pieces = to.nodes.windows(2);
+    let weight: f64 =
+        pieces.map(|p| body.dot(&(moved(&p[0]) + moved(&p[1]))) * 0.5 * (p[1].arc_length_m - p[0].arc_length_m)).sum();
+    let loads: f64 = problem.loads.iter().map(|l| l.force.at(time_s).dot(&at(l.arc_length))).sum();
+    let gravity = if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
+    let ends = problem.supports.iter().filter(|s| s.at.is_none());
+    let hung: f64 = ends.map(|s| (s.force.at(time_s) + gravity * s.mass).dot(&at(s.arc_length.unwrap_or(0.0)))).sum();
+    weight + loads + hung
 }
 
 /// What there is to say of a rest that was found where a cable slid to.

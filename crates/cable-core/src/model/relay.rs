@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use super::fem::FemModel;
-use super::lay::{is_buried, meets_outline, slid_first, slides_on};
+use super::lay::{is_buried, meets_outline, slid_first, slides_on, work};
 use super::spans::SpansModel;
 use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport, refuse_mobilised};
 use crate::contact::outline::Placement;
@@ -213,6 +213,7 @@ impl Mechanics for Relay {
             }
         }
         let first = self.fem.is_none();
+        let laid = self.fem(why.clone())?.state();
         let mut found = match (self.fem(why)?.settle(), refused) {
             (Err(error), Some(before)) => Err(SolveError::clearer(before, error)),
             (found, _) => found,
@@ -222,6 +223,7 @@ impl Mechanics for Relay {
             let (problem, settings) = (&self.problem, self.settings);
             found = found
                 .ok()
+                .filter(|_| work(problem, &laid, &fem.solution(), fem.time_s()) > 0.0)
                 .filter(|_| !slides_on(problem, settings, &fem.solution()))
                 .map(|mut report| {
                     report.warnings.push(slid_first(problem, &slides));

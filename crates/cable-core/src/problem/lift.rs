@@ -52,6 +52,16 @@ pub(super) fn lift(problem: &mut Problem) {
     }
 }
 
+/// A way with what of it is below the ground led along the surface.
+#[must_use]
+pub fn above_ground(problem: &Problem, way: Vec<Vec2>) -> Vec<Vec2> {
+    let geometry = problem.world.geometry();
+    geometry.bodies().iter().filter(|b| b.is_ground()).take(MOST_GROUNDS).fold(way, |way, body| {
+        let stretches = buried(&way, body);
+        if stretches.is_empty() { way } else { led_along(&way, &stretches, body) }
+    })
+}
+
 /// The stretches of a route inside a ground, in order.
 fn buried(route: &[Vec2], body: &Body) -> Vec<Buried> {
     let inside = |p: Vec2| body.signed_gap(p, f64::INFINITY).is_some_and(|g| g.gap_m + body.offset < 0.0);
@@ -156,6 +166,14 @@ fn led_along(route: &[Vec2], stretches: &[Buried], body: &Body) -> Vec<Vec2> {
     }
     for p in route.get(next..).unwrap_or_default() {
         put(*p);
+    }
+    // Ends that nothing holds lie on the surface; those that are held are never inside.
+    for end in [0, out.len().saturating_sub(1)] {
+        if let Some(p) = out.get_mut(end)
+            && let Some(gap) = body.signed_gap(*p, f64::INFINITY).filter(|g| g.gap_m + body.offset < 0.0)
+        {
+            *p -= gap.normal * gap.gap_m;
+        }
     }
     out
 }

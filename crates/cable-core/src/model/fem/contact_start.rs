@@ -4,6 +4,7 @@ use super::assembly::Mesh;
 use crate::contact::Gap;
 use crate::math::{Vec2, cross};
 use crate::problem::Problem;
+use crate::problem::lift::above_ground;
 use crate::scene::SupportKind;
 
 /// Passes of pushing the first lay out of obstacles. Ten are enough for routes drawn within a diameter.
@@ -15,7 +16,11 @@ const DEEPEST: f64 = 0.5;
 /// Corners of the way of a cable with the arc length at each, m.
 #[must_use]
 pub fn way(problem: &Problem) -> Vec<(f64, Vec2)> {
-    let points = if problem.route.len() >= 2 { problem.route.clone() } else { lifted(problem, &straight(problem)) };
+    let points = if problem.route.len() >= 2 {
+        problem.route.clone()
+    } else {
+        above_ground(problem, lifted(problem, &straight(problem)))
+    };
     let mut along = vec![0.0; points.len()];
     for k in 1..points.len() {
         along[k] = along[k - 1] + (points[k] - points[k - 1]).norm();

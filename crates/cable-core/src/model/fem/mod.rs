@@ -57,7 +57,7 @@ mod wheel;
 use std::sync::Arc;
 
 use self::two_meshes::TwoMeshes;
-use super::lay::{least_sliding, slid_first, slides_on};
+use super::lay::{least_sliding, slid_first, slides_on, work};
 use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
@@ -197,6 +197,7 @@ impl FemModel {
             self.begin_coarse();
         }
         let known = matches!(laid, Ok(Laid::TakenOver(_) | Laid::Alone));
+        let start = self.dynamics.state();
         let before = if known { None } else { Some(self.dynamics.clone()) };
         let mut found = self.dynamics.settle(&self.dragged);
         let slid = if known || found.is_err() { None } else { self.dynamics.slides_as_a_whole() };
@@ -208,7 +209,9 @@ impl FemModel {
             Ok(Laid::Alone | Laid::Unknown) => Vec::new(),
             // What slides from where it is laid may come to rest elsewhere.
             Err(slides) => {
-                if found.is_err() || slides_on(&self.problem, self.settings, &self.dynamics.solution()) {
+                let answer = self.dynamics.solution();
+                let rises = !(work(&self.problem, &start, &answer, self.dynamics.time()) > 0.0);
+                if found.is_err() || rises || slides_on(&self.problem, self.settings, &answer) {
                     found = Err(slides);
                     Vec::new()
                 } else {

@@ -142,6 +142,10 @@ impl Network {
                 }
             }
         }
+        // Free ends that come down in a heap.
+        if let Some(strands) = (0..layout.strands.len()).map(|k| loose::lay(layout, k, (&course, instant))).collect() {
+            return Ok((Self { strands, course, instant: instant.clone() }, Taken::default()));
+        }
         Err(stopped.or(first).unwrap_or((Trouble::Restless { s: 0.0 }, None)))
     }
 
@@ -232,7 +236,8 @@ impl Network {
         self.strands.clear();
         let mut came = Vec::new();
         for k in 0..layout.strands.len() {
-            if let Some(strand) = loose::lay(layout, k, (&self.course, &begin)).filter(|_| taut.is_none()) {
+            let held = layout.strands[k].supports.iter().all(Option::is_some);
+            if let Some(strand) = loose::lay(layout, k, (&self.course, &begin)).filter(|_| taut.is_none() && held) {
                 self.strands.push(strand);
                 came.push(Vec::new());
                 continue;

@@ -42,6 +42,8 @@ pub(super) struct Loose {
     feet: [f64; 2],
     /// Length of the way from foot to foot, m.
     way: f64,
+    /// Dead loads on free ends, which lie, N.
+    drawn: [Vec2; 2],
 }
 
 /// A point below a support.
@@ -60,14 +62,23 @@ pub(super) fn lay(layout: &Layout, index: usize, (course, instant): (&Course, &I
     if !(load.norm() > 0.0) || loaded || !part.pulleys.is_empty() {
         return None;
     }
-    let [Some(a), Some(b)] = part.supports.map(|s| s.and_then(|k| instant.places.get(k).copied())) else { return None };
     let world = &layout.problem.world;
-    let [before, after] = [foot(course, world, a)?, foot(course, world, b)?];
-    if before.body != after.body {
-        return None;
-    }
+    let held = part.supports.map(|s| s.and_then(|k| instant.places.get(k).copied()));
+    let feet = held.map(|at| at.and_then(|at| foot(course, world, at)));
+    // A free end lies in a heap below the support.
+    let (before, after) = match (held, feet) {
+        ([Some(_), Some(_)], [Some(a), Some(b)]) if a.body == b.body => (a, b),
+        ([Some(_), None], [Some(a), _]) => (a, Foot { height: 0.0, ..a }),
+        ([None, Some(_)], [_, Some(b)]) => (Foot { height: 0.0, ..b }, b),
+        _ => return None,
+    };
+    let [a, b] = [held[0].unwrap_or(before.at), held[1].unwrap_or(after.at)];
     let hangs = [before, after].map(|f| plumb(course, f.height));
     let feet = [from + hangs[0], to - hangs[1]];
+    let drawn = [0, 1].map(|side| match part.supports[side] {
+        None => layout.end_force(instant, part.material[side]),
+        Some(_) => Vec2::zeros(),
+    });
     let laid = way(layout, part, instant).points;
     for index in [2 * before.body, 2 * before.body + 1] {
         let Some(stretches) = between(&course.curves[index], [before.at, after.at], load) else { continue };
@@ -76,9 +87,9 @@ pub(super) fn lay(layout: &Layout, index: usize, (course, instant): (&Course, &I
         if !(course.law.stretch(0.0) * (feet[1] - feet[0]) >= length) {
             continue;
         }
-        let loose = Loose { curve: index, stretches, ends: [a, b], feet, way: length };
-        if loose.is_reached(course, world, (before.body, &laid)) {
-            let ties = [a, b].map(Tie::Held);
+        let loose = Loose { curve: index, stretches, ends: [a, b], feet, way: length, drawn };
+        if loose.holds_drawn(course) && loose.is_reached(course, world, (before.body, &laid)) {
+            let ties = [0, 1].map(|k| held[k].map_or(Tie::Loose(drawn[k]), Tie::Held));
             return Some(Strand {
                 from,
                 to,
@@ -188,6 +199,16 @@ fn stretch_length(curve: &Curve, (i, [a, b]): &(i64, [f64; 2])) -> f64 {
 }
 
 impl Loose {
+    /// Whether the ground holds a heap with the load in it.
+    fn holds_drawn(&self, course: &Course) -> bool {
+        let drawn: Vec2 = self.drawn.iter().sum();
+        let (Some((i, [p, _])), true) = (self.stretches.first(), drawn.norm() > 0.0) else { return true };
+        let curve = &course.curves[self.curve];
+        let place = curve.place_on(*i, p - curve.origin(*i));
+        let force = drawn + course.law.load * (self.feet[1] - self.feet[0]);
+        force.dot(&place.tangent).abs() <= -curve.friction * force.dot(&place.normal)
+    }
+
     /// Whether the cable comes there from its route without passing through anything, and lies clear of all else.
     fn is_reached(&self, course: &Course, world: &World, (own, laid): (usize, &[Vec2])) -> bool {
         let curve = &course.curves[self.curve];
@@ -239,13 +260,14 @@ impl Loose {
             }
         };
         let part = |k: usize| k as f64 / NODES as f64;
-        (0..=NODES).for_each(|k| nodes.push(hang(0, part(k))));
+        let hung = [first > strand.from, last < strand.to];
+        (0..=NODES).filter(|k| hung[0] || *k == 0).for_each(|k| nodes.push(hang(0, part(k))));
         let curve = &course.curves[self.curve];
         let density = if self.way > 0.0 { (last - first) / self.way } else { 0.0 };
         let (mut s, mut samples) = (first, Vec::new());
         let (mut normal, mut push, mut along, mut turned) = (0.0, Vec2::zeros(), 0.0, 0.0);
-        let mut carry = |place: &Place, s: f64, material: f64| {
-            let held = -law.load * material;
+        let mut carry = |place: &Place, s: f64, carried: Vec2| {
+            let held = -carried;
             normal += held.dot(&place.normal);
             push += place.normal * held.dot(&place.normal);
             along += held.dot(&place.tangent);
@@ -264,7 +286,7 @@ impl Loose {
             let material = density * length / count as f64;
             for k in 0..count {
                 let place = |u: f64| curve.place_on(i, from + (to - from) * u / count as f64 - curve.origin(i));
-                carry(&place(k as f64 + 0.5), s + 0.5 * material, material);
+                carry(&place(k as f64 + 0.5), s + 0.5 * material, law.load * material);
                 s += material;
                 let end = place(k as f64 + 1.0);
                 let curvature = if end.stretch > 0.0 { end.turn * law.stretch(0.0) / end.stretch } else { 0.0 };
@@ -276,9 +298,10 @@ impl Loose {
         {
             // All of it in one place.
             let place = curve.place_on(*i, p - curve.origin(*i));
-            carry(&place, 0.5 * (first + last), last - first);
+            let drawn: Vec2 = self.drawn.iter().sum();
+            carry(&place, 0.5 * (first + last), law.load * (last - first) + drawn);
         }
-        (0..=NODES).rev().for_each(|k| nodes.push(hang(1, part(k))));
+        (0..=NODES).rev().filter(|k| hung[1] || *k == 0).for_each(|k| nodes.push(hang(1, part(k))));
         let obstacle = curve.obstacle?;
         let middle = self.stretches.get(self.stretches.len() / 2);
         let at = middle.map_or(self.ends[0], |(i, [a, b])| curve.place_on(*i, 0.5 * (a + b) - curve.origin(*i)).at);
@@ -308,7 +331,7 @@ impl Loose {
 
     /// What the ground carries of it, N.
     pub fn held(&self, course: &Course) -> Vec2 {
-        -course.law.load * (self.feet[1] - self.feet[0])
+        -course.law.load * (self.feet[1] - self.feet[0]) - self.drawn.iter().sum::<Vec2>()
     }
 
     /// Material that lies, and the length of ground it lies on, m.

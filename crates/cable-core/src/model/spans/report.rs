@@ -275,8 +275,15 @@ pub(super) fn loose(strand: &Strand, j: usize) -> Option<[f64; 2]> {
 /// Tension at the start, at the end, and the greatest, N.
 pub(super) fn tensions(network: &Network) -> [f64; 3] {
     let course = &network.course;
-    let end = |strand: Option<&Strand>, side| strand.map_or(0.0, |s| end_force(network, s, side).norm());
-    let [start, last] = [end(network.strands.first(), 0), end(network.strands.last(), 1)];
+    let end = |strand: Option<&Strand>, side: usize| {
+        let strand = strand?;
+        let outer = if side == 0 { strand.contacts.first() } else { strand.contacts.last() };
+        Some(match (strand.ties[side], outer) {
+            (Tie::Loose(_), Some(c)) => c.ends.t[side],
+            _ => end_force(network, strand, side).norm(),
+        })
+    };
+    let [start, last] = [end(network.strands.first(), 0), end(network.strands.last(), 1)].map(|t| t.unwrap_or(0.0));
     let mut greatest = larger(start, last);
     for strand in &network.strands {
         for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
