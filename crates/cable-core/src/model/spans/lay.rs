@@ -29,6 +29,9 @@ const NEAR: f64 = 0.5;
 /// How far along the route, in radii of a post, the cable may come up to it before or after the string does: less than half
 /// a turn, so that turns are not mistaken for each other.
 const ROUND: f64 = 2.5;
+/// How much further than at its nearest a route that is drawn round a wheel may be from its centre, of the radius. Smaller: the chords of
+/// a coarse polygon are left; larger: of a route that only comes near more is taken for its round.
+const ABOUT: f64 = 0.1;
 /// Rounds of bringing a free end to where the material ends; each gains the digits of the strain.
 const FITS: usize = 6;
 /// Corners by which a seat goes on at most.
@@ -418,7 +421,11 @@ fn seats(
             // Tangents say how far it turns but for whole turns. A wheel passed on its side turns it by −90° (it lifts off, almost) to
             // 270°: half a turn, two tails that hang from it, lies in the middle of that.
             let turn = if q.facing == 0.0 { 0.0 } else { std::f64::consts::FRAC_PI_2 };
-            out.push(Seat { curve, home, pieces: [0, 0], wheel: Some(q.support), way: [w, w], turn });
+            // The route may be drawn round it: where it comes and where it goes.
+            let radius = course.curves[curve].place(0.0, home).stretch;
+            let near = way.distance(stop, w) + ABOUT * radius;
+            let round = way.beside(stop, w, near);
+            out.push(Seat { curve, home, pieces: [0, 0], wheel: Some(q.support), way: round, turn });
             (begin, reached) = ((stop, leg), w);
         }
     }

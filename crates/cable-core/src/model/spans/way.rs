@@ -62,10 +62,52 @@ impl Way {
         found
     }
 
+    /// The stretch about a length along it that is no further than this from a point, m.
+    pub fn beside(&self, center: Vec2, w: f64, within: f64) -> [f64; 2] {
+        let leg = self.leg(w);
+        let Some(at) = self.point(w) else { return [w; 2] };
+        let before = (0..=leg).rev().map(|k| (self.along[k], self.points[k]));
+        let after = (leg + 1..self.points.len()).map(|k| (self.along[k], self.points[k]));
+        let goes = |way: &mut dyn Iterator<Item = (f64, Vec2)>| {
+            let mut last = (w, at);
+            for next in way {
+                if (next.1 - center).norm() > within {
+                    return last.0 + (next.0 - last.0) * leaves(last.1 - center, next.1 - last.1, within);
+                }
+                last = next;
+            }
+            last.0
+        };
+        [goes(&mut before.into_iter()), goes(&mut after.into_iter())]
+    }
+
+    /// Distance of the point at a length along it from another, m.
+    pub fn distance(&self, from: Vec2, w: f64) -> f64 {
+        self.point(w).map_or(0.0, |at| (at - from).norm())
+    }
+
+    /// The point at a length along it, m.
+    fn point(&self, w: f64) -> Option<Vec2> {
+        let k = self.leg(w);
+        let (a, b) = (self.points.get(k)?, self.points.get(k + 1)?);
+        let length = self.along[k + 1] - self.along[k];
+        Some(if length > 0.0 { a + (b - a) * ((w - self.along[k]) / length) } else { *a })
+    }
+
     /// Leg at a length along it.
     pub fn leg(&self, w: f64) -> usize {
         self.along.partition_point(|a| *a <= w).clamp(1, self.points.len().max(2) - 1) - 1
     }
+}
+
+/// Part of the way d from a, both from a centre, at which it leaves a circle of this radius.
+fn leaves(a: Vec2, d: Vec2, radius: f64) -> f64 {
+    let (square, along) = (d.norm_squared(), a.dot(&d));
+    let root = along * along - square * (a.norm_squared() - radius * radius);
+    if !(square > 0.0 && root >= 0.0) {
+        return 0.0;
+    }
+    bounded((root.sqrt() - along) / square, 0.0, 1.0)
 }
 
 /// The route of a strand, and where its pulleys are on it.
