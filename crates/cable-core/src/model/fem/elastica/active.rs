@@ -1,7 +1,7 @@
 //! Which contacts there are, and which of them are a point and which a stretch.
 
 use super::start::contact_at;
-use super::{Contact, Elastica, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, place, tangent};
+use super::{Contact, Elastica, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, place, tangent};
 use crate::math::{Vec2, perp};
 use crate::problem::Problem;
 
@@ -54,12 +54,15 @@ impl Elastica {
         // Stretches that were found to be points.
         let mut points = Vec::new();
         for _ in 0..MAX_CHANGES {
+            if self.work > MOST_WORK {
+                return false;
+            }
             let saved = self.clone();
             let solved = self.newton();
             if let Some(k) = self.shrinking.take().or_else(|| self.vanishing(problem)) {
                 points.extend(self.pieces[k].lies);
                 if !solved {
-                    *self = Self { steps: self.steps, ..saved };
+                    *self = Self { steps: self.steps, work: self.work, ..saved };
                 }
                 self.contract(k);
             } else if !solved {
@@ -87,7 +90,7 @@ impl Elastica {
         if stretch.is_none() && point.is_none() {
             return false;
         }
-        *self = Self { steps: self.steps, ..from.clone() };
+        *self = Self { steps: self.steps, work: self.work, ..from.clone() };
         if let Some(k) = stretch {
             let Some(contact) = self.pieces[k].lies else { return false };
             let middle = self.pieces[k].nodes.len() / 2;
