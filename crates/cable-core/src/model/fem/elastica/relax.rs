@@ -38,10 +38,10 @@ const MAX_STEPS: usize = 1200;
 const PATIENT: usize = 700;
 
 /// Changes of the active set in a step. More: the first steps pay for exactness they do not need.
-const MAX_SETS: usize = 5;
+const MAX_SETS: usize = 8;
 
 /// Changes of the active set in a step in which contacts are let go.
-const LET_GO: usize = 2;
+const LET_GO: usize = 4;
 
 /// Longest turn of a bar in a step, rad.
 const LONGEST_TURN: f64 = 0.4;
