@@ -30,6 +30,7 @@ use crate::math::{Vec2, perp};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost};
 use band::Band;
+use relax::LetGo;
 
 /// Unknowns at a node: x, y, θ, M, F (2), s and the length of its piece in s.
 const STATES: usize = 8;
@@ -210,8 +211,9 @@ pub fn rest(
     let chain = match &bent {
         // An equilibrium may be one that a cable runs away from: a chain that is let go there tells.
         Some((answer, _)) => match relax::let_go(problem, at, answer) {
-            Some((chain, false)) => chain,
-            _ => return bent,
+            LetGo::Stays | LetGo::Unknown => return bent,
+            LetGo::Leaves(chain) => *chain,
+            LetGo::Totters => return None,
         },
         None => relax::relaxed(problem, at, lay)?,
     };

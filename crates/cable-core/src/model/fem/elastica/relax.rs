@@ -61,6 +61,12 @@ const MOST_RESISTED: usize = 8;
 /// Part of the first resistance that a chain begins with which is nearly at rest.
 const NEAR: f64 = 1e-2;
 
+/// Times that a chain is moved which has come to rest where it could give way.
+const MAX_NUDGES: usize = 2;
+
+/// Part of the cable's radius by which it is moved. Less: rounding moves it as far; more: it is put into obstacles.
+const NUDGED: f64 = 1e-2;
+
 /// Part of the cable's radius by which the first lay is pushed out of obstacles.
 const CLEAR: f64 = 1e-3;
 
@@ -155,23 +161,37 @@ pub(super) fn relaxed<'a>(
     }
     let laid = lay.and_then(|l| Chain::new(problem, at, &Curve::new(&l.nodes), lay, 1.0));
     let mut chain = laid.or_else(|| Chain::new(problem, at, &Curve::new(&first), None, 1.0))?;
-    chain.settle(1.0).then_some(chain)
+    (chain.settle(1.0) && chain.stable).then_some(chain)
 }
 
-/// A chain let go from an answer for the stiff cable, and whether it stays; None where that cannot be told.
-pub(super) fn let_go<'a>(
-    problem: &'a Problem,
-    at: (f64, &[Option<Vec2>]),
-    answer: &'a CableSolution,
-) -> Option<(Chain<'a>, bool)> {
-    let mut chain = Chain::new(problem, at, &Curve::new(&answer.nodes), Some(answer), 1.0)?;
+/// What becomes of a chain that is let go from an answer.
+pub(super) enum LetGo<'a> {
+    /// It stays.
+    Stays,
+    /// It runs away, to rest elsewhere.
+    Leaves(Box<Chain<'a>>),
+    /// It stays, and would not if anything moved it.
+    Totters,
+    /// The scene has what a chain knows nothing of, or the chain finds no rest.
+    Unknown,
+}
+
+/// Lets a chain go from an answer for the stiff cable.
+pub(super) fn let_go<'a>(problem: &'a Problem, at: (f64, &[Option<Vec2>]), answer: &'a CableSolution) -> LetGo<'a> {
+    let Some(mut chain) = Chain::new(problem, at, &Curve::new(&answer.nodes), Some(answer), 1.0) else {
+        return LetGo::Unknown;
+    };
     let from = chain.x.clone();
     if !chain.settle(NEAR) {
-        return None;
+        return LetGo::Unknown;
     }
     let near = STAYS * chain.bar;
     let stays = from.iter().zip(&chain.x).all(|(a, b)| (a - b).norm() <= near);
-    Some((chain, stays))
+    match (chain.stable, stays) {
+        (true, true) => LetGo::Stays,
+        (true, false) => LetGo::Leaves(Box::new(chain)),
+        (false, _) => LetGo::Totters,
+    }
 }
 
 impl<'a> Chain<'a> {
@@ -367,7 +387,7 @@ impl<'a> Chain<'a> {
         let first = weight / self.bar;
         let mut shift = resistance * first;
         let still = STILL * self.problem.radius;
-        let mut small = false;
+        let (mut small, mut nudges) = (false, 0);
         for round in 0..MAX_STEPS {
             self.steps += 1;
             let paid = self.pay_out();
@@ -380,7 +400,7 @@ impl<'a> Chain<'a> {
                 if found.is_some() {
                     break;
                 }
-                if exact && round < PATIENT {
+                if exact && round < PATIENT && nudges == 0 {
                     exact = false;
                 } else {
                     shift = larger(shift * 8.0, 1e-6 * first);
@@ -423,7 +443,13 @@ impl<'a> Chain<'a> {
             let whole = part == 1.0;
             if whole && paid && settled && moved < still && shift <= 1e-3 * first {
                 self.stable = exact;
-                return true;
+                if exact || nudges >= MAX_NUDGES {
+                    return true;
+                }
+                // It stands still where it could give way.
+                nudges += 1;
+                self.nudge(nudges);
+                shift = larger(shift, NEAR * first);
             }
             small = paid && whole && moved < 0.2 * self.bar;
             shift *= if whole && moved < 0.5 * self.bar {
@@ -438,6 +464,17 @@ impl<'a> Chain<'a> {
             }
         }
         false
+    }
+
+    /// Moves all nodes a little sideways, in the shape of a wave.
+    fn nudge(&mut self, waves: usize) {
+        let n = self.x.len();
+        let from = self.x.clone();
+        for k in (1..n - 1).filter(|&k| !self.held[k]) {
+            let phase = std::f64::consts::PI * (waves * k) as f64 / n as f64;
+            let along = from[k + 1] - from[k - 1];
+            self.x[k] += perp(along) * (NUDGED * self.problem.radius * phase.sin() / larger(along.norm(), 1e-300));
+        }
     }
 
     /// Lets the bars grow; returns whether they are as long as they are.
@@ -653,4 +690,49 @@ impl<'a> Chain<'a> {
 
 fn block(k: &Mat2) -> [[f64; 2]; 2] {
     [[k[(0, 0)], k[(0, 1)]], [k[(1, 0)], k[(1, 1)]]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+    use crate::solution::CableSolution;
+
+    fn problem(text: &str) -> Result<Problem, Box<dyn std::error::Error>> {
+        let scene = Scene::from_toml(text)?;
+        let first = crate::problem::problems(&scene)?.into_iter().next().ok_or("no cable")?;
+        Ok(Problem::clone(&first))
+    }
+
+    /// A weightless strut of 2 m between hinges, pressed by `part` of its critical force π²EI/L².
+    fn strut(part: f64) -> Result<(Problem, CableSolution), Box<dyn std::error::Error>> {
+        let (ei, ea, l) = (1.0, 1e4, 2.0);
+        let pull = -part * std::f64::consts::PI.powi(2) * ei / (l * l);
+        let way = l * (1.0 + pull / ea);
+        let p = problem(&format!(
+            "version = 1\n[environment]\ngravity_m_per_s2 = 0.0\n[[cables]]\nname = \"c\"\nlength_m = {l}\ndiameter_m = 0.02\n\
+             linear_density_kg_per_m = 1.0\naxial_stiffness_n = {ea:e}\nbending_stiffness_n_m2 = {ei}\n\
+             service_tension_n = 1e9\nbreaking_tension_n = 1e9\n\
+             [[cables.supports]]\nname = \"a\"\nkind = \"fixed\"\nat_m = [0.0, 1.0]\n\
+             [[cables.supports]]\nname = \"b\"\nkind = \"fixed\"\nat_m = [{way:.12}, 1.0]\n"
+        ))?;
+        let node = |s: f64| Node { arc_length_m: s, x_m: s * way / l, y_m: 1.0, tension_n: pull, ..Node::default() };
+        Ok((p, CableSolution { nodes: vec![node(0.0), node(l)], ..CableSolution::default() }))
+    }
+
+    /// Euler's strut: straight it stays below its critical force, and leaves above.
+    #[test]
+    fn a_strut_buckles_at_its_critical_force() -> Result<(), Box<dyn std::error::Error>> {
+        for (part, stays) in [(0.5, true), (0.98, true), (1.02, false), (2.0, false)] {
+            let (problem, straight) = strut(part)?;
+            let mut chain =
+                Chain::new(&problem, (0.0, &[None, None]), &Curve::new(&straight.nodes), Some(&straight), 1.0)
+                    .ok_or("no chain")?;
+            assert!(chain.settle(NEAR), "{part}");
+            let off = chain.x.iter().map(|x| (x.y - 1.0).abs()).fold(0.0, larger);
+            assert!(chain.stable, "{part}");
+            assert_eq!(off < 1e-9, stays, "{part} of the critical force: {off} m aside");
+        }
+        Ok(())
+    }
 }
