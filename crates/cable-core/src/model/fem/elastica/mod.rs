@@ -56,8 +56,8 @@ const MOST_OF_LENGTH: f64 = 0.6;
 /// long are; more: all others wait for it.
 const PATIENCE: usize = 3;
 
-/// Newton steps times nodes that are spent on a cable. Less: cables with ten contacts are left to a chain of bars; more: seconds go into what is
-/// not found. The cases of the tests take 500 to 8000.
+/// Newton steps times nodes that are spent on a cable from one guess. Less: cables with ten contacts are left to a chain of bars; more: seconds go
+/// into what is not found. Chosen so that a guess costs some tenths of a second; not tuned further.
 const MOST_WORK: usize = 25_000;
 
 /// Newton has ended where no unknown moves by more than this part of its size.
