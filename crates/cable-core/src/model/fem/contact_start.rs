@@ -154,10 +154,20 @@ pub fn lay(mesh: &Mesh, way: &[(f64, Vec2)]) -> Vec<Vec2> {
 
 /// Pushes free nodes and segments out of obstacles until every gap is at least half of `clear` (m) or it gives up.
 pub fn push_out(problem: &Problem, mesh: &Mesh, x: &mut [Vec2], clear: f64) {
+    push_chain_out(problem, (&mesh.held, &|e, feature| mesh.rounds(e).contains(&Some(feature))), x, clear);
+}
+
+/// The same of a chain of which nodes are held, and bars lie on rounds.
+pub fn push_chain_out(
+    problem: &Problem,
+    (held, lies_on): (&[bool], &dyn Fn(usize, usize) -> bool),
+    x: &mut [Vec2],
+    clear: f64,
+) {
     let mut gaps: Vec<Gap> = Vec::new();
     for _ in 0..MAX_PASSES {
         let mut moved = false;
-        for k in (0..x.len()).filter(|&k| !mesh.held[k]) {
+        for k in (0..x.len()).filter(|&k| !held[k]) {
             if let Some(g) = problem.world.signed_gap(x[k], DEEPEST)
                 && g.gap_m < 0.5 * clear
             {
@@ -168,8 +178,7 @@ pub fn push_out(problem: &Problem, mesh: &Mesh, x: &mut [Vec2], clear: f64) {
         for e in 0..x.len().saturating_sub(1) {
             gaps.clear();
             problem.world.segment_gaps(x[e], x[e + 1], clear, &mut gaps);
-            let rounds = mesh.rounds(e);
-            let inside = |g: &&Gap| g.fraction > 0.0 && g.fraction < 1.0 && !rounds.contains(&Some(g.feature));
+            let inside = |g: &&Gap| g.fraction > 0.0 && g.fraction < 1.0 && !lies_on(e, g.feature);
             for g in gaps.iter().filter(inside) {
                 let inside = problem.world.geometry().outward_of(g).is_some_and(|o| o.dot(&g.normal) < 0.0);
                 let distance = (x[e] + (x[e + 1] - x[e]) * g.fraction - g.point).norm();
@@ -178,7 +187,7 @@ pub fn push_out(problem: &Problem, mesh: &Mesh, x: &mut [Vec2], clear: f64) {
                     if inside { (-g.normal, clear - g.gap_m + 2.0 * distance) } else { (g.normal, clear - g.gap_m) };
                 if lack > 0.5 * clear {
                     let shares = [1.0 - g.fraction, g.fraction];
-                    let free = [0, 1].map(|j| if mesh.held[e + j] { 0.0 } else { shares[j] });
+                    let free = [0, 1].map(|j| if held[e + j] { 0.0 } else { shares[j] });
                     let sum = free[0] * shares[0] + free[1] * shares[1];
                     if sum > 0.01 {
                         x[e] += way * (lack * free[0] / sum);

@@ -277,10 +277,14 @@ impl FemModel {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let lay = least_sliding(&self.problem, self.settings, (&self.dragged, self.led)).ok()??;
-        let found = Elastica::from_flexible(&self.problem, self.dynamics.time(), &self.dragged, &lay.answer)?;
-        let cost = self.take_bent(found)?;
-        Some(StepReport { cost, warnings: lay.warnings })
+        let lay = least_sliding(&self.problem, self.settings, (&self.dragged, self.led)).ok()?;
+        let at = (self.dynamics.time(), self.dragged.as_slice());
+        let (answer, cost) =
+            elastica::rest(&self.problem, at, lay.as_ref().map(|l| &l.answer), SAFETY * self.settings.tolerance)?;
+        self.bent = Some(answer);
+        let mut warnings = lay.map_or_else(Vec::new, |l| l.warnings);
+        warnings.extend(self.bent_warning());
+        Some(StepReport { cost, warnings })
     }
 
     /// The same from the rest that the mesh has found.
@@ -302,6 +306,15 @@ impl FemModel {
             return None;
         }
         Some(cost)
+    }
+
+    /// What there is to say of a stiff cable's rest whose error is more than was asked for.
+    fn bent_warning(&self) -> Option<Warning> {
+        let (estimate, asked) = (self.bent.as_ref()?.error_estimate?, self.settings.tolerance);
+        (estimate > asked).then(|| {
+            let message = format!("The contacts of this stiff cable are known to a chain of bars only, which gives the forces to about {estimate:.1e} of the greatest tension; {asked:.1e} was asked for");
+            Warning::new(WarningKind::Accuracy, &self.problem.cable.name, 0.0, [estimate, asked], message)
+        })
     }
 
     fn take_bent(&mut self, mut found: Elastica) -> Option<Cost> {

@@ -1,7 +1,9 @@
 //! Which contacts there are, and which of them are a point and which a stretch.
 
 use super::start::contact_at;
-use super::{Contact, Elastica, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, place, tangent};
+use super::{
+    ANGLE, ARC, Contact, Elastica, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, place, tangent,
+};
 use crate::math::{Vec2, perp};
 use crate::problem::Problem;
 
@@ -54,12 +56,15 @@ impl Elastica {
         // Stretches that were found to be points.
         let mut points = Vec::new();
         for _ in 0..MAX_CHANGES {
+            if self.work > MOST_WORK {
+                return false;
+            }
             let saved = self.clone();
             let solved = self.newton();
             if let Some(k) = self.shrinking.take().or_else(|| self.vanishing(problem)) {
                 points.extend(self.pieces[k].lies);
                 if !solved {
-                    *self = Self { steps: self.steps, ..saved };
+                    *self = Self { steps: self.steps, work: self.work, ..saved };
                 }
                 self.contract(k);
             } else if !solved {
@@ -87,7 +92,7 @@ impl Elastica {
         if stretch.is_none() && point.is_none() {
             return false;
         }
-        *self = Self { steps: self.steps, ..from.clone() };
+        *self = Self { steps: self.steps, work: self.work, ..from.clone() };
         if let Some(k) = stretch {
             let Some(contact) = self.pieces[k].lies else { return false };
             let middle = self.pieces[k].nodes.len() / 2;
@@ -204,6 +209,11 @@ impl Elastica {
         self.meet(problem)
     }
 
+    /// Distance of the centre line from the obstacle of a gap in touch, m.
+    fn offset(&self, problem: &Problem, gap: &crate::contact::Gap) -> f64 {
+        problem.world.geometry().body_of(gap.feature).map_or(problem.radius, |b| b.offset)
+    }
+
     /// Takes a contact in one point away.
     fn release(&mut self, joint: usize) {
         let after = self.pieces.remove(joint + 1);
@@ -233,17 +243,35 @@ impl Elastica {
     fn meet(&mut self, problem: &Problem) -> Option<bool> {
         let deep = DEEP * problem.radius;
         let mut worst: Option<(f64, usize, usize, crate::contact::Gap)> = None;
+        let world = &problem.world;
         for (k, piece) in self.pieces.iter().enumerate().filter(|(_, p)| p.lies.is_none()) {
-            for i in 1..piece.nodes.len() - 1 {
-                let Some(gap) = problem.world.signed_gap(place(&piece.nodes[i]), 0.0) else { continue };
+            let mut look = |x: Vec2, i: usize| {
+                let Some(gap) = world.signed_gap(x, self.length) else { return };
                 if gap.gap_m < -deep && worst.is_none_or(|w| gap.gap_m < w.0) {
                     worst = Some((gap.gap_m, k, i, gap));
                 }
+            };
+            let last = piece.nodes.len() - 1;
+            for i in 0..last {
+                let (a, b) = (&piece.nodes[i], &piece.nodes[i + 1]);
+                if i > 0 {
+                    look(place(a), i);
+                }
+                // Between two nodes it may run into a corner or round that neither of them is in.
+                let bulge = (b[ANGLE] - a[ANGLE]).abs() * (b[ARC] - a[ARC]);
+                let (from, to) = (piece.grid[i], piece.grid[i + 1]);
+                world.geometry().segment_pairs(place(a), place(b), bulge, &mut |p| {
+                    let at = self.read(piece, from + (to - from) * p.gap.fraction);
+                    let nearer = if p.gap.fraction < 0.5 { i } else { i + 1 };
+                    look(place(&at), nearer.clamp(1, last - 1));
+                });
             }
         }
         let Some((_, k, i, gap)) = worst else { return Some(false) };
         let u = self.pieces[k].nodes[i];
-        let mut contact = contact_at(problem, &gap, place(&u), tangent(&u))?;
+        // A line is where the gap was measured.
+        let x = gap.point + gap.normal * (gap.gap_m + self.offset(problem, &gap));
+        let mut contact = contact_at(problem, &gap, x, tangent(&u))?;
         if gap.friction > 0.0 {
             // What the cable did not lie on while it was flexible slips as its neighbours do.
             let known = self.contacts.iter().find(|c| c.slips).map_or(0.0, |c| c.mobilised.signum());

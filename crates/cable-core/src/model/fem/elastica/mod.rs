@@ -22,10 +22,15 @@
 mod active;
 mod answer;
 mod band;
+mod chain_answer;
+mod relax;
 mod start;
 
 use crate::math::{Vec2, perp};
+use crate::problem::Problem;
+use crate::solution::{CableSolution, Cost};
 use band::Band;
+use relax::LetGo;
 
 /// Unknowns at a node: x, y, θ, M, F (2), s and the length of its piece in s.
 const STATES: usize = 8;
@@ -50,6 +55,10 @@ const MOST_OF_LENGTH: f64 = 0.6;
 /// Steps in which a stretch of contact wants to be shorter than nothing before it is taken for a point. Fewer: first guesses that are too
 /// long are; more: all others wait for it.
 const PATIENCE: usize = 3;
+
+/// Newton steps times nodes that are spent on a cable from one guess. Less: cables with ten contacts are left to a chain of bars; more: seconds go
+/// into what is not found. Chosen so that a guess costs some tenths of a second; not tuned further.
+const MOST_WORK: usize = 25_000;
 
 /// Newton has ended where no unknown moves by more than this part of its size.
 const STILL: f64 = 1e-10;
@@ -161,6 +170,8 @@ pub struct Elastica {
     contacts: Vec<Contact>,
     /// Newton steps so far.
     pub steps: usize,
+    /// The same times nodes.
+    work: usize,
     residual: f64,
     /// The piece that Newton's method wanted to be shorter than nothing.
     shrinking: Option<usize>,
@@ -187,7 +198,51 @@ fn slant(contact: &Contact, u: &[f64; STATES]) -> f64 {
     contact.gap(place(u)).1.dot(&tangent(u))
 }
 
+/// The resting place of a stiff cable in contact, from the answer for a flexible one where there is one: as an elastica where that is found,
+/// else as a chain of bars with what halving them changes as its error.
+pub fn rest(
+    problem: &Problem,
+    at: (f64, &[Option<Vec2>]),
+    lay: Option<&CableSolution>,
+    tolerance: f64,
+) -> Option<(CableSolution, Cost)> {
+    let bent = lay.and_then(|lay| Elastica::from_flexible(problem, at.0, at.1, lay));
+    let bent = bent.and_then(|e| e.answer(problem, tolerance));
+    let chain = match &bent {
+        // An equilibrium may be one that a cable runs away from: a chain that is let go there tells.
+        Some((answer, _)) => match relax::let_go(problem, at, answer) {
+            LetGo::Stays | LetGo::Unknown => return bent,
+            LetGo::Leaves(chain) => *chain,
+            LetGo::Totters => return None,
+        },
+        None => relax::relaxed(problem, at, lay)?,
+    };
+    if let Some(found) = Elastica::from_chain(&chain, at.1).and_then(|e| e.answer(problem, tolerance)) {
+        return Some(found);
+    }
+    let (fine, rests) = chain.halved(at.1)?;
+    let bent = if rests { Elastica::from_chain(&fine, at.1) } else { None };
+    if let Some(found) = bent.and_then(|e| e.answer(problem, tolerance)) {
+        return Some(found);
+    }
+    let estimate = chain.change(&fine);
+    let cost = Cost { iterations: chain.steps + fine.steps, ..Cost::default() };
+    let answer = if rests { fine.solution() } else { chain.solution() };
+    Some((CableSolution { error_estimate: Some(estimate), ..answer }, cost))
+}
+
 impl Elastica {
+    /// The answer with its error, at the whole stiffness.
+    fn answer(mut self, problem: &Problem, tolerance: f64) -> Option<(CableSolution, Cost)> {
+        if !self.stiffen(problem) {
+            return None;
+        }
+        let estimate = self.refine(problem, tolerance)?;
+        let (iterations, residual_n) = self.cost();
+        let answer = CableSolution { error_estimate: Some(estimate), ..self.solution(problem) };
+        Some((answer, Cost { iterations, residual_n, ..Cost::default() }))
+    }
+
     /// Force of a contact along its normal, per unstretched metre, on a piece that lies on it, N/m.
     fn pressure(&self, contact: &Contact, u: &[f64; STATES]) -> f64 {
         let t = tangent(u);
@@ -310,6 +365,10 @@ impl Elastica {
         let mut wanting = vec![0; self.pieces.len()];
         self.shrinking = None;
         for _ in 0..MAX_STEPS {
+            self.work += self.pieces.iter().map(|p| p.nodes.len()).sum::<usize>();
+            if self.work > MOST_WORK {
+                return false;
+            }
             let sizes = self.sizes();
             let Some(step) = self.step(&sizes) else { return false };
             let (mut part, mut most, mut turn): (f64, f64, f64) = (1.0, 0.0, 0.0);

@@ -3,7 +3,10 @@
 use super::super::beam_mesh::places;
 use super::super::layout::place as support_place;
 use super::super::sliding::round_of;
-use super::{ANGLE, ARC, Contact, Elastica, End, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, tangent};
+use super::relax::{Chain, Touch};
+use super::{
+    ANGLE, ARC, Contact, Elastica, End, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, tangent,
+};
 use crate::contact::Gap;
 use crate::math::{Vec2, cross, perp};
 use crate::problem::Problem;
@@ -59,15 +62,32 @@ pub(super) fn contact_at(problem: &Problem, gap: &Gap, x: Vec2, t: Vec2) -> Opti
     Some(Contact { at: center, radius: Some(radius), ..line })
 }
 
+/// How much of its friction an obstacle mobilises at `s` (m) in an answer, and whether that is all there is.
+pub(super) fn mobilised(problem: &Problem, answer: &CableSolution, obstacle: usize, s: f64) -> (f64, bool) {
+    let name = problem.world.obstacle_name(obstacle);
+    let far = |c: &&crate::solution::ContactReport| {
+        let [from, to] = c.extent_m();
+        (from - s).max(s - to).max(0.0)
+    };
+    let reports = answer.contacts.iter().filter(|c| c.obstacle == name);
+    let report = reports.min_by(|a, b| far(a).total_cmp(&far(b)));
+    let friction = problem.world.geometry().bodies().iter().find(|b| b.obstacle == obstacle);
+    let most = friction.map_or(0.0, |b| b.friction);
+    let Some(r) = report.filter(|_| most > 0.0) else { return (0.0, false) };
+    let part = if r.normal_n > 0.0 { (r.friction_n / r.normal_n).clamp(-most, most) } else { 0.0 };
+    let slips = r.state == ContactState::Slip && part != 0.0;
+    (if slips { most * part.signum() } else { part }, slips)
+}
+
 /// The nodes of an answer with their directions counted on.
-struct Curve<'a> {
+pub(super) struct Curve<'a> {
     nodes: &'a [Node],
     /// Direction of each chord, rad.
     angles: Vec<f64>,
 }
 
 impl<'a> Curve<'a> {
-    fn new(nodes: &'a [Node]) -> Self {
+    pub fn new(nodes: &'a [Node]) -> Self {
         let mut last: Option<f64> = None;
         let angles = nodes
             .windows(2)
@@ -87,7 +107,7 @@ impl<'a> Curve<'a> {
         self.nodes.partition_point(|n| n.arc_length_m <= s).clamp(1, self.nodes.len() - 1) - 1
     }
 
-    fn at(&self, s: f64) -> (Vec2, f64) {
+    pub fn at(&self, s: f64) -> (Vec2, f64) {
         let k = self.chord(s);
         let (a, b) = (&self.nodes[k], &self.nodes[k + 1]);
         let d = b.arc_length_m - a.arc_length_m;
@@ -118,7 +138,7 @@ impl Elastica {
         dragged: &[Option<Vec2>],
         answer: &CableSolution,
     ) -> Option<Self> {
-        Self::guess(problem, (time_s, dragged), answer, None)
+        Self::guess(problem, (time_s, dragged), answer, None, None)
     }
 
     /// The same from the answer of a mesh for the cable as stiff as it is; `bar`: the length of its bars, m, over which it knows where
@@ -129,7 +149,56 @@ impl Elastica {
         dragged: &[Option<Vec2>],
         (answer, bar): (&CableSolution, f64),
     ) -> Option<Self> {
-        Self::guess(problem, (time_s, dragged), answer, Some(bar))
+        Self::guess(problem, (time_s, dragged), answer, Some(bar), None)
+    }
+
+    /// The same from a chain of bars at rest.
+    pub(super) fn from_chain(chain: &Chain<'_>, dragged: &[Option<Vec2>]) -> Option<Self> {
+        let contacts = chain.lay.map_or_else(Vec::new, |l| l.contacts.clone());
+        let answer = CableSolution { nodes: chain.nodes(), contacts, ..CableSolution::default() };
+        Self::guess(chain.problem, (chain.time_s, dragged), &answer, Some(chain.bar), Some(&chain.pushes()))
+    }
+
+    /// The contacts of a chain.
+    fn chain_contacts(
+        &mut self,
+        problem: &Problem,
+        answer: &CableSolution,
+        curve: &Curve<'_>,
+        (bar, pushes): (f64, &[Touch]),
+        events: &mut Vec<Event>,
+    ) {
+        let mut done = vec![false; pushes.len()];
+        for i in 0..pushes.len() {
+            if done[i] {
+                continue;
+            }
+            let a = &pushes[i];
+            let (mut to, mut sum, mut first) = (a.arc, a.push, a.push * a.arc);
+            for j in i + 1..pushes.len() {
+                let b = &pushes[j];
+                if b.arc - to > 2.5 * bar {
+                    break;
+                }
+                if !done[j] && b.gap.feature == a.gap.feature && b.gap.obstacle == a.gap.obstacle {
+                    done[j] = true;
+                    to = b.arc;
+                    sum += b.push;
+                    first += b.push * b.arc;
+                }
+            }
+            let long = to - a.arc > 2.5 * bar;
+            let s = if long { 0.5 * (a.arc + to) } else { first / sum };
+            let angle = curve.angle(s, [s - bar, s + bar]);
+            let t = Vec2::new(angle.cos(), angle.sin());
+            let x = curve.at(a.arc).0;
+            let Some(mut contact) = contact_at(problem, &a.gap, x, t) else { continue };
+            self.mobilise(problem, answer, &mut contact, s);
+            let k = self.contacts.len();
+            self.contacts.push(contact);
+            let [from, to] = if long { [a.arc, to] } else { [s, s] };
+            events.push(Event { from, to, joint: if long { Joint::Begin(k) } else { Joint::Touch(k) } });
+        }
     }
 
     fn guess(
@@ -137,6 +206,7 @@ impl Elastica {
         (time_s, dragged): (f64, &[Option<Vec2>]),
         answer: &CableSolution,
         bar: Option<f64>,
+        pushes: Option<&[Touch]>,
     ) -> Option<Self> {
         let alone = problem.outline.is_none() && problem.floor_friction.is_none() && !problem.cable.self_contact;
         if !alone || answer.nodes.len() < 2 || !answer.breaks.is_empty() {
@@ -186,10 +256,14 @@ impl Elastica {
             ends,
             contacts: Vec::new(),
             steps: 0,
+            work: 0,
             residual: 0.0,
             shrinking: None,
         };
         match bar {
+            Some(bar) if pushes.is_some() => {
+                this.chain_contacts(problem, answer, &curve, (bar, pushes.unwrap_or_default()), &mut events);
+            }
             None => this.find_contacts(problem, (time_s, dragged), answer, &curve, &mut events),
             Some(bar) => this.read_contacts(problem, answer, &curve, bar, &mut events),
         }
@@ -360,19 +434,7 @@ impl Elastica {
     fn mobilise(&self, problem: &Problem, answer: &CableSolution, contact: &mut Contact, s: f64) {
         match contact.owner {
             Owner::Obstacle(obstacle) => {
-                let name = problem.world.obstacle_name(obstacle);
-                let far = |c: &&crate::solution::ContactReport| {
-                    let [from, to] = c.extent_m();
-                    (from - s).max(s - to).max(0.0)
-                };
-                let reports = answer.contacts.iter().filter(|c| c.obstacle == name);
-                let report = reports.min_by(|a, b| far(a).total_cmp(&far(b)));
-                let friction = problem.world.geometry().bodies().iter().find(|b| b.obstacle == obstacle);
-                let most = friction.map_or(0.0, |b| b.friction);
-                let Some(r) = report.filter(|_| most > 0.0) else { return };
-                let part = if r.normal_n > 0.0 { (r.friction_n / r.normal_n).clamp(-most, most) } else { 0.0 };
-                contact.slips = r.state == ContactState::Slip && part != 0.0;
-                contact.mobilised = if contact.slips { most * part.signum() } else { part };
+                (contact.mobilised, contact.slips) = mobilised(problem, answer, obstacle, s);
             }
             Owner::Pulley(k) => {
                 let (Some(support), Some(r)) = (problem.supports.get(k), answer.supports.get(k)) else { return };
@@ -575,6 +637,9 @@ impl Elastica {
             if self.bending >= whole {
                 return true;
             }
+            if self.work > MOST_WORK {
+                return false;
+            }
             let saved = self.clone();
             let next = self.bending * factor;
             self.bending = if next > 0.999 * whole { whole } else { next };
@@ -583,9 +648,9 @@ impl Elastica {
             if self.settle(problem) {
                 factor = (factor * 1.5).min(10.0);
             } else {
-                let steps = self.steps;
+                let (steps, work) = (self.steps, self.work);
                 *self = saved;
-                self.steps = steps;
+                (self.steps, self.work) = (steps, work);
                 factor = factor.sqrt();
                 if factor < 1.001 {
                     return false;

@@ -1,0 +1,184 @@
+//! From a chain at rest to an answer.
+//!
+//! Forces of contacts and weight act on the chain's nodes. In the answer a contact acts where it is: a bar that lies on a corner is cut
+//! there, its force before and after differ by what the corner does, and its moment balances as before.
+
+use super::relax::{Chain, Touch};
+use crate::math::{Vec2, larger, perp};
+use crate::scene::SupportKind;
+use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
+
+/// Gap between two contacts with one obstacle, in bars, up to which they are one.
+const APART: f64 = 2.5;
+
+impl Chain<'_> {
+    /// Force of a contact on the cable, N.
+    fn force_of(&self, t: &Touch) -> Vec2 {
+        let along = (self.x[t.node + 1] - self.x[t.node]).normalize();
+        t.gap.normal * t.push + along * (t.mobilised * t.push)
+    }
+
+    /// Moments at all nodes, N·m.
+    fn moments(&self) -> Vec<f64> {
+        self.bends().iter().map(|b| self.problem.bending_stiffness * b / self.problem.thermal_stretch).collect()
+    }
+
+    /// Forces of what comes after on what comes before, in the middle of each bar, N.
+    fn forces(&self, moments: &[f64]) -> Vec<Vec2> {
+        (0..self.tension.len())
+            .map(|e| {
+                let d = self.x[e + 1] - self.x[e];
+                let l = d.norm();
+                (d * self.tension[e] - perp(d) * ((moments[e + 1] - moments[e]) / l)) / l
+            })
+            .collect()
+    }
+
+    /// The answer.
+    pub fn solution(&self) -> CableSolution {
+        let moments = self.moments();
+        let forces = self.forces(&moments);
+        let pushes = self.pushes();
+        let nodes = self.answer_nodes(&moments, &forces, &pushes);
+        CableSolution {
+            name: self.problem.cable.name.clone(),
+            supports: self.supports(&forces, &nodes),
+            contacts: self.reports(&pushes),
+            nodes,
+            assumptions: Assumptions {
+                bending_stiffness_n_m2: self.problem.bending_stiffness,
+                ..Assumptions::default()
+            },
+            ..CableSolution::default()
+        }
+    }
+
+    /// What forces on supports change by to another answer of the same chain, in parts of the greatest tension.
+    pub fn change(&self, finer: &Self) -> f64 {
+        let (a, b) = (self.solution(), finer.solution());
+        let greatest = b.nodes.iter().map(|n| n.tension_n.abs()).fold(0.0, larger);
+        let pairs = a.supports.iter().zip(&b.supports);
+        let off = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
+        off.fold(0.0, larger) / greatest
+    }
+
+    fn answer_nodes(&self, moments: &[f64], forces: &[Vec2], pushes: &[Touch]) -> Vec<Node> {
+        let p = self.problem;
+        let area = p.cable.area_m2();
+        let last = self.x.len() - 1;
+        let mut out = Vec::with_capacity(self.x.len() + pushes.len());
+        let node = |s: f64, x: Vec2, pull: f64, moment: f64, force: Vec2| Node {
+            arc_length_m: s,
+            x_m: x.x,
+            y_m: x.y,
+            tension_n: pull,
+            strain: pull / p.axial_stiffness,
+            stress_pa: pull / area,
+            curvature_per_m: p.thermal_stretch * moment / p.bending_stiffness,
+            force_n: force.into(),
+            ..Node::default()
+        };
+        for k in 0..last {
+            let (a, b) = (self.x[k], self.x[k + 1]);
+            let t = (b - a).normalize();
+            let half = self.body * (0.5 * (self.arc[k + 1] - self.arc[k]));
+            let mut inside: Vec<&Touch> =
+                pushes.iter().filter(|t| t.node == k && t.gap.fraction > 0.0 && t.gap.fraction < 1.0).collect();
+            inside.sort_by(|a, b| a.gap.fraction.total_cmp(&b.gap.fraction));
+            // Before the first of the contacts on this bar.
+            let mut force = inside.iter().fold(forces[k], |f, t| f + self.force_of(t) * (1.0 - t.gap.fraction));
+            let before = if k > 0 { self.tension[k - 1] } else { force.dot(&t) };
+            out.push(node(self.arc[k], a, larger(before, force.dot(&t)), moments[k], force + half));
+            let (mut moment, mut way) = (moments[k], 0.0);
+            for c in inside {
+                let f = c.gap.fraction;
+                moment -= (f - way) * (b - a).norm() * force.dot(&perp(t));
+                way = f;
+                let before = force.dot(&t);
+                force -= self.force_of(c);
+                let s = self.arc[k] + f * (self.arc[k + 1] - self.arc[k]);
+                out.push(node(
+                    s,
+                    a + (b - a) * f,
+                    larger(before, force.dot(&t)),
+                    moment,
+                    force + half * (1.0 - 2.0 * f),
+                ));
+            }
+            if k + 1 == last {
+                out.push(node(self.arc[last], b, force.dot(&t), moments[last], force - half));
+            }
+        }
+        out
+    }
+
+    fn supports(&self, forces: &[Vec2], nodes: &[Node]) -> Vec<SupportReaction> {
+        let p = self.problem;
+        let last = self.x.len() - 1;
+        let ends = p.supports.len().saturating_sub(1);
+        let reaction = |(k, s): (usize, &crate::problem::SupportPoint)| {
+            let arc = if k == 0 { 0.0 } else { s.arc_length.filter(|_| k < ends).unwrap_or(p.length) };
+            let i = self.arc.partition_point(|a| *a < arc - 1e-9 * p.length).min(last);
+            let before = if i > 0 { forces[i - 1] } else { Vec2::zeros() };
+            let after = if i < last { forces[i] } else { Vec2::zeros() };
+            let loaded = matches!(s.kind, SupportKind::Load | SupportKind::Free);
+            // What bars that lie on corners pass on to it is not its own.
+            let near = self.touches.iter().filter(|t| t.active);
+            let led = near.flat_map(|t| t.shares().map(|(k, a)| (k, self.force_of(t) * a)));
+            let led = led.filter(|(k, _)| *k == i).fold(Vec2::zeros(), |sum, (_, f)| sum + f);
+            let f = if loaded { -s.force.at(self.time_s) } else { after - before + self.load[i] + led };
+            SupportReaction {
+                name: s.name.clone(),
+                reaction_x_n: f.x,
+                reaction_y_n: f.y,
+                x_m: self.x[i].x,
+                y_m: self.x[i].y,
+                arc_length_m: if k == ends { nodes.last().map_or(arc, |n| n.arc_length_m) } else { arc },
+                ..SupportReaction::default()
+            }
+        };
+        p.supports.iter().enumerate().map(reaction).collect()
+    }
+
+    fn reports(&self, pushes: &[Touch]) -> Vec<ContactReport> {
+        let mut out = Vec::new();
+        let mut left: Vec<&Touch> = pushes.iter().collect();
+        while let Some(first) = left.first().copied() {
+            let (mut group, mut rest, mut to) = (vec![first], Vec::new(), first.arc);
+            for t in left.into_iter().skip(1) {
+                if t.gap.obstacle == first.gap.obstacle && t.arc - to <= APART * self.bar {
+                    to = t.arc;
+                    group.push(t);
+                } else {
+                    rest.push(t);
+                }
+            }
+            left = rest;
+            let (Some(a), Some(b)) = (group.first(), group.last()) else { break };
+            let middle = group[group.len() / 2];
+            let at = |t: &Touch| self.x[t.node] + (self.x[t.node + 1] - self.x[t.node]) * t.gap.fraction;
+            let x = at(middle);
+            let normal_n: f64 = group.iter().map(|t| t.push).sum();
+            let friction_n: f64 = group.iter().map(|t| t.mobilised * t.push).sum();
+            let mut r = ContactReport {
+                obstacle: self.problem.world.obstacle_name(first.gap.obstacle).to_owned(),
+                x_m: x.x,
+                y_m: x.y,
+                arc_length_m: 0.5 * (a.arc + b.arc),
+                normal: middle.gap.normal.into(),
+                normal_n,
+                friction_n,
+                state: if friction_n == 0.0 { ContactState::Slip } else { ContactState::Stick },
+                tension_before_n: self.tension[a.node.saturating_sub(1)],
+                tension_after_n: self.tension[(b.node + 1).min(self.tension.len() - 1)],
+                begins_m: a.arc,
+                ends_m: b.arc,
+                ..ContactReport::default()
+            };
+            r.set_samples(group.iter().map(|t| ContactSample::new(t.arc, self.force_of(t))).collect());
+            out.push(r);
+        }
+        out.sort_by(|a, b| a.begins_m.total_cmp(&b.begins_m));
+        out
+    }
+}

@@ -1,0 +1,96 @@
+//! Stiff cables at rest on rough ground, with boxes, posts, friction and slack, drawn at random: every scene has an answer that is sound.
+//!
+//! Whether it is sound the checker says of every answer before it is handed out; here it is asked that there is one,
+//! and that it says how accurate it is.
+
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
+use std::fmt::Write;
+
+use cable_core::scene::Scene;
+use cable_core::{Model, Simulation};
+
+/// Numbers between 0 and 1 (Knuth's MMIX generator).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+
+    fn pick(&mut self, of: &[f64]) -> f64 {
+        of[((self.next() * of.len() as f64) as usize).min(of.len() - 1)]
+    }
+}
+
+/// A power cable over rough ground, boxes and posts; three of ten have L/chord up to 3.
+fn scene(seed: u64) -> String {
+    let mut r = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1));
+    for _ in 0..4 {
+        r.next();
+    }
+    let w = r.between(8.0, 20.0);
+    let (a, b) = (r.between(1.2, 6.0), r.between(1.2, 6.0));
+    let slack = r.next() < 0.3;
+    let length = w.hypot(a - b) * if slack { r.between(1.3, 3.0) } else { r.between(1.02, 1.3) };
+    let ei = 10f64.powf(r.between(-1.0, 2.0));
+    let mut text = format!(
+        "version = 1\n[[cables]]\nname = \"c\"\npreset = \"soow-6-4\"\nlength_m = {length}\nbending_stiffness_n_m2 = {ei}\n\
+         [[cables.supports]]\nname = \"a\"\nkind = \"fixed\"\nat_m = [0.0, {a}]\n\
+         [[cables.supports]]\nname = \"b\"\nkind = \"fixed\"\nat_m = [{w}, {b}]\n"
+    );
+    let rough = r.pick(&[0.05, 0.2, 0.4]);
+    let mut points = String::new();
+    let mut x = -5.0;
+    while x < w + 5.0 {
+        write!(points, "[{x}, {}], ", r.between(-rough, rough)).unwrap();
+        x += 1.3;
+    }
+    let friction = r.pick(&[0.0, 0.3, 0.6]);
+    writeln!(
+        text,
+        "[[obstacles]]\nname = \"ground\"\nkind = \"terrain\"\npoints_m = [{points}[{}, 0.0]]\nfriction = {friction}",
+        w + 6.0
+    )
+    .unwrap();
+    let things = (r.next() * 4.0) as usize;
+    for k in 0..things {
+        let (x, y, friction) = (r.between(1.5, w - 1.5), r.between(0.6, 4.0), r.pick(&[0.0, 0.3, 0.4]));
+        let what = if r.next() < 0.5 {
+            format!("kind = \"circle\"\ncenter_m = [{x}, {y}]\nradius_m = {}", r.between(0.05, 0.5))
+        } else {
+            let (u, v) = (x + r.between(0.1, 0.5), y + r.between(0.1, 0.5));
+            format!("kind = \"polygon\"\npoints_m = [[{x}, {y}], [{u}, {y}], [{u}, {v}], [{x}, {v}]]")
+        };
+        writeln!(text, "[[obstacles]]\nname = \"o{k}\"\n{what}\nfriction = {friction}").unwrap();
+    }
+    text
+}
+
+#[test]
+fn stiff_cables_on_rough_ground_have_a_sound_answer() {
+    let (scenes, mut refused, mut coarse) = (40, Vec::new(), 0);
+    for seed in 0..scenes {
+        let text = scene(seed);
+        let scene = Scene::from_toml(&text).unwrap();
+        let mut simulation = Simulation::new(scene, Model::Auto).unwrap();
+        match simulation.settle() {
+            Ok(answer) => {
+                let cable = &answer.cables[0];
+                let error = cable.error_estimate.expect("it says how accurate it is");
+                assert!(error.is_finite(), "seed {seed}");
+                coarse += usize::from(error > 1e-2);
+            }
+            Err(why) => refused.push(format!("seed {seed}: {why}")),
+        }
+    }
+    // 2 % of many; of 40 that is at most one.
+    assert!(refused.len() <= 1, "{refused:#?}");
+    // A chain of bars answers where contacts are too many for the elastica: it is good to some per cent.
+    assert!(coarse <= 8, "{coarse} of {scenes} answers are off by more than 1 %");
+}
