@@ -2,6 +2,7 @@
 
 use super::contact_step::Workspace;
 use super::dynamics::{Dynamics, INNER_STEP, REACH};
+use super::floor;
 use super::sliding::Seat;
 use super::task::{Done, Failure, Pose};
 use crate::math::Vec2;
@@ -148,11 +149,17 @@ impl Dynamics {
             let slack = self.task.tolerance + EVEN_FORCE * (load.pull[0] + load.pull[1]);
             next.grip = load.grip(&next, pose.slide[k], inertia, slack);
             next.factor = load.factor(next.grip, next.exponent, self.mesh.axial_stiffness);
+            if !self.task.floor_limit.is_empty() {
+                let paths = [k - 1, k].map(|e| self.mesh.path(e, &pose.x));
+                let parts = floor::parts(&self.mesh, k, &node, [&paths[0], &paths[1]]);
+                next.floor_factor = floor::factor(parts, load.ratio(next.grip, next.exponent));
+            }
             if next.sticks() && !node.sticks() {
                 pose.slide[k] = 0.0;
             }
             gripped |= next.grip != node.grip;
-            changed |= !((next.factor / node.factor - 1.0).abs() <= SAME_FACTOR);
+            let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SAME_FACTOR;
+            changed |= !(same(next.factor, node.factor) && same(next.floor_factor, node.floor_factor));
             self.mesh.sliding[k] = Some(next);
         }
         self.set_scale();

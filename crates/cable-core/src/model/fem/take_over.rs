@@ -232,6 +232,7 @@ impl Dynamics {
                     grip: Grip::Stick,
                     factor: 1.0,
                     exponent: 0.0,
+                    floor_factor: 1.0,
                 },
             };
             arc.grow(told, radius - self.contacts.barrier.reach);
