@@ -330,8 +330,8 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
         } else {
             a + (b - a) * f
         };
-        // Beyond the last point the floor's friction of the straight half acts, as it does at a node of the cable.
-        let beyond = if i == count && !same[1] { tension - f2 } else { tension };
+        // The floor's friction of half of what lies beside a point acts at it, as it does at a node of the cable.
+        let beyond = if i < count { tension - 0.5 * floor / count } else { tension - f2 };
         let force = perp(normal) * (sense * beyond);
         let arc_length = mesh.arc_length[k] + turned * radius / stretch;
         OnRound { arc_length, at: node.end.center + normal * radius, tension, force, stretch }

@@ -1,7 +1,7 @@
 //! The floor of a plan view under what runs over a round.
 //!
-//! A node that moves with its material takes the floor's friction of the half bars beside it as a force on itself. At a sliding node those halves
-//! lie before the round, on it and after it, and the floor's friction f₀, f, f₂ on each is no friction of the round. With A and B
+//! A node that moves with its material takes the floor's friction of the straight halves of the bars beside it as a force on itself. What a
+//! sliding node answers for lies before its round, on it and after it, and the floor's friction f₀, f, f₂ on each is no friction of the round. With A and B
 //! the tensions where the cable comes on to the round and leaves it, positive friction that of a cable that runs towards its start, and
 //! the floor's friction on the round spread evenly over its turn φ,
 //! ```text
@@ -10,26 +10,34 @@
 //! A cable that slips has m = ±μ: with γ = e^{±μφ}, T₁ = γT₂ + f₀ + γf₂ + f (γ − 1)/ln γ.
 
 use super::assembly::Mesh;
-use super::path::Path;
-use super::sliding::Sliding;
 use crate::math::Vec2;
 
 /// Iterations for the rate at which tension grows over a round: Newton's method on a function that is convex and near to an exponential.
 const RATE_ITERATIONS: usize = 30;
 
-/// Parts of a sliding node's floor before, on and after its round; they add up to 1.
-pub(super) fn parts(mesh: &Mesh, k: usize, node: &Sliding, paths: [&Path; 2]) -> [f64; 3] {
-    let half = [k - 1, k].map(|e| 0.5 * (mesh.arc_length[e + 1] - mesh.arc_length[e]));
-    let whole = half[0] + half[1];
+/// Material of a bar (m) that its ends answer for: on the round at its start, half of the straight part, on the round at its end.
+fn shares(mesh: &Mesh, e: usize, x: &[Vec2], slide: Option<&[f64]>) -> [f64; 3] {
+    let path = mesh.path(e, x);
+    let rest = slide.map_or(mesh.rest_length[e], |s| super::bar::rest_length(mesh, e, s)) / mesh.thermal_stretch;
+    let on_round = |j: usize| {
+        let end = &mesh.sliding[e + j];
+        let lap = end.map_or(0.0, |s| s.end.radius * path.arcs[j]);
+        if lap > 0.0 { lap } else { 0.0 }
+    };
+    let laps = [on_round(0), on_round(1)];
+    let whole = path.straight + laps[0] + laps[1];
     if !(whole > 0.0) {
-        return [0.0, 1.0, 0.0];
+        return [0.0, 0.5 * rest, 0.0];
     }
-    let lies = [0, 1].map(|j| {
-        let part = if paths[j].length > 0.0 { node.end.radius * paths[j].arcs[1 - j] / paths[j].length } else { 0.0 };
-        let on_round = 2.0 * half[j] * if part > 0.0 { part } else { 0.0 };
-        if on_round < half[j] { on_round } else { half[j] }
-    });
-    [(half[0] - lies[0]) / whole, (lies[0] + lies[1]) / whole, (half[1] - lies[1]) / whole]
+    [rest * laps[0] / whole, 0.5 * rest * path.straight / whole, rest * laps[1] / whole]
+}
+
+/// Material before, on and after the round of a node for which the floor takes its friction there, m: half of the straight part of each
+/// bar beside it, and all that lies on its round.
+pub(super) fn reaches(mesh: &Mesh, k: usize, x: &[Vec2], slide: Option<&[f64]>) -> [f64; 3] {
+    let [_, before, on] = if k > 0 { shares(mesh, k - 1, x, slide) } else { [0.0; 3] };
+    let [lies, after, _] = if k + 1 < mesh.nodes() { shares(mesh, k, x, slide) } else { [0.0; 3] };
+    [before, on + lies, after]
 }
 
 /// (γ − 1)/ln γ.
@@ -41,7 +49,8 @@ pub(super) fn mean_factor(ratio: f64) -> f64 {
 
 /// Floor friction as the slope of the scaled energy by the slide sees it, in parts of its own size.
 pub(super) fn factor([before, on, after]: [f64; 3], ratio: f64) -> f64 {
-    before + on * mean_factor(ratio) + after * ratio
+    let whole = before + on + after;
+    if whole > 0.0 { (before + on * mean_factor(ratio) + after * ratio) / whole } else { 1.0 }
 }
 
 /// Tension over a round of a cable that rubs on it and on the floor.

@@ -24,6 +24,10 @@ const STEP_ITERATIONS: usize = 120;
 /// Factors of sliding nodes count as found when they change by less than this.
 const SAME_FACTOR: f64 = 1e-9;
 
+/// Friction of the floor for a node counts as found when it changes by less than this part. More: the cones of a report are not those that were
+/// solved for (the checker asks for 1e-3); less: rounds of what moves by rounding.
+const SAME_FLOOR: f64 = 1e-6;
+
 /// Forces at a sliding node within this part of each other are equal: the law is read off bars, whose tension is
 /// known to the residual only.
 const EVEN_FORCE: f64 = 1e-7;
@@ -95,10 +99,6 @@ impl Dynamics {
                 task.start[k] = self.motion.x[k];
             }
         }
-        task.floor_limit.clear();
-        if let Some((friction, normal)) = problem.floor_friction {
-            task.floor_limit.extend((0..n).map(|k| friction * normal * mesh.share(k)));
-        }
         task.may_lag = to > from;
         task.max_iterations = STEP_ITERATIONS;
         task.max_move = 2.0 * INNER_STEP * 100.0;
@@ -114,6 +114,27 @@ impl Dynamics {
         task.predicted_slide.clear();
         task.predicted_slide.resize(n, 0.0);
         self.set_scale();
+        let x = std::mem::take(&mut self.motion.x);
+        self.press_on_floor(&x, None);
+        self.motion.x = x;
+    }
+
+    /// Plan view: the friction that the floor has for each node where the cable lies now; returns whether any of it changed.
+    fn press_on_floor(&mut self, x: &[Vec2], slide: Option<&[f64]>) -> bool {
+        let Some((friction, normal)) = self.problem.floor_friction else {
+            self.task.floor_limit.clear();
+            return false;
+        };
+        let (mesh, limits) = (&self.mesh, &mut self.task.floor_limit);
+        let mut changed = limits.len() != mesh.nodes();
+        limits.resize(mesh.nodes(), 0.0);
+        for (k, limit) in limits.iter_mut().enumerate() {
+            let reach: f64 = floor::reaches(mesh, k, x, slide).iter().sum();
+            let now = friction * normal * reach;
+            changed |= !((now - *limit).abs() <= SAME_FLOOR * (now + *limit));
+            *limit = now;
+        }
+        changed
     }
 
     /// The factor of each bar's energy from the grips of the sliding nodes before it.
@@ -135,7 +156,7 @@ impl Dynamics {
         if self.never_slides {
             return (false, false);
         }
-        let (mut gripped, mut changed) = (false, false);
+        let (mut gripped, mut changed) = (false, self.press_on_floor(&pose.x, Some(&pose.slide)));
         for k in 0..self.mesh.nodes() {
             let (Some(node), Some(load)) = (self.mesh.sliding[k], self.load_at(k, &pose.x, Some(&pose.slide))) else {
                 continue;
@@ -149,11 +170,8 @@ impl Dynamics {
             let slack = self.task.tolerance + EVEN_FORCE * (load.pull[0] + load.pull[1]);
             next.grip = load.grip(&next, pose.slide[k], inertia, slack);
             next.factor = load.factor(next.grip, next.exponent, self.mesh.axial_stiffness);
-            if !self.task.floor_limit.is_empty() {
-                let paths = [k - 1, k].map(|e| self.mesh.path(e, &pose.x));
-                let parts = floor::parts(&self.mesh, k, &node, [&paths[0], &paths[1]]);
-                next.floor_factor = floor::factor(parts, load.ratio(next.grip, next.exponent));
-            }
+            let floor = floor::reaches(&self.mesh, k, &pose.x, Some(&pose.slide));
+            next.floor_factor = floor::factor(floor, load.ratio(next.grip, next.exponent));
             if next.sticks() && !node.sticks() {
                 pose.slide[k] = 0.0;
             }

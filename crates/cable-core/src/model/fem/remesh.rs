@@ -110,13 +110,12 @@ impl Dynamics {
             if t < 0.0 { 0.0 } else { t }
         });
         let share = rest.map(|l| 0.5 * l / mesh.thermal_stretch);
-        let paths = [&path[0], &path[1]];
-        let floor = self.task.floor_limit.get(k).map_or([0.0; 3], |&limit| {
+        let floor = self.problem.floor_friction.map_or([0.0; 3], |(rough, normal)| {
             let slid = self.contacts.floor_slid[k].x + slide.map_or(0.0, |s| s[k]);
-            let force = friction::at(slid, limit, self.contacts.slip).1;
-            floor::parts(mesh, k, node, paths).map(|part| force * part)
+            let per_m = friction::at(slid, rough * normal, self.contacts.slip).1;
+            floor::reaches(mesh, k, x, slide).map(|reach| per_m * reach)
         });
-        Some(Load { floor, ..Load::new(node, tension, paths, (self.task.body, share)) })
+        Some(Load { floor, ..Load::new(node, tension, [&path[0], &path[1]], (self.task.body, share)) })
     }
 
     /// Lets go of the sliding nodes that press on nothing, but for those on `kept`; returns whether there were any.
