@@ -273,7 +273,8 @@ fn clear_way(problem: &Problem, from: Vec2, to: Vec2) -> Vec2 {
 
 /// Load per metre that presses on the ground and the whole load, N/m and N; never 0.
 pub(super) fn load_scale(problem: &Problem) -> (f64, f64) {
-    let floor = problem.floor_friction.map_or(0.0, |(_, n)| n);
+    // What presses on the floor of a plan view counts by what it rubs.
+    let floor = problem.floor_friction.map_or(0.0, |(friction, normal)| friction * normal);
     let whole = problem.force_scale().max(floor * problem.length);
     let per_m = problem.body_force(0.0).norm().max(floor).max(1e-3 * whole / problem.length);
     (per_m, whole)
