@@ -122,7 +122,7 @@ impl Dynamics {
         self.task.max_iterations = POLISH_ITERATIONS;
         self.task.most_noise = exact;
         let mut done = None;
-        for part in [POLISHED, 1.0] {
+        for part in [POLISHED, 0.1, 1.0] {
             self.task.tolerance = part * exact;
             let mut pose = self.still_pose();
             done = self.lag(&mut pose, LAG_ROUNDS).ok();
