@@ -123,7 +123,10 @@ impl Load {
         let ends = [force[0].norm(), force[1].norm()];
         let pull = [force[0].dot(&t[0]), force[1].dot(&t[1])];
         let turn = if node.end.radius > 0.0 {
-            let sag = angle_between(force[0], t[0]) + angle_between(t[1], force[1]);
+            // No force has no direction: the angle to zeros is half a turn where the sign of one of them is lost.
+            let between =
+                |a: Vec2, b: Vec2| if a == Vec2::zeros() || b == Vec2::zeros() { 0.0 } else { angle_between(a, b) };
+            let sag = between(force[0], t[0]) + between(t[1], force[1]);
             path[0].arcs[1] + path[1].arcs[0] + node.end.sense * sag
         } else {
             angle_between(force[0], force[1]).abs()
