@@ -258,7 +258,7 @@ impl Simulation {
     /// With friction a resting place is one of many: said of every cable that rubs where it rests, whichever model answered, with what
     /// other histories would have left in it where `spans` knows.
     fn say_where_friction_chose(&mut self) {
-        for (strand, answer) in self.cables.iter().zip(&self.answers) {
+        for (k, (strand, answer)) in self.cables.iter().zip(&self.answers).enumerate() {
             let problem = strand.problem();
             let said = |w: &Warning| w.kind == WarningKind::NotUnique && w.cable == problem.cable.name;
             if !problem.rubs(answer) || self.warnings.iter().any(said) {
@@ -269,12 +269,26 @@ impl Simulation {
             let mut known: Vec<Warning> = known.map(|lay| lay.warnings).unwrap_or_default();
             known.retain(said);
             if known.is_empty() {
-                let message = "With friction the resting place depends on how the cable was laid: this is the one found from its way, no other was sought";
+                let range = self.histories(k).unwrap_or_else(|| ", no other was sought".to_owned());
+                let message = format!(
+                    "With friction the resting place depends on how the cable was laid: this is the one found from its way{range}"
+                );
                 let name = &problem.cable.name;
-                known.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
+                known.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message));
             }
             self.warnings.append(&mut known);
         }
+    }
+
+    /// What other histories would have left in a cable, in words: in plan view, where a floor that rubs everywhere chose the rest and
+    /// `spans` has no answer; None where none was sought or found.
+    fn histories(&self, k: usize) -> Option<String> {
+        let strand = self.cables.get(k).filter(|c| c.problem().floor_friction.is_some() && c.model() == Model::Fem)?;
+        strand.histories(|other| {
+            let mut answers = self.answers.clone();
+            answers[k].clone_from(other);
+            self.verifier.check_cables(&self.scene, &answers, self.time_s(), Depth::Always).is_sound()
+        })
     }
 
     /// Advances time with inertia by `dt_s` (s).

@@ -6,6 +6,7 @@
 
 mod answer;
 mod deal;
+mod histories;
 mod rupture;
 #[cfg(test)]
 mod tests;

@@ -566,8 +566,10 @@ impl Subject<'_> {
         let way = b.at() - a.at();
         let aside = if touches { ASIDE * self.cable.diameter_m } else { 0.0 };
         let [p, q] = [start.norm(), end.norm()];
-        let turn = (end - start).norm() / if p < q { p } else { q };
-        if turn < FOLD {
+        let least = if p < q { p } else { q };
+        let turn = (end - start).norm() / least;
+        // A force no greater than what is let pass unbalanced has no direction, and may be none.
+        if turn < FOLD && least > BALANCE * self.scale {
             // Simpson's rule for ∫ F/|F| (1 + |F|/EA) ds with F linear in s.
             let rate = |f: Vec2| f * (1.0 / f.norm() + compliance);
             let exact = (rate(start) + rate((start + end) * 0.5) * 4.0 + rate(end)) * (material / 6.0);

@@ -3,6 +3,7 @@
 use super::assembly::Mesh;
 use super::contact_set::{ContactSet, Rub, Touch};
 use super::dynamics::Dynamics;
+use super::floor::OverRound;
 use super::path::angle_between;
 use super::sliding::{Load, Seat, Sliding};
 use crate::contact::friction;
@@ -255,6 +256,13 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
     out
 }
 
+/// What a round does to the cable at a sliding node, N: all that the change of the internal force asks for, but for what the floor does.
+fn by_round(load: &Load) -> Vec2 {
+    let [before, after] = load.force.map(|f| f.try_normalize(0.0).unwrap_or_default());
+    let on = (before + after).try_normalize(0.0).unwrap_or_default();
+    -load.jump - before * load.floor[0] - on * load.floor[1] - after * load.floor[2]
+}
+
 /// A point of the cable on a round.
 struct OnRound {
     arc_length: f64,
@@ -301,19 +309,30 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
         let (sin, cos) = (sense * turned).sin_cos();
         Vec2::new(cos * mark.x - sin * mark.y, sin * mark.x + cos * mark.y)
     };
+    // What the floor takes before and after the round is not the round's.
+    let [f0, floor, f2] = load.floor;
+    let [a, b] = [a - f0, b + f2];
     // dT = −b·dx without friction.
     let first = normal(-before);
     let unrubbed = |normal: Vec2| a - d.task.body.dot(&(normal - first)) * radius / mesh.thermal_stretch;
     let last = unrubbed(normal(after));
+    let over = OverRound::between([a, b - (last - a)], floor);
     let at = |i: f64| {
         let f = i / count;
         let turned = f * whole - before;
         let stretch = stretch[usize::from(turned > 0.0)];
         let normal = normal(turned);
         let smooth = unrubbed(normal);
-        let rubbed = a > 0.0 && b > 0.0 && smooth > 0.0 && last > 0.0;
-        let tension = if rubbed { smooth * (b / last).powf(f) } else { a + (b - a) * f };
-        let force = perp(normal) * (sense * tension);
+        let tension = if floor != 0.0 {
+            over.map_or(a + (b - a) * f, |over| over.at(f) + smooth - a)
+        } else if a > 0.0 && b > 0.0 && smooth > 0.0 && last > 0.0 {
+            smooth * (b / last).powf(f)
+        } else {
+            a + (b - a) * f
+        };
+        // The floor's friction of half of what lies beside a point acts at it, as it does at a node of the cable.
+        let beyond = if i < count { tension - 0.5 * floor / count } else { tension - f2 };
+        let force = perp(normal) * (sense * beyond);
         let arc_length = mesh.arc_length[k] + turned * radius / stretch;
         OnRound { arc_length, at: node.end.center + normal * radius, tension, force, stretch }
     };
@@ -493,21 +512,15 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
             let [before, after] = load.tension;
             // The law of friction holds between the pulls along the bars: what hangs across them is the cable's own weight, and
             // what the floor takes of what slides here is not the round's.
-            let [a, b] = load.pull;
-            let floor = d
-                .task
-                .floor_limit
-                .get(j)
-                .map_or(0.0, |&limit| friction::at_plane(d.contacts.floor_slid[j], limit, d.contacts.slip).1.x);
-            // ∫T dφ of a tension that grows evenly in its logarithm.
-            let a = a - floor;
-            let ratio = if a > 0.0 && b > 0.0 { (b / a).ln() } else { 0.0 };
-            let mean = if ratio.abs() > 1e-6 { (b - a) / ratio } else { 0.5 * (a + b) };
+            let [a, b] = load.at_round();
+            let floor = load.floor[1];
+            let over = OverRound::between([a, b], floor);
+            let mean = over.map_or(0.5 * (a + b), |over| over.normal(1.0));
             r.normal_n += mean * load.turn;
             push += node.end.mark * (mean * load.turn);
             turn += load.turn;
             // Without friction what they differ by is weight alone.
-            r.friction_n += if node.friction > 0.0 { a - b } else { 0.0 };
+            r.friction_n += if node.friction > 0.0 { a - b - floor } else { 0.0 };
             slips &= !node.sticks();
             // The round's own arc on either side of the node is of the contact.
             let lap = |e: usize, side: usize| {
@@ -519,7 +532,7 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
                 r.begins_m = d.mesh.arc_length[j] - lap(j - 1, 0);
             }
             r.ends_m = d.mesh.arc_length[j] + lap(j, 1);
-            samples.push(ContactSample::new(d.mesh.arc_length[j], -load.jump));
+            samples.push(ContactSample::new(d.mesh.arc_length[j], by_round(&load)));
             r.tension_after_n = after;
         }
         let normal = if push.norm() > 0.0 { push.normalize() } else { node.end.mark };

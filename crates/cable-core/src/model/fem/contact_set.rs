@@ -7,7 +7,7 @@ use crate::contact::barrier::Barrier;
 use crate::contact::friction;
 use crate::contact::near::Near;
 use crate::contact::pairs::Pair;
-use crate::math::{Vec2, bounded};
+use crate::math::{Vec2, bounded, larger};
 use crate::problem::Problem;
 
 /// Sliding at which friction is fully mobilised (ε) in motion, and the most of it at rest, m. 1e-6 costs half as many iterations
@@ -301,6 +301,24 @@ impl ContactSet {
             }
         }
         self.scratch = touches;
+    }
+
+    /// Takes the friction of contacts that were there `before` halfway from what they had then to what they have now; returns by how much it is
+    /// then off at most, N.
+    pub fn ease(&mut self, before: &[Rub]) -> f64 {
+        let mut off = 0.0;
+        for rub in &mut self.rubs {
+            let here = |b: &&Rub| {
+                let (a, b) = (&rub.touch, &b.touch);
+                (a.node, a.on_segment, a.pair.gap.feature) == (b.node, b.on_segment, b.pair.gap.feature)
+            };
+            let low = before.partition_point(|b| b.touch.node < rub.touch.node);
+            let known = before[low..].iter().take_while(|b| b.touch.node == rub.touch.node).find(here);
+            let half = known.map_or(0.0, |b| 0.5 * (b.limit - rub.limit));
+            rub.limit += half;
+            off = larger(off, half.abs());
+        }
+        off
     }
 
     /// The sliding a contact starts with: its own, else that of the same material on the same obstacle (it crossed

@@ -35,6 +35,7 @@ impl Dynamics {
                 grip: Grip::Stick,
                 factor: 1.0,
                 exponent: 0.0,
+                floor_factor: 1.0,
             };
             self.insert(k, at, Some(sliding));
         }

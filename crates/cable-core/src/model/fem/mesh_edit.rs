@@ -1,6 +1,7 @@
 //! Putting nodes into a mesh and taking them out: material, place and momentum of what stays are left as they are.
 
 use super::dynamics::Dynamics;
+use super::floor;
 use super::sliding::Sliding;
 use crate::math::Vec2;
 
@@ -19,6 +20,13 @@ impl Dynamics {
         let t = path.direction;
         let speed = |j: usize| if mesh.sliding[j].is_some() { t * -m.w[j] } else { m.v[j] };
         let v = speed(k - 1) * (1.0 - part) + speed(k) * part;
+        // The floor does to it what it does to its neighbours.
+        let slid = |j: usize| {
+            let slid = self.contacts.floor_slid[j];
+            if mesh.sliding[j].is_some() { floor::as_move(slid, t) } else { slid }
+        };
+        let between = slid(k - 1) * (1.0 - part) + slid(k) * part;
+        let between = if sliding.is_some() { floor::as_slide(between, t) } else { between };
         let h = m.step_before;
         mesh.arc_length.insert(k, arc_length);
         mesh.rest_length[k - 1] = mesh.thermal_stretch * (arc_length - a);
@@ -35,7 +43,7 @@ impl Dynamics {
         m.w_before.insert(k, w);
         m.s_before.insert(k, arc_length - w * h);
         self.reaction.insert(k, Vec2::zeros());
-        self.contacts.floor_slid.insert(k, Vec2::zeros());
+        self.contacts.floor_slid.insert(k, between);
         self.renumber(|node| Some(if node >= k { node + 1 } else { node }));
     }
 

@@ -23,6 +23,7 @@ pub mod dynamics;
 mod elastica;
 pub mod element;
 mod estimate;
+mod floor;
 mod foresee;
 mod free_step;
 mod free_way;

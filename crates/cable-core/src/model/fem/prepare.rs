@@ -2,6 +2,7 @@
 
 use super::contact_step::Workspace;
 use super::dynamics::{Dynamics, INNER_STEP, REACH};
+use super::floor;
 use super::sliding::Seat;
 use super::task::{Done, Failure, Pose};
 use crate::math::Vec2;
@@ -22,6 +23,10 @@ const STEP_ITERATIONS: usize = 120;
 
 /// Factors of sliding nodes count as found when they change by less than this.
 const SAME_FACTOR: f64 = 1e-9;
+
+/// Friction of the floor for a node counts as found when it changes by less than this part. More: the cones of a report are not those that were
+/// solved for (the checker asks for 1e-3); less: rounds of what moves by rounding.
+const SAME_FLOOR: f64 = 1e-6;
 
 /// Forces at a sliding node within this part of each other are equal: the law is read off bars, whose tension is
 /// known to the residual only.
@@ -94,10 +99,6 @@ impl Dynamics {
                 task.start[k] = self.motion.x[k];
             }
         }
-        task.floor_limit.clear();
-        if let Some((friction, normal)) = problem.floor_friction {
-            task.floor_limit.extend((0..n).map(|k| friction * normal * mesh.share(k)));
-        }
         task.may_lag = to > from;
         task.max_iterations = STEP_ITERATIONS;
         task.max_move = 2.0 * INNER_STEP * 100.0;
@@ -113,6 +114,27 @@ impl Dynamics {
         task.predicted_slide.clear();
         task.predicted_slide.resize(n, 0.0);
         self.set_scale();
+        let x = std::mem::take(&mut self.motion.x);
+        self.press_on_floor(&x, None);
+        self.motion.x = x;
+    }
+
+    /// Plan view: the friction that the floor has for each node where the cable lies now; returns whether any of it changed.
+    fn press_on_floor(&mut self, x: &[Vec2], slide: Option<&[f64]>) -> bool {
+        let Some((friction, normal)) = self.problem.floor_friction else {
+            self.task.floor_limit.clear();
+            return false;
+        };
+        let (mesh, limits) = (&self.mesh, &mut self.task.floor_limit);
+        let mut changed = limits.len() != mesh.nodes();
+        limits.resize(mesh.nodes(), 0.0);
+        for (k, limit) in limits.iter_mut().enumerate() {
+            let reach: f64 = floor::reaches(mesh, k, x, slide).iter().sum();
+            let now = friction * normal * reach;
+            changed |= !((now - *limit).abs() <= SAME_FLOOR * (now + *limit));
+            *limit = now;
+        }
+        changed
     }
 
     /// The factor of each bar's energy from the grips of the sliding nodes before it.
@@ -134,7 +156,7 @@ impl Dynamics {
         if self.never_slides {
             return (false, false);
         }
-        let (mut gripped, mut changed) = (false, false);
+        let (mut gripped, mut changed) = (false, self.press_on_floor(&pose.x, Some(&pose.slide)));
         for k in 0..self.mesh.nodes() {
             let (Some(node), Some(load)) = (self.mesh.sliding[k], self.load_at(k, &pose.x, Some(&pose.slide))) else {
                 continue;
@@ -148,11 +170,14 @@ impl Dynamics {
             let slack = self.task.tolerance + EVEN_FORCE * (load.pull[0] + load.pull[1]);
             next.grip = load.grip(&next, pose.slide[k], inertia, slack);
             next.factor = load.factor(next.grip, next.exponent, self.mesh.axial_stiffness);
+            let floor = floor::reaches(&self.mesh, k, &pose.x, Some(&pose.slide));
+            next.floor_factor = floor::factor(floor, load.ratio(next.grip, next.exponent));
             if next.sticks() && !node.sticks() {
                 pose.slide[k] = 0.0;
             }
             gripped |= next.grip != node.grip;
-            changed |= !((next.factor / node.factor - 1.0).abs() <= SAME_FACTOR);
+            let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SAME_FACTOR;
+            changed |= !(same(next.factor, node.factor) && same(next.floor_factor, node.floor_factor));
             self.mesh.sliding[k] = Some(next);
         }
         self.set_scale();
@@ -248,7 +273,8 @@ fn clear_way(problem: &Problem, from: Vec2, to: Vec2) -> Vec2 {
 
 /// Load per metre that presses on the ground and the whole load, N/m and N; never 0.
 pub(super) fn load_scale(problem: &Problem) -> (f64, f64) {
-    let floor = problem.floor_friction.map_or(0.0, |(_, n)| n);
+    // What presses on the floor of a plan view counts by what it rubs.
+    let floor = problem.floor_friction.map_or(0.0, |(friction, normal)| friction * normal);
     let whole = problem.force_scale().max(floor * problem.length);
     let per_m = problem.body_force(0.0).norm().max(floor).max(1e-3 * whole / problem.length);
     (per_m, whole)

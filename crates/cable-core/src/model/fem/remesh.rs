@@ -10,8 +10,10 @@
 //! Material, place and momentum of what stays are left as they are.
 
 use super::dynamics::Dynamics;
+use super::floor;
 use super::path::{End, Path, angle_between};
 use super::sliding::{Grip, Load, Seat, Sliding, round_of};
+use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp};
 
 /// Corners that turn by less (rad) are left to the barrier: there a chain jerks by less than 1e-3 of its tension.
@@ -108,7 +110,12 @@ impl Dynamics {
             if t < 0.0 { 0.0 } else { t }
         });
         let share = rest.map(|l| 0.5 * l / mesh.thermal_stretch);
-        Some(Load::new(node, tension, [&path[0], &path[1]], (self.task.body, share)))
+        let floor = self.problem.floor_friction.map_or([0.0; 3], |(rough, normal)| {
+            let slid = self.contacts.floor_slid[k].x + slide.map_or(0.0, |s| s[k]);
+            let per_m = friction::at(slid, rough * normal, self.contacts.slip).1;
+            floor::reaches(mesh, k, x, slide).map(|reach| per_m * reach)
+        });
+        Some(Load { floor, ..Load::new(node, tension, [&path[0], &path[1]], (self.task.body, share)) })
     }
 
     /// Lets go of the sliding nodes that press on nothing, but for those on `kept`; returns whether there were any.
@@ -155,7 +162,7 @@ impl Dynamics {
         m.x_before[k] = m.x[k];
         m.v[k] = Vec2::zeros();
         m.v_before[k] = Vec2::zeros();
-        self.contacts.floor_slid[k] = Vec2::zeros();
+        self.contacts.floor_slid[k] = floor::as_slide(self.contacts.floor_slid[k], along);
     }
 
     /// A sliding node becomes one that moves with its material: something else is in the way of a bar in its place.
@@ -190,6 +197,8 @@ impl Dynamics {
             mesh.rest_length[k] = whole - first;
         }
         let m = &mut self.motion;
+        let slid = floor::as_move(self.contacts.floor_slid[k], along.try_normalize(0.0).unwrap_or_default());
+        self.contacts.floor_slid[k] = slid;
         m.v[k] = along * (-0.5 * m.w[k]);
         m.v_before[k] = m.v[k];
         m.x_before[k] = m.x[k] - m.v[k] * m.step_before;
@@ -363,6 +372,7 @@ impl Dynamics {
             grip: Grip::Stick,
             factor: 1.0,
             exponent: 0.0,
+            floor_factor: 1.0,
         };
         Some((bar, arc_length, sliding))
     }

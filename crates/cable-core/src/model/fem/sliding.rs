@@ -12,6 +12,7 @@
 //! matrix stays symmetric. What is balanced is Θ = T + T²/2EA, the slope of a bar's energy by its own length, so γ
 //! is corrected by Θ(γT)/Θ(T)/γ.
 
+use super::floor;
 use super::path::{End, Path, angle_between};
 use crate::contact::geometry::Geometry;
 use crate::math::Vec2;
@@ -57,6 +58,8 @@ pub struct Sliding {
     pub factor: f64,
     /// μφ with the turn last seen.
     pub exponent: f64,
+    /// Plan view: the floor's friction as the scaled energy sees it, in parts of its own size (see `floor.rs`).
+    pub floor_factor: f64,
 }
 
 impl Sliding {
@@ -101,8 +104,10 @@ pub struct Load {
     pub normal: f64,
     /// Internal force just before and just after, N.
     pub force: [Vec2; 2],
-    /// Change of the internal force there, N: the opposite of what it runs over does to the cable.
+    /// Change of the internal force there, N: the opposite of what it runs over does to the cable, with the floor of a plan view.
     pub jump: Vec2,
+    /// Plan view: the floor's friction before, on and after the round, N; positive where the cable runs towards its start.
+    pub floor: [f64; 3],
 }
 
 impl Load {
@@ -118,37 +123,61 @@ impl Load {
         let ends = [force[0].norm(), force[1].norm()];
         let pull = [force[0].dot(&t[0]), force[1].dot(&t[1])];
         let turn = if node.end.radius > 0.0 {
-            let sag = angle_between(force[0], t[0]) + angle_between(t[1], force[1]);
+            // No force has no direction: the angle to zeros is half a turn where the sign of one of them is lost.
+            let between =
+                |a: Vec2, b: Vec2| if a == Vec2::zeros() || b == Vec2::zeros() { 0.0 } else { angle_between(a, b) };
+            let sag = between(force[0], t[0]) + between(t[1], force[1]);
             path[0].arcs[1] + path[1].arcs[0] + node.end.sense * sag
         } else {
             angle_between(force[0], force[1]).abs()
         };
-        Self { tension: ends, pull, turn, normal: 0.5 * (ends[0] + ends[1]) * turn, force, jump: force[1] - force[0] }
+        Self {
+            tension: ends,
+            pull,
+            turn,
+            normal: 0.5 * (ends[0] + ends[1]) * turn,
+            force,
+            jump: force[1] - force[0],
+            floor: [0.0; 3],
+        }
+    }
+
+    /// Pull where the cable comes on to the round and where it leaves it, N: what the floor takes of the straight halves is not the round's.
+    #[must_use]
+    pub fn at_round(&self) -> [f64; 2] {
+        [self.pull[0] - self.floor[0], self.pull[1] + self.floor[2]]
     }
 
     /// What the law says of the grip: `slid` is how far the arc length moved in this step (m), `inertia` the force
     /// (N) that its inertia adds to the slope.
     #[must_use]
     pub fn grip(&self, node: &Sliding, slid: f64, inertia: f64, slack: f64) -> Grip {
-        let [before, after] = self.pull;
+        let [before, after] = self.at_round();
         let cone = node.exponent.exp();
+        let slope = |ratio: f64| after * ratio + self.floor[1] * floor::mean_factor(ratio) - before + inertia;
         match node.grip {
-            Grip::Stick if -before + after * cone + inertia < -slack => Grip::ToStart,
-            Grip::Stick if -before + after / cone + inertia > slack => Grip::ToEnd,
+            Grip::Stick if slope(cone) < -slack => Grip::ToStart,
+            Grip::Stick if slope(1.0 / cone) > slack => Grip::ToEnd,
             Grip::ToStart if slid < 0.0 => Grip::Stick,
             Grip::ToEnd if slid > 0.0 => Grip::Stick,
             same => same,
         }
     }
 
-    /// γ for a grip, for a cable of axial stiffness `stiffness` (N).
+    /// Tension before over tension after the round for a grip.
     #[must_use]
-    pub fn factor(&self, grip: Grip, exponent: f64, stiffness: f64) -> f64 {
-        let ratio = match grip {
+    pub fn ratio(&self, grip: Grip, exponent: f64) -> f64 {
+        match grip {
             Grip::Stick => 1.0,
             Grip::ToStart => exponent.exp(),
             Grip::ToEnd => (-exponent).exp(),
-        };
+        }
+    }
+
+    /// γ for a grip, for a cable of axial stiffness `stiffness` (N).
+    #[must_use]
+    pub fn factor(&self, grip: Grip, exponent: f64, stiffness: f64) -> f64 {
+        let ratio = self.ratio(grip, exponent);
         let after = self.pull[1];
         ratio * (1.0 + ratio * after / (2.0 * stiffness)) / (1.0 + after / (2.0 * stiffness))
     }

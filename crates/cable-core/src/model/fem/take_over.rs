@@ -109,7 +109,8 @@ impl Dynamics {
         let state = self.as_told(&told, &State::of_nodes(&answer.nodes, time_s));
         self.adopt(&state)?;
         let moves = answer.nodes.iter().any(|n| n.vx_m_per_s != 0.0 || n.vy_m_per_s != 0.0);
-        if moves || self.problem.world.is_empty() || self.contacts.own.shape.is_on() {
+        let touches = !self.problem.world.is_empty() || self.problem.floor_friction.is_some();
+        if moves || !touches || self.contacts.own.shape.is_on() {
             return Ok(());
         }
         self.save();
@@ -121,6 +122,7 @@ impl Dynamics {
         self.stretch_as_told(&told);
         self.renew_task();
         self.hold_as_told(&told);
+        self.lie_on_floor_as_told(&told);
         if self.rest_step(time_s, dragged).is_ok() {
             self.rested = true;
         } else {
@@ -232,6 +234,7 @@ impl Dynamics {
                     grip: Grip::Stick,
                     factor: 1.0,
                     exponent: 0.0,
+                    floor_factor: 1.0,
                 },
             };
             arc.grow(told, radius - self.contacts.barrier.reach);
@@ -296,6 +299,31 @@ impl Dynamics {
             for (k, length) in lengths.iter().enumerate() {
                 self.mesh.arc_length[first + k] = from + length;
             }
+        }
+    }
+
+    /// Plan view: every node remembers the sliding with which the floor does what the answer asks for there, as far as it can.
+    fn lie_on_floor_as_told(&mut self, told: &Told<'_>) {
+        if self.problem.floor_friction.is_none() {
+            return;
+        }
+        let s = &self.mesh.arc_length;
+        let near = NEAR * self.even();
+        for (k, limit) in self.task.floor_limit.iter().enumerate().filter(|(k, l)| **l > 0.0 && !self.mesh.held[*k]) {
+            let low = 0.5 * (s[k] + s[k.saturating_sub(1)]);
+            let high = 0.5 * (s[k] + s[(k + 1).min(s.len() - 1)]);
+            let asked = match self.mesh.sliding[k] {
+                // What holds there is the floor first, and the round for the rest.
+                Some(_) => Some(Vec2::new(told.tension(low) - told.tension(high), 0.0)),
+                None => match (told.force(low, near), told.force(high, near)) {
+                    (Some(before), Some(after)) => Some(after - before + self.task.body * (high - low)),
+                    _ => None,
+                },
+            };
+            let Some((asked, way)) = asked.and_then(|a| Some((a.norm(), a.try_normalize(0.0)?))) else { continue };
+            // The floor resists with R(2u − u²).
+            let part = if asked < *limit { asked / limit } else { 1.0 };
+            self.contacts.floor_slid[k] = way * (self.contacts.slip * (1.0 - (1.0 - part).sqrt()));
         }
     }
 

@@ -106,8 +106,9 @@ pub fn add_floor(s: &mut System, (mesh, task): (&Mesh, &Task), contacts: &Contac
     let mut value = 0.0;
     for (i, &limit) in task.floor_limit.iter().enumerate() {
         let scale = node_scale(task, i);
-        if mesh.sliding[i].is_some() {
-            let (d, slope, bend) = friction::at(contacts.floor_slid[i].x + pose.slide[i], limit, contacts.slip);
+        if let Some(sliding) = &mesh.sliding[i] {
+            let (d, slope, bend) =
+                friction::at(contacts.floor_slid[i].x + pose.slide[i], limit * sliding.floor_factor, contacts.slip);
             value += d * scale;
             s.gradient[2 * i] += slope * scale;
             s.hessian.add(2 * i, 2 * i, bend * scale);

@@ -347,7 +347,6 @@ fn a_cable_below_its_slip_threshold_stays_where_it_lies() {
 /// Between posts from above the leg at the reel never slides: what it was laid with stays, and differs from model to model. The
 /// answer says at least by how much.
 #[test]
-#[ignore = "open: in plan view the checker refuses fem at a post, whose friction is beyond its cone"]
 fn what_a_floor_holds_is_said() {
     let end = |model| {
         let settings = crate::Settings { segments: Some(50), ..crate::Settings::default() };

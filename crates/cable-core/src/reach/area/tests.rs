@@ -178,7 +178,7 @@ fn it_begins_where_the_cable_lies_now() {
 
 /// Over heaps of slack finite elements catch on corners: on these two ways they pulled by 16 and 5 kN. None of that is on the map.
 #[test]
-#[ignore = "open: the checker refuses fem on the way over heaps of slack"]
+#[ignore = "open: on the way over heaps of slack the normal forces that friction uses do not come to an end in 25 rounds"]
 fn ways_over_heaps_of_slack_pull_by_no_more_than_weight() {
     let ask = ask(catalog::tank(), [[-3.0, 0.0], [4.0, 6.0]], 1.0);
     let (flood, laid) = begin(&ask).unwrap();
