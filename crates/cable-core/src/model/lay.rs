@@ -50,6 +50,10 @@ pub fn least_sliding(
         Err(_) => return Ok(None),
     };
     if problem.bending_stiffness > 0.0 {
+        // What lies loose tells a stiff one nothing: no tension draws it straight.
+        if spans.lies_loose() {
+            return Ok(None);
+        }
         warnings.iter_mut().filter(|w| w.kind == WarningKind::NotUnique).for_each(of_flexible);
     }
     let answer = spans.solution();

@@ -24,6 +24,8 @@ use crate::solution::{ContactReport, ContactSample, ContactState};
 
 /// Part of the cone by which the ground may be steeper: rounding.
 const CONE: f64 = 1e-9;
+/// Part of the cable that there must be too much of: what is as long as its way lies along it, and remembers what friction does.
+const OVER: f64 = 1e-9;
 /// Depth (m) at which a support or the way along the ground still counts as clear: rounding of kilometres.
 const ON: f64 = super::events::ON;
 /// Nodes of a plumb end and of a straight stretch.
@@ -84,7 +86,7 @@ pub(super) fn lay(layout: &Layout, index: usize, (course, instant): (&Course, &I
         let Some(stretches) = between(&course.curves[index], [before.at, after.at], load) else { continue };
         let curve = &course.curves[index];
         let length: f64 = stretches.iter().map(|s| stretch_length(curve, s)).sum();
-        if !(course.law.stretch(0.0) * (feet[1] - feet[0]) >= length) {
+        if !(course.law.stretch(0.0) * (feet[1] - feet[0]) - length > OVER * (to - from)) {
             continue;
         }
         let loose = Loose { curve: index, stretches, ends: [a, b], feet, way: length, drawn };

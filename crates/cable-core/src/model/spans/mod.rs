@@ -107,6 +107,11 @@ impl SpansModel {
         Ok(Self { layout, time_s: 0.0, dragged: vec![None; n], network: None, work, instants, shown })
     }
 
+    /// Whether what was found lies without tension.
+    pub(super) fn lies_loose(&self) -> bool {
+        self.network.as_ref().is_some_and(|n| n.loose().is_some())
+    }
+
     /// Whether a resting place has been found.
     pub(super) fn stands(&self) -> bool {
         self.network.is_some()
@@ -239,8 +244,7 @@ impl Mechanics for SpansModel {
     }
 
     fn reason(&self) -> Option<&str> {
-        let loose = self.network.as_ref().is_some_and(|n| n.loose().is_some());
-        loose.then_some("the cable lies loose: what hangs is plumb, what lies has no tension")
+        self.lies_loose().then_some("the cable lies loose: what hangs is plumb, what lies has no tension")
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {

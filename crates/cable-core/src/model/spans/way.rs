@@ -157,9 +157,10 @@ pub(super) fn way(layout: &Layout, part: &Part, instant: &Instant) -> Way {
     Way::new(points)
 }
 
-/// Two points above everything between `a` and `b`, where the straight way is blocked.
+/// What leads from `a` to `b` where the straight way is blocked: out from under what either is under, then above everything between.
 fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
-    if world.is_empty() || world.free_fraction([a, a], [b, b], 0.0) >= 1.0 {
+    let free = |p: Vec2, q: Vec2| world.free_fraction([p, p], [q, q], 0.0) >= 1.0;
+    if world.is_empty() || free(a, b) {
         return Vec::new();
     }
     let (low, high) = (a.x.min(b.x), a.x.max(b.x));
@@ -170,5 +171,35 @@ fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
             top = top.max(q.y + 2.0 * body.offset + 1e-3);
         }
     }
-    vec![Vec2::new(a.x, top), Vec2::new(b.x, top)]
+    let above = |p: Vec2| Vec2::new(p.x, top);
+    let out = |p: Vec2, to: Vec2| match free(p, above(p)) {
+        true => None,
+        false => aside(world, p, to),
+    };
+    let [from, to] = [out(a, b), out(b, a)];
+    let [c, d] = [from.unwrap_or(a), to.unwrap_or(b)];
+    let mut way: Vec<Vec2> = from.into_iter().collect();
+    if (from.is_none() && to.is_none()) || !free(c, d) {
+        way.extend([above(c), above(d)]);
+    }
+    way.extend(to);
+    way
+}
+
+/// A point beside what is above p and a little below it, on the side of `to`.
+fn aside(world: &World, p: Vec2, to: Vec2) -> Option<Vec2> {
+    let side = if to.x < p.x { -1.0 } else { 1.0 };
+    let mut far: Option<(f64, f64)> = None;
+    for body in world.geometry().bodies().iter().filter(|b| !b.is_ground()) {
+        let reach = body.offset + if body.center.is_some() { 0.0 } else { 1e-3 };
+        let points = || body.edges.iter().flat_map(|e| [e.p, e.q]).chain(body.center);
+        let [least, most] = points().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, m], q| [l.min(q.x), m.max(q.x)]);
+        let above = points().any(|q| q.y > p.y);
+        if above && p.x > least - reach && p.x < most + reach {
+            let edge = if side < 0.0 { least - 2.0 * reach } else { most + 2.0 * reach };
+            let (x, below) = far.unwrap_or((edge, reach));
+            far = Some((if side * (edge - x) > 0.0 { edge } else { x }, if reach > below { reach } else { below }));
+        }
+    }
+    far.map(|(x, below)| Vec2::new(x, p.y - below))
 }
