@@ -78,6 +78,7 @@ pub(super) fn check(found: &mut Verification, mut subject: Subject<'_>, depth: D
             subject.moments(found);
             subject.stability(found, &near);
         } else {
+            subject.tension(found, &near);
             subject.compression(found);
         }
     }
@@ -508,6 +509,28 @@ impl Subject<'_> {
             }
         }
         (out, turns)
+    }
+
+    /// The tension of a flexible cable is the size of the force in it: at a node one of those between just before and just beyond it.
+    fn tension(&self, found: &mut Verification, near: &[Vec<Near>]) {
+        found.ask(Law::Tension);
+        let nodes = &self.answer.nodes;
+        let last = nodes.len() - 1;
+        for (k, n) in nodes.iter().enumerate() {
+            // What lies on a round is carried half by the bar beside it.
+            let beside = nodes[(k + 1).min(last)].arc_length_m - nodes[k.saturating_sub(1)].arc_length_m;
+            let touched = self.touches(near, k.min(last - 1));
+            let lumped = if touched { LUMPED * self.body.norm() * beside } else { 0.0 };
+            let limit = REPORTED * self.scale + lumped;
+            let after = n.force();
+            let before = k.checked_sub(1).map_or(after, |j| self.forces_at_end(j)[1]);
+            let most = larger(before.norm(), after.norm());
+            let least = super::surroundings::distance(before, after, Vec2::zeros(), Vec2::zeros());
+            let value = larger(n.tension_n - most, least - n.tension_n);
+            if !(value <= limit) {
+                found.report(self.finding(Law::Tension, k, (value, limit)));
+            }
+        }
     }
 
     /// A flexible cable pulls along its way.

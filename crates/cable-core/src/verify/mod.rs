@@ -41,6 +41,8 @@ pub enum Law {
     Moment,
     /// The cable is where its supports hold it.
     Support,
+    /// The tension of a flexible cable is the size of the force in it.
+    Tension,
     /// A flexible cable does not push.
     Compression,
     /// A stiff cable pushes with no more than what would bend it aside.
@@ -67,6 +69,7 @@ impl Law {
             Self::Balance => "balance of forces",
             Self::Moment => "balance of moments",
             Self::Support => "held by its supports",
+            Self::Tension => "tension is the force",
             Self::Compression => "no compression",
             Self::Stability => "stability",
             Self::Length => "length",
@@ -86,6 +89,7 @@ impl Law {
             Self::Balance => "forces are out of balance",
             Self::Moment => "moments are out of balance",
             Self::Support => "the cable is not where it is held",
+            Self::Tension => "tension is not the force in the cable",
             Self::Compression => "a flexible cable pushes",
             Self::Stability => "a stiff cable pushes with more than would bend it aside",
             Self::Length => "the way of the nodes is not the length of the cable",
@@ -103,7 +107,7 @@ impl Law {
             Self::Finite => "",
             Self::Material | Self::Support | Self::Length | Self::Penetration | Self::SelfContact => "m",
             Self::Moment => "N m",
-            Self::Balance | Self::Compression | Self::Stability | Self::Push | Self::Friction => "N",
+            Self::Balance | Self::Tension | Self::Compression | Self::Stability | Self::Push | Self::Friction => "N",
         }
     }
 }

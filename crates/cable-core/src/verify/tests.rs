@@ -121,6 +121,12 @@ fn compression_is_seen() {
 }
 
 #[test]
+fn a_tension_that_is_not_the_force_is_seen() {
+    sees(Law::Tension, SPAN, |c| c.nodes[9].tension_n *= 1.01);
+    sees(Law::Tension, OVER_POST, |c| c.nodes.iter_mut().for_each(|n| n.tension_n = -n.tension_n));
+}
+
+#[test]
 fn a_way_that_is_not_the_material_is_seen() {
     sees(Law::Length, SPAN, |c| c.nodes.iter_mut().for_each(|n| n.y_m = 5.0 + 1.01 * (n.y_m - 5.0)));
     // Arches at no tension: more way than material.

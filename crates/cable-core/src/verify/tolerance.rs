@@ -48,7 +48,7 @@ pub const SAME_NORMAL: f64 = 1e-6;
 /// Strain whose force no residual of a cable without load is smaller than: a cable without weight has no other scale.
 pub const LEAST_STRAIN: f64 = 1e-7;
 
-/// What contacts and supports as they are reported may leave of the whole, of the greatest force. `fem` lags the normal forces that
+/// What contacts and supports as they are reported, and tensions at nodes where something touches, may leave of the whole, of the greatest force. `fem` lags the normal forces that
 /// friction uses by a round, and its contacts at corners are read off bars beside them: up to 1.8e-3 was seen. That every piece is
 /// balanced by what touches it is asked to [`BALANCE`]. Smaller: slow draws under beams by `fem` are refused; larger: a report that
 /// leaves a contact out passes.
