@@ -1,7 +1,8 @@
 //! Where other histories would have left a cable that the floor of a plan view holds.
 //!
 //! What friction holds is what was drawn into it. So each end of the cable is drawn out by a little and put back, and let in and put back, without
-//! inertia, each time from the rest found. Between what that leaves lies at least the range of all rests of this route.
+//! inertia, each time from the rest found. What that leaves is a
+//! range that was found: other histories may leave more.
 
 use crate::math::{Vec2, larger, smaller};
 use crate::model::Inertia;

@@ -564,15 +564,14 @@ impl Subject<'_> {
         found.ask(Law::Length);
         let stiff = self.answer.assumptions.bending_stiffness_n_m2 > 0.0;
         for k in 0..self.answer.nodes.len() - 1 {
-            let asked = match stiff {
-                true => vec![self.stiff_length(k)],
-                false => {
-                    let touches = self.touches(near, k);
-                    self.forces_at_end(k).map(|end| self.flexible_length(k, end, touches)).to_vec()
-                }
-            };
             let off = |l: &Lengths| l.value / l.limit;
-            let Some(best) = asked.into_iter().reduce(|a, b| if off(&b) < off(&a) { b } else { a }) else { continue };
+            let best = if stiff {
+                self.stiff_length(k)
+            } else {
+                let touches = self.touches(near, k);
+                let [spread, at_end] = self.forces_at_end(k).map(|end| self.flexible_length(k, end, touches));
+                if off(&at_end) < off(&spread) { at_end } else { spread }
+            };
             found.folded_m += best.folded;
             if !(best.value <= best.limit) {
                 found.report(self.finding(Law::Length, k, (best.value, best.limit)));

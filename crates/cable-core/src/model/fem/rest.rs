@@ -344,6 +344,9 @@ impl Dynamics {
                     let (residual_n, place) = (f.residual, self.place(f.node));
                     return Err(SolveError::TooMuchWork { model, iterations, segments, residual_n, place });
                 }
+                if let Some(why) = self.through(&sought) {
+                    return Err(SolveError::NoRestingPlace { why });
+                }
                 let arc_length = self.mesh.arc_length.get(f.node).copied().unwrap_or(f64::NAN);
                 let place = self.problem.place(arc_length, at_m, self.motion.time);
                 Err(SolveError::NotConverged {
@@ -436,6 +439,25 @@ impl Dynamics {
         let now = &self.motion.x;
         let way = moved(sought.first(), now.first())?.min(moved(sought.last(), now.last())?);
         (way > self.problem.length).then_some(way)
+    }
+
+    /// What a cable that found no rest at `x` runs through, in words: out of there it cannot get.
+    fn through(&self, x: &[Vec2]) -> Option<String> {
+        let (mesh, world) = (&self.mesh, &self.problem.world);
+        if x.len() != mesh.nodes() {
+            return None;
+        }
+        let clear = |e: usize| world.geometry().is_clear(mesh.straight(e, x), 0.0, mesh.rounds(e));
+        let e = (0..mesh.rest_length.len()).filter(|&e| mesh.is_free(e) || mesh.is_free(e + 1)).find(|&e| !clear(e))?;
+        let [a, b] = mesh.straight(e, x);
+        let gap = world.signed_gap((a + b) * 0.5, f64::INFINITY)?;
+        Some(format!(
+            "the cable is laid through `{}`, at ({:.3} m, {:.3} m), {:.3} m along it, and nothing leads it out: draw a route_m round it, or leave a way to where its ends are held",
+            world.obstacle_name(gap.obstacle),
+            gap.point.x,
+            gap.point.y,
+            mesh.arc_length[e]
+        ))
     }
 
     /// Whether two bars of the cable cross.
