@@ -78,7 +78,7 @@ pub(super) fn check(found: &mut Verification, mut subject: Subject<'_>, depth: D
             subject.moments(found);
             subject.stability(found, &near);
         } else {
-            subject.tension(found, &near);
+            subject.tension(found);
             subject.compression(found);
         }
     }
@@ -512,16 +512,14 @@ impl Subject<'_> {
     }
 
     /// The tension of a flexible cable is the size of the force in it: at a node one of those between just before and just beyond it.
-    fn tension(&self, found: &mut Verification, near: &[Vec<Near>]) {
+    fn tension(&self, found: &mut Verification) {
         found.ask(Law::Tension);
         let nodes = &self.answer.nodes;
         let last = nodes.len() - 1;
         for (k, n) in nodes.iter().enumerate() {
-            // What lies on a round is carried half by the bar beside it.
+            // `fem` reads it off the middles of the bars beside a node, half of whose weight is in between.
             let beside = nodes[(k + 1).min(last)].arc_length_m - nodes[k.saturating_sub(1)].arc_length_m;
-            let touched = self.touches(near, k.min(last - 1));
-            let lumped = if touched { LUMPED * self.body.norm() * beside } else { 0.0 };
-            let limit = REPORTED * self.scale + lumped;
+            let limit = REPORTED * self.scale + LUMPED * self.body.norm() * beside;
             let after = n.force();
             let before = k.checked_sub(1).map_or(after, |j| self.forces_at_end(j)[1]);
             let most = larger(before.norm(), after.norm());

@@ -459,6 +459,11 @@ impl Network {
         lies.reduce(|[a, b], [c, d]| [a + c, b + d])
     }
 
+    /// The most that friction can hold of what lies loose, N.
+    pub fn friction_of_loose(&self) -> f64 {
+        self.strands.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.friction(&self.course)).sum()
+    }
+
     /// To an instant that no balance near by leads to: the cable slides under a drag that is taken away as it comes to rest.
     ///
     /// Each step is one of implicit Euler of η ds/dt = T₂ − T₁, which falls in energy; η is lowered as far as it goes

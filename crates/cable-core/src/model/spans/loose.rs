@@ -336,6 +336,11 @@ impl Loose {
         -course.law.load * (self.feet[1] - self.feet[0]) - self.drawn.iter().sum::<Vec2>()
     }
 
+    /// The most that friction can hold of what lies, N.
+    pub fn friction(&self, course: &Course) -> f64 {
+        course.curves[self.curve].friction * self.held(course).norm()
+    }
+
     /// Material that lies, and the length of ground it lies on, m.
     pub fn lies(&self) -> [f64; 2] {
         [self.feet[1] - self.feet[0], self.way]

@@ -286,8 +286,10 @@ impl Mechanics for SpansModel {
         let mobilised = self.layout.problem.cable.friction_mobilised;
         if let Some([material, ground]) = loose {
             let name = &self.layout.problem.cable.name;
+            // Whatever the history, nothing but friction on what lies can hold more.
+            let held = self.network.as_ref().map_or(0.0, Network::friction_of_loose);
             let message = format!(
-                "The cable lies loose: {material:.3} m of it on {ground:.3} m of ground, without tension, and its ends feel only what hangs on them. How it is folded there is not known: it is shown spread evenly. Laid otherwise it may lie elsewhere, and pull by what friction holds"
+                "The cable lies loose: {material:.3} m of it on {ground:.3} m of ground, without tension, and its ends feel only what hangs on them. How it is folded there is not known: it is shown spread evenly. Laid otherwise it may pull at its ends by what friction on it holds, {held:.2} N at most"
             );
             report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message));
         } else if self.rubs() && mobilised.is_default() {
