@@ -447,7 +447,9 @@ impl Dynamics {
         if x.len() != mesh.nodes() {
             return None;
         }
-        let clear = |e: usize| world.geometry().is_clear(mesh.straight(e, x), 0.0, mesh.rounds(e));
+        // Its centre line is in the thing itself, or nearly: what only touches is not through.
+        let least = -0.9 * self.problem.radius;
+        let clear = |e: usize| world.geometry().is_clear(mesh.straight(e, x), least, mesh.rounds(e));
         let e = (0..mesh.rest_length.len()).filter(|&e| mesh.is_free(e) || mesh.is_free(e + 1)).find(|&e| !clear(e))?;
         let [a, b] = mesh.straight(e, x);
         let gap = world.signed_gap((a + b) * 0.5, f64::INFINITY)?;
