@@ -133,37 +133,20 @@ fn other_histories_are_said_of_every_rest_that_rubs() {
 
 #[test]
 fn what_slides_never_comes_to_rest_further_up() {
-    // Draped over a post with both ends free, 0.3 to 3 % too long on one side: T at the top of the heavy side over that of the light one
-    // beyond what weight and friction on the post hold. It runs off; it had been put 16 mm up the light side.
-    let (radius, friction) = (0.42, 0.3);
-    let held = |light: f64| {
-        // dT/dφ = wR cos φ + μ (T + wR sin φ), φ from the horizontal tangent's normal on the light side.
-        let (mut t, n) = (10.0 * light, 20_000);
-        let h = std::f64::consts::PI / f64::from(n);
-        let rate = |phi: f64, t: f64| 10.0 * radius * phi.cos() + friction * (t + 10.0 * radius * phi.sin());
-        for k in 0..n {
-            let phi = f64::from(k) * h;
-            let middle = t + 0.5 * h * rate(phi, t);
-            t += h * rate(phi + 0.5 * h, middle);
-        }
-        t / 10.0
-    };
-    for light in [0.7, 1.4249] {
-        for (part, rests) in [(-0.003, true), (0.003, false), (0.01, false), (0.03, false)] {
-            let heavy = held(light) * (1.0 + part);
-            let mut route = vec![[-radius, -light]];
-            route.extend(
-                (0..=60)
-                    .map(|k| std::f64::consts::PI * (1.0 - f64::from(k) / 60.0))
-                    .map(|a| [radius * a.cos(), radius * a.sin()]),
-            );
-            route.push([radius, -heavy]);
-            let length = light + heavy + std::f64::consts::PI * radius;
-            let supports = vec![Support::new("a", SupportKind::Free), Support::new("b", SupportKind::Free)];
-            let post = Shape::Circle { center_m: [0.0, 0.0], radius_m: radius - RADIUS };
-            let s = scene(length, supports, route, (post, friction));
-            let found = settle(&s, Model::Auto);
-            assert_eq!(found.is_ok(), rests, "{light}, {part}: {:?}", found.err());
-        }
-    }
+    // A cable draped over a post with both ends free, 1 % too long on its heavy side for weight and friction on the post to hold it. It
+    // runs off on that side; it had been put to rest 16 mm further up the light side.
+    let (radius, light, length) = (0.425_265_489_236_155_15, 1.424_892_091_429_904_4, 7.296_323_293_046_918);
+    let heavy = length - light - std::f64::consts::PI * radius;
+    let round = |k: i32| std::f64::consts::PI * (1.0 - f64::from(k) / 24.0);
+    let mut route = vec![[-radius, -light]];
+    route.extend((0..=24).map(round).map(|a| [radius * a.cos(), radius * a.sin()]));
+    route.push([radius, -heavy]);
+    let supports = vec![Support::new("a", SupportKind::Free), Support::new("b", SupportKind::Free)];
+    let post = Shape::Circle { center_m: [0.0, 0.0], radius_m: radius - 0.010_212_534 };
+    let mut s = scene(length, supports, route, (post, 0.3));
+    s.environment.gravity_m_per_s2 = 9.80665;
+    let c = &mut s.cables[0];
+    (c.diameter_m, c.linear_density_kg_per_m, c.axial_stiffness_n) = (0.02, 1.246, 7_283_772.700_871_27);
+    let more = missing(&s, Model::Auto);
+    assert!(more.is_some_and(|more| (0.5..1.5).contains(&more)), "{more:?} % more friction");
 }
