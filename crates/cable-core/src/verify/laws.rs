@@ -5,6 +5,7 @@
 //! and must be nothing in the air, and within the cone about the normals of what touches the piece elsewhere. Beyond its ends
 //! the cable has no internal force.
 
+use super::supports::{self, Hold, Role};
 use super::surroundings::{Near, Surroundings};
 use super::tolerance::{
     ASIDE, BALANCE, COMPRESSION, CONE, DEPTH_DIAMETERS, DEPTH_M, FOLD, LEAST_STRAIN, LENGTH, LUMPED, MATERIAL, MOMENT,
@@ -12,7 +13,7 @@ use super::tolerance::{
 };
 use super::{Balance, Depth, Finding, Law, Verification};
 use crate::math::{Vec2, cross, larger, vec2};
-use crate::scene::{Cable, Scene, Support, SupportKind, View};
+use crate::scene::{Cable, Scene, View};
 use crate::solution::{CableSolution, ContactReport, Node, SupportReaction};
 
 /// One cable with what there is to know of it.
@@ -22,7 +23,9 @@ pub(super) struct Subject<'a> {
     pub cable: &'a Cable,
     pub answer: &'a CableSolution,
     /// Time, s.
-    pub time_s: f64,
+    time_s: f64,
+    /// What its supports do to it.
+    pub holds: Vec<Hold<'a>>,
     /// Weight and wind, N/m.
     body: Vec2,
     /// 1 + αΔT.
@@ -105,7 +108,8 @@ impl<'a> Subject<'a> {
         };
         let wind = series(Some(env.wind_n_per_m), &env.wind_times_s, &env.winds_n_per_m, time_s);
         let thermal = 1.0 + cable.thermal_expansion_per_k * env.temperature_change_k;
-        Self { surroundings, scene, cable, answer, time_s, body: weight + wind, thermal, scale: 0.0 }
+        let holds = supports::holds(cable, answer, time_s);
+        Self { surroundings, scene, cable, answer, time_s, holds, body: weight + wind, thermal, scale: 0.0 }
     }
 }
 
@@ -166,28 +170,13 @@ impl Subject<'_> {
     /// Supports and loads. Wheels are among the obstacles.
     fn point_forces(&self) -> Vec<PointForce> {
         let mut out = Vec::new();
-        let ends = self.cable.supports.len().saturating_sub(1);
-        for (k, (s, r)) in self.cable.supports.iter().zip(&self.answer.supports).enumerate() {
-            let released = s.release_s.is_some_and(|t| self.time_s >= t - 1e-9);
-            let arc_length = match k {
-                0 => 0.0,
-                k if k == ends => self.cable.length_m,
-                _ => r.arc_length_m,
+        for hold in &self.holds {
+            let force = match hold.role {
+                Role::Load => hold.dead_load(self.scene, self.time_s),
+                Role::Held | Role::Pulley => hold.force(),
+                Role::Wheel { .. } | Role::Released => continue,
             };
-            let force = match s.kind {
-                SupportKind::Load | SupportKind::Free => {
-                    let mass = s.mass_kg.unwrap_or(0.0);
-                    let gravity = match self.scene.view {
-                        View::Elevation => Vec2::new(0.0, -self.scene.environment.gravity_m_per_s2),
-                        View::Plan => Vec2::zeros(),
-                    };
-                    series(s.force_n, &s.times_s, &s.forces_n, self.time_s) + gravity * mass
-                }
-                SupportKind::Pulley if s.radius_m.is_some_and(|r| r > 0.0) => continue,
-                _ if released => continue,
-                _ => -Vec2::new(r.reaction_x_n, r.reaction_y_n),
-            };
-            out.push(PointForce { arc_length, force });
+            out.push(PointForce { arc_length: hold.arc_length, force });
         }
         for l in self.scene.loads.iter().filter(|l| l.cable == self.cable.name) {
             let force = series(l.force_n, &l.times_s, &l.forces_n, self.time_s);
@@ -202,13 +191,11 @@ impl Subject<'_> {
         foreign.flat_map(|c| &c.samples).map(|s| PointForce { arc_length: s.arc_length_m, force: vec2(s.force_n) })
     }
 
-    /// Wheels that lead the cable now: centre, radius of the centre line and friction, with the name.
-    pub fn wheels(&self) -> impl Iterator<Item = (Vec2, f64, f64, &SupportReaction)> {
-        let radius = 0.5 * self.cable.diameter_m;
-        self.cable.supports.iter().zip(&self.answer.supports).filter_map(move |(s, r)| {
-            let wheel = s.radius_m.filter(|r| *r > 0.0 && s.kind == SupportKind::Pulley)?;
-            let holds = s.release_s.is_none_or(|t| self.time_s < t);
-            holds.then(|| (Vec2::new(r.x_m, r.y_m), wheel + radius, s.friction.unwrap_or(0.0), r))
+    /// Wheels that lead the cable now: centre, radius of the centre line and friction.
+    pub fn wheels(&self) -> impl Iterator<Item = (Vec2, f64, f64)> {
+        self.holds.iter().filter_map(|hold| match hold.role {
+            Role::Wheel { radius } => Some((hold.at, radius, hold.support.friction.unwrap_or(0.0))),
+            _ => None,
         })
     }
 
@@ -289,9 +276,7 @@ impl Subject<'_> {
 
     /// Where supports hold the cable by its axis, m.
     fn held_at(&self) -> Vec<Vec2> {
-        let held = |s: &&Support| matches!(s.kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Robot);
-        let given = self.cable.supports.iter().zip(&self.answer.supports);
-        given.filter(|(s, _)| held(s)).map(|(_, r)| Vec2::new(r.x_m, r.y_m)).collect()
+        self.holds.iter().filter(|h| h.role == Role::Held).map(|h| h.at).collect()
     }
 
     /// Contacts as they are reported: they push, within their cone.
@@ -411,7 +396,7 @@ impl Subject<'_> {
         let known_here = |c: &&ContactReport| self.surroundings.find(&c.obstacle).is_some();
         let reported: Vec2 = self.answer.contacts.iter().filter(known_here).map(|c| vec2(c.force_n)).sum::<Vec2>()
             + self.foreign().map(|p| p.force).sum::<Vec2>();
-        let led: Vec2 = self.wheels().map(|(.., r)| -Vec2::new(r.reaction_x_n, r.reaction_y_n)).sum();
+        let led: Vec2 = self.holds.iter().filter(|h| matches!(h.role, Role::Wheel { .. })).map(Hold::force).sum();
         let known: Vec2 = points.iter().map(|p| p.force).sum();
         let weight = self.body * self.cable.length_m;
         let whole = known + weight + led + reported;
@@ -431,14 +416,9 @@ impl Subject<'_> {
         found.balance = sums;
     }
 
-    /// Forces of supports on the cable that are not dead loads, N.
+    /// Forces of supports on the cable that are neither dead loads nor wheels, N.
     fn support_forces(&self) -> Vec2 {
-        let held = self.cable.supports.iter().zip(&self.answer.supports).filter(|(s, _)| {
-            let led = s.kind == SupportKind::Pulley && s.radius_m.is_some_and(|r| r > 0.0);
-            !(matches!(s.kind, SupportKind::Load | SupportKind::Free) || led)
-                && s.release_s.is_none_or(|t| self.time_s < t - 1e-9)
-        });
-        held.map(|(_, r)| -Vec2::new(r.reaction_x_n, r.reaction_y_n)).sum()
+        self.holds.iter().filter(|h| matches!(h.role, Role::Held | Role::Pulley)).map(Hold::force).sum()
     }
 
     /// Whether a floor rubs on the whole cable.
@@ -463,7 +443,7 @@ impl Subject<'_> {
     }
 
     fn on_wheel(&self, piece: &Piece) -> bool {
-        self.wheels().any(|(center, radius, ..)| piece.nodes.iter().any(|&k| self.is_led(k, center, radius)))
+        self.wheels().any(|(center, radius, _)| piece.nodes.iter().any(|&k| self.is_led(k, center, radius)))
     }
 
     /// Friction that a bar's own weight may add or hide where the ground turns, N: the bar carries it to its ends, where it turns the
@@ -503,7 +483,7 @@ impl Subject<'_> {
         for n in around.iter().flatten() {
             add(n.normal, self.surroundings.friction(n.body, self.cable.friction));
         }
-        for (center, radius, friction, _) in self.wheels() {
+        for (center, radius, friction) in self.wheels() {
             for k in (from..=to).filter(|&k| self.is_led(k, center, radius)) {
                 add((self.answer.nodes[k].at() - center).try_normalize(0.0).unwrap_or_default(), friction);
             }
@@ -700,7 +680,7 @@ fn outside_cone(force: Vec2, rays: &[Vec2]) -> f64 {
 }
 
 /// A vector as a function of time: the constant, or linear between its times.
-fn series(constant: Option<[f64; 2]>, times: &[f64], values: &[[f64; 2]], time_s: f64) -> Vec2 {
+pub(super) fn series(constant: Option<[f64; 2]>, times: &[f64], values: &[[f64; 2]], time_s: f64) -> Vec2 {
     if times.is_empty() {
         return constant.map_or_else(Vec2::zeros, vec2);
     }
