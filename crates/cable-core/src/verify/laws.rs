@@ -6,7 +6,7 @@
 //! the cable has no internal force.
 
 use super::supports::{self, Hold, Role};
-use super::surroundings::{Near, Surroundings};
+use super::surroundings::{Neighbours, Surroundings};
 use super::tolerance::{
     ASIDE, BALANCE, COMPRESSION, CONE, DEPTH_DIAMETERS, DEPTH_M, FOLD, LEAST_STRAIN, LENGTH, LUMPED, MATERIAL, MOMENT,
     REACH_DIAMETERS, REACH_M, REPORTED, SAME_NORMAL, TURN,
@@ -227,17 +227,13 @@ impl Subject<'_> {
     }
 
     /// What is near the line from each node to the next.
-    fn near(&self) -> Vec<Vec<Near>> {
+    fn near(&self) -> Neighbours {
         let reach = self.reach();
-        let nodes = &self.answer.nodes;
-        let mut out = vec![Vec::new(); nodes.len().saturating_sub(1)];
-        for (near, pair) in out.iter_mut().zip(nodes.windows(2)) {
-            self.surroundings.near(pair[0].at(), pair[1].at(), reach, near);
-        }
-        out
+        let bars = self.answer.nodes.windows(2).map(|pair| [pair[0].at(), pair[1].at()]);
+        Neighbours::new(self.surroundings, bars, reach)
     }
 
-    fn penetration(&self, found: &mut Verification, near: &[Vec<Near>]) {
+    fn penetration(&self, found: &mut Verification, near: &Neighbours) {
         found.ask(Law::Penetration);
         let radius = 0.5 * self.cable.diameter_m;
         let allowed = (DEPTH_DIAMETERS * self.cable.diameter_m).min(DEPTH_M);
@@ -246,6 +242,10 @@ impl Subject<'_> {
         let held = self.held_at();
         let on_surface = MATERIAL * self.cable.length_m;
         for (k, n) in nodes.iter().enumerate() {
+            // From a bar that nothing is near it is as far inside as the node before.
+            if k > 0 && near.of(k - 1).is_empty() {
+                continue;
+            }
             if let Some((body, depth)) = self.surroundings.inside(n.at()) {
                 if depth <= on_surface && held.contains(&n.at()) {
                     continue;
@@ -255,11 +255,11 @@ impl Subject<'_> {
                 found.report(finding);
             }
         }
-        for (k, (near, pair)) in near.iter().zip(nodes.windows(2)).enumerate() {
+        for (k, pair) in nodes.windows(2).enumerate().filter(|(k, _)| !near.of(*k).is_empty()) {
             // Between two nodes the cable is drawn straight where it is round.
             let way = (pair[1].at() - pair[0].at()).norm();
             let sagitta = pair.iter().map(|n| n.curvature_per_m.abs()).fold(0.0, larger) * way * way / 8.0;
-            for n in near {
+            for n in near.of(k) {
                 let value = radius - n.distance;
                 let end = n.at == pair[0].at() || n.at == pair[1].at();
                 let given = if held.contains(&n.at) { radius } else { 0.0 };
@@ -340,15 +340,16 @@ impl Subject<'_> {
         out
     }
 
-    fn balance(&self, found: &mut Verification, near: &[Vec<Near>]) {
+    fn balance(&self, found: &mut Verification, near: &Neighbours) {
         found.ask(Law::Balance);
         let points = self.point_forces();
         let limit = BALANCE * self.scale;
         let mut sums = Balance { scale_n: larger(found.balance.scale_n, self.scale), ..found.balance };
         let (mut adrift, mut beyond, mut pressed, mut lumped) = (Vec2::zeros(), 0.0, 0.0, 0.0);
         let (mut contacts, mut wheels, mut worst) = (Vec2::zeros(), Vec2::zeros(), (0.0, 0));
+        let mut rays = Vec::new();
         for piece in self.pieces(&points) {
-            let (rays, turns) = self.rays(near, &piece);
+            let turns = self.rays(near, &piece, &mut rays);
             let excess = if rays.is_empty() && !self.floor_rubs() {
                 // In the air residuals add up: each may be small and the sum not.
                 adrift += piece.contact;
@@ -378,7 +379,7 @@ impl Subject<'_> {
         let allowed = limit + CONE * pressed + lumped;
         if !(beyond <= allowed) {
             let mut finding = self.finding(Law::Friction, worst.1, (beyond, allowed));
-            let here = near.get(worst.1).and_then(|n| n.first());
+            let here = near.of(worst.1).first();
             self.surroundings.name(here.map_or(usize::MAX, |n| n.body)).clone_into(&mut finding.with);
             found.report(finding);
         }
@@ -463,24 +464,27 @@ impl Subject<'_> {
         self.scene.obstacles.iter().map(|o| o.friction.unwrap_or(self.cable.friction)).fold(0.0, larger)
     }
 
-    /// Unit vectors that bound the friction cones of all that touches a piece, its neighbours counted in: a force that is
-    /// known at nodes only is known to a node's neighbourhood.
-    /// Whether their normals differ, as at a corner, comes with them.
-    fn rays(&self, near: &[Vec<Near>], piece: &Piece) -> (Vec<Vec2>, bool) {
-        let (mut out, mut first, mut turns): (Vec<Vec2>, Option<Vec2>, bool) = (Vec::new(), None, false);
+    /// Gathers unit vectors that bound the friction cones of all that touches a piece, its neighbours counted in: a force that is
+    /// known at nodes only is known to a node's neighbourhood. Returns whether their normals differ, as at a corner.
+    fn rays(&self, near: &Neighbours, piece: &Piece, out: &mut Vec<Vec2>) -> bool {
+        out.clear();
+        let (mut first, mut turns, mut before) = (None, false, (Vec2::zeros(), 0.0));
         let mut add = |normal: Vec2, friction: f64| {
+            if normal == Vec2::zeros() || (normal, friction) == before {
+                return;
+            }
+            before = (normal, friction);
             turns |= cross(*first.get_or_insert(normal), normal).abs() > SAME_NORMAL;
             let along = Vec2::new(normal.y, -normal.x) * friction;
-            for ray in [normal + along, normal - along] {
-                let ray = ray.normalize();
-                if normal != Vec2::zeros() && out.iter().all(|r: &Vec2| (r - ray).norm_squared() > 1e-20) {
+            let shorten = 1.0 / (1.0 + friction * friction).sqrt();
+            for ray in [(normal + along) * shorten, (normal - along) * shorten] {
+                if out.iter().all(|r: &Vec2| (r - ray).norm_squared() > 1e-20) {
                     out.push(ray);
                 }
             }
         };
         let [from, to] = piece.nodes;
-        let around = near.get(from.saturating_sub(1)..(to + 1).min(near.len())).unwrap_or_default();
-        for n in around.iter().flatten() {
+        for n in near.around(from, to) {
             add(n.normal, self.surroundings.friction(n.body, self.cable.friction));
         }
         for (center, radius, friction) in self.wheels() {
@@ -488,7 +492,7 @@ impl Subject<'_> {
                 add((self.answer.nodes[k].at() - center).try_normalize(0.0).unwrap_or_default(), friction);
             }
         }
-        (out, turns)
+        turns
     }
 
     /// The tension of a flexible cable is the size of the force in it: at a node one of those between just before and just beyond it.
@@ -501,6 +505,10 @@ impl Subject<'_> {
             let beside = nodes[(k + 1).min(last)].arc_length_m - nodes[k.saturating_sub(1)].arc_length_m;
             let limit = REPORTED * self.scale + LUMPED * self.body.norm() * beside;
             let after = n.force();
+            // Most nodes have it from the piece that begins there.
+            if (n.tension_n - after.norm()).abs() <= limit {
+                continue;
+            }
             let before = k.checked_sub(1).map_or(after, |j| self.forces_at_end(j)[1]);
             let most = larger(before.norm(), after.norm());
             let least = super::surroundings::distance(before, after, Vec2::zeros(), Vec2::zeros());
@@ -521,9 +529,10 @@ impl Subject<'_> {
             if b.arc_length_m - a.arc_length_m <= MATERIAL * self.cable.length_m {
                 continue;
             }
-            let way = (b.at() - a.at()).try_normalize(0.0).unwrap_or_default();
-            let pulls = self.forces_at_end(k).map(|end| (a.force() + end).dot(&way) * 0.5);
-            let pushes = -larger(pulls[0], pulls[1]);
+            let way = b.at() - a.at();
+            let pulls = self.forces_at_end(k).map(|end| (a.force() + end).dot(&way));
+            let most = larger(pulls[0], pulls[1]);
+            let pushes = if most < 0.0 { -0.5 * most / way.norm() } else { 0.0 };
             let value = larger(pushes, larger(-a.tension_n, -b.tension_n));
             if !(value <= limit) {
                 found.report(self.finding(Law::Compression, k, (value, limit)));
@@ -538,7 +547,7 @@ impl Subject<'_> {
     }
 
     /// The way from each node to the next is what its material and force make of it.
-    fn length(&self, found: &mut Verification, near: &[Vec<Near>]) {
+    fn length(&self, found: &mut Verification, near: &Neighbours) {
         found.ask(Law::Length);
         let stiff = self.answer.assumptions.bending_stiffness_n_m2 > 0.0;
         for k in 0..self.answer.nodes.len() - 1 {
@@ -547,7 +556,12 @@ impl Subject<'_> {
                 self.stiff_length(k)
             } else {
                 let touches = self.touches(near, k);
-                let [spread, at_end] = self.forces_at_end(k).map(|end| self.flexible_length(k, end, touches));
+                let [spread, at_end] = self.forces_at_end(k);
+                let spread = self.flexible_length(k, spread, touches);
+                if spread.value <= spread.limit && spread.folded == 0.0 {
+                    continue;
+                }
+                let at_end = self.flexible_length(k, at_end, touches);
                 if off(&at_end) < off(&spread) { at_end } else { spread }
             };
             found.folded_m += best.folded;
@@ -586,10 +600,9 @@ impl Subject<'_> {
     }
 
     /// Whether something touches a piece or a neighbour.
-    pub fn touches(&self, near: &[Vec<Near>], k: usize) -> bool {
-        let around = near.get(k.saturating_sub(1)..(k + 2).min(near.len())).unwrap_or_default();
+    pub fn touches(&self, near: &Neighbours, k: usize) -> bool {
         let led = || [k, k + 1].iter().any(|&k| self.wheels().any(|w| self.is_led(k, w.0, w.1)));
-        around.iter().any(|n| !n.is_empty()) || led()
+        !near.around(k, k + 1).is_empty() || led()
     }
 
     /// Whether a node is on a wheel.

@@ -7,14 +7,14 @@
 
 use super::laws::Subject;
 use super::supports::Role;
-use super::surroundings::Near;
+use super::surroundings::Neighbours;
 use super::{Law, Verification};
 use crate::math::larger;
 use crate::scene::SupportKind;
 
 impl Subject<'_> {
     /// Whether what pushes stays.
-    pub fn stability(&self, found: &mut Verification, near: &[Vec<Near>]) {
+    pub fn stability(&self, found: &mut Verification, near: &Neighbours) {
         found.ask(Law::Stability);
         let nodes = &self.answer.nodes;
         let same = 1e-9 * self.cable.length_m;
