@@ -414,8 +414,13 @@ impl Mechanics for FemModel {
             if let Some(answer) = self.bent.take() {
                 self.dynamics.take_over(&answer, self.dynamics.time(), &self.dragged)?;
             }
-            let report = self.dynamics.advance(dt_s, inertia, &self.dragged)?;
+            let mut report = self.dynamics.advance(dt_s, inertia, &self.dragged)?;
             self.meshes.follow(&self.dynamics, dt_s, inertia, &self.dragged);
+            match self.bend_warning() {
+                Some(warning) => report.warnings.push(warning),
+                // What is less than was asked for says nothing of the other errors of a step.
+                None => self.unbent = None,
+            }
             Ok(report)
         }
     }
