@@ -147,7 +147,10 @@ fn along(
     }
     spread(&mut strand, course);
     solve_spans(&mut strand, course)?;
-    if slack > LONG && heads.iter().all(Option::is_none) && !loose(0) && !loose(1) {
+    // Without a route the way is straight from support to support: round a wheel from tangent to tangent.
+    let wheel = |q: &Pulley| layout.problem.supports.get(q.support).is_some_and(|s| s.wheel_radius > 0.0);
+    let tangent_ways = layout.problem.route.len() < 2 && part.pulleys.iter().any(wheel);
+    if (slack > LONG || tangent_ways) && heads.iter().all(Option::is_none) && !loose(0) && !loose(1) {
         tight::relay(&mut strand, course);
     }
     Some(strand)
