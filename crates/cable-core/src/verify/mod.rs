@@ -5,6 +5,7 @@
 //! | `mod.rs` | [`Verifier`], [`Verification`]: which laws were asked, what was found |
 //! | `laws.rs` | one function a law, over one cable |
 //! | `surroundings.rs` | obstacles as the checker sees them: distances by brute force, normals, friction |
+//! | `pulleys.rs` | what friction of eyes and wheels allows between the tensions beside them |
 //! | `stability.rs` | whether a stiff cable holds what it pushes with; whether it is where it is held |
 //! | `tolerance.rs` | every tolerance, each with its reason |
 //!
@@ -14,6 +15,7 @@
 //! material with its strain; a flexible cable does not push; nothing lies inside anything.
 
 mod laws;
+mod pulleys;
 mod stability;
 mod surroundings;
 #[cfg(test)]
