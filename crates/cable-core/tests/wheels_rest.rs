@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 
 use cable_core::scene::obstacle::{Obstacle, Shape};
 use cable_core::scene::{PulleySide, Scene, Support, SupportKind, catalog};
-use cable_core::solution::CableSolution;
+use cable_core::solution::{CableSolution, Node};
 use cable_core::{Model, Simulation};
 
 /// SplitMix64: G. L. Steele, D. Lea and C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
@@ -269,37 +269,42 @@ fn difference(a: &CableSolution, b: &CableSolution, mirror: f64) -> f64 {
     if off == 0.0 { 0.0 } else { off / most }
 }
 
-/// Whether a cable that is said to lift off a wheel is right to do so: without that wheel it hangs clear of it, on the side on which it was
-/// to run, so that it would have to be drawn to it.
+/// The wheel that a refusal says the cable lifts off.
+fn named(scene: &Scene, why: &str) -> Option<usize> {
+    scene.cables[0].supports.iter().position(|s| {
+        let told = |words: &str| why.contains(&format!("{words} `{}`", s.name));
+        s.radius_m.is_some_and(|r| r > 0.0) && (told("lifts off the wheel of") || told("on the wheel of pulley"))
+    })
+}
+
+/// Whether a cable has no rest on its wheels: without the wheel that it is said to lift off, or any where none is named, it hangs clear of
+/// that wheel, on the side on which it was to run, so that it would have to be drawn to it.
 fn hangs_clear(scene: &Scene, why: &str) -> bool {
-    let (mut bare, mut gone) = (scene.clone(), Vec::new());
-    let mut why = why.to_owned();
-    loop {
-        let named = bare.cables[0].supports.iter().position(|s| {
-            let name = format!("`{}`", s.name);
-            s.radius_m.is_some_and(|r| r > 0.0)
-                && ["lifts off the wheel of ", "does not press on the wheel of pulley "]
-                    .iter()
-                    .any(|told| why.contains(&format!("{told}{name}")))
-        });
-        let Some(k) = named else { return false };
-        gone.push(bare.cables[0].supports.remove(k));
-        match rest(&bare, Model::Auto) {
-            Err(other) => why = other,
-            Ok(found) => {
-                return gone.iter().all(|wheel| {
-                    let facing = if wheel.side == Some(PulleySide::Over) { 1.0 } else { -1.0 };
-                    let (at, radius) = (wheel.at_m.unwrap(), wheel.radius_m.unwrap() + 0.5 * DIAMETER);
-                    let off = |p: &cable_core::solution::Node| (p.x_m - at[0]).hypot(p.y_m - at[1]);
-                    let near = found.nodes.iter().enumerate().min_by(|a, b| off(a.1).total_cmp(&off(b.1))).unwrap().0;
-                    let near = near.clamp(1, found.nodes.len() - 2);
-                    let [a, b, c] = [near - 1, near, near + 1].map(|k| &found.nodes[k]);
-                    let side = (c.x_m - a.x_m) * (at[1] - b.y_m) - (c.y_m - a.y_m) * (at[0] - b.x_m);
-                    off(b) > 0.999 * radius && facing * side < 0.0
-                });
-            }
-        }
+    let wheels = 0..scene.cables[0].supports.len();
+    let round = |k: &usize| scene.cables[0].supports[*k].radius_m.is_some_and(|r| r > 0.0);
+    match named(scene, why) {
+        Some(k) => clear_without(scene, k, Vec::new()),
+        None => wheels.filter(round).any(|k| clear_without(scene, k, Vec::new())),
     }
+}
+
+fn clear_without(scene: &Scene, k: usize, mut gone: Vec<Support>) -> bool {
+    let mut bare = scene.clone();
+    gone.push(bare.cables[0].supports.remove(k));
+    let found = match rest(&bare, Model::Spans).or_else(|_| rest(&bare, Model::Catenary)) {
+        Err(why) => return named(&bare, &why).is_some_and(|k| clear_without(&bare, k, gone)),
+        Ok(found) => found,
+    };
+    gone.iter().all(|wheel| {
+        let facing = if wheel.side == Some(PulleySide::Over) { 1.0 } else { -1.0 };
+        let (at, radius) = (wheel.at_m.unwrap(), wheel.radius_m.unwrap() + 0.5 * DIAMETER);
+        let off = |p: &Node| (p.x_m - at[0]).hypot(p.y_m - at[1]);
+        let near = found.nodes.iter().enumerate().min_by(|a, b| off(a.1).total_cmp(&off(b.1))).unwrap().0;
+        let near = near.clamp(1, found.nodes.len() - 2);
+        let [a, b, c] = [near - 1, near, near + 1].map(|k| &found.nodes[k]);
+        let side = (c.x_m - a.x_m) * (at[1] - b.y_m) - (c.y_m - a.y_m) * (at[0] - b.x_m);
+        off(b) > 0.999 * radius && facing * side < 0.0
+    })
 }
 
 /// A message without its figures.
@@ -319,10 +324,11 @@ fn show(number: u64, how: &str, scene: &Scene) {
     }
 }
 
+/// At most 2 % of what has a resting place may be refused; `auto` asks `fem` for what `spans` refuses, which takes its time.
 #[test]
 fn nearly_all_that_rest_are_found() {
-    let (first, count) = (self::number("WHEELS_FIRST", 0), self::number("WHEELS_CASES", 100));
-    for model in [Model::Auto, Model::Spans] {
+    for (model, most) in [(Model::Spans, 200), (Model::Auto, 60)] {
+        let (first, count) = (self::number("WHEELS_FIRST", 0), self::number("WHEELS_CASES", most));
         let mut refused: BTreeMap<(String, String), Vec<u64>> = BTreeMap::new();
         let (mut kinds, mut clear): (BTreeMap<String, u64>, u64) = (BTreeMap::new(), 0);
         for k in first..first + count {
@@ -344,12 +350,16 @@ fn nearly_all_that_rest_are_found() {
         for ((why, kind), n) in sorted {
             println!("  {:3} [{kind}] {why}: {:?}", n.len(), &n[..n.len().min(8)]);
         }
+        // `auto` adds what `fem` makes of what `spans` refuses: that is printed.
+        assert!(model != Model::Spans || 50 * all as u64 <= count - clear, "{model}: {refused:?}");
     }
 }
 
+/// A scene seen from behind, counted from its other end, or both, has the same rest: within rounding, and what the closed form of a wrap
+/// leaves out, which is of the order of the square of the strain (`law.rs`).
 #[test]
 fn what_is_found_does_not_depend_on_how_it_is_seen() {
-    let (first, count) = (self::number("WHEELS_FIRST", 0), self::number("WHEELS_CASES", 100));
+    let (first, count) = (self::number("WHEELS_FIRST", 0), self::number("WHEELS_CASES", 200));
     let (mut compared, mut worst, mut wrong) = (0, 0.0f64, Vec::new());
     for k in first..first + count {
         let scene = case(k).scene;
@@ -365,7 +375,8 @@ fn what_is_found_does_not_depend_on_how_it_is_seen() {
                     let off = difference(a, &b, mirror);
                     compared += 1;
                     worst = worst.max(off);
-                    if !(off <= 1e-9) {
+                    let strain = a.nodes.iter().map(|n| n.strain).fold(0.0, f64::max);
+                    if !(off <= 1e-9 + 1e-4 * strain * strain) {
                         wrong.push((k, name, format!("{off:.1e}")));
                     }
                 }
@@ -382,4 +393,5 @@ fn what_is_found_does_not_depend_on_how_it_is_seen() {
     }
     println!("{compared} compared, worst {worst:.1e}; {} differ", wrong.len());
     wrong.iter().for_each(|w| println!("  {w:?}"));
+    assert!(wrong.is_empty() && compared > 2 * count, "{wrong:?}");
 }

@@ -5,11 +5,14 @@
 //! l'effet du frottement dans l'équilibre", Mém. Acad. Berlin 1762, with the weight on the wheel).
 
 use super::laws::Subject;
-use super::tolerance::{BALANCE, CONE, LUMPED, MATERIAL, REPORTED};
+use super::tolerance::{BALANCE, CONE, MATERIAL, REPORTED};
 use super::{Law, Verification};
 use crate::math::{Vec2, cross, larger};
 use crate::scene::SupportKind;
 use crate::solution::SupportReaction;
+
+/// Part of its radius by which a node may be off a wheel and lie on it: rounding.
+const ON: f64 = 1e-9;
 
 /// A pulley that leads the cable, with what it does.
 struct Led<'a> {
@@ -45,12 +48,15 @@ impl Subject<'_> {
                 }
             };
             tell(Law::Friction, value, limit);
+            // Nodes just off the wheel count as on it: from there to the wheel the cable carries its weight.
+            let on = |k: &usize| led.wheel.is_none_or(|(c, r)| (nodes[*k].at() - c).norm() <= r + ON * r);
+            let touches = [(first..=last).find(on).unwrap_or(last), (first..=last).rev().find(on).unwrap_or(first)];
             for (told, force, beside) in [
-                (led.reaction.tension_before_n, before, [first - 1, first]),
-                (led.reaction.tension_after_n, after, [last, last + 1]),
+                (led.reaction.tension_before_n, before, [first - 1, touches[0]]),
+                (led.reaction.tension_after_n, after, [touches[1], last + 1]),
             ] {
                 let [a, b] = beside.map(|k| nodes[k].arc_length_m);
-                let limit = REPORTED * self.scale() + LUMPED * self.load_per_metre().norm() * (b - a);
+                let limit = REPORTED * self.scale() + self.load_per_metre().norm() * (b - a);
                 tell(Law::Tension, told.map_or(0.0, |t| (t - force.norm()).abs()), limit);
             }
         }

@@ -175,7 +175,10 @@ impl History {
         way(first).into_iter().skip(1).rev().for_each(|knot| out.push(knot));
         let right = way(last);
         let end = right.len() - 1;
-        right.into_iter().enumerate().for_each(|(k, knot)| out.push(if k == end { Knot { m: 0.0, ..knot } } else { knot }));
+        right
+            .into_iter()
+            .enumerate()
+            .for_each(|(k, knot)| out.push(if k == end { Knot { m: 0.0, ..knot } } else { knot }));
         out
     }
 
