@@ -82,6 +82,7 @@ pub(super) fn check(found: &mut Verification, mut subject: Subject<'_>, depth: D
             subject.stability(found, &near);
         } else {
             subject.tension(found);
+            subject.pulleys(found);
             subject.compression(found);
         }
     }
@@ -114,6 +115,21 @@ impl<'a> Subject<'a> {
 }
 
 impl Subject<'_> {
+    /// Greatest of the forces, N.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Weight and wind, N/m.
+    pub fn load_per_metre(&self) -> Vec2 {
+        self.body
+    }
+
+    /// Where the scene's loads are on the cable, m.
+    pub fn scene_loads(&self) -> Vec<f64> {
+        self.scene.loads.iter().filter(|l| l.cable == self.cable.name).map(|l| l.arc_length_m).collect()
+    }
+
     pub fn finding(&self, law: Law, node: usize, (value, limit): (f64, f64)) -> Finding {
         let n = self.answer.nodes.get(node).or(self.answer.nodes.last()).copied().unwrap_or_default();
         Finding {

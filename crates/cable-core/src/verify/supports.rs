@@ -34,7 +34,7 @@ pub(super) struct Hold<'a> {
     pub at: Vec2,
     /// Arc length of the cable there, m.
     pub arc_length: f64,
-    reaction: &'a SupportReaction,
+    pub reaction: &'a SupportReaction,
 }
 
 /// The supports of a cable at a time, s.

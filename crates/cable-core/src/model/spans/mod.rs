@@ -51,6 +51,7 @@ use self::instant::{Instant, Layout, unsupported};
 use self::newton::Work;
 use self::report::Report;
 use self::trouble::Trouble;
+use super::catenary::slack_without_weight;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::{Place, SolveError};
 use crate::math::{Vec2, larger, smaller};
@@ -313,6 +314,9 @@ impl Mechanics for SpansModel {
             let name = &self.layout.problem.cable.name;
             let message = format!("{message}{range}");
             report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message));
+        }
+        if instant.hint > 0.0 {
+            report.warnings.extend(slack_without_weight(&self.layout.problem, &self.look().nodes));
         }
         Ok(report)
     }

@@ -13,7 +13,7 @@ use super::weight;
 use crate::catenary::PointForce;
 use crate::math::{GAUSS, Vec2, larger};
 use crate::model::arc_nodes;
-use crate::model::catenary::report::{Nodes, Point};
+use crate::model::catenary::report::{Nodes, Point, forget_hint};
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
 /// Nodes on each stretch of an edge.
@@ -91,8 +91,13 @@ pub(super) fn report(layout: &Layout, network: &Network) -> Report {
             }
         }
     }
-    let nodes = nodes.out;
-    let supports = supports(layout, network, &nodes);
+    let mut nodes = nodes.out;
+    let mut supports = supports(layout, network, &nodes);
+    let hint = network.instant.hint;
+    if hint > 0.0 {
+        forget_hint(&mut nodes, &mut supports, hint);
+        contacts.retain(|c: &ContactReport| Vec2::from(c.force_n).norm() > hint);
+    }
     Report { nodes, supports, contacts }
 }
 
