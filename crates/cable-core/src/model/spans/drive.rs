@@ -7,7 +7,7 @@ use super::gaps;
 use super::history::Mode;
 use super::instant::{Instant, Layout, place_ends};
 use super::lay;
-use super::loose::{self, Loose};
+use super::loose;
 use super::loss;
 use super::newton::{self, Solved, Work};
 use super::pass;
@@ -455,7 +455,7 @@ impl Network {
 
     /// Material that lies loose and the length of ground it lies on, m; None where none does.
     pub fn loose(&self) -> Option<[f64; 2]> {
-        let lies = self.strands.iter().filter_map(|s| s.loose.as_ref()).map(Loose::lies);
+        let lies = self.strands.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.lies(&self.course));
         lies.reduce(|[a, b], [c, d]| [a + c, b + d])
     }
 
