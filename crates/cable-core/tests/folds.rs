@@ -252,18 +252,18 @@ fn faults(s: &Scene, answer: &Solution) -> Vec<String> {
 
 #[derive(Debug)]
 enum Told {
-    Right(Model),
+    Right(Model, String),
     Wrong(Model, Vec<String>),
     Refused(String),
     /// Not a scene.
-    Invalid(String),
+    Invalid,
 }
 
 fn ask(s: &Scene) -> (Told, f64) {
     let begun = Instant::now();
     let mut sim = match Simulation::new(s.clone(), Model::Auto) {
         Ok(sim) => sim,
-        Err(cable_core::Error::Scene(fault)) => return (Told::Invalid(fault.to_string()), 0.0),
+        Err(cable_core::Error::Scene(_)) => return (Told::Invalid, 0.0),
         Err(e) => return (Told::Refused(e.to_string()), 0.0),
     };
     let found = sim.settle();
@@ -271,7 +271,7 @@ fn ask(s: &Scene) -> (Told, f64) {
     let told = match found {
         Err(e) => Told::Refused(e.to_string()),
         Ok(answer) => match faults(s, &answer) {
-            faults if faults.is_empty() => Told::Right(answer.model),
+            faults if faults.is_empty() => Told::Right(answer.model, answer.reason.clone()),
             faults => Told::Wrong(answer.model, faults),
         },
     };
@@ -279,7 +279,7 @@ fn ask(s: &Scene) -> (Told, f64) {
 }
 
 fn campaign(seeds: std::ops::Range<u64>) {
-    let (mut wrong, mut refused) = (Vec::new(), Vec::new());
+    let (mut wrong, mut refused, mut meshed) = (Vec::new(), Vec::new(), Vec::new());
     let mut counts = [[0usize; 5]; FAMILIES.len()];
     let mut spent = [0.0; FAMILIES.len()];
     for seed in seeds {
@@ -288,8 +288,11 @@ fn campaign(seeds: std::ops::Range<u64>) {
         let (told, took) = ask(&s);
         spent[family] += took;
         let column = match told {
-            Told::Right(Model::Fem) => 1,
-            Told::Right(_) => 0,
+            Told::Right(Model::Fem, why) => {
+                meshed.push(format!("{name} {seed} {took:.2} s: {why}"));
+                1
+            }
+            Told::Right(..) => 0,
             Told::Wrong(model, faults) => {
                 wrong.push(format!("{name} {seed} {model} {took:.2} s: {faults:?}"));
                 2
@@ -298,7 +301,7 @@ fn campaign(seeds: std::ops::Range<u64>) {
                 refused.push(format!("{name} {seed} {took:.2} s: {why}"));
                 3
             }
-            Told::Invalid(_) => 4,
+            Told::Invalid => 4,
         };
         counts[family][column] += 1;
     }
@@ -306,7 +309,7 @@ fn campaign(seeds: std::ops::Range<u64>) {
     for ((name, counts), spent) in FAMILIES.iter().zip(&counts).zip(&spent) {
         println!("{name:12} {counts:?} {spent:.1}");
     }
-    println!("{wrong:#?}\n{refused:#?}");
+    println!("by fem: {meshed:#?}\n{wrong:#?}\n{refused:#?}");
     assert!(wrong.is_empty(), "{} wrong", wrong.len());
     for counts in &counts {
         let asked: usize = counts[..4].iter().sum();

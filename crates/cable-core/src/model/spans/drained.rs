@@ -61,7 +61,8 @@ impl Frame {
         Some(Self { across: -perp(up), up })
     }
 
-    fn into(self, at: Vec2) -> Vec2 {
+    /// A vector in it.
+    pub fn split(self, at: Vec2) -> Vec2 {
         Vec2::new(at.dot(&self.across), at.dot(&self.up))
     }
 
@@ -178,14 +179,14 @@ fn roofs_of(curve: &Curve, (body, piece): (usize, i64), frame: Frame, out: &mut 
     let given = curve.piece(piece);
     match given.form {
         Form::Edge { from, tangent } => {
-            let (from, along) = (frame.into(from + curve.shift), frame.into(tangent));
+            let (from, along) = (frame.split(from + curve.shift), frame.split(tangent));
             if along.x > FACES && given.extent > 0.0 {
                 let u = [from.x, from.x + along.x * given.extent];
                 out.push(Roof { body, piece, start: 0.0, u, top: Top::Line { from, slope: along.y / along.x } });
             }
         }
         Form::Arc { center, radius, from } => {
-            let center = frame.into(center + curve.shift);
+            let center = frame.split(center + curve.shift);
             // How far along it the cable would rise plumb.
             let rises = -curve.sense * cross(from, frame.up).atan2(from.dot(&frame.up));
             let turn = std::f64::consts::TAU;
@@ -226,7 +227,7 @@ struct Draining<'a> {
 impl Drained {
     /// What is left of a route; None where the cable falls off everything.
     pub fn new(roofs: &Roofs, bodies: &[Body], frame: Frame, route: &[Vec2]) -> Option<Self> {
-        let points: Vec<Vec2> = route.iter().map(|p| frame.into(*p)).collect();
+        let points: Vec<Vec2> = route.iter().map(|p| frame.split(*p)).collect();
         let (first, last) = (points.first()?, points.last()?);
         let mut draining = Draining { roofs, bodies, frame, legs: Vec::new(), height: first.y };
         for pair in points.windows(2) {
@@ -244,7 +245,7 @@ impl Drained {
 
     /// From a point plumb down, or up to it from there.
     pub fn plumb(roofs: &Roofs, bodies: &[Body], frame: Frame, (from, up): (Vec2, bool)) -> Option<Self> {
-        let at = frame.into(from);
+        let at = frame.split(from);
         let mut draining = Draining { roofs, bodies, frame, legs: Vec::new(), height: at.y };
         draining.down(at.x, at.y)?;
         let mut legs = draining.legs;

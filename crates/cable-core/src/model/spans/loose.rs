@@ -19,6 +19,7 @@
 //! Any other rest of the same cable is one that pulls or leans somewhere, and then only by what friction remembers. Where a crest is
 //! held by less friction than it takes, the cable runs over it: that is no such rest.
 
+mod bridge;
 mod heap;
 mod report;
 
@@ -67,6 +68,8 @@ enum Line {
     Lies(Stretch),
     /// In one place.
     Heap(Heap),
+    /// Free between a support and a crest, with tension: from a point, with a force in the cable there (N).
+    Spans { from: Vec2, force: Vec2 },
 }
 
 /// A stretch of a boundary, p from where to where, with the part `m` of friction that is called upon against going on.
@@ -186,9 +189,21 @@ impl Drape<'_> {
     /// Every part with its tension, and the material that takes; None where a crest does not hold.
     fn parts(&self, lines: &[Line], held: [bool; 2]) -> Option<Vec<Part>> {
         let (mut out, mut begin) = (Vec::new(), 0);
-        for k in 1..=lines.len() {
-            if k == lines.len() || self.rests(&lines[k - 1], &lines[k])? {
-                self.chain(&lines[begin..k], [begin == 0 && held[0], k == lines.len() && held[1]], &mut out)?;
+        let (last, mut bridged) = (lines.len(), false);
+        let support = |line: &Line, end: usize| match line {
+            Line::Hangs(ends) => Some(ends[end]),
+            _ => None,
+        };
+        for k in 1..=last {
+            if k == last || self.rests(&lines[k - 1], &lines[k])? {
+                let near = [
+                    if held[0] && begin == 1 { support(&lines[0], 0) } else { None },
+                    if held[1] && k + 1 == last { support(&lines[k], 1) } else { None },
+                ];
+                if k < last || !bridged {
+                    let ends = [begin == 0 && held[0], k == last && held[1]];
+                    bridged = self.chain(&lines[begin..k], (ends, near), &mut out)?;
+                }
                 begin = k;
             }
         }
@@ -223,8 +238,14 @@ impl Drape<'_> {
         }
     }
 
-    /// What lies between two points without tension, or from or to a support.
-    fn chain(&self, lines: &[Line], held: [bool; 2], out: &mut Vec<Part>) -> Option<()> {
+    /// What lies between two points without tension, or from or to a support. Where a support hangs nearby and the crest draws the cable
+    /// tight there, a span bridges to it; whether that was done at the end.
+    fn chain(
+        &self,
+        lines: &[Line],
+        (held, near): ([bool; 2], [Option<Vec2>; 2]),
+        out: &mut Vec<Part>,
+    ) -> Option<bool> {
         let weight = self.course.law.load.norm();
         let hangs = |line: Option<&Line>| match line {
             Some(Line::Hangs(ends)) => Some((*ends, plumb(self.course, self.rise(*ends).abs()))),
@@ -241,36 +262,65 @@ impl Drape<'_> {
             let begins = held[0] && self.rise(alone.0) < 0.0;
             let ends = held[1] && self.rise(alone.0) > 0.0;
             out.push(hung(alone));
-            return (begins || ends).then_some(());
+            return (begins || ends).then_some(false);
         }
         if (held[0] && first.is_some()) || (held[1] && last.is_some()) {
             return None;
         }
         let ends = [first, last].map(|h| h.map_or(0.0, |(_, s)| weight * s));
-        let lies = || lines.iter().filter_map(|l| if let Line::Lies(s) = l { Some(s) } else { None });
+        let lies: Vec<Stretch> =
+            lines.iter().filter_map(|l| if let Line::Lies(s) = l { Some(*s) } else { None }).collect();
         // As little tension as friction lets it have, from the start on and from the end back.
-        let (mut t, mut forth) = (ends[0], Vec::with_capacity(lines.len()));
-        for s in lies() {
+        let (mut t, mut forth) = (ends[0], Vec::with_capacity(lies.len()));
+        for s in &lies {
             forth.push(t);
             t = larger(s.slide(self.course, (s.p[0], s.p[1]), t, -s.friction(self.course)).tension, 0.0);
         }
-        if !held[1] && t > ends[1] + self.most {
-            return None;
-        }
-        let (mut t, mut back) = (ends[1], Vec::with_capacity(lines.len()));
-        for s in lies().rev() {
-            back.push(t);
+        let ends_tight = !held[1] && t > ends[1] + self.most;
+        let (mut t, mut back) = (ends[1], vec![0.0; lies.len()]);
+        for (s, back) in lies.iter().zip(&mut back).rev() {
+            *back = t;
             t = larger(s.slide(self.course, (s.p[1], s.p[0]), t, s.friction(self.course)).tension, 0.0);
         }
-        if !held[0] && t > ends[0] + self.most {
-            return None;
+        let begins_tight = !held[0] && t > ends[0] + self.most;
+        let bridge = match (begins_tight, ends_tight) {
+            (true, false) => Some(self.bridge(&lies, (near[0]?, &back), 0)?),
+            (false, true) => Some(self.bridge(&lies, (near[1]?, &forth), 1)?),
+            (false, false) => None,
+            (true, true) => return None,
+        };
+        let (mut range, mut p) = (0..lies.len(), None);
+        if let Some(found) = &bridge {
+            p = Some((found.line, found.p));
+            range = if begins_tight { found.line..lies.len() } else { 0..found.line + 1 };
+        }
+        if let Some(found) = bridge.as_ref().filter(|_| begins_tight) {
+            // In the place of what hung.
+            out.pop();
+            out.push(found.part.clone());
         }
         out.extend(first.map(hung));
-        for ((s, forth), back) in lies().zip(forth).zip(back.into_iter().rev()) {
-            self.stretch(s, [forth, back], out);
+        for k in range {
+            let mut s = lies[k];
+            let cut = p.filter(|(line, _)| *line == k);
+            if let Some((_, p)) = cut {
+                s.p[usize::from(ends_tight)] = p;
+            }
+            // Up to the bridge only the one holds.
+            let [mut f, mut b] = [forth[k], back[k]];
+            if begins_tight {
+                f = 0.0;
+            } else if ends_tight {
+                b = 0.0;
+            }
+            self.stretch(&s, [f, b], out);
         }
         out.extend(last.map(hung));
-        Some(())
+        if let Some(found) = bridge.filter(|_| ends_tight) {
+            out.push(found.part);
+            return Some(true);
+        }
+        Some(false)
     }
 
     /// A stretch in its parts: where the tension from its start holds, where there is none, where that from its end does.

@@ -35,6 +35,10 @@ impl Loose {
         for part in &self.parts {
             match &part.form {
                 Line::Hangs(ends) => hang(course, part, *ends, nodes),
+                Line::Spans { from, force } => {
+                    let chain = course.chain(part.s[0], part.s[1]);
+                    chain.spans(*force, *from).for_each(|(s, at, shape)| nodes.catenary(s, at, &shape));
+                }
                 Line::Lies(s) => {
                     if !goes_on || runs.last().is_none_or(|r| r.curve / 2 != s.curve / 2) {
                         runs.push(Run::new(s.curve, part));
@@ -78,13 +82,14 @@ impl Part {
             Line::Hangs([from, to]) => (to - from).normalize() * self.tension[end],
             Line::Lies(s) => s.place(course, s.p[end]).tangent * self.tension[end],
             Line::Heap(_) => Vec2::zeros(),
+            Line::Spans { force, .. } => force - course.law.load * if end == 0 { 0.0 } else { self.s[1] - self.s[0] },
         }
     }
 
     /// The force of what carries it, N.
     pub(super) fn held(&self, course: &Course) -> Vec2 {
         match &self.form {
-            Line::Hangs(_) => Vec2::zeros(),
+            Line::Hangs(_) | Line::Spans { .. } => Vec2::zeros(),
             Line::Lies(_) => self.force(course, 0) - self.force(course, 1) - course.law.load * (self.s[1] - self.s[0]),
             Line::Heap(heap) => heap.edges.iter().flatten().map(super::heap::Borne::force).sum(),
         }
@@ -94,7 +99,7 @@ impl Part {
 impl Line {
     pub(super) fn friction(&self, course: &Course) -> f64 {
         match self {
-            Self::Hangs(_) => 0.0,
+            Self::Hangs(_) | Self::Spans { .. } => 0.0,
             Self::Lies(s) => s.friction(course),
             Self::Heap(heap) => heap.edges.iter().flatten().map(|b| course.curves[b.curve].friction).fold(0.0, f64::max),
         }
