@@ -16,6 +16,8 @@ use crate::math::{Vec2, cross, larger, perp, smaller};
 pub(super) const NONE_M: f64 = 1e-9;
 /// A boundary that faces the load with less than this part of itself is a wall: the cable hangs beside it.
 const FACES: f64 = 1e-9;
+/// Roofs that what does not hold slides down over at most.
+const MOST_DOWN: usize = 1000;
 
 /// The directions across the load and against it, unit vectors.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +39,7 @@ pub(super) enum Leg {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Roof {
     pub body: usize,
+    friction: f64,
     /// Piece of the boundary of the body with the solid right of travel, and how far along it the roof begins.
     piece: i64,
     start: f64,
@@ -69,6 +72,16 @@ impl Frame {
     /// The point at a place across the load and a height.
     pub fn point(self, u: f64, v: f64) -> Vec2 {
         self.across * u + self.up * v
+    }
+}
+
+impl Leg {
+    /// The same the other way.
+    fn back(&self) -> Self {
+        match *self {
+            Self::Hangs { u, v: [a, b] } => Self::Hangs { u, v: [b, a] },
+            Self::Lies { roof, u: [a, b] } => Self::Lies { roof, u: [b, a] },
+        }
     }
 }
 
@@ -110,6 +123,14 @@ impl Roof {
     /// Its height at a place.
     pub fn height(&self, u: f64) -> f64 {
         self.top.height(u)
+    }
+
+    /// How it rises there.
+    fn slope(&self, u: f64) -> f64 {
+        match self.top {
+            Top::Line { slope, .. } => slope,
+            Top::Round { center, .. } => (center.x - u) / larger(self.height(u) - center.y, f64::MIN_POSITIVE),
+        }
     }
 
     /// How far along its piece a place of it is.
@@ -176,13 +197,13 @@ impl Roofs {
 }
 
 fn roofs_of(curve: &Curve, (body, piece): (usize, i64), frame: Frame, out: &mut Vec<Roof>) {
-    let given = curve.piece(piece);
+    let (given, friction) = (curve.piece(piece), curve.friction);
     match given.form {
         Form::Edge { from, tangent } => {
             let (from, along) = (frame.split(from + curve.shift), frame.split(tangent));
             if along.x > FACES && given.extent > 0.0 {
                 let u = [from.x, from.x + along.x * given.extent];
-                out.push(Roof { body, piece, start: 0.0, u, top: Top::Line { from, slope: along.y / along.x } });
+                out.push(Roof { body, friction, piece, start: 0.0, u, top: Top::Line { from, slope: along.y / along.x } });
             }
         }
         Form::Arc { center, radius, from } => {
@@ -203,7 +224,7 @@ fn roofs_of(curve: &Curve, (body, piece): (usize, i64), frame: Frame, out: &mut 
                 let across = |x: f64| center.x - radius * (x - first).cos();
                 let u = [across(low), across(high)];
                 if u[1] > u[0] {
-                    out.push(Roof { body, piece, start: low, u, top: Top::Round { center, radius } });
+                    out.push(Roof { body, friction, piece, start: low, u, top: Top::Round { center, radius } });
                 }
             }
         }
@@ -238,7 +259,17 @@ impl Drained {
             // Plumb above each other, or in one place: down to what is below both. Down and up again do not cancel: what is over lies there.
             (draining.height, draining.legs) = (first.y, Vec::new());
             draining.down(first.x, smaller(first.y, last.y))?;
+            let down = draining.legs.clone();
             draining.hang(last.x, last.y);
+            // Up again over what it came down on.
+            let lies = down.iter().rposition(|leg| matches!(leg, Leg::Lies { .. })).unwrap_or(0);
+            let from = down.iter().position(|leg| matches!(leg, Leg::Lies { .. })).unwrap_or(0);
+            if lies > from {
+                draining.legs.truncate(down.len());
+                draining.legs.extend(down[from..lies].iter().rev().map(|leg| leg.back()));
+                draining.height = draining.start_of(&down[from]);
+                draining.rise(last.x, last.y);
+            }
         }
         Some(Self { legs: draining.legs })
     }
@@ -250,10 +281,7 @@ impl Drained {
         draining.down(at.x, at.y)?;
         let mut legs = draining.legs;
         if up {
-            legs.reverse();
-            if let Some(Leg::Hangs { v, .. }) = legs.last_mut() {
-                v.reverse();
-            }
+            legs = legs.iter().rev().map(Leg::back).collect();
         }
         Some(Self { legs })
     }
@@ -267,11 +295,47 @@ impl Draining<'_> {
             let u = larger(roof.u[0], smaller(u, roof.u[1]));
             Some((k, u, roof.height(u))).filter(|f| f.2 <= v + NONE_M)
         });
-        let (roof, on, height) = here.reduce(|a, b| if b.2 > a.2 { b } else { a })?;
+        let (mut roof, on, height) = here.reduce(|a, b| if b.2 > a.2 { b } else { a })?;
         self.hang(u, height);
         self.height = height;
-        self.legs.push(Leg::Lies { roof, u: [on; 2] });
+        let mut u = on;
+        // What does not hold there slides on down, to the first that does.
+        for _ in 0..MOST_DOWN {
+            let here = &self.roofs.all[roof];
+            let slope = here.slope(u);
+            if slope.abs() <= here.friction {
+                break;
+            }
+            let end = here.u[usize::from(slope < 0.0)];
+            if (end - u).abs() > NONE_M {
+                self.lie(roof, [u, end]);
+            }
+            let beyond = end + if slope < 0.0 { 2.0 * NONE_M } else { -2.0 * NONE_M };
+            let next = self.roofs.over(beyond - NONE_M, beyond + NONE_M).filter_map(|k| {
+                let other = self.roofs.all.get(k)?;
+                let on = larger(other.u[0], smaller(end, other.u[1]));
+                Some((k, on, other.height(on))).filter(|f| f.2 <= self.height + NONE_M)
+            });
+            let (other, on, height) = next.reduce(|a, b| if b.2 > a.2 { b } else { a })?;
+            self.hang(end, height);
+            // In a kink it stays.
+            let level = (self.height - height).abs() <= NONE_M;
+            let rises = self.roofs.all[other].slope(on) * slope < 0.0;
+            (roof, u) = (other, on);
+            if level && rises {
+                break;
+            }
+        }
+        self.legs.push(Leg::Lies { roof, u: [u; 2] });
         Some(())
+    }
+
+    /// The height at which a leg begins.
+    fn start_of(&self, leg: &Leg) -> f64 {
+        match *leg {
+            Leg::Hangs { v, .. } => v[0],
+            Leg::Lies { roof, u } => self.roofs.all[roof].height(u[0]),
+        }
     }
 
     /// Lets a leg of the route fall.
@@ -353,6 +417,14 @@ impl Draining<'_> {
         let Some(body) = self.bodies.get(roof.body) else { return false };
         let gap = body.signed_gap(self.frame.point(u, v), f64::INFINITY).filter(|g| g.gap_m < 0.0);
         gap.is_some_and(|g| body.is_ground() || g.normal.dot(&self.frame.up) > 0.0)
+    }
+
+    /// Plumb up, whatever comes before.
+    fn rise(&mut self, u: f64, to: f64) {
+        let v = [self.height, to];
+        if v[1] - v[0] > NONE_M {
+            self.legs.push(Leg::Hangs { u, v });
+        }
     }
 
     fn hang(&mut self, u: f64, to: f64) {

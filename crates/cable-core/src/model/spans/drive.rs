@@ -142,7 +142,7 @@ impl Network {
                 }
             }
         }
-        // Free ends that come down in a heap.
+        // What comes down in a heap, and what friction holds on hills.
         if let Some(strands) = (0..layout.strands.len()).map(|k| loose::lay(layout, k, (&course, instant))).collect() {
             return Ok((Self { strands, course, instant: instant.clone() }, Taken::default()));
         }
@@ -237,7 +237,9 @@ impl Network {
         let mut came = Vec::new();
         for k in 0..layout.strands.len() {
             let held = layout.strands[k].supports.iter().all(Option::is_some);
-            if let Some(strand) = loose::lay(layout, k, (&self.course, &begin)).filter(|_| taut.is_none() && held) {
+            let loose = if taut.is_none() && held { loose::lay(layout, k, (&self.course, &begin)) } else { None };
+            let spreads = |s: &Strand| s.loose.as_ref().is_some_and(|l| l.spreads(&self.course, layout));
+            if let Some(strand) = loose.filter(spreads) {
                 self.strands.push(strand);
                 came.push(Vec::new());
                 continue;

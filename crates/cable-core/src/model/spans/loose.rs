@@ -30,6 +30,7 @@ use super::instant::{Instant, Layout};
 use super::law::Step;
 use super::strand::{Course, Strand, Tie};
 use super::way::way;
+use crate::contact::geometry::Body;
 use crate::math::{Vec2, cross, larger};
 
 /// Part of the weight of the cable by which a crest may be beyond its cone: rounding.
@@ -399,6 +400,17 @@ impl Loose {
     pub fn friction(&self, course: &Course) -> f64 {
         let press = |p: &Part| p.held(course).norm() * p.form.friction(course);
         self.parts.iter().map(press).sum()
+    }
+
+    /// Whether it lies on the ground without tension, more or less of it in folds. Where all that is over is a heap in a kink, and where it is
+    /// drawn over hills, a strand under hardly any tension is much the same, and can be followed as it moves.
+    pub fn spreads(&self, course: &Course, layout: &Layout) -> bool {
+        let bodies = layout.problem.world.geometry().bodies();
+        self.parts.iter().all(|p| match &p.form {
+            Line::Heap(_) => false,
+            Line::Lies(s) => p.is_loose() || !bodies.get(s.curve / 2).is_some_and(Body::is_ground),
+            Line::Hangs(_) | Line::Spans { .. } => true,
+        }) && self.lies(course)[1] > NONE_M
     }
 
     /// Material that lies, and the length of ground it lies on, m.
