@@ -7,7 +7,7 @@ use super::gaps;
 use super::history::Mode;
 use super::instant::{Instant, Layout, place_ends};
 use super::lay;
-use super::loose;
+use super::loose::{self, Loose};
 use super::loss;
 use super::newton::{self, Solved, Work};
 use super::pass;
@@ -142,7 +142,7 @@ impl Network {
                 }
             }
         }
-        // What comes down in a heap, and what friction holds on hills.
+        // What comes down in a heap, and what hangs over crests.
         if let Some(strands) = (0..layout.strands.len()).map(|k| loose::lay(layout, k, (&course, instant))).collect() {
             return Ok((Self { strands, course, instant: instant.clone() }, Taken::default()));
         }
@@ -238,8 +238,7 @@ impl Network {
         for k in 0..layout.strands.len() {
             let held = layout.strands[k].supports.iter().all(Option::is_some);
             let loose = if taut.is_none() && held { loose::lay(layout, k, (&self.course, &begin)) } else { None };
-            let spreads = |s: &Strand| s.loose.as_ref().is_some_and(|l| l.spreads(&self.course, layout));
-            if let Some(strand) = loose.filter(spreads) {
+            if let Some(strand) = loose.filter(|s| s.loose.as_ref().is_some_and(Loose::spreads)) {
                 self.strands.push(strand);
                 came.push(Vec::new());
                 continue;

@@ -22,6 +22,7 @@
 mod bridge;
 mod heap;
 mod report;
+mod short;
 
 use self::heap::{Heap, heap};
 use super::curve::Place;
@@ -30,7 +31,6 @@ use super::instant::{Instant, Layout};
 use super::law::Step;
 use super::strand::{Course, Strand, Tie};
 use super::way::way;
-use crate::contact::geometry::Body;
 use crate::math::{Vec2, cross, larger};
 
 /// Part of the weight of the cable by which a crest may be beyond its cone: rounding.
@@ -126,8 +126,15 @@ pub(super) fn lay(layout: &Layout, index: usize, (course, instant): (&Course, &I
     });
     let drape = Drape { course, frame, most: CONE * load.norm() * (to - from) };
     let lines = drape.lines(&roofs, &legs);
-    let mut parts = drape.parts(&lines, held.map(|h| h.is_some()))?;
-    pay_out(&mut parts, course, frame, (part.material, drawn[0] + drawn[1]))?;
+    let given = (part.material, drawn[0] + drawn[1]);
+    let tied = held.map(|h| h.is_some());
+    let plumb = drape.parts(&lines, tied).and_then(|parts| pay_out(parts, course, frame, given));
+    // Where that takes more cable than there is, or a crest does not hold it.
+    let parts = match plumb {
+        Some(parts) => parts,
+        None if tied == [true; 2] => pay_out(drape.short(&lines, tied, to - from)?, course, frame, given)?,
+        None => return None,
+    };
     let ties = [0, 1].map(|k| held[k].map_or(Tie::Loose(drawn[k]), Tie::Held));
     let loose = Some(Loose { parts, drawn: drawn[0] + drawn[1] });
     Some(Strand { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()], loose })
@@ -135,11 +142,11 @@ pub(super) fn lay(layout: &Layout, index: usize, (course, instant): (&Course, &I
 
 /// Gives each part its material, what is over to those without tension, or to a heap; None where nothing is over or nothing holds it.
 fn pay_out(
-    parts: &mut Vec<Part>,
+    mut parts: Vec<Part>,
     course: &Course,
     frame: Frame,
     ([from, to], drawn): ([f64; 2], Vec2),
-) -> Option<()> {
+) -> Option<Vec<Part>> {
     let own = |p: &Part| p.s[1] - p.s[0];
     let over = to - from - parts.iter().map(own).sum::<f64>();
     if !(over > OVER * (to - from)) {
@@ -147,17 +154,17 @@ fn pay_out(
     }
     let free: f64 = parts.iter().filter(|p| p.is_loose()).map(own).sum();
     if free <= NONE_M || drawn.norm() > 0.0 {
-        let (at, found) = heap(parts, course, frame, course.law.load * over + drawn)?;
+        let (at, found) = heap(&parts, course, frame, course.law.load * over + drawn)?;
         parts.insert(at, Part { s: [0.0, over], tension: [0.0; 2], form: Line::Heap(found) });
     }
     let spread = if parts.iter().any(|p| matches!(p.form, Line::Heap(_))) { 0.0 } else { over / free };
     let mut s = from;
-    for part in parts {
+    for part in &mut parts {
         let more = if part.is_loose() { own(part) * spread } else { 0.0 };
         part.s = [s, s + own(part) + more];
         s = part.s[1];
     }
-    Some(())
+    Some(parts)
 }
 
 /// Material that hangs plumb over a height, m.
@@ -271,19 +278,8 @@ impl Drape<'_> {
         let ends = [first, last].map(|h| h.map_or(0.0, |(_, s)| weight * s));
         let lies: Vec<Stretch> =
             lines.iter().filter_map(|l| if let Line::Lies(s) = l { Some(*s) } else { None }).collect();
-        // As little tension as friction lets it have, from the start on and from the end back.
-        let (mut t, mut forth) = (ends[0], Vec::with_capacity(lies.len()));
-        for s in &lies {
-            forth.push(t);
-            t = larger(s.slide(self.course, (s.p[0], s.p[1]), t, -s.friction(self.course)).tension, 0.0);
-        }
-        let ends_tight = !held[1] && t > ends[1] + self.most;
-        let (mut t, mut back) = (ends[1], vec![0.0; lies.len()]);
-        for (s, back) in lies.iter().zip(&mut back).rev() {
-            *back = t;
-            t = larger(s.slide(self.course, (s.p[1], s.p[0]), t, s.friction(self.course)).tension, 0.0);
-        }
-        let begins_tight = !held[0] && t > ends[0] + self.most;
+        let ([forth, back], tight) = self.profiles(&lies, (ends, held));
+        let [begins_tight, ends_tight] = tight;
         let bridge = match (begins_tight, ends_tight) {
             (true, false) => Some(self.bridge(&lies, (near[0]?, &back), 0)?),
             (false, true) => Some(self.bridge(&lies, (near[1]?, &forth), 1)?),
@@ -322,6 +318,35 @@ impl Drape<'_> {
             return Some(true);
         }
         Some(false)
+    }
+
+    /// Tensions at the starts of stretches that are drawn from their start, and at their ends where they are drawn from the end: as little as
+    /// friction lets them have, from the tensions at both ends (N); and whether at the start and at the end that is more than there is.
+    fn profiles(&self, lies: &[Stretch], (ends, held): ([f64; 2], [bool; 2])) -> ([Vec<f64>; 2], [bool; 2]) {
+        let (mut t, mut forth) = (ends[0], Vec::with_capacity(lies.len()));
+        for s in lies {
+            forth.push(t);
+            t = larger(s.slide(self.course, (s.p[0], s.p[1]), t, -s.friction(self.course)).tension, 0.0);
+        }
+        let ends_tight = !held[1] && t > ends[1] + self.most;
+        let (mut t, mut back) = (ends[1], vec![0.0; lies.len()]);
+        for (s, back) in lies.iter().zip(&mut back).rev() {
+            *back = t;
+            t = larger(s.slide(self.course, (s.p[1], s.p[0]), t, s.friction(self.course)).tension, 0.0);
+        }
+        ([forth, back], [!held[0] && t > ends[0] + self.most, ends_tight])
+    }
+
+    /// What lies between two tensions (N); None where friction does not hold it.
+    fn lying(&self, lies: &[Stretch], ends: ([f64; 2], [bool; 2]), out: &mut Vec<Part>) -> Option<()> {
+        let ([forth, back], tight) = self.profiles(lies, ends);
+        if tight != [false; 2] || lies.iter().any(|s| !(s.p[1] >= s.p[0])) {
+            return None;
+        }
+        for ((s, forth), back) in lies.iter().zip(forth).zip(back) {
+            self.stretch(s, [forth, back], out);
+        }
+        Some(())
     }
 
     /// A stretch in its parts: where the tension from its start holds, where there is none, where that from its end does.
@@ -402,15 +427,11 @@ impl Loose {
         self.parts.iter().map(press).sum()
     }
 
-    /// Whether it lies on the ground without tension, more or less of it in folds. Where all that is over is a heap in a kink, and where it is
-    /// drawn over hills, a strand under hardly any tension is much the same, and can be followed as it moves.
-    pub fn spreads(&self, course: &Course, layout: &Layout) -> bool {
-        let bodies = layout.problem.world.geometry().bodies();
-        self.parts.iter().all(|p| match &p.form {
-            Line::Heap(_) => false,
-            Line::Lies(s) => p.is_loose() || !bodies.get(s.curve / 2).is_some_and(Body::is_ground),
-            Line::Hangs(_) | Line::Spans { .. } => true,
-        }) && self.lies(course)[1] > NONE_M
+    /// Whether all that lies has no tension. Where it is drawn over crests, and where all that is over is a heap in a kink, a strand under
+    /// hardly any tension is much the same, and can be followed as it moves.
+    pub fn spreads(&self) -> bool {
+        let lies = |p: &Part| matches!(p.form, Line::Hangs(_)) || p.is_loose();
+        self.parts.iter().all(lies) && self.parts.iter().any(|p| p.is_loose() && p.s[1] - p.s[0] > NONE_M)
     }
 
     /// Material that lies, and the length of ground it lies on, m.

@@ -12,10 +12,10 @@
 
 use super::super::drained::NONE_M;
 use super::{Drape, HALVINGS, Line, Part, Stretch};
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 
-/// Doublings of a span at most.
-const DOUBLINGS: usize = 60;
+/// Rounds of Newton's method for the length of a span: it is off by its strain at first.
+const ROUNDS: usize = 8;
 
 /// A span, and where it touches.
 pub(super) struct Bridge {
@@ -27,14 +27,14 @@ pub(super) struct Bridge {
 
 /// A span seen from where it touches.
 #[derive(Clone, Copy)]
-struct Seen {
-    length: f64,
+pub(super) struct Seen {
+    pub length: f64,
     /// How much higher than the support it ends, m.
-    over: f64,
+    pub over: f64,
     /// Tension where it touches and its direction from there.
-    tension: f64,
-    towards: Vec2,
-    at: Vec2,
+    pub tension: f64,
+    pub towards: Vec2,
+    pub at: Vec2,
 }
 
 impl Drape<'_> {
@@ -80,7 +80,7 @@ impl Drape<'_> {
     }
 
     /// The span that leaves a point in a direction with a tension, up to the plumb line of the support; None where it never comes there.
-    fn seen(&self, (at, towards): (Vec2, Vec2), tension: f64, support: Vec2) -> Option<Seen> {
+    pub(super) fn seen(&self, (at, towards): (Vec2, Vec2), tension: f64, support: Vec2) -> Option<Seen> {
         let (law, frame) = (&self.course.law, self.frame);
         let b = law.load.norm();
         let away = frame.split(support - at);
@@ -91,21 +91,25 @@ impl Drape<'_> {
             let next = v + b * length;
             h * law.thermal * (length * law.compliance + ((next / h).asinh() - (v / h).asinh()) / b)
         };
-        let (mut low, mut high) = (0.0, NONE_M);
-        for _ in 0..DOUBLINGS {
-            if !(across(high) < far) {
-                break;
-            }
-            (low, high) = (high, 2.0 * high);
-        }
-        if !(across(high) >= far && h > 0.0) {
+        if !(h > 0.0) {
             return None;
         }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if across(middle) < far { low = middle } else { high = middle }
+        // As if it did not stretch; then by Newton's method.
+        let mut length = if far > 0.0 { h / b * ((v / h).asinh() + far * b / (h * law.thermal)).sinh() - v / b } else { 0.0 };
+        for _ in 0..ROUNDS {
+            if !(length > 0.0 && length.is_finite()) {
+                break;
+            }
+            let next = v + b * length;
+            let by = (across(length) - far) / (h * law.thermal * (law.compliance + 1.0 / h.hypot(next)));
+            length = larger(length - by, 0.0);
+            if by.abs() <= 1e-15 * length {
+                break;
+            }
         }
-        let length = if far > 0.0 { high } else { 0.0 };
+        if !length.is_finite() {
+            return None;
+        }
         let next = v + b * length;
         let rises = (h.hypot(next) - h.hypot(v)) / b + 0.5 * (next * next - v * v) / b * law.compliance;
         Some(Seen { length, over: law.thermal * rises - away.y, tension, towards, at })
