@@ -203,7 +203,14 @@ fn roofs_of(curve: &Curve, (body, piece): (usize, i64), frame: Frame, out: &mut 
             let (from, along) = (frame.split(from + curve.shift), frame.split(tangent));
             if along.x > FACES && given.extent > 0.0 {
                 let u = [from.x, from.x + along.x * given.extent];
-                out.push(Roof { body, friction, piece, start: 0.0, u, top: Top::Line { from, slope: along.y / along.x } });
+                out.push(Roof {
+                    body,
+                    friction,
+                    piece,
+                    start: 0.0,
+                    u,
+                    top: Top::Line { from, slope: along.y / along.x },
+                });
             }
         }
         Form::Arc { center, radius, from } => {

@@ -143,7 +143,7 @@ impl Network {
             }
         }
         // What comes down in a heap, and what hangs over crests.
-        if let Some(strands) = (0..layout.strands.len()).map(|k| loose::lay(layout, k, (&course, instant))).collect() {
+        if let Some(strands) = strands_of(layout, |k| loose::lay(layout, k, (&course, instant))) {
             return Ok((Self { strands, course, instant: instant.clone() }, Taken::default()));
         }
         Err(stopped.or(first).unwrap_or((Trouble::Restless { s: 0.0 }, None)))
@@ -595,6 +595,11 @@ impl Network {
         }
         Ok(taken)
     }
+}
+
+/// All strands, where each is found.
+fn strands_of(layout: &Layout, lay: impl Fn(usize) -> Option<Strand>) -> Option<Vec<Strand>> {
+    (0..layout.strands.len()).map(lay).collect()
 }
 
 impl From<(Trouble, f64)> for Trouble {

@@ -22,7 +22,6 @@
 mod bridge;
 mod heap;
 mod report;
-mod short;
 
 use self::heap::{Heap, heap};
 use super::curve::Place;
@@ -127,14 +126,8 @@ pub(super) fn lay(layout: &Layout, index: usize, (course, instant): (&Course, &I
     let drape = Drape { course, frame, most: CONE * load.norm() * (to - from) };
     let lines = drape.lines(&roofs, &legs);
     let given = (part.material, drawn[0] + drawn[1]);
-    let tied = held.map(|h| h.is_some());
-    let plumb = drape.parts(&lines, tied).and_then(|parts| pay_out(parts, course, frame, given));
-    // Where that takes more cable than there is, or a crest does not hold it.
-    let parts = match plumb {
-        Some(parts) => parts,
-        None if tied == [true; 2] => pay_out(drape.short(&lines, tied, to - from)?, course, frame, given)?,
-        None => return None,
-    };
+    let parts = drape.parts(&lines, held.map(|h| h.is_some()))?;
+    let parts = pay_out(parts, course, frame, given)?;
     let ties = [0, 1].map(|k| held[k].map_or(Tie::Loose(drawn[k]), Tie::Held));
     let loose = Some(Loose { parts, drawn: drawn[0] + drawn[1] });
     Some(Strand { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()], loose })
@@ -248,12 +241,7 @@ impl Drape<'_> {
 
     /// What lies between two points without tension, or from or to a support. Where a support hangs nearby and the crest draws the cable
     /// tight there, a span bridges to it; whether that was done at the end.
-    fn chain(
-        &self,
-        lines: &[Line],
-        (held, near): ([bool; 2], [Option<Vec2>; 2]),
-        out: &mut Vec<Part>,
-    ) -> Option<bool> {
+    fn chain(&self, lines: &[Line], (held, near): ([bool; 2], [Option<Vec2>; 2]), out: &mut Vec<Part>) -> Option<bool> {
         let weight = self.course.law.load.norm();
         let hangs = |line: Option<&Line>| match line {
             Some(Line::Hangs(ends)) => Some((*ends, plumb(self.course, self.rise(*ends).abs()))),
@@ -337,18 +325,6 @@ impl Drape<'_> {
         ([forth, back], [!held[0] && t > ends[0] + self.most, ends_tight])
     }
 
-    /// What lies between two tensions (N); None where friction does not hold it.
-    fn lying(&self, lies: &[Stretch], ends: ([f64; 2], [bool; 2]), out: &mut Vec<Part>) -> Option<()> {
-        let ([forth, back], tight) = self.profiles(lies, ends);
-        if tight != [false; 2] || lies.iter().any(|s| !(s.p[1] >= s.p[0])) {
-            return None;
-        }
-        for ((s, forth), back) in lies.iter().zip(forth).zip(back) {
-            self.stretch(s, [forth, back], out);
-        }
-        Some(())
-    }
-
     /// A stretch in its parts: where the tension from its start holds, where there is none, where that from its end does.
     fn stretch(&self, s: &Stretch, [forth, back]: [f64; 2], out: &mut Vec<Part>) {
         let (course, friction, [p0, p1]) = (self.course, s.friction(self.course), s.p);
@@ -369,7 +345,13 @@ impl Drape<'_> {
         let goes = |t: f64, from: f64, to: f64, holds: &dyn Fn(f64) -> bool| match (t > 0.0, holds(from)) {
             (true, _) => seek(if from < to { p0 } else { p1 }, to, holds),
             (false, true) => seek(from, to, holds),
-            (false, false) => if from < to { p0 } else { p1 },
+            (false, false) => {
+                if from < to {
+                    p0
+                } else {
+                    p1
+                }
+            }
         };
         let mut ends = goes(forth, p0 + little, p1, &|p| forth_at(p) > 0.0);
         let mut begins = goes(back, p1 - little, p0, &|p| back_at(p) > 0.0);
@@ -438,7 +420,8 @@ impl Loose {
     pub fn lies(&self, course: &Course) -> [f64; 2] {
         let lies = self.parts.iter().filter(|p| p.is_loose() || matches!(p.form, Line::Heap(_)));
         lies.fold([0.0; 2], |[material, ground], p| {
-            let way = if let Line::Lies(s) = &p.form { (s.p[1] - s.p[0]) * s.place(course, s.p[0]).stretch } else { 0.0 };
+            let way =
+                if let Line::Lies(s) = &p.form { (s.p[1] - s.p[0]) * s.place(course, s.p[0]).stretch } else { 0.0 };
             [material + p.s[1] - p.s[0], ground + way]
         })
     }

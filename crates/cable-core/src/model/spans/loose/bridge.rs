@@ -27,24 +27,19 @@ pub(super) struct Bridge {
 
 /// A span seen from where it touches.
 #[derive(Clone, Copy)]
-pub(super) struct Seen {
-    pub length: f64,
+struct Seen {
+    length: f64,
     /// How much higher than the support it ends, m.
-    pub over: f64,
+    over: f64,
     /// Tension where it touches and its direction from there.
-    pub tension: f64,
-    pub towards: Vec2,
-    pub at: Vec2,
+    tension: f64,
+    towards: Vec2,
+    at: Vec2,
 }
 
 impl Drape<'_> {
     /// The span to a support at the start (side 0) or the end; `tensions` of the stretches at their other ends (N).
-    pub(super) fn bridge(
-        &self,
-        lies: &[Stretch],
-        (support, tensions): (Vec2, &[f64]),
-        side: usize,
-    ) -> Option<Bridge> {
+    pub(super) fn bridge(&self, lies: &[Stretch], (support, tensions): (Vec2, &[f64]), side: usize) -> Option<Bridge> {
         let (course, other) = (self.course, 1 - side);
         let sign = if side == 0 { 1.0 } else { -1.0 };
         let seen = |k: usize, p: f64| {
@@ -80,7 +75,7 @@ impl Drape<'_> {
     }
 
     /// The span that leaves a point in a direction with a tension, up to the plumb line of the support; None where it never comes there.
-    pub(super) fn seen(&self, (at, towards): (Vec2, Vec2), tension: f64, support: Vec2) -> Option<Seen> {
+    fn seen(&self, (at, towards): (Vec2, Vec2), tension: f64, support: Vec2) -> Option<Seen> {
         let (law, frame) = (&self.course.law, self.frame);
         let b = law.load.norm();
         let away = frame.split(support - at);
@@ -95,7 +90,8 @@ impl Drape<'_> {
             return None;
         }
         // As if it did not stretch; then by Newton's method.
-        let mut length = if far > 0.0 { h / b * ((v / h).asinh() + far * b / (h * law.thermal)).sinh() - v / b } else { 0.0 };
+        let mut length =
+            if far > 0.0 { h / b * ((v / h).asinh() + far * b / (h * law.thermal)).sinh() - v / b } else { 0.0 };
         for _ in 0..ROUNDS {
             if !(length > 0.0 && length.is_finite()) {
                 break;

@@ -101,7 +101,9 @@ impl Line {
         match self {
             Self::Hangs(_) | Self::Spans { .. } => 0.0,
             Self::Lies(s) => s.friction(course),
-            Self::Heap(heap) => heap.edges.iter().flatten().map(|b| course.curves[b.curve].friction).fold(0.0, f64::max),
+            Self::Heap(heap) => {
+                heap.edges.iter().flatten().map(|b| course.curves[b.curve].friction).fold(0.0, f64::max)
+            }
         }
     }
 }
