@@ -14,6 +14,7 @@ mod arc;
 mod band;
 mod check;
 mod curve;
+mod drained;
 mod drive;
 mod ends;
 mod events;

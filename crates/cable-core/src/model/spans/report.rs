@@ -52,14 +52,14 @@ pub(super) fn report(layout: &Layout, network: &Network) -> Report {
             greatest = if t > greatest { t } else { greatest };
         }
         if let Some(loose) = &strand.loose {
-            greatest = [0, 1].iter().map(|side| loose.end_force((course, strand), *side).norm()).fold(greatest, larger);
+            greatest = [0, 1].iter().map(|side| loose.end_force(course, *side).norm()).fold(greatest, larger);
         }
     }
     let mut nodes = Nodes::new(&layout.problem, greatest);
     let mut contacts = Vec::new();
     for strand in &network.strands {
         if let Some(loose) = &strand.loose {
-            let found = loose.report((course, strand), &mut nodes, layout.problem.radius);
+            let found = loose.report(course, &mut nodes, layout.problem.radius).into_iter();
             contacts.extend(found.map(|(obstacle, report)| {
                 let obstacle = layout.problem.world.obstacle_name(obstacle).to_owned();
                 ContactReport { obstacle, ..report }
@@ -414,7 +414,7 @@ fn parts(c: &Contact, friction: f64, stretches: &[Stretch]) -> Vec<ContactPart> 
 fn end_force(network: &Network, strand: &Strand, side: usize) -> Vec2 {
     let course = &network.course;
     if let Some(loose) = &strand.loose {
-        return loose.end_force((course, strand), side);
+        return loose.end_force(course, side);
     }
     let (k, s) = if side == 0 { (0, strand.from) } else { (strand.contacts.len(), strand.to) };
     match strand.ties[side] {
