@@ -419,6 +419,7 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
             // Over a turn by more than a right angle the chord says nothing.
             if turn_between(w[0].force_n, w[1].force_n) < 0.5
                 && size(chord) > 0.5 * (w[1].arc_length_m - w[0].arc_length_m)
+                && size(chord) > 1e-9 * length
             {
                 let limit = COMPRESSION * scale + lump * (w[1].arc_length_m - w[0].arc_length_m);
                 pushes
@@ -443,7 +444,8 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
         let pulled =
             nodes[k.saturating_sub(1)..(k + 3).min(nodes.len())].iter().map(|n| n.tension_n).fold(tension, f64::max);
         let full = ds * thermal * (1.0 + pulled / cable.axial_stiffness_n);
-        let slack = ds * (TOO_LONG + if flexible { 0.0 } else { 0.1 * turn * turn }) + 1e-9 * length;
+        let second = if !flexible { 0.1 } else if lump > 0.0 { 1e-3 } else { 0.0 };
+        let slack = ds * (TOO_LONG + second * turn * turn) + 1e-9 * length;
         long.tell(chord - full, slack, || format!("{:.3e} m too long at {:.4} m", chord - full, w[0].arc_length_m));
         let least = w[0].tension_n.min(w[1].tension_n).max(if flexible { 0.0 } else { f64::MIN });
         let missing = ds * thermal * (1.0 + least / cable.axial_stiffness_n) - chord;
