@@ -443,8 +443,14 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
         // A node has the mean of the tensions beside it.
         let pulled =
             nodes[k.saturating_sub(1)..(k + 3).min(nodes.len())].iter().map(|n| n.tension_n).fold(tension, f64::max);
-        let full = ds * thermal * (1.0 + pulled / cable.axial_stiffness_n);
-        let second = if !flexible { 0.1 } else if lump > 0.0 { 1e-3 } else { 0.0 };
+        let full = ds * thermal * (1.0 + (pulled + lump * ds) / cable.axial_stiffness_n);
+        let second = if !flexible {
+            0.1
+        } else if lump > 0.0 {
+            1e-3
+        } else {
+            0.0
+        };
         let slack = ds * (TOO_LONG + second * turn * turn) + 1e-9 * length;
         long.tell(chord - full, slack, || format!("{:.3e} m too long at {:.4} m", chord - full, w[0].arc_length_m));
         let least = w[0].tension_n.min(w[1].tension_n).max(if flexible { 0.0 } else { f64::MIN });
