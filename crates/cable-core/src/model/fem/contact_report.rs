@@ -134,7 +134,8 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
         let rubbed = (grounded - ground.normal * pressed) * (1.0 - kept);
         let lift = ground.normal * (lift * sign);
         let (grounded, force) = (grounded - rubbed, force - rubbed * sign);
-        lain[usize::from(sign < 0.0)] = Some(Lain {
+        // What a lump presses with is the ground's as well: its node tells.
+        lain[usize::from(sign < 0.0)] = d.mesh.held[node].then(|| Lain {
             node,
             next,
             obstacle: ground.obstacle,
@@ -150,10 +151,11 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
     ([end(0, 1, 0, 1.0), end(n - 1, n - 2, n - 2, -1.0)], lain)
 }
 
-/// What hangs on a free end without a lump, whose inertia would pull as well, N; None for other nodes.
+/// What hangs on a free end, N; None for other nodes, and where a lump moves, whose inertia pulls as well.
 fn free_end(d: &Dynamics, node: usize) -> Option<Vec2> {
     let k = d.support_node.iter().position(|n| *n == Some(node)).filter(|_| !d.mesh.held[node])?;
-    (d.problem.supports.get(k)?.mass == 0.0).then(|| d.problem.hung_on(k, d.time()))
+    let rests = d.problem.supports.get(k)?.mass == 0.0 || !d.inertia_counts();
+    rests.then(|| d.problem.hung_on(k, d.time()))
 }
 
 /// Normal and friction force of edges and floor on a node, N.
