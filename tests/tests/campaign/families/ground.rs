@@ -207,6 +207,17 @@ pub fn loaded_end(r: &mut Chance) -> Case {
     Case { model: if r.says(0.5) { Model::Fem } else { Model::Auto }, ..Case::rests(s) }
 }
 
+/// An end with a lump of mass that lies.
+pub fn lump(r: &mut Chance) -> Case {
+    let mut case = loaded_end(r);
+    let c = case.cable();
+    let weight = c.length_m * c.linear_density_kg_per_m;
+    if let Some(end) = c.supports.last_mut() {
+        *end = Support { mass_kg: Some(weight * r.scale(0.05, 20.0)), ..Support::free("b") };
+    }
+    case
+}
+
 pub fn lying_loads(r: &mut Chance) -> Case {
     let mut case = rough_mooring(r);
     let c = case.cable();

@@ -41,6 +41,7 @@ pub const FAMILIES: &[Family] = &[
     ("rough ground", ground::rough),
     ("free end on the ground", ground::free_end),
     ("loaded end on the ground", ground::loaded_end),
+    ("lump on the ground", ground::lump),
     ("loads on ground", ground::lying_loads),
     ("slope near its cone", ground::cone),
     ("ground at any scale", ground::any_scale),
