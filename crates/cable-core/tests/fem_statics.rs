@@ -354,3 +354,26 @@ fn a_lump_that_lies_presses_on_the_ground() {
         assert!((along + force[0]).abs() < 1e-4 * weight, "{tilt} {mass}: {along} of {} N", -force[0]);
     }
 }
+
+#[test]
+fn what_friction_holds_of_a_lying_load_does_not_push() {
+    for end_first in [true, false] {
+        let mut scene = span(4.0, [0.0; 2], 8.0, 1e6);
+        let points_m = vec![[-50.0, 0.0], [50.0, 0.0]];
+        scene.obstacles =
+            vec![Obstacle { name: "floor".to_owned(), shape: Shape::Terrain { points_m }, friction: Some(0.6) }];
+        let c = &mut scene.cables[0];
+        c.diameter_m = 0.02;
+        c.route_m = vec![[0.0, 1.01], [0.5, 0.01], [3.3, 0.01]];
+        let force_n = Some([-3.0, -10.0]);
+        c.supports =
+            vec![Support::fixed("A", [0.0, 1.01]), Support { force_n, ..Support::new("B", SupportKind::Load) }];
+        if end_first {
+            c.supports.reverse();
+            c.route_m.reverse();
+        }
+        let (answer, _) = solve(&scene, 40).unwrap();
+        let tip = if end_first { answer.nodes[0] } else { answer.nodes[answer.nodes.len() - 1] };
+        assert!(tip.tension_n < 0.5, "{end_first}: {} N", tip.tension_n);
+    }
+}

@@ -112,9 +112,16 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
     let mut end = |node: usize, next: usize, e: usize, sign: f64| {
         let ground = d.problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach);
         if let Some(hung) = free_end(d, node) {
-            // What presses on the ground there is the ground's.
-            let pressed = ground.map_or(Vec2::zeros(), |g| g.normal * hung.dot(&g.normal).min(0.0));
-            return (pressed - hung) * sign;
+            // What presses on the ground there is the ground's, and what friction holds of it: at the tip itself no more than its cone.
+            let taken = ground.map_or(Vec2::zeros(), |g| {
+                let pressed = hung.dot(&g.normal).min(0.0);
+                let along = perp(g.normal);
+                let half = d.problem.body_force(d.time()) * d.mesh.share(node);
+                let most = -pressed * g.friction;
+                let rubbed = (ground_force(d, node, x) + half).dot(&along).clamp(-most, most);
+                g.normal * pressed - along * rubbed
+            });
+            return (taken - hung) * sign;
         }
         let middle = d.mesh.path(e, x).direction * tension[e];
         let half = d.mesh.share(node);
