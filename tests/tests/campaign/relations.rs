@@ -4,12 +4,15 @@ use super::case::Point;
 use cable_core::Solution;
 use cable_core::scene::{Scene, Shape};
 
+/// Forces on the first and last support of a changed scene, seen as those of the first one.
+pub type Back = fn([Point; 2]) -> [Point; 2];
+
 /// A changed scene, and how the forces of the first one look in it.
 pub struct Relation {
     pub name: &'static str,
     pub scene: Scene,
     /// Forces on the first and last support of the changed scene, seen as those of the first.
-    pub back: fn([Point; 2]) -> [Point; 2],
+    pub back: Back,
 }
 
 fn same(f: [Point; 2]) -> [Point; 2] {
@@ -153,7 +156,7 @@ fn redrawn(scene: &Scene) -> Scene {
 
 /// One of the relations of a scene.
 pub fn relation(scene: &Scene, which: usize) -> Relation {
-    let (name, changed, back): (_, _, fn([Point; 2]) -> [Point; 2]) = match which % COUNT {
+    let (name, changed, back): (_, _, Back) = match which % COUNT {
         0 => ("mirrored", mirrored(scene), |f| f.map(|f| [-f[0], f[1]])),
         1 => ("from end to start", reversed(scene), |[a, b]| [b, a]),
         2 => ("twice as long", longer(scene, 2.0), same),
