@@ -12,6 +12,7 @@
 use super::dynamics::Dynamics;
 use super::floor;
 use super::path::{End, Path, angle_between};
+use super::prepare::load_scale;
 use super::sliding::{Grip, Load, Seat, Sliding, round_of};
 use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp};
@@ -57,6 +58,19 @@ const SPARE: f64 = 1.3;
 /// Length of the sum of the directions before and after a node below which the cable counts as folded there.
 const FOLDED: f64 = 0.2;
 
+/// Tension of a taut cable in motion, in units of EA (v/c)^(4/3): something that it hits across at a speed v makes 0.63 of it. Less: sliding nodes come and go
+/// where a falling cable strikes; more: a cable drawn fast over corners jerks at them.
+const IMPACT: f64 = 3.0;
+
+/// How far from a corner (m of arc length) its speed is looked at.
+const NEIGHBOURHOOD: f64 = 0.3;
+
+/// Part by which a change of the mesh may change tension in motion.
+const CHANGED_TENSION: f64 = 0.05;
+
+/// Part of the cable's weight that counts as tension there: what is nearly slack may change by as much.
+const WEIGHT_PART: f64 = 0.1;
+
 /// Most changes of one kind after one step.
 pub(super) const MAX_CHANGES: usize = 400;
 
@@ -67,12 +81,12 @@ impl Dynamics {
             return false;
         }
         let nodes = self.mesh.nodes();
-        let mut changed = self.let_go(&[]);
-        let taken = self.take_hold();
+        let mut changed = self.let_go(&[], rests);
+        let taken = self.take_hold(rests);
         if !taken.is_empty() {
             // What took hold may lift its neighbour off. Itself it waits for a step where inertia does not count: it took over weight of the
             // nodes beside it, which under a corner pulls it away until they have moved.
-            self.let_go(if rests { &taken } else { &[] });
+            self.let_go(if rests { &taken } else { &[] }, rests);
             changed = true;
         }
         let moved = self.move_marks();
@@ -105,9 +119,15 @@ impl Dynamics {
         }
         let path = [mesh.path(k - 1, x), mesh.path(k, x)];
         let rest = [k - 1, k].map(|e| slide.map_or(mesh.rest_length[e], |s| super::bar::rest_length(mesh, e, s)));
+        // What a step balances is the pull with its loss.
+        let loss = |e: usize, p: f64, l: f64| {
+            let ratio = self.task.predicted_length[e] / mesh.rest_length[e];
+            self.task.damping / mesh.rest_length[e] * (p - ratio * l)
+        };
         let tension = [0, 1].map(|j| {
             let t = mesh.axial_stiffness * (path[j].length / rest[j] - 1.0);
-            if t < 0.0 { 0.0 } else { t }
+            let elastic = if t < 0.0 { 0.0 } else { t };
+            if slide.is_some() && self.task.moves { elastic + loss(k - 1 + j, path[j].length, rest[j]) } else { elastic }
         });
         let share = rest.map(|l| 0.5 * l / mesh.thermal_stretch);
         let floor = self.problem.floor_friction.map_or([0.0; 3], |(rough, normal)| {
@@ -119,7 +139,7 @@ impl Dynamics {
     }
 
     /// Lets go of the sliding nodes that press on nothing, but for those on `kept`; returns whether there were any.
-    fn let_go(&mut self, kept: &[Seat]) -> bool {
+    fn let_go(&mut self, kept: &[Seat], rests: bool) -> bool {
         let mut changed = false;
         let mut k = 1;
         while k + 1 < self.mesh.nodes() {
@@ -133,10 +153,10 @@ impl Dynamics {
             if leaves && self.runs_straight(k) && self.clear_without(k) {
                 self.remove(k);
                 changed = true;
-            } else if leaves && self.settle_down(k) {
+            } else if leaves && (rests || self.settles_unstretched(k)) && self.settle_down(k) {
                 changed = true;
                 k += 1;
-            } else if leaves && self.clear_without(k) {
+            } else if leaves && rests && self.clear_without(k) {
                 self.remove(k);
                 changed = true;
             } else {
@@ -267,7 +287,7 @@ impl Dynamics {
     }
 
     /// Puts sliding nodes where corners and circles press; returns their seats.
-    fn take_hold(&mut self) -> Vec<Seat> {
+    fn take_hold(&mut self, rests: bool) -> Vec<Seat> {
         let mut taken = Vec::new();
         if self.problem.world.is_empty() || !self.slides {
             return taken;
@@ -285,7 +305,8 @@ impl Dynamics {
                     .into_iter()
                     .find(|&k| self.removable(k) && (self.mesh.arc_length[k] - arc_length).abs() < near);
                 let beside = node.map_or([bar, bar + 1], |k| [k - 1, k + 1]);
-                self.fits(beside, &sliding).then_some((bar, node, arc_length, sliding))
+                let fits = self.fits(beside, &sliding) && (rests || self.takes_unstretched(beside, &sliding));
+                fits.then_some((bar, node, arc_length, sliding))
             });
             let Some((bar, node, arc_length, sliding)) = found else { break };
             match node {
@@ -297,6 +318,47 @@ impl Dynamics {
         }
         self.touches = touches;
         taken
+    }
+
+    /// Whether a cable in motion is taut there: pulled by more than what its own speed across, hitting something, would make of it,
+    /// and not stretched by the sliding node.
+    fn takes_unstretched(&self, [before, after]: [usize; 2], sliding: &Sliding) -> bool {
+        let (mesh, x) = (&self.mesh, &self.motion.x);
+        let ways = [Path::between(&mesh.end(before, x), &sliding.end), Path::between(&sliding.end, &mesh.end(after, x))];
+        let length: f64 = (before..after).map(|e| mesh.path(e, x).length).sum();
+        let tension = self.stretched(before, after, length);
+        let near = self.mesh.arc_length[before] - NEIGHBOURHOOD..self.mesh.arc_length[after] + NEIGHBOURHOOD;
+        let speed = |k: usize| if mesh.sliding[k].is_some() { self.motion.w[k].abs() } else { self.motion.v[k].norm() };
+        let fastest = (0..mesh.nodes())
+            .filter(|&k| near.contains(&mesh.arc_length[k]))
+            .map(speed)
+            .fold(0.0, |a: f64, b| if b <= a { a } else { b });
+        let wave = (self.mesh.axial_stiffness / self.problem.linear_density).sqrt();
+        let impact = IMPACT * self.mesh.axial_stiffness * (fastest / wave).powf(4.0 / 3.0);
+        tension > impact && self.keeps_tension(before, after, [length, ways[0].length + ways[1].length])
+    }
+
+    /// Whether a sliding node that becomes a plain one leaves the cable as tense as it is.
+    fn settles_unstretched(&self, k: usize) -> bool {
+        let Some(end) = self.mesh.sliding[k].map(|s| s.end) else { return false };
+        let half = (0.5 * self.turn(k)).abs();
+        let longer = 2.0 * end.radius * (half.tan() - half);
+        let length = self.mesh.path(k - 1, &self.motion.x).length + self.mesh.path(k, &self.motion.x).length;
+        half < SHARPEST && self.keeps_tension(k - 1, k + 1, [length, length + longer])
+    }
+
+    /// Tension of the bars from one node to another if their ways were `length` (m) long together, N.
+    fn stretched(&self, before: usize, after: usize, length: f64) -> f64 {
+        let rest: f64 = (before..after).map(|e| self.mesh.rest_length[e]).sum();
+        let tension = self.mesh.axial_stiffness * (length / rest - 1.0);
+        if tension < 0.0 { 0.0 } else { tension }
+    }
+
+    /// Whether another way (m) of the bars from one node to another leaves their tension what it was.
+    fn keeps_tension(&self, before: usize, after: usize, [was, becomes]: [f64; 2]) -> bool {
+        let tensions = [was, becomes].map(|l| self.stretched(before, after, l));
+        let weight = load_scale(&self.problem).0 * self.problem.length;
+        tensions[1] - tensions[0] < CHANGED_TENSION * (tensions[0] + WEIGHT_PART * weight)
     }
 
     /// Whether a sliding node between two nodes would bend the cable the right way and its bars would meet nothing.
