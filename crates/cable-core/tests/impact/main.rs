@@ -41,3 +41,22 @@ fn look() {
         }
     }
 }
+
+/// Development: series of one run.
+#[test]
+#[ignore = "for looking"]
+fn series() {
+    let get = |name: &str, or: &str| std::env::var(name).unwrap_or(or.to_owned());
+    let num = |name: &str, or: &str| get(name, or).parse::<f64>().unwrap();
+    let scene = rubble::scene(num("N", "84") as usize, num("ASIDE", "0"), num("EI", "0"));
+    let rate = num("RATE", "960");
+    let t = if get("CHAIN", "") != "" { rubble::by_chain(&scene, 1.0 / rate, 2e5) } else { rubble::by_fem(&scene, 1.0 / rate) };
+    let (from, to, every) = (num("FROM", "0"), num("TO", "2"), num("STRIDE", "1") as usize);
+    for (i, row) in t.rows.iter().enumerate() {
+        let time = i as f64 * t.step_s;
+        if time >= from && time <= to && i % every == 0 {
+            let k = (0..row.len()).max_by(|a, b| row[*a].total_cmp(&row[*b])).unwrap();
+            println!("{time:.5} {k} {:.2} | {}", row[k], row.iter().step_by(8).map(|t| format!("{t:.0}")).collect::<Vec<_>>().join(" "));
+        }
+    }
+}

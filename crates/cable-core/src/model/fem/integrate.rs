@@ -218,8 +218,9 @@ impl Dynamics {
             }
         }
         task.moves = true;
-        let rate = if rubs { 1.0 / h } else { a };
-        task.damping = self.problem.axial_stiffness * damping_time(&self.problem, rubs) * rate;
+        let (rate, time) = (if rubs { 1.0 / h } else { a }, damping_time(&self.problem, rubs));
+        task.damping = self.problem.axial_stiffness * time * rate;
+        task.bending_damping = mesh.bending_stiffness * time / h;
         for e in 0..mesh.rest_length.len() {
             task.predicted_length[e] = if rubs {
                 mesh.path(e, &m.x).length

@@ -105,6 +105,7 @@ impl Dynamics {
         task.moves = false;
         task.shift = 0.0;
         task.damping = 0.0;
+        task.bending_damping = 0.0;
         task.most_noise = f64::INFINITY;
         task.inertia.clear();
         task.inertia.resize(n, 0.0);
