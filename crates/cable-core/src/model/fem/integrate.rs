@@ -201,6 +201,7 @@ impl Dynamics {
     /// BDF2 makes of a vibration.
     fn set_inertia(&mut self, [now, past, a]: [f64; 3], h: f64) {
         let rubs = !(self.meets_nothing() && self.never_slides && self.problem.floor_friction.is_none());
+        let jumps = !self.meets_nothing();
         let (m, task, mesh) = (&self.motion, &mut self.task, &self.mesh);
         for k in 0..m.x.len() {
             let v_hat = m.v[k] * now - m.v_before[k] * past;
@@ -218,11 +219,11 @@ impl Dynamics {
             }
         }
         task.moves = true;
-        let (rate, time) = (if rubs { 1.0 / h } else { a }, damping_time(&self.problem, rubs));
+        let (rate, time) = (if jumps { 1.0 / h } else { a }, damping_time(&self.problem, rubs));
         task.damping = self.problem.axial_stiffness * time * rate;
         task.bending_damping = mesh.bending_stiffness * time / h;
         for e in 0..mesh.rest_length.len() {
-            task.predicted_length[e] = if rubs {
+            task.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
                 mesh.path(e, &m.x).length
             } else {
                 let length = |x: &[Vec2]| (x[e + 1] - x[e]).norm();

@@ -35,7 +35,13 @@ impl Dynamics {
             if !(shift.abs() * node.end.radius > STILL) {
                 continue;
             }
-            let bars = if rests { k - 1..k + 1 } else if shift > 0.0 { k..k + 1 } else { k - 1..k };
+            let bars = if rests {
+                k - 1..k + 1
+            } else if shift > 0.0 {
+                k..k + 1
+            } else {
+                k - 1..k
+            };
             let sum = |of: &dyn Fn(usize) -> f64| bars.clone().map(of).sum::<f64>();
             let stretch = sum(&|e| paths[e + 1 - k].length) / sum(&|e| self.mesh.rest_length[e]);
             let material = shift * node.end.radius / (stretch * self.mesh.thermal_stretch);

@@ -154,7 +154,11 @@ impl Dynamics {
         let tension = [0, 1].map(|j| {
             let t = mesh.axial_stiffness * (path[j].length / rest[j] - 1.0);
             let elastic = if t < 0.0 { 0.0 } else { t };
-            if slide.is_some() && self.task.moves { elastic + loss(k - 1 + j, path[j].length, rest[j]) } else { elastic }
+            if slide.is_some() && self.task.moves {
+                elastic + loss(k - 1 + j, path[j].length, rest[j])
+            } else {
+                elastic
+            }
         });
         let share = rest.map(|l| 0.5 * l / mesh.thermal_stretch);
         let floor = self.problem.floor_friction.map_or([0.0; 3], |(rough, normal)| {
@@ -357,7 +361,8 @@ impl Dynamics {
     /// not taut, pulled by less than what its own speed across, hitting something, would make of it, or where the node would stretch it.
     fn share_of_sliding(&self, [before, after]: [usize; 2], sliding: &Sliding) -> Option<Share> {
         let (mesh, x) = (&self.mesh, &self.motion.x);
-        let ways = [Path::between(&mesh.end(before, x), &sliding.end), Path::between(&sliding.end, &mesh.end(after, x))];
+        let ways =
+            [Path::between(&mesh.end(before, x), &sliding.end), Path::between(&sliding.end, &mesh.end(after, x))];
         let stretch = [before, after - 1].map(|e| mesh.path(e, x).length / mesh.rest_length[e]);
         let whole = (before..after).map(|e| mesh.rest_length[e]).sum();
         let share = Share::of(ways.map(|w| w.length), stretch, whole);
