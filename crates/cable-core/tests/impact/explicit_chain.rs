@@ -40,7 +40,7 @@ fn nearest(a: Vec2, b: Vec2, p: Vec2) -> (Vec2, f64) {
 
 impl Chain {
     /// The same chain cut into bars, lying at rest along `x` (m).
-    pub fn new(self, length: f64, x: Vec<Vec2>) -> Self {
+    pub fn laid(self, length: f64, x: Vec<Vec2>) -> Self {
         let n = x.len();
         Self {
             bar: length / (n - 1) as f64,
@@ -53,7 +53,7 @@ impl Chain {
         }
     }
 
-    /// A chain of figures alone, to be given nodes by [`Self::new`].
+    /// A chain of figures alone, to be given nodes by [`Self::laid`].
     pub fn figures() -> Self {
         Self {
             density: 1.0,

@@ -76,7 +76,7 @@ pub fn by_chain(scene: &Scene, part: f64, contact: f64) -> Tensions {
         contact,
         ..Chain::figures()
     };
-    let mut chain = chain.new(cable.length_m, x);
+    let mut chain = chain.laid(cable.length_m, x);
     let every_s = 1e-4;
     let count = (every_s / (part * chain.stable_step())).ceil();
     let h = every_s / count;
