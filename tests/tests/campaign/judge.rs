@@ -350,6 +350,7 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
     let mut needed: Vec<V> = Vec::new();
     let same = 1e-9 * length;
     let mut used = vec![false; points.len()];
+    let mut carried = [0.0; 2];
     for (k, w) in nodes.windows(2).enumerate() {
         let ds = w[1].arc_length_m - w[0].arc_length_m;
         let mut sum = add(sub(w[1].force_n, w[0].force_n), mul(load, ds));
@@ -361,14 +362,14 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
         }
         for (i, (s, f)) in points.iter().enumerate() {
             if !used[i] && (*s <= w[1].arc_length_m + same || k + 2 == nodes.len()) {
-                // Of several nodes at one place of the material the last has the force beyond it.
-                let later = nodes.get(k + 2).is_some_and(|n| n.arc_length_m <= s + same);
-                if !later {
-                    used[i] = true;
-                    sum = add(sum, *f);
-                }
+                used[i] = true;
+                sum = add(sum, *f);
             }
         }
+        // Nodes at one place of the material are one.
+        sum = add(sum, carried);
+        let one = nodes.get(k + 2).is_some_and(|n| n.arc_length_m <= w[1].arc_length_m + same);
+        (carried, sum) = if one { (sum, [0.0; 2]) } else { ([0.0; 2], sum) };
         needed.push(mul(sum, -1.0));
     }
     let mut piece = Worst::default();

@@ -40,6 +40,11 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
 }
 
 impl Dynamics {
+    /// Whether the cable slides through any node.
+    pub(super) fn slides_anywhere(&self) -> bool {
+        self.mesh.sliding.iter().any(Option::is_some)
+    }
+
     /// What the mesh leaves out of a stiff cable's bend at what it is led round, in parts of the greatest tension, and where that is most
     /// (m of arc length). A sliding node carries no moment: tension there is off by EI/2ρ² where the cable lies on the round, and by no more
     /// than T(1 − cos ½φ), φ its turn, where it touches in a point. At a node that turns by ψ the normal force of a contact has any

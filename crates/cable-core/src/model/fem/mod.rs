@@ -434,7 +434,8 @@ impl Mechanics for FemModel {
             }
             let mut report = self.dynamics.advance(dt_s, inertia, &self.dragged)?;
             self.meshes.follow(&self.dynamics, dt_s, inertia, &self.dragged);
-            match self.bend_warning() {
+            let led = !touches_nothing(&self.problem) || self.dynamics.slides_anywhere();
+            match if led { self.bend_warning() } else { None } {
                 Some(warning) => report.warnings.push(warning),
                 // What is less than was asked for says nothing of the other errors of a step.
                 None => self.unbent = None,

@@ -16,6 +16,7 @@
 
 use super::law::{Step, Track};
 use super::root::{FLOOR, crossing};
+use crate::math::smaller;
 
 /// Part of the friction coefficient by which it is changed to see what that moves.
 const NUDGE: f64 = 1e-6;
@@ -48,14 +49,6 @@ pub(super) struct Ends {
     pub p: [f64; 2],
     pub s: [f64; 2],
     pub t: [f64; 2],
-}
-
-impl Ends {
-    /// The middle of it.
-    pub fn middle(&self) -> Knot {
-        let mean = |[a, b]: [f64; 2]| 0.5 * (a + b);
-        Knot { p: mean(self.p), s: mean(self.s), tension: mean(self.t), m: 0.0 }
-    }
 }
 
 /// How a contact stands.
@@ -180,6 +173,25 @@ impl History {
             .enumerate()
             .for_each(|(k, knot)| out.push(if k == end { Knot { m: 0.0, ..knot } } else { knot }));
         out
+    }
+
+    /// The same from the middle of its length with a tension there, N, what is missing or too much of its material at both ends alike; no
+    /// end has less than that tension: weight that hangs down on both sides of a crest is held there.
+    pub fn laid_from_middle(track: &Track<'_>, e: &Ends, tension: f64) -> Self {
+        let middle = Knot { p: track.middle(e.p), s: 0.5 * (e.s[0] + e.s[1]), tension, m: 0.0 };
+        let mut laid = Self::laid(track, middle, e.p);
+        let missing = tension - laid.ends().map_or(tension, |[a, b]| smaller(a.tension, b.tension));
+        if missing > 0.0 {
+            laid = Self::laid(track, Knot { tension: tension + missing, ..middle }, e.p);
+        }
+        let off = laid.ends().map_or(0.0, |[a, b]| middle.s - 0.5 * (a.s + b.s));
+        laid.knots.iter_mut().for_each(|knot| knot.s += off);
+        laid
+    }
+
+    /// Its first and last knot.
+    fn ends(&self) -> Option<[Knot; 2]> {
+        Some([*self.knots.first()?, *self.knots.last()?])
     }
 
     /// The knots.

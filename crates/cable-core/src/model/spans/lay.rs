@@ -322,15 +322,17 @@ pub(super) fn spread(strand: &mut Strand, course: &Course) {
         before = e.s[1];
     }
     let loose = [0, 1].map(|side| matches!(strand.ties[side], Tie::Loose(_)));
+    let lies = [0, 1].map(|side| matches!(strand.ties[side], Tie::Lies(_)));
     for (j, c) in strand.contacts.iter_mut().enumerate() {
         let track = course.track(c);
         let free = [loose[0] && j == 0, loose[1] && j + 1 == n];
+        let held = [lies[0] && j == 0, lies[1] && j + 1 == n];
         for side in 0..2 {
             if let Tie::Loose(force) = strand.ties[side] {
                 c.ends.t[side] = if free[side] { course.pull(c, side, force) } else { c.ends.t[side] };
             }
         }
-        c.history = lay_down(&track, &c.ends, free);
+        c.history = lay_down(&track, &c.ends, [free, held]);
         // A free end lies where the material ends.
         for side in (0..2).filter(|&side| free[side]) {
             for _ in 0..FITS {
@@ -339,21 +341,21 @@ pub(super) fn spread(strand: &mut Strand, course: &Course) {
                 let (tension, s) = c.history.at(&track, c.ends.p[other]);
                 let off = (s - c.ends.s[other]) * course.law.stretch(tension);
                 c.ends.p[side] += if other == side { -off } else { off };
-                c.history = lay_down(&track, &c.ends, free);
+                c.history = lay_down(&track, &c.ends, [free, held]);
             }
         }
     }
 }
 
-/// A contact as it is laid: from its end that is free, where its tension is known; else from its middle. With two free ends it is laid
-/// with the tension of the one that draws less.
-fn lay_down(track: &Track<'_>, e: &Ends, free: [bool; 2]) -> History {
+/// A contact as it is laid: from its end that is free, where its tension is known, or held, where its material is; else from its middle.
+/// With two free ends it is laid with the tension of the one that draws less.
+fn lay_down(track: &Track<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> History {
     let end = |side: usize| Knot { p: e.p[side], s: e.s[side], tension: e.t[side], m: 0.0 };
-    let start = match free {
-        [true, false] => end(0),
-        [false, true] => end(1),
-        [true, true] => Knot { tension: smaller(e.t[0], e.t[1]), ..e.middle() },
-        [false, false] => e.middle(),
+    let start = match (free, held) {
+        ([true, false], _) | ([false, false], [true, false]) => end(0),
+        ([false, true], _) | ([false, false], [false, true]) => end(1),
+        ([true, true], _) => return History::laid_from_middle(track, e, smaller(e.t[0], e.t[1])),
+        ([false, false], _) => return History::laid_from_middle(track, e, 0.5 * (e.t[0] + e.t[1])),
     };
     History::laid(track, start, e.p)
 }

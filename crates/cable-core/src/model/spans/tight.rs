@@ -38,6 +38,7 @@ pub(super) fn tighten(strand: &mut Strand, course: &Course) {
 pub(super) fn relay(strand: &mut Strand, course: &Course) {
     tighten(strand, course);
     for c in &mut strand.contacts {
-        c.history = History::laid(&course.track(c), c.ends.middle(), c.ends.p);
+        let even = 0.5 * (c.ends.t[0] + c.ends.t[1]);
+        c.history = History::laid_from_middle(&course.track(c), &c.ends, even);
     }
 }
