@@ -116,6 +116,7 @@ fn heavier(scene: &Scene, k: f64) -> Scene {
         c.bending_stiffness_n_m2 *= k;
         for p in &mut c.supports {
             p.force_n = p.force_n.map(|f| [f[0] * k, f[1] * k]);
+            p.mass_kg = p.mass_kg.map(|m| m * k);
         }
     }
     for l in &mut s.loads {
