@@ -50,7 +50,6 @@ impl MassSpringModel {
             load_node,
             x,
             v,
-            behind_s,
             f,
             tension,
             held,
