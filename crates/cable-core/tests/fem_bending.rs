@@ -329,3 +329,31 @@ fn sharp_bends_are_told_with_their_radius() {
         assert!(kink.is_none_or(|w| (w.value / expected - 1.0).abs() < 1e-6), "{kink:?}");
     }
 }
+
+/// Length, density, EI, far end, angles of both clamps (°). Without bending stiffness each sags; with it the clamps turn it upwards, or
+/// aside, and on the way up in EI its shape snaps over.
+const SNAPPING: [([f64; 3], [f64; 2], [f64; 2]); 4] = [
+    ([1.77, 0.877, 16.56], [1.667, 0.0838], [25.9, -41.2]),
+    ([1.44, 0.114, 0.2476], [1.3376, 0.418], [41.5, -19.9]),
+    ([2.585, 3.365, 153.4], [2.271, 1.0889], [51.9, 17.5]),
+    ([1.1605, 0.6135, 15.4], [1.1027, -0.2559], [8.2, -26.4]),
+];
+
+#[test]
+fn clamps_that_turn_a_sagging_cable_over_are_answered() {
+    for ([length, density, bending], end, angles) in SNAPPING {
+        let angled = |name, at, k: usize| Support { angle_deg: Some(angles[k]), ..clamp(name, at) };
+        let mut scene = clamped(length, 10.0 * density, 1e6, bending, angled("B", end, 1));
+        scene.cables[0].supports[0] = angled("A", [0.0, 0.0], 0);
+        let answer = Simulation::new(scene, Model::Auto).unwrap().settle().unwrap();
+        let [a, b] = [0, 1].map(|k| &answer.cables[0].supports[k]);
+        let weight = 10.0 * density * length;
+        let off = (a.reaction_x_n + b.reaction_x_n).hypot(a.reaction_y_n + b.reaction_y_n + weight);
+        let scale = weight.max(a.reaction_x_n.hypot(a.reaction_y_n));
+        assert!(off <= 1e-9 * scale, "{length}: {off} of {scale}");
+        let [node, next] = [0, 1].map(|k| answer.cables[0].nodes[k]);
+        let way = (next.y_m - node.y_m).atan2(next.x_m - node.x_m).to_degrees();
+        let bow = (0.5 * node.curvature_per_m * (next.arc_length_m - node.arc_length_m)).to_degrees();
+        assert!((way - bow - angles[0]).abs() < 0.5, "{length}: leaves at {way}");
+    }
+}

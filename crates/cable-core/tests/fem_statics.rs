@@ -322,3 +322,58 @@ fn published_spans_hold() {
     }
     println!("worst {worst:.2e}");
 }
+
+#[test]
+fn a_lump_that_lies_presses_on_the_ground() {
+    let floor = |tilt: f64| Shape::Terrain { points_m: vec![[-50.0, -50.0 * tilt], [50.0, 50.0 * tilt]] };
+    for (tilt, high, mass, force) in [
+        (0.0, 1.0, 3.0, None),
+        (0.1, 0.0, 20.0, None),
+        (0.0, 0.0, 0.5, Some([1.0, -4.0])),
+        (-0.2, 1.0, 7.0, Some([0.0, 9.0])),
+    ] {
+        let mut scene = span(4.0, [0.0; 2], 8.0, 1e6);
+        scene.obstacles = vec![Obstacle { name: "floor".to_owned(), shape: floor(tilt), friction: Some(0.6) }];
+        let c = &mut scene.cables[0];
+        c.diameter_m = 0.02;
+        let off = 0.01 * 1.0f64.hypot(tilt);
+        c.route_m = vec![[0.0, off + high], [3.8, 3.8 * tilt + off]];
+        let kind = if force.is_some() { SupportKind::Load } else { SupportKind::Free };
+        let lump = Support { mass_kg: Some(mass), force_n: force, ..Support::new("B", kind) };
+        let start = if high > 0.0 { Support::fixed("A", c.route_m[0]) } else { Support::free("A") };
+        c.supports = vec![start, lump];
+        let (answer, _) = solve(&scene, 40).unwrap();
+        let force = force.unwrap_or_default();
+        let held = if high > 0.0 { &answer.supports[..1] } else { &[] };
+        let carried: f64 = answer.contacts.iter().map(|c| c.force_n[1]).sum::<f64>()
+            - held.iter().map(|s| s.reaction_y_n).sum::<f64>();
+        let along: f64 = answer.contacts.iter().map(|c| c.force_n[0]).sum::<f64>()
+            - held.iter().map(|s| s.reaction_x_n).sum::<f64>();
+        let weight = 32.0 + 10.0 * mass - force[1];
+        assert!((carried - weight).abs() < 1e-4 * weight, "{tilt} {mass}: {carried} of {weight} N");
+        assert!((along + force[0]).abs() < 1e-4 * weight, "{tilt} {mass}: {along} of {} N", -force[0]);
+    }
+}
+
+#[test]
+fn what_friction_holds_of_a_lying_load_does_not_push() {
+    for end_first in [true, false] {
+        let mut scene = span(4.0, [0.0; 2], 8.0, 1e6);
+        let points_m = vec![[-50.0, 0.0], [50.0, 0.0]];
+        scene.obstacles =
+            vec![Obstacle { name: "floor".to_owned(), shape: Shape::Terrain { points_m }, friction: Some(0.6) }];
+        let c = &mut scene.cables[0];
+        c.diameter_m = 0.02;
+        c.route_m = vec![[0.0, 1.01], [0.5, 0.01], [3.3, 0.01]];
+        let force_n = Some([-3.0, -10.0]);
+        c.supports =
+            vec![Support::fixed("A", [0.0, 1.01]), Support { force_n, ..Support::new("B", SupportKind::Load) }];
+        if end_first {
+            c.supports.reverse();
+            c.route_m.reverse();
+        }
+        let (answer, _) = solve(&scene, 40).unwrap();
+        let tip = if end_first { answer.nodes[0] } else { answer.nodes[answer.nodes.len() - 1] };
+        assert!(tip.tension_n < 0.5, "{end_first}: {} N", tip.tension_n);
+    }
+}

@@ -150,3 +150,20 @@ fn what_slides_never_comes_to_rest_further_up() {
     let more = missing(&s, Model::Auto);
     assert!(more.is_some_and(|more| (0.5..1.5).contains(&more)), "{more:?} % more friction");
 }
+
+#[test]
+fn what_other_histories_leave_in_the_tank_is_said_in_figures() {
+    use cable_core::scene::{FrictionMobilised, catalog};
+    let most = |mobilised: FrictionMobilised| {
+        let mut scene = catalog::tank();
+        scene.cables[0].friction_mobilised = mobilised;
+        let mut simulation = Simulation::new(scene, Model::Spans).expect("a scene");
+        let answer = simulation.settle().expect("a rest");
+        let tension = answer.max_tension().tension_n;
+        (tension, answer.warnings.into_iter().find(|w| w.kind == WarningKind::NotUnique).map(|w| w.message))
+    };
+    let (_, said) = most(FrictionMobilised::LeastSliding);
+    let (drawn, _) = most(FrictionMobilised::TowardsEnd);
+    let said = said.expect("said");
+    assert!(said.contains(&format!("towards the end: {drawn:.2} N")), "{said}");
+}

@@ -716,3 +716,52 @@ fn a_weightless_cable_over_a_post_keeps_its_first_integral() {
         }
     }
 }
+
+#[test]
+fn what_a_sliding_node_leaves_out_of_a_stiff_bend_is_said_in_every_step() {
+    // Over a small post the cable bends as an elastica would, not as a string: a sliding node there carries no moment.
+    let scene = |stiffness: f64| {
+        let text = format!(
+            r#"
+            version = 1
+            [[cables]]
+            name = "c"
+            length_m = 6.1
+            linear_density_kg_per_m = 0.5
+            axial_stiffness_n = 1e6
+            bending_stiffness_n_m2 = {stiffness}
+            service_tension_n = 1e4
+            breaking_tension_n = 1e5
+            min_bend_radius_m = 0.01
+            diameter_m = 0.02
+            friction = 0.2
+            supports = [
+                {{ name = "a", kind = "fixed", at_m = [0.0, 0.0] }},
+                {{ name = "b", kind = "fixed", at_m = [6.0, 0.0], motion = {{ times_s = [0.0, 2.0], points_m = [[6.0, 0.0], [6.05, 0.0]] }} }},
+            ]
+            [[obstacles]]
+            name = "post"
+            kind = "circle"
+            center_m = [3.0, -0.1]
+            radius_m = 0.05
+            "#
+        );
+        Scene::from_toml(&text).unwrap()
+    };
+    let step = |stiffness: f64| {
+        let mut simulation = Simulation::new(scene(stiffness), Model::Fem).unwrap();
+        simulation.settle().unwrap();
+        simulation.step_quasi_static(0.1).unwrap();
+        simulation.solution()
+    };
+    let said = |answer: &cable_core::Solution| {
+        answer
+            .warnings
+            .iter()
+            .any(|w| w.kind == cable_core::solution::WarningKind::Accuracy && w.message.contains("bend"))
+    };
+    let (stiff, flexible) = (step(2.0), step(0.0));
+    let estimate = stiff.cables[0].error_estimate;
+    assert!(said(&stiff) && estimate.is_some_and(|e| e > 1e-3), "{estimate:?} {:?}", stiff.warnings);
+    assert!(!said(&flexible), "{:?}", flexible.warnings);
+}

@@ -94,3 +94,36 @@ fn stiff_cables_on_rough_ground_have_a_sound_answer() {
     // A chain of bars answers where contacts are too many for the elastica: it is good to some per cent.
     assert!(coarse <= 8, "{coarse} of {scenes} answers are off by more than 1 %");
 }
+
+/// Length, density, EA, EI, height of the support, its angle where it is clamped (°), the load at the other end (N).
+type Leaning = ([f64; 5], Option<f64>, Option<[f64; 2]>);
+
+/// They would hang into the floor.
+const LEANING: [Leaning; 6] = [
+    ([6.012, 0.1617, 5.774e5, 185.46, 0.8135], None, None),
+    ([0.8892, 0.141, 3.829e5, 0.001, 0.7284], Some(-56.8), None),
+    ([2.0193, 2.4933, 1.617e5, 10.096, 1.1317], None, None),
+    ([1.2007, 0.1614, 1.744e4, 0.001, 0.5751], Some(59.75), None),
+    ([7.816, 8.215, 4.448e6, 2212.8, 1.1937], None, None),
+    ([2.8675, 0.6872, 1.519e6, 0.8984, 0.9834], Some(49.93), Some([4.17, -5.21])),
+];
+
+#[test]
+fn a_free_end_leans_where_it_cannot_hang() {
+    let mut refused = Vec::new();
+    for (k, ([length, density, ea, ei, high], angle, load)) in LEANING.into_iter().enumerate() {
+        let held = angle.map_or("kind = \"fixed\"".to_owned(), |a| format!("kind = \"clamped\"\nangle_deg = {a}"));
+        let loose = load.map_or("kind = \"free\"".to_owned(), |f| format!("kind = \"load\"\nforce_n = {f:?}"));
+        let text = format!(
+            "version = 1\n[[cables]]\nname = \"c\"\npreset = \"soow-6-4\"\nlength_m = {length}\ndiameter_m = 0.03\n\
+             linear_density_kg_per_m = {density}\naxial_stiffness_n = {ea}\nbending_stiffness_n_m2 = {ei}\n\
+             [[cables.supports]]\nname = \"a\"\n{held}\nat_m = [0.0, {high}]\n[[cables.supports]]\nname = \"b\"\n{loose}\n\
+             [[obstacles]]\nname = \"floor\"\nkind = \"terrain\"\npoints_m = [[-100.0, 0.0], [100.0, 0.0]]\nfriction = 0.4\n"
+        );
+        match Simulation::new(Scene::from_toml(&text).unwrap(), Model::Auto).unwrap().settle() {
+            Ok(answer) => assert!(answer.cables[0].nodes.iter().all(|n| n.y_m > 0.0147), "{k}"),
+            Err(why) => refused.push(format!("{k}: {why}")),
+        }
+    }
+    assert!(refused.is_empty(), "{refused:#?}");
+}

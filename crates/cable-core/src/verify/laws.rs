@@ -5,14 +5,15 @@
 //! and must be nothing in the air, and within the cone about the normals of what touches the piece elsewhere. Beyond its ends
 //! the cable has no internal force.
 
-use super::surroundings::{Near, Surroundings};
+use super::supports::{self, Hold, Role};
+use super::surroundings::{Neighbours, Surroundings};
 use super::tolerance::{
     ASIDE, BALANCE, COMPRESSION, CONE, DEPTH_DIAMETERS, DEPTH_M, FOLD, LEAST_STRAIN, LENGTH, LUMPED, MATERIAL, MOMENT,
     REACH_DIAMETERS, REACH_M, REPORTED, SAME_NORMAL, TURN,
 };
 use super::{Balance, Depth, Finding, Law, Verification};
 use crate::math::{Vec2, cross, larger, vec2};
-use crate::scene::{Cable, Scene, Support, SupportKind, View};
+use crate::scene::{Cable, Scene, View};
 use crate::solution::{CableSolution, ContactReport, Node, SupportReaction};
 
 /// One cable with what there is to know of it.
@@ -22,7 +23,9 @@ pub(super) struct Subject<'a> {
     pub cable: &'a Cable,
     pub answer: &'a CableSolution,
     /// Time, s.
-    pub time_s: f64,
+    time_s: f64,
+    /// What its supports do to it.
+    pub holds: Vec<Hold<'a>>,
     /// Weight and wind, N/m.
     body: Vec2,
     /// 1 + αΔT.
@@ -79,6 +82,7 @@ pub(super) fn check(found: &mut Verification, mut subject: Subject<'_>, depth: D
             subject.stability(found, &near);
         } else {
             subject.tension(found);
+            subject.pulleys(found);
             subject.compression(found);
         }
     }
@@ -105,11 +109,27 @@ impl<'a> Subject<'a> {
         };
         let wind = series(Some(env.wind_n_per_m), &env.wind_times_s, &env.winds_n_per_m, time_s);
         let thermal = 1.0 + cable.thermal_expansion_per_k * env.temperature_change_k;
-        Self { surroundings, scene, cable, answer, time_s, body: weight + wind, thermal, scale: 0.0 }
+        let holds = supports::holds(cable, answer, time_s);
+        Self { surroundings, scene, cable, answer, time_s, holds, body: weight + wind, thermal, scale: 0.0 }
     }
 }
 
 impl Subject<'_> {
+    /// Greatest of the forces, N.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Weight and wind, N/m.
+    pub fn load_per_metre(&self) -> Vec2 {
+        self.body
+    }
+
+    /// Where the scene's loads are on the cable, m.
+    pub fn scene_loads(&self) -> Vec<f64> {
+        self.scene.loads.iter().filter(|l| l.cable == self.cable.name).map(|l| l.arc_length_m).collect()
+    }
+
     pub fn finding(&self, law: Law, node: usize, (value, limit): (f64, f64)) -> Finding {
         let n = self.answer.nodes.get(node).or(self.answer.nodes.last()).copied().unwrap_or_default();
         Finding {
@@ -166,28 +186,13 @@ impl Subject<'_> {
     /// Supports and loads. Wheels are among the obstacles.
     fn point_forces(&self) -> Vec<PointForce> {
         let mut out = Vec::new();
-        let ends = self.cable.supports.len().saturating_sub(1);
-        for (k, (s, r)) in self.cable.supports.iter().zip(&self.answer.supports).enumerate() {
-            let released = s.release_s.is_some_and(|t| self.time_s >= t - 1e-9);
-            let arc_length = match k {
-                0 => 0.0,
-                k if k == ends => self.cable.length_m,
-                _ => r.arc_length_m,
+        for hold in &self.holds {
+            let force = match hold.role {
+                Role::Load => hold.dead_load(self.scene, self.time_s),
+                Role::Held | Role::Pulley => hold.force(),
+                Role::Wheel { .. } | Role::Released => continue,
             };
-            let force = match s.kind {
-                SupportKind::Load | SupportKind::Free => {
-                    let mass = s.mass_kg.unwrap_or(0.0);
-                    let gravity = match self.scene.view {
-                        View::Elevation => Vec2::new(0.0, -self.scene.environment.gravity_m_per_s2),
-                        View::Plan => Vec2::zeros(),
-                    };
-                    series(s.force_n, &s.times_s, &s.forces_n, self.time_s) + gravity * mass
-                }
-                SupportKind::Pulley if s.radius_m.is_some_and(|r| r > 0.0) => continue,
-                _ if released => continue,
-                _ => -Vec2::new(r.reaction_x_n, r.reaction_y_n),
-            };
-            out.push(PointForce { arc_length, force });
+            out.push(PointForce { arc_length: hold.arc_length, force });
         }
         for l in self.scene.loads.iter().filter(|l| l.cable == self.cable.name) {
             let force = series(l.force_n, &l.times_s, &l.forces_n, self.time_s);
@@ -202,13 +207,11 @@ impl Subject<'_> {
         foreign.flat_map(|c| &c.samples).map(|s| PointForce { arc_length: s.arc_length_m, force: vec2(s.force_n) })
     }
 
-    /// Wheels that lead the cable now: centre, radius of the centre line and friction, with the name.
-    pub fn wheels(&self) -> impl Iterator<Item = (Vec2, f64, f64, &SupportReaction)> {
-        let radius = 0.5 * self.cable.diameter_m;
-        self.cable.supports.iter().zip(&self.answer.supports).filter_map(move |(s, r)| {
-            let wheel = s.radius_m.filter(|r| *r > 0.0 && s.kind == SupportKind::Pulley)?;
-            let holds = s.release_s.is_none_or(|t| self.time_s < t);
-            holds.then(|| (Vec2::new(r.x_m, r.y_m), wheel + radius, s.friction.unwrap_or(0.0), r))
+    /// Wheels that lead the cable now: centre, radius of the centre line and friction.
+    pub fn wheels(&self) -> impl Iterator<Item = (Vec2, f64, f64)> {
+        self.holds.iter().filter_map(|hold| match hold.role {
+            Role::Wheel { radius } => Some((hold.at, radius, hold.support.friction.unwrap_or(0.0))),
+            _ => None,
         })
     }
 
@@ -240,17 +243,13 @@ impl Subject<'_> {
     }
 
     /// What is near the line from each node to the next.
-    fn near(&self) -> Vec<Vec<Near>> {
+    fn near(&self) -> Neighbours {
         let reach = self.reach();
-        let nodes = &self.answer.nodes;
-        let mut out = vec![Vec::new(); nodes.len().saturating_sub(1)];
-        for (near, pair) in out.iter_mut().zip(nodes.windows(2)) {
-            self.surroundings.near(pair[0].at(), pair[1].at(), reach, near);
-        }
-        out
+        let bars = self.answer.nodes.windows(2).map(|pair| [pair[0].at(), pair[1].at()]);
+        Neighbours::new(self.surroundings, bars, reach)
     }
 
-    fn penetration(&self, found: &mut Verification, near: &[Vec<Near>]) {
+    fn penetration(&self, found: &mut Verification, near: &Neighbours) {
         found.ask(Law::Penetration);
         let radius = 0.5 * self.cable.diameter_m;
         let allowed = (DEPTH_DIAMETERS * self.cable.diameter_m).min(DEPTH_M);
@@ -259,6 +258,10 @@ impl Subject<'_> {
         let held = self.held_at();
         let on_surface = MATERIAL * self.cable.length_m;
         for (k, n) in nodes.iter().enumerate() {
+            // From a bar that nothing is near it is as far inside as the node before.
+            if k > 0 && near.of(k - 1).is_empty() {
+                continue;
+            }
             if let Some((body, depth)) = self.surroundings.inside(n.at()) {
                 if depth <= on_surface && held.contains(&n.at()) {
                     continue;
@@ -268,11 +271,11 @@ impl Subject<'_> {
                 found.report(finding);
             }
         }
-        for (k, (near, pair)) in near.iter().zip(nodes.windows(2)).enumerate() {
+        for (k, pair) in nodes.windows(2).enumerate().filter(|(k, _)| !near.of(*k).is_empty()) {
             // Between two nodes the cable is drawn straight where it is round.
             let way = (pair[1].at() - pair[0].at()).norm();
             let sagitta = pair.iter().map(|n| n.curvature_per_m.abs()).fold(0.0, larger) * way * way / 8.0;
-            for n in near {
+            for n in near.of(k) {
                 let value = radius - n.distance;
                 let end = n.at == pair[0].at() || n.at == pair[1].at();
                 let given = if held.contains(&n.at) { radius } else { 0.0 };
@@ -289,9 +292,7 @@ impl Subject<'_> {
 
     /// Where supports hold the cable by its axis, m.
     fn held_at(&self) -> Vec<Vec2> {
-        let held = |s: &&Support| matches!(s.kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Robot);
-        let given = self.cable.supports.iter().zip(&self.answer.supports);
-        given.filter(|(s, _)| held(s)).map(|(_, r)| Vec2::new(r.x_m, r.y_m)).collect()
+        self.holds.iter().filter(|h| h.role == Role::Held).map(|h| h.at).collect()
     }
 
     /// Contacts as they are reported: they push, within their cone.
@@ -355,15 +356,16 @@ impl Subject<'_> {
         out
     }
 
-    fn balance(&self, found: &mut Verification, near: &[Vec<Near>]) {
+    fn balance(&self, found: &mut Verification, near: &Neighbours) {
         found.ask(Law::Balance);
         let points = self.point_forces();
         let limit = BALANCE * self.scale;
         let mut sums = Balance { scale_n: larger(found.balance.scale_n, self.scale), ..found.balance };
         let (mut adrift, mut beyond, mut pressed, mut lumped) = (Vec2::zeros(), 0.0, 0.0, 0.0);
         let (mut contacts, mut wheels, mut worst) = (Vec2::zeros(), Vec2::zeros(), (0.0, 0));
+        let mut rays = Vec::new();
         for piece in self.pieces(&points) {
-            let (rays, turns) = self.rays(near, &piece);
+            let turns = self.rays(near, &piece, &mut rays);
             let excess = if rays.is_empty() && !self.floor_rubs() {
                 // In the air residuals add up: each may be small and the sum not.
                 adrift += piece.contact;
@@ -393,7 +395,7 @@ impl Subject<'_> {
         let allowed = limit + CONE * pressed + lumped;
         if !(beyond <= allowed) {
             let mut finding = self.finding(Law::Friction, worst.1, (beyond, allowed));
-            let here = near.get(worst.1).and_then(|n| n.first());
+            let here = near.of(worst.1).first();
             self.surroundings.name(here.map_or(usize::MAX, |n| n.body)).clone_into(&mut finding.with);
             found.report(finding);
         }
@@ -411,7 +413,7 @@ impl Subject<'_> {
         let known_here = |c: &&ContactReport| self.surroundings.find(&c.obstacle).is_some();
         let reported: Vec2 = self.answer.contacts.iter().filter(known_here).map(|c| vec2(c.force_n)).sum::<Vec2>()
             + self.foreign().map(|p| p.force).sum::<Vec2>();
-        let led: Vec2 = self.wheels().map(|(.., r)| -Vec2::new(r.reaction_x_n, r.reaction_y_n)).sum();
+        let led: Vec2 = self.holds.iter().filter(|h| matches!(h.role, Role::Wheel { .. })).map(Hold::force).sum();
         let known: Vec2 = points.iter().map(|p| p.force).sum();
         let weight = self.body * self.cable.length_m;
         let whole = known + weight + led + reported;
@@ -431,14 +433,9 @@ impl Subject<'_> {
         found.balance = sums;
     }
 
-    /// Forces of supports on the cable that are not dead loads, N.
+    /// Forces of supports on the cable that are neither dead loads nor wheels, N.
     fn support_forces(&self) -> Vec2 {
-        let held = self.cable.supports.iter().zip(&self.answer.supports).filter(|(s, _)| {
-            let led = s.kind == SupportKind::Pulley && s.radius_m.is_some_and(|r| r > 0.0);
-            !(matches!(s.kind, SupportKind::Load | SupportKind::Free) || led)
-                && s.release_s.is_none_or(|t| self.time_s < t - 1e-9)
-        });
-        held.map(|(_, r)| -Vec2::new(r.reaction_x_n, r.reaction_y_n)).sum()
+        self.holds.iter().filter(|h| matches!(h.role, Role::Held | Role::Pulley)).map(Hold::force).sum()
     }
 
     /// Whether a floor rubs on the whole cable.
@@ -463,7 +460,7 @@ impl Subject<'_> {
     }
 
     fn on_wheel(&self, piece: &Piece) -> bool {
-        self.wheels().any(|(center, radius, ..)| piece.nodes.iter().any(|&k| self.is_led(k, center, radius)))
+        self.wheels().any(|(center, radius, _)| piece.nodes.iter().any(|&k| self.is_led(k, center, radius)))
     }
 
     /// Friction that a bar's own weight may add or hide where the ground turns, N: the bar carries it to its ends, where it turns the
@@ -483,32 +480,35 @@ impl Subject<'_> {
         self.scene.obstacles.iter().map(|o| o.friction.unwrap_or(self.cable.friction)).fold(0.0, larger)
     }
 
-    /// Unit vectors that bound the friction cones of all that touches a piece, its neighbours counted in: a force that is
-    /// known at nodes only is known to a node's neighbourhood.
-    /// Whether their normals differ, as at a corner, comes with them.
-    fn rays(&self, near: &[Vec<Near>], piece: &Piece) -> (Vec<Vec2>, bool) {
-        let (mut out, mut first, mut turns): (Vec<Vec2>, Option<Vec2>, bool) = (Vec::new(), None, false);
+    /// Gathers unit vectors that bound the friction cones of all that touches a piece, its neighbours counted in: a force that is
+    /// known at nodes only is known to a node's neighbourhood. Returns whether their normals differ, as at a corner.
+    fn rays(&self, near: &Neighbours, piece: &Piece, out: &mut Vec<Vec2>) -> bool {
+        out.clear();
+        let (mut first, mut turns, mut before) = (None, false, (Vec2::zeros(), 0.0));
         let mut add = |normal: Vec2, friction: f64| {
+            if normal == Vec2::zeros() || (normal, friction) == before {
+                return;
+            }
+            before = (normal, friction);
             turns |= cross(*first.get_or_insert(normal), normal).abs() > SAME_NORMAL;
             let along = Vec2::new(normal.y, -normal.x) * friction;
-            for ray in [normal + along, normal - along] {
-                let ray = ray.normalize();
-                if normal != Vec2::zeros() && out.iter().all(|r: &Vec2| (r - ray).norm_squared() > 1e-20) {
+            let shorten = 1.0 / (1.0 + friction * friction).sqrt();
+            for ray in [(normal + along) * shorten, (normal - along) * shorten] {
+                if out.iter().all(|r: &Vec2| (r - ray).norm_squared() > 1e-20) {
                     out.push(ray);
                 }
             }
         };
         let [from, to] = piece.nodes;
-        let around = near.get(from.saturating_sub(1)..(to + 1).min(near.len())).unwrap_or_default();
-        for n in around.iter().flatten() {
+        for n in near.around(from, to) {
             add(n.normal, self.surroundings.friction(n.body, self.cable.friction));
         }
-        for (center, radius, friction, _) in self.wheels() {
+        for (center, radius, friction) in self.wheels() {
             for k in (from..=to).filter(|&k| self.is_led(k, center, radius)) {
                 add((self.answer.nodes[k].at() - center).try_normalize(0.0).unwrap_or_default(), friction);
             }
         }
-        (out, turns)
+        turns
     }
 
     /// The tension of a flexible cable is the size of the force in it: at a node one of those between just before and just beyond it.
@@ -521,6 +521,10 @@ impl Subject<'_> {
             let beside = nodes[(k + 1).min(last)].arc_length_m - nodes[k.saturating_sub(1)].arc_length_m;
             let limit = REPORTED * self.scale + LUMPED * self.body.norm() * beside;
             let after = n.force();
+            // Most nodes have it from the piece that begins there.
+            if (n.tension_n - after.norm()).abs() <= limit {
+                continue;
+            }
             let before = k.checked_sub(1).map_or(after, |j| self.forces_at_end(j)[1]);
             let most = larger(before.norm(), after.norm());
             let least = super::surroundings::distance(before, after, Vec2::zeros(), Vec2::zeros());
@@ -541,9 +545,10 @@ impl Subject<'_> {
             if b.arc_length_m - a.arc_length_m <= MATERIAL * self.cable.length_m {
                 continue;
             }
-            let way = (b.at() - a.at()).try_normalize(0.0).unwrap_or_default();
-            let pulls = self.forces_at_end(k).map(|end| (a.force() + end).dot(&way) * 0.5);
-            let pushes = -larger(pulls[0], pulls[1]);
+            let way = b.at() - a.at();
+            let pulls = self.forces_at_end(k).map(|end| (a.force() + end).dot(&way));
+            let most = larger(pulls[0], pulls[1]);
+            let pushes = if most < 0.0 { -0.5 * most / way.norm() } else { 0.0 };
             let value = larger(pushes, larger(-a.tension_n, -b.tension_n));
             if !(value <= limit) {
                 found.report(self.finding(Law::Compression, k, (value, limit)));
@@ -558,7 +563,7 @@ impl Subject<'_> {
     }
 
     /// The way from each node to the next is what its material and force make of it.
-    fn length(&self, found: &mut Verification, near: &[Vec<Near>]) {
+    fn length(&self, found: &mut Verification, near: &Neighbours) {
         found.ask(Law::Length);
         let stiff = self.answer.assumptions.bending_stiffness_n_m2 > 0.0;
         for k in 0..self.answer.nodes.len() - 1 {
@@ -567,7 +572,12 @@ impl Subject<'_> {
                 self.stiff_length(k)
             } else {
                 let touches = self.touches(near, k);
-                let [spread, at_end] = self.forces_at_end(k).map(|end| self.flexible_length(k, end, touches));
+                let [spread, at_end] = self.forces_at_end(k);
+                let spread = self.flexible_length(k, spread, touches);
+                if spread.value <= spread.limit && spread.folded == 0.0 {
+                    continue;
+                }
+                let at_end = self.flexible_length(k, at_end, touches);
                 if off(&at_end) < off(&spread) { at_end } else { spread }
             };
             found.folded_m += best.folded;
@@ -606,10 +616,9 @@ impl Subject<'_> {
     }
 
     /// Whether something touches a piece or a neighbour.
-    pub fn touches(&self, near: &[Vec<Near>], k: usize) -> bool {
-        let around = near.get(k.saturating_sub(1)..(k + 2).min(near.len())).unwrap_or_default();
+    pub fn touches(&self, near: &Neighbours, k: usize) -> bool {
         let led = || [k, k + 1].iter().any(|&k| self.wheels().any(|w| self.is_led(k, w.0, w.1)));
-        around.iter().any(|n| !n.is_empty()) || led()
+        !near.around(k, k + 1).is_empty() || led()
     }
 
     /// Whether a node is on a wheel.
@@ -700,7 +709,7 @@ fn outside_cone(force: Vec2, rays: &[Vec2]) -> f64 {
 }
 
 /// A vector as a function of time: the constant, or linear between its times.
-fn series(constant: Option<[f64; 2]>, times: &[f64], values: &[[f64; 2]], time_s: f64) -> Vec2 {
+pub(super) fn series(constant: Option<[f64; 2]>, times: &[f64], values: &[[f64; 2]], time_s: f64) -> Vec2 {
     if times.is_empty() {
         return constant.map_or_else(Vec2::zeros, vec2);
     }

@@ -5,7 +5,9 @@
 //! | `mod.rs` | [`Verifier`], [`Verification`]: which laws were asked, what was found |
 //! | `laws.rs` | one function a law, over one cable |
 //! | `surroundings.rs` | obstacles as the checker sees them: distances by brute force, normals, friction |
-//! | `stability.rs` | whether a stiff cable holds what it pushes with; whether it is where it is held |
+//! | `stability.rs` | whether a stiff cable holds what it pushes with |
+//! | `supports.rs` | what supports do to the cable, and whether it is where they hold it |
+//! | `pulleys.rs` | what friction of eyes and wheels allows between the tensions beside them |
 //! | `tolerance.rs` | every tolerance, each with its reason |
 //!
 //! Nothing here is shared with the models or with their contact geometry: a fault there cannot hide itself here. What is asked:
@@ -14,7 +16,9 @@
 //! material with its strain; a flexible cable does not push; nothing lies inside anything.
 
 mod laws;
+mod pulleys;
 mod stability;
+mod supports;
 mod surroundings;
 #[cfg(test)]
 mod tests;

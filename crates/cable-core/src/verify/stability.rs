@@ -6,35 +6,24 @@
 //! as there are conditions may lower the energy without being open to the cable; one more, and it leaves.
 
 use super::laws::Subject;
-use super::surroundings::Near;
-use super::tolerance::HELD;
+use super::supports::Role;
+use super::surroundings::Neighbours;
 use super::{Law, Verification};
-use crate::math::{Vec2, larger, smaller};
+use crate::math::larger;
 use crate::scene::SupportKind;
-use crate::solution::Node;
 
 impl Subject<'_> {
     /// Whether what pushes stays.
-    pub fn stability(&self, found: &mut Verification, near: &[Vec<Near>]) {
+    pub fn stability(&self, found: &mut Verification, near: &Neighbours) {
         found.ask(Law::Stability);
         let nodes = &self.answer.nodes;
         let same = 1e-9 * self.cable.length_m;
-        let last = self.cable.supports.len().saturating_sub(1);
         // What holds a node, and whether it may turn there.
         let mut holds = vec![None; nodes.len()];
-        for (k, (s, r)) in self.cable.supports.iter().zip(&self.answer.supports).enumerate() {
-            let loose = matches!(s.kind, SupportKind::Load | SupportKind::Free);
-            if loose || s.release_s.is_some_and(|t| self.time_s >= t - 1e-9) {
-                continue;
-            }
-            let arc_length = match k {
-                0 => 0.0,
-                k if k == last => self.cable.length_m,
-                _ => r.arc_length_m,
-            };
-            let node = nodes.partition_point(|n| n.arc_length_m < arc_length - same);
+        for hold in self.holds.iter().filter(|h| !matches!(h.role, Role::Load | Role::Released)) {
+            let node = nodes.partition_point(|n| n.arc_length_m < hold.arc_length - same);
             if let Some(held) = holds.get_mut(node) {
-                *held = Some(s.kind == SupportKind::Clamped);
+                *held = Some(hold.support.kind == SupportKind::Clamped);
             }
         }
         let mut bars = Vec::with_capacity(nodes.len());
@@ -60,44 +49,6 @@ impl Subject<'_> {
         let stiffness = self.answer.assumptions.bending_stiffness_n_m2 / self.thermal;
         if let Some((bar, push, most)) = excess(&bars, stiffness, ends) {
             found.report(self.finding(Law::Stability, first_node[bar], (push, most)));
-        }
-    }
-
-    /// The cable is where its supports hold it, and runs past its pulleys.
-    pub fn supports(&self, found: &mut Verification) {
-        found.ask(Law::Support);
-        let nodes = &self.answer.nodes;
-        let last = self.cable.supports.len().saturating_sub(1);
-        let limit = HELD * self.cable.length_m;
-        for (k, (s, r)) in self.cable.supports.iter().zip(&self.answer.supports).enumerate() {
-            let released = s.release_s.is_some_and(|t| self.time_s >= t - 1e-9);
-            let at = Vec2::new(r.x_m, r.y_m);
-            let to_line = |(a, b): (Vec2, Vec2)| super::surroundings::distance(at, at, a, b);
-            let (off, limit) = match s.kind {
-                SupportKind::Load | SupportKind::Free => continue,
-                _ if released => continue,
-                SupportKind::Pulley => {
-                    let near = nodes.windows(2).map(|p| to_line((p[0].at(), p[1].at()))).fold(f64::INFINITY, smaller);
-                    let wheel = s.radius_m.filter(|r| *r > 0.0).map_or(0.0, |r| r + 0.5 * self.cable.diameter_m);
-                    (near - wheel, larger(limit, self.reach()))
-                }
-                SupportKind::Fixed | SupportKind::Clamped | SupportKind::Robot => {
-                    let arc_length = match k {
-                        0 => 0.0,
-                        k if k == last => self.cable.length_m,
-                        _ => r.arc_length_m,
-                    };
-                    let near = |n: &&Node| (n.arc_length_m - arc_length).abs() <= limit;
-                    let off = nodes.iter().filter(near).map(|n| (n.at() - at).norm()).fold(f64::INFINITY, smaller);
-                    (off, limit)
-                }
-            };
-            if !(off <= limit) {
-                let node = nodes.partition_point(|n| n.arc_length_m < r.arc_length_m);
-                let mut finding = self.finding(Law::Support, node, (off, limit));
-                finding.with.clone_from(&s.name);
-                found.report(finding);
-            }
         }
     }
 }

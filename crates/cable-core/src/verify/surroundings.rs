@@ -14,6 +14,53 @@ struct Edge {
     thickness: f64,
     /// Index of the obstacle.
     body: usize,
+    /// Lower left and upper right corner of the box about it, m.
+    low: Vec2,
+    high: Vec2,
+}
+
+impl Edge {
+    fn new(from: Vec2, to: Vec2, thickness: f64, body: usize) -> Self {
+        let around = Vec2::repeat(thickness);
+        Self { from, to, thickness, body, low: from.inf(&to) - around, high: from.sup(&to) + around }
+    }
+}
+
+/// What is near each bar of a cable.
+#[derive(Debug)]
+pub(super) struct Neighbours {
+    /// The first of `all` that belongs to each bar, and their number at the end.
+    begins: Vec<usize>,
+    all: Vec<Near>,
+}
+
+impl Neighbours {
+    /// Of bars from end to end (m), within `reach` (m) of each.
+    pub fn new(surroundings: &Surroundings, bars: impl ExactSizeIterator<Item = [Vec2; 2]>, reach: f64) -> Self {
+        let mut begins = Vec::with_capacity(bars.len() + 1);
+        let mut all = Vec::new();
+        for [a, b] in bars {
+            begins.push(all.len());
+            surroundings.near(a, b, reach, &mut all);
+        }
+        begins.push(all.len());
+        Self { begins, all }
+    }
+
+    /// What is near a bar.
+    pub fn of(&self, bar: usize) -> &[Near] {
+        self.between(bar, bar + 1)
+    }
+
+    /// What is near the bars between two nodes, and near the bar before and the bar after them.
+    pub fn around(&self, from_node: usize, to_node: usize) -> &[Near] {
+        self.between(from_node.saturating_sub(1), to_node + 1)
+    }
+
+    fn between(&self, from: usize, to: usize) -> &[Near] {
+        let begin = |bar: usize| self.begins.get(bar).copied().unwrap_or(self.all.len());
+        self.all.get(begin(from)..begin(to)).unwrap_or_default()
+    }
 }
 
 /// An obstacle.
@@ -62,8 +109,8 @@ impl Surroundings {
     pub fn new(scene: &Scene) -> Self {
         let mut edges = Vec::new();
         let bodies = scene.obstacles.iter().enumerate().map(|(k, o)| body(o, k, &mut edges)).collect();
-        edges.sort_by(|a: &Edge, b: &Edge| left(a).total_cmp(&left(b)));
-        let widest = edges.iter().map(|e| (e.to.x - e.from.x).abs() + 2.0 * e.thickness).fold(0.0, f64::max);
+        edges.sort_by(|a: &Edge, b: &Edge| a.low.x.total_cmp(&b.low.x));
+        let widest = edges.iter().map(|e| e.high.x - e.low.x).fold(0.0, f64::max);
         Self { bodies, edges, widest }
     }
 
@@ -85,23 +132,27 @@ impl Surroundings {
     /// nearest points of both, and those seen from the two ends.
     pub fn near(&self, a: Vec2, b: Vec2, reach: f64, out: &mut Vec<Near>) {
         let (low, high) = (a.inf(&b) - Vec2::repeat(reach), a.sup(&b) + Vec2::repeat(reach));
-        let first = self.edges.partition_point(|e| left(e) < low.x - self.widest);
-        for e in self.edges.iter().skip(first).take_while(|e| left(e) <= high.x) {
-            let (l, h) = (e.from.inf(&e.to), e.from.sup(&e.to));
-            let t = e.thickness;
-            if h.x + t < low.x || l.y - t > high.y || h.y + t < low.y {
+        let first = self.edges.partition_point(|e| e.low.x < low.x - self.widest);
+        for e in self.edges.iter().skip(first).take_while(|e| e.low.x <= high.x) {
+            if e.high.x < low.x || e.low.y > high.y || e.high.y < low.y {
                 continue;
             }
+            let t = e.thickness;
             if crosses(a, b, e.from, e.to) {
                 out.push(Near { body: e.body, distance: -t, normal: Vec2::zeros(), at: crossing(a, b, e) });
                 continue;
             }
-            for (p, q) in closest(a, b, e.from, e.to) {
-                let distance = (p - q).norm() - t;
-                if distance <= reach {
-                    let normal = (p - q).try_normalize(0.0).unwrap_or_default();
-                    out.push(Near { body: e.body, distance, normal, at: p });
+            let far = (reach + t) * (reach + t);
+            let pairs = closest(a, b, e.from, e.to);
+            for (k, (p, q)) in pairs.iter().enumerate() {
+                let way = p - q;
+                let square = way.norm_squared();
+                if square > far || pairs[..k].contains(&(*p, *q)) {
+                    continue;
                 }
+                let apart = square.sqrt();
+                let normal = if apart > 0.0 { way / apart } else { Vec2::zeros() };
+                out.push(Near { body: e.body, distance: apart - t, normal, at: *p });
             }
         }
     }
@@ -111,8 +162,8 @@ impl Surroundings {
         // Each edge above the point counts: where it runs to the right its solid side is below it, where to the left above.
         let mut above: Option<(usize, i32)> = None;
         let mut counts: Vec<(usize, i32)> = Vec::new();
-        let first = self.edges.partition_point(|e| left(e) < p.x - self.widest);
-        for e in self.edges.iter().skip(first).take_while(|e| left(e) <= p.x) {
+        let first = self.edges.partition_point(|e| e.low.x < p.x - self.widest);
+        for e in self.edges.iter().skip(first).take_while(|e| e.low.x <= p.x) {
             if self.bodies.get(e.body).is_none_or(|b| b.kind == Kind::Line) {
                 continue;
             }
@@ -153,16 +204,12 @@ impl Surroundings {
     }
 }
 
-fn left(e: &Edge) -> f64 {
-    if e.from.x < e.to.x { e.from.x - e.thickness } else { e.to.x - e.thickness }
-}
-
 fn body(o: &Obstacle, index: usize, edges: &mut Vec<Edge>) -> Body {
     let mut line = |points: &[[f64; 2]], closed: bool, thickness: f64| {
         let n = points.len();
         for k in 0..if closed { n } else { n.saturating_sub(1) } {
             let (from, to) = (vec2(points[k]), vec2(points[(k + 1) % n]));
-            edges.push(Edge { from, to, thickness, body: index });
+            edges.push(Edge::new(from, to, thickness, index));
         }
     };
     let kind = match &o.shape {
@@ -179,7 +226,7 @@ fn body(o: &Obstacle, index: usize, edges: &mut Vec<Edge>) -> Body {
             Kind::Line
         }
         Shape::Circle { center_m, radius_m } => {
-            edges.push(Edge { from: vec2(*center_m), to: vec2(*center_m), thickness: *radius_m, body: index });
+            edges.push(Edge::new(vec2(*center_m), vec2(*center_m), *radius_m, index));
             Kind::Line
         }
     };

@@ -218,3 +218,42 @@ fn a_stiff_cable_that_would_bend_aside_is_seen() {
         }
     });
 }
+
+/// Over a wheel and through an eye that rub, drawn to where both slide.
+const PULLEYS: &str = r#"
+version = 1
+[[cables]]
+name = "cable"
+preset = "soow-6-4"
+length_m = 9.65
+friction = 0.3
+friction_mobilised = "towards-end"
+supports = [
+  { name = "a", kind = "fixed", at_m = [0.0, 0.0] },
+  { name = "wheel", kind = "pulley", at_m = [3.0, 1.0], radius_m = 0.3, friction = 0.4 },
+  { name = "eye", kind = "pulley", at_m = [6.0, -1.0], friction = 0.4 },
+  { name = "b", kind = "fixed", at_m = [8.0, 1.0] },
+]
+"#;
+
+#[test]
+fn friction_of_pulleys_beyond_the_capstan_is_seen() {
+    let (scene, solution) = solved(PULLEYS, Model::Spans);
+    assert_eq!(check(&scene, &solution).findings, [], "sound before");
+    for k in [1, 2] {
+        let name = scene.cables[0].supports[k].name.clone();
+        for (friction, seen) in [(0.0, true), (0.2, true), (0.39, true), (0.41, false)] {
+            let mut other = scene.clone();
+            other.cables[0].supports[k].friction = Some(friction);
+            let found = check(&other, &solution);
+            let told = found.findings.iter().any(|f| f.law == Law::Friction && (k == 1 || f.with == name));
+            assert_eq!(told, seen, "{name} {friction}: {:?}", found.findings);
+        }
+    }
+}
+
+#[test]
+fn a_tension_beside_a_pulley_that_is_not_the_force_is_seen() {
+    sees(Law::Tension, PULLEYS, |c| c.supports[1].tension_before_n = c.supports[1].tension_before_n.map(|t| 1.01 * t));
+    sees(Law::Tension, PULLEYS, |c| c.supports[2].tension_after_n = Some(0.0));
+}

@@ -53,6 +53,12 @@ const HINT_OF_STIFFNESS: f64 = 1e-18;
 /// there is none. Larger: tensions that loads make are told to be none.
 const HINT_SHOWS: f64 = 1e4;
 
+/// The hint of weight (N/m) of a weightless cable with dead loads of a size (N), and the force up to which it alone may be the cause, N.
+pub(in crate::model) fn hint_of_weight(p: &Problem, loads: f64) -> (Vec2, f64) {
+    let whole = if loads > 0.0 { HINT_OF_LOADS * loads } else { HINT_OF_STIFFNESS * p.axial_stiffness };
+    (Vec2::new(0.0, -whole / p.length), HINT_SHOWS * whole)
+}
+
 /// Where a support is now: by hand, by its motion, or not at all.
 fn place(s: &SupportPoint, dragged: Option<Vec2>, time_s: f64) -> Option<Vec2> {
     let p = s.position_at(time_s).map(|(p, _)| p)?;
@@ -118,9 +124,7 @@ impl Layout {
             return;
         }
         let loads: f64 = self.loads.iter().map(|l| l.force.norm()).sum();
-        let whole = if loads > 0.0 { HINT_OF_LOADS * loads } else { HINT_OF_STIFFNESS * p.axial_stiffness };
-        self.weight = Vec2::new(0.0, -whole / p.length);
-        self.hint = HINT_SHOWS * whole;
+        (self.weight, self.hint) = hint_of_weight(p, loads);
     }
 
     /// Which side of its wheel the cable runs on, seen along it: over means above where it travels to the right.

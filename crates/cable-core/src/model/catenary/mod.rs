@@ -7,7 +7,7 @@
 //! hold it.
 
 mod equilibrium;
-mod layout;
+pub(super) mod layout;
 pub(super) mod report;
 mod slide;
 mod wheel;
@@ -210,6 +210,14 @@ impl CatenaryModel {
     }
 }
 
+/// What there is to say of a weightless cable that is slack.
+pub(super) fn slack_without_weight(problem: &Problem, nodes: &[Node]) -> Option<Warning> {
+    let slack = nodes.iter().find(|n| n.tension_n == 0.0)?;
+    let message = "The cable has no weight: where it is slack it has no tension and any shape is at rest; this one is that of a very light cable";
+    let (kind, at) = (WarningKind::NotUnique, slack.arc_length_m);
+    Some(Warning::new(kind, &problem.cable.name, at, [0.0; 2], message.to_owned()))
+}
+
 /// The way the cable is laid, its material spread evenly along it.
 fn laid(p: &Problem, layout: &Layout) -> State {
     let mut state = State::default();
@@ -249,13 +257,8 @@ impl Mechanics for CatenaryModel {
             let name = &self.problem.cable.name;
             report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
         }
-        if layout.hint > 0.0
-            && let Some(slack) = self.nodes.iter().find(|n| n.tension_n == 0.0)
-        {
-            let message = "The cable has no weight: where it is slack it has no tension and any shape is at rest; this one is that of a very light cable";
-            let name = &self.problem.cable.name;
-            let (kind, at) = (WarningKind::NotUnique, slack.arc_length_m);
-            report.warnings.push(Warning::new(kind, name, at, [0.0; 2], message.to_owned()));
+        if layout.hint > 0.0 {
+            report.warnings.extend(slack_without_weight(&self.problem, &self.nodes));
         }
         Ok(report)
     }

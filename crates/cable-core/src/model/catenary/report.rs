@@ -150,7 +150,7 @@ pub(super) fn report(p: &Problem, layout: &Layout, e: &Equilibrium) -> (Vec<Node
 }
 
 /// What only the hint of weight pulls is slack: its tension is 0.
-fn forget_hint(nodes: &mut [Node], reactions: &mut [SupportReaction], hint: f64) {
+pub(in crate::model) fn forget_hint(nodes: &mut [Node], reactions: &mut [SupportReaction], hint: f64) {
     for n in nodes.iter_mut().filter(|n| n.tension_n <= hint) {
         (n.tension_n, n.strain, n.stress_pa, n.force_n) = (0.0, 0.0, 0.0, [0.0; 2]);
     }

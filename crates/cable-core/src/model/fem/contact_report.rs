@@ -40,6 +40,11 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
 }
 
 impl Dynamics {
+    /// Whether the cable slides through any node.
+    pub(super) fn slides_anywhere(&self) -> bool {
+        self.mesh.sliding.iter().any(Option::is_some)
+    }
+
     /// What the mesh leaves out of a stiff cable's bend at what it is led round, in parts of the greatest tension, and where that is most
     /// (m of arc length). A sliding node carries no moment: tension there is off by EI/2ρ² where the cable lies on the round, and by no more
     /// than T(1 − cos ½φ), φ its turn, where it touches in a point. At a node that turns by ψ the normal force of a contact has any
@@ -112,9 +117,16 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
     let mut end = |node: usize, next: usize, e: usize, sign: f64| {
         let ground = d.problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach);
         if let Some(hung) = free_end(d, node) {
-            // What presses on the ground there is the ground's.
-            let pressed = ground.map_or(Vec2::zeros(), |g| g.normal * hung.dot(&g.normal).min(0.0));
-            return (pressed - hung) * sign;
+            // What presses on the ground there is the ground's, and what friction holds of it: at the tip itself no more than its cone.
+            let taken = ground.map_or(Vec2::zeros(), |g| {
+                let pressed = hung.dot(&g.normal).min(0.0);
+                let along = perp(g.normal);
+                let half = d.problem.body_force(d.time()) * d.mesh.share(node);
+                let most = -pressed * g.friction;
+                let rubbed = (ground_force(d, node, x) + half).dot(&along).clamp(-most, most);
+                g.normal * pressed - along * rubbed
+            });
+            return (taken - hung) * sign;
         }
         let middle = d.mesh.path(e, x).direction * tension[e];
         let half = d.mesh.share(node);
@@ -134,7 +146,8 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
         let rubbed = (grounded - ground.normal * pressed) * (1.0 - kept);
         let lift = ground.normal * (lift * sign);
         let (grounded, force) = (grounded - rubbed, force - rubbed * sign);
-        lain[usize::from(sign < 0.0)] = Some(Lain {
+        // What a lump presses with is the ground's as well: its node tells.
+        lain[usize::from(sign < 0.0)] = d.mesh.held[node].then(|| Lain {
             node,
             next,
             obstacle: ground.obstacle,
@@ -150,10 +163,11 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
     ([end(0, 1, 0, 1.0), end(n - 1, n - 2, n - 2, -1.0)], lain)
 }
 
-/// What hangs on a free end without a lump, whose inertia would pull as well, N; None for other nodes.
+/// What hangs on a free end, N; None for other nodes, and where a lump moves, whose inertia pulls as well.
 fn free_end(d: &Dynamics, node: usize) -> Option<Vec2> {
     let k = d.support_node.iter().position(|n| *n == Some(node)).filter(|_| !d.mesh.held[node])?;
-    (d.problem.supports.get(k)?.mass == 0.0).then(|| d.problem.hung_on(k, d.time()))
+    let rests = d.problem.supports.get(k)?.mass == 0.0 || !d.inertia_counts();
+    rests.then(|| d.problem.hung_on(k, d.time()))
 }
 
 /// Normal and friction force of edges and floor on a node, N.

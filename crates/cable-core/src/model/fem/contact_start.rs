@@ -13,6 +13,12 @@ const MAX_PASSES: usize = 60;
 /// How deep (m) inside an obstacle a first lay is found and pushed out.
 const DEEPEST: f64 = 0.5;
 
+/// Steps in which an end is leaned until it is clear of what is below it, rad, and how many to either side: a half turn. Smaller: the same at
+/// more cost; larger: it begins higher than it needs to.
+const LEAN: f64 = std::f64::consts::PI / 36.0;
+/// See `LEAN`.
+const MOST_LEANS: i32 = 36;
+
 /// Corners of the way of a cable with the arc length at each, m.
 #[must_use]
 pub fn way(problem: &Problem) -> Vec<(f64, Vec2)> {
@@ -46,6 +52,46 @@ pub fn way(problem: &Problem) -> Vec<(f64, Vec2)> {
         if b.0 > a.0 { a.1 + (b.1 - a.1) * (w - a.0) / (b.0 - a.0) } else { a.1 }
     };
     points.iter().zip(&along).map(|(p, &w)| (arc_at(w), *p)).collect()
+}
+
+/// The same of a stiff cable: an end that nothing holds, and that would hang into something solid, is turned about the support it hangs
+/// from until its tip is clear. A flexible cable comes down in a heap there, a stiff one leans.
+#[must_use]
+pub fn leaning_way(problem: &Problem) -> Vec<(f64, Vec2)> {
+    let mut points = way(problem);
+    let last = problem.supports.len().saturating_sub(1);
+    if problem.route.len() >= 2 {
+        return points;
+    }
+    for (end, from) in [(0, 1), (last, last.saturating_sub(1))] {
+        let (Some(tip), Some(hinge)) = (problem.supports.get(end), problem.supports.get(from)) else { continue };
+        let (Some(at), Some(hinged), Some(s)) = (hinge.at, hinge.arc_length, tip.arc_length) else { continue };
+        if !matches!(tip.kind, SupportKind::Free | SupportKind::Load) {
+            continue;
+        }
+        let reach = s - hinged;
+        let pull = tip.force.at(0.0) + problem.body_force(0.0) * (0.5 * problem.length);
+        let down = pull.try_normalize(0.0).unwrap_or_else(|| -Vec2::y());
+        // A clamp says to which side it leans.
+        let aside = hinge.angle.map_or(1.0, f64::cos) * reach;
+        let lean = if cross(down, Vec2::new(aside, 0.0)) < 0.0 { -LEAN } else { LEAN };
+        let leaned = |k: i32| {
+            let (sin, cos) = (lean * f64::from(k)).sin_cos();
+            at + Vec2::new(cos * down.x - sin * down.y, sin * down.x + cos * down.y) * reach.abs()
+        };
+        let clear = |k: &i32| problem.world.signed_gap(leaned(*k), problem.length).is_none_or(|g| g.gap_m >= 0.0);
+        let both = (1..=MOST_LEANS).flat_map(|k| [k, -k]);
+        let Some(k) = std::iter::once(0).chain(both).find(clear).filter(|k| *k != 0) else { continue };
+        let leg = [(hinged, at), (s, leaned(k))];
+        if reach < 0.0 {
+            points.retain(|p| p.0 > hinged);
+            points.splice(0..0, [leg[1], leg[0]]);
+        } else {
+            points.retain(|p| p.0 < hinged);
+            points.extend(leg);
+        }
+    }
+    points
 }
 
 fn nearest_way(points: &[Vec2], along: &[f64], at: Vec2) -> f64 {

@@ -183,6 +183,25 @@ impl FemModel {
         Ok((Laid::Alone, exact))
     }
 
+    /// The resting place where nothing can be touched. From the flexible cable up in EI a stiff one may come to where its shape snaps
+    /// over, clamps against which it sags turn it upwards: a chain of bars that is let go follows it there, as it does in contact.
+    fn rest_in_the_air(&mut self) -> Result<StepReport, SolveError> {
+        self.ask(Part::Statics)?;
+        self.bent = None;
+        let found = self.statics.settle(&self.dragged);
+        let Err(why) = found else { return found };
+        if !(self.problem.bending_stiffness > 0.0) || self.ask(Part::Dynamics).is_err() {
+            return Err(why);
+        }
+        match self.bend() {
+            Some(report) => Ok(report),
+            None => {
+                self.ask(Part::Statics)?;
+                Err(why)
+            }
+        }
+    }
+
     /// The resting place where something may be touched.
     fn rest_in_touch(&mut self) -> Result<StepReport, SolveError> {
         let begins = !self.dynamics.rested && self.dynamics.time() == 0.0;
@@ -387,8 +406,7 @@ impl Mechanics for FemModel {
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
         if touches_nothing(&self.problem) {
-            self.ask(Part::Statics)?;
-            return self.statics.settle(&self.dragged);
+            return self.rest_in_the_air();
         }
         self.bent = None;
         self.unbent = None;
@@ -405,7 +423,7 @@ impl Mechanics for FemModel {
         if !(dt_s > 0.0 && dt_s.is_finite()) {
             return Err(SolveError::TimeStep { dt_s, allowed: "more than 0 s" });
         }
-        if inertia == Inertia::QuasiStatic && touches_nothing(&self.problem) {
+        if inertia == Inertia::QuasiStatic && touches_nothing(&self.problem) && self.bent.is_none() {
             self.ask(Part::Statics)?;
             self.statics.advance(dt_s, &self.dragged)
         } else {
@@ -414,8 +432,14 @@ impl Mechanics for FemModel {
             if let Some(answer) = self.bent.take() {
                 self.dynamics.take_over(&answer, self.dynamics.time(), &self.dragged)?;
             }
-            let report = self.dynamics.advance(dt_s, inertia, &self.dragged)?;
+            let mut report = self.dynamics.advance(dt_s, inertia, &self.dragged)?;
             self.meshes.follow(&self.dynamics, dt_s, inertia, &self.dragged);
+            let led = !touches_nothing(&self.problem) || self.dynamics.slides_anywhere();
+            match if led { self.bend_warning() } else { None } {
+                Some(warning) => report.warnings.push(warning),
+                // What is less than was asked for says nothing of the other errors of a step.
+                None => self.unbent = None,
+            }
             Ok(report)
         }
     }

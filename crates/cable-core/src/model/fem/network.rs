@@ -206,7 +206,8 @@ impl Network {
         let [before, after] = self.forces[stop];
         let ratio = (after.norm() / before.norm()).ln();
         if wheel.radius > 0.0 {
-            let law = [-1.0, 0.0, 1.0].map(|sign| self.round_wheel(wheel, before, sign));
+            let clockwise = self.clockwise_at(stop, wheel);
+            let law = [-1.0, 0.0, 1.0].map(|sign| self.round_wheel(wheel, (before, clockwise), sign));
             return Balance { ratio, law };
         }
         let bound = wheel.friction * turn_between(before, after).abs();

@@ -20,11 +20,10 @@ const WHEEL_STILL: f64 = 1e-12;
 const WHEEL_STILL_AT_LEAST: f64 = 1e-8;
 
 impl Network {
-    /// ln(T_after/T_before) round a wheel with friction pulling along (`sign` +1) or against.
-    pub(super) fn round_wheel(&self, wheel: &Wheel, before: Vec2, sign: f64) -> f64 {
+    /// ln(T_after/T_before) round a wheel, passed `clockwise` (+1) or the other way (−1), with friction pulling along (`sign` +1) or against.
+    pub(super) fn round_wheel(&self, wheel: &Wheel, (before, clockwise): (Vec2, f64), sign: f64) -> f64 {
         let m = &self.material;
         let [meets, leaves] = wheel.contact;
-        let clockwise = self.clockwise(wheel, before);
         let turn = arc(meets, leaves, clockwise);
         let start = meets.y.atan2(meets.x);
         let slope = |alpha: f64, tension: f64| {

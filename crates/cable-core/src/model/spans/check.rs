@@ -43,7 +43,9 @@ pub(super) fn sound(strand: &Strand, course: &Course) -> Result<(), Trouble> {
         .fold(0.0f64, |m, t| if t > m { t } else { m });
     for k in 0..strand.spans() {
         let (from, to) = strand.material(k);
-        if !(from >= before - HOLDS * (strand.to - strand.from) && to >= from - 1e-12 * (strand.to - strand.from)) {
+        let long = strand.to - strand.from;
+        // A pocket that is short by less is not opened.
+        if !(from >= before - HOLDS * long && to >= from - pocket::SHORT * long) {
             return Err(Trouble::Unsound { what: "material out of order", s: from, at: Vec2::zeros() });
         }
         before = to;

@@ -174,11 +174,6 @@ impl Curve {
         0..self.pieces.len() as i64
     }
 
-    /// Whether it comes back to where it starts.
-    pub fn is_closed(&self) -> bool {
-        self.period.is_some()
-    }
-
     /// The piece of a number that counts on over the turns.
     pub fn piece(&self, i: i64) -> &Piece {
         // Without a division in the first turn.

@@ -142,8 +142,8 @@ impl Network {
                 }
             }
         }
-        // Free ends that come down in a heap.
-        if let Some(strands) = (0..layout.strands.len()).map(|k| loose::lay(layout, k, (&course, instant))).collect() {
+        // What comes down in a heap, and what hangs over crests.
+        if let Some(strands) = strands_of(layout, |k| loose::lay(layout, k, (&course, instant))) {
             return Ok((Self { strands, course, instant: instant.clone() }, Taken::default()));
         }
         Err(stopped.or(first).unwrap_or((Trouble::Restless { s: 0.0 }, None)))
@@ -237,7 +237,8 @@ impl Network {
         let mut came = Vec::new();
         for k in 0..layout.strands.len() {
             let held = layout.strands[k].supports.iter().all(Option::is_some);
-            if let Some(strand) = loose::lay(layout, k, (&self.course, &begin)).filter(|_| taut.is_none() && held) {
+            let loose = if taut.is_none() && held { loose::lay(layout, k, (&self.course, &begin)) } else { None };
+            if let Some(strand) = loose.filter(|s| s.loose.as_ref().is_some_and(Loose::spreads)) {
                 self.strands.push(strand);
                 came.push(Vec::new());
                 continue;
@@ -455,7 +456,7 @@ impl Network {
 
     /// Material that lies loose and the length of ground it lies on, m; None where none does.
     pub fn loose(&self) -> Option<[f64; 2]> {
-        let lies = self.strands.iter().filter_map(|s| s.loose.as_ref()).map(Loose::lies);
+        let lies = self.strands.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.lies(&self.course));
         lies.reduce(|[a, b], [c, d]| [a + c, b + d])
     }
 
@@ -594,6 +595,11 @@ impl Network {
         }
         Ok(taken)
     }
+}
+
+/// All strands, where each is found.
+fn strands_of(layout: &Layout, lay: impl Fn(usize) -> Option<Strand>) -> Option<Vec<Strand>> {
+    (0..layout.strands.len()).map(lay).collect()
 }
 
 impl From<(Trouble, f64)> for Trouble {

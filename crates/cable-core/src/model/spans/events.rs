@@ -65,6 +65,9 @@ pub(super) fn solve(
                 if caught <= MOST_CAUGHT && (shed(strand, course)? || weight::catch(strand, course)) {
                     continue;
                 }
+                if let Some(support) = lifted(strand, course) {
+                    return Err(Trouble::OffWheel { support });
+                }
                 let s = strand.material(stall.at).0;
                 return Err(Trouble::Stalled { iterations: sum.iterations, residual: stall.residual, s });
             }
@@ -83,7 +86,8 @@ pub(super) fn solve(
             }
             || meet(strand, course, world, came.is_some())?;
         if !changed {
-            return Ok(sum);
+            // What else holds the cable may press it on to its wheel again: it is off when nothing else changes.
+            return lifted(strand, course).map_or(Ok(sum), |support| Err(Trouble::OffWheel { support }));
         }
     }
     Err(Trouble::Restless { s: strand.from })
@@ -92,10 +96,23 @@ pub(super) fn solve(
 /// R: lets go of what no longer presses.
 fn release(strand: &mut Strand, course: &mut Course) -> Result<bool, Trouble> {
     let turned = |c: &Contact| c.ends.p[1] - c.ends.p[0];
-    let worst =
-        (0..strand.contacts.len()).min_by(|&a, &b| turned(&strand.contacts[a]).total_cmp(&turned(&strand.contacts[b])));
+    let worst = (0..strand.contacts.len())
+        .filter(|&j| !is_round_wheel(&strand.contacts[j], course))
+        .min_by(|&a, &b| turned(&strand.contacts[a]).total_cmp(&turned(&strand.contacts[b])));
     let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -TURNED) else { return Ok(false) };
     let_go(strand, course, j)
+}
+
+/// Whether a contact is a wheel, which has a side; an eye has none.
+fn is_round_wheel(c: &Contact, course: &Course) -> bool {
+    c.wheel.is_some() && course.track(c).place(c.ends.p[0]).stretch > 0.0
+}
+
+/// The wheel that the cable has turned round on most: it would have to pull there.
+fn lifted(strand: &Strand, course: &Course) -> Option<usize> {
+    let wheels = strand.contacts.iter().filter(|c| is_round_wheel(c, course));
+    let turned = |c: &&Contact| c.ends.p[1] - c.ends.p[0];
+    wheels.min_by(|a, b| turned(a).total_cmp(&turned(b))).filter(|c| turned(c) < -TURNED)?.wheel
 }
 
 /// S: lets go of what has shrunk to next to nothing beside a load, whose weight a span that turned round past it would count;
@@ -112,7 +129,10 @@ fn shed(strand: &mut Strand, course: &mut Course) -> Result<bool, Trouble> {
 
 fn let_go(strand: &mut Strand, course: &mut Course, j: usize) -> Result<bool, Trouble> {
     if let Some(support) = strand.contacts[j].wheel {
-        turn_eye(&mut strand.contacts[j], course, support)?;
+        if is_round_wheel(&strand.contacts[j], course) {
+            return Err(Trouble::OffWheel { support });
+        }
+        turn_eye(&mut strand.contacts[j]);
         return Ok(true);
     }
     let contact = strand.contacts.remove(j);
@@ -161,11 +181,8 @@ pub(super) fn resolve(strand: &mut Strand, course: &Course, k: usize) {
     }
 }
 
-/// A point pulley may be passed on either side; a wheel only as it is.
-fn turn_eye(c: &mut Contact, course: &Course, support: usize) -> Result<(), Trouble> {
-    if course.track(c).place(c.ends.p[0]).stretch > 0.0 {
-        return Err(Trouble::OffWheel { support });
-    }
+/// A point pulley may be passed on either side.
+fn turn_eye(c: &mut Contact) {
     // Its boundary in the other sense: p → −p.
     c.curve ^= 1;
     c.ends.p = [-c.ends.p[0], -c.ends.p[1]];
@@ -179,7 +196,6 @@ fn turn_eye(c: &mut Contact, course: &Course, support: usize) -> Result<(), Trou
     {
         c.mode = Mode::Hold;
     }
-    Ok(())
 }
 
 /// M: two contacts of one chain, one after the other, are one.

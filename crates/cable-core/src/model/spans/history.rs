@@ -16,6 +16,7 @@
 
 use super::law::{Step, Track};
 use super::root::{FLOOR, crossing};
+use crate::math::smaller;
 
 /// Part of the friction coefficient by which it is changed to see what that moves.
 const NUDGE: f64 = 1e-6;
@@ -145,18 +146,52 @@ impl History {
         })
     }
 
-    /// Material laid with an even tension from p₁ to p₂ as far as friction holds that on every slope.
-    pub fn laid(track: &Track<'_>, e: &Ends) -> Self {
+    /// Material laid from `start` to p₁ and to p₂ with an even tension as far as friction holds that on every slope: what it is does
+    /// not depend on the end from which the cable is counted.
+    pub fn laid(track: &Track<'_>, start: Knot, [first, last]: [f64; 2]) -> Self {
+        let way = |to: f64| {
+            let mut knots = vec![Knot { m: 0.0, ..start }];
+            let (mut p, mut tension, mut s) = (start.p, start.tension, start.s);
+            while p != to {
+                let next = track.next_border(p, to);
+                let (m, way) = (track.even(0.5 * (p + next)), track.lay(p, next, tension));
+                // The law of a stretch stands at its left end.
+                if let (Some(knot), true) = (knots.last_mut(), next > p) {
+                    knot.m = m;
+                }
+                (p, tension, s) = (next, way.tension, s + way.material);
+                knots.push(Knot { p, s, tension, m });
+            }
+            knots
+        };
         let mut out = Self::default();
-        let (mut p, mut tension, mut s) = (e.p[0], e.t[0], e.s[0]);
-        while p < e.p[1] {
-            let next = track.next_border(p, e.p[1]);
-            out.push(Knot { p, s, tension, m: track.even(0.5 * (p + next)) });
-            let way = track.lay(p, next, tension);
-            (p, tension, s) = (next, way.tension, s + way.material);
-        }
-        out.push(Knot { p, s, tension, m: 0.0 });
+        way(first).into_iter().skip(1).rev().for_each(|knot| out.push(knot));
+        let right = way(last);
+        let end = right.len() - 1;
+        right
+            .into_iter()
+            .enumerate()
+            .for_each(|(k, knot)| out.push(if k == end { Knot { m: 0.0, ..knot } } else { knot }));
         out
+    }
+
+    /// The same from the middle of its length with a tension there, N, what is missing or too much of its material at both ends alike; no
+    /// end has less than that tension: weight that hangs down on both sides of a crest is held there.
+    pub fn laid_from_middle(track: &Track<'_>, e: &Ends, tension: f64) -> Self {
+        let middle = Knot { p: track.middle(e.p), s: 0.5 * (e.s[0] + e.s[1]), tension, m: 0.0 };
+        let mut laid = Self::laid(track, middle, e.p);
+        let missing = tension - laid.ends().map_or(tension, |[a, b]| smaller(a.tension, b.tension));
+        if missing > 0.0 {
+            laid = Self::laid(track, Knot { tension: tension + missing, ..middle }, e.p);
+        }
+        let off = laid.ends().map_or(0.0, |[a, b]| middle.s - 0.5 * (a.s + b.s));
+        laid.knots.iter_mut().for_each(|knot| knot.s += off);
+        laid
+    }
+
+    /// Its first and last knot.
+    fn ends(&self) -> Option<[Knot; 2]> {
+        Some([*self.knots.first()?, *self.knots.last()?])
     }
 
     /// The knots.
@@ -347,8 +382,7 @@ impl History {
                 // Loose from there to the end that is not drawn, as even as friction keeps it: without tension.
                 let end = Knot { p, s: from.s + material, tension: 0.0, m };
                 let [a, b] = if m > 0.0 { [first, end] } else { [end, last] };
-                let ends = Ends { p: [a.p, b.p], s: [a.s, b.s], t: [0.0; 2] };
-                let laid = Self::laid(track, &ends);
+                let laid = Self::laid(track, Knot { tension: 0.0, ..if m > 0.0 { a } else { b } }, [a.p, b.p]);
                 if m < 0.0 {
                     self.push(Knot { m, ..first });
                 }

@@ -12,6 +12,7 @@ use crate::catenary::PointForce;
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::Model;
+use crate::model::catenary::layout::hint_of_weight;
 use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 
@@ -26,6 +27,8 @@ pub(super) struct Instant {
     pub thermal: f64,
     /// Dead loads of the layout, N.
     pub forces: Vec<Vec2>,
+    /// Forces up to this come of the hint of weight that a weightless cable is given, N; 0 for one that has weight.
+    pub hint: f64,
     /// Part of the friction that acts: 1, less only while a rest is sought.
     pub friction: f64,
 }
@@ -182,7 +185,11 @@ impl Layout {
         out.places.extend(p.supports.iter().enumerate().map(place));
         out.forces.clear();
         out.forces.extend(self.loads.iter().map(force));
-        (out.load, out.thermal, out.friction) = (p.body_force(time_s), p.thermal_stretch, 1.0);
+        (out.load, out.hint) = (p.body_force(time_s), 0.0);
+        if out.load.norm() == 0.0 {
+            (out.load, out.hint) = hint_of_weight(p, out.forces.iter().map(|f| f.norm()).sum());
+        }
+        (out.thermal, out.friction) = (p.thermal_stretch, 1.0);
     }
 
     /// The course at an instant; the boundaries are those of `self.curves()`.
@@ -240,7 +247,8 @@ impl Clone for Instant {
     fn clone_from(&mut self, other: &Self) {
         self.places.clone_from(&other.places);
         self.forces.clone_from(&other.forces);
-        (self.load, self.thermal, self.friction) = (other.load, other.thermal, other.friction);
+        (self.load, self.hint) = (other.load, other.hint);
+        (self.thermal, self.friction) = (other.thermal, other.friction);
     }
 }
 

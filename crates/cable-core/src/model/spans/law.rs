@@ -283,6 +283,22 @@ impl Track<'_> {
         sum
     }
 
+    /// The middle of the length between two places.
+    pub fn middle(&self, [first, last]: [f64; 2]) -> f64 {
+        let long = |a: f64, b: f64| self.curve.length(a, b, self.home);
+        let (mut low, mut high) = (first, last);
+        // Down to rounding; a point, which has no length, is halved by its turn.
+        for _ in 0..64 {
+            let p = 0.5 * (low + high);
+            let [before, after] = [long(first, p), long(p, last)];
+            if before == after {
+                return p;
+            }
+            if before < after { low = p } else { high = p }
+        }
+        0.5 * (low + high)
+    }
+
     /// The next place from p towards `to` where the boundary changes from edge to arc or back; `to` if none lies between.
     pub fn next_border(&self, p: f64, to: f64) -> f64 {
         if self.pivot.as_ref().is_some_and(|v| v.reaches(p) && v.reaches(to)) {

@@ -4,6 +4,7 @@
 use super::curve::Home;
 use super::history::{Ends, History, Knot, Mode};
 use super::instant::{Instant, Layout, Part, Pulley};
+use super::law::Track;
 use super::strand::{Contact, Course, Strand, Tie};
 use super::taut::{self, Bend, Ring};
 use super::tight;
@@ -146,7 +147,10 @@ fn along(
     }
     spread(&mut strand, course);
     solve_spans(&mut strand, course)?;
-    if slack > LONG && heads.iter().all(Option::is_none) && !loose(0) && !loose(1) {
+    // Without a route the way is straight from support to support: round a wheel from tangent to tangent.
+    let wheel = |q: &Pulley| layout.problem.supports.get(q.support).is_some_and(|s| s.wheel_radius > 0.0);
+    let tangent_ways = layout.problem.route.len() < 2 && part.pulleys.iter().any(wheel);
+    if (slack > LONG || tangent_ways) && heads.iter().all(Option::is_none) && !loose(0) && !loose(1) {
         tight::relay(&mut strand, course);
     }
     Some(strand)
@@ -213,6 +217,10 @@ fn bends(
         // The turns counted along the string, brought to where the tangents are.
         let turns = if curve.is_round() { ((p1 + seat.turn - p2) / std::f64::consts::TAU).round() } else { 0.0 };
         let p2 = p2 + std::f64::consts::TAU * turns;
+        // An eye has no side of its own: it is passed on the one on which the string bends.
+        let eye = seat.wheel.is_some() && curve.place(p1, seat.home).stretch == 0.0;
+        let (index, [p1, p2]) = if eye && p2 < p1 { (seat.curve ^ 1, [-p1, -p2]) } else { (seat.curve, [p1, p2]) };
+        let curve = &course.curves[index];
         let p2 = if p2 > p1 { p2 } else { p1 };
         let half = 0.5 * curve.length(p1, p2, seat.home) / course.law.stretch(tension);
         // Round a post the string's points are not those of the cable: where it comes and goes on the route itself.
@@ -221,7 +229,7 @@ fn bends(
             if curve.is_round() { way.close(place.at, w, ROUND * place.stretch) } else { w }
         };
         let s = at(0.5 * (seen(p1, seat.way[0]) + seen(p2, seat.way[1])));
-        let mut c = contact(course, (seat.curve, seat.home), ([p1, p2], [s - half, s + half]), tension);
+        let mut c = contact(course, (index, seat.home), ([p1, p2], [s - half, s + half]), tension);
         c.wheel = seat.wheel;
         contacts.push(c);
     }
@@ -314,22 +322,42 @@ pub(super) fn spread(strand: &mut Strand, course: &Course) {
         before = e.s[1];
     }
     let loose = [0, 1].map(|side| matches!(strand.ties[side], Tie::Loose(_)));
+    let lies = [0, 1].map(|side| matches!(strand.ties[side], Tie::Lies(_)));
     for (j, c) in strand.contacts.iter_mut().enumerate() {
         let track = course.track(c);
-        if let (Tie::Loose(force), 0) = (strand.ties[0], j) {
-            c.ends.t[0] = course.pull(c, 0, force);
+        let free = [loose[0] && j == 0, loose[1] && j + 1 == n];
+        let held = [lies[0] && j == 0, lies[1] && j + 1 == n];
+        for side in 0..2 {
+            if let Tie::Loose(force) = strand.ties[side] {
+                c.ends.t[side] = if free[side] { course.pull(c, side, force) } else { c.ends.t[side] };
+            }
         }
-        c.history = History::laid(&track, &c.ends);
+        c.history = lay_down(&track, &c.ends, [free, held]);
         // A free end lies where the material ends.
-        for side in (0..2).filter(|&side| loose[side] && j == side * (n - 1)) {
+        for side in (0..2).filter(|&side| free[side]) {
             for _ in 0..FITS {
-                let (tension, s) = c.history.at(&track, c.ends.p[1]);
-                let off = (s - c.ends.s[1]) * course.law.stretch(tension);
-                c.ends.p[side] += if side == 0 { off } else { -off };
-                c.history = History::laid(&track, &c.ends);
+                // Laid from a free end it is the other end that does not fit.
+                let other = if free[1 - side] { side } else { 1 - side };
+                let (tension, s) = c.history.at(&track, c.ends.p[other]);
+                let off = (s - c.ends.s[other]) * course.law.stretch(tension);
+                c.ends.p[side] += if other == side { -off } else { off };
+                c.history = lay_down(&track, &c.ends, [free, held]);
             }
         }
     }
+}
+
+/// A contact as it is laid: from its end that is free, where its tension is known, or held, where its material is; else from its middle.
+/// With two free ends it is laid with the tension of the one that draws less.
+fn lay_down(track: &Track<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> History {
+    let end = |side: usize| Knot { p: e.p[side], s: e.s[side], tension: e.t[side], m: 0.0 };
+    let start = match (free, held) {
+        ([true, false], _) | ([false, false], [true, false]) => end(0),
+        ([false, true], _) | ([false, false], [false, true]) => end(1),
+        ([true, true], _) => return History::laid_from_middle(track, e, smaller(e.t[0], e.t[1])),
+        ([false, false], _) => return History::laid_from_middle(track, e, 0.5 * (e.t[0] + e.t[1])),
+    };
+    History::laid(track, start, e.p)
 }
 
 fn contact(course: &Course, (curve, home): (usize, Home), (p, s): ([f64; 2], [f64; 2]), tension: f64) -> Contact {

@@ -1,59 +1,107 @@
 //! A strand that lies without tension.
 //!
-//! With more cable than it takes to hang plumb from both supports down to the ground and to lie along it between the feet, no
-//! part of it needs any tension but what hangs: F(s) = −b (s_foot − s) in the air, 0 on the ground, whose friction holds each metre
-//! by itself where |t·b| ≤ μ |n·b|. What is over lies in folds. A plane cannot show where, nor in how many layers: they are spread
-//! evenly over the way on the ground, which carries their weight where it carries the rest. Of a plumb end h long, stretched,
+//! With more cable than it takes to drain down its route (see `drained`), no part of it needs any tension but what hangs: plumb, F is the
+//! weight below, and it is nothing at each foot and in each kink, where a cable under tension would not turn. Between two such points the
+//! cable goes over one crest: from both sides its tension falls as it does where it slides down there,
+//!
+//! ```text
+//! dT/ds = −b·t ∓ μN,   T ≥ 0
+//! ```
+//!
+//! and the greater of the two is what friction has to hold: less than all of it, if the one falls below the other before its end. Where
+//! both are nothing the cable lies loose, and what is over lies there in folds. A plane cannot show where, nor in how many layers: they are
+//! spread evenly over that ground, which carries their weight where it carries the rest. Of a plumb end h long, stretched,
 //!
 //! ```text
 //! h = λ (s + b s²/2EA)
 //! ```
 //!
-//! Any other rest of the same cable is one that pulls or leans somewhere, and then only by what friction remembers.
+//! Any other rest of the same cable is one that pulls or leans somewhere, and then only by what friction remembers. Where a crest is
+//! held by less friction than it takes, the cable runs over it: that is no such rest.
 
-use super::curve::{Curve, Form, Place};
+mod bridge;
+mod heap;
+mod report;
+
+use self::heap::{Heap, heap};
+use super::curve::Place;
+use super::drained::{Drained, Frame, Leg, NONE_M, Roofs};
 use super::instant::{Instant, Layout};
+use super::law::Step;
 use super::strand::{Course, Strand, Tie};
 use super::way::way;
-use crate::contact::World;
-use crate::contact::geometry::Body;
 use crate::math::{Vec2, cross, larger};
-use crate::model::arc_nodes;
-use crate::model::catenary::report::{Nodes, Point};
-use crate::solution::{ContactReport, ContactSample, ContactState};
 
-/// Part of the cone by which the ground may be steeper: rounding.
+/// Part of the weight of the cable by which a crest may be beyond its cone: rounding.
 const CONE: f64 = 1e-9;
 /// Part of the cable that there must be too much of: what is as long as its way lies along it, and remembers what friction does.
 const OVER: f64 = 1e-9;
-/// Depth (m) at which a support or the way along the ground still counts as clear: rounding of kilometres.
-const ON: f64 = super::events::ON;
-/// Nodes of a plumb end and of a straight stretch.
-const NODES: usize = 8;
+/// Turn (rad) up to which two stretches are one, and by which what hangs beside a roof may be off its end.
+const STRAIGHT: f64 = 1e-6;
+/// Halvings of a stretch in the search for where its tension ends.
+const HALVINGS: usize = 60;
 
 /// How a strand lies.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Loose {
-    /// Index of the boundary it lies on.
-    curve: usize,
-    /// Stretches of it from foot to foot: piece, and p on it from where to where.
-    stretches: Vec<(i64, [f64; 2])>,
-    /// Supports, m.
-    ends: [Vec2; 2],
-    /// Material at both feet, m.
-    feet: [f64; 2],
-    /// Length of the way from foot to foot, m.
-    way: f64,
+    parts: Vec<Part>,
     /// Dead loads on free ends, which lie, N.
-    drawn: [Vec2; 2],
+    drawn: Vec2,
 }
 
-/// A point below a support.
-#[derive(Clone, Copy, Debug)]
-struct Foot {
-    body: usize,
-    height: f64,
-    at: Vec2,
+/// A part of it, in order along the cable.
+#[derive(Clone, Debug, PartialEq)]
+struct Part {
+    /// Material at its ends, m.
+    s: [f64; 2],
+    /// Tension at its ends, N.
+    tension: [f64; 2],
+    form: Line,
+}
+
+/// Where it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Line {
+    /// Plumb, from one point to another.
+    Hangs([Vec2; 2]),
+    /// On a piece of a boundary.
+    Lies(Stretch),
+    /// In one place.
+    Heap(Heap),
+    /// Free between a support and a crest, with tension: from a point, with a force in the cable there (N).
+    Spans { from: Vec2, force: Vec2 },
+}
+
+/// A stretch of a boundary, p from where to where, with the part `m` of friction that is called upon against going on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Stretch {
+    curve: usize,
+    piece: i64,
+    p: [f64; 2],
+    m: f64,
+}
+
+impl Stretch {
+    fn place(&self, course: &Course, p: f64) -> Place {
+        let curve = &course.curves[self.curve];
+        curve.place_on(self.piece, p - curve.origin(self.piece))
+    }
+
+    /// How the tension `t` at one place of it goes on to another.
+    fn slide(&self, course: &Course, (from, to): (f64, f64), t: f64, m: f64) -> Step {
+        course.law.along(&course.law.spot(&self.place(course, from)), to - from, t, m)
+    }
+
+    fn friction(&self, course: &Course) -> f64 {
+        course.curves[self.curve].friction
+    }
+}
+
+impl Part {
+    /// Whether it lies without tension, so that there may be more of it.
+    fn is_loose(&self) -> bool {
+        matches!(self.form, Line::Lies(_)) && self.tension == [0.0; 2]
+    }
 }
 
 /// The strand as it lies loose at an instant; None where it does not.
@@ -61,48 +109,55 @@ pub(super) fn lay(layout: &Layout, index: usize, (course, instant): (&Course, &I
     let part = layout.strands.get(index)?;
     let (load, [from, to]) = (course.law.load, part.material);
     let loaded = course.loads.iter().any(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0);
-    if !(load.norm() > 0.0) || loaded || !part.pulleys.is_empty() {
-        return None;
-    }
-    let world = &layout.problem.world;
+    let frame = Frame::of(load).filter(|_| !loaded && part.pulleys.is_empty())?;
+    let bodies = layout.problem.world.geometry().bodies();
+    let roofs = Roofs::new(course, bodies.len(), frame);
     let held = part.supports.map(|s| s.and_then(|k| instant.places.get(k).copied()));
-    let feet = held.map(|at| at.and_then(|at| foot(course, world, at)));
-    // A free end lies in a heap below the support.
-    let (before, after) = match (held, feet) {
-        ([Some(_), Some(_)], [Some(a), Some(b)]) if a.body == b.body => (a, b),
-        ([Some(_), None], [Some(a), _]) => (a, Foot { height: 0.0, ..a }),
-        ([None, Some(_)], [_, Some(b)]) => (Foot { height: 0.0, ..b }, b),
-        _ => return None,
+    let legs = match held {
+        [Some(_), Some(_)] => Drained::new(&roofs, bodies, frame, &way(layout, part, instant).points)?.legs,
+        // A free end lies in a heap below the support.
+        [Some(at), None] | [None, Some(at)] => Drained::plumb(&roofs, bodies, frame, (at, held[0].is_none()))?.legs,
+        [None, None] => return None,
     };
-    let [a, b] = [held[0].unwrap_or(before.at), held[1].unwrap_or(after.at)];
-    let hangs = [before, after].map(|f| plumb(course, f.height));
-    let feet = [from + hangs[0], to - hangs[1]];
     let drawn = [0, 1].map(|side| match part.supports[side] {
         None => layout.end_force(instant, part.material[side]),
         Some(_) => Vec2::zeros(),
     });
-    let laid = way(layout, part, instant).points;
-    for index in [2 * before.body, 2 * before.body + 1] {
-        let Some(stretches) = between(&course.curves[index], [before.at, after.at], load) else { continue };
-        let curve = &course.curves[index];
-        let length: f64 = stretches.iter().map(|s| stretch_length(curve, s)).sum();
-        if !(course.law.stretch(0.0) * (feet[1] - feet[0]) - length > OVER * (to - from)) {
-            continue;
-        }
-        let loose = Loose { curve: index, stretches, ends: [a, b], feet, way: length, drawn };
-        if loose.holds_drawn(course) && loose.is_reached(course, world, (before.body, &laid)) {
-            let ties = [0, 1].map(|k| held[k].map_or(Tie::Loose(drawn[k]), Tie::Held));
-            return Some(Strand {
-                from,
-                to,
-                ties,
-                contacts: Vec::new(),
-                forces: vec![Vec2::zeros()],
-                loose: Some(loose),
-            });
-        }
+    let drape = Drape { course, frame, most: CONE * load.norm() * (to - from) };
+    let lines = drape.lines(&roofs, &legs);
+    let given = (part.material, drawn[0] + drawn[1]);
+    let parts = drape.parts(&lines, held.map(|h| h.is_some()))?;
+    let parts = pay_out(parts, course, frame, given)?;
+    let ties = [0, 1].map(|k| held[k].map_or(Tie::Loose(drawn[k]), Tie::Held));
+    let loose = Some(Loose { parts, drawn: drawn[0] + drawn[1] });
+    Some(Strand { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()], loose })
+}
+
+/// Gives each part its material, what is over to those without tension, or to a heap; None where nothing is over or nothing holds it.
+fn pay_out(
+    mut parts: Vec<Part>,
+    course: &Course,
+    frame: Frame,
+    ([from, to], drawn): ([f64; 2], Vec2),
+) -> Option<Vec<Part>> {
+    let own = |p: &Part| p.s[1] - p.s[0];
+    let over = to - from - parts.iter().map(own).sum::<f64>();
+    if !(over > OVER * (to - from)) {
+        return None;
     }
-    None
+    let free: f64 = parts.iter().filter(|p| p.is_loose()).map(own).sum();
+    if free <= NONE_M || drawn.norm() > 0.0 {
+        let (at, found) = heap(&parts, course, frame, course.law.load * over + drawn)?;
+        parts.insert(at, Part { s: [0.0, over], tension: [0.0; 2], form: Line::Heap(found) });
+    }
+    let spread = if parts.iter().any(|p| matches!(p.form, Line::Heap(_))) { 0.0 } else { over / free };
+    let mut s = from;
+    for part in &mut parts {
+        let more = if part.is_loose() { own(part) * spread } else { 0.0 };
+        part.s = [s, s + own(part) + more];
+        s = part.s[1];
+    }
+    Some(parts)
 }
 
 /// Material that hangs plumb over a height, m.
@@ -112,253 +167,262 @@ fn plumb(course: &Course, height: f64) -> f64 {
     2.0 * free / (1.0 + (1.0 + 2.0 * law.load.norm() * free / law.stiffness).sqrt())
 }
 
-/// The first that a plumb line from a point comes down on, if that carries what lies on it.
-fn foot(course: &Course, world: &World, from: Vec2) -> Option<Foot> {
-    if world.signed_gap(from, 1.0).is_some_and(|g| g.gap_m < -ON) {
-        return None;
-    }
-    let down = course.law.load.normalize();
-    let mut best: Option<Foot> = None;
-    let bodies = world.geometry().bodies().len();
-    for body in 0..bodies {
-        let curve = course.curves.get(2 * body)?;
-        for height in curve.pieces().filter_map(|i| meets(curve, i, (from, down))) {
-            if best.is_none_or(|b| height < b.height) {
-                let height = larger(height, 0.0);
-                best = Some(Foot { body, height, at: from + down * height });
-            }
-        }
-    }
-    best
+/// A drained way under the laws of tension.
+struct Drape<'a> {
+    course: &'a Course,
+    frame: Frame,
+    /// Tension that is rounding, N.
+    most: f64,
 }
 
-/// How far along a ray it comes down on piece i.
-fn meets(curve: &Curve, i: i64, (from, down): (Vec2, Vec2)) -> Option<f64> {
-    match curve.piece(i).form {
-        Form::Edge { .. } => {
-            let start = curve.place_on(i, 0.0);
-            let faces = start.normal.dot(&down);
-            let height = (start.at - from).dot(&start.normal) / faces;
-            let x = (from + down * height - start.at).dot(&start.tangent);
-            let on = x >= -ON && x <= curve.piece(i).extent + ON;
-            (faces < 0.0 && on && height >= -ON).then_some(height)
-        }
-        Form::Arc { center, radius, .. } => {
-            let c = center + curve.shift - from;
-            let aside = cross(down, c);
-            let square = radius * radius - aside * aside;
-            if !(square >= 0.0) {
-                return None;
+impl Drape<'_> {
+    fn lines(&self, roofs: &Roofs, legs: &[Leg]) -> Vec<Line> {
+        let line = |leg: &Leg| match *leg {
+            Leg::Hangs { u, v } => Line::Hangs(v.map(|v| self.frame.point(u, v))),
+            Leg::Lies { roof, u } => {
+                let (curve, piece, p) = roofs.all[roof].stretch(&self.course.curves, u);
+                Line::Lies(Stretch { curve, piece, p, m: 0.0 })
             }
-            let height = c.dot(&down) - square.sqrt();
-            let at = from + down * height;
-            let p = curve.project(i, at);
-            let on = (curve.place_on(i, p - curve.origin(i)).at - at).norm() <= ON;
-            (on && height >= -ON).then_some(height)
-        }
-    }
-}
-
-/// The stretches of a boundary from one point of it to another, all of which hold what lies on them; None where they do not.
-fn between(curve: &Curve, [from, to]: [Vec2; 2], load: Vec2) -> Option<Vec<(i64, [f64; 2])>> {
-    let nearest = |at: Vec2| {
-        let far = |i: &i64| (curve.place_on(*i, curve.project(*i, at) - curve.origin(*i)).at - at).norm();
-        curve.pieces().min_by(|i, j| far(i).total_cmp(&far(j)))
-    };
-    let [first, last] = [nearest(from)?, nearest(to)?];
-    let ends = [curve.project(first, from), curve.project(last, to)];
-    let count = curve.pieces().count() as i64;
-    let ahead = first < last || (first == last && ends[0] <= ends[1]);
-    if !ahead && !curve.is_closed() {
-        return None;
-    }
-    let last = if ahead { last } else { last + count };
-    let mut out = Vec::with_capacity((last - first + 1) as usize);
-    for i in first..=last {
-        let p = [
-            if i == first { ends[0] } else { curve.origin(i) },
-            if i == last { ends[1] + (curve.origin(i) - curve.origin(i.rem_euclid(count))) } else { curve.end(i) },
-        ];
-        let holds = |p: f64| {
-            let place = curve.place_on(i, p - curve.origin(i));
-            let press = -load.dot(&place.normal);
-            press > 0.0 && load.dot(&place.tangent).abs() <= curve.friction * press + CONE * load.norm()
         };
-        if p[1] > p[0] && !p.iter().all(|p| holds(*p)) {
-            return None;
-        }
-        // What is round less than half a turn leans most at its ends.
-        if curve.is_arc(i) && p[1] - p[0] >= std::f64::consts::PI {
-            return None;
-        }
-        out.push((i, p));
+        legs.iter().map(line).collect()
     }
-    Some(out)
-}
 
-fn stretch_length(curve: &Curve, (i, [a, b]): &(i64, [f64; 2])) -> f64 {
-    (b - a) * curve.place_on(*i, 0.0).stretch
+    /// Every part with its tension, and the material that takes; None where a crest does not hold.
+    fn parts(&self, lines: &[Line], held: [bool; 2]) -> Option<Vec<Part>> {
+        let (mut out, mut begin) = (Vec::new(), 0);
+        let (last, mut bridged) = (lines.len(), false);
+        let support = |line: &Line, end: usize| match line {
+            Line::Hangs(ends) => Some(ends[end]),
+            _ => None,
+        };
+        for k in 1..=last {
+            if k == last || self.rests(&lines[k - 1], &lines[k])? {
+                let near = [
+                    if held[0] && begin == 1 { support(&lines[0], 0) } else { None },
+                    if held[1] && k + 1 == last { support(&lines[k], 1) } else { None },
+                ];
+                if k < last || !bridged {
+                    let ends = [begin == 0 && held[0], k == last && held[1]];
+                    bridged = self.chain(&lines[begin..k], (ends, near), &mut out)?;
+                }
+                begin = k;
+            }
+        }
+        Some(out)
+    }
+
+    /// How far a plumb line rises, m.
+    fn rise(&self, [from, to]: [Vec2; 2]) -> f64 {
+        (to - from).dot(&self.frame.up)
+    }
+
+    /// Whether it has no tension between two lines: at a foot, and in a kink that a cable under tension would bridge. None where it
+    /// turns with nothing to turn it.
+    fn rests(&self, a: &Line, b: &Line) -> Option<bool> {
+        let plumb = |s: &Stretch, p: f64| cross(s.place(self.course, p).tangent, self.frame.up).abs() <= STRAIGHT;
+        match (a, b) {
+            (Line::Hangs(h), Line::Lies(s)) => match self.rise(*h) < 0.0 {
+                true => Some(true),
+                false => plumb(s, s.p[0]).then_some(false),
+            },
+            (Line::Lies(s), Line::Hangs(h)) => match self.rise(*h) > 0.0 {
+                true => Some(true),
+                false => plumb(s, s.p[1]).then_some(false),
+            },
+            (Line::Lies(s), Line::Lies(next)) => {
+                let [before, after] = [s.place(self.course, s.p[1]), next.place(self.course, next.p[0])];
+                let sense = self.course.curves[s.curve].sense;
+                let turns = self.course.curves[next.curve].sense != sense;
+                Some(turns || cross(before.tangent, after.tangent) * sense > STRAIGHT)
+            }
+            _ => Some(true),
+        }
+    }
+
+    /// What lies between two points without tension, or from or to a support. Where a support hangs nearby and the crest draws the cable
+    /// tight there, a span bridges to it; whether that was done at the end.
+    fn chain(&self, lines: &[Line], (held, near): ([bool; 2], [Option<Vec2>; 2]), out: &mut Vec<Part>) -> Option<bool> {
+        let weight = self.course.law.load.norm();
+        let hangs = |line: Option<&Line>| match line {
+            Some(Line::Hangs(ends)) => Some((*ends, plumb(self.course, self.rise(*ends).abs()))),
+            _ => None,
+        };
+        let hung = |(ends, s): ([Vec2; 2], f64)| {
+            let t = weight * s;
+            let tension = if self.rise(ends) > 0.0 { [0.0, t] } else { [t, 0.0] };
+            Part { s: [0.0, s], tension, form: Line::Hangs(ends) }
+        };
+        let (first, last) = (hangs(lines.first()), hangs(lines.last()));
+        if let ([_], Some(alone)) = (lines, first) {
+            // From a support down, or up to one.
+            let begins = held[0] && self.rise(alone.0) < 0.0;
+            let ends = held[1] && self.rise(alone.0) > 0.0;
+            out.push(hung(alone));
+            return (begins || ends).then_some(false);
+        }
+        if (held[0] && first.is_some()) || (held[1] && last.is_some()) {
+            return None;
+        }
+        let ends = [first, last].map(|h| h.map_or(0.0, |(_, s)| weight * s));
+        let lies: Vec<Stretch> =
+            lines.iter().filter_map(|l| if let Line::Lies(s) = l { Some(*s) } else { None }).collect();
+        let ([forth, back], tight) = self.profiles(&lies, (ends, held));
+        let [begins_tight, ends_tight] = tight;
+        let bridge = match (begins_tight, ends_tight) {
+            (true, false) => Some(self.bridge(&lies, (near[0]?, &back), 0)?),
+            (false, true) => Some(self.bridge(&lies, (near[1]?, &forth), 1)?),
+            (false, false) => None,
+            (true, true) => return None,
+        };
+        let (mut range, mut p) = (0..lies.len(), None);
+        if let Some(found) = &bridge {
+            p = Some((found.line, found.p));
+            range = if begins_tight { found.line..lies.len() } else { 0..found.line + 1 };
+        }
+        if let Some(found) = bridge.as_ref().filter(|_| begins_tight) {
+            // In the place of what hung.
+            out.pop();
+            out.push(found.part.clone());
+        }
+        out.extend(first.map(hung));
+        for k in range {
+            let mut s = lies[k];
+            let cut = p.filter(|(line, _)| *line == k);
+            if let Some((_, p)) = cut {
+                s.p[usize::from(ends_tight)] = p;
+            }
+            // Up to the bridge only the one holds.
+            let [mut f, mut b] = [forth[k], back[k]];
+            if begins_tight {
+                f = 0.0;
+            } else if ends_tight {
+                b = 0.0;
+            }
+            self.stretch(&s, [f, b], out);
+        }
+        out.extend(last.map(hung));
+        if let Some(found) = bridge.filter(|_| ends_tight) {
+            out.push(found.part);
+            return Some(true);
+        }
+        Some(false)
+    }
+
+    /// Tensions at the starts of stretches that are drawn from their start, and at their ends where they are drawn from the end: as little as
+    /// friction lets them have, from the tensions at both ends (N); and whether at the start and at the end that is more than there is.
+    fn profiles(&self, lies: &[Stretch], (ends, held): ([f64; 2], [bool; 2])) -> ([Vec<f64>; 2], [bool; 2]) {
+        let (mut t, mut forth) = (ends[0], Vec::with_capacity(lies.len()));
+        for s in lies {
+            forth.push(t);
+            t = larger(s.slide(self.course, (s.p[0], s.p[1]), t, -s.friction(self.course)).tension, 0.0);
+        }
+        let ends_tight = !held[1] && t > ends[1] + self.most;
+        let (mut t, mut back) = (ends[1], vec![0.0; lies.len()]);
+        for (s, back) in lies.iter().zip(&mut back).rev() {
+            *back = t;
+            t = larger(s.slide(self.course, (s.p[1], s.p[0]), t, s.friction(self.course)).tension, 0.0);
+        }
+        ([forth, back], [!held[0] && t > ends[0] + self.most, ends_tight])
+    }
+
+    /// A stretch in its parts: where the tension from its start holds, where there is none, where that from its end does.
+    fn stretch(&self, s: &Stretch, [forth, back]: [f64; 2], out: &mut Vec<Part>) {
+        let (course, friction, [p0, p1]) = (self.course, s.friction(self.course), s.p);
+        let forth_at = |p: f64| if p == p0 { forth } else { s.slide(course, (p0, p), forth, -friction).tension };
+        let back_at = |p: f64| if p == p1 { back } else { s.slide(course, (p1, p), back, friction).tension };
+        // Each ends at once or rises and falls again; from where it has fallen to nothing there is none.
+        let seek = |mut has: f64, mut not: f64, holds: &dyn Fn(f64) -> bool| {
+            if holds(not) {
+                return not;
+            }
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (has + not);
+                if holds(middle) { has = middle } else { not = middle }
+            }
+            has
+        };
+        let little = 1e-3 * (p1 - p0);
+        let goes = |t: f64, from: f64, to: f64, holds: &dyn Fn(f64) -> bool| match (t > 0.0, holds(from)) {
+            (true, _) => seek(if from < to { p0 } else { p1 }, to, holds),
+            (false, true) => seek(from, to, holds),
+            (false, false) => {
+                if from < to {
+                    p0
+                } else {
+                    p1
+                }
+            }
+        };
+        let mut ends = goes(forth, p0 + little, p1, &|p| forth_at(p) > 0.0);
+        let mut begins = goes(back, p1 - little, p0, &|p| back_at(p) > 0.0);
+        if begins < ends {
+            // Both: the greater.
+            let meet = if forth_at(ends) >= back_at(ends) {
+                ends
+            } else if forth_at(begins) <= back_at(begins) {
+                begins
+            } else {
+                seek(begins, ends, &|p| forth_at(p) >= back_at(p))
+            };
+            (ends, begins) = (meet, meet);
+        }
+        let mut push = |p: [f64; 2], m: f64, way: Step, tension: [f64; 2]| {
+            let form = Line::Lies(Stretch { p, m, ..*s });
+            out.push(Part { s: [0.0, way.material.abs()], tension, form });
+        };
+        if ends > p0 {
+            let way = s.slide(course, (p0, ends), forth, -friction);
+            push([p0, ends], -friction, way, [forth, larger(way.tension, 0.0)]);
+        }
+        if begins > ends || p0 == p1 {
+            push([ends, begins], 0.0, Step { material: self.rest_of(s, begins - ends), ..Step::none(0.0) }, [0.0; 2]);
+        }
+        if p1 > begins {
+            let way = s.slide(course, (p1, begins), back, friction);
+            push([begins, p1], friction, way, [larger(way.tension, 0.0), back]);
+        }
+    }
+
+    /// Material without tension on a stretch of p, m.
+    fn rest_of(&self, s: &Stretch, p: f64) -> f64 {
+        p * s.place(self.course, s.p[0]).stretch / self.course.law.stretch(0.0)
+    }
 }
 
 impl Loose {
-    /// Whether the ground holds a heap with the load in it.
-    fn holds_drawn(&self, course: &Course) -> bool {
-        let drawn: Vec2 = self.drawn.iter().sum();
-        let (Some((i, [p, _])), true) = (self.stretches.first(), drawn.norm() > 0.0) else { return true };
-        let curve = &course.curves[self.curve];
-        let place = curve.place_on(*i, p - curve.origin(*i));
-        let force = drawn + course.law.load * (self.feet[1] - self.feet[0]);
-        force.dot(&place.tangent).abs() <= -curve.friction * force.dot(&place.normal)
-    }
-
-    /// Whether the cable comes there from its route without passing through anything, and lies clear of all else.
-    fn is_reached(&self, course: &Course, world: &World, (own, laid): (usize, &[Vec2])) -> bool {
-        let curve = &course.curves[self.curve];
-        let mut shape = vec![self.ends[0]];
-        for (i, [a, b]) in &self.stretches {
-            shape.extend([a, b].map(|p| curve.place_on(*i, p - curve.origin(*i)).at));
-        }
-        shape.push(self.ends[1]);
-        let bodies = world.geometry().bodies();
-        let mut gaps = Vec::new();
-        for pair in shape.windows(2) {
-            world.segment_gaps(pair[0], pair[1], 0.0, &mut gaps);
-        }
-        if gaps.iter().any(|g| g.gap_m < -ON && Some(g.obstacle) != bodies.get(own).map(|b| b.obstacle)) {
-            return false;
-        }
-        shape.extend(laid.iter().rev());
-        let inner = |(k, body): (usize, &Body)| match (k == own, body.is_ground()) {
-            (true, true) => None,
-            (true, false) => body.center.or_else(|| Some(mean(body))),
-            (false, _) => body.center.or_else(|| body.edges.first().map(|e| e.p)),
-        };
-        bodies.iter().enumerate().filter_map(inner).all(|at| !encloses(&shape, at))
-    }
-
-    /// Adds its nodes and what it lies on.
-    pub fn report(
-        &self,
-        (course, strand): (&Course, &Strand),
-        nodes: &mut Nodes<'_>,
-        cable_radius: f64,
-    ) -> Option<(usize, ContactReport)> {
-        let (law, [first, last]) = (&course.law, self.feet);
-        let b = law.load.norm();
-        let down = law.load / b;
-        let hang = |side: usize, u: f64| {
-            // u runs from the support down to the foot.
-            let (end, foot) = if side == 0 { (strand.from, first) } else { (strand.to, last) };
-            let whole = (foot - end).abs();
-            let s = whole * u;
-            let tension = b * (whole - s);
-            let below = law.thermal * s * (1.0 + b * (whole - 0.5 * s) / law.stiffness);
-            let sign = if side == 0 { 1.0 } else { -1.0 };
-            Point {
-                s: end + sign * s,
-                at: self.ends[side] + down * below,
-                force: down * (sign * tension),
-                curvature: 0.0,
-            }
-        };
-        let part = |k: usize| k as f64 / NODES as f64;
-        let hung = [first > strand.from, last < strand.to];
-        (0..=NODES).filter(|k| hung[0] || *k == 0).for_each(|k| nodes.push(hang(0, part(k))));
-        let curve = &course.curves[self.curve];
-        let density = if self.way > 0.0 { (last - first) / self.way } else { 0.0 };
-        let (mut s, mut samples) = (first, Vec::new());
-        let (mut normal, mut push, mut along, mut turned) = (0.0, Vec2::zeros(), 0.0, 0.0);
-        let mut carry = |place: &Place, s: f64, carried: Vec2| {
-            let held = -carried;
-            normal += held.dot(&place.normal);
-            push += place.normal * held.dot(&place.normal);
-            along += held.dot(&place.tangent);
-            samples.push(ContactSample::new(s, held));
-        };
-        for stretch in &self.stretches {
-            let (i, [from, to]) = *stretch;
-            let length = stretch_length(curve, stretch);
-            let start = curve.place_on(i, from - curve.origin(i));
-            turned += start.turn * (to - from);
-            let count = if start.stretch > 0.0 && start.turn != 0.0 {
-                arc_nodes::parts(start.stretch, to - from, cable_radius)
-            } else {
-                NODES
-            };
-            let material = density * length / count as f64;
-            for k in 0..count {
-                let place = |u: f64| curve.place_on(i, from + (to - from) * u / count as f64 - curve.origin(i));
-                carry(&place(k as f64 + 0.5), s + 0.5 * material, law.load * material);
-                s += material;
-                let end = place(k as f64 + 1.0);
-                let curvature = if end.stretch > 0.0 { end.turn * law.stretch(0.0) / end.stretch } else { 0.0 };
-                nodes.push(Point { s, at: end.at, force: Vec2::zeros(), curvature });
-            }
-        }
-        if self.way == 0.0
-            && let Some((i, [p, _])) = self.stretches.first()
-        {
-            // All of it in one place.
-            let place = curve.place_on(*i, p - curve.origin(*i));
-            let drawn: Vec2 = self.drawn.iter().sum();
-            carry(&place, 0.5 * (first + last), law.load * (last - first) + drawn);
-        }
-        (0..=NODES).rev().filter(|k| hung[1] || *k == 0).for_each(|k| nodes.push(hang(1, part(k))));
-        let obstacle = curve.obstacle?;
-        let middle = self.stretches.get(self.stretches.len() / 2);
-        let at = middle.map_or(self.ends[0], |(i, [a, b])| curve.place_on(*i, 0.5 * (a + b) - curve.origin(*i)).at);
-        let unit = push.try_normalize(0.0).unwrap_or(-down);
-        let mut report = ContactReport {
-            x_m: at.x,
-            y_m: at.y,
-            arc_length_m: 0.5 * (first + last),
-            normal: [unit.x, unit.y],
-            normal_n: normal,
-            friction_n: along,
-            state: if curve.friction > 0.0 { ContactState::Stick } else { ContactState::Slip },
-            turn_deg: turned.to_degrees(),
-            begins_m: first,
-            ends_m: last,
-            ..ContactReport::default()
-        };
-        report.set_samples(samples);
-        Some((obstacle, report))
-    }
-
     /// Force in the cable at a support, N.
-    pub fn end_force(&self, (course, strand): (&Course, &Strand), side: usize) -> Vec2 {
-        let end = if side == 0 { strand.from } else { strand.to };
-        course.law.load * (self.feet[side] - end)
+    pub fn end_force(&self, course: &Course, side: usize) -> Vec2 {
+        let part = if side == 0 { self.parts.first() } else { self.parts.last() };
+        part.map_or_else(Vec2::zeros, |part| part.force(course, side))
     }
 
-    /// What the ground carries of it, N.
+    /// What obstacles carry of it, N.
     pub fn held(&self, course: &Course) -> Vec2 {
-        -course.law.load * (self.feet[1] - self.feet[0]) - self.drawn.iter().sum::<Vec2>()
+        let ends = [0, 1].map(|side| self.end_force(course, side));
+        let s = self.parts.first().zip(self.parts.last()).map_or(0.0, |(a, b)| b.s[1] - a.s[0]);
+        ends[0] - ends[1] - course.law.load * s - self.drawn
     }
 
     /// The most that friction can hold of what lies, N.
     pub fn friction(&self, course: &Course) -> f64 {
-        course.curves[self.curve].friction * self.held(course).norm()
+        let press = |p: &Part| p.held(course).norm() * p.form.friction(course);
+        self.parts.iter().map(press).sum()
+    }
+
+    /// Whether all that lies has no tension. Where it is drawn over crests, and where all that is over is a heap in a kink, a strand under
+    /// hardly any tension is much the same, and can be followed as it moves.
+    pub fn spreads(&self) -> bool {
+        let lies = |p: &Part| matches!(p.form, Line::Hangs(_)) || p.is_loose();
+        self.parts.iter().all(lies) && self.parts.iter().any(|p| p.is_loose() && p.s[1] - p.s[0] > NONE_M)
     }
 
     /// Material that lies, and the length of ground it lies on, m.
-    pub fn lies(&self) -> [f64; 2] {
-        [self.feet[1] - self.feet[0], self.way]
-    }
-}
-
-/// The middle of a body's edges.
-fn mean(body: &Body) -> Vec2 {
-    body.edges.iter().map(|e| (e.p + e.q) * 0.5).sum::<Vec2>() / larger(body.edges.len() as f64, 1.0)
-}
-
-/// Whether a closed polygon goes round a point: counted by the turns its sides make about it.
-fn encloses(polygon: &[Vec2], at: Vec2) -> bool {
-    let turns: f64 = (0..polygon.len())
-        .map(|k| {
-            let [a, b] = [polygon[k] - at, polygon[(k + 1) % polygon.len()] - at];
-            cross(a, b).atan2(a.dot(&b))
+    pub fn lies(&self, course: &Course) -> [f64; 2] {
+        let lies = self.parts.iter().filter(|p| p.is_loose() || matches!(p.form, Line::Heap(_)));
+        lies.fold([0.0; 2], |[material, ground], p| {
+            let way =
+                if let Line::Lies(s) = &p.form { (s.p[1] - s.p[0]) * s.place(course, s.p[0]).stretch } else { 0.0 };
+            [material + p.s[1] - p.s[0], ground + way]
         })
-        .sum();
-    turns.abs() > 1.0
+    }
 }

@@ -14,6 +14,7 @@ mod arc;
 mod band;
 mod check;
 mod curve;
+mod drained;
 mod drive;
 mod ends;
 mod events;
@@ -51,10 +52,12 @@ use self::instant::{Instant, Layout, unsupported};
 use self::newton::Work;
 use self::report::Report;
 use self::trouble::Trouble;
+use super::catenary::slack_without_weight;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::{Place, SolveError};
 use crate::math::{Vec2, larger, smaller};
 use crate::problem::Problem;
+use crate::scene::FrictionMobilised;
 use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
 use crate::state::State;
 
@@ -157,7 +160,10 @@ impl SpansModel {
     fn histories(&self, work: &mut Work) -> String {
         let Some(network) = &self.network else { return String::new() };
         let laid = report::tensions(network);
-        let drawn = [-1.0, 1.0].map(|way| network.drawn(&self.layout, way, work).map(|n| report::tensions(&n)));
+        let drawn = [FrictionMobilised::TowardsStart, FrictionMobilised::TowardsEnd].map(|drawn| {
+            let found = network.drawn(&self.layout, drawn.way(), work);
+            found.or_else(|| self.laid_anew(drawn, work)).map(|n| report::tensions(&n))
+        });
         let all = || std::iter::once(laid).chain(drawn.into_iter().flatten());
         let range = |k: usize| {
             let (low, high) = all().map(|t| t[k]).fold((laid[k], laid[k]), |(a, b), t| (smaller(a, t), larger(b, t)));
@@ -178,6 +184,14 @@ impl SpansModel {
             range(0),
             range(1),
         )
+    }
+
+    /// The cable laid anew along its way while it is drawn.
+    fn laid_anew(&self, drawn: FrictionMobilised, work: &mut Work) -> Option<Network> {
+        let mut layout = self.layout.clone();
+        Arc::make_mut(&mut layout.problem).cable.friction_mobilised = drawn;
+        let instant = self.network.as_ref()?.instant.clone();
+        Network::rest(&layout, &instant, work).ok().map(|n| n.0).filter(|n| n.loose().is_none())
     }
 
     /// Whether some of the cable is held by nothing but friction.
@@ -301,6 +315,9 @@ impl Mechanics for SpansModel {
             let name = &self.layout.problem.cable.name;
             let message = format!("{message}{range}");
             report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message));
+        }
+        if instant.hint > 0.0 {
+            report.warnings.extend(slack_without_weight(&self.layout.problem, &self.look().nodes));
         }
         Ok(report)
     }

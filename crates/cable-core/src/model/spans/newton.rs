@@ -36,6 +36,11 @@ const MAX_HALVINGS: usize = 14;
 const RESIDUAL: f64 = 1e-11;
 /// Residual that rounding leaves where a cable is EA/T times stiffer than it is taut: this times EA/T.
 const STIFF_RESIDUAL: f64 = 2e-14;
+/// A residual that will do is made better by one more step where it is more than this times T/EA: forces are off by a hundredth of this
+/// part then. Smaller: a step more in each solve. Larger: forces of stiff cables are as exact as their tolerance, 1e-8.
+const EXACT: f64 = 1e-8;
+/// Residual that no step makes smaller: rounding.
+const FLOOR: f64 = 5e-15;
 /// Where no step gains anything the residual is rounding if it is below so many times the one wanted. Larger: a step that
 /// was halved often enough is taken without having been solved.
 const ROUNDING: f64 = 20.0;
@@ -120,6 +125,20 @@ fn squares(r: &[f64]) -> f64 {
 
 /// The residual that will do, of a strand whose contacts have the tensions of the spans beside them.
 fn tolerance(strand: &Strand, course: &Course) -> f64 {
+    let least = least_tension(strand, course);
+    let stiff = if least.is_finite() && least > 0.0 { STIFF_RESIDUAL * course.law.stiffness / least } else { 0.0 };
+    larger(RESIDUAL, stiff.min(1e3 * RESIDUAL))
+}
+
+/// Whether a residual that will do leaves forces off by more than need be: a length that is missing is strain, and that times EA is
+/// force.
+fn is_rough(strand: &Strand, course: &Course, residual: f64) -> bool {
+    let least = least_tension(strand, course);
+    least.is_finite() && residual > larger(FLOOR, EXACT * least / course.law.stiffness)
+}
+
+/// The least tension at an end of a span, N; infinite where there is no span.
+fn least_tension(strand: &Strand, course: &Course) -> f64 {
     let mut least = f64::INFINITY;
     let mut take = |t: f64| {
         if t < least {
@@ -139,8 +158,7 @@ fn tolerance(strand: &Strand, course: &Course) -> f64 {
             }
         }
     }
-    let stiff = if least.is_finite() && least > 0.0 { STIFF_RESIDUAL * course.law.stiffness / least } else { 0.0 };
-    larger(RESIDUAL, stiff.min(1e3 * RESIDUAL))
+    least
 }
 
 /// Largest part of a step that keeps spans and does not jump turns.
@@ -206,7 +224,7 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
             c.mode = Mode::Slide(course.mobilised * course.friction(c));
         }
     }
-    let (mut best, mut stalled, mut iterations) = (f64::INFINITY, 0, 0);
+    let (mut best, mut stalled, mut iterations, mut polished) = (f64::INFINITY, 0, 0, false);
     assemble(strand, course, &mut work.sheet);
     loop {
         let (mut worst, mut at) = norm(&work.sheet.residual);
@@ -222,6 +240,12 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
                     continue;
                 }
             } else if done {
+                if content && !polished && is_rough(strand, course, worst) {
+                    (polished, iterations) = (true, iterations + 1);
+                    if step(strand, course, work) {
+                        continue;
+                    }
+                }
                 return if content || agreed(strand, course, &work.sheet) {
                     Ok(Solved { iterations, residual: worst })
                 } else {

@@ -18,7 +18,7 @@ use crate::math::{Vec2, cross};
 
 /// A pocket opens when material is short by this part of the strand. Smaller: rounding opens it. Larger: the cable there is
 /// too short by as much.
-const SHORT: f64 = 1e-11;
+pub(super) const SHORT: f64 = 1e-11;
 /// Spans of less tension than this part of the cable's weight may have become pockets where a step fails. Smaller: it takes
 /// more halvings to come so near. Larger: more of them are tried for nothing.
 const LOOSE: f64 = 1e-2;
@@ -90,6 +90,10 @@ pub(super) fn heap(strand: &Strand, course: &Course, k: usize) -> Option<[Borne;
         Borne { contact, normal: place.normal, tangent: place.tangent, press: 0.0, friction: 0.0 }
     };
     let mut borne = [edge(a, k - 1, 1), edge(b, k, 0)];
+    // Material that rounding alone tells from none weighs nothing.
+    if b.ends.s[0] <= a.ends.s[1] {
+        return Some(borne);
+    }
     let held = -course.load_between(a.ends.s[1], b.ends.s[0]);
     let both = cross(borne[0].normal, borne[1].normal);
     let press = [cross(held, borne[1].normal) / both, cross(borne[0].normal, held) / both];

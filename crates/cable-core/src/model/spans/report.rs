@@ -13,7 +13,7 @@ use super::weight;
 use crate::catenary::PointForce;
 use crate::math::{GAUSS, Vec2, larger};
 use crate::model::arc_nodes;
-use crate::model::catenary::report::{Nodes, Point};
+use crate::model::catenary::report::{Nodes, Point, forget_hint};
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
 /// Nodes on each stretch of an edge.
@@ -52,14 +52,14 @@ pub(super) fn report(layout: &Layout, network: &Network) -> Report {
             greatest = if t > greatest { t } else { greatest };
         }
         if let Some(loose) = &strand.loose {
-            greatest = [0, 1].iter().map(|side| loose.end_force((course, strand), *side).norm()).fold(greatest, larger);
+            greatest = [0, 1].iter().map(|side| loose.end_force(course, *side).norm()).fold(greatest, larger);
         }
     }
     let mut nodes = Nodes::new(&layout.problem, greatest);
     let mut contacts = Vec::new();
     for strand in &network.strands {
         if let Some(loose) = &strand.loose {
-            let found = loose.report((course, strand), &mut nodes, layout.problem.radius);
+            let found = loose.report(course, &mut nodes, layout.problem.radius).into_iter();
             contacts.extend(found.map(|(obstacle, report)| {
                 let obstacle = layout.problem.world.obstacle_name(obstacle).to_owned();
                 ContactReport { obstacle, ..report }
@@ -91,8 +91,13 @@ pub(super) fn report(layout: &Layout, network: &Network) -> Report {
             }
         }
     }
-    let nodes = nodes.out;
-    let supports = supports(layout, network, &nodes);
+    let mut nodes = nodes.out;
+    let mut supports = supports(layout, network, &nodes);
+    let hint = network.instant.hint;
+    if hint > 0.0 {
+        forget_hint(&mut nodes, &mut supports, hint);
+        contacts.retain(|c: &ContactReport| Vec2::from(c.force_n).norm() > hint);
+    }
     Report { nodes, supports, contacts }
 }
 
@@ -409,7 +414,7 @@ fn parts(c: &Contact, friction: f64, stretches: &[Stretch]) -> Vec<ContactPart> 
 fn end_force(network: &Network, strand: &Strand, side: usize) -> Vec2 {
     let course = &network.course;
     if let Some(loose) = &strand.loose {
-        return loose.end_force((course, strand), side);
+        return loose.end_force(course, side);
     }
     let (k, s) = if side == 0 { (0, strand.from) } else { (strand.contacts.len(), strand.to) };
     match strand.ties[side] {

@@ -1,6 +1,6 @@
 //! A strand along its taut string.
 
-use super::history::{Ends, History};
+use super::history::History;
 use super::lay::{measure, spread};
 use super::strand::{Contact, Course, Strand};
 
@@ -39,7 +39,6 @@ pub(super) fn relay(strand: &mut Strand, course: &Course) {
     tighten(strand, course);
     for c in &mut strand.contacts {
         let even = 0.5 * (c.ends.t[0] + c.ends.t[1]);
-        let laid = Ends { t: [even; 2], ..c.ends };
-        c.history = History::laid(&course.track(c), &laid);
+        c.history = History::laid_from_middle(&course.track(c), &c.ends, even);
     }
 }

@@ -206,6 +206,18 @@ impl Elastica {
                 }
             }
         }
+        // An end that its load lifts off.
+        let tips = [
+            (0, self.pieces.first().map(|p| (p, p.nodes.first()))),
+            (1, self.pieces.last().map(|p| (p, p.nodes.last()))),
+        ];
+        for (which, tip) in tips {
+            let Some((piece, Some(u))) = tip else { continue };
+            let contact = piece.lies.and_then(|c| self.contacts.get(c));
+            if contact.is_some_and(|c| self.tip_push(which, c, u) < -SLACK * size) {
+                return None;
+            }
+        }
         self.meet(problem)
     }
 

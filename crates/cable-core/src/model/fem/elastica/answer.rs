@@ -186,6 +186,17 @@ impl Elastica {
                     samples.push(ContactSample::new(last[ARC], force(last) - force(next)));
                 }
             }
+            let tip = match (*joint, stretch) {
+                (Joint::End(_), Some(p)) => p.nodes.first().map(|u| (0, u)),
+                (Joint::Begin(_), Some(p)) if j + 2 == self.pieces.len() => p.nodes.last().map(|u| (1, u)),
+                _ => None,
+            };
+            if let Some((which, u)) = tip {
+                let push = self.tip_push(which, c, u);
+                let force = perp(tangent(u)) * (-c.sense * push) + tangent(u) * (c.mobilised * push);
+                r.normal_n += push;
+                samples.insert(if which == 0 { 0 } else { samples.len() }, ContactSample::new(u[ARC], force));
+            }
             r.set_samples(samples);
             let (mut middle, mut normal) = (place(a), perp(tangent(a)) * -c.sense);
             if let Some(p) = stretch {

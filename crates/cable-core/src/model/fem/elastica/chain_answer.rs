@@ -126,7 +126,7 @@ impl Chain<'_> {
             let near = self.touches.iter().filter(|t| t.active);
             let led = near.flat_map(|t| t.shares().map(|(k, a)| (k, self.force_of(t) * a)));
             let led = led.filter(|(k, _)| *k == i).fold(Vec2::zeros(), |sum, (_, f)| sum + f);
-            let f = if loaded { -s.force.at(self.time_s) } else { after - before + self.load[i] + led };
+            let f = if loaded { -p.hung_on(k, self.time_s) } else { after - before + self.load[i] + led };
             SupportReaction {
                 name: s.name.clone(),
                 reaction_x_n: f.x,

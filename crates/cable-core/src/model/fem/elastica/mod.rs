@@ -293,7 +293,9 @@ impl Elastica {
         match (self.ends[which], contact) {
             // What lies is led: where along it, or how hard it is pulled, is all that is left to say.
             (End::Held(at, _), Some(_)) => out.push((place(u) - at).dot(&tangent(u))),
-            (End::Loaded(load), Some(_)) => out.push(tension(u) - sign * load.dot(&tangent(u))),
+            (End::Loaded(load), Some(c)) => {
+                out.push(tension(u) - sign * (load.dot(&tangent(u)) + c.mobilised * self.tip_push(which, c, u)));
+            }
             (End::Held(at, angle), None) => {
                 let off = place(u) - at;
                 out.extend([off.x, off.y, angle.map_or(u[MOMENT], |a| u[ANGLE] - a)]);
@@ -302,6 +304,14 @@ impl Elastica {
                 let off = force(u) - load * sign;
                 out.extend([off.x, off.y, u[MOMENT]]);
             }
+        }
+    }
+
+    /// What a contact does to an end that lies on it, along its normal, N: the load of that end presses there in one point.
+    fn tip_push(&self, which: usize, c: &Contact, u: &[f64; STATES]) -> f64 {
+        match self.ends[which] {
+            End::Loaded(load) => c.sense * load.dot(&perp(tangent(u))),
+            End::Held(..) => 0.0,
         }
     }
 

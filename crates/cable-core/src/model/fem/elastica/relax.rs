@@ -11,7 +11,7 @@
 //! quadratic programme; each mobilises the friction that it is given. Material that the first lay has no room for is paid out on the way.
 //! At the end the second derivative of E on the active set is positive definite: what was found is stable.
 
-use super::super::contact_start::{push_chain_out, way};
+use super::super::contact_start::{leaning_way, push_chain_out};
 use super::super::layout::place as support_place;
 use super::start::{Curve, mobilised};
 use crate::contact::Gap;
@@ -136,7 +136,7 @@ pub(super) struct Chain<'a> {
 /// Nodes of the way along which a cable is first laid.
 fn first_lay(problem: &Problem) -> Vec<Node> {
     let node = |(s, x): (f64, Vec2)| Node { arc_length_m: s, x_m: x.x, y_m: x.y, ..Node::default() };
-    way(problem).into_iter().map(node).collect()
+    leaning_way(problem).into_iter().map(node).collect()
 }
 
 /// Whether the material of an answer lies in heaps.

@@ -1,0 +1,108 @@
+//! What supports do to the cable, and whether it is where they hold it.
+
+use super::laws::{Subject, series};
+use super::tolerance::HELD;
+use super::{Law, Verification};
+use crate::math::{Vec2, larger, smaller};
+use crate::scene::{Cable, Scene, Support, SupportKind, View};
+use crate::solution::{CableSolution, SupportReaction};
+
+/// What a support does to the cable now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Role {
+    /// It holds a point of the cable in its place.
+    Held,
+    /// The cable runs through a point.
+    Pulley,
+    /// The cable runs over a wheel.
+    Wheel {
+        /// Of the centre line, m.
+        radius: f64,
+    },
+    /// A given force, or nothing.
+    Load,
+    /// It has let go.
+    Released,
+}
+
+/// A support as the scene gives it and the answer reports it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hold<'a> {
+    pub support: &'a Support,
+    pub role: Role,
+    /// Place, m.
+    pub at: Vec2,
+    /// Arc length of the cable there, m.
+    pub arc_length: f64,
+    pub reaction: &'a SupportReaction,
+}
+
+/// The supports of a cable at a time, s.
+pub(super) fn holds<'a>(cable: &'a Cable, answer: &'a CableSolution, time_s: f64) -> Vec<Hold<'a>> {
+    let last = cable.supports.len().saturating_sub(1);
+    let hold = |(k, (support, reaction)): (usize, (&'a Support, &'a SupportReaction))| {
+        let released = support.release_s.is_some_and(|t| time_s >= t - 1e-9);
+        let wheel = support.radius_m.filter(|r| *r > 0.0);
+        let role = match support.kind {
+            SupportKind::Load | SupportKind::Free => Role::Load,
+            _ if released => Role::Released,
+            SupportKind::Pulley => wheel.map_or(Role::Pulley, |r| Role::Wheel { radius: r + 0.5 * cable.diameter_m }),
+            SupportKind::Fixed | SupportKind::Clamped | SupportKind::Robot => Role::Held,
+        };
+        let arc_length = match k {
+            0 => 0.0,
+            k if k == last => cable.length_m,
+            _ => reaction.arc_length_m,
+        };
+        Hold { support, role, at: Vec2::new(reaction.x_m, reaction.y_m), arc_length, reaction }
+    };
+    cable.supports.iter().zip(&answer.supports).enumerate().map(hold).collect()
+}
+
+impl Hold<'_> {
+    /// Its force on the cable as it is reported, N.
+    pub fn force(&self) -> Vec2 {
+        -Vec2::new(self.reaction.reaction_x_n, self.reaction.reaction_y_n)
+    }
+
+    /// What a dead load pulls with, N.
+    pub fn dead_load(&self, scene: &Scene, time_s: f64) -> Vec2 {
+        let gravity = match scene.view {
+            View::Elevation => Vec2::new(0.0, -scene.environment.gravity_m_per_s2),
+            View::Plan => Vec2::zeros(),
+        };
+        let s = self.support;
+        series(s.force_n, &s.times_s, &s.forces_n, time_s) + gravity * s.mass_kg.unwrap_or(0.0)
+    }
+}
+
+impl Subject<'_> {
+    /// The cable is where its supports hold it, and runs past its pulleys.
+    pub fn supports(&self, found: &mut Verification) {
+        found.ask(Law::Support);
+        let nodes = &self.answer.nodes;
+        let limit = HELD * self.cable.length_m;
+        for hold in &self.holds {
+            let to_cable = || {
+                let to_line = |a: Vec2, b: Vec2| super::surroundings::distance(hold.at, hold.at, a, b);
+                nodes.windows(2).map(|p| to_line(p[0].at(), p[1].at())).fold(f64::INFINITY, smaller)
+            };
+            let (off, limit) = match hold.role {
+                Role::Load | Role::Released => continue,
+                Role::Pulley => (to_cable(), larger(limit, self.reach())),
+                Role::Wheel { radius } => (to_cable() - radius, larger(limit, self.reach())),
+                Role::Held => {
+                    let from = nodes.partition_point(|n| n.arc_length_m < hold.arc_length - limit);
+                    let here = nodes[from..].iter().take_while(|n| n.arc_length_m <= hold.arc_length + limit);
+                    (here.map(|n| (n.at() - hold.at).norm()).fold(f64::INFINITY, smaller), limit)
+                }
+            };
+            if !(off <= limit) {
+                let node = nodes.partition_point(|n| n.arc_length_m < hold.arc_length);
+                let mut finding = self.finding(Law::Support, node, (off, limit));
+                finding.with.clone_from(&hold.support.name);
+                found.report(finding);
+            }
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Random scenes of every kind of rest, against laws that are written here alone.
+//!
+//! `CAMPAIGN_SEED=7 CAMPAIGN_CASES=200 cargo test --release -p cable-tests --test campaign -- --include-ignored --nocapture`
+//!
+//! | variable | meaning |
+//! |---|---|
+//! | `CAMPAIGN_SEED` | first seed |
+//! | `CAMPAIGN_CASES` | scenes a family |
+//! | `CAMPAIGN_FAMILIES` | names, or parts of them, parted by commas; left out, all |
+//! | `CAMPAIGN_OUT` | folder into which scenes go that are wrong, refused or slow |
+//!
+//! | room | what is in it |
+//! |---|---|
+//! | `chance.rs`, `case.rs`, `families/` | (family, seed) → scene and what is known of its answer |
+//! | `closed.rs` | closed forms |
+//! | `judge.rs` | the laws, by brute force |
+//! | `relations.rs` | scenes that must have the same answer |
+//! | `driver.rs` | one case from scene to verdict |
+//! | `known.rs` | open faults, by family and count |
+
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
+mod case;
+mod chance;
+mod closed;
+mod driver;
+mod families;
+mod judge;
+mod known;
+mod relations;
+
+use driver::{Plan, Tally, run};
+
+fn number(name: &str) -> Option<u64> {
+    std::env::var(name).ok().and_then(|n| n.parse().ok())
+}
+
+fn names() -> Vec<String> {
+    let all = std::env::var("CAMPAIGN_FAMILIES").unwrap_or_default();
+    all.split(',').filter(|n| !n.is_empty()).map(str::to_owned).collect()
+}
+
+/// What fails a campaign: wrong answers, words that no user can read, and more than 2 % of scenes refused that have a resting place;
+/// open faults are counted off.
+fn judged(tallies: &[Tally], open: &[known::Open]) {
+    let mut failures = Vec::new();
+    for t in tallies {
+        let known = open.iter().find(|k| k.family == t.family);
+        let allowed = |count: fn(&known::Open) -> usize| known.map_or(0, count);
+        let mut tell = |what: &str, found: usize, allowed: usize, lines: &[String]| {
+            if found > allowed {
+                failures.push(format!("{}: {found} {what}, {allowed} known\n    {}", t.family, lines.join("\n    ")));
+            }
+        };
+        tell("wrong", t.wrong.len(), allowed(|k| k.wrong), &t.wrong);
+        tell("refused", t.refused.len(), allowed(|k| k.refused).max(t.cases / 50), &t.refused);
+        tell("outside of what they say", t.outside.len(), allowed(|k| k.outside), &t.outside);
+        tell("in private words", t.private.len(), 0, &t.private);
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// A few scenes of each family, always the same ones.
+#[test]
+fn every_family_rests_by_the_laws() {
+    let plan = Plan { first: 0, cases: 2, names: names(), relations: 1, second_model: false, ..Plan::default() };
+    judged(&run(&plan), known::IN_CI);
+}
+
+/// As many as are asked for.
+#[test]
+#[ignore = "minutes to hours: see the top of this file"]
+fn campaign() {
+    let plan = Plan {
+        first: number("CAMPAIGN_SEED").unwrap_or(1000),
+        cases: number("CAMPAIGN_CASES").unwrap_or(30) as usize,
+        names: names(),
+        relations: 2,
+        second_model: true,
+        out: std::env::var("CAMPAIGN_OUT").ok().map(Into::into),
+        ..Plan::default()
+    };
+    judged(&run(&plan), &[]);
+}
