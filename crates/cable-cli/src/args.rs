@@ -76,7 +76,10 @@ pub struct RunArguments {
     /// How long: 10s, 250ms, 2min
     #[arg(long = "for", value_parser = duration_s)]
     pub duration_s: f64,
-    /// Time between outputs [default: 1/60 s, with inertia at most a 500th of the run]
+    /// Time between steps; outputs do not change it [default: 1/240 s, without inertia 1/60 s]
+    #[arg(long, value_parser = interval_s)]
+    pub step: Option<f64>,
+    /// Time between outputs, which changes nothing but what is written [default: 1/60 s, with inertia at most a 500th of the run]
     #[arg(long, value_parser = interval_s)]
     pub every: Option<f64>,
     /// Without inertia: supports move infinitely slowly, friction remembers

@@ -12,8 +12,9 @@ use cable_core::files::{RunEnd, RunFolder};
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
 use cable_core::record::{RunRequest, WriteError};
-use cable_core::solution::{MaxTension, Solution, WarningKind};
+use cable_core::solution::{MaxTension, Solution, Warning, WarningKind};
 use cable_core::summary::summaries;
+use cable_core::timeline::{Instant as Moment, Timeline};
 use cable_core::{Scene, Settings, Simulation, SolveError};
 
 use crate::Done;
@@ -82,14 +83,19 @@ impl Outputs {
             self.printer.json(&printable)?;
             self.printer.flush()?;
         }
-        self.begun.look(&solution);
-        let top = solution.max_tension();
-        if solution.time_s == 0.0 || top.tension_n > self.peak.tension_n {
-            (self.peak, self.peak_time_s) = (top, solution.time_s);
-        }
-        self.progress.at(solution.time_s, self.arguments.duration_s, top.tension_n);
+        self.progress.at(solution.time_s, self.arguments.duration_s, solution.max_tension().tension_n);
         self.last = Some(solution);
         Ok(())
+    }
+
+    /// Looks at a step, whether it is written or not.
+    fn watch(&mut self, simulation: &Simulation) {
+        let time_s = simulation.time_s();
+        self.begun.look(simulation.warnings(), time_s);
+        let top = simulation.max_tension();
+        if time_s == 0.0 || top.tension_n > self.peak.tension_n || top.tension_n.is_nan() {
+            (self.peak, self.peak_time_s) = (top, time_s);
+        }
     }
 }
 
@@ -105,18 +111,20 @@ struct Begun {
 }
 
 impl Begun {
-    fn look(&mut self, solution: &Solution) {
-        for w in &solution.warnings {
+    fn look<'w>(&mut self, warnings: impl Iterator<Item = &'w Warning>, now_s: f64) {
+        let mut standing = Vec::new();
+        for w in warnings {
+            standing.push((w.kind, w.cable.clone()));
             if self.standing.iter().any(|(kind, cable)| *kind == w.kind && *cable == w.cable) {
                 continue;
             }
             self.count += 1;
             if self.lines.len() < MOST_PRINTED {
-                let time_s = w.since_s.unwrap_or(solution.time_s);
+                let time_s = w.since_s.unwrap_or(now_s);
                 self.lines.push(format!("  {time_s:9.4} s  {:17}  {}", w.kind.name(), w.message));
             }
         }
-        self.standing = solution.warnings.iter().map(|w| (w.kind, w.cable.clone())).collect();
+        self.standing = standing;
     }
 
     /// A title and a line a warning.
@@ -162,6 +170,7 @@ pub fn run(a: RunArguments) -> Done {
         quasi_static: Some(a.quasi_static),
         duration_s: Some(a.duration_s),
         every_s: Some(every),
+        step_s: a.step,
     };
     let mut folder = RunFolder::create(&a.out, &scene, request, choice).map_err(Failure::File)?;
     // So that a run which is ended before its first instant has tables.
@@ -223,8 +232,8 @@ fn wait_for_line(printing: &Mutex<()>) {
 }
 
 /// Solves, writes, and ends the run.
-fn follow(mut simulation: Simulation, inertia: Inertia, mut outputs: Outputs, began: Instant) -> Done {
-    let walked = walk(&mut simulation, inertia, &mut outputs, began);
+fn follow(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, began: Instant) -> Done {
+    let walked = walk(simulation, inertia, &mut outputs, began);
     outputs.progress.end();
     let end = match &walked {
         Ok(()) => RunEnd::Complete,
@@ -253,30 +262,25 @@ fn follow(mut simulation: Simulation, inertia: Inertia, mut outputs: Outputs, be
 }
 
 /// Output k lies at k·every, the last one exactly at the end.
-fn walk(simulation: &mut Simulation, inertia: Inertia, outputs: &mut Outputs, mut began: Instant) -> Done {
+fn walk(mut simulation: Simulation, inertia: Inertia, outputs: &mut Outputs, mut began: Instant) -> Done {
     let first = match simulation.settle() {
         Ok(s) => s,
-        Err(e) => return Err(stopped(outputs, simulation, e)),
+        Err(e) => return Err(stopped(outputs, &simulation, e)),
     };
     // A last interval shorter than a billionth of the others is round-off, not an interval.
     let (duration_s, every) = (outputs.arguments.duration_s, outputs.arguments.every_s());
     let count = (duration_s / every - 1e-9).ceil() as usize;
+    outputs.watch(&simulation);
     outputs.push(first, began.elapsed().as_secs_f64(), count == 0)?;
+    let interval = Moment::nearest(every);
+    let mut timeline = Timeline::new(simulation, inertia, outputs.arguments.step);
     for k in 1..=count {
-        let target_s = if k == count { duration_s } else { k as f64 * every };
+        let moment = if k == count { Moment::nearest(duration_s) } else { interval.times(k as u64) };
         began = Instant::now();
-        let dt_s = target_s - simulation.time_s();
-        let stepped = match inertia {
-            Inertia::Dynamic => simulation.step(dt_s),
-            Inertia::QuasiStatic => simulation.step_quasi_static(dt_s),
-        };
-        if let Err(e) = stepped {
-            return Err(stopped(outputs, simulation, e));
+        match timeline.at(moment, |simulation| outputs.watch(simulation)) {
+            Ok(solution) => outputs.push(solution, began.elapsed().as_secs_f64(), k == count)?,
+            Err(e) => return Err(stopped(outputs, timeline.simulation(), e)),
         }
-        let mut solution = simulation.solution();
-        // Adding steps up rounds; the time asked for is the time meant.
-        solution.time_s = target_s;
-        outputs.push(solution, began.elapsed().as_secs_f64(), k == count)?;
     }
     Ok(())
 }

@@ -41,6 +41,7 @@ pub mod spread;
 pub mod state;
 mod strand;
 pub mod summary;
+pub mod timeline;
 pub mod verify;
 mod watch;
 

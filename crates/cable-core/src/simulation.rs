@@ -10,7 +10,7 @@ use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::problems;
 use crate::robot::{self, Vehicle};
 use crate::scene::{Scene, SupportKind};
-use crate::solution::{CableSolution, Cost, Energy, Node, Solution, Warning, WarningKind};
+use crate::solution::{CableSolution, Cost, Energy, MaxTension, Node, Solution, Warning, WarningKind};
 use crate::state::State;
 use crate::strand::Strand;
 use crate::verify::{Depth, Verification, Verifier};
@@ -479,11 +479,21 @@ impl Simulation {
         Ok(())
     }
 
+    /// The greatest tension of all cables now (NaN propagates).
+    #[must_use]
+    pub fn max_tension(&self) -> MaxTension {
+        MaxTension::of(&self.answers)
+    }
+
+    /// What is to be said of this instant.
+    pub fn warnings(&self) -> impl Iterator<Item = &Warning> {
+        self.warnings.iter().chain(self.watch.warnings())
+    }
+
     /// The answer at this instant, with what the cables cannot stand among its warnings.
     #[must_use]
     pub fn solution(&self) -> Solution {
-        let mut warnings = self.warnings.clone();
-        warnings.extend(self.watch.warnings().cloned());
+        let warnings = self.warnings().cloned().collect();
         Solution {
             time_s: self.time_s(),
             model: self.model,

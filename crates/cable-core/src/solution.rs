@@ -447,15 +447,15 @@ pub struct MaxTension {
     pub arc_length_m: f64,
 }
 
-impl Solution {
-    /// The largest tension over all cables (NaN propagates).
+impl MaxTension {
+    /// That of some cables (NaN propagates).
     #[must_use]
-    pub fn max_tension(&self) -> MaxTension {
-        let mut best = MaxTension { tension_n: f64::NEG_INFINITY, ..MaxTension::default() };
-        for (cable, c) in self.cables.iter().enumerate() {
+    pub fn of(cables: &[CableSolution]) -> Self {
+        let mut best = Self { tension_n: f64::NEG_INFINITY, ..Self::default() };
+        for (cable, c) in cables.iter().enumerate() {
             for n in &c.nodes {
                 if n.tension_n > best.tension_n || n.tension_n.is_nan() {
-                    best = MaxTension { tension_n: n.tension_n, cable, arc_length_m: n.arc_length_m };
+                    best = Self { tension_n: n.tension_n, cable, arc_length_m: n.arc_length_m };
                 }
                 if n.tension_n.is_nan() {
                     return best;
@@ -463,5 +463,13 @@ impl Solution {
             }
         }
         best
+    }
+}
+
+impl Solution {
+    /// The largest tension over all cables (NaN propagates).
+    #[must_use]
+    pub fn max_tension(&self) -> MaxTension {
+        MaxTension::of(&self.cables)
     }
 }

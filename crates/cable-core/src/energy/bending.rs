@@ -22,6 +22,8 @@ pub struct Bend {
     pub stiffness: f64,
     /// Half the sum of both bars' rest lengths, m.
     pub length: f64,
+    /// Turn from which it is measured, rad: 0, and of a loss that at the start of the step.
+    pub from: f64,
 }
 
 /// The bend between a clamp and the bar that leaves it (or arrives at it).
@@ -33,6 +35,8 @@ pub struct ClampBend {
     pub length: f64,
     /// Unit vector of the clamp, pointing to growing arc length.
     pub direction: Vec2,
+    /// Turn from which it is measured, rad.
+    pub from: f64,
 }
 
 /// The angle from `a` to `b`, rad in (−π, π]; 0 where one of them has no direction.
@@ -59,13 +63,13 @@ fn angle_hessian(v: Vec2) -> Mat2 {
 
 impl Energy<3> for Bend {
     fn value(&self, x: &[Vec2; 3]) -> f64 {
-        let psi = turn(x[1] - x[0], x[2] - x[1]);
+        let psi = turn(x[1] - x[0], x[2] - x[1]) - self.from;
         0.5 * self.stiffness * psi * psi / self.length
     }
 
     fn gradient(&self, x: &[Vec2; 3]) -> [Vec2; 3] {
         let (a, b) = (x[1] - x[0], x[2] - x[1]);
-        let moment = self.stiffness * turn(a, b) / self.length;
+        let moment = self.stiffness * (turn(a, b) - self.from) / self.length;
         turn_gradient(a, b).map(|g| g * moment)
     }
 
@@ -80,7 +84,7 @@ impl Energy<3> for Bend {
             }
         }
         if curvature == Curvature::Exact {
-            let moment = c * turn(a, b);
+            let moment = c * (turn(a, b) - self.from);
             let (ha, hb) = (angle_hessian(a) * moment, angle_hessian(b) * moment);
             // ψ = angle(x₂ − x₁) − angle(x₁ − x₀)
             blocks[0][0] -= ha;
@@ -103,13 +107,13 @@ fn turn_gradient(a: Vec2, b: Vec2) -> [Vec2; 3] {
 
 impl Energy<2> for ClampBend {
     fn value(&self, x: &[Vec2; 2]) -> f64 {
-        let psi = turn(self.direction, x[1] - x[0]);
+        let psi = turn(self.direction, x[1] - x[0]) - self.from;
         0.5 * self.stiffness * psi * psi / self.length
     }
 
     fn gradient(&self, x: &[Vec2; 2]) -> [Vec2; 2] {
         let d = x[1] - x[0];
-        let g = angle_gradient(d) * (self.stiffness * turn(self.direction, d) / self.length);
+        let g = angle_gradient(d) * (self.stiffness * (turn(self.direction, d) - self.from) / self.length);
         [-g, g]
     }
 
@@ -118,7 +122,7 @@ impl Energy<2> for ClampBend {
         let (c, g) = (self.stiffness / self.length, angle_gradient(d));
         let mut k = g * g.transpose() * c;
         if curvature == Curvature::Exact {
-            k += angle_hessian(d) * (c * turn(self.direction, d));
+            k += angle_hessian(d) * (c * (turn(self.direction, d) - self.from));
         }
         [[k, -k], [-k, k]]
     }
@@ -139,7 +143,7 @@ mod tests {
         fn bend_derivatives_match_differences(
             first in -3.1..3.1f64, psi in -2.9..2.9f64, l1 in 0.2..2.0f64, l2 in 0.2..2.0f64,
         ) {
-            let bend = Bend { stiffness: 5.0, length: 0.5 };
+            let bend = Bend { stiffness: 5.0, length: 0.5, from: 0.1 };
             let x0 = Vec2::new(1.0, -2.0);
             let x1 = x0 + polar(l1, first);
             check::derivatives(&bend, &[x0, x1, x1 + polar(l2, first + psi)], 500.0, 1.0);
@@ -147,14 +151,14 @@ mod tests {
 
         #[test]
         fn clamp_derivatives_match_differences(clamp in -3.1..3.1f64, psi in -2.9..2.9f64, l in 0.2..2.0f64) {
-            let bend = ClampBend { stiffness: 5.0, length: 0.25, direction: polar(1.0, clamp) };
+            let bend = ClampBend { stiffness: 5.0, length: 0.25, direction: polar(1.0, clamp), from: 0.1 };
             let x0 = Vec2::new(0.3, 0.4);
             check::derivatives(&bend, &[x0, x0 + polar(l, clamp + psi)], 500.0, 1.0);
         }
 
         #[test]
         fn clipped_is_never_indefinite(psi in -3.0..3.0f64) {
-            let bend = Bend { stiffness: 5.0, length: 1.0 };
+            let bend = Bend { stiffness: 5.0, length: 1.0, from: 0.0 };
             let x = [Vec2::zeros(), Vec2::new(1.0, 0.0), Vec2::new(1.0, 0.0) + polar(1.0, psi)];
             prop_assert!(check::smallest_eigenvalue(&bend.hessian(&x, Curvature::Clipped)) > -1e-9);
         }
@@ -167,7 +171,7 @@ mod tests {
         let points: Vec<Vec2> =
             (0..n + 2).map(|k| polar(radius, std::f64::consts::TAU * f64::from(k) / f64::from(n))).collect();
         let length = (points[1] - points[0]).norm();
-        let bend = Bend { stiffness: 2.0, length };
+        let bend = Bend { stiffness: 2.0, length, from: 0.0 };
         let energy: f64 = (0..n as usize).map(|k| bend.value(&[points[k], points[k + 1], points[k + 2]])).sum();
         let exact = 0.5 * 2.0 * std::f64::consts::TAU / radius;
         assert!((energy / exact - 1.0).abs() < 5e-4, "{energy} against {exact}");
@@ -175,7 +179,7 @@ mod tests {
 
     #[test]
     fn nodes_in_one_place_give_finite_numbers() {
-        let bend = Bend { stiffness: 1.0, length: 1.0 };
+        let bend = Bend { stiffness: 1.0, length: 1.0, from: 0.0 };
         let x = [Vec2::zeros(), Vec2::zeros(), Vec2::new(1.0, 0.0)];
         assert!(bend.gradient(&x).iter().all(|g| g.iter().all(|v| v.is_finite())));
         assert!(bend.hessian(&x, Curvature::Exact).iter().flatten().all(|b| b.iter().all(|v| v.is_finite())));

@@ -40,6 +40,9 @@ pub struct RunRequest {
     /// Time between outputs, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub every_s: Option<f64>,
+    /// Time between steps, s; none: the usual one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub step_s: Option<f64>,
 }
 
 /// What is written of the nodes.

@@ -8,7 +8,7 @@
 use super::path::{End, Path};
 use super::sliding::Sliding;
 use crate::energy::axial::Bar;
-use crate::energy::bending::{Bend, ClampBend};
+use crate::energy::bending::{Bend, ClampBend, turn};
 use crate::energy::{Curvature, Energy};
 use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH, BandMatrix};
 use crate::math::{Mat2, Vec2};
@@ -266,18 +266,33 @@ impl System {
 
     /// Adds the bending energy at `x` (m); returns its value, J.
     pub fn add_bending(&mut self, mesh: &Mesh, x: &[Vec2], curvature: Curvature) -> f64 {
-        let (stiffness, rest) = (mesh.bending_stiffness, &mesh.rest_length);
+        self.add_bends(mesh, (mesh.bending_stiffness, None), x, curvature)
+    }
+
+    /// Bends of this stiffness (N m²), measured from those at `from` (m), if there is such; returns their energy, J. With EI τ/h and where
+    /// a step of h began it is the loss of bending, as that of stretch is.
+    pub fn add_bends(
+        &mut self,
+        mesh: &Mesh,
+        (stiffness, from): (f64, Option<&[Vec2]>),
+        x: &[Vec2],
+        curvature: Curvature,
+    ) -> f64 {
+        let rest = &mesh.rest_length;
         let mut value = 0.0;
         let mut clamps = mesh.clamps.iter().peekable();
         for node in 0..mesh.nodes() {
             if let Some(clamp) = clamps.next_if(|c| c.node == node) {
                 let first = node.saturating_sub(1);
                 for (e, rest) in rest.iter().enumerate().take(node + 1).skip(first) {
-                    let bend = ClampBend { stiffness, length: 0.5 * rest, direction: clamp.direction };
+                    let direction = clamp.direction;
+                    let from = from.map_or(0.0, |x| turn(direction, x[e + 1] - x[e]));
+                    let bend = ClampBend { stiffness, length: 0.5 * rest, direction, from };
                     value += self.add_energy(&bend, [e, e + 1], x, curvature);
                 }
             } else if node > 0 && node < rest.len() && bends(mesh, node) {
-                let bend = Bend { stiffness, length: 0.5 * (rest[node - 1] + rest[node]) };
+                let from = from.map_or(0.0, |x| turn(x[node] - x[node - 1], x[node + 1] - x[node]));
+                let bend = Bend { stiffness, length: 0.5 * (rest[node - 1] + rest[node]), from };
                 value += self.add_energy(&bend, [node - 1, node, node + 1], x, curvature);
             }
         }

@@ -31,7 +31,7 @@ impl Dynamics {
 
     /// Whether a point on the round of a corner lies over one of the corner's edges, nearer to it than `least` (parts of the
     /// barrier's reach): a way that is tangent there runs through the edge.
-    fn is_over_an_edge(&self, node: &Sliding, p: Vec2, least: f64) -> bool {
+    pub(super) fn is_over_an_edge(&self, node: &Sliding, p: Vec2, least: f64) -> bool {
         let geometry = self.problem.world.geometry();
         let body = node.feature().and_then(|f| Some((f, geometry.body_of(f)?)));
         let Some((f, body)) = body.filter(|b| b.1.center.is_none()) else { return false };

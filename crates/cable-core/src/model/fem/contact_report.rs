@@ -304,8 +304,16 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
         let sag = sense * angle_between(from, to);
         if same[j] || sag.abs() > MOST_SAG { 0.0 } else { sag }
     };
-    let before = paths[0].arcs[1] + sag(0, ends[0], paths[0].direction);
-    let after = paths[1].arcs[0] + sag(1, paths[1].direction, ends[1]);
+    let normal = |turned: f64| {
+        let (sin, cos) = (sense * turned).sin_cos();
+        Vec2::new(cos * mark.x - sin * mark.y, sin * mark.x + cos * mark.y)
+    };
+    // As far round as it would run into an edge beside a corner it does not sag.
+    let clear = |turned: f64| !d.is_over_an_edge(node, node.end.center + normal(turned) * radius, 0.0);
+    let [straight, sagged] = [[0.0; 2], [sag(0, ends[0], paths[0].direction), sag(1, paths[1].direction, ends[1])]]
+        .map(|sag| [paths[0].arcs[1] + sag[0], paths[1].arcs[0] + sag[1]]);
+    let before = if clear(-sagged[0]) { sagged[0] } else { straight[0] };
+    let after = if clear(sagged[1]) { sagged[1] } else { straight[1] };
     let whole = before + after;
     if !(whole > 0.0 && radius > 0.0) {
         return vec![OnRound {
@@ -319,10 +327,6 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
     let [a, b] = [0, 1].map(|j| if same[j] { tension[k + j - 1] } else { ends[j].norm() });
     let chords = arc_nodes::parts(radius, whole, d.problem.radius) as f64;
     let count = larger((whole / ARC_STEP).ceil(), chords);
-    let normal = |turned: f64| {
-        let (sin, cos) = (sense * turned).sin_cos();
-        Vec2::new(cos * mark.x - sin * mark.y, sin * mark.x + cos * mark.y)
-    };
     // What the floor takes before and after the round is not the round's.
     let [f0, floor, f2] = load.floor;
     let [a, b] = [a - f0, b + f2];

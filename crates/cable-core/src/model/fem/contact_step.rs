@@ -150,6 +150,9 @@ impl Workspace {
         }
         if mesh.bending_stiffness > 0.0 {
             value += s.add_bending(mesh, x, curvature);
+            if task.bending_damping > 0.0 {
+                value += s.add_bends(mesh, (task.bending_damping, Some(&task.start)), x, curvature);
+            }
         }
         self.magnitude += value.abs();
         for i in 0..x.len() {

@@ -19,8 +19,9 @@ pub(super) const SMALL: f64 = 0.3;
 const SPACING: f64 = 0.4;
 
 impl Dynamics {
-    /// Moves the mark of a round with one node to the middle of its arc.
-    pub(super) fn move_marks(&mut self) -> bool {
+    /// Moves the mark of a round with one node to the middle of its arc. In motion the material between the old mark and the new one is
+    /// that of the bar that it leaves, whose strain stays.
+    pub(super) fn move_marks(&mut self, rests: bool) -> bool {
         let mut moved = false;
         for k in 1..self.mesh.nodes().saturating_sub(1) {
             let Some(node) = self.mesh.sliding[k] else { continue };
@@ -34,8 +35,15 @@ impl Dynamics {
             if !(shift.abs() * node.end.radius > STILL) {
                 continue;
             }
-            let stretch =
-                (paths[0].length + paths[1].length) / (self.mesh.rest_length[k - 1] + self.mesh.rest_length[k]);
+            let bars = if rests {
+                k - 1..k + 1
+            } else if shift > 0.0 {
+                k..k + 1
+            } else {
+                k - 1..k
+            };
+            let sum = |of: &dyn Fn(usize) -> f64| bars.clone().map(of).sum::<f64>();
+            let stretch = sum(&|e| paths[e + 1 - k].length) / sum(&|e| self.mesh.rest_length[e]);
             let material = shift * node.end.radius / (stretch * self.mesh.thermal_stretch);
             let room = NEAR * NEAR * self.even();
             let s = &self.mesh.arc_length;

@@ -105,6 +105,7 @@ impl Dynamics {
         task.moves = false;
         task.shift = 0.0;
         task.damping = 0.0;
+        task.bending_damping = 0.0;
         task.most_noise = f64::INFINITY;
         task.inertia.clear();
         task.inertia.resize(n, 0.0);
@@ -165,7 +166,9 @@ impl Dynamics {
                 continue;
             }
             let mut next = node;
-            next.exponent = node.friction * if load.turn > 0.0 { load.turn } else { 0.0 };
+            // What does not pull presses on nothing.
+            let presses = load.turn > 0.0 && load.pull[0] + load.pull[1] > 0.0;
+            next.exponent = if presses { node.friction * load.turn } else { 0.0 };
             let inertia = self.task.inertia[k] * (pose.slide[k] - self.task.predicted_slide[k]);
             let slack = self.task.tolerance + EVEN_FORCE * (load.pull[0] + load.pull[1]);
             next.grip = load.grip(&next, pose.slide[k], inertia, slack);

@@ -12,6 +12,7 @@
 use super::dynamics::Dynamics;
 use super::floor;
 use super::path::{End, Path, angle_between};
+use super::prepare::load_scale;
 use super::sliding::{Grip, Load, Seat, Sliding, round_of};
 use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp};
@@ -57,8 +58,48 @@ const SPARE: f64 = 1.3;
 /// Length of the sum of the directions before and after a node below which the cable counts as folded there.
 const FOLDED: f64 = 0.2;
 
+/// Tension of a taut cable in motion, in units of EA (v/c)^(4/3): something that it hits across at a speed v makes 0.63 of it. Less: sliding nodes come and go
+/// where a falling cable strikes; more: a cable drawn fast over corners jerks at them.
+const IMPACT: f64 = 3.0;
+
+/// How far from a corner (m of arc length) its speed is looked at.
+const NEIGHBOURHOOD: f64 = 0.3;
+
+/// Part by which a change of the mesh may change tension in motion.
+const CHANGED_TENSION: f64 = 0.05;
+
+/// Part of the cable's weight that counts as tension there: what is nearly slack may change by as much.
+const WEIGHT_PART: f64 = 0.1;
+
+/// Least part of the material between two nodes on each side of a node put between them.
+const LEAST_PART: f64 = 1e-3;
+
 /// Most changes of one kind after one step.
 pub(super) const MAX_CHANGES: usize = 400;
+
+/// How two bars share their material where their ways change.
+#[derive(Clone, Copy, Debug)]
+struct Share {
+    /// Part of the first.
+    first: f64,
+    /// What the strain of what is stretched grows by; less than nothing: what is left slack.
+    added_strain: f64,
+}
+
+impl Share {
+    /// Ways (m), how much each bar is stretched (length over unstretched length), and the unstretched length of both (m). What is stretched
+    /// keeps its strain and takes what it needs for that from what is slack; where that is not enough both are stretched by as much more.
+    fn of(ways: [f64; 2], stretch: [f64; 2], whole: f64) -> Self {
+        let needs = [0, 1].map(|j| if stretch[j] > 1.0 { ways[j] / stretch[j] } else { ways[j] });
+        let sum = needs[0] + needs[1];
+        let first = match stretch.map(|s| s > 1.0) {
+            [true, false] if sum < whole => needs[0] / whole,
+            [false, true] if sum < whole => 1.0 - needs[1] / whole,
+            _ => needs[0] / sum,
+        };
+        Self { first: bounded(first, LEAST_PART, 1.0 - LEAST_PART), added_strain: sum / whole - 1.0 }
+    }
+}
 
 impl Dynamics {
     /// Adapts the mesh to what the cable runs over, at rest or in motion; returns whether that changed (new bars alone do not count).
@@ -67,15 +108,15 @@ impl Dynamics {
             return false;
         }
         let nodes = self.mesh.nodes();
-        let mut changed = self.let_go(&[]);
-        let taken = self.take_hold();
+        let mut changed = self.let_go(&[], rests);
+        let taken = self.take_hold(rests);
         if !taken.is_empty() {
             // What took hold may lift its neighbour off. Itself it waits for a step where inertia does not count: it took over weight of the
             // nodes beside it, which under a corner pulls it away until they have moved.
-            self.let_go(if rests { &taken } else { &[] });
+            self.let_go(if rests { &taken } else { &[] }, rests);
             changed = true;
         }
-        let moved = self.move_marks();
+        let moved = self.move_marks(rests);
         let wound = self.wind();
         self.even_out();
         if changed || moved || wound || self.mesh.nodes() != nodes {
@@ -105,9 +146,19 @@ impl Dynamics {
         }
         let path = [mesh.path(k - 1, x), mesh.path(k, x)];
         let rest = [k - 1, k].map(|e| slide.map_or(mesh.rest_length[e], |s| super::bar::rest_length(mesh, e, s)));
+        // What a step balances is the pull with its loss.
+        let loss = |e: usize, p: f64, l: f64| {
+            let ratio = self.task.predicted_length[e] / mesh.rest_length[e];
+            self.task.damping / mesh.rest_length[e] * (p - ratio * l)
+        };
         let tension = [0, 1].map(|j| {
             let t = mesh.axial_stiffness * (path[j].length / rest[j] - 1.0);
-            if t < 0.0 { 0.0 } else { t }
+            let elastic = if t < 0.0 { 0.0 } else { t };
+            if slide.is_some() && self.task.moves {
+                elastic + loss(k - 1 + j, path[j].length, rest[j])
+            } else {
+                elastic
+            }
         });
         let share = rest.map(|l| 0.5 * l / mesh.thermal_stretch);
         let floor = self.problem.floor_friction.map_or([0.0; 3], |(rough, normal)| {
@@ -119,7 +170,7 @@ impl Dynamics {
     }
 
     /// Lets go of the sliding nodes that press on nothing, but for those on `kept`; returns whether there were any.
-    fn let_go(&mut self, kept: &[Seat]) -> bool {
+    fn let_go(&mut self, kept: &[Seat], rests: bool) -> bool {
         let mut changed = false;
         let mut k = 1;
         while k + 1 < self.mesh.nodes() {
@@ -133,10 +184,10 @@ impl Dynamics {
             if leaves && self.runs_straight(k) && self.clear_without(k) {
                 self.remove(k);
                 changed = true;
-            } else if leaves && self.settle_down(k) {
+            } else if leaves && (rests || self.settles_unstretched(k)) && self.settle_down(k) {
                 changed = true;
                 k += 1;
-            } else if leaves && self.clear_without(k) {
+            } else if leaves && rests && self.clear_without(k) {
                 self.remove(k);
                 changed = true;
             } else {
@@ -168,8 +219,8 @@ impl Dynamics {
     /// A sliding node becomes one that moves with its material: something else is in the way of a bar in its place.
     ///
     /// It goes where its two tangents meet, 1/cos(φ/2) radii from the centre, so that the bars lie where they lay. The material there is
-    /// not that of its mark, unless that was in the middle of the arc: both bars keep their strain, but for the little that way is
-    /// longer than the arc. (A mark 0.08 mm off gave a slack cable of 2 MN 2000 N there, and broke it.)
+    /// not that of its mark, unless that was in the middle of the arc: see [`Share`]. (A mark 0.08 mm off gave a slack cable of 2 MN
+    /// 2000 N there, and broke it.)
     pub(super) fn settle_down(&mut self, k: usize) -> bool {
         let before = [k - 1, k].map(|e| self.mesh.path(e, &self.motion.x).length / self.mesh.rest_length[e]);
         let half = (0.5 * self.turn(k)).abs();
@@ -187,11 +238,10 @@ impl Dynamics {
             return false;
         }
         let mesh = &mut self.mesh;
-        // Unstretched lengths that keep the strains, brought to what material there is.
-        let [a, b] = [0, 1].map(|j| mesh.path(k - 1 + j, &self.motion.x).length / before[j]);
+        let ways = [0, 1].map(|j| mesh.path(k - 1 + j, &self.motion.x).length);
         let whole = mesh.rest_length[k - 1] + mesh.rest_length[k];
-        if a > 0.0 && b > 0.0 {
-            let first = whole * a / (a + b);
+        if ways[0] > 0.0 && ways[1] > 0.0 {
+            let first = whole * Share::of(ways, before, whole).first;
             mesh.arc_length[k] = mesh.arc_length[k - 1] + first / mesh.thermal_stretch;
             mesh.rest_length[k - 1] = first;
             mesh.rest_length[k] = whole - first;
@@ -267,7 +317,7 @@ impl Dynamics {
     }
 
     /// Puts sliding nodes where corners and circles press; returns their seats.
-    fn take_hold(&mut self) -> Vec<Seat> {
+    fn take_hold(&mut self, rests: bool) -> Vec<Seat> {
         let mut taken = Vec::new();
         if self.problem.world.is_empty() || !self.slides {
             return taken;
@@ -285,7 +335,15 @@ impl Dynamics {
                     .into_iter()
                     .find(|&k| self.removable(k) && (self.mesh.arc_length[k] - arc_length).abs() < near);
                 let beside = node.map_or([bar, bar + 1], |k| [k - 1, k + 1]);
-                self.fits(beside, &sliding).then_some((bar, node, arc_length, sliding))
+                if !self.fits(beside, &sliding) {
+                    return None;
+                }
+                let s = beside.map(|k| self.mesh.arc_length[k]);
+                let arc_length = match rests {
+                    true => arc_length,
+                    false => s[0] + self.share_of_sliding(beside, &sliding)?.first * (s[1] - s[0]),
+                };
+                Some((bar, node, arc_length, sliding))
             });
             let Some((bar, node, arc_length, sliding)) = found else { break };
             match node {
@@ -297,6 +355,52 @@ impl Dynamics {
         }
         self.touches = touches;
         taken
+    }
+
+    /// How the material between two nodes is shared by a cable in motion where a sliding node comes between them; None where the cable is
+    /// not taut, pulled by less than what its own speed across, hitting something, would make of it, or where the node would stretch it.
+    fn share_of_sliding(&self, [before, after]: [usize; 2], sliding: &Sliding) -> Option<Share> {
+        let (mesh, x) = (&self.mesh, &self.motion.x);
+        let ways =
+            [Path::between(&mesh.end(before, x), &sliding.end), Path::between(&sliding.end, &mesh.end(after, x))];
+        let stretch = [before, after - 1].map(|e| mesh.path(e, x).length / mesh.rest_length[e]);
+        let whole = (before..after).map(|e| mesh.rest_length[e]).sum();
+        let share = Share::of(ways.map(|w| w.length), stretch, whole);
+        let near = mesh.arc_length[before] - NEIGHBOURHOOD..mesh.arc_length[after] + NEIGHBOURHOOD;
+        let speed = |k: usize| if mesh.sliding[k].is_some() { self.motion.w[k].abs() } else { self.motion.v[k].norm() };
+        let fastest = (0..mesh.nodes())
+            .filter(|&k| near.contains(&mesh.arc_length[k]))
+            .map(speed)
+            .fold(0.0, |a: f64, b| if b <= a { a } else { b });
+        let wave = (mesh.axial_stiffness / self.problem.linear_density).sqrt();
+        let impact = IMPACT * mesh.axial_stiffness * (fastest / wave).powf(4.0 / 3.0);
+        let tension = self.least_tension(stretch);
+        (tension > impact && self.may_change(tension, &share)).then_some(share)
+    }
+
+    /// Whether a sliding node that becomes a plain one leaves a cable in motion as tense as it is.
+    fn settles_unstretched(&self, k: usize) -> bool {
+        let (mesh, x) = (&self.mesh, &self.motion.x);
+        let Some(end) = mesh.sliding[k].map(|s| s.end) else { return false };
+        let half = (0.5 * self.turn(k)).abs();
+        let longer = end.radius * (half.tan() - half);
+        let lengths = [k - 1, k].map(|e| mesh.path(e, x).length);
+        let stretch = [0, 1].map(|j| lengths[j] / mesh.rest_length[k - 1 + j]);
+        let whole = mesh.rest_length[k - 1] + mesh.rest_length[k];
+        half < SHARPEST
+            && self.may_change(self.least_tension(stretch), &Share::of(lengths.map(|l| l + longer), stretch, whole))
+    }
+
+    /// The lesser tension of two bars, N.
+    fn least_tension(&self, [a, b]: [f64; 2]) -> f64 {
+        let strain = if b < a { b - 1.0 } else { a - 1.0 };
+        if strain > 0.0 { self.mesh.axial_stiffness * strain } else { 0.0 }
+    }
+
+    /// Whether a change of the mesh adds so little to a tension (N) that it does not show.
+    fn may_change(&self, tension: f64, share: &Share) -> bool {
+        let weight = load_scale(&self.problem).0 * self.problem.length;
+        self.mesh.axial_stiffness * share.added_strain < CHANGED_TENSION * (tension + WEIGHT_PART * weight)
     }
 
     /// Whether a sliding node between two nodes would bend the cable the right way and its bars would meet nothing.
@@ -363,8 +467,7 @@ impl Dynamics {
         }
         let before = path.arcs[0] * mesh.end(bar, x).radius;
         let part = if path.length > 0.0 { (before + fraction * path.straight) / path.length } else { fraction };
-        let least = 1e-3;
-        let arc_length = s[0] + bounded(part, least, 1.0 - least) * (s[1] - s[0]);
+        let arc_length = s[0] + bounded(part, LEAST_PART, 1.0 - LEAST_PART) * (s[1] - s[0]);
         let sliding = Sliding {
             end: End { center, radius, mark: gap.normal, sense },
             friction: gap.friction,

@@ -84,7 +84,6 @@ impl Dynamics {
         for round in 0..CORNER_ROUNDS {
             self.prepare_way([to, to], Some(dragged));
             self.adapt_slip();
-            self.set_reach(REACH);
             self.adapt_stiffness([f64::INFINITY, 0.0], 1.0);
             self.task.max_iterations = REST_ITERATIONS;
             self.task.most_noise = NEGLIGIBLE * self.task.tolerance;

@@ -158,8 +158,9 @@ impl Load {
         match node.grip {
             Grip::Stick if slope(cone) < -slack => Grip::ToStart,
             Grip::Stick if slope(1.0 / cone) > slack => Grip::ToEnd,
-            Grip::ToStart if slid < 0.0 => Grip::Stick,
-            Grip::ToEnd if slid > 0.0 => Grip::Stick,
+            // Without friction both ways are one.
+            Grip::ToStart if slid < 0.0 && cone > 1.0 => Grip::Stick,
+            Grip::ToEnd if slid > 0.0 && cone > 1.0 => Grip::Stick,
             same => same,
         }
     }

@@ -26,6 +26,8 @@ pub struct Task {
     pub predicted: Vec<Vec2>,
     /// EA τ a, N (0: no damping).
     pub damping: f64,
+    /// EI τ/h, N m² (0: no damping).
+    pub bending_damping: f64,
     /// Predicted length of each bar, m.
     pub predicted_length: Vec<f64>,
     /// External force on each node, N.

@@ -22,12 +22,13 @@ impl MassSpringModel {
         inner.then(|| Bend {
             stiffness: self.problem.bending_stiffness,
             length: 0.5 * (self.rest[n - 1] + self.rest[n]),
+            from: 0.0,
         })
     }
 
     /// The bend of element `e` against a clamp at one of its ends.
     pub(super) fn clamp_bend(&self, e: usize, direction: Vec2) -> ClampBend {
-        ClampBend { stiffness: self.problem.bending_stiffness, length: 0.5 * self.rest[e], direction }
+        ClampBend { stiffness: self.problem.bending_stiffness, length: 0.5 * self.rest[e], direction, from: 0.0 }
     }
 
     /// Adds the forces of bending.

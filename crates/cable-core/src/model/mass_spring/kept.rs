@@ -50,6 +50,7 @@ impl MassSpringModel {
             load_node,
             x,
             v,
+            behind_s,
             f,
             tension,
             held,

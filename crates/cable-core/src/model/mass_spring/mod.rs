@@ -1,4 +1,4 @@
-//! Lumped masses and axial springs, stepped by semi-implicit Euler: a quick look, and the cheap way through violent
+//! Lumped masses and axial springs, stepped by the leapfrog (velocities half a sub-step behind places): a quick look, and the cheap way through violent
 //! free motion. Its discretisation error is second order in the element and is not estimated, but for corners (`corner`).
 //!
 //! Sub-steps keep below the stability limit of a chain of springs, with ω_max = 2√(EA/(ρ l₀²)) and the damping ratio ζ
@@ -60,6 +60,8 @@ pub struct MassSpringModel {
     load_node: Vec<usize>,
     x: Vec<Vec2>,
     v: Vec<Vec2>,
+    /// Time by which velocities are behind places, s: half of the last sub-step, 0 where a motion begins.
+    behind_s: f64,
     /// Force on each node but that of supports and contacts, N.
     f: Vec<Vec2>,
     /// Tension of each element, N.

@@ -56,6 +56,7 @@ impl MassSpringModel {
             longest = if h > longest { h } else { longest };
         }
         self.read_forces();
+        self.behind_s = 0.0;
         self.cost.iterations = count;
         self.cost.inner_step_s = longest;
         self.cost.residual_n = 0.0;

@@ -263,13 +263,13 @@ impl MassSpringModel {
         p.drive = self.problem.thermal_stretch * (theta(tb) - theta(ta)) + body.dot(&(b.middle - a.middle));
     }
 
-    /// The sliding of one sub-step: friction stops it within the capstan's cone.
-    pub(super) fn slide(&mut self, h: f64) {
+    /// The sliding of one sub-step of `h`, pushed for a time `kick` (s): friction stops it within the capstan's cone.
+    pub(super) fn slide(&mut self, [kick, h]: [f64; 2]) {
         let (least, thermal) = (self.least_span(), self.problem.thermal_stretch);
         for k in 0..self.pulleys.len() {
             let p = &mut self.pulleys[k];
-            let push = p.rate + p.drive * h / p.mass;
-            let most = thermal * p.grip() * (p.tension[0] + p.tension[1]) * h / p.mass;
+            let push = p.rate + p.drive * kick / p.mass;
+            let most = thermal * p.grip() * (p.tension[0] + p.tension[1]) * kick / p.mass;
             p.rate = if push.abs() <= most { 0.0 } else { push - most * push.signum() };
             // What is joined to the cable does not run through.
             let (i, rate) = (p.node, p.rate);

@@ -114,6 +114,7 @@ impl MassSpringModel {
     /// Moves the nodes to rest; `anew` forgets where friction held. On an error they are somewhere on the way.
     pub(super) fn equilibrium(&mut self, anew: bool) -> Result<(), SolveError> {
         self.v.fill(Vec2::zeros());
+        self.behind_s = 0.0;
         self.place_supports();
         if !self.held.contains(&true) && !self.touches_something() {
             let why = "no support holds the cable and there is nothing that it could lie on".to_owned();

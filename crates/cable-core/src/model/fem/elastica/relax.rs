@@ -605,7 +605,7 @@ impl<'a> Chain<'a> {
             if self.clamps.iter().any(|c| c.0 == k) {
                 continue;
             }
-            let bend = Bend { stiffness: ei, length: 0.5 * (self.whole[k - 1] + self.whole[k]) };
+            let bend = Bend { stiffness: ei, length: 0.5 * (self.whole[k - 1] + self.whole[k]), from: 0.0 };
             let x = [self.x[k - 1], self.x[k], self.x[k + 1]];
             let (g, h) = (bend.gradient(&x), bend.hessian(&x, curvature));
             for i in 0..3 {
@@ -617,7 +617,7 @@ impl<'a> Chain<'a> {
         }
         for &(k, after, direction) in &self.clamps {
             let first = if after { k } else { k - 1 };
-            let bend = ClampBend { stiffness: ei, length: 0.5 * self.whole[first], direction };
+            let bend = ClampBend { stiffness: ei, length: 0.5 * self.whole[first], direction, from: 0.0 };
             let x = [self.x[first], self.x[first + 1]];
             let (g, h) = (bend.gradient(&x), bend.hessian(&x, curvature));
             for i in 0..2 {

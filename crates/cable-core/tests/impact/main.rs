@@ -1,0 +1,100 @@
+//! Cables that fall on rough ground and slip over pipes, against an independent explicit chain.
+//!
+//! The whole table of the drop, medians over 16 starts, is
+//! `cargo test -p cable-core --test impact -- --ignored --nocapture` (half an hour).
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
+mod explicit_chain;
+mod peaks;
+mod rubble;
+
+use cable_core::scene::catalog;
+use cable_core::{Model, Settings, Simulation};
+use peaks::{Tensions, median};
+
+const G: f64 = cable_core::scene::STANDARD_GRAVITY;
+
+/// Medians over starts, each with the least and the greatest: greatest tension, greatest mean over 4 ms of one place, and how much the
+/// greatest tension still changes when the cable lies, N.
+fn medians(starts: usize, drop: impl Fn(f64) -> Tensions) -> [[f64; 3]; 3] {
+    let runs: Vec<Tensions> = rubble::shifts(starts).into_iter().map(drop).collect();
+    let of = |read: &dyn Fn(&Tensions) -> f64| median(runs.iter().map(read).collect());
+    [of(&|t| t.peak().0), of(&|t| t.mean_peak(4e-3)), of(&|t| t.chatter(rubble::LIES_FROM_S))]
+}
+
+fn show(name: &str, found: &[[f64; 3]; 3]) {
+    let [peak, mean, chatter] = found.map(|[m, least, most]| format!("{m:.1} [{least:.1} {most:.1}]"));
+    println!("{name}: peak {peak} N, over 4 ms {mean} N, chatter {chatter} N");
+}
+
+/// What the explicit chain has at 84 bars: 454 to 486 N, 390 to 410 N over 4 ms.
+const CHAIN_PEAK_N: f64 = 470.0;
+
+/// With the loss of bars differenced over the history of their nodes, nodes put where tangents meet, a reach that grew with the speed
+/// and grips left as they were the drop had 36 kN here at 84 bars, 71 kN at 168, and hundreds of newtons of chatter for ever.
+#[test]
+fn a_drop_on_rubble_pulls_as_hard_on_every_mesh() {
+    let found = [84, 168].map(|n| medians(2, |aside| rubble::by_fem(&rubble::scene(n, aside, 0.0), 1.0 / 960.0)));
+    show("84 bars", &found[0]);
+    show("168 bars", &found[1]);
+    let [coarse, fine] = found;
+    assert!((coarse[0][0] / fine[0][0] - 1.0).abs() < 0.15, "peaks {} and {} N", coarse[0][0], fine[0][0]);
+    assert!((coarse[1][0] / fine[1][0] - 1.0).abs() < 0.15, "means {} and {} N", coarse[1][0], fine[1][0]);
+    for [peak, _, chatter] in found {
+        assert!((peak[0] / CHAIN_PEAK_N - 1.0).abs() < 0.2 && peak[2] < 1.3 * CHAIN_PEAK_N, "peaks {peak:?} N");
+        assert!(chatter[2] < 3.0, "chatter {chatter:?} N");
+    }
+}
+
+/// The chain that is compared with is one in its own step.
+#[test]
+fn the_explicit_chain_is_converged_in_its_step() {
+    let scene = rubble::scene(24, 0.0, 0.0);
+    let [coarse, fine] = [0.6, 0.3].map(|part| rubble::by_chain(&scene, part, 2e5));
+    let figures = |t: &Tensions| (t.peak().0, t.mean_peak(4e-3));
+    let ((a, b), (c, d)) = (figures(&coarse), figures(&fine));
+    println!("peaks {a:.1} and {c:.1} N, means {b:.1} and {d:.1} N");
+    assert!((a / c - 1.0).abs() < 0.1 && (b / d - 1.0).abs() < 0.1);
+}
+
+/// Slip is found in the step: with six rounds of it, and without the loss among the forces it is judged by, 600 bars had 10 kN here.
+#[test]
+fn a_draped_cable_slips_at_the_same_tension_on_every_mesh() {
+    for segments in [200, 600] {
+        let mut scene = catalog::draped_slipping();
+        scene.cables[0].segments = Some(segments);
+        let mut sim = Simulation::with_settings(scene, Model::Fem, Settings::default()).unwrap();
+        sim.settle().unwrap();
+        let mut most: f64 = 0.0;
+        for _ in 0..360 {
+            sim.step(1.0 / 240.0).unwrap();
+            most = most.max(sim.max_tension().tension_n);
+        }
+        println!("{segments} bars: {most:.2} N");
+        assert!((most / 237.1 - 1.0).abs() < 5e-3, "{segments} bars: {most} N");
+    }
+}
+
+#[test]
+#[ignore = "half an hour: the table of the drop"]
+fn the_table_of_the_drop() {
+    for bending in [0.0, 0.3, 1.0, 3.0] {
+        for n in [42, 84] {
+            let found = medians(4, |aside| rubble::by_chain(&rubble::scene(n, aside, bending), 0.6, 2e5));
+            show(&format!("EI {bending}, explicit chain of {n} bars"), &found);
+        }
+        for rate in [240.0, 960.0, 3840.0] {
+            let peaks = [42, 84, 168, 336].map(|n| {
+                let found = medians(16, |aside| rubble::by_fem(&rubble::scene(n, aside, bending), 1.0 / rate));
+                show(&format!("EI {bending}, steps of 1/{rate} s, {n} bars"), &found);
+                found[0][0]
+            });
+            // Without bending stiffness: what holds today (1.19, 1.05 and less than 2). The aim is 1.15 at each step.
+            if bending == 0.0 {
+                let (least, most) = peaks[1..].iter().fold((f64::INFINITY, 0.0f64), |(a, b), p| (a.min(*p), b.max(*p)));
+                let allowed = if rate > 1000.0 { 2.0 } else { 1.25 };
+                assert!(most / least < allowed, "steps of 1/{rate} s: {peaks:?} N");
+            }
+        }
+    }
+}

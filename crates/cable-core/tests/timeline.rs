@@ -1,0 +1,62 @@
+//! Outputs change nothing: whatever is shown in between, states and greatest tensions are the same.
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
+use cable_core::model::Inertia;
+use cable_core::scene::{Scene, catalog};
+use cable_core::state::State;
+use cable_core::timeline::{Instant, Timeline};
+use cable_core::{Model, Settings, Simulation};
+
+/// Half a second of a scene shown every `every_s` (s): the states at its whole tenths, and the greatest tension of its steps, N.
+fn shown(scene: &Scene, (model, inertia): (Model, Inertia), every_s: f64) -> (Vec<Vec<State>>, f64) {
+    let mut sim = Simulation::with_settings(scene.clone(), model, Settings::default()).unwrap();
+    sim.settle().unwrap();
+    let mut timeline = Timeline::new(sim, inertia, None);
+    let (mut states, mut most) = (Vec::new(), 0.0f64);
+    let every = Instant::nearest(every_s);
+    let mut k = 1;
+    for tenth in 1..=5u64 {
+        let whole = Instant::nearest(0.1 * tenth as f64);
+        while every.times(k) < whole {
+            timeline.at(every.times(k), |sim| most = most.max(sim.max_tension().tension_n)).unwrap();
+            k += 1;
+        }
+        let answer = timeline.at(whole, |sim| most = most.max(sim.max_tension().tension_n)).unwrap();
+        assert_eq!(answer.time_s, whole.seconds());
+        states.push(timeline.simulation().states());
+    }
+    (states, most)
+}
+
+/// A drop on rubble at once, which is chaotic: the least difference would show.
+fn drop() -> Scene {
+    let mut scene = catalog::rubble_drop();
+    let cable = &mut scene.cables[0];
+    cable.segments = Some(30);
+    for s in &mut cable.supports {
+        s.release_s = Some(1e-3);
+        if let Some(at) = &mut s.at_m {
+            at[1] -= 1.1;
+        }
+    }
+    scene
+}
+
+#[test]
+fn states_at_common_instants_are_equal_to_the_bit() {
+    for asked in [(Model::Fem, Inertia::Dynamic), (Model::MassSpring, Inertia::Dynamic)] {
+        let first = shown(&drop(), asked, 0.1);
+        for every_s in [1.0 / 60.0, 0.016_666_66, 0.003, 0.037] {
+            assert!(first == shown(&drop(), asked, every_s), "{asked:?}, every {every_s} s");
+        }
+        assert!(first.1 > 0.0);
+    }
+}
+
+#[test]
+fn without_inertia_too() {
+    let asked = (Model::Auto, Inertia::QuasiStatic);
+    let scene = catalog::draped_slipping();
+    let first = shown(&scene, asked, 0.1);
+    assert!(first == shown(&scene, asked, 0.016_666_66));
+}
