@@ -85,11 +85,13 @@ pub(super) type Unfound = (Trouble, Option<Box<Network>>);
 struct Seen {
     ring: Ring,
     cooled: Option<f64>,
+    /// Whether what spreads on the ground may lie there without tension.
+    loose: bool,
 }
 
 impl Default for Seen {
     fn default() -> Self {
-        Self { ring: RINGS[0], cooled: None }
+        Self { ring: RINGS[0], cooled: None, loose: true }
     }
 }
 
@@ -153,7 +155,7 @@ impl Network {
     fn seen(layout: &Layout) -> Vec<Seen> {
         let loose = layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none));
         let rings = if loose { &RINGS[..] } else { &RINGS[..1] };
-        let laid = rings.iter().map(|ring| Seen { ring: *ring, cooled: None });
+        let laid = rings.iter().map(|ring| Seen { ring: *ring, ..Seen::default() });
         laid.chain(loose.then_some(Seen { cooled: Some(TAUT), ..Seen::default() })).collect()
     }
 
@@ -236,8 +238,8 @@ impl Network {
         self.strands.clear();
         let mut came = Vec::new();
         for k in 0..layout.strands.len() {
-            let held = layout.strands[k].supports.iter().all(Option::is_some);
-            let loose = if taut.is_none() && held { loose::lay(layout, k, (&self.course, &begin)) } else { None };
+            let may = taut.is_none() && seen.loose;
+            let loose = if may { loose::lay(layout, k, (&self.course, &begin)) } else { None };
             if let Some(strand) = loose.filter(|s| s.loose.as_ref().is_some_and(Loose::spreads)) {
                 self.strands.push(strand);
                 came.push(Vec::new());
@@ -522,6 +524,21 @@ impl Network {
         }
     }
 
+    /// A cable that lies loose along its route with a free end, as it is drawn: under hardly any tension instead, so that it can be followed.
+    fn take_up(&mut self, layout: &Layout, to: &Instant, work: &mut Work) {
+        let held = |k: usize| layout.strands[k].supports.iter().all(Option::is_some);
+        let lies = |k: usize| self.strands[k].loose.as_ref().is_some_and(Loose::spreads);
+        let follows = (0..self.strands.len()).all(|k| self.strands[k].loose.is_none() || (lies(k) && !held(k)));
+        if self.loose().is_none() || !follows || self.instant.places == to.places {
+            return;
+        }
+        let instant = self.instant.clone();
+        let mut taut = self.clone();
+        if taut.laid(layout, &instant, Seen { loose: false, ..Seen::default() }, work).is_ok() {
+            *self = taut;
+        }
+    }
+
     /// To an instant, in steps of this part of the way at first, halved where one fails.
     pub fn travel(
         &mut self,
@@ -530,6 +547,7 @@ impl Network {
         first: f64,
         work: &mut Work,
     ) -> Result<Taken, (Trouble, f64)> {
+        self.take_up(layout, to, work);
         let [old, mut from, mut at] = std::mem::take(&mut work.instants);
         work.instants[0] = old;
         from.clone_from(&self.instant);

@@ -113,44 +113,56 @@ pub(super) fn lay(layout: &Layout, index: usize, (course, instant): (&Course, &I
     let bodies = layout.problem.world.geometry().bodies();
     let roofs = Roofs::new(course, bodies.len(), frame);
     let held = part.supports.map(|s| s.and_then(|k| instant.places.get(k).copied()));
-    let legs = match held {
-        [Some(_), Some(_)] => Drained::new(&roofs, bodies, frame, &way(layout, part, instant).points)?.legs,
-        // A free end lies in a heap below the support.
-        [Some(at), None] | [None, Some(at)] => Drained::plumb(&roofs, bodies, frame, (at, held[0].is_none()))?.legs,
-        [None, None] => return None,
-    };
+    let ends = held.map(|h| h.is_some());
     let drawn = [0, 1].map(|side| match part.supports[side] {
         None => layout.end_force(instant, part.material[side]),
         Some(_) => Vec2::zeros(),
     });
+    let drawn = drawn[0] + drawn[1];
     let drape = Drape { course, frame, most: CONE * load.norm() * (to - from) };
-    let lines = drape.lines(&roofs, &legs);
-    let given = (part.material, drawn[0] + drawn[1]);
-    let parts = drape.parts(&lines, held.map(|h| h.is_some()))?;
-    let parts = pay_out(parts, course, frame, given)?;
-    let ties = [0, 1].map(|k| held[k].map_or(Tie::Loose(drawn[k]), Tie::Held));
-    let loose = Some(Loose { parts, drawn: drawn[0] + drawn[1] });
-    Some(Strand { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()], loose })
+    let strand = |drained: Drained| {
+        let lines = drape.lines(&roofs, &drained.legs);
+        let parts = drape.parts(&lines, ends)?;
+        let parts = pay_out(parts, course, frame, (part.material, drawn, ends))?;
+        let ties = [0, 1].map(|k| held[k].map_or(Tie::Loose(drawn), Tie::Held));
+        let loose = Some(Loose { parts, drawn });
+        Some(Strand { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()], loose })
+    };
+    let along_route = || Drained::new(&roofs, bodies, frame, &way(layout, part, instant).points);
+    match held {
+        [Some(_), Some(_)] => strand(along_route()?),
+        [Some(at), None] | [None, Some(at)] => {
+            // As the route lays it out; else it comes down in a heap below the support.
+            let laid_out = layout.problem.route.len() > 1 && drawn.norm() == 0.0;
+            let laid = if laid_out { along_route().and_then(&strand) } else { None };
+            laid.filter(|s| s.loose.as_ref().is_some_and(Loose::spreads))
+                .or_else(|| strand(Drained::plumb(&roofs, bodies, frame, (at, held[0].is_none()))?))
+        }
+        [None, None] => None,
+    }
 }
 
-/// Gives each part its material, what is over to those without tension, or to a heap; None where nothing is over or nothing holds it.
+/// Gives each part its material, what is over to those without tension, or to a heap; None where nothing is over or nothing holds it. A
+/// free end lies where the cable ends if that is before the route does.
 fn pay_out(
     mut parts: Vec<Part>,
     course: &Course,
     frame: Frame,
-    ([from, to], drawn): ([f64; 2], Vec2),
+    ([from, to], drawn, held): ([f64; 2], Vec2, [bool; 2]),
 ) -> Option<Vec<Part>> {
     let own = |p: &Part| p.s[1] - p.s[0];
-    let over = to - from - parts.iter().map(own).sum::<f64>();
+    let mut over = to - from - parts.iter().map(own).sum::<f64>();
     if !(over > OVER * (to - from)) {
-        return None;
+        cut(&mut parts, held.iter().position(|h| !h)?, -over)?;
+        over = 0.0;
     }
     let free: f64 = parts.iter().filter(|p| p.is_loose()).map(own).sum();
-    if free <= NONE_M || drawn.norm() > 0.0 {
+    if over > 0.0 && (free <= NONE_M || drawn.norm() > 0.0) {
         let (at, found) = heap(&parts, course, frame, course.law.load * over + drawn)?;
         parts.insert(at, Part { s: [0.0, over], tension: [0.0; 2], form: Line::Heap(found) });
     }
-    let spread = if parts.iter().any(|p| matches!(p.form, Line::Heap(_))) { 0.0 } else { over / free };
+    let heaped = over == 0.0 || parts.iter().any(|p| matches!(p.form, Line::Heap(_)));
+    let spread = if heaped { 0.0 } else { over / free };
     let mut s = from;
     for part in &mut parts {
         let more = if part.is_loose() { own(part) * spread } else { 0.0 };
@@ -158,6 +170,28 @@ fn pay_out(
         s = part.s[1];
     }
     Some(parts)
+}
+
+/// Takes so much material (m) off a free end (0: the start) that lies without tension; None where it does not.
+fn cut(parts: &mut Vec<Part>, end: usize, mut off: f64) -> Option<()> {
+    loop {
+        let at = if end == 0 { 0 } else { parts.len().checked_sub(1)? };
+        let part = parts.get_mut(at)?;
+        let Line::Lies(stretch) = &mut part.form else { return None };
+        if part.tension != [0.0; 2] {
+            return None;
+        }
+        let own = part.s[1] - part.s[0];
+        if own > off {
+            let left = 1.0 - off / own;
+            let [kept, cut] = [stretch.p[1 - end], stretch.p[end]];
+            stretch.p[end] = kept + (cut - kept) * left;
+            part.s = [0.0, own * left];
+            return Some(());
+        }
+        off -= own;
+        parts.remove(at);
+    }
 }
 
 /// Material that hangs plumb over a height, m.
