@@ -213,6 +213,12 @@ impl Simulation {
                 self.sound()
             });
             let Err(error) = found else { return Ok(()) };
+            let error = match self.cables.iter().find_map(Strand::refusal) {
+                Some(refusal) if matches!(error, SolveError::Unsound { .. }) => {
+                    SolveError::clearer(refusal.clone(), error)
+                }
+                _ => error,
+            };
             // What is said to have no resting place is not sought one by another model.
             let last = matches!(error, SolveError::NoRestingPlace { .. } | SolveError::Unsupported { .. });
             let next = !last && self.next_model(&error.to_string());
@@ -581,6 +587,7 @@ fn clarity(error: &SolveError) -> usize {
         SolveError::NoRestingPlace { .. } => 3,
         SolveError::Unsupported { .. } | SolveError::Buried { .. } => 2,
         SolveError::Unsound { .. } => 1,
+        SolveError::Neither { told, .. } => clarity(told),
         _ => 0,
     }
 }

@@ -436,6 +436,80 @@ fn folds_on_rough_ground_leave_the_ends_what_hangs_on_them() {
     }
 }
 
+/// A cable laid along flat ground and up a slope of 12°, its start free; friction 0.5 holds it there. The way along the middle of the cable
+/// is 14.99706 m long.
+fn laid_out(length_m: f64, drawn_m: f64) -> Scene {
+    let up = [0.978_147_600_733_805_6, 0.207_911_690_817_759_34];
+    let end = |along: f64| [-0.014 * up[1] + along * up[0], 0.014 * up[0] + along * up[1]];
+    let ([x, y], [u, v]) = (end(4.0), end(4.0 + drawn_m));
+    Scene::from_toml(&format!(
+        r#"
+version = 1
+[[cables]]
+name = "cable"
+length_m = {length_m}
+linear_density_kg_per_m = 1.246
+axial_stiffness_n = 50000.0
+bending_stiffness_n_m2 = 0.0
+service_tension_n = 1e6
+breaking_tension_n = 2e6
+diameter_m = 0.028
+friction = 0.5
+route_m = [[-11.0, 0.014], [-0.0014715, 0.014], [{x}, {y}]]
+supports = [
+  {{ name = "free", kind = "free" }},
+  {{ name = "hand", kind = "fixed", at_m = [{x}, {y}], motion = {{ times_s = [0.0, 2.0], points_m = [[{x}, {y}], [{u}, {v}]] }} }},
+]
+[[obstacles]]
+name = "ground"
+kind = "terrain"
+points_m = [[-60.0, 0.0], [0.0, 0.0], [39.125904, 8.3164676]]
+friction = 0.5
+"#
+    ))
+    .unwrap()
+}
+
+#[test]
+fn a_cable_laid_out_on_ground_that_holds_it_has_no_tension() {
+    // Longer than its route, as long, and shorter: the free end is nearer to the hand then.
+    for (length_m, free_x) in [(15.3, -11.0), (15.003, -11.0), (14.0, -10.00294), (6.0, -2.00294)] {
+        let s = laid_out(length_m, 1.0);
+        let answer = Simulation::new(s.clone(), Model::Auto).unwrap().settle().unwrap();
+        assert_eq!((answer.model, faults(&s, &answer)), (Model::Spans, Vec::new()), "{length_m}");
+        let nodes = &answer.cables[0].nodes;
+        // The hand is a rounding of its seven digits above the ground: that much hangs.
+        assert!(nodes.iter().all(|n| n.tension_n < 1e-5), "{length_m}");
+        assert!((nodes[0].x_m - free_x).abs() < 1e-4, "{length_m}: {}", nodes[0].x_m);
+        let along: f64 = nodes.windows(2).map(|w| (w[1].x_m - w[0].x_m).hypot(w[1].y_m - w[0].y_m)).sum();
+        assert!((along - length_m.min(14.99706)).abs() < 1e-4, "{length_m}: {along}");
+    }
+}
+
+/// Drawn up the slope, all of it slides: what it takes follows from the weight of what lies and the span over the kink alone.
+#[test]
+fn what_was_laid_out_without_tension_is_followed_as_it_is_drawn() {
+    let drawn = |model: Model| {
+        let s = laid_out(15.0, 2.0);
+        let mut sim = Simulation::new(s, model).unwrap();
+        sim.settle().unwrap();
+        for _ in 0..120 {
+            sim.step_quasi_static(1.0 / 60.0).unwrap();
+        }
+        (sim.solution().model, sim.solution().cables[0].nodes.last().unwrap().tension_n)
+    };
+    let (model, tension) = drawn(Model::Auto);
+    assert_eq!(model, Model::Spans);
+    let (w, mu, turn) = (1.246 * GRAVITY, 0.5f64, 12f64.to_radians());
+    // Without the span: H is drawn along the flat, climbs the slope. The span over the kink carries itself: between these two.
+    let flat = 15.0 - 6.0;
+    let least = mu * w * (flat - 1.5) + w * (6.0 - 1.5) * (turn.sin() + mu * turn.cos());
+    let most = mu * w * flat + w * 6.0 * (turn.sin() + mu * turn.cos());
+    assert!(tension > least && tension < most, "{least} {tension} {most}");
+    let (_, by_fem) = drawn(Model::Fem);
+    assert!((by_fem - tension).abs() < 5e-3 * tension, "{by_fem} {tension}");
+}
+
 #[test]
 fn a_part_of_the_campaign() {
     campaign(0..70);

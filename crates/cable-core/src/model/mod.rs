@@ -131,6 +131,11 @@ pub trait Mechanics: Send {
         None
     }
 
+    /// Why the model that was asked first has no answer, where another one gave the present one.
+    fn refusal(&self) -> Option<&SolveError> {
+        None
+    }
+
     /// Finds the resting place at the present time from the present state (after `new`: from the route)
     /// and sets velocities to zero.
     ///

@@ -45,6 +45,8 @@ pub struct Relay {
     /// Where the outline of the robot was led.
     led: Option<Placement>,
     reason: Option<String>,
+    /// Why `spans` has no rest, where `fem` found one.
+    refusal: Option<SolveError>,
     /// Answers until the next offer, and after that.
     wait: [usize; 2],
 }
@@ -66,6 +68,7 @@ impl Relay {
             adopted: None,
             dragged,
             reason: None,
+            refusal: None,
             wait: [FIRST_WAIT; 2],
         })
     }
@@ -194,8 +197,13 @@ impl Mechanics for Relay {
         self.reason.as_deref().or_else(|| self.fem.is_none().then(|| self.spans.reason()).flatten())
     }
 
+    fn refusal(&self) -> Option<&SolveError> {
+        self.refusal.as_ref().filter(|_| self.fem.is_some())
+    }
+
     fn settle(&mut self) -> Result<StepReport, SolveError> {
         let (mut why, mut slides, mut refused) = (String::new(), None, None);
+        self.refusal = None;
         if self.fem.is_none() {
             match self.spans.settle() {
                 Ok(_) if self.meets_robot(&self.spans.solution()) => TOUCHES.clone_into(&mut why),
@@ -214,6 +222,7 @@ impl Mechanics for Relay {
         }
         let first = self.fem.is_none();
         let laid = self.fem(why.clone())?.state();
+        self.refusal.clone_from(&refused);
         let mut found = match (self.fem(why)?.settle(), refused) {
             (Err(error), Some(before)) => Err(SolveError::clearer(before, error)),
             (found, _) => found,

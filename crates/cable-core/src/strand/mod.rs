@@ -133,6 +133,11 @@ impl Strand {
         self.pieces.iter().find_map(|p| p.mechanics.reason())
     }
 
+    /// Why the model that was asked first has no answer, where another one gave the present one.
+    pub fn refusal(&self) -> Option<&SolveError> {
+        self.pieces.iter().find_map(|p| p.mechanics.refusal())
+    }
+
     /// The whole cable's problem.
     pub fn problem(&self) -> &Problem {
         &self.problem
