@@ -132,11 +132,13 @@ pub(super) fn lay(layout: &Layout, index: usize, (course, instant): (&Course, &I
     match held {
         [Some(_), Some(_)] => strand(along_route()?),
         [Some(at), None] | [None, Some(at)] => {
-            // As the route lays it out; else it comes down in a heap below the support.
+            // As the route lays it out on the ground; else it comes down in a heap below the support.
             let laid_out = layout.problem.route.len() > 1 && drawn.norm() == 0.0;
             let laid = if laid_out { along_route().and_then(&strand) } else { None };
-            laid.filter(|s| s.loose.as_ref().is_some_and(Loose::spreads))
-                .or_else(|| strand(Drained::plumb(&roofs, bodies, frame, (at, held[0].is_none()))?))
+            laid.filter(|s| {
+                s.loose.as_ref().is_some_and(|l| l.spreads() && l.hangs() <= layout.problem.cable.diameter_m)
+            })
+            .or_else(|| strand(Drained::plumb(&roofs, bodies, frame, (at, held[0].is_none()))?))
         }
         [None, None] => None,
     }
@@ -448,6 +450,11 @@ impl Loose {
     pub fn spreads(&self) -> bool {
         let lies = |p: &Part| matches!(p.form, Line::Hangs(_)) || p.is_loose();
         self.parts.iter().all(lies) && self.parts.iter().any(|p| p.is_loose() && p.s[1] - p.s[0] > NONE_M)
+    }
+
+    /// Material that hangs, m.
+    fn hangs(&self) -> f64 {
+        self.parts.iter().filter(|p| matches!(p.form, Line::Hangs(_))).map(|p| p.s[1] - p.s[0]).sum()
     }
 
     /// Material that lies, and the length of ground it lies on, m.

@@ -4,6 +4,10 @@ use super::instant::{Instant, Layout, Part};
 use crate::contact::World;
 use crate::math::{Vec2, bounded};
 
+/// Part of the way from one end to the other by which a route that is led over things keeps clear of them. Smaller: rounding may let it touch.
+/// Larger: it goes round more than it needs to.
+const CLEAR: f64 = 1e-4;
+
 /// A route with the length along it.
 pub(super) struct Way {
     pub points: Vec<Vec2>,
@@ -164,11 +168,12 @@ fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
         return Vec::new();
     }
     let (low, high) = (a.x.min(b.x), a.x.max(b.x));
+    let clear = CLEAR * (b - a).norm();
     let mut top = a.y.max(b.y);
     for body in world.geometry().bodies() {
         let points = body.edges.iter().flat_map(|e| [e.p, e.q]).chain(body.center);
         for q in points.filter(|q| q.x > low - body.offset && q.x < high + body.offset) {
-            top = top.max(q.y + 2.0 * body.offset + 1e-3);
+            top = top.max(q.y + 2.0 * body.offset + clear);
         }
     }
     let above = |p: Vec2| Vec2::new(p.x, top);
@@ -191,7 +196,7 @@ fn aside(world: &World, p: Vec2, to: Vec2) -> Option<Vec2> {
     let side = if to.x < p.x { -1.0 } else { 1.0 };
     let mut far: Option<(f64, f64)> = None;
     for body in world.geometry().bodies().iter().filter(|b| !b.is_ground()) {
-        let reach = body.offset + if body.center.is_some() { 0.0 } else { 1e-3 };
+        let reach = body.offset + if body.center.is_some() { 0.0 } else { CLEAR * (to - p).norm() };
         let points = || body.edges.iter().flat_map(|e| [e.p, e.q]).chain(body.center);
         let [least, most] = points().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, m], q| [l.min(q.x), m.max(q.x)]);
         let above = points().any(|q| q.y > p.y);
