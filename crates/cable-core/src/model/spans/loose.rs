@@ -21,6 +21,7 @@
 
 mod bridge;
 mod heap;
+mod joint;
 mod report;
 
 use self::heap::{Heap, heap};
@@ -223,28 +224,48 @@ impl Drape<'_> {
         legs.iter().map(line).collect()
     }
 
-    /// Every part with its tension, and the material that takes; None where a crest does not hold.
+    /// Every part with its tension, and the material that takes; None where a crest does not hold. What is drawn tight in a kink goes on
+    /// through it.
     fn parts(&self, lines: &[Line], held: [bool; 2]) -> Option<Vec<Part>> {
-        let (mut out, mut begin) = (Vec::new(), 0);
-        let (last, mut bridged) = (lines.len(), false);
+        let mut stops = vec![0];
+        for k in 1..lines.len() {
+            if self.rests(&lines[k - 1], &lines[k])? {
+                stops.push(k);
+            }
+        }
+        stops.push(lines.len());
+        loop {
+            let tight = match self.chains(lines, (&stops, held)) {
+                Ok(parts) => return Some(parts),
+                Err(stop) => stop?,
+            };
+            match lines.get(tight.checked_sub(1)?..=tight)? {
+                [Line::Lies(a), Line::Lies(b)] if self.bends_in(a, b) => stops.retain(|k| *k != tight),
+                _ => return None,
+            }
+        }
+    }
+
+    /// The parts between such stops; else the stop, if that is it, at which a tension is not nothing.
+    fn chains(&self, lines: &[Line], (stops, held): (&[usize], [bool; 2])) -> Result<Vec<Part>, Option<usize>> {
+        let (mut out, mut bridged) = (Vec::new(), false);
         let support = |line: &Line, end: usize| match line {
             Line::Hangs(ends) => Some(ends[end]),
             _ => None,
         };
-        for k in 1..=last {
-            if k == last || self.rests(&lines[k - 1], &lines[k])? {
-                let near = [
-                    if held[0] && begin == 1 { support(&lines[0], 0) } else { None },
-                    if held[1] && k + 1 == last { support(&lines[k], 1) } else { None },
-                ];
-                if k < last || !bridged {
-                    let ends = [begin == 0 && held[0], k == last && held[1]];
-                    bridged = self.chain(&lines[begin..k], (ends, near), &mut out)?;
-                }
-                begin = k;
+        for pair in stops.windows(2) {
+            let (begin, end) = (pair[0], pair[1]);
+            let near = [
+                if held[0] && begin == 1 { support(&lines[0], 0) } else { None },
+                if held[1] && end + 1 == lines.len() { support(&lines[end], 1) } else { None },
+            ];
+            if end < lines.len() || !bridged {
+                let ends = [begin == 0 && held[0], end == lines.len() && held[1]];
+                let tight = |side: Option<usize>| side.map(|side| pair[side]);
+                bridged = self.chain(&lines[begin..end], (ends, near), &mut out).map_err(tight)?;
             }
         }
-        Some(out)
+        Ok(out)
     }
 
     /// How far a plumb line rises, m.
@@ -276,8 +297,13 @@ impl Drape<'_> {
     }
 
     /// What lies between two points without tension, or from or to a support. Where a support hangs nearby and the crest draws the cable
-    /// tight there, a span bridges to it; whether that was done at the end.
-    fn chain(&self, lines: &[Line], (held, near): ([bool; 2], [Option<Vec2>; 2]), out: &mut Vec<Part>) -> Option<bool> {
+    /// tight there, a span bridges to it; whether that was done at the end. Else on which side it is drawn tight, if that is it.
+    fn chain(
+        &self,
+        lines: &[Line],
+        (held, near): ([bool; 2], [Option<Vec2>; 2]),
+        out: &mut Vec<Part>,
+    ) -> Result<bool, Option<usize>> {
         let weight = self.course.law.load.norm();
         let hangs = |line: Option<&Line>| match line {
             Some(Line::Hangs(ends)) => Some((*ends, plumb(self.course, self.rise(*ends).abs()))),
@@ -294,71 +320,73 @@ impl Drape<'_> {
             let begins = held[0] && self.rise(alone.0) < 0.0;
             let ends = held[1] && self.rise(alone.0) > 0.0;
             out.push(hung(alone));
-            return (begins || ends).then_some(false);
+            return if begins || ends { Ok(false) } else { Err(None) };
         }
         if (held[0] && first.is_some()) || (held[1] && last.is_some()) {
-            return None;
+            return Err(None);
         }
         let ends = [first, last].map(|h| h.map_or(0.0, |(_, s)| weight * s));
         let lies: Vec<Stretch> =
             lines.iter().filter_map(|l| if let Line::Lies(s) = l { Some(*s) } else { None }).collect();
-        let ([forth, back], tight) = self.profiles(&lies, (ends, held));
-        let [begins_tight, ends_tight] = tight;
+        let forth = self.profile(&lies, 0, ends[0]).ok_or(None)?;
+        let back = self.profile(&lies, 1, ends[1]).ok_or(None)?;
+        let begins_tight = !held[0] && back.leaves > ends[0] + self.most;
+        let ends_tight = !held[1] && forth.leaves > ends[1] + self.most;
         let bridge = match (begins_tight, ends_tight) {
-            (true, false) => Some(self.bridge(&lies, (near[0]?, &back), 0)?),
-            (false, true) => Some(self.bridge(&lies, (near[1]?, &forth), 1)?),
+            (true, false) => Some(near[0].and_then(|at| self.bridge(&back, at, 0)).ok_or(Some(0))?),
+            (false, true) => Some(near[1].and_then(|at| self.bridge(&forth, at, 1)).ok_or(Some(1))?),
             (false, false) => None,
-            (true, true) => return None,
+            (true, true) => return Err(None),
         };
-        let (mut range, mut p) = (0..lies.len(), None);
-        if let Some(found) = &bridge {
-            p = Some((found.line, found.p));
-            range = if begins_tight { found.line..lies.len() } else { 0..found.line + 1 };
-        }
+        let range = match &bridge {
+            Some(found) if begins_tight => found.line..lies.len(),
+            Some(found) => 0..found.line + 1,
+            None => 0..lies.len(),
+        };
         if let Some(found) = bridge.as_ref().filter(|_| begins_tight) {
             // In the place of what hung.
             out.pop();
             out.push(found.part.clone());
         }
         out.extend(first.map(hung));
-        for k in range {
+        // Over a kink goes the span of the greater tension; up to a bridge only the one holds.
+        let joint = |k: usize| {
+            let [f, b] = [&forth, &back].map(|side| side.spans[k].as_ref().map_or(0.0, |span| span.tension[0]));
+            let by_start = if begins_tight || ends_tight { ends_tight } else { f >= b };
+            (if by_start { &forth } else { &back }, by_start, larger(f, b) > 0.0)
+        };
+        for k in range.clone() {
             let mut s = lies[k];
-            let cut = p.filter(|(line, _)| *line == k);
-            if let Some((_, p)) = cut {
-                s.p[usize::from(ends_tight)] = p;
+            let [mut f, mut b] = [forth.enters[k], back.enters[k]];
+            if k > range.start {
+                let (side, by_start, taut) = joint(k - 1);
+                s.p[0] = side.lies[k].p[0];
+                f = if by_start || !taut { f } else { 0.0 };
             }
-            // Up to the bridge only the one holds.
-            let [mut f, mut b] = [forth[k], back[k]];
+            if k + 1 < range.end {
+                let (side, by_start, taut) = joint(k);
+                s.p[1] = side.lies[k].p[1];
+                b = if !by_start || !taut { b } else { 0.0 };
+            }
+            if let Some(found) = bridge.as_ref().filter(|found| found.line == k) {
+                s.p[usize::from(ends_tight)] = found.p;
+            }
             if begins_tight {
                 f = 0.0;
             } else if ends_tight {
                 b = 0.0;
             }
             self.stretch(&s, [f, b], out);
+            if k + 1 < range.end {
+                out.extend(joint(k).0.spans[k].clone());
+            }
         }
         out.extend(last.map(hung));
         if let Some(found) = bridge.filter(|_| ends_tight) {
             out.push(found.part);
-            return Some(true);
+            return Ok(true);
         }
-        Some(false)
-    }
-
-    /// Tensions at the starts of stretches that are drawn from their start, and at their ends where they are drawn from the end: as little as
-    /// friction lets them have, from the tensions at both ends (N); and whether at the start and at the end that is more than there is.
-    fn profiles(&self, lies: &[Stretch], (ends, held): ([f64; 2], [bool; 2])) -> ([Vec<f64>; 2], [bool; 2]) {
-        let (mut t, mut forth) = (ends[0], Vec::with_capacity(lies.len()));
-        for s in lies {
-            forth.push(t);
-            t = larger(s.slide(self.course, (s.p[0], s.p[1]), t, -s.friction(self.course)).tension, 0.0);
-        }
-        let ends_tight = !held[1] && t > ends[1] + self.most;
-        let (mut t, mut back) = (ends[1], vec![0.0; lies.len()]);
-        for (s, back) in lies.iter().zip(&mut back).rev() {
-            *back = t;
-            t = larger(s.slide(self.course, (s.p[1], s.p[0]), t, s.friction(self.course)).tension, 0.0);
-        }
-        ([forth, back], [!held[0] && t > ends[0] + self.most, ends_tight])
+        Ok(false)
     }
 
     /// A stretch in its parts: where the tension from its start holds, where there is none, where that from its end does.

@@ -11,7 +11,8 @@
 //! σ follows from u, and p from v: at the foot the span is nothing and too low, where the crest falls plumb it rises beyond all bounds.
 
 use super::super::drained::NONE_M;
-use super::{Drape, HALVINGS, Line, Part, Stretch};
+use super::joint::Profile;
+use super::{Drape, HALVINGS, Line, Part};
 use crate::math::{Vec2, larger};
 
 /// Rounds of Newton's method for the length of a span: it is off by its strain at first.
@@ -38,9 +39,9 @@ struct Seen {
 }
 
 impl Drape<'_> {
-    /// The span to a support at the start (side 0) or the end; `tensions` of the stretches at their other ends (N).
-    pub(super) fn bridge(&self, lies: &[Stretch], (support, tensions): (Vec2, &[f64]), side: usize) -> Option<Bridge> {
-        let (course, other) = (self.course, 1 - side);
+    /// The span to a support at the start (side 0) or the end, from tensions that come from the other one.
+    pub(super) fn bridge(&self, profile: &Profile, support: Vec2, side: usize) -> Option<Bridge> {
+        let (course, other, lies, tensions) = (self.course, 1 - side, &profile.lies, &profile.enters);
         let sign = if side == 0 { 1.0 } else { -1.0 };
         let seen = |k: usize, p: f64| {
             let s = &lies[k];
