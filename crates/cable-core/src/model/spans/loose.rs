@@ -239,10 +239,15 @@ impl Drape<'_> {
                 Ok(parts) => return Some(parts),
                 Err(stop) => stop?,
             };
+            // A support's own plumb line is not drawn at by merging.
+            let inner = |k: usize| (k > 0 || !held[0]) && (k + 1 < lines.len() || !held[1]);
             match lines.get(tight.checked_sub(1)?..=tight)? {
-                [Line::Lies(a), Line::Lies(b)] if self.bends_in(a, b) => stops.retain(|k| *k != tight),
+                [Line::Lies(a), Line::Lies(b)] if self.bends_in(a, b) => {}
+                [Line::Lies(_), Line::Hangs(h)] if self.rise(*h) > 0.0 && inner(tight) => {}
+                [Line::Hangs(h), Line::Lies(_)] if self.rise(*h) < 0.0 && inner(tight - 1) => {}
                 _ => return None,
             }
+            stops.retain(|k| *k != tight);
         }
     }
 
@@ -326,10 +331,21 @@ impl Drape<'_> {
             return Err(None);
         }
         let ends = [first, last].map(|h| h.map_or(0.0, |(_, s)| weight * s));
-        let lies: Vec<Stretch> =
-            lines.iter().filter_map(|l| if let Line::Lies(s) = l { Some(*s) } else { None }).collect();
-        let forth = self.profile(&lies, 0, ends[0]).ok_or(None)?;
-        let back = self.profile(&lies, 1, ends[1]).ok_or(None)?;
+        let (mut lies, mut walls): (Vec<Stretch>, Vec<Option<f64>>) = (Vec::new(), Vec::new());
+        for (k, line) in lines.iter().enumerate() {
+            match line {
+                Line::Lies(s) => (lies.push(*s), walls.push(None)).0,
+                Line::Hangs(ends) if k > 0 => {
+                    let rise = self.rise(*ends);
+                    if let Some(wall) = walls.last_mut() {
+                        *wall = Some(plumb(self.course, rise.abs()).copysign(rise));
+                    }
+                }
+                _ => {}
+            }
+        }
+        let forth = self.profile((&lies, &walls), 0, ends[0]).ok_or(None)?;
+        let back = self.profile((&lies, &walls), 1, ends[1]).ok_or(None)?;
         let begins_tight = !held[0] && back.leaves > ends[0] + self.most;
         let ends_tight = !held[1] && forth.leaves > ends[1] + self.most;
         let bridge = match (begins_tight, ends_tight) {
@@ -350,23 +366,24 @@ impl Drape<'_> {
         }
         out.extend(first.map(hung));
         // Over a kink goes the span of the greater tension; up to a bridge only the one holds.
-        let joint = |k: usize| {
-            let [f, b] = [&forth, &back].map(|side| side.spans[k].as_ref().map_or(0.0, |span| span.tension[0]));
+        let span = |k: usize| {
+            let [f, b] = [&forth, &back].map(|side| side.spans[k].as_ref().map_or(0.0, |(span, _)| span.tension[0]));
             let by_start = if begins_tight || ends_tight { ends_tight } else { f >= b };
-            (if by_start { &forth } else { &back }, by_start, larger(f, b) > 0.0)
+            let side = if by_start { &forth } else { &back };
+            side.spans[k].as_ref().map(|(part, next)| (part, *next, side.lies[k].p[1], side.lies[*next].p[0], by_start))
         };
-        for k in range.clone() {
+        let (mut k, mut entry) = (range.start, None);
+        while k < range.end {
             let mut s = lies[k];
             let [mut f, mut b] = [forth.enters[k], back.enters[k]];
-            if k > range.start {
-                let (side, by_start, taut) = joint(k - 1);
-                s.p[0] = side.lies[k].p[0];
-                f = if by_start || !taut { f } else { 0.0 };
+            if let Some((p, by_start)) = entry {
+                s.p[0] = p;
+                f = if by_start { f } else { 0.0 };
             }
-            if k + 1 < range.end {
-                let (side, by_start, taut) = joint(k);
-                s.p[1] = side.lies[k].p[1];
-                b = if !by_start || !taut { b } else { 0.0 };
+            let beyond = if k + 1 < range.end { span(k) } else { None };
+            if let Some((_, _, p, _, by_start)) = beyond {
+                s.p[1] = p;
+                b = if by_start { 0.0 } else { b };
             }
             if let Some(found) = bridge.as_ref().filter(|found| found.line == k) {
                 s.p[usize::from(ends_tight)] = found.p;
@@ -377,8 +394,13 @@ impl Drape<'_> {
                 b = 0.0;
             }
             self.stretch(&s, [f, b], out);
-            if k + 1 < range.end {
-                out.extend(joint(k).0.spans[k].clone());
+            match beyond {
+                Some((part, next, _, p, by_start)) => {
+                    out.push(part.clone());
+                    (k, entry) = (next, Some((p, by_start)));
+                }
+                None if k + 1 < range.end && walls[k].is_some() => return Err(None),
+                None => (k, entry) = (k + 1, None),
             }
         }
         out.extend(last.map(hung));
