@@ -61,7 +61,8 @@ impl Drape<'_> {
                 let middle = 0.5 * (low + high);
                 if seen(k, middle).is_none_or(|s| s.over > 0.0) { high = middle } else { low = middle }
             }
-            let found = seen(k, low).filter(|s| s.over.abs() <= ENDS * (s.length + support.norm()) && s.tension > 0.0)?;
+            let found =
+                seen(k, low).filter(|s| s.over.abs() <= ENDS * (s.length + support.norm()) && s.tension > 0.0)?;
             let weight = course.law.load * found.length;
             // The force there is what the rest of the cable pulls with, the load of the span on top at the support.
             let (tension, form) = if side == 0 {
