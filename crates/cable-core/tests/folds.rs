@@ -510,6 +510,41 @@ fn what_was_laid_out_without_tension_is_followed_as_it_is_drawn() {
     assert!((by_fem - tension).abs() < 5e-3 * tension, "{by_fem} {tension}");
 }
 
+/// In the tank little friction holds: what lies on its slopes draws at what lies above, through kinks, up walls and over crests.
+#[test]
+fn loose_cable_in_a_slippery_tank_is_drawn_by_its_slopes() {
+    let tank = |friction: f64, length_m: f64, by: [f64; 2]| {
+        let mut s = catalog::tank();
+        s.cables[0].length_m = length_m;
+        let at = |p: &mut [f64; 2]| *p = [p[0] + by[0], p[1] + by[1]];
+        s.cables[0].route_m.iter_mut().for_each(at);
+        for support in &mut s.cables[0].supports {
+            support.at_m.iter_mut().for_each(at);
+            support.motion = None;
+        }
+        for obstacle in &mut s.obstacles {
+            obstacle.friction = Some(friction);
+            match &mut obstacle.shape {
+                Shape::Terrain { points_m } | Shape::Polygon { points_m } => points_m.iter_mut().for_each(at),
+                Shape::Circle { center_m, .. } => at(center_m),
+                _ => {}
+            }
+        }
+        s
+    };
+    for (friction, length_m) in [(0.13, 70.6), (0.22, 26.5), (0.18, 50.0)] {
+        let rest = |by: [f64; 2]| {
+            let s = tank(friction, length_m, by);
+            let answer = Simulation::new(s.clone(), Model::Auto).unwrap().settle().unwrap();
+            assert_eq!((answer.model, faults(&s, &answer)), (Model::Spans, Vec::new()), "{friction} {length_m}");
+            let supports = &answer.cables[0].supports;
+            supports.iter().flat_map(|r| [r.reaction_x_n, r.reaction_y_n]).collect::<Vec<f64>>()
+        };
+        let (here, far) = (rest([0.0, 0.0]), rest([1000.0, -300.0]));
+        assert!(here.iter().zip(&far).all(|(a, b)| (a - b).abs() < 1e-6 * here[1].abs()), "{here:?} {far:?}");
+    }
+}
+
 #[test]
 fn a_part_of_the_campaign() {
     campaign(0..70);

@@ -140,8 +140,11 @@ impl Roof {
                 Top::Line { slope, .. } => (u - self.u[0]) * 1.0f64.hypot(slope),
                 Top::Round { center, radius } => {
                     // The angle from where it rises plumb.
+                    let rounding = 4.0 * f64::EPSILON * (center.x.abs() + radius) / radius;
                     let angle = |u: f64| {
                         let c = (center.x - u) / radius;
+                        // Where it is plumb the angle would be off by the root of what rounding leaves.
+                        let c = if 1.0 - c.abs() <= rounding { c.signum() } else { c };
                         larger(1.0 - c * c, 0.0).sqrt().atan2(c)
                     };
                     angle(u) - angle(self.u[0])

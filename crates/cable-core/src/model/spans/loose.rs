@@ -21,6 +21,7 @@
 
 mod bridge;
 mod heap;
+mod joint;
 mod report;
 
 use self::heap::{Heap, heap};
@@ -223,28 +224,53 @@ impl Drape<'_> {
         legs.iter().map(line).collect()
     }
 
-    /// Every part with its tension, and the material that takes; None where a crest does not hold.
+    /// Every part with its tension, and the material that takes; None where a crest does not hold. What is drawn tight in a kink goes on
+    /// through it.
     fn parts(&self, lines: &[Line], held: [bool; 2]) -> Option<Vec<Part>> {
-        let (mut out, mut begin) = (Vec::new(), 0);
-        let (last, mut bridged) = (lines.len(), false);
+        let mut stops = vec![0];
+        for k in 1..lines.len() {
+            if self.rests(&lines[k - 1], &lines[k])? {
+                stops.push(k);
+            }
+        }
+        stops.push(lines.len());
+        loop {
+            let tight = match self.chains(lines, (&stops, held)) {
+                Ok(parts) => return Some(parts),
+                Err(stop) => stop?,
+            };
+            // A support's own plumb line is not drawn at by merging.
+            let inner = |k: usize| (k > 0 || !held[0]) && (k + 1 < lines.len() || !held[1]);
+            match lines.get(tight.checked_sub(1)?..=tight)? {
+                [Line::Lies(a), Line::Lies(b)] if self.bends_in(a, b) => {}
+                [Line::Lies(_), Line::Hangs(h)] if self.rise(*h) > 0.0 && inner(tight) => {}
+                [Line::Hangs(h), Line::Lies(_)] if self.rise(*h) < 0.0 && inner(tight - 1) => {}
+                _ => return None,
+            }
+            stops.retain(|k| *k != tight);
+        }
+    }
+
+    /// The parts between such stops; else the stop, if that is it, at which a tension is not nothing.
+    fn chains(&self, lines: &[Line], (stops, held): (&[usize], [bool; 2])) -> Result<Vec<Part>, Option<usize>> {
+        let (mut out, mut bridged) = (Vec::new(), false);
         let support = |line: &Line, end: usize| match line {
             Line::Hangs(ends) => Some(ends[end]),
             _ => None,
         };
-        for k in 1..=last {
-            if k == last || self.rests(&lines[k - 1], &lines[k])? {
-                let near = [
-                    if held[0] && begin == 1 { support(&lines[0], 0) } else { None },
-                    if held[1] && k + 1 == last { support(&lines[k], 1) } else { None },
-                ];
-                if k < last || !bridged {
-                    let ends = [begin == 0 && held[0], k == last && held[1]];
-                    bridged = self.chain(&lines[begin..k], (ends, near), &mut out)?;
-                }
-                begin = k;
+        for pair in stops.windows(2) {
+            let (begin, end) = (pair[0], pair[1]);
+            let near = [
+                if held[0] && begin == 1 { support(&lines[0], 0) } else { None },
+                if held[1] && end + 1 == lines.len() { support(&lines[end], 1) } else { None },
+            ];
+            if end < lines.len() || !bridged {
+                let ends = [begin == 0 && held[0], end == lines.len() && held[1]];
+                let tight = |side: Option<usize>| side.map(|side| pair[side]);
+                bridged = self.chain(&lines[begin..end], (ends, near), &mut out).map_err(tight)?;
             }
         }
-        Some(out)
+        Ok(out)
     }
 
     /// How far a plumb line rises, m.
@@ -276,8 +302,13 @@ impl Drape<'_> {
     }
 
     /// What lies between two points without tension, or from or to a support. Where a support hangs nearby and the crest draws the cable
-    /// tight there, a span bridges to it; whether that was done at the end.
-    fn chain(&self, lines: &[Line], (held, near): ([bool; 2], [Option<Vec2>; 2]), out: &mut Vec<Part>) -> Option<bool> {
+    /// tight there, a span bridges to it; whether that was done at the end. Else on which side it is drawn tight, if that is it.
+    fn chain(
+        &self,
+        lines: &[Line],
+        (held, near): ([bool; 2], [Option<Vec2>; 2]),
+        out: &mut Vec<Part>,
+    ) -> Result<bool, Option<usize>> {
         let weight = self.course.law.load.norm();
         let hangs = |line: Option<&Line>| match line {
             Some(Line::Hangs(ends)) => Some((*ends, plumb(self.course, self.rise(*ends).abs()))),
@@ -294,71 +325,90 @@ impl Drape<'_> {
             let begins = held[0] && self.rise(alone.0) < 0.0;
             let ends = held[1] && self.rise(alone.0) > 0.0;
             out.push(hung(alone));
-            return (begins || ends).then_some(false);
+            return if begins || ends { Ok(false) } else { Err(None) };
         }
         if (held[0] && first.is_some()) || (held[1] && last.is_some()) {
-            return None;
+            return Err(None);
         }
         let ends = [first, last].map(|h| h.map_or(0.0, |(_, s)| weight * s));
-        let lies: Vec<Stretch> =
-            lines.iter().filter_map(|l| if let Line::Lies(s) = l { Some(*s) } else { None }).collect();
-        let ([forth, back], tight) = self.profiles(&lies, (ends, held));
-        let [begins_tight, ends_tight] = tight;
-        let bridge = match (begins_tight, ends_tight) {
-            (true, false) => Some(self.bridge(&lies, (near[0]?, &back), 0)?),
-            (false, true) => Some(self.bridge(&lies, (near[1]?, &forth), 1)?),
-            (false, false) => None,
-            (true, true) => return None,
-        };
-        let (mut range, mut p) = (0..lies.len(), None);
-        if let Some(found) = &bridge {
-            p = Some((found.line, found.p));
-            range = if begins_tight { found.line..lies.len() } else { 0..found.line + 1 };
+        let (mut lies, mut walls): (Vec<Stretch>, Vec<Option<f64>>) = (Vec::new(), Vec::new());
+        for (k, line) in lines.iter().enumerate() {
+            match line {
+                Line::Lies(s) => (lies.push(*s), walls.push(None)).0,
+                Line::Hangs(ends) if k > 0 => {
+                    let rise = self.rise(*ends);
+                    if let Some(wall) = walls.last_mut() {
+                        *wall = Some(plumb(self.course, rise.abs()).copysign(rise));
+                    }
+                }
+                _ => {}
+            }
         }
+        let forth = self.profile((&lies, &walls), 0, ends[0]).ok_or(None)?;
+        let back = self.profile((&lies, &walls), 1, ends[1]).ok_or(None)?;
+        let begins_tight = !held[0] && back.leaves > ends[0] + self.most;
+        let ends_tight = !held[1] && forth.leaves > ends[1] + self.most;
+        let bridge = match (begins_tight, ends_tight) {
+            (true, false) => Some(near[0].and_then(|at| self.bridge(&back, at, 0)).ok_or(Some(0))?),
+            (false, true) => Some(near[1].and_then(|at| self.bridge(&forth, at, 1)).ok_or(Some(1))?),
+            (false, false) => None,
+            (true, true) => return Err(None),
+        };
+        let range = match &bridge {
+            Some(found) if begins_tight => found.line..lies.len(),
+            Some(found) => 0..found.line + 1,
+            None => 0..lies.len(),
+        };
         if let Some(found) = bridge.as_ref().filter(|_| begins_tight) {
             // In the place of what hung.
             out.pop();
             out.push(found.part.clone());
         }
         out.extend(first.map(hung));
-        for k in range {
+        // Over a kink goes the span of the greater tension; up to a bridge only the one holds.
+        let span = |k: usize| {
+            let [f, b] = [&forth, &back].map(|side| side.spans[k].as_ref().map_or(0.0, |(span, _)| span.tension[0]));
+            let by_start = if begins_tight || ends_tight { ends_tight } else { f >= b };
+            let side = if by_start { &forth } else { &back };
+            side.spans[k].as_ref().map(|(part, next)| (part, *next, side.lies[k].p[1], side.lies[*next].p[0], by_start))
+        };
+        let (mut k, mut entry) = (range.start, None);
+        while k < range.end {
             let mut s = lies[k];
-            let cut = p.filter(|(line, _)| *line == k);
-            if let Some((_, p)) = cut {
-                s.p[usize::from(ends_tight)] = p;
+            let [mut f, mut b] = [forth.enters[k], back.enters[k]];
+            if let Some((p, by_start)) = entry {
+                s.p[0] = p;
+                f = if by_start { f } else { 0.0 };
             }
-            // Up to the bridge only the one holds.
-            let [mut f, mut b] = [forth[k], back[k]];
+            let beyond = if k + 1 < range.end { span(k) } else { None };
+            if let Some((_, _, p, _, by_start)) = beyond {
+                s.p[1] = p;
+                b = if by_start { 0.0 } else { b };
+            }
+            if let Some(found) = bridge.as_ref().filter(|found| found.line == k) {
+                s.p[usize::from(ends_tight)] = found.p;
+            }
             if begins_tight {
                 f = 0.0;
             } else if ends_tight {
                 b = 0.0;
             }
             self.stretch(&s, [f, b], out);
+            match beyond {
+                Some((part, next, _, p, by_start)) => {
+                    out.push(part.clone());
+                    (k, entry) = (next, Some((p, by_start)));
+                }
+                None if k + 1 < range.end && walls[k].is_some() => return Err(None),
+                None => (k, entry) = (k + 1, None),
+            }
         }
         out.extend(last.map(hung));
         if let Some(found) = bridge.filter(|_| ends_tight) {
             out.push(found.part);
-            return Some(true);
+            return Ok(true);
         }
-        Some(false)
-    }
-
-    /// Tensions at the starts of stretches that are drawn from their start, and at their ends where they are drawn from the end: as little as
-    /// friction lets them have, from the tensions at both ends (N); and whether at the start and at the end that is more than there is.
-    fn profiles(&self, lies: &[Stretch], (ends, held): ([f64; 2], [bool; 2])) -> ([Vec<f64>; 2], [bool; 2]) {
-        let (mut t, mut forth) = (ends[0], Vec::with_capacity(lies.len()));
-        for s in lies {
-            forth.push(t);
-            t = larger(s.slide(self.course, (s.p[0], s.p[1]), t, -s.friction(self.course)).tension, 0.0);
-        }
-        let ends_tight = !held[1] && t > ends[1] + self.most;
-        let (mut t, mut back) = (ends[1], vec![0.0; lies.len()]);
-        for (s, back) in lies.iter().zip(&mut back).rev() {
-            *back = t;
-            t = larger(s.slide(self.course, (s.p[1], s.p[0]), t, s.friction(self.course)).tension, 0.0);
-        }
-        ([forth, back], [!held[0] && t > ends[0] + self.most, ends_tight])
+        Ok(false)
     }
 
     /// A stretch in its parts: where the tension from its start holds, where there is none, where that from its end does.

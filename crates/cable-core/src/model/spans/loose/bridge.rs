@@ -10,10 +10,13 @@
 //!
 //! σ follows from u, and p from v: at the foot the span is nothing and too low, where the crest falls plumb it rises beyond all bounds.
 
-use super::super::drained::NONE_M;
-use super::{Drape, HALVINGS, Line, Part, Stretch};
+use super::joint::Profile;
+use super::{Drape, HALVINGS, Line, Part};
 use crate::math::{Vec2, larger};
 
+/// How far from its support a span may end, of its length and the size of coordinates: next to plumb rounding of where it touches moves its
+/// end a thousand times as much. Larger: a jump could be taken for a root.
+const ENDS: f64 = 1e-10;
 /// Rounds of Newton's method for the length of a span: it is off by its strain at first.
 const ROUNDS: usize = 8;
 
@@ -38,9 +41,9 @@ struct Seen {
 }
 
 impl Drape<'_> {
-    /// The span to a support at the start (side 0) or the end; `tensions` of the stretches at their other ends (N).
-    pub(super) fn bridge(&self, lies: &[Stretch], (support, tensions): (Vec2, &[f64]), side: usize) -> Option<Bridge> {
-        let (course, other) = (self.course, 1 - side);
+    /// The span to a support at the start (side 0) or the end, from tensions that come from the other one.
+    pub(super) fn bridge(&self, profile: &Profile, support: Vec2, side: usize) -> Option<Bridge> {
+        let (course, other, lies, tensions) = (self.course, 1 - side, &profile.lies, &profile.enters);
         let sign = if side == 0 { 1.0 } else { -1.0 };
         let seen = |k: usize, p: f64| {
             let s = &lies[k];
@@ -58,7 +61,8 @@ impl Drape<'_> {
                 let middle = 0.5 * (low + high);
                 if seen(k, middle).is_none_or(|s| s.over > 0.0) { high = middle } else { low = middle }
             }
-            let found = seen(k, low).filter(|s| s.over.abs() <= NONE_M && s.tension > 0.0)?;
+            let found =
+                seen(k, low).filter(|s| s.over.abs() <= ENDS * (s.length + support.norm()) && s.tension > 0.0)?;
             let weight = course.law.load * found.length;
             // The force there is what the rest of the cable pulls with, the load of the span on top at the support.
             let (tension, form) = if side == 0 {
