@@ -174,10 +174,10 @@ impl Dynamics {
             self.task.shift = self.soft_shift();
             let done = self.minimise(pose)?;
             total = Done { iterations: total.iterations + done.iterations, ..done };
-            let (gripped, factors) = self.update_grips(pose);
+            let grips = self.update_grips(pose, false);
             // A round that needed no iteration found the normal forces it had used.
             let found = done.iterations == 0 && off <= self.task.tolerance;
-            if (found || self.contacts.rubs.is_empty()) && !gripped && !factors {
+            if (found || self.contacts.rubs.is_empty()) && grips.wrong == 0 && grips.same {
                 break;
             }
         }

@@ -98,6 +98,8 @@ pub struct Load {
     pub tension: [f64; 2],
     /// The same as the energy's slope sees it: along the bars, not along the sagging cable, N.
     pub pull: [f64; 2],
+    /// The same at its material, as the slope of the bars' energy by the slide sees it, N.
+    pub at_material: [f64; 2],
     /// Angle through which the cable turns round it, rad: normal force over tension. Negative: it wants to leave.
     pub turn: f64,
     /// Normal force, N.
@@ -134,6 +136,7 @@ impl Load {
         Self {
             tension: ends,
             pull,
+            at_material: pull,
             turn,
             normal: 0.5 * (ends[0] + ends[1]) * turn,
             force,
@@ -149,15 +152,20 @@ impl Load {
     }
 
     /// What the law says of the grip: `slid` is how far the arc length moved in this step (m), `inertia` the force
-    /// (N) that its inertia adds to the slope.
+    /// (N) that its inertia adds to the slope, `stiffness` is EA (N). A node holds or slips by the very slope that the step balances: with
+    /// another, however near to it, one that is about to slip is said to slip where it holds and to hold where it slips, for ever.
     #[must_use]
-    pub fn grip(&self, node: &Sliding, slid: f64, inertia: f64, slack: f64) -> Grip {
-        let [before, after] = self.at_round();
+    pub fn grip(&self, node: &Sliding, slid: f64, [inertia, slack]: [f64; 2], stiffness: f64) -> Grip {
         let cone = node.exponent.exp();
-        let slope = |ratio: f64| after * ratio + self.floor[1] * floor::mean_factor(ratio) - before + inertia;
+        let [before, after] = self.at_material;
+        let slope = |grip: Grip| {
+            let (ratio, factor) = (self.ratio(grip, node.exponent), self.factor(grip, node.exponent, stiffness));
+            let floor = self.floor[0] + self.floor[1] * floor::mean_factor(ratio) + self.floor[2] * ratio;
+            after * factor + floor - before + inertia
+        };
         match node.grip {
-            Grip::Stick if slope(cone) < -slack => Grip::ToStart,
-            Grip::Stick if slope(1.0 / cone) > slack => Grip::ToEnd,
+            Grip::Stick if slope(Grip::ToStart) < -slack => Grip::ToStart,
+            Grip::Stick if slope(Grip::ToEnd) > slack => Grip::ToEnd,
             // Without friction both ways are one.
             Grip::ToStart if slid < 0.0 && cone > 1.0 => Grip::Stick,
             Grip::ToEnd if slid > 0.0 && cone > 1.0 => Grip::Stick,
