@@ -29,7 +29,7 @@ pub(super) const NOT_FOUND: &str = "it was not found which corners hold the cabl
 const GRIP_ROUNDS: usize = 6;
 
 /// Rounds for each sliding node. Fewer: steps in which many begin to slip one after the other are halved; more: what does not end costs more.
-const ROUNDS_EACH: usize = 3;
+pub(super) const ROUNDS_EACH: usize = 3;
 
 /// Roundings in the force of inertia of a node. Fewer: small steps of heavy lumps fail; more: they are coarse.
 const ROUNDING: f64 = 16.0;

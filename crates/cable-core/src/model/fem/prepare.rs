@@ -49,7 +49,7 @@ pub(super) struct Grips {
 
 impl Grips {
     /// Nothing slides.
-    const FOUND: Self = Self { wrong: 0, lawful: true, same: true };
+    pub(super) const FOUND: Self = Self { wrong: 0, lawful: true, same: true };
 
     /// Whether the law holds at every sliding node.
     pub(super) fn hold(self) -> bool {
@@ -176,7 +176,8 @@ impl Dynamics {
     }
 
     /// Reads turn and grip of every sliding node off a pose and says how that differs from what the pose was found with. Where `one` is set
-    /// only the first of the grips that are wrong is changed.
+    /// only the first of the grips that are wrong is changed, and turns half of the way: nearly slack bars hang from a round, and turn over it by the
+    /// more the less they pull.
     ///
     /// What slid the wrong way until its grip was seen to be wrong has not slid at all.
     pub(super) fn update_grips(&mut self, pose: &mut Pose, one: bool) -> Grips {
@@ -193,8 +194,9 @@ impl Dynamics {
             }
             let mut next = node;
             // What does not pull presses on nothing.
-            let presses = load.turn > 0.0 && load.pull[0] > 0.0 && load.pull[1] > 0.0;
-            next.exponent = if presses { node.friction * load.turn } else { 0.0 };
+            let presses = load.turn > 0.0 && load.pull[0] + load.pull[1] > 0.0;
+            let exponent = if presses { node.friction * load.turn } else { 0.0 };
+            next.exponent = if one { 0.5 * (node.exponent + exponent) } else { exponent };
             let inertia = self.task.inertia[k] * (pose.slide[k] - self.task.predicted_slide[k]);
             let pulls = load.pull[0].abs() + load.pull[1].abs();
             let slack = self.task.tolerance + EVEN_FORCE * pulls;
@@ -214,7 +216,7 @@ impl Dynamics {
             }
             let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SAME_FACTOR;
             grips.same &= same(next.factor, node.factor) && same(next.floor_factor, node.floor_factor);
-            let off = ((next.factor - node.factor) * load.pull[1]).abs();
+            let off = ((load.factor(node.grip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
             grips.lawful &= off <= LAWFUL * pulls + slack;
             self.mesh.sliding[k] = Some(next);
         }

@@ -128,7 +128,9 @@ impl Load {
             // No force has no direction: the angle to zeros is half a turn where the sign of one of them is lost.
             let between =
                 |a: Vec2, b: Vec2| if a == Vec2::zeros() || b == Vec2::zeros() { 0.0 } else { angle_between(a, b) };
-            let sag = between(force[0], t[0]) + between(t[1], force[1]);
+            // Nor does what pushes: at the round the cable hangs straight down then.
+            let hangs = |j: usize| if pull[j] < 0.0 { force[j] - t[j] * pull[j] } else { force[j] };
+            let sag = between(hangs(0), t[0]) + between(t[1], hangs(1));
             path[0].arcs[1] + path[1].arcs[0] + node.end.sense * sag
         } else {
             angle_between(force[0], force[1]).abs()
