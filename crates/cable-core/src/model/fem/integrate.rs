@@ -11,6 +11,7 @@
 use super::contact_set::SLIDE;
 use super::dynamics::{Dynamics, STIFFNESS_CHANGE};
 use super::prepare::damping_time;
+use super::sliding::Balanced;
 use super::task::{Done, Failure, Pose};
 use crate::math::Vec2;
 use crate::model::drive::Follower;
@@ -101,6 +102,7 @@ impl Dynamics {
             return Err(Failure { node, residual: done.residual, cause: PULLED });
         }
         self.note_lag(&pose);
+        self.note_balanced(&pose);
         self.contacts.commit(&self.problem, &self.mesh, &pose.x, &self.motion.x, &pose.slide);
         let (m, mesh) = (&mut self.motion, &self.mesh);
         for k in 0..pose.x.len() {
@@ -131,6 +133,18 @@ impl Dynamics {
             }
         }
         Ok(done)
+    }
+
+    /// Keeps what friction acts between at each sliding node.
+    fn note_balanced(&mut self, pose: &Pose) {
+        for k in 0..self.mesh.nodes() {
+            let Some(load) = self.load_at(k, &pose.x, Some(&pose.slide)) else { continue };
+            let inertia = self.task.inertia[k] * (pose.slide[k] - self.task.predicted_slide[k]);
+            if let Some(node) = &mut self.mesh.sliding[k] {
+                let [comes, leaves] = load.at_round();
+                node.balanced = Some(Balanced { pull: [comes - inertia, leaves], turn: load.turn });
+            }
+        }
     }
 
     /// Supports that could not get where they were to be: said, and their hands start again from there.

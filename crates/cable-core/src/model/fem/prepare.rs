@@ -32,9 +32,9 @@ const SAME_FLOOR: f64 = 1e-6;
 /// known to the residual only.
 const EVEN_FORCE: f64 = 1e-7;
 
-/// Part of the pulls at a sliding node by which its friction may differ from that of its turn and grip after a step. Less: rounds for nothing that
-/// shows; more: friction beyond its cone (the checker asks for 1e-3 of the tension).
-const LAWFUL: f64 = 1e-4;
+/// Part of the greatest friction of a sliding node by which its friction may differ from that of its turn and grip after a step. Less: rounds for
+/// nothing that shows; more: friction beyond its cone (the checker asks for 1e-3 of the normal force).
+const LAWFUL: f64 = 2e-4;
 
 /// What a pose says of the friction of sliding nodes with which it was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -217,7 +217,7 @@ impl Dynamics {
             let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SAME_FACTOR;
             grips.same &= same(next.factor, node.factor) && same(next.floor_factor, node.floor_factor);
             let off = ((load.factor(node.grip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
-            grips.lawful &= off <= LAWFUL * pulls + slack;
+            grips.lawful &= off <= LAWFUL * pulls * exponent + slack;
             self.mesh.sliding[k] = Some(next);
         }
         self.set_scale();

@@ -479,6 +479,7 @@ impl Dynamics {
             factor: 1.0,
             exponent: 0.0,
             floor_factor: 1.0,
+            balanced: None,
         };
         Some((bar, arc_length, sliding))
     }

@@ -221,6 +221,7 @@ impl Dynamics {
         self.motion.w.fill(0.0);
         self.motion.time = to;
         self.slide(&pose.slide);
+        self.mesh.sliding.iter_mut().flatten().for_each(|s| s.balanced = None);
         self.forget_history();
     }
 

@@ -60,6 +60,8 @@ pub struct Sliding {
     pub exponent: f64,
     /// Plan view: the floor's friction as the scaled energy sees it, in parts of its own size (see `floor.rs`).
     pub floor_factor: f64,
+    /// What friction acted between in the last step with inertia. None at rest and of a new node.
+    pub balanced: Option<Balanced>,
 }
 
 impl Sliding {
@@ -89,6 +91,16 @@ impl Sliding {
     pub fn shares_round(&self, other: &Self) -> bool {
         self.seat == other.seat
     }
+}
+
+/// What friction acted between at a sliding node in a step with inertia: tensions as they are reported lack the loss of the bars, and nothing says how
+/// what slides speeds up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Balanced {
+    /// Pull where the cable comes on to the round, less the inertia of what slides, and where it leaves it, N.
+    pub pull: [f64; 2],
+    /// Angle through which the cable turned round it, rad.
+    pub turn: f64,
 }
 
 /// How a sliding node is loaded.
