@@ -166,10 +166,12 @@ impl Dynamics {
             let per_m = friction::at(slid, rough * normal, self.contacts.slip).1;
             floor::reaches(mesh, k, x, slide).map(|reach| per_m * reach)
         });
-        let still = vec![0.0; if slide.is_some() { 0 } else { mesh.nodes() }];
-        let slid = slide.unwrap_or(&still);
-        let at_material = [k - 1, k].map(|e| super::bar::pull_at_slide((mesh, &self.task), e, k - e, x, slid));
-        Some(Load { floor, at_material, ..Load::new(node, tension, [&path[0], &path[1]], (self.task.body, share)) })
+        let load = Load::new(node, tension, [&path[0], &path[1]], (self.task.body, share));
+        // Between steps the task may be of another mesh, and nothing is balanced.
+        let at_material = slide.map_or(load.pull, |slide| {
+            [k - 1, k].map(|e| super::bar::pull_at_slide((mesh, &self.task), e, k - e, x, slide))
+        });
+        Some(Load { floor, at_material, ..load })
     }
 
     /// Lets go of the sliding nodes that press on nothing, but for those on `kept`; returns whether there were any.
