@@ -39,6 +39,19 @@ pub fn rest_length(mesh: &Mesh, e: usize, slide: &[f64]) -> f64 {
     mesh.rest_length[e] + mesh.thermal_stretch * (slide[e + 1] - slide[e])
 }
 
+/// What a bar pulls at the material of the sliding node at its start (`j` 0) or end (1), as the slope of its energy by the slide of that node
+/// sees it (without the factor of its energy), N: Θ, the loss, and the weight that comes over with the material.
+#[must_use]
+pub fn pull_at_slide((mesh, task): (&Mesh, &Task), e: usize, j: usize, x: &[Vec2], slide: &[f64]) -> f64 {
+    let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
+    let strain = p / l - 1.0;
+    let ratio = task.predicted_length[e] / mesh.rest_length[e];
+    let loss = task.damping / mesh.rest_length[e] * (p - ratio * l) * ratio;
+    let tension = stiffness(mesh, !(strain < 0.0)) * strain;
+    let middle = (x[e] + x[e + 1]) * 0.5;
+    mesh.thermal_stretch * (tension * (1.0 + 0.5 * strain) + loss) + task.body.dot(&(middle - x[e + j]))
+}
+
 /// The pull at the present length P of a bar between nodes that move with the material, and its slope by P, N and N/m.
 #[must_use]
 pub fn pull(mesh: &Mesh, task: &Task, (e, taut): (usize, bool), p: f64) -> (f64, f64) {

@@ -5,7 +5,7 @@ use super::contact_set::{ContactSet, Rub, Touch};
 use super::dynamics::Dynamics;
 use super::floor::OverRound;
 use super::path::angle_between;
-use super::sliding::{Load, Seat, Sliding};
+use super::sliding::{Balanced, Load, Seat, Sliding};
 use crate::contact::friction;
 use crate::energy::bending::turn;
 use crate::math::{Vec2, larger, perp};
@@ -530,12 +530,13 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
             let [before, after] = load.tension;
             // The law of friction holds between the pulls along the bars: what hangs across them is the cable's own weight, and
             // what the floor takes of what slides here is not the round's.
-            let [a, b] = load.at_round();
+            let acts = node.balanced.unwrap_or(Balanced { pull: load.at_round(), turn: load.turn });
+            let [a, b] = acts.pull;
             let floor = load.floor[1];
             let over = OverRound::between([a, b], floor);
             let mean = over.map_or(0.5 * (a + b), |over| over.normal(1.0));
-            r.normal_n += mean * load.turn;
-            push += node.end.mark * (mean * load.turn);
+            r.normal_n += mean * acts.turn;
+            push += node.end.mark * (mean * acts.turn);
             turn += load.turn;
             // Without friction what they differ by is weight alone.
             r.friction_n += if node.friction > 0.0 { a - b - floor } else { 0.0 };

@@ -36,6 +36,7 @@ impl Dynamics {
                 factor: 1.0,
                 exponent: 0.0,
                 floor_factor: 1.0,
+                balanced: None,
             };
             self.insert(k, at, Some(sliding));
         }

@@ -11,6 +11,7 @@
 use super::contact_set::SLIDE;
 use super::dynamics::{Dynamics, STIFFNESS_CHANGE};
 use super::prepare::damping_time;
+use super::sliding::Balanced;
 use super::task::{Done, Failure, Pose};
 use crate::math::Vec2;
 use crate::model::drive::Follower;
@@ -22,11 +23,14 @@ const QUIET: f64 = 0.05;
 pub(super) const PULLED: &str = "a corner would have to pull";
 
 /// Why a step is halved in which it was not found which sliding nodes hold and which slip.
-const NOT_FOUND: &str = "it was not found which corners hold the cable and over which it slips";
+pub(super) const NOT_FOUND: &str = "it was not found which corners hold the cable and over which it slips";
 
-/// Rounds of finding that out, in a step with inertia, beside one for each sliding node. Fewer: steps of a few nodes that free each other
-/// in turn are halved.
+/// Rounds of finding that out in which no fewer grips are wrong than before, until they are changed one at a time; and rounds beside those for each
+/// sliding node. Fewer: steps of a few nodes that free each other in turn take longer, or are halved.
 const GRIP_ROUNDS: usize = 6;
+
+/// Rounds for each sliding node. Fewer: steps in which many begin to slip one after the other are halved; more: what does not end costs more.
+pub(super) const ROUNDS_EACH: usize = 3;
 
 /// Roundings in the force of inertia of a node. Fewer: small steps of heavy lumps fail; more: they are coarse.
 const ROUNDING: f64 = 16.0;
@@ -98,6 +102,7 @@ impl Dynamics {
             return Err(Failure { node, residual: done.residual, cause: PULLED });
         }
         self.note_lag(&pose);
+        self.note_balanced(&pose);
         self.contacts.commit(&self.problem, &self.mesh, &pose.x, &self.motion.x, &pose.slide);
         let (m, mesh) = (&mut self.motion, &self.mesh);
         for k in 0..pose.x.len() {
@@ -128,6 +133,18 @@ impl Dynamics {
             }
         }
         Ok(done)
+    }
+
+    /// Keeps what friction acts between at each sliding node.
+    fn note_balanced(&mut self, pose: &Pose) {
+        for k in 0..self.mesh.nodes() {
+            let Some(load) = self.load_at(k, &pose.x, Some(&pose.slide)) else { continue };
+            let inertia = self.task.inertia[k] * (pose.slide[k] - self.task.predicted_slide[k]);
+            if let Some(node) = &mut self.mesh.sliding[k] {
+                let [comes, leaves] = load.at_round();
+                node.balanced = Some(Balanced { pull: [comes - inertia, leaves], turn: load.turn });
+            }
+        }
     }
 
     /// Supports that could not get where they were to be: said, and their hands start again from there.
@@ -165,13 +182,23 @@ impl Dynamics {
         }
     }
 
-    /// Minimises until no sliding node changes its grip: what slips is part of the step, not found out after it.
+    /// Minimises until the law holds at every sliding node: what slips, and with what friction, is part of the step, not found out after it.
+    ///
+    /// All grips that are wrong are changed at once while that makes them fewer; then one at a time (J. Júdice, F. Pires, "A block principal
+    /// pivoting algorithm for large-scale strictly monotone linear complementarity problems", Computers & Operations Research 21, 1994).
     fn grip_and_minimise(&mut self, pose: &mut Pose) -> Result<Done, Failure> {
         let mut done = self.minimise(pose)?;
         let sliding = self.mesh.sliding.iter().flatten().count();
-        for _ in 0..GRIP_ROUNDS + sliding {
-            if !self.update_grips(pose).0 {
+        let (mut fewest, mut spare) = (usize::MAX, GRIP_ROUNDS);
+        for _ in 0..GRIP_ROUNDS + ROUNDS_EACH * sliding {
+            let grips = self.update_grips(pose, spare == 0);
+            if grips.hold() {
                 return Ok(done);
+            }
+            if grips.wrong < fewest {
+                (fewest, spare) = (grips.wrong, GRIP_ROUNDS);
+            } else {
+                spare = spare.saturating_sub(1);
             }
             let more = self.minimise(pose)?;
             done = Done { iterations: done.iterations + more.iterations, ..more };

@@ -32,6 +32,31 @@ const SAME_FLOOR: f64 = 1e-6;
 /// known to the residual only.
 const EVEN_FORCE: f64 = 1e-7;
 
+/// Part of the greatest friction of a sliding node by which its friction may differ from that of its turn and grip after a step. Less: rounds for
+/// nothing that shows; more: friction beyond its cone (the checker asks for 1e-3 of the normal force).
+const LAWFUL: f64 = 2e-4;
+
+/// What a pose says of the friction of sliding nodes with which it was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Grips {
+    /// Nodes that hold where they should slip, or slip where they should hold.
+    pub(super) wrong: usize,
+    /// Whether what slips has the friction that belongs to its turn, as nearly as anyone sees.
+    pub(super) lawful: bool,
+    /// Whether nothing changed but by rounding.
+    pub(super) same: bool,
+}
+
+impl Grips {
+    /// Nothing slides.
+    pub(super) const FOUND: Self = Self { wrong: 0, lawful: true, same: true };
+
+    /// Whether the law holds at every sliding node.
+    pub(super) fn hold(self) -> bool {
+        self.wrong == 0 && self.lawful
+    }
+}
+
 impl Dynamics {
     /// Sets held nodes, their targets and all forces for the time `to` (s); dragged supports go where `dragged` says.
     pub(super) fn prepare_task(&mut self, to: f64, dragged: Option<&[Option<Vec2>]>) {
@@ -150,14 +175,16 @@ impl Dynamics {
         }
     }
 
-    /// Reads turn and grip of every sliding node off a pose; returns whether a grip changed, and whether a factor did.
+    /// Reads turn and grip of every sliding node off a pose and says how that differs from what the pose was found with. Where `one` is set
+    /// only the first of the grips that are wrong is changed, and turns half of the way: nearly slack bars hang from a round, and turn over it by the
+    /// more the less they pull.
     ///
     /// What slid the wrong way until its grip was seen to be wrong has not slid at all.
-    pub(super) fn update_grips(&mut self, pose: &mut Pose) -> (bool, bool) {
+    pub(super) fn update_grips(&mut self, pose: &mut Pose, one: bool) -> Grips {
         if self.never_slides {
-            return (false, false);
+            return Grips::FOUND;
         }
-        let (mut gripped, mut changed) = (false, self.press_on_floor(&pose.x, Some(&pose.slide)));
+        let mut grips = Grips { same: !self.press_on_floor(&pose.x, Some(&pose.slide)), ..Grips::FOUND };
         for k in 0..self.mesh.nodes() {
             let (Some(node), Some(load)) = (self.mesh.sliding[k], self.load_at(k, &pose.x, Some(&pose.slide))) else {
                 continue;
@@ -168,23 +195,33 @@ impl Dynamics {
             let mut next = node;
             // What does not pull presses on nothing.
             let presses = load.turn > 0.0 && load.pull[0] + load.pull[1] > 0.0;
-            next.exponent = if presses { node.friction * load.turn } else { 0.0 };
+            let exponent = if presses { node.friction * load.turn } else { 0.0 };
+            next.exponent = if one { 0.5 * (node.exponent + exponent) } else { exponent };
             let inertia = self.task.inertia[k] * (pose.slide[k] - self.task.predicted_slide[k]);
-            let slack = self.task.tolerance + EVEN_FORCE * (load.pull[0] + load.pull[1]);
-            next.grip = load.grip(&next, pose.slide[k], inertia, slack);
-            next.factor = load.factor(next.grip, next.exponent, self.mesh.axial_stiffness);
+            let pulls = load.pull[0].abs() + load.pull[1].abs();
+            let slack = self.task.tolerance + EVEN_FORCE * pulls;
+            let stiffness = self.mesh.axial_stiffness;
+            let grip = load.grip(&next, pose.slide[k], [inertia, slack], stiffness);
+            if grip != node.grip {
+                grips.wrong += 1;
+                if !one || grips.wrong == 1 {
+                    next.grip = grip;
+                }
+            }
+            next.factor = load.factor(next.grip, next.exponent, stiffness);
             let floor = floor::reaches(&self.mesh, k, &pose.x, Some(&pose.slide));
             next.floor_factor = floor::factor(floor, load.ratio(next.grip, next.exponent));
             if next.sticks() && !node.sticks() {
                 pose.slide[k] = 0.0;
             }
-            gripped |= next.grip != node.grip;
             let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SAME_FACTOR;
-            changed |= !(same(next.factor, node.factor) && same(next.floor_factor, node.floor_factor));
+            grips.same &= same(next.factor, node.factor) && same(next.floor_factor, node.floor_factor);
+            let off = ((load.factor(node.grip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
+            grips.lawful &= off <= LAWFUL * pulls * exponent + slack;
             self.mesh.sliding[k] = Some(next);
         }
         self.set_scale();
-        (gripped, changed)
+        grips
     }
 
     /// Whether the cable is flexible and nothing but its supports can touch it on the way to places `to` (m).

@@ -166,7 +166,12 @@ impl Dynamics {
             let per_m = friction::at(slid, rough * normal, self.contacts.slip).1;
             floor::reaches(mesh, k, x, slide).map(|reach| per_m * reach)
         });
-        Some(Load { floor, ..Load::new(node, tension, [&path[0], &path[1]], (self.task.body, share)) })
+        let load = Load::new(node, tension, [&path[0], &path[1]], (self.task.body, share));
+        // Between steps the task may be of another mesh, and nothing is balanced.
+        let at_material = slide.map_or(load.pull, |slide| {
+            [k - 1, k].map(|e| super::bar::pull_at_slide((mesh, &self.task), e, k - e, x, slide))
+        });
+        Some(Load { floor, at_material, ..load })
     }
 
     /// Lets go of the sliding nodes that press on nothing, but for those on `kept`; returns whether there were any.
@@ -476,6 +481,7 @@ impl Dynamics {
             factor: 1.0,
             exponent: 0.0,
             floor_factor: 1.0,
+            balanced: None,
         };
         Some((bar, arc_length, sliding))
     }

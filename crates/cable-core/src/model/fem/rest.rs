@@ -6,8 +6,8 @@ use super::contact_set::SLIDE;
 use super::contact_start::push_out;
 use super::contact_step::WORK_SPENT;
 use super::dynamics::{Dynamics, REACH};
-use super::integrate::PULLED;
-use super::prepare::{load_scale, tolerance};
+use super::integrate::{NOT_FOUND, PULLED, ROUNDS_EACH};
+use super::prepare::{Grips, load_scale, tolerance};
 use super::task::{Done, Failure, Pose};
 use crate::error::SolveError;
 use crate::math::{Vec2, larger};
@@ -88,12 +88,12 @@ impl Dynamics {
             self.task.max_iterations = REST_ITERATIONS;
             self.task.most_noise = NEGLIGIBLE * self.task.tolerance;
             let mut pose = self.still_pose();
-            let mut done = self.lag(&mut pose, LAG_ROUNDS);
+            let mut done = self.lag_wholly(&mut pose);
             if done.is_err_and(|f| f.cause != WORK_SPENT) && self.contacts.slip < SLIDE {
                 // Where grips change all along the cable, as on a first lay, ground that gives way is easier to come to rest on.
                 self.contacts.set_slip(SLIDE);
                 pose = self.still_pose();
-                done = self.lag(&mut pose, LAG_ROUNDS);
+                done = self.lag_wholly(&mut pose);
             }
             if round == 0
                 && pull.is_finite()
@@ -165,7 +165,13 @@ impl Dynamics {
 
     /// Minimises again and again with refreshed normal forces, grips and factors until nothing changes.
     fn lag(&mut self, pose: &mut Pose, rounds: usize) -> Result<Done, Failure> {
-        let mut total = Done::default();
+        self.lag_until(pose, rounds).map(|(done, _)| done)
+    }
+
+    /// The same; says what was found of the sliding nodes.
+    fn lag_until(&mut self, pose: &mut Pose, rounds: usize) -> Result<(Done, Grips), Failure> {
+        let (mut total, mut grips) = (Done::default(), Grips::FOUND);
+        let (mut fewest, mut spare) = (usize::MAX, PLAIN_ROUNDS);
         for round in 0..rounds {
             self.contacts.look_around(&self.problem, &self.mesh, &pose.x, |_| 0.0);
             let before = if round < PLAIN_ROUNDS { Vec::new() } else { self.contacts.rubs.clone() };
@@ -174,14 +180,30 @@ impl Dynamics {
             self.task.shift = self.soft_shift();
             let done = self.minimise(pose)?;
             total = Done { iterations: total.iterations + done.iterations, ..done };
-            let (gripped, factors) = self.update_grips(pose);
+            grips = self.update_grips(pose, spare == 0);
+            if grips.wrong < fewest {
+                (fewest, spare) = (grips.wrong, PLAIN_ROUNDS);
+            } else {
+                spare = spare.saturating_sub(1);
+            }
             // A round that needed no iteration found the normal forces it had used.
             let found = done.iterations == 0 && off <= self.task.tolerance;
-            if (found || self.contacts.rubs.is_empty()) && !gripped && !factors {
+            if (found || self.contacts.rubs.is_empty()) && grips.wrong == 0 && grips.same {
                 break;
             }
         }
-        Ok(total)
+        Ok((total, grips))
+    }
+
+    /// The same, until the law holds at every sliding node.
+    fn lag_wholly(&mut self, pose: &mut Pose) -> Result<Done, Failure> {
+        let sliding = self.mesh.sliding.iter().flatten().count();
+        let (done, grips) = self.lag_until(pose, LAG_ROUNDS + ROUNDS_EACH * sliding)?;
+        if grips.hold() {
+            return Ok(done);
+        }
+        let node = self.mesh.sliding.iter().position(Option::is_some).unwrap_or(0);
+        Err(Failure { node, residual: done.residual, cause: NOT_FOUND })
     }
 
     /// Takes a pose as the state at rest at the time `to`; returns whether what the cable runs over changed.
@@ -199,6 +221,7 @@ impl Dynamics {
         self.motion.w.fill(0.0);
         self.motion.time = to;
         self.slide(&pose.slide);
+        self.mesh.sliding.iter_mut().flatten().for_each(|s| s.balanced = None);
         self.forget_history();
     }
 

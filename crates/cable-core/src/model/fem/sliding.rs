@@ -60,6 +60,8 @@ pub struct Sliding {
     pub exponent: f64,
     /// Plan view: the floor's friction as the scaled energy sees it, in parts of its own size (see `floor.rs`).
     pub floor_factor: f64,
+    /// What friction acted between in the last step with inertia. None at rest and of a new node.
+    pub balanced: Option<Balanced>,
 }
 
 impl Sliding {
@@ -91,6 +93,16 @@ impl Sliding {
     }
 }
 
+/// What friction acted between at a sliding node in a step with inertia: tensions as they are reported lack the loss of the bars, and nothing says how
+/// what slides speeds up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Balanced {
+    /// Pull where the cable comes on to the round, less the inertia of what slides, and where it leaves it, N.
+    pub pull: [f64; 2],
+    /// Angle through which the cable turned round it, rad.
+    pub turn: f64,
+}
+
 /// How a sliding node is loaded.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Load {
@@ -98,6 +110,8 @@ pub struct Load {
     pub tension: [f64; 2],
     /// The same as the energy's slope sees it: along the bars, not along the sagging cable, N.
     pub pull: [f64; 2],
+    /// The same at its material, as the slope of the bars' energy by the slide sees it, N.
+    pub at_material: [f64; 2],
     /// Angle through which the cable turns round it, rad: normal force over tension. Negative: it wants to leave.
     pub turn: f64,
     /// Normal force, N.
@@ -126,7 +140,9 @@ impl Load {
             // No force has no direction: the angle to zeros is half a turn where the sign of one of them is lost.
             let between =
                 |a: Vec2, b: Vec2| if a == Vec2::zeros() || b == Vec2::zeros() { 0.0 } else { angle_between(a, b) };
-            let sag = between(force[0], t[0]) + between(t[1], force[1]);
+            // Nor does what pushes: at the round the cable hangs straight down then.
+            let hangs = |j: usize| if pull[j] < 0.0 { force[j] - t[j] * pull[j] } else { force[j] };
+            let sag = between(hangs(0), t[0]) + between(t[1], hangs(1));
             path[0].arcs[1] + path[1].arcs[0] + node.end.sense * sag
         } else {
             angle_between(force[0], force[1]).abs()
@@ -134,6 +150,7 @@ impl Load {
         Self {
             tension: ends,
             pull,
+            at_material: pull,
             turn,
             normal: 0.5 * (ends[0] + ends[1]) * turn,
             force,
@@ -149,15 +166,20 @@ impl Load {
     }
 
     /// What the law says of the grip: `slid` is how far the arc length moved in this step (m), `inertia` the force
-    /// (N) that its inertia adds to the slope.
+    /// (N) that its inertia adds to the slope, `stiffness` is EA (N). A node holds or slips by the very slope that the step balances: with
+    /// another, however near to it, one that is about to slip is said to slip where it holds and to hold where it slips, for ever.
     #[must_use]
-    pub fn grip(&self, node: &Sliding, slid: f64, inertia: f64, slack: f64) -> Grip {
-        let [before, after] = self.at_round();
+    pub fn grip(&self, node: &Sliding, slid: f64, [inertia, slack]: [f64; 2], stiffness: f64) -> Grip {
         let cone = node.exponent.exp();
-        let slope = |ratio: f64| after * ratio + self.floor[1] * floor::mean_factor(ratio) - before + inertia;
+        let [before, after] = self.at_material;
+        let slope = |grip: Grip| {
+            let (ratio, factor) = (self.ratio(grip, node.exponent), self.factor(grip, node.exponent, stiffness));
+            let floor = self.floor[0] + self.floor[1] * floor::mean_factor(ratio) + self.floor[2] * ratio;
+            after * factor + floor - before + inertia
+        };
         match node.grip {
-            Grip::Stick if slope(cone) < -slack => Grip::ToStart,
-            Grip::Stick if slope(1.0 / cone) > slack => Grip::ToEnd,
+            Grip::Stick if slope(Grip::ToStart) < -slack => Grip::ToStart,
+            Grip::Stick if slope(Grip::ToEnd) > slack => Grip::ToEnd,
             // Without friction both ways are one.
             Grip::ToStart if slid < 0.0 && cone > 1.0 => Grip::Stick,
             Grip::ToEnd if slid > 0.0 && cone > 1.0 => Grip::Stick,

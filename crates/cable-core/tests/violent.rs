@@ -1,0 +1,202 @@
+//! Violent motion: cables thrown about over random ground, beams and posts, dropped, let go at an end, and torn. Which laws are broken is counted in every
+//! output step. Asked: no figure that is no number, nothing inside anything, less than one step in a thousand that stops. Not yet asked, as
+//! it does not hold: friction within its cone in each output step (20 292 of 282 449 are beyond it).
+//!
+//! All 600 scenes: `cargo test --locked -p cable-core --test violent -- --ignored --nocapture` (five minutes); `FROM=100 TO=200` takes some of them,
+//! `TELL=friction NODES=1` tells what was found of a law.
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
+use std::collections::BTreeMap;
+
+use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
+use cable_core::verify::Law;
+use cable_core::{Model, Settings, Simulation};
+
+/// Repeatable random numbers (splitmix64, G. Steele, D. Lea, C. Flood, "Fast splittable pseudorandom number generators", 2014).
+struct Dice(u64);
+
+impl Dice {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+}
+
+/// Rough ground, up to two beams and two posts in the air, a cable above them: held at both ends, let go at one or both, or thrown about by an end.
+fn scene(number: u64) -> Scene {
+    let mut dice = Dice(number.wrapping_mul(0x1000_0001) + 7);
+    let mut scene = catalog::hanging_span();
+    let rough = dice.between(0.0, 0.5);
+    let points_m = (0..=80).map(|k| [-20.0 + 0.5 * f64::from(k), dice.between(-rough, rough)]).collect();
+    let mut rub = || Some(dice.between(0.0, 1.0));
+    let mut obstacles =
+        vec![Obstacle { name: "ground".to_owned(), shape: Shape::Terrain { points_m }, friction: rub() }];
+    let friction = [rub(), rub(), rub(), rub()];
+    for (k, friction) in friction.into_iter().enumerate() {
+        if dice.unit() < 0.4 {
+            continue;
+        }
+        let at = [-3.0 + 1.8 * k as f64 + dice.between(-0.3, 0.3), dice.between(0.9, 1.7)];
+        let shape = if k % 2 == 0 {
+            let (b, h) = (dice.between(0.03, 0.6), dice.between(0.03, 0.3));
+            Shape::Polygon { points_m: vec![at, [at[0] + b, at[1]], [at[0] + b, at[1] + h], [at[0], at[1] + h]] }
+        } else {
+            Shape::Circle { center_m: at, radius_m: dice.between(0.03, 0.3) }
+        };
+        obstacles.push(Obstacle { name: format!("thing {k}"), shape, friction });
+    }
+    scene.obstacles = obstacles;
+    let c = &mut scene.cables[0];
+    c.length_m = dice.between(8.2, 13.0);
+    c.axial_stiffness_n = 10f64.powf(dice.between(4.0, 7.0));
+    c.segments = Some(dice.between(32.0, 120.0) as usize);
+    // Every third cable breaks where it is pulled hard.
+    let strength = if dice.unit() < 0.33 { dice.between(300.0, 3000.0) } else { 1e12 };
+    (c.breaking_tension_n, c.service_tension_n) = (strength, strength);
+    let mut ends = [Support::fixed("left", [-4.0, 3.0]), Support::fixed("right", [4.0, 3.0])];
+    for end in &mut ends {
+        let kind = dice.unit();
+        if kind < 0.3 {
+            end.release_s = Some(dice.between(0.05, 0.6));
+        } else if kind < 0.75 {
+            let home = end.at_m.expect("a fixed end");
+            let knots = 5;
+            let mut points_m = vec![home];
+            points_m.extend((1..knots).map(|_| [home[0] + dice.between(-1.5, 1.5), dice.between(2.2, 4.5)]));
+            let quick = dice.between(0.12, 0.6);
+            end.motion = Some(Motion { times_s: (0..knots).map(|k| quick * k as f64).collect(), points_m });
+        }
+    }
+    assert!(ends.iter().all(|e| e.kind == SupportKind::Fixed));
+    c.supports = ends.into();
+    scene
+}
+
+/// What was found in a campaign.
+#[derive(Debug, Default)]
+struct Found {
+    steps: usize,
+    halved: usize,
+    broke: usize,
+    /// First rests that were not found.
+    no_rest: Vec<String>,
+    /// Steps that stopped.
+    stopped: Vec<String>,
+    /// Answers with a figure that is no number.
+    no_number: usize,
+    /// Output steps in which a law was broken, by law, and the worst of each.
+    broken: BTreeMap<String, (usize, f64, String)>,
+}
+
+const RATE: f64 = 240.0;
+
+fn run(number: u64, seconds: f64, found: &mut Found) {
+    let mut sim = Simulation::with_settings(scene(number), Model::Fem, Settings::default()).expect("a sound scene");
+    if let Err(e) = sim.settle() {
+        found.no_rest.push(format!("{number}: {e}"));
+        return;
+    }
+    for step in 0..(seconds * RATE) as usize {
+        found.steps += 1;
+        let stop = sim.step(1.0 / RATE);
+        let answer = sim.solution();
+        if let Err(e) = stop {
+            found.stopped.push(format!("{number} at step {step}: {e}"));
+            break;
+        }
+        found.halved += answer.cost.halved_steps;
+        let cable = &answer.cables[0];
+        let sound = |n: &cable_core::solution::Node| n.x_m.is_finite() && n.y_m.is_finite() && n.tension_n.is_finite();
+        found.no_number += usize::from(!cable.nodes.iter().all(sound));
+        // Of pieces that flew apart the laws of one cable say nothing.
+        if !cable.breaks.is_empty() {
+            continue;
+        }
+        for f in answer.verification.iter().flat_map(|v| &v.findings) {
+            let entry = found.broken.entry(f.law.name().to_owned()).or_insert((0, 0.0, String::new()));
+            entry.0 += 1;
+            let over = f.value / if f.limit > 0.0 { f.limit } else { 1.0 };
+            if over > entry.1 {
+                (entry.1, entry.2) = (over, format!("scene {number} step {step}: {f}"));
+            }
+            if std::env::var("TELL").is_ok_and(|t| f.law.name().starts_with(&t)) {
+                println!("scene {number} step {step}: {f}");
+                if std::env::var("NODES").is_ok() {
+                    for n in cable.nodes.iter().filter(|n| (n.arc_length_m - f.arc_length_m).abs() < 0.4) {
+                        println!("    s {:.4} at {:.4} {:.4} T {:.2}", n.arc_length_m, n.x_m, n.y_m, n.tension_n);
+                    }
+                    for c in &cable.contacts {
+                        println!(
+                            "    {} s {:.4} [{:.4} {:.4}] N {:.4} F {:.4} {:?} turn {:.2} T {:.3} {:.3} samples {}",
+                            c.obstacle,
+                            c.arc_length_m,
+                            c.begins_m,
+                            c.ends_m,
+                            c.normal_n,
+                            c.friction_n,
+                            c.state,
+                            c.turn_deg,
+                            c.tension_before_n,
+                            c.tension_after_n,
+                            c.samples.len()
+                        );
+                    }
+                }
+            }
+        }
+    }
+    found.broke += usize::from(!sim.solution().cables[0].breaks.is_empty());
+}
+
+fn tell(found: &Found) {
+    println!(
+        "{} steps, {} halved, {} scenes broke, {} without a first rest, {} stopped, {} answers with no number",
+        found.steps,
+        found.halved,
+        found.broke,
+        found.no_rest.len(),
+        found.stopped.len(),
+        found.no_number
+    );
+    for line in found.no_rest.iter().chain(&found.stopped) {
+        println!("  {line}");
+    }
+    for (law, (count, over, worst)) in &found.broken {
+        println!("  {law}: {count} output steps, worst {over:.2} times what is let pass: {worst}");
+    }
+}
+
+fn campaign(scenes: std::ops::Range<u64>, seconds: f64) -> Found {
+    let mut found = Found::default();
+    for number in scenes {
+        run(number, seconds, &mut found);
+    }
+    tell(&found);
+    found
+}
+
+fn inside(found: &Found) -> usize {
+    found.broken.get(Law::Penetration.name()).map_or(0, |b| b.0)
+}
+
+#[test]
+fn ten_violent_scenes_obey_the_laws() {
+    let found = campaign(0..10, 1.0);
+    assert!(found.no_number == 0 && inside(&found) == 0 && found.stopped.is_empty(), "{found:?}");
+    assert!(found.no_rest.len() <= 1, "{found:?}");
+}
+
+#[test]
+#[ignore = "five minutes: 600 violent scenes"]
+fn six_hundred_violent_scenes_obey_the_laws() {
+    let number = |name: &str, or: u64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(or);
+    let found = campaign(number("FROM", 0)..number("TO", 600), 2.0);
+    assert!(found.no_number == 0, "{found:?}");
+    assert!((found.stopped.len() as f64) < 1e-3 * found.steps as f64, "{found:?}");
+}
