@@ -88,7 +88,7 @@ impl Similar {
             SolveError::TooMuchWork { model, iterations, segments, residual_n, place } => {
                 SolveError::TooMuchWork { model, iterations, segments, residual_n, place: self.place_back(&place) }
             }
-            error @ (SolveError::Indefinite { .. } | SolveError::Unsound { .. }) => error,
+            error @ (SolveError::Indefinite { .. } | SolveError::Unsound { .. } | SolveError::Setting { .. }) => error,
         }
     }
 
