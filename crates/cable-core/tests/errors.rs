@@ -283,7 +283,8 @@ fn case(family: usize, number: u64) -> Case {
             led(Shape::Terrain { points_m: line }, friction, (way, 0.0, density), stiffness)
         }
         10 => {
-            let mut scene = if number % 2 == 0 { floor(&mut dice, 0.0, friction) } else { beam(&mut dice, friction) };
+            let mut scene =
+                if number.is_multiple_of(2) { floor(&mut dice, 0.0, friction) } else { beam(&mut dice, friction) };
             scene.cables[0].length_m *= dice.within(1.15, 1.5);
             scene
         }
