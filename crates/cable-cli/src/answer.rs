@@ -1,5 +1,6 @@
 //! The JSON object of an answer: SI units in the key names, never a number that is not finite.
 
+use cable_core::ErrorEstimates;
 use cable_core::solution::{
     Bend, CableSolution, ContactReport, ContactSample, ContactState, Node, Pressure, Solution, SupportReaction, Warning,
 };
@@ -20,6 +21,8 @@ pub struct Answer<'a> {
     pub wall_time_s: f64,
     /// Estimated relative error of the greatest tension; null where the model gives none.
     pub error_estimate: Option<f64>,
+    /// Estimated error of each figure, one a cable; null where it is not known.
+    pub errors: Vec<OfCable<'a, ErrorEstimates>>,
     pub max_tension_n: f64,
     pub max_tension_arc_length_m: f64,
     /// The sharpest bend of all cables; null where all are nearly straight.
@@ -138,6 +141,7 @@ pub fn answer<'a>(
         iterations: s.cost.iterations,
         wall_time_s,
         error_estimate: s.cables.iter().filter_map(|c| c.error_estimate).reduce(f64::max),
+        errors: s.cables.iter().map(|c| OfCable { cable: name(c), of: c.errors }).collect(),
         max_tension_n: top.tension_n,
         max_tension_arc_length_m: top.arc_length_m,
         tightest_bend: bends.reduce(|a, b| if b.of.radius_m < a.of.radius_m { b } else { a }),
@@ -224,7 +228,7 @@ fn check_finite(s: &Solution) -> Result<(), String> {
         if !all(&values) || !all(&[pressure.pressure_n_per_m, pressure.arc_length_m, pressure.x_m, pressure.y_m]) {
             return Err(format!("a bend of cable `{}`", c.name));
         }
-        if c.error_estimate.is_some_and(|e| !e.is_finite()) {
+        if c.error_estimate.is_some_and(|e| !e.is_finite()) || !c.errors.is_finite() {
             return Err(format!("the error estimate of cable `{}`", c.name));
         }
     }

@@ -26,9 +26,7 @@ pub fn table(s: &Solution, figures: &Figures) -> String {
         }
     }
     for c in &s.cables {
-        if let Some(e) = c.error_estimate {
-            let _ = writeln!(t, "Estimated error   {:.1e} of the greatest tension of `{}`", e, c.name);
-        }
+        errors(&mut t, c);
     }
     let _ = writeln!(t, "Residual          {:.2e} N after {} iterations", s.cost.residual_n, s.cost.iterations);
     if let Some(v) = &s.verification {
@@ -46,6 +44,23 @@ pub fn table(s: &Solution, figures: &Figures) -> String {
         let _ = writeln!(t, "\nWarning: {}", w.message);
     }
     t
+}
+
+/// What is known of the errors of a cable's figures.
+fn errors(t: &mut String, c: &cable_core::solution::CableSolution) {
+    let Some(part) = c.error_estimate else {
+        let _ = writeln!(t, "Estimated error   not known for `{}`", c.name);
+        return;
+    };
+    let _ = writeln!(t, "Estimated error   {part:.1e} of the greatest tension of `{}`", c.name);
+    let e = &c.errors;
+    let figure = |of: Option<f64>, unit| of.map_or_else(|| "not known".to_owned(), |v| format!("± {v:.1e} {unit}"));
+    let _ = write!(t, "                  greatest tension {}", figure(e.max_tension_n, "N"));
+    let _ = write!(t, ", supports {}", figure(e.support_force_n, "N"));
+    if !c.contacts.is_empty() {
+        let _ = write!(t, ", contacts {}", figure(e.contact_force_n, "N"));
+    }
+    let _ = writeln!(t, ", shape {}", figure(e.position_m, "m"));
 }
 
 /// A place on a cable and in the plane.

@@ -127,6 +127,7 @@ fn solve_prints_one_object_with_the_stated_keys() {
         "iterations",
         "wall_time_s",
         "error_estimate",
+        "errors",
         "max_tension_n",
         "max_tension_arc_length_m",
         "tightest_bend",

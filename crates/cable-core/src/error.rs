@@ -321,6 +321,16 @@ pub enum SolveError {
         /// The law, the place and the figure.
         finding: Box<Finding>,
     },
+    /// A setting that no model can work by.
+    #[error("the setting {name} = {value} cannot be worked by: it must lie in {allowed}")]
+    Setting {
+        /// Which.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// The allowed range.
+        allowed: &'static str,
+    },
     /// A time step that cannot be taken.
     #[error("a time step of {dt_s} s cannot be taken: it must lie in {allowed}")]
     TimeStep {

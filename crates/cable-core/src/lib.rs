@@ -26,6 +26,7 @@ pub mod catenary;
 pub mod contact;
 pub mod energy;
 pub mod error;
+pub mod estimates;
 pub mod files;
 pub mod math;
 pub mod model;
@@ -47,6 +48,7 @@ mod watch;
 
 pub use cable_linalg as linalg;
 pub use error::{Error, SceneError, SolveError};
+pub use estimates::ErrorEstimates;
 pub use files::FileError;
 pub use math::{Mat2, Vec2};
 pub use model::{Model, Settings};

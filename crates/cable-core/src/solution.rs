@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::estimates::ErrorEstimates;
 use crate::math::Vec2;
 use crate::model::Model;
 use crate::robot::RobotReport;
@@ -59,6 +60,9 @@ pub struct CableSolution {
     pub contacts: Vec<ContactReport>,
     /// Estimated relative error of the largest tension; None = not estimated.
     pub error_estimate: Option<f64>,
+    /// Estimated errors of its figures, each in its own unit.
+    #[serde(default)]
+    pub errors: ErrorEstimates,
     /// The sharpest bend of its line: the cable's own curve where it is free, the round it is led by elsewhere; None = nearly straight.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tightest_bend: Option<Bend>,

@@ -26,6 +26,8 @@ pub struct Lay {
     pub answer: CableSolution,
     /// What there is to say of it.
     pub warnings: Vec<Warning>,
+    /// The model that has it, to go on from there.
+    pub spans: Box<SpansModel>,
 }
 
 /// Where the cable comes to lie with the least sliding, supports `dragged` (m) and the robot led to where it is; None where `spans`
@@ -58,7 +60,7 @@ pub fn least_sliding(
     }
     let answer = spans.solution();
     let clear = !meets_outline(problem, led, &answer) && !is_buried(problem, &answer);
-    Ok(clear.then_some(Lay { answer, warnings }))
+    Ok(clear.then(|| Lay { answer, warnings, spans: Box::new(spans) }))
 }
 
 /// Says of which cable the histories are that are known.

@@ -92,6 +92,32 @@ impl Default for Settings {
     }
 }
 
+/// Tolerances that make sense: below, rounding is more than is asked for; from 1 on nothing is.
+const TOLERANCES: (f64, f64) = (1e-14, 1.0);
+/// Segments, as a scene's own.
+const SEGMENTS: (usize, usize) = (1, 100_000);
+
+impl Settings {
+    /// Refuses what no model can work by.
+    ///
+    /// # Errors
+    /// `Setting`, with the value and what is allowed.
+    pub fn validate(&self) -> Result<(), SolveError> {
+        if !(TOLERANCES.0..TOLERANCES.1).contains(&self.tolerance) {
+            let (name, allowed) = ("tolerance", "1e-14 to below 1");
+            return Err(SolveError::Setting { name, value: self.tolerance, allowed });
+        }
+        match self.segments {
+            Some(n) if !(SEGMENTS.0..=SEGMENTS.1).contains(&n) => {
+                let (name, allowed) = ("segments", "1 to 100000");
+                #[expect(clippy::cast_precision_loss, reason = "only shown")]
+                Err(SolveError::Setting { name, value: n as f64, allowed })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
 /// Whether inertia takes part in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inertia {
@@ -220,8 +246,9 @@ fn refuse_mobilised(model: Model, problem: &Problem) -> Result<(), SolveError> {
 /// stands behind it ([`relay::Relay`]).
 ///
 /// # Errors
-/// `Unsupported` when the model lacks what the scene needs.
+/// `Setting` when the settings are out of range, `Unsupported` when the model lacks what the scene needs.
 pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Box<dyn Mechanics>, SolveError> {
+    settings.validate()?;
     if let Some((by, copy)) = problem.similar.clone() {
         return Ok(Box::new(similar::Similar::new(problem, by, build(model, copy, settings)?)));
     }

@@ -88,7 +88,7 @@ impl Similar {
             SolveError::TooMuchWork { model, iterations, segments, residual_n, place } => {
                 SolveError::TooMuchWork { model, iterations, segments, residual_n, place: self.place_back(&place) }
             }
-            error @ (SolveError::Indefinite { .. } | SolveError::Unsound { .. }) => error,
+            error @ (SolveError::Indefinite { .. } | SolveError::Unsound { .. } | SolveError::Setting { .. }) => error,
         }
     }
 
@@ -143,6 +143,7 @@ fn answer(mut a: CableSolution, l: f64, t: f64, place: impl Fn(Vec2) -> Vec2) ->
         n.stress_pa /= l * l;
         n.curvature_per_m /= l;
     }
+    a.errors.scale_lengths(l);
     a.assumptions.bending_stiffness_n_m2 *= l * l;
     for s in &mut a.supports {
         put(&mut s.x_m, &mut s.y_m);

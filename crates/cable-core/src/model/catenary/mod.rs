@@ -349,14 +349,14 @@ impl Mechanics for CatenaryModel {
     }
 
     fn solution(&self) -> CableSolution {
-        CableSolution {
+        let answer = CableSolution {
             name: self.problem.cable.name.clone(),
             nodes: self.nodes.clone(),
             supports: self.reactions.clone(),
             contacts: Vec::new(),
-            error_estimate: Some(0.0),
             ..CableSolution::default()
-        }
+        };
+        answer.rounded(&self.problem)
     }
 
     fn problem(&self) -> &Arc<Problem> {

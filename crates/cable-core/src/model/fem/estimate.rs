@@ -13,6 +13,7 @@
 //! What is estimated is the error of the whole force vector beside every stop, in parts of the greatest tension: a slack span
 //! may have its greatest tension right to many digits and its horizontal force wrong in the third.
 
+use super::answer::Point;
 use super::beam::Beam;
 use super::element::Material;
 use super::layout::Layout;
@@ -36,6 +37,9 @@ const ROUNDING: f64 = 8.0;
 /// accepted at 1e-8, and what that leaves adds up. Less: one in ten histories of stiff cables is farther from that of `spans`
 /// (up to 8e-8 in 300); more: nobody asks for less.
 const MEMORY: f64 = 1e-7;
+
+/// Arc lengths that differ by less are those of one node of two meshes, m.
+const SAME_PLACE: f64 = 1e-9;
 
 /// The same without friction: tensions of stiff cables beside pulleys agree to that.
 const BALANCE: f64 = 1e-10;
@@ -63,6 +67,35 @@ pub fn relative_error(network: &mut Network) -> f64 {
     let least = if error < 0.5 * largest { largest - error } else { largest };
     let share = if least > 0.0 { error / least } else { error };
     share * (1.0 + SETTLED)
+}
+
+/// Estimated error of the shape, m: what the chords up to a node lack in all, and what the force that closes the span moves its end.
+#[must_use]
+pub fn position_error(network: &mut Network) -> f64 {
+    let changes = force_errors(network);
+    let (mut most, layout) = (0.0, &network.layout);
+    for (&ends, span) in network.ends.iter().zip(&network.spans) {
+        let mut lack = 0.0;
+        elements(&network.material, layout, ends, span.force, |ds, f| {
+            lack += network.material.chord_error(ds, f).norm();
+        });
+        let closing = changes.get(ends.0).map_or(0.0, |c| (span.walk.compliance * c[1]).norm());
+        most = larger(most, lack + closing);
+    }
+    most + ROUNDING * f64::EPSILON * layout.length
+}
+
+/// Greatest distance of points of one mesh from those of the same arc length on another, m.
+#[must_use]
+pub fn apart(some: &[Point], others: &[Point]) -> f64 {
+    let mut most = 0.0;
+    for p in some {
+        let k = others.partition_point(|o| o.arc_length < p.arc_length - SAME_PLACE);
+        if let Some(o) = others.get(k).filter(|o| (o.arc_length - p.arc_length).abs() <= SAME_PLACE) {
+            most = larger(most, (o.at - p.at).norm());
+        }
+    }
+    most
 }
 
 /// What rounding of lengths does to the stiffest span, N.

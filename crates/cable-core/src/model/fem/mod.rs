@@ -58,10 +58,11 @@ mod wheel;
 use std::sync::Arc;
 
 use self::two_meshes::TwoMeshes;
-use super::lay::{least_sliding, slid_first, slides_on, work};
+use super::lay::{Lay, least_sliding, slid_first, slides_on, work};
 use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
+use crate::estimates::ErrorEstimates;
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
@@ -164,11 +165,11 @@ impl FemModel {
     ///
     /// # Errors
     /// That it slides from where it is laid.
-    fn lay(&mut self) -> Result<(Laid, Option<CableSolution>), SolveError> {
+    fn lay(&mut self) -> Result<(Laid, Option<Lay>), SolveError> {
         let laid = least_sliding(&self.problem, self.settings, (&self.dragged, self.led))?;
         let Some(lay) = laid else { return Ok((Laid::Unknown, None)) };
         // A stiff cable is laid as a flexible one: that is where it begins, not how it lies.
-        let exact = (self.problem.bending_stiffness == 0.0).then(|| lay.answer.clone());
+        let flexible = self.problem.bending_stiffness == 0.0;
         let before = self.dynamics.clone();
         let taken = self.dynamics.take_over(&lay.answer, before.time(), &self.dragged).is_ok() && self.dynamics.rested;
         let greatest = lay.answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
@@ -177,10 +178,10 @@ impl FemModel {
         let off = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
         let jammed = if self.problem.bending_stiffness > 0.0 { JAMMED_STIFF } else { JAMMED };
         if taken && off.fold(0.0, larger) <= jammed * greatest {
-            return Ok((Laid::TakenOver(lay.warnings), exact));
+            return Ok((Laid::TakenOver(lay.warnings.clone()), flexible.then_some(lay)));
         }
         self.dynamics = before;
-        Ok((Laid::Alone, exact))
+        Ok((Laid::Alone, flexible.then_some(lay)))
     }
 
     /// The resting place where nothing can be touched. From the flexible cable up in EI a stiff one may come to where its shape snaps
@@ -249,7 +250,7 @@ impl FemModel {
             return Ok(report);
         }
         report.warnings.extend(self.bend_warning());
-        self.compare_meshes(exact.as_ref());
+        self.compare_meshes(exact);
         report.warnings.extend(self.coarse_warning());
         Ok(report)
     }
@@ -341,9 +342,9 @@ impl FemModel {
         if !found.stiffen(&self.problem) {
             return None;
         }
-        let estimate = found.refine(&self.problem, SAFETY * self.settings.tolerance)?;
+        let (estimate, errors) = found.refine(&self.problem, SAFETY * self.settings.tolerance)?;
         let (iterations, residual_n) = found.cost();
-        self.bent = Some(CableSolution { error_estimate: Some(estimate), ..found.solution(&self.problem) });
+        self.bent = Some(CableSolution { error_estimate: Some(estimate), errors, ..found.solution(&self.problem) });
         Some(Cost { iterations, residual_n, ..Cost::default() })
     }
 
@@ -357,14 +358,14 @@ impl FemModel {
 
     /// Looks at the cable in contact beside an answer without a mesh, or on another one, and makes its own finer where the scene
     /// leaves that open.
-    fn compare_meshes(&mut self, exact: Option<&CableSolution>) {
+    fn compare_meshes(&mut self, exact: Option<Lay>) {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
         self.meshes.compare(&self.problem, (self.settings, !given), (&mut self.dynamics, exact), &self.dragged);
     }
 
     /// What there is to say of a mesh that is coarser than the tolerance asks for.
     fn coarse_warning(&self) -> Option<Warning> {
-        let (estimate, asked) = (self.meshes.estimate?, self.settings.tolerance);
+        let (estimate, asked) = (self.meshes.errors.relative(&self.dynamics.solution())?, self.settings.tolerance);
         (estimate > asked).then(|| {
             let message = format!(
                 "{} elements give the forces to about {estimate:.1e} of the greatest tension; {asked:.1e} was asked for: use more segments",
@@ -433,7 +434,7 @@ impl Mechanics for FemModel {
                 self.dynamics.take_over(&answer, self.dynamics.time(), &self.dragged)?;
             }
             let mut report = self.dynamics.advance(dt_s, inertia, &self.dragged)?;
-            self.meshes.follow(&self.dynamics, dt_s, inertia, &self.dragged);
+            self.meshes.follow((&self.problem, self.settings), &self.dynamics, dt_s, inertia, &self.dragged);
             let led = !touches_nothing(&self.problem) || self.dynamics.slides_anywhere();
             match if led { self.bend_warning() } else { None } {
                 Some(warning) => report.warnings.push(warning),
@@ -504,8 +505,14 @@ impl Mechanics for FemModel {
         match self.present {
             Part::Statics => self.statics.solution(),
             Part::Dynamics => {
-                let estimates = [self.unbent, self.meshes.estimate].into_iter().flatten();
-                CableSolution { error_estimate: estimates.reduce(larger), ..self.dynamics.solution() }
+                let answer = self.dynamics.solution();
+                let meshes = self.meshes.errors;
+                let estimates = [self.unbent, meshes.relative(&answer)].into_iter().flatten();
+                let errors = match self.unbent {
+                    Some(part) => meshes.plus(&ErrorEstimates::of_forces(&answer, Some(part))),
+                    None => meshes,
+                };
+                CableSolution { error_estimate: estimates.reduce(larger), errors, ..answer }
             }
         }
     }

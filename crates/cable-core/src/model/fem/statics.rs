@@ -12,6 +12,7 @@ use super::estimate;
 use super::layout::{Hold, Layout, place};
 use super::network::{Failure, Network};
 use crate::error::{Place, SolveError};
+use crate::estimates::ErrorEstimates;
 use crate::math::{Vec2, larger};
 use crate::model::lay::least_sliding;
 use crate::model::{Model, Settings, StepReport};
@@ -76,6 +77,8 @@ pub struct Statics {
     rested: Option<(Layout, Vec<[Vec2; 2]>)>,
     points: Vec<Point>,
     estimate: Option<f64>,
+    /// Estimated error of the shape, m.
+    moved: Option<f64>,
     /// Whether it was put where it is: then it is not as it was laid.
     adopted: bool,
 }
@@ -95,6 +98,7 @@ impl Statics {
             rested: None,
             points: Vec::new(),
             estimate: None,
+            moved: None,
             adopted: false,
             time: 0.0,
             problem,
@@ -252,6 +256,7 @@ impl Statics {
         }
         answer::points(&network, self.problem.radius, &mut self.points);
         self.estimate = Some(estimate);
+        self.moved = Some(estimate::position_error(&mut network));
         self.rested = Some((network.layout.clone(), network.forces.clone()));
         let cost = Cost { iterations, residual_n: network.residual, ..Cost::default() };
         self.network = Some(network);
@@ -352,13 +357,14 @@ impl Statics {
         let mut coarse = Beam::new(&network, self.problem.bending_stiffness, body).wound_as(&self.problem.route);
         let mut outcome = coarse.solve();
         let mut iterations = network.steps + coarse.steps;
-        let mut estimate = None;
+        let (mut estimate, mut moved) = (None, None);
         while !given && outcome == Outcome::Stable && coarse.bars() < MOST_SEGMENTS {
             let mut fine = coarse.halved();
             outcome = fine.solve();
             iterations += fine.steps - coarse.steps;
             let found = estimate::halving_error(&coarse, &fine);
             estimate = Some(found);
+            moved = Some(2.0 / 15.0 * estimate::apart(&coarse.points(false), &fine.points(false)));
             coarse = fine;
             if found <= SAFETY * self.settings.tolerance {
                 break;
@@ -369,6 +375,7 @@ impl Statics {
             let mut fine = coarse.halved();
             if fine.solve() == Outcome::Stable {
                 estimate = Some(16.0 * estimate::halving_error(&coarse, &fine));
+                moved = Some(2.0 * estimate::apart(&coarse.points(false), &fine.points(false)));
             }
         }
         match outcome {
@@ -380,7 +387,7 @@ impl Statics {
         // Who gives the mesh is answered at its nodes.
         self.points = coarse.points(!given);
         self.rested = Some((coarse.layout().clone(), coarse.stop_forces()));
-        self.estimate = estimate;
+        (self.estimate, self.moved) = (estimate, moved);
         let cost = Cost { iterations, residual_n: coarse.residual, ..Cost::default() };
         self.network = Some(network);
         Ok(StepReport { cost, warnings: self.warnings(hinted) })
@@ -486,7 +493,7 @@ impl Statics {
         self.network = None;
         self.adopted = true;
         self.rested = None;
-        self.estimate = None;
+        (self.estimate, self.moved) = (None, None);
         self.points.clear();
         self.points.extend(state.arc_length_m.iter().zip(&state.position_m).map(|(&arc_length, &at)| Point {
             arc_length,
@@ -514,7 +521,7 @@ impl Statics {
         let supports = self.rested.as_ref().map_or_else(Vec::new, |(layout, forces)| {
             answer::reactions(&self.problem, layout, forces, body, &self.points)
         });
-        CableSolution {
+        let answer = CableSolution {
             name: self.problem.cable.name.clone(),
             nodes: self.points.iter().map(|p| p.node(&self.problem)).collect(),
             supports,
@@ -525,6 +532,8 @@ impl Statics {
                 ..Assumptions::default()
             },
             ..CableSolution::default()
-        }
+        };
+        let errors = ErrorEstimates { position_m: self.moved, ..ErrorEstimates::of_forces(&answer, self.estimate) };
+        CableSolution { errors, ..answer }
     }
 }

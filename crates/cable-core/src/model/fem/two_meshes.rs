@@ -1,39 +1,41 @@
-//! How wrong the forces of a cable in contact are.
+//! How wrong the figures of a cable in contact are.
 //!
 //! Where `spans` laid the cable its answer has no error of a mesh, and the bars only came to rest from it: the two differ by what mesh,
-//! barrier and grips do, and that is what is said. Where it has no answer (slack, stiff, in plan) the same cable on bars twice as long
-//! is asked. Straight bars between contacts are of the second order, where the cable touches down or meets a corner of the first: what
-//! is left of an error on the finer of two meshes is a third of what they differ by, or all of it. All of it is said. (L. F. Richardson and
+//! barrier and grips do, and that is what is said of each figure. On the way without inertia `spans` goes on beside the bars: it costs a small
+//! part of what they do, and remembers friction as they do.
+//!
+//! Where it has no answer (slack, stiff, in plan) the same cable on bars twice and four times as long is asked. Straight bars between
+//! contacts are of the second order, where the cable touches down or meets a corner of the first: what is left of an error on the finest of three
+//! meshes is a third of what the finer two differ by, or all of it. All of it is said, and no less than half of what the coarser two differ by:
+//! one difference may pass through nothing where the error does not, as a node comes to lie at a corner. (L. F. Richardson and
 //! J. A. Gaunt, *The deferred approach to the limit*, Phil. Trans. R. Soc. A 226, 1927, without the extrapolation: its order is not
 //! known here.)
-//!
-//! On the way without inertia the coarser cable goes on beside the finer one: what they come to differ by more than at the start is
-//! added.
 
 use std::sync::Arc;
 
 use super::dynamics::Dynamics;
-use crate::math::{Vec2, larger};
-use crate::model::{Inertia, Settings};
+use crate::estimates::ErrorEstimates;
+use crate::math::Vec2;
+use crate::model::lay::Lay;
+use crate::model::spans::SpansModel;
+use crate::model::{Inertia, Mechanics, Settings};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, SupportReaction};
+use crate::solution::CableSolution;
 
 /// Fewer bars than this have no half of use.
 const LEAST_BARS: usize = 8;
-/// Rounding of both answers, of the greatest tension.
-const ROUNDING: f64 = 1e-12;
 /// Most bars to which the mesh is refined by itself. More: 1e-3 is met by more scenes, each twice as dear as with half as many.
 const MOST_BARS: usize = 800;
+/// Part of what the coarser two of three meshes differ by that the error of the finest is at least: that of the first order.
+const COARSER: f64 = 0.5;
 
-/// The coarser cable, and what is said.
+/// Who goes on beside the cable, and what is said.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TwoMeshes {
+    exact: Option<Box<SpansModel>>,
     coarse: Option<Box<Dynamics>>,
-    /// What was said at rest, and what the two cables differed by then, N.
-    begun: f64,
-    apart: Vec<Vec2>,
-    /// Error of the force on any support and of the greatest tension, in parts of the greatest tension.
-    pub estimate: Option<f64>,
+    /// What is known of the errors now.
+    pub errors: ErrorEstimates,
 }
 
 impl TwoMeshes {
@@ -43,7 +45,7 @@ impl TwoMeshes {
         &mut self,
         problem: &Arc<Problem>,
         (settings, refines): (Settings, bool),
-        (fine, exact): (&mut Dynamics, Option<&CableSolution>),
+        (fine, exact): (&mut Dynamics, Option<Lay>),
         dragged: &[Option<Vec2>],
     ) {
         *self = Self::default();
@@ -52,45 +54,89 @@ impl TwoMeshes {
             return;
         }
         if let Some(exact) = exact {
-            let mut found = difference(&fine.solution(), exact);
-            while refines && found > settings.tolerance && 2 * fine.even_bars <= MOST_BARS {
+            let mut answer = fine.solution();
+            self.errors = beside(&answer, &exact.answer, problem);
+            while refines && exceeds(&self.errors, &answer, settings) && 2 * fine.even_bars <= MOST_BARS {
                 let bars = 2 * fine.even_bars;
-                let Some(finer) = laid_over(problem, settings, (fine, bars), (exact, dragged)) else { break };
-                let next = difference(&finer.solution(), exact);
-                if !(next < found) {
+                let Some(finer) = laid_over(problem, settings, (fine, bars), (&exact.answer, dragged)) else { break };
+                let next = finer.solution();
+                let errors = beside(&next, &exact.answer, problem);
+                if !(errors.relative(&next) < self.errors.relative(&answer)) {
                     break;
                 }
                 *fine = finer;
-                found = next;
+                (answer, self.errors) = (next, errors);
             }
-            self.estimate = Some(found + ROUNDING);
+            self.exact = Some(exact.spans);
+            return;
         }
         if fine.even_bars < LEAST_BARS {
             return;
         }
         let answer = fine.solution();
-        let laid = (exact.unwrap_or(&answer), dragged);
+        let laid = (&answer, dragged);
         let Some(coarse) = laid_over(problem, settings, (fine, fine.even_bars / 2), laid) else { return };
         let other = coarse.solution();
-        self.estimate = self.estimate.or(Some(difference(&other, &answer) + ROUNDING));
-        self.apart = forces_apart(&other, &answer);
-        self.begun = self.estimate.unwrap_or(f64::NAN);
+        self.errors = ErrorEstimates::between(&other, &answer).plus(&ErrorEstimates::rounding(&answer, problem));
+        if let Some(coarsest) = laid_over(problem, settings, (fine, fine.even_bars / 4), laid) {
+            let change = ErrorEstimates::between(&coarsest.solution(), &other);
+            self.errors = self.errors.or_larger(&change.times(COARSER));
+        }
         self.coarse = Some(Box::new(coarse));
     }
 
-    /// Goes on beside the finer cable without inertia; with inertia nothing is said.
-    pub fn follow(&mut self, fine: &Dynamics, dt_s: f64, inertia: Inertia, dragged: &[Option<Vec2>]) {
-        self.estimate = None;
-        let Some(mut coarse) = self.coarse.take().filter(|_| inertia == Inertia::QuasiStatic) else { return };
-        if coarse.advance(dt_s, inertia, dragged).is_ok() {
-            let answer = fine.solution();
-            let apart = forces_apart(&coarse.solution(), &answer);
-            let more = apart.iter().zip(&self.apart).map(|(a, b)| (a - b).norm()).fold(0.0, larger);
-            let greatest = greatest(&answer);
-            self.estimate = Some(self.begun + if greatest > 0.0 { more / greatest } else { more });
-            self.coarse = Some(coarse);
+    /// Goes on beside the cable without inertia; with inertia nothing is said.
+    pub fn follow(
+        &mut self,
+        (problem, settings): (&Arc<Problem>, Settings),
+        fine: &Dynamics,
+        dt_s: f64,
+        inertia: Inertia,
+        dragged: &[Option<Vec2>],
+    ) {
+        let before = std::mem::take(self);
+        if inertia != Inertia::QuasiStatic {
+            return;
+        }
+        let answer = fine.solution();
+        let coarse = match (before.exact, before.coarse) {
+            (Some(mut exact), _) => {
+                if let Some(other) = go_on(&mut exact, dt_s, dragged) {
+                    self.errors = beside(&answer, &other, problem);
+                    self.exact = Some(exact);
+                    return;
+                }
+                // The cable has no answer without a mesh from here on.
+                laid_over(problem, settings, (fine, fine.even_bars / 2), (&answer, dragged)).map(Box::new)
+            }
+            (None, Some(mut coarse)) => coarse.advance(dt_s, inertia, dragged).is_ok().then_some(coarse),
+            (None, None) => None,
+        };
+        let Some(coarse) = coarse else { return };
+        // What friction remembers is as wrong as the steps were that it remembers.
+        self.errors = before.errors.or_larger(&ErrorEstimates::between(&coarse.solution(), &answer));
+        self.coarse = Some(coarse);
+    }
+}
+
+/// The answer of `spans` a step further on, if it has one.
+fn go_on(spans: &mut SpansModel, dt_s: f64, dragged: &[Option<Vec2>]) -> Option<CableSolution> {
+    for (k, at) in dragged.iter().enumerate() {
+        if let Some(at) = at {
+            spans.drag_support(k, *at);
         }
     }
+    spans.advance(dt_s, Inertia::QuasiStatic).ok()?;
+    Some(spans.solution())
+}
+
+/// Errors beside an answer without a mesh.
+fn beside(answer: &CableSolution, exact: &CableSolution, problem: &Problem) -> ErrorEstimates {
+    ErrorEstimates::between(answer, exact).plus(&ErrorEstimates::rounding(exact, problem))
+}
+
+fn exceeds(errors: &ErrorEstimates, answer: &CableSolution, settings: Settings) -> bool {
+    errors.relative(answer).is_some_and(|e| e > settings.tolerance)
 }
 
 /// The same cable on another number of bars, at rest where an answer has it.
@@ -107,21 +153,4 @@ fn laid_over(
         other.settle(dragged).ok()?;
     }
     Some(other)
-}
-
-fn greatest(c: &CableSolution) -> f64 {
-    c.nodes.iter().map(|n| n.tension_n).fold(0.0, larger)
-}
-
-/// What the forces on each support differ by, N.
-fn forces_apart(a: &CableSolution, b: &CableSolution) -> Vec<Vec2> {
-    let force = |s: &SupportReaction| Vec2::new(s.reaction_x_n, s.reaction_y_n);
-    a.supports.iter().zip(&b.supports).map(|(a, b)| force(a) - force(b)).collect()
-}
-
-/// Greatest difference of a force on a support or of the greatest tension from the better answer, in parts of its greatest tension.
-fn difference(other: &CableSolution, better: &CableSolution) -> f64 {
-    let (first, second) = (greatest(other), greatest(better));
-    let off = forces_apart(other, better).iter().map(|d| d.norm()).fold((first - second).abs(), larger);
-    if second > 0.0 { off / second } else { off }
 }

@@ -18,11 +18,10 @@ const RESTING_SPEED: f64 = 1e-9;
 impl MassSpringModel {
     /// Reads the present state.
     pub(super) fn answer(&self) -> CableSolution {
-        CableSolution {
+        let answer = CableSolution {
             name: self.problem.cable.name.clone(),
             nodes: self.nodes(),
             supports: (0..self.node_of.len()).map(|k| self.reaction(k)).collect(),
-            error_estimate: self.uncertain(),
             assumptions: Assumptions {
                 bending_stiffness_n_m2: self.problem.bending_stiffness,
                 inertia: self.v.iter().any(|v| v.norm_squared() > 0.0),
@@ -30,7 +29,9 @@ impl MassSpringModel {
             },
             contacts: self.wraps().into_iter().map(|(contact, _)| contact).collect(),
             ..CableSolution::default()
-        }
+        };
+        let error_estimate = self.errors.relative(&answer).or_else(|| self.uncertain());
+        CableSolution { error_estimate, errors: self.errors, ..answer }
     }
 
     pub(super) fn element_force(&self, e: usize) -> Vec2 {

@@ -71,7 +71,9 @@ impl MassSpringModel {
             anchors,
             warnings,
             settings,
-            driven
+            driven,
+            beside,
+            errors
         );
     }
 }

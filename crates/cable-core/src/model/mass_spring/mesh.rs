@@ -102,6 +102,8 @@ impl MassSpringModel {
             settings,
             driven: 0.0,
             kept: super::Kept::default(),
+            beside: super::Beside::default(),
+            errors: crate::estimates::ErrorEstimates::default(),
             problem,
             s,
             rest,

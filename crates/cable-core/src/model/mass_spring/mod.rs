@@ -1,5 +1,6 @@
 //! Lumped masses and axial springs, stepped by the leapfrog (velocities half a sub-step behind places): a quick look, and the cheap way through violent
-//! free motion. Its discretisation error is second order in the element and is not estimated, but for corners (`corner`).
+//! free motion. Its discretisation error is second order in the element; at rest and
+//! without inertia it is estimated (`beside`), in motion only for corners (`corner`).
 //!
 //! Sub-steps keep below the stability limit of a chain of springs, with ω_max = 2√(EA/(ρ l₀²)) and the damping ratio ζ
 //! of that mode: `dt < 2/ω_max · (√(1+ζ²) − ζ)` (D. Baraff, A. Witkin, Physically based modeling, SIGGRAPH course notes,
@@ -10,6 +11,7 @@
 
 mod answer;
 mod bending;
+mod beside;
 mod calm;
 mod chain;
 mod collide;
@@ -32,11 +34,13 @@ use super::fem::FemModel;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::contact::Gap;
 use crate::error::SolveError;
+use crate::estimates::ErrorEstimates;
 use crate::math::Vec2;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
+use beside::Beside;
 use kept::Kept;
 use pulley::Pulley;
 pub use stepping::Stepping;
@@ -98,6 +102,9 @@ pub struct MassSpringModel {
     /// Fastest any support has moved, m/s.
     driven: f64,
     kept: Kept,
+    /// Who goes on beside it to tell its errors, and what they are.
+    beside: Beside,
+    errors: ErrorEstimates,
 }
 
 /// Where friction holds the cable: the material point, m, and where it lies.
@@ -235,6 +242,19 @@ impl MassSpringModel {
         Some(SolveError::NonFinite { quantity: "position or velocity", arc_length_m: self.s[bad], time_s: self.time_s })
     }
 
+    /// Comes to rest; on an error nothing has changed.
+    fn settle_alone(&mut self) -> Result<(), SolveError> {
+        let kept = self.clone();
+        if !self.laid {
+            self.lay();
+        }
+        let found = self.equilibrium(true);
+        if found.is_err() {
+            *self = kept;
+        }
+        found
+    }
+
     fn report(&mut self) -> StepReport {
         self.warn_of_corners();
         StepReport { cost: self.cost, warnings: std::mem::take(&mut self.warnings) }
@@ -247,17 +267,10 @@ impl Mechanics for MassSpringModel {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        let kept = self.clone();
-        if !self.laid {
-            self.lay();
-        }
-        match self.equilibrium(true) {
-            Ok(()) => Ok(self.report()),
-            Err(e) => {
-                *self = kept;
-                Err(e)
-            }
-        }
+        let first = !self.laid && self.time_s == 0.0;
+        self.settle_alone()?;
+        self.look_beside(first);
+        Ok(self.report())
     }
 
     fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
@@ -266,12 +279,17 @@ impl Mechanics for MassSpringModel {
         }
         self.laid = true;
         let end_s = self.time_s + dt_s;
-        self.or_as_before(|this| match inertia {
+        // Not copied with each of its parts.
+        let beside = std::mem::take(&mut self.beside);
+        let done = self.or_as_before(|this| match inertia {
             Inertia::Dynamic if this.previews() => this.preview(dt_s),
             Inertia::Dynamic => this.integrate(dt_s),
             Inertia::QuasiStatic => this.creep(dt_s),
-        })?;
+        });
+        self.beside = beside;
+        done?;
         self.time_s = end_s;
+        self.follow_beside(dt_s, inertia);
         Ok(self.report())
     }
 

@@ -420,14 +420,9 @@ impl Mechanics for SpansModel {
 
     fn solution(&self) -> CableSolution {
         let Report { nodes, supports, contacts } = self.look();
-        CableSolution {
-            name: self.layout.problem.cable.name.clone(),
-            nodes,
-            supports,
-            contacts,
-            error_estimate: Some(0.0),
-            ..CableSolution::default()
-        }
+        let name = self.layout.problem.cable.name.clone();
+        let answer = CableSolution { name, nodes, supports, contacts, ..CableSolution::default() };
+        answer.rounded(&self.layout.problem)
     }
 
     fn problem(&self) -> &Arc<Problem> {

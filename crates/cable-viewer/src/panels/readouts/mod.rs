@@ -229,9 +229,13 @@ fn material(ui: &mut Ui, (cable, solved): (&Cable, &CableSolution), first: &Cabl
     }
 }
 
+/// An error of this part of the greatest tension is one of rounding. More: meshes that are very fine are called exact; less: models without a
+/// mesh show their rounding as if it mattered.
+const ROUNDED: f64 = 1e-9;
+
 fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
     let text = match solved.error_estimate {
-        Some(0.0) => "exact for this model".to_owned(),
+        Some(e) if e < ROUNDED => "exact for this model".to_owned(),
         Some(e) => format!("± {}", unit::percent(e)),
         None => "not estimated".to_owned(),
     };

@@ -53,15 +53,6 @@ impl Chain<'_> {
         }
     }
 
-    /// What forces on supports change by to another answer of the same chain, in parts of the greatest tension.
-    pub fn change(&self, finer: &Self) -> f64 {
-        let (a, b) = (self.solution(), finer.solution());
-        let greatest = b.nodes.iter().map(|n| n.tension_n.abs()).fold(0.0, larger);
-        let pairs = a.supports.iter().zip(&b.supports);
-        let off = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
-        off.fold(0.0, larger) / greatest
-    }
-
     fn answer_nodes(&self, moments: &[f64], forces: &[Vec2], pushes: &[Touch]) -> Vec<Node> {
         let p = self.problem;
         let area = p.cable.area_m2();

@@ -26,6 +26,7 @@ mod chain_answer;
 mod relax;
 mod start;
 
+use crate::estimates::ErrorEstimates;
 use crate::math::{Vec2, perp};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost};
@@ -225,10 +226,10 @@ pub fn rest(
     if let Some(found) = bent.and_then(|e| e.answer(problem, tolerance)) {
         return Some(found);
     }
-    let estimate = chain.change(&fine);
     let cost = Cost { iterations: chain.steps + fine.steps, ..Cost::default() };
-    let answer = if rests { fine.solution() } else { chain.solution() };
-    Some((CableSolution { error_estimate: Some(estimate), ..answer }, cost))
+    let (coarse, finer) = (chain.solution(), fine.solution());
+    let errors = ErrorEstimates::between(&coarse, &finer);
+    Some((if rests { finer } else { coarse }.known_to(errors), cost))
 }
 
 impl Elastica {
@@ -237,9 +238,9 @@ impl Elastica {
         if !self.stiffen(problem) {
             return None;
         }
-        let estimate = self.refine(problem, tolerance)?;
+        let (estimate, errors) = self.refine(problem, tolerance)?;
         let (iterations, residual_n) = self.cost();
-        let answer = CableSolution { error_estimate: Some(estimate), ..self.solution(problem) };
+        let answer = CableSolution { error_estimate: Some(estimate), errors, ..self.solution(problem) };
         Some((answer, Cost { iterations, residual_n, ..Cost::default() }))
     }
 
