@@ -74,6 +74,7 @@ impl Verdict {
             SolveError::Unsupported { .. } => "not supported",
             SolveError::NonFinite { .. } => "not finite",
             SolveError::Buried { .. } => "inside an obstacle",
+            SolveError::Setting { .. } => "setting",
             SolveError::TimeStep { .. } => "time step",
             SolveError::StepFailed { .. } => "step failed",
             SolveError::TooMuchWork { .. } => "too much work",

@@ -56,9 +56,7 @@ impl Drape<'_> {
             let k = if side == 0 { i } else { n - 1 - i };
             let (s, enters) = (out.lies[k], out.leaves);
             out.enters[k] = enters;
-            let friction = if side == 0 { -s.friction(self.course) } else { s.friction(self.course) };
-            let tension = |p: f64| larger(s.slide(self.course, (s.p[side], p), enters, friction).tension, 0.0);
-            out.leaves = tension(s.p[1 - side]);
+            out.leaves = self.least(&s, (side, enters), s.p[1 - side]);
             let first = if side == 0 { k } else { k.wrapping_sub(1) };
             let (Some(a), Some(b)) = (out.lies.get(first).copied(), out.lies.get(first.wrapping_add(1)).copied())
             else {
@@ -71,10 +69,7 @@ impl Drape<'_> {
                     let from =
                         Stretch { p: bounds(side, out.lies[left].p[side], lies[left].p[1 - side]), ..lies[left] };
                     let enters = out.enters[left];
-                    let friction = friction.signum() * from.friction(self.course);
-                    let tension =
-                        |p: f64| larger(from.slide(self.course, (from.p[side], p), enters, friction).tension, 0.0);
-                    if let Some(over) = self.climb([&from, to], way, &tension)? {
+                    if let Some(over) = self.climb([&from, to], way, &|p| self.least(&from, (side, enters), p))? {
                         break over;
                     }
                     // From further away.
@@ -93,7 +88,9 @@ impl Drape<'_> {
                     }
                     continue;
                 }
-                None if out.leaves > self.most && self.bends_in(&a, &b) => self.over([from, to], way, &tension)?,
+                None if out.leaves > self.most && self.bends_in(&a, &b) => {
+                    self.over([from, to], way, &|p| self.least(&s, (side, enters), p))?
+                }
                 None => continue,
             };
             let (before, after) = if side == 0 { (left, first + 1) } else { (first, left) };
@@ -105,6 +102,13 @@ impl Drape<'_> {
             out.leaves = over.tension[1];
         }
         Some(out)
+    }
+
+    /// Tension at p of a stretch that is entered on a side with another: as little as friction lets it have, N.
+    fn least(&self, s: &Stretch, (side, enters): (usize, f64), p: f64) -> f64 {
+        let friction = s.friction(self.course);
+        let against = if side == 0 { -friction } else { friction };
+        larger(s.slide(self.course, (s.p[side], p), enters, against).tension, 0.0)
     }
 
     /// Whether a cable under tension would bridge what is between two stretches.
