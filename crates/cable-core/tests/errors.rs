@@ -501,7 +501,7 @@ fn number(name: &str, other: u64) -> u64 {
 #[test]
 fn settings_out_of_range_are_refused() {
     let asked = |tolerance: f64, segments: Option<usize>| Settings { tolerance, segments, ..Settings::default() };
-    let wrong = [asked(f64::NAN, None), asked(0.0, None), asked(-1e-3, None), asked(1.0, None), asked(1e-3, Some(0))];
+    let wrong = [asked(f64::NAN, None), asked(0.0, None), asked(-1e-3, None), asked(1e-3, Some(0))];
     for settings in wrong.into_iter().chain([asked(f64::INFINITY, None), asked(1e-3, Some(usize::MAX))]) {
         for model in Model::SOLVERS {
             let found = Simulation::with_settings(catalog::hanging_span(), model, settings).map(|_| ());

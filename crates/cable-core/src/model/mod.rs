@@ -92,8 +92,8 @@ impl Default for Settings {
     }
 }
 
-/// Tolerances that make sense: below, rounding is more than is asked for; from 1 on nothing is.
-const TOLERANCES: (f64, f64) = (1e-14, 1.0);
+/// Least tolerance that makes sense: below, rounding is more than is asked for. From 1 on nothing is asked, which a test of one mesh may want.
+const LEAST_TOLERANCE: f64 = 1e-14;
 /// Segments, as a scene's own.
 const SEGMENTS: (usize, usize) = (1, 100_000);
 
@@ -103,8 +103,8 @@ impl Settings {
     /// # Errors
     /// `Setting`, with the value and what is allowed.
     pub fn validate(&self) -> Result<(), SolveError> {
-        if !(TOLERANCES.0..TOLERANCES.1).contains(&self.tolerance) {
-            let (name, allowed) = ("tolerance", "1e-14 to below 1");
+        if !(self.tolerance >= LEAST_TOLERANCE && self.tolerance.is_finite()) {
+            let (name, allowed) = ("tolerance", "1e-14 or more, and finite");
             return Err(SolveError::Setting { name, value: self.tolerance, allowed });
         }
         match self.segments {
