@@ -11,6 +11,8 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+mod dice;
+
 use std::fmt::Write as _;
 
 use cable_core::estimates::place;
@@ -18,26 +20,7 @@ use cable_core::scene::{Obstacle, PulleySide, Scene, Shape, Support, SupportKind
 use cable_core::solution::{CableSolution, ContactReport, Node, SupportReaction};
 use cable_core::{Error, Load, Model, Settings, Simulation, SolveError, Vec2};
 
-/// SplitMix64: G. L. Steele, D. Lea and C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
-struct Dice(u64);
-
-impl Dice {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    fn log(&mut self, low: f64, high: f64) -> f64 {
-        self.within(low.ln(), high.ln()).exp()
-    }
-}
+use self::dice::Dice;
 
 const FAMILIES: [&str; 12] = [
     "free spans",

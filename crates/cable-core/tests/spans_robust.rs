@@ -8,6 +8,8 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+mod dice;
+
 use cable_core::error::TensionLoss;
 use cable_core::model::spans::SpansModel;
 use cable_core::model::{Inertia, Mechanics, Settings};
@@ -19,29 +21,10 @@ use cable_core::{SolveError, Vec2};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use self::dice::Dice;
+
 const MOVES: usize = 100;
 const RADIUS: f64 = 0.01;
-
-/// SplitMix64: G. L. Steele, D. Lea and C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
-struct Dice(u64);
-
-impl Dice {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    fn log(&mut self, low: f64, high: f64) -> f64 {
-        self.within(low.ln(), high.ln()).exp()
-    }
-}
 
 /// A scene and what a hand does to it.
 struct Case {

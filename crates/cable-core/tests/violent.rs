@@ -6,35 +6,23 @@
 //! `TELL=friction NODES=1` tells what was found of a law.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+mod dice;
+
 use std::collections::BTreeMap;
 
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::verify::Law;
 use cable_core::{Model, Settings, Simulation};
 
-/// Repeatable random numbers (splitmix64, G. Steele, D. Lea, C. Flood, "Fast splittable pseudorandom number generators", 2014).
-struct Dice(u64);
-
-impl Dice {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-}
+use self::dice::Dice;
 
 /// Rough ground, up to two beams and two posts in the air, a cable above them: held at both ends, let go at one or both, or thrown about by an end.
 fn scene(number: u64) -> Scene {
     let mut dice = Dice(number.wrapping_mul(0x1000_0001) + 7);
     let mut scene = catalog::hanging_span();
-    let rough = dice.between(0.0, 0.5);
-    let points_m = (0..=80).map(|k| [-20.0 + 0.5 * f64::from(k), dice.between(-rough, rough)]).collect();
-    let mut rub = || Some(dice.between(0.0, 1.0));
+    let rough = dice.within(0.0, 0.5);
+    let points_m = (0..=80).map(|k| [-20.0 + 0.5 * f64::from(k), dice.within(-rough, rough)]).collect();
+    let mut rub = || Some(dice.within(0.0, 1.0));
     let mut obstacles =
         vec![Obstacle { name: "ground".to_owned(), shape: Shape::Terrain { points_m }, friction: rub() }];
     let friction = [rub(), rub(), rub(), rub()];
@@ -42,34 +30,34 @@ fn scene(number: u64) -> Scene {
         if dice.unit() < 0.4 {
             continue;
         }
-        let at = [-3.0 + 1.8 * k as f64 + dice.between(-0.3, 0.3), dice.between(0.9, 1.7)];
+        let at = [-3.0 + 1.8 * k as f64 + dice.within(-0.3, 0.3), dice.within(0.9, 1.7)];
         let shape = if k % 2 == 0 {
-            let (b, h) = (dice.between(0.03, 0.6), dice.between(0.03, 0.3));
+            let (b, h) = (dice.within(0.03, 0.6), dice.within(0.03, 0.3));
             Shape::Polygon { points_m: vec![at, [at[0] + b, at[1]], [at[0] + b, at[1] + h], [at[0], at[1] + h]] }
         } else {
-            Shape::Circle { center_m: at, radius_m: dice.between(0.03, 0.3) }
+            Shape::Circle { center_m: at, radius_m: dice.within(0.03, 0.3) }
         };
         obstacles.push(Obstacle { name: format!("thing {k}"), shape, friction });
     }
     scene.obstacles = obstacles;
     let c = &mut scene.cables[0];
-    c.length_m = dice.between(8.2, 13.0);
-    c.axial_stiffness_n = 10f64.powf(dice.between(4.0, 7.0));
-    c.segments = Some(dice.between(32.0, 120.0) as usize);
+    c.length_m = dice.within(8.2, 13.0);
+    c.axial_stiffness_n = 10f64.powf(dice.within(4.0, 7.0));
+    c.segments = Some(dice.within(32.0, 120.0) as usize);
     // Every third cable breaks where it is pulled hard.
-    let strength = if dice.unit() < 0.33 { dice.between(300.0, 3000.0) } else { 1e12 };
+    let strength = if dice.unit() < 0.33 { dice.within(300.0, 3000.0) } else { 1e12 };
     (c.breaking_tension_n, c.service_tension_n) = (strength, strength);
     let mut ends = [Support::fixed("left", [-4.0, 3.0]), Support::fixed("right", [4.0, 3.0])];
     for end in &mut ends {
         let kind = dice.unit();
         if kind < 0.3 {
-            end.release_s = Some(dice.between(0.05, 0.6));
+            end.release_s = Some(dice.within(0.05, 0.6));
         } else if kind < 0.75 {
             let home = end.at_m.expect("a fixed end");
             let knots = 5;
             let mut points_m = vec![home];
-            points_m.extend((1..knots).map(|_| [home[0] + dice.between(-1.5, 1.5), dice.between(2.2, 4.5)]));
-            let quick = dice.between(0.12, 0.6);
+            points_m.extend((1..knots).map(|_| [home[0] + dice.within(-1.5, 1.5), dice.within(2.2, 4.5)]));
+            let quick = dice.within(0.12, 0.6);
             end.motion = Some(Motion { times_s: (0..knots).map(|k| quick * k as f64).collect(), points_m });
         }
     }
