@@ -371,6 +371,8 @@ impl SolveError {
             (_, true) => second,
             (true, false) => first,
             (false, false) if first == second => second,
+            // A third reason would say no more.
+            (false, false) if matches!(first, Self::Neither { .. }) => first,
             (false, false) => {
                 let (told, other) = if ended(&first) { (second, first) } else { (first, second) };
                 Self::Neither { told: Box::new(told), other: Box::new(other) }
@@ -424,5 +426,10 @@ mod tests {
         assert_eq!(SolveError::clearer(vague(Model::Spans), clear.clone()), clear);
         let both = SolveError::clearer(vague(Model::Spans), vague(Model::Fem)).to_string();
         assert!(both.contains("spans") && both.contains("fem"), "{both}");
+        let lifts =
+            SolveError::Unsupported { model: Model::Spans, feature: "the cable lifts off the wheel".to_owned() };
+        let told = SolveError::clearer(SolveError::clearer(lifts, vague(Model::Fem)), vague(Model::Fem)).to_string();
+        assert!(told.starts_with("spans cannot answer this scene: the cable lifts off the wheel; and"), "{told}");
+        assert_eq!(told.matches("fem").count(), 1, "{told}");
     }
 }

@@ -222,8 +222,10 @@ impl Simulation {
             // What is said to have no resting place is not sought one by another model.
             let last = matches!(error, SolveError::NoRestingPlace { .. } | SolveError::Unsupported { .. });
             let next = !last && self.next_model(&error.to_string());
-            let clearer = first.filter(|f| clarity(f) >= clarity(&error));
-            first = Some(clearer.unwrap_or(error));
+            first = Some(match first {
+                Some(before) => SolveError::clearer(before, error),
+                None => error,
+            });
             if !next {
                 return first.map_or(Ok(()), Err);
             }
@@ -578,17 +580,6 @@ impl Simulation {
         }
         self.lead_outline();
         self.adopt(&states)
-    }
-}
-
-/// How much a user can do with an error: of several causes the clearest is told.
-fn clarity(error: &SolveError) -> usize {
-    match error {
-        SolveError::NoRestingPlace { .. } => 3,
-        SolveError::Unsupported { .. } | SolveError::Buried { .. } => 2,
-        SolveError::Unsound { .. } => 1,
-        SolveError::Neither { told, .. } => clarity(told),
-        _ => 0,
     }
 }
 

@@ -243,10 +243,17 @@ fn judge_case(plan: &Plan, case: &Case, seed: u64) -> Verdict {
             match case.expect {
                 Expect::Slides => {
                     v.told = why.contains("resting place: ");
-                    v.refused = (!v.told).then_some(why);
+                    v.refused = (!v.told).then(|| why.clone());
                 }
                 Expect::Perhaps => v.excused = true,
-                _ => v.refused = Some(why),
+                _ => v.refused = Some(why.clone()),
+            }
+            // A refusal by `fem` does not hide that of `spans`.
+            if case.model == Model::Auto
+                && why.starts_with("the answer of fem")
+                && let Err(first) = solve(&case.scene, Model::Spans, None, plan.limit_s)
+            {
+                v.wrong.push(format!("hides: {first}"));
             }
             return v;
         }

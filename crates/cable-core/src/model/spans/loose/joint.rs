@@ -19,6 +19,10 @@ use crate::math::{Vec2, cross, larger};
 /// Doublings of the force across the load in the search for one that is too large.
 const MOST_DOUBLED: usize = 60;
 
+/// Distance from a round, of its radius, at which a span touches it. Larger: a place where the distance jumps could be taken for a root.
+/// Smaller: where tension hardly changes along the ground, rounding of p leaves more.
+const TOUCHES: f64 = 1e-3;
+
 /// A span from one stretch to the next, seen from where its tension comes.
 #[derive(Clone, Copy, Debug)]
 struct Over {
@@ -197,7 +201,7 @@ impl Drape<'_> {
             return Some(None);
         }
         let (h, [m1, m2], off) = seen(near);
-        if !(off.abs() <= 1e-3 * radius && h > 0.0) {
+        if !(off.abs() <= TOUCHES * radius && h > 0.0) {
             return None;
         }
         let (material, _) = sight.catenary(h, m1, m2);
