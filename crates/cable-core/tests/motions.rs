@@ -100,6 +100,24 @@ fn a_draped_cable_slips_without_inertia_on_a_fine_mesh() {
     assert!((most / 224.46 - 1.0).abs() < 1e-3, "{most} N");
 }
 
+/// Where cables go slack on the way back, friction that was still that of the round before, what was left at a hundred nodes, and bars that were
+/// changed and not balanced again ended runs: the tank at 7.2 s (`fem`) and 36.7 s (`auto`), the robot's cable at 31.8 s.
+#[test]
+fn slack_cables_run_to_their_end_without_inertia() {
+    let still = Way { inertia: Inertia::QuasiStatic, ..PLAIN };
+    let tank = |way: Way| greatest(&catalog::tank(), 42.0, way).expect("it runs");
+    let robot = |way: Way| greatest(&catalog::robot_drive(), 40.0, way).expect("it runs");
+    let by_auto = Way { model: Model::Auto, ..still };
+    let found = [
+        [tank(by_auto), tank(Way { segments: Some(84), ..still })],
+        [robot(Way { segments: Some(84), ..still }), robot(Way { segments: Some(42), ..still })],
+    ];
+    for [a, b] in found {
+        println!("{a:.3} and {b:.3} N");
+        assert!((a / b - 1.0).abs() < 1e-3, "{a} and {b} N");
+    }
+}
+
 /// Outputs change nothing, to the bit.
 #[test]
 fn output_intervals_change_no_greatest_tension() {
@@ -144,9 +162,6 @@ fn every_motion_of_the_catalogue_runs_to_its_end() {
         }
     }
     println!("{runs} runs, {} stopped:\n{}\nmore than 2 % apart:\n{}", stops.len(), stops.join("\n"), apart.join("\n"));
-    // What is known to stop: the tank and the robot's cable without inertia, on the way back, where they are slack; first rests of 42 and 1000
-    // bars there.
-    let known = |s: &&String| s.starts_with("tank") || s.starts_with("robot-drive");
-    assert_eq!(stops.iter().filter(|s| !known(s)).count(), 0, "{stops:?}");
+    assert!(stops.is_empty(), "{stops:?}");
     assert!(apart.is_empty(), "{apart:?}");
 }

@@ -48,8 +48,13 @@ pub fn pull_at_slide((mesh, task): (&Mesh, &Task), e: usize, j: usize, x: &[Vec2
     let ratio = task.predicted_length[e] / mesh.rest_length[e];
     let loss = task.damping / mesh.rest_length[e] * (p - ratio * l) * ratio;
     let tension = stiffness(mesh, !(strain < 0.0)) * strain;
-    let middle = (x[e] + x[e + 1]) * 0.5;
-    mesh.thermal_stretch * (tension * (1.0 + 0.5 * strain) + loss) + task.body.dot(&(middle - x[e + j]))
+    mesh.thermal_stretch * (tension * (1.0 + 0.5 * strain) + loss) + lifted(task.body, (e, j), x)
+}
+
+/// What it takes to lift the weight from the middle of a bar to its start (`j` 0) or end (1), N.
+#[must_use]
+pub fn lifted(body: Vec2, (e, j): (usize, usize), x: &[Vec2]) -> f64 {
+    body.dot(&((x[e] + x[e + 1]) * 0.5 - x[e + j]))
 }
 
 /// The pull at the present length P of a bar between nodes that move with the material, and its slope by P, N and N/m.

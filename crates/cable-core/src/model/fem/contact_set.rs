@@ -115,11 +115,23 @@ pub struct Rub {
 }
 
 impl Rub {
+    /// Whether it is the friction of a touch, wherever that is now.
+    fn is_of(&self, touch: &Touch) -> bool {
+        let key = |t: &Touch| (t.node, t.on_segment, t.pair.gap.feature);
+        key(&self.touch) == key(touch)
+    }
+
     /// Sliding since the anchor, m.
     #[must_use]
     pub fn sliding(&self, x: &[Vec2]) -> f64 {
         self.slid + self.tangent.dot(&(self.touch.interpolate(x) - self.origin))
     }
+}
+
+/// Those of a node, of a list by node.
+fn of_node(rubs: &[Rub], node: usize) -> impl Iterator<Item = &Rub> {
+    let low = rubs.partition_point(|r| r.touch.node < node);
+    rubs[low..].iter().take_while(move |r| r.touch.node == node)
 }
 
 /// All contacts of a mesh with their history.
@@ -292,7 +304,11 @@ impl ContactSet {
         self.rubs.clear();
         for touch in &touches {
             let limit = touch.pair.gap.friction * touch.load(&self.barrier);
-            if limit > 0.0 {
+            // What is taken away of a normal force that counts twice is taken away of its friction.
+            let same = self.rubs.iter_mut().rev().take_while(|r| r.touch.node == touch.node).find(|r| r.is_of(touch));
+            if let Some(rub) = same {
+                rub.limit += limit;
+            } else if limit != 0.0 {
                 let slid = self.remembered(touch);
                 let was = touch.interpolate(start);
                 let carried = self.carriage.filter(|c| c.obstacle == touch.pair.gap.obstacle);
@@ -300,24 +316,24 @@ impl ContactSet {
                 self.rubs.push(Rub { touch: *touch, tangent: touch.tangent(), limit, slid, origin });
             }
         }
+        self.rubs.retain(|r| r.limit != 0.0);
         self.scratch = touches;
     }
 
-    /// Takes the friction of contacts that were there `before` halfway from what they had then to what they have now; returns by how much it is
-    /// then off at most, N.
-    pub fn ease(&mut self, before: &[Rub]) -> f64 {
+    /// Takes the friction of every contact by a `part` of the way from what it had `before` to what it has now, none where it was not or is no
+    /// longer; returns by how much it was off at most, N.
+    pub fn ease(&mut self, before: &[Rub], part: f64) -> f64 {
+        let gone = |now: &[Rub], b: &Rub| !of_node(now, b.touch.node).any(|n| n.is_of(&b.touch));
+        let gone: Vec<Rub> = before.iter().filter(|b| gone(&self.rubs, b)).copied().collect();
+        self.rubs.extend(gone.iter().map(|b| Rub { limit: 0.0, ..*b }));
+        self.rubs.sort_by_key(|r| r.touch.node);
         let mut off = 0.0;
         for rub in &mut self.rubs {
-            let here = |b: &&Rub| {
-                let (a, b) = (&rub.touch, &b.touch);
-                (a.node, a.on_segment, a.pair.gap.feature) == (b.node, b.on_segment, b.pair.gap.feature)
-            };
-            let low = before.partition_point(|b| b.touch.node < rub.touch.node);
-            let known = before[low..].iter().take_while(|b| b.touch.node == rub.touch.node).find(here);
-            let half = known.map_or(0.0, |b| 0.5 * (b.limit - rub.limit));
-            rub.limit += half;
-            off = larger(off, half.abs());
+            let was = of_node(before, rub.touch.node).find(|b| b.is_of(&rub.touch)).map_or(0.0, |b| b.limit);
+            off = larger(off, (rub.limit - was).abs());
+            rub.limit = if part < 1.0 { was + part * (rub.limit - was) } else { rub.limit };
         }
+        self.rubs.retain(|r| r.limit != 0.0);
         off
     }
 

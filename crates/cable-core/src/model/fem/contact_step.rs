@@ -40,12 +40,26 @@ pub const ROUNDED: f64 = 0.01;
 /// 0.01 N in 1e6; larger: contact forces are known worse than they could be.
 const GAP_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
+/// Unbalanced force of a stretch of cable at rest, in tolerances: those of its nodes add up. More: the laws, which ask this of stretches to 1e-5 of
+/// the forces, refuse steps; less: iterations for nothing that shows.
+pub(super) const DRIFT: f64 = 4.0;
+
 /// Short moves of held nodes towards their targets before they are stopped. Fewer: supports lag that could have got there;
 /// more: iterations spent on what the next step does as well.
 const MAX_PUSHES: usize = 12;
 
 /// Why a search ends that has spent its work.
 pub(super) const WORK_SPENT: &str = "the work for one resting place is spent";
+
+/// What is left unbalanced at the worst node.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Residual {
+    /// N.
+    pub(super) force: f64,
+    pub(super) node: usize,
+    /// In parts of what is accepted there.
+    pub(super) excess: f64,
+}
 
 /// Memory of the minimisation.
 #[derive(Debug)]
@@ -201,17 +215,25 @@ impl Workspace {
         value
     }
 
-    /// Largest unbalanced force on a free node, and which.
-    pub(super) fn residual(&self, mesh: &Mesh, task: &Task) -> (f64, usize) {
-        let mut worst = (0.0, 0);
-        for node in (0..mesh.nodes()).filter(|&k| !mesh.held[k]) {
-            let r = match &mesh.sliding[node] {
-                Some(s) if s.sticks() => continue,
-                Some(_) => self.system.gradient[2 * node].abs(),
-                None => self.system.gradient_at(node).norm(),
-            } / node_scale(task, node);
-            if !(r <= worst.0) && !worst.0.is_nan() {
-                worst = (r, node);
+    /// The unbalanced force (N) that is farthest beyond what is accepted, where, and by how many times: the tolerance, or where contact forces are
+    /// known no better their rounding. At rest what is left at the nodes of a stretch adds up to a force of its own.
+    pub(super) fn residual(&self, mesh: &Mesh, task: &Task) -> Residual {
+        let mut worst = Residual { force: 0.0, node: 0, excess: 0.0 };
+        let known = if self.noise > task.most_noise { task.most_noise } else { self.noise };
+        let accepted = larger(task.tolerance, known);
+        let mut drift = Vec2::zeros();
+        for node in 0..mesh.nodes() {
+            if mesh.held[node] || mesh.sliding[node].is_some_and(|s| s.sticks()) {
+                drift = Vec2::zeros();
+                continue;
+            }
+            let left = self.system.gradient_at(node) / node_scale(task, node);
+            let slides = mesh.sliding[node].is_some();
+            let r = if slides { left.x.abs() } else { left.norm() };
+            drift = if slides || task.moves { Vec2::zeros() } else { drift + left };
+            let excess = larger(r, drift.norm() / DRIFT) / accepted;
+            if !(excess <= worst.excess) && !worst.excess.is_nan() {
+                worst = Residual { force: r, node, excess };
             }
         }
         worst
@@ -285,7 +307,7 @@ impl Workspace {
         let mut done = Done::default();
         let mut value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Exact);
         loop {
-            let (residual, node) = self.residual(mesh, task);
+            let Residual { force: residual, node, excess } = self.residual(mesh, task);
             let failed = |cause| Err(Failure { node, residual, cause });
             if !value.is_finite() || !residual.is_finite() {
                 return failed("the energy is not finite");
@@ -298,9 +320,7 @@ impl Workspace {
             }
             let left = left && !squeezed;
             done.residual = residual;
-            let known = if self.noise > task.most_noise { task.most_noise } else { self.noise };
-            let tolerance = if known > task.tolerance { known } else { task.tolerance };
-            if residual <= tolerance && !left {
+            if excess <= 1.0 && !left {
                 return Ok(done);
             }
             if done.iterations >= task.max_iterations && residual <= ENOUGH * task.tolerance && !left {

@@ -101,13 +101,21 @@ impl Share {
     }
 }
 
+/// What a change of the mesh did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Remeshed {
+    /// The cable runs over other corners and rounds.
+    pub(super) seats: bool,
+    /// Its bars are not those that were balanced.
+    pub(super) bars: bool,
+}
+
 impl Dynamics {
-    /// Adapts the mesh to what the cable runs over, at rest or in motion; returns whether that changed (new bars alone do not count).
-    pub(super) fn remesh(&mut self, rests: bool) -> bool {
+    /// Adapts the mesh to what the cable runs over, at rest or in motion.
+    pub(super) fn remesh(&mut self, rests: bool) -> Remeshed {
         if self.contacts.own.shape.is_on() {
-            return false;
+            return Remeshed::default();
         }
-        let nodes = self.mesh.nodes();
         let mut changed = self.let_go(&[], rests);
         let taken = self.take_hold(rests);
         if !taken.is_empty() {
@@ -118,14 +126,15 @@ impl Dynamics {
         }
         let moved = self.move_marks(rests);
         let wound = self.wind();
-        self.even_out();
-        if changed || moved || wound || self.mesh.nodes() != nodes {
+        let evened = self.even_out();
+        let bars = changed || wound || evened;
+        if bars || moved {
             let x = std::mem::take(&mut self.motion.x);
             self.contacts.prepare(&self.problem, &self.mesh, &x, &x);
             self.motion.x = x;
             self.renew_task();
         }
-        changed
+        Remeshed { seats: changed, bars }
     }
 
     /// Length of an even bar, m of arc length.
@@ -171,7 +180,8 @@ impl Dynamics {
         let at_material = slide.map_or(load.pull, |slide| {
             [k - 1, k].map(|e| super::bar::pull_at_slide((mesh, &self.task), e, k - e, x, slide))
         });
-        Some(Load { floor, at_material, ..load })
+        let lifted = [0, 1].map(|j| tension[j] + super::bar::lifted(self.task.body, (k - 1 + j, 1 - j), x));
+        Some(Load { floor, lifted, at_material, ..load })
     }
 
     /// Lets go of the sliding nodes that press on nothing, but for those on `kept`; returns whether there were any.
@@ -507,8 +517,11 @@ impl Dynamics {
     }
 
     /// Cuts long bars beside sliding nodes and takes out nodes that came too near to one.
-    pub(super) fn even_out(&mut self) {
+    ///
+    /// Returns whether there was anything to do.
+    pub(super) fn even_out(&mut self) -> bool {
         let even = self.even();
+        let mut changed = false;
         let mut k = 1;
         while k + 1 < self.mesh.nodes() {
             if !self.removable(k) {
@@ -526,6 +539,7 @@ impl Dynamics {
             let enclosed = matches!((before, after), (Some(a), Some(b)) if a.shares_round(&b));
             if (crowded || enclosed || spare) && self.clear_without(k) {
                 self.remove(k);
+                changed = true;
             } else {
                 k += 1;
             }
@@ -549,6 +563,7 @@ impl Dynamics {
                 let fraction = bounded(part / length, lead + 0.1 * straight, lead + 0.9 * straight);
                 let arc_length = self.mesh.arc_length[e] + fraction * length;
                 self.insert(e + 1, arc_length, None);
+                changed = true;
                 if slides[1] && !slides[0] {
                     e += 1;
                 }
@@ -556,6 +571,7 @@ impl Dynamics {
             }
             e += 1;
         }
+        changed
     }
 
     /// Whether a node is there for nothing but the mesh.

@@ -4,13 +4,13 @@ use super::carry::Rider;
 use super::contact_report;
 use super::contact_set::SLIDE;
 use super::contact_start::push_out;
-use super::contact_step::WORK_SPENT;
+use super::contact_step::{DRIFT, WORK_SPENT};
 use super::dynamics::{Dynamics, REACH};
 use super::integrate::{NOT_FOUND, PULLED, ROUNDS_EACH};
 use super::prepare::{Grips, load_scale, tolerance};
-use super::task::{Done, Failure, Pose};
+use super::task::{Done, Failure, Pose, Task};
 use crate::error::SolveError;
-use crate::math::{Vec2, larger};
+use crate::math::{Vec2, bounded, larger};
 use crate::model::{Model, StepReport};
 use crate::state::State;
 
@@ -31,6 +31,11 @@ const LAG_ROUNDS: usize = 25;
 /// Rounds after which normal forces are taken halfway to the new ones only: where a contact that rubs more lifts its neighbour, which then
 /// rubs less, they go round and round. Fewer: what converges by itself takes longer; more: fewer rounds are left to halve what is off.
 const PLAIN_ROUNDS: usize = 8;
+
+/// Least part of the way that friction is taken towards its new normal forces, and by what that part changes from round to round.
+const LEAST_PART: f64 = 0.03;
+const GROW: f64 = 1.1;
+const SHRINK: f64 = 0.6;
 
 /// The same in a step of relaxation.
 const RELAX_LAG_ROUNDS: usize = 8;
@@ -64,6 +69,22 @@ const CORNER_ROUNDS: usize = 8;
 /// Turn (rad) the wrong way round a corner from which a step without inertia is taken again without that corner. Larger: other
 /// corners slip by what it pulls (at 0.02 and 50 N by 2 %), and keep that. Smaller: more steps are taken twice.
 const LEAST_PULL: f64 = 1e-4;
+
+/// What was found with refreshed normal forces, grips and factors.
+#[derive(Clone, Copy, Debug)]
+struct Lagged {
+    done: Done,
+    grips: Grips,
+    /// By how much the friction of a contact changed in the last round, N.
+    off: f64,
+}
+
+impl Lagged {
+    /// Whether friction is what the normal forces allow, at sliding nodes and elsewhere.
+    fn is_lawful(&self, task: &Task) -> bool {
+        self.grips.hold() && self.off <= DRIFT * task.tolerance
+    }
+}
 
 impl Dynamics {
     /// A step without inertia to the time `to`; friction remembers.
@@ -106,8 +127,7 @@ impl Dynamics {
             total = Done { iterations: total.iterations + done.iterations, ..done };
             self.accept_pose(&pose, to);
             // Where corners are met and left by turns to the last, the mesh stays as it balances.
-            let nodes = self.mesh.nodes();
-            if round + 1 == CORNER_ROUNDS || !self.remesh(true) && self.mesh.nodes() == nodes {
+            if round + 1 == CORNER_ROUNDS || !self.remesh(true).bars {
                 break;
             }
         }
@@ -165,18 +185,30 @@ impl Dynamics {
 
     /// Minimises again and again with refreshed normal forces, grips and factors until nothing changes.
     fn lag(&mut self, pose: &mut Pose, rounds: usize) -> Result<Done, Failure> {
-        self.lag_until(pose, rounds).map(|(done, _)| done)
+        self.lag_until(pose, rounds).map(|found| found.done)
     }
 
-    /// The same; says what was found of the sliding nodes.
-    fn lag_until(&mut self, pose: &mut Pose, rounds: usize) -> Result<(Done, Grips), Failure> {
+    /// The same; says what was found.
+    fn lag_until(&mut self, pose: &mut Pose, rounds: usize) -> Result<Lagged, Failure> {
         let (mut total, mut grips) = (Done::default(), Grips::FOUND);
         let (mut fewest, mut spare) = (usize::MAX, PLAIN_ROUNDS);
+        let (mut off, mut part) = (0.0, 1.0);
         for round in 0..rounds {
             self.contacts.look_around(&self.problem, &self.mesh, &pose.x, |_| 0.0);
-            let before = if round < PLAIN_ROUNDS { Vec::new() } else { self.contacts.rubs.clone() };
+            let before = std::mem::take(&mut self.contacts.rubs);
             self.contacts.prepare(&self.problem, &self.mesh, &pose.x, &self.motion.x);
-            let off = self.contacts.ease(&before);
+            if round > 0 {
+                let now = self.contacts.ease(&before, part);
+                // What goes to and fro gets no nearer by taking as much of the way.
+                if round >= PLAIN_ROUNDS {
+                    part = if now < (1.0 - 0.5 * part) * off {
+                        bounded(GROW * part, 0.0, 1.0)
+                    } else {
+                        larger(SHRINK * part, LEAST_PART)
+                    };
+                }
+                off = now;
+            }
             self.task.shift = self.soft_shift();
             let done = self.minimise(pose)?;
             total = Done { iterations: total.iterations + done.iterations, ..done };
@@ -189,27 +221,27 @@ impl Dynamics {
             // A round that needed no iteration found the normal forces it had used.
             let found = done.iterations == 0 && off <= self.task.tolerance;
             if (found || self.contacts.rubs.is_empty()) && grips.wrong == 0 && grips.same {
-                break;
+                return Ok(Lagged { done: total, grips, off: 0.0 });
             }
         }
-        Ok((total, grips))
+        Ok(Lagged { done: total, grips, off })
     }
 
     /// The same, until the law holds at every sliding node.
     fn lag_wholly(&mut self, pose: &mut Pose) -> Result<Done, Failure> {
         let sliding = self.mesh.sliding.iter().flatten().count();
-        let (done, grips) = self.lag_until(pose, LAG_ROUNDS + ROUNDS_EACH * sliding)?;
-        if grips.hold() {
-            return Ok(done);
+        let found = self.lag_until(pose, LAG_ROUNDS + ROUNDS_EACH * sliding)?;
+        if found.is_lawful(&self.task) {
+            return Ok(found.done);
         }
         let node = self.mesh.sliding.iter().position(Option::is_some).unwrap_or(0);
-        Err(Failure { node, residual: done.residual, cause: NOT_FOUND })
+        Err(Failure { node, residual: found.done.residual, cause: NOT_FOUND })
     }
 
     /// Takes a pose as the state at rest at the time `to`; returns whether what the cable runs over changed.
     fn accept_rest(&mut self, pose: &Pose, to: f64) -> bool {
         self.accept_pose(pose, to);
-        self.remesh(true)
+        self.remesh(true).seats
     }
 
     /// The same, corners as they are.
@@ -278,16 +310,21 @@ impl Dynamics {
             self.task.most_noise = noise * exact;
             // A first lay carries no normal force yet: without refreshing, it would slide as if on ice.
             let mut pose = self.still_pose();
-            let done = self.lag(&mut pose, RELAX_LAG_ROUNDS);
+            let done = self.lag_until(&mut pose, RELAX_LAG_ROUNDS);
             self.task.tolerance = exact;
             match done {
-                Ok(done) => {
+                Ok(found) => {
+                    let done = found.done;
                     total += done.iterations;
                     let (mut moved, mut resists, mut slowest): (f64, f64, usize) = (0.0, 0.0, 0);
+                    // What resists adds up along what creeps.
+                    let mut drift = Vec2::zeros();
                     for (k, (a, b)) in pose.x.iter().zip(&self.motion.x).enumerate() {
                         let way = (a - b).norm().max(pose.slide[k].abs());
                         moved = moved.max(way);
-                        let force = if self.mesh.held[k] { 0.0 } else { way * self.task.inertia[k] };
+                        let free = if self.mesh.held[k] { 0.0 } else { self.task.inertia[k] };
+                        drift = if free > 0.0 { drift + (a - b) * free } else { Vec2::zeros() };
+                        let force = larger(way * free, drift.norm() / DRIFT);
                         if force > resists {
                             (resists, slowest) = (force, k);
                         }
@@ -299,7 +336,11 @@ impl Dynamics {
                     }
                     if remeshed {
                         moved = moved.max(0.1);
-                    } else if stubborn && resists <= exact && done.residual <= NEGLIGIBLE * exact {
+                    } else if stubborn
+                        && found.is_lawful(&self.task)
+                        && resists <= exact
+                        && done.residual <= NEGLIGIBLE * exact
+                    {
                         self.motion.time = to;
                         return Ok(Done { iterations: total, residual: done.residual + resists });
                     }

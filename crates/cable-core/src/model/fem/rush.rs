@@ -146,7 +146,7 @@ impl Workspace {
                 self.near_enough = false;
                 return None;
             }
-            let (residual, _) = self.residual(mesh, task);
+            let residual = self.residual(mesh, task).force;
             let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != pose.x[k]);
             if iterations == 0 {
                 first = residual;

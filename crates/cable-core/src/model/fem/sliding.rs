@@ -110,6 +110,8 @@ pub struct Load {
     pub tension: [f64; 2],
     /// The same as the energy's slope sees it: along the bars, not along the sagging cable, N.
     pub pull: [f64; 2],
+    /// The same as friction acts on it: the tension in the middle of each bar, and what it takes to lift the weight from there to the node's mark, N.
+    pub lifted: [f64; 2],
     /// The same at its material, as the slope of the bars' energy by the slide sees it, N.
     pub at_material: [f64; 2],
     /// Angle through which the cable turns round it, rad: normal force over tension. Negative: it wants to leave.
@@ -150,6 +152,7 @@ impl Load {
         Self {
             tension: ends,
             pull,
+            lifted: pull,
             at_material: pull,
             turn,
             normal: 0.5 * (ends[0] + ends[1]) * turn,
@@ -162,7 +165,7 @@ impl Load {
     /// Pull where the cable comes on to the round and where it leaves it, N: what the floor takes of the straight halves is not the round's.
     #[must_use]
     pub fn at_round(&self) -> [f64; 2] {
-        [self.pull[0] - self.floor[0], self.pull[1] + self.floor[2]]
+        [self.lifted[0] - self.floor[0], self.lifted[1] + self.floor[2]]
     }
 
     /// What the law says of the grip: `slid` is how far the arc length moved in this step (m), `inertia` the force
