@@ -16,8 +16,10 @@ use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, 
 /// Nodes on a round: one at least every so many radians.
 const ARC_STEP: f64 = 0.13;
 
-/// Most that a bar sags where it leaves a round and is drawn so, rad. More: slack bars, whose sag is not known, lead away from it.
-const MOST_SAG: f64 = 0.5;
+/// Part of the diameter by which the way may be drawn longer than its material where a bar sags and leaves a round sooner or later than straight,
+/// which makes it rδ³/6 longer at an angle δ. More: of slack bars, whose sag is not known, more cable is drawn than there is; less: the force leads
+/// away from the round that is drawn.
+const DRAWN_LONGER: f64 = 0.005;
 
 /// The answer at positions `x` and velocities `v`.
 #[must_use]
@@ -302,7 +304,8 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
     // It leaves where its force does: what sags turns further round than the straight bar that stands for it.
     let sag = |j: usize, from: Vec2, to: Vec2| {
         let sag = sense * angle_between(from, to);
-        if same[j] || sag.abs() > MOST_SAG { 0.0 } else { sag }
+        let longer = radius * sag.abs().powi(3) / 6.0;
+        if same[j] || longer > DRAWN_LONGER * 2.0 * d.problem.radius { 0.0 } else { sag }
     };
     let normal = |turned: f64| {
         let (sin, cos) = (sense * turned).sin_cos();
