@@ -79,7 +79,7 @@ const JAMMED_STIFF: f64 = 0.5;
 
 /// Segments from which a first rest begins at that of a coarser mesh. Fewer: meshes that need no help pay for two; more: the way down
 /// of a thousand bars takes minutes.
-const FINE: usize = 1000;
+const FINE: usize = 500;
 /// How much coarser that mesh is. Less: more meshes, each nearer to the next; more: it lies otherwise than the fine one will.
 const COARSER: usize = 8;
 
@@ -277,12 +277,15 @@ impl FemModel {
     /// run along the bars, which a coarse mesh does cheaply.
     fn begin_coarse(&mut self) {
         let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
-        if fine <= FINE || self.led.is_some() {
+        if fine <= FINE {
             return;
         }
         let settings = Settings { segments: Some(fine / COARSER), ..self.settings };
         let Ok(coarse) = Self::new(self.problem.clone(), settings) else { return };
         let mut coarse = Self { dragged: self.dragged.clone(), ..coarse.laid_alone() };
+        if let Some(to) = self.led {
+            coarse.lead_outline(to);
+        }
         if coarse.settle().is_err() {
             return;
         }
