@@ -267,6 +267,10 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
             k if k + 1 == n => ends[1] + shear(mesh, &moments, k - 1, x),
             k => bar(k) + half(k),
         };
+        // Where a round reaches to it within a step, the round ends there.
+        while out.last().is_some_and(|l: &Node| l.arc_length_m >= mesh.arc_length[k]) {
+            out.pop();
+        }
         out.push(node(mesh.arc_length[k], (x[k], v[k]), t, (curvature_at(mesh, k, x), force)));
     }
     out

@@ -103,6 +103,10 @@ pub struct Dynamics {
     pub(super) tolerance: f64,
     pub(super) rested: bool,
     pub(super) held_back: Vec<usize>,
+    /// Until when the present advance goes, s.
+    pub(super) due: f64,
+    /// The answer of the last step of an advance, as it was balanced: the mesh is changed after it, for the next.
+    pub(super) stepped: Option<Box<CableSolution>>,
     /// Iterations times nodes that the search for a resting place may still take.
     pub(super) work_left: usize,
     /// Room for where hands draw supports in a part of a step.
@@ -174,6 +178,8 @@ impl Dynamics {
             tolerance: settings.tolerance,
             rested: false,
             held_back: Vec::new(),
+            due: f64::INFINITY,
+            stepped: None,
             work_left: usize::MAX,
             aims: Vec::new(),
             rider,
@@ -231,6 +237,7 @@ impl Dynamics {
     }
 
     pub(super) fn forget_history(&mut self) {
+        self.stepped = None;
         let m = &mut self.motion;
         m.x_before.clone_from(&m.x);
         m.v_before.clone_from(&m.v);
@@ -263,6 +270,7 @@ impl Dynamics {
         }
         self.held_back.clear();
         let end = self.motion.time + dt_s;
+        self.due = end;
         self.begin_way(end);
         if inertia == Inertia::Dynamic && self.sleeps_until(end, dragged) {
             self.motion.time = end;
@@ -472,6 +480,11 @@ impl Dynamics {
     /// The answer at this instant.
     #[must_use]
     pub fn solution(&self) -> CableSolution {
+        self.stepped.as_ref().map_or_else(|| self.solution_now(), |s| CableSolution::clone(s))
+    }
+
+    /// The same, with the mesh as it is.
+    pub(super) fn solution_now(&self) -> CableSolution {
         super::contact_report::solution(self, &self.motion.x, &self.motion.v)
     }
 

@@ -11,7 +11,7 @@
 use super::contact_set::SLIDE;
 use super::dynamics::{Dynamics, STIFFNESS_CHANGE};
 use super::prepare::damping_time;
-use super::sliding::Balanced;
+use super::sliding::{Balanced, Grip};
 use super::task::{Done, Failure, Pose};
 use crate::math::Vec2;
 use crate::model::drive::Follower;
@@ -127,7 +127,10 @@ impl Dynamics {
         self.land_on_itself(QUIET, h);
         self.contacts.carriage = None;
         if !self.never_slides {
+            let ends = self.motion.time >= self.due * (1.0 - f64::EPSILON);
+            let stepped = if ends { Some(Box::new(self.solution_now())) } else { None };
             self.remesh(false);
+            self.stepped = stepped;
             if let Some(node) = self.crossing() {
                 return Err(Failure { node, residual: done.residual, cause: "the cable would run through a corner" });
             }
@@ -142,7 +145,15 @@ impl Dynamics {
             let inertia = self.task.inertia[k] * (pose.slide[k] - self.task.predicted_slide[k]);
             if let Some(node) = &mut self.mesh.sliding[k] {
                 let [comes, leaves] = load.at_round();
-                node.balanced = Some(Balanced { pull: [comes - inertia, leaves], turn: load.turn });
+                // The step balances slopes by the slide, where inertia counts by what is stretched.
+                let [before, after] = load.at_material;
+                let stretch = 1.0 + 0.5 * (comes + leaves) / self.mesh.axial_stiffness;
+                let pulls = match node.grip {
+                    _ if load.floor != [0.0; 3] => comes - inertia,
+                    Grip::Stick => leaves + (before - inertia - after) / stretch,
+                    slips => load.ratio(slips, node.exponent) * leaves,
+                };
+                node.balanced = Some(Balanced { pull: [pulls, leaves], turn: load.turn });
             }
         }
     }

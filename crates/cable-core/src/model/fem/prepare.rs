@@ -65,6 +65,7 @@ impl Dynamics {
 
     /// The same for a step from one time to another (s): what holds at its start holds to its end.
     pub(super) fn prepare_step(&mut self, [from, to]: [f64; 2], dragged: Option<&[Option<Vec2>]>) {
+        self.stepped = None;
         let (problem, mesh, task) = (&self.problem, &mut self.mesh, &mut self.task);
         let n = mesh.nodes();
         let body = problem.body_force(to);
