@@ -76,7 +76,8 @@ pub struct CableSolution {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sidewall_pressure: Option<Pressure>,
     /// Index of the first node of each further piece, where the cable has broken; empty while it is whole. The last
-    /// node of one piece and the first of the next are the same point of the cable, at two places.
+    /// node of one piece and the first of the next are the same point of the cable, at two places. 0 and the number of nodes where it tore off
+    /// what held it at its start and at its end.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub breaks: Vec<usize>,
     /// What the answer took into account.

@@ -1,6 +1,6 @@
 //! Violent motion: cables thrown about over random ground, beams and posts, dropped, let go at an end, and torn. Which laws are broken is counted in every
-//! output step. Asked: no figure that is no number, nothing inside anything, less than one step in a thousand that stops. Not yet asked, as
-//! it does not hold: friction within its cone in each output step (20 292 of 282 449 are beyond it).
+//! output step. Asked: no figure that is no number, nothing inside anything, less than one step in a thousand that stops, and less than one in two hundred with friction
+//! beyond its cone (338 of 287 760: slack cables that hang on the far side of a round). Not yet asked: nothing inside anything in long runs (13 of 71 774 steps, a bar over a crest).
 //!
 //! All 600 scenes: `cargo test --locked -p cable-core --test violent -- --ignored --nocapture` (five minutes); `FROM=100 TO=200` takes some of them,
 //! `TELL=friction NODES=1` tells what was found of a law.
@@ -102,10 +102,6 @@ fn run(number: u64, seconds: f64, found: &mut Found) {
         let cable = &answer.cables[0];
         let sound = |n: &cable_core::solution::Node| n.x_m.is_finite() && n.y_m.is_finite() && n.tension_n.is_finite();
         found.no_number += usize::from(!cable.nodes.iter().all(sound));
-        // Of pieces that flew apart the laws of one cable say nothing.
-        if !cable.breaks.is_empty() {
-            continue;
-        }
         for f in answer.verification.iter().flat_map(|v| &v.findings) {
             let entry = found.broken.entry(f.law.name().to_owned()).or_insert((0, 0.0, String::new()));
             entry.0 += 1;
@@ -187,4 +183,6 @@ fn six_hundred_violent_scenes_obey_the_laws() {
     let found = campaign(number("FROM", 0)..number("TO", 600), 2.0);
     assert!(found.no_number == 0, "{found:?}");
     assert!((found.stopped.len() as f64) < 1e-3 * found.steps as f64, "{found:?}");
+    let beyond = found.broken.get(Law::Friction.name()).map_or(0, |b| b.0);
+    assert!((beyond as f64) < 5e-3 * found.steps as f64, "{found:?}");
 }

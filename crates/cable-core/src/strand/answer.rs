@@ -2,7 +2,7 @@
 
 use super::Strand;
 use crate::problem::SupportPoint;
-use crate::solution::{CableSolution, SupportReaction};
+use crate::solution::{Assumptions, CableSolution, SupportReaction};
 use crate::state::State;
 
 impl Strand {
@@ -11,10 +11,15 @@ impl Strand {
         if let ([whole], true) = (self.pieces.as_slice(), self.breaks.is_empty()) {
             return whole.answer.clone();
         }
-        let mut out = CableSolution { name: self.problem.cable.name.clone(), ..CableSolution::default() };
+        let assumptions = self.pieces.first().map_or_else(Default::default, |first| Assumptions {
+            inertia: self.pieces.iter().any(|p| p.answer.assumptions.inertia),
+            ..first.answer.assumptions
+        });
+        let name = self.problem.cable.name.clone();
+        let mut out = CableSolution { name, assumptions, ..CableSolution::default() };
         for piece in &self.pieces {
             let from = piece.deal.from;
-            if !out.nodes.is_empty() {
+            if !out.nodes.is_empty() || piece.deal.supports.first() == Some(&None) {
                 out.breaks.push(out.nodes.len());
             }
             out.nodes.extend(piece.answer.nodes.iter().map(|n| {
@@ -25,8 +30,14 @@ impl Strand {
             out.contacts.extend(piece.answer.contacts.iter().map(|c| {
                 let mut c = c.clone();
                 c.arc_length_m += from;
+                c.begins_m += from;
+                c.ends_m += from;
+                c.samples.iter_mut().for_each(|s| s.arc_length_m += from);
                 c
             }));
+        }
+        if self.pieces.last().is_some_and(|p| p.deal.supports.last() == Some(&None)) {
+            out.breaks.push(out.nodes.len());
         }
         out.supports = (0..self.problem.supports.len()).map(|k| self.reaction(k)).collect();
         out

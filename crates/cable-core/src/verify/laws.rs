@@ -72,7 +72,8 @@ pub(super) fn check(found: &mut Verification, mut subject: Subject<'_>, depth: D
     subject.penetration(found, &near);
     subject.reported_contacts(found);
     if answer.assumptions.inertia || !answer.breaks.is_empty() {
-        found.not_checked.push(format!("balance and length of `{}`: it moves", cable.name));
+        let why = if answer.breaks.is_empty() { "it moves" } else { "it is broken" };
+        found.not_checked.push(format!("balance and length of `{}`: {why}", cable.name));
     } else {
         subject.supports(found);
         subject.balance(found, &near);
@@ -271,7 +272,9 @@ impl Subject<'_> {
                 found.report(finding);
             }
         }
-        for (k, pair) in nodes.windows(2).enumerate().filter(|(k, _)| !near.of(*k).is_empty()) {
+        // Between the pieces of a broken cable there is none.
+        let is_cable = |k: usize| !near.of(k).is_empty() && !self.answer.breaks.contains(&(k + 1));
+        for (k, pair) in nodes.windows(2).enumerate().filter(|(k, _)| is_cable(*k)) {
             // Between two nodes the cable is drawn straight where it is round.
             let way = (pair[1].at() - pair[0].at()).norm();
             let sagitta = pair.iter().map(|n| n.curvature_per_m.abs()).fold(0.0, larger) * way * way / 8.0;
