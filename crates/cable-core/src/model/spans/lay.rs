@@ -286,7 +286,13 @@ pub(super) fn measure(strand: &mut Strand, course: &Course, loose: [bool; 2], st
 fn tail(part: &Part, instant: &Instant, way: &Way, side: usize) -> f64 {
     let up = -instant.load;
     let high = |k: &usize| way.points[*k].dot(&up);
-    let top = (0..way.points.len()).max_by(|a, b| high(a).total_cmp(&high(b))).unwrap_or(0);
+    // Of several the one nearest to that end.
+    let higher = |best: usize, k: usize| if high(&k) > high(&best) { k } else { best };
+    let top = match side {
+        0 => (0..way.points.len()).reduce(higher),
+        _ => (0..way.points.len()).rev().reduce(higher),
+    };
+    let top = top.unwrap_or(0);
     let length = if side == 0 { way.along[top] } else { way.total() - way.along[top] };
     let whole = part.material[1] - part.material[0];
     if length < whole { length } else { whole }
