@@ -221,7 +221,8 @@ fn bends(
         let eye = seat.wheel.is_some() && curve.place(p1, seat.home).stretch == 0.0;
         let (index, [p1, p2]) = if eye && p2 < p1 { (seat.curve ^ 1, [-p1, -p2]) } else { (seat.curve, [p1, p2]) };
         let curve = &course.curves[index];
-        let p2 = if p2 > p1 { p2 } else { p1 };
+        // One that the string passes without a bend touches in one point, seen from either end.
+        let [p1, p2] = if p2 > p1 { [p1, p2] } else { [0.5 * (p1 + p2); 2] };
         let half = 0.5 * curve.length(p1, p2, seat.home) / course.law.stretch(tension);
         // Round a post the string's points are not those of the cable: where it comes and goes on the route itself.
         let seen = |p: f64, w: f64| {
