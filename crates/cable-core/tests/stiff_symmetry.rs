@@ -188,10 +188,10 @@ struct Came {
 }
 
 /// Asks a model for the rest of scenes as they are and otherwise seen.
-fn campaign(name: &str, scenes: impl Fn(u64) -> Case, most: u64) -> Came {
+fn campaign(name: &str, scenes: impl Fn(u64) -> Case, (most, also): (u64, &[u64])) -> Came {
     let (first, count) = (number("SYMMETRY_FIRST", 0), number("SYMMETRY_CASES", most));
     let mut came = Came::default();
-    for k in first..first + count {
+    for k in (first..first + count).chain(also.iter().copied()) {
         let Case { kind, scene } = scenes(k);
         let length = scene.cables[0].length_m;
         let found = rest(&scene);
@@ -229,9 +229,13 @@ fn campaign(name: &str, scenes: impl Fn(u64) -> Case, most: u64) -> Came {
     came
 }
 
+/// Scenes beyond those always asked that once differed: chains thrown about by friction (70, 115), a greatest tension between two nodes (133), posts that
+/// were sprung through (117, 159).
+const ALSO: [u64; 5] = [70, 115, 117, 133, 159];
+
 #[test]
 fn stiff_cables_rest_alike_however_they_are_seen() {
-    let came = campaign("stiff", case, 60);
+    let came = campaign("stiff", case, (60, &ALSO));
     assert!(came.wrong.is_empty() && came.refused.is_empty(), "{came:#?}");
 }
 
@@ -247,6 +251,6 @@ fn flexible_cables_rest_alike_however_they_are_seen() {
         }
         case
     };
-    let came = campaign("flexible", flexible, 300);
+    let came = campaign("flexible", flexible, (300, &[]));
     assert!(came.wrong.is_empty() && came.refused.is_empty(), "{came:#?}");
 }
