@@ -374,3 +374,30 @@ fn what_is_found_does_not_depend_on_how_it_is_seen() {
     wrong.iter().for_each(|w| println!("  {w:?}"));
     assert!(wrong.is_empty() && compared > 2 * count, "{wrong:?}");
 }
+
+/// A cable over two wheels, past the first of which the taut string goes without a bend: it lies on it by its weight. Where it is laid down there was
+/// read where the string arrives, another place seen from the other end, and friction held the difference (1e-3 of the tension).
+#[test]
+fn a_wheel_that_the_taut_string_passes_is_laid_alike_from_either_end() {
+    let mut scene = case(0).scene;
+    (scene.obstacles, scene.loads) = (Vec::new(), Vec::new());
+    let wheel = |name: &str, at_m: [f64; 2], radius: f64, friction: f64| Support {
+        radius_m: Some(radius),
+        friction: Some(friction),
+        ..Support::pulley(name, at_m)
+    };
+    let c = &mut scene.cables[0];
+    (c.length_m, c.linear_density_kg_per_m, c.axial_stiffness_n) = (15.498_380_535, 0.340_002_444, 104_820.731);
+    (c.bending_stiffness_n_m2, c.route_m, c.diameter_m) = (0.0, Vec::new(), 0.02);
+    c.supports = vec![
+        Support::fixed("a", [0.0, 0.846_924_987]),
+        wheel("w0", [4.491_713_812, 0.761_518_636], 0.185_781_123, 0.395_396_670),
+        wheel("w1", [8.983_427_623, 1.923_444_672], 0.347_357_636, 0.063_706_797),
+        Support::fixed("b", [13.475_141_435, 0.115_260_377]),
+    ];
+    let found = rest(&scene, Model::Spans).unwrap();
+    for (other, mirror) in [(reversed(&scene), 1.0), (mirrored(&scene), -1.0)] {
+        let off = difference(&found, &rest(&other, Model::Spans).unwrap(), mirror);
+        assert!(off < 1e-9, "{off:e}");
+    }
+}

@@ -12,6 +12,7 @@ pub mod near;
 pub mod outline;
 pub mod own;
 pub mod pairs;
+pub mod passed;
 pub mod round;
 pub mod sweep;
 #[cfg(test)]

@@ -469,8 +469,7 @@ impl Dynamics {
             self.contacts.own.shape.diameter = 0.0;
             let found = self.relax(time, dragged);
             self.contacts.own.shape = shape;
-            let clear = self.contacts.own.smallest_gap(&self.mesh, &self.motion.x, REACH).is_none();
-            if found.is_ok() && clear && !self.crosses_itself() {
+            if found.is_ok() && !self.touches_itself() && !self.crosses_itself() {
                 return Ok(found);
             }
             self.restore();
@@ -523,6 +522,11 @@ impl Dynamics {
             gap.point.y,
             mesh.arc_length[e]
         ))
+    }
+
+    /// Whether the cable is in touch with itself.
+    pub(super) fn touches_itself(&self) -> bool {
+        self.contacts.own.smallest_gap(&self.mesh, &self.motion.x, REACH).is_some()
     }
 
     /// Whether two bars of the cable cross.

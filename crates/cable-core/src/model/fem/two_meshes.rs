@@ -4,7 +4,7 @@
 //! barrier and grips do, and that is what is said of each figure. On the way without inertia `spans` goes on beside the bars: it costs a small
 //! part of what they do, and remembers friction as they do.
 //!
-//! Where it has no answer (slack, stiff, in plan) the same cable on bars twice and four times as long is asked. Straight bars between
+//! Where it has no answer (slack, stiff, in plan, in touch with itself) the same cable on bars twice and four times as long is asked. Straight bars between
 //! contacts are of the second order, where the cable touches down or meets a corner of the first: what is left of an error on the finest of three
 //! meshes is a third of what the finer two differ by, or all of it. All of it is said, and no less than half of what the coarser two differ by:
 //! one difference may pass through nothing where the error does not, as a node comes to lie at a corner. (L. F. Richardson and
@@ -49,8 +49,18 @@ impl TwoMeshes {
         dragged: &[Option<Vec2>],
     ) {
         *self = Self::default();
-        let moves = problem.outline.is_some() || problem.cable.self_contact;
-        if !fine.slides || moves {
+        if problem.outline.is_some() {
+            return;
+        }
+        if problem.cable.self_contact {
+            self.errors = match exact {
+                // What touches itself nowhere lies as one that cannot; once it moves it may.
+                Some(exact) if !fine.touches_itself() => beside(&fine.solution(), &exact.answer, problem),
+                _ => coarser(problem, settings, fine, dragged).map(|found| found.0).unwrap_or_default(),
+            };
+            return;
+        }
+        if !fine.slides {
             return;
         }
         if let Some(exact) = exact {
@@ -70,19 +80,9 @@ impl TwoMeshes {
             self.exact = Some(exact.spans);
             return;
         }
-        if fine.even_bars < LEAST_BARS {
-            return;
+        if let Some((errors, coarse)) = coarser(problem, settings, fine, dragged) {
+            (self.errors, self.coarse) = (errors, Some(Box::new(coarse)));
         }
-        let answer = fine.solution();
-        let laid = (&answer, dragged);
-        let Some(coarse) = laid_over(problem, settings, (fine, fine.even_bars / 2), laid) else { return };
-        let other = coarse.solution();
-        self.errors = ErrorEstimates::between(&other, &answer).plus(&ErrorEstimates::rounding(&answer, problem));
-        if let Some(coarsest) = laid_over(problem, settings, (fine, fine.even_bars / 4), laid) {
-            let change = ErrorEstimates::between(&coarsest.solution(), &other);
-            self.errors = self.errors.or_larger(&change.times(COARSER));
-        }
-        self.coarse = Some(Box::new(coarse));
     }
 
     /// Goes on beside the cable without inertia; with inertia nothing is said.
@@ -128,6 +128,26 @@ fn go_on(spans: &mut SpansModel, dt_s: f64, dragged: &[Option<Vec2>]) -> Option<
     }
     spans.advance(dt_s, Inertia::QuasiStatic).ok()?;
     Some(spans.solution())
+}
+
+/// Errors of a cable by the same one on bars twice and four times as long, and the one on bars twice as long; None where that finds no rest.
+fn coarser(
+    problem: &Arc<Problem>,
+    settings: Settings,
+    fine: &Dynamics,
+    dragged: &[Option<Vec2>],
+) -> Option<(ErrorEstimates, Dynamics)> {
+    if fine.even_bars < LEAST_BARS {
+        return None;
+    }
+    let answer = fine.solution();
+    let laid = (&answer, dragged);
+    let coarse = laid_over(problem, settings, (fine, fine.even_bars / 2), laid)?;
+    let other = coarse.solution();
+    let errors = ErrorEstimates::between(&other, &answer).plus(&ErrorEstimates::rounding(&answer, problem));
+    let coarsest = laid_over(problem, settings, (fine, fine.even_bars / 4), laid);
+    let change = coarsest.map(|c| ErrorEstimates::between(&c.solution(), &other).times(COARSER));
+    Some((change.map_or(errors, |change| errors.or_larger(&change)), coarse))
 }
 
 /// Errors beside an answer without a mesh.

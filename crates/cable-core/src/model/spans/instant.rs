@@ -4,11 +4,10 @@ use std::sync::Arc;
 
 use super::curve::Curve;
 use super::law::Law;
-use super::pass;
 use super::strand::{Course, Strand, Tie};
-use super::taut::Corner;
 use super::trouble::Trouble;
 use crate::catenary::PointForce;
+use crate::contact::passed::{self, Corner};
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::Model;
@@ -132,7 +131,7 @@ impl Layout {
             return Err(SolveError::NoRestingPlace { why: "nothing holds the cable".to_owned() });
         }
         loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
-        let corners = pass::corners(&problem.world).into();
+        let corners = passed::corners(&problem.world).into();
         let mut layout = Self { problem: problem.clone(), loads, corners, strands };
         layout.face_wheels();
         Ok(layout)

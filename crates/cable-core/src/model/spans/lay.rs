@@ -221,7 +221,8 @@ fn bends(
         let eye = seat.wheel.is_some() && curve.place(p1, seat.home).stretch == 0.0;
         let (index, [p1, p2]) = if eye && p2 < p1 { (seat.curve ^ 1, [-p1, -p2]) } else { (seat.curve, [p1, p2]) };
         let curve = &course.curves[index];
-        let p2 = if p2 > p1 { p2 } else { p1 };
+        // One that the string passes without a bend touches in one point, seen from either end.
+        let [p1, p2] = if p2 > p1 { [p1, p2] } else { [0.5 * (p1 + p2); 2] };
         let half = 0.5 * curve.length(p1, p2, seat.home) / course.law.stretch(tension);
         // Round a post the string's points are not those of the cable: where it comes and goes on the route itself.
         let seen = |p: f64, w: f64| {
@@ -286,7 +287,13 @@ pub(super) fn measure(strand: &mut Strand, course: &Course, loose: [bool; 2], st
 fn tail(part: &Part, instant: &Instant, way: &Way, side: usize) -> f64 {
     let up = -instant.load;
     let high = |k: &usize| way.points[*k].dot(&up);
-    let top = (0..way.points.len()).max_by(|a, b| high(a).total_cmp(&high(b))).unwrap_or(0);
+    // Of several the one nearest to that end.
+    let higher = |best: usize, k: usize| if high(&k) > high(&best) { k } else { best };
+    let top = match side {
+        0 => (0..way.points.len()).reduce(higher),
+        _ => (0..way.points.len()).rev().reduce(higher),
+    };
+    let top = top.unwrap_or(0);
     let length = if side == 0 { way.along[top] } else { way.total() - way.along[top] };
     let whole = part.material[1] - part.material[0];
     if length < whole { length } else { whole }

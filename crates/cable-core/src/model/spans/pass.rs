@@ -1,12 +1,8 @@
-//! Whether the cable has passed through something on its way from one shape to another.
-//!
-//! The old shape and back along the new one is a closed way; what it goes round was passed through. Corners and posts
-//! are looked at: nothing thinner is an obstacle.
+//! The cable's shape as points, by which it is told whether it has passed through something (`contact/passed.rs`), and when that need not be asked.
 
 use super::seek;
 use super::strand::{Contact, Course, Strand};
-use super::taut::Corner;
-use crate::contact::World;
+use crate::contact::passed::Corner;
 use crate::math::{Vec2, cross, larger, smaller};
 
 /// Points of each catenary and contact.
@@ -97,54 +93,4 @@ pub(super) fn shape(strand: &Strand, course: &Course, out: &mut Vec<Vec2>) {
             out.extend((0..=POINTS).map(|i| track.place(a + (b - a) * i as f64 / POINTS as f64).at));
         }
     }
-}
-
-/// Convex corners and the middles of posts, in order of x.
-pub(super) fn corners(world: &World) -> Vec<Corner> {
-    let mut out = Vec::new();
-    for (body, b) in world.geometry().bodies().iter().enumerate() {
-        out.extend(b.center.map(|at| Corner { at, body, feature: b.first + 1 }));
-        let jutting = (0..=b.edges.len()).filter_map(|k| b.corner(k)).filter(|c| b.juts_out(c));
-        out.extend(jutting.map(|c| Corner { at: c.at, body, feature: c.feature }));
-    }
-    out.sort_by(|a, b| a.at.x.total_cmp(&b.at.x));
-    out
-}
-
-/// A corner that lies between the old shape and the new one, the farthest from the new one. `turns`: memory.
-///
-/// How often the closed way goes round a corner is how often it passes above it to the right, less to the left.
-pub(super) fn through(corners: &[Corner], old: &[Vec2], new: &[Vec2], turns: &mut Vec<i32>) -> Option<Corner> {
-    let (low, high) = old.iter().chain(new).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
-        (if p.x < low { p.x } else { low }, if p.x > high { p.x } else { high })
-    });
-    let first = corners.partition_point(|c| c.at.x < low);
-    let corners = corners.get(first..corners.partition_point(|c| c.at.x <= high))?;
-    turns.clear();
-    turns.resize(corners.len(), 0);
-    let mut pass = |a: Vec2, b: Vec2| {
-        let (left, right, sign) = if a.x <= b.x { (a, b, 1) } else { (b, a, -1) };
-        let from = corners.partition_point(|c| c.at.x < left.x);
-        for (c, turns) in corners.iter().zip(turns.iter_mut()).skip(from).take_while(|(c, _)| c.at.x < right.x) {
-            if cross(right - left, c.at - left) < 0.0 {
-                *turns += sign;
-            }
-        }
-    };
-    let (Some(&start), Some(&end)) = (old.first(), old.last()) else { return None };
-    old.windows(2).for_each(|w| pass(w[0], w[1]));
-    new.windows(2).for_each(|w| pass(w[1], w[0]));
-    // The ends, where they moved.
-    if let (Some(&a), Some(&b)) = (new.first(), new.last()) {
-        pass(end, b);
-        pass(a, start);
-    }
-    let mut best: Option<(f64, Corner)> = None;
-    for (c, _) in corners.iter().zip(turns.iter()).filter(|(_, t)| **t != 0) {
-        let far = new.iter().map(|p| (p - c.at).norm()).fold(f64::INFINITY, |a, b| if b < a { b } else { a });
-        if best.is_none_or(|b| far > b.0) {
-            best = Some((far, *c));
-        }
-    }
-    best.map(|b| b.1)
 }

@@ -6,6 +6,7 @@
 //! side that is sought, not the place.
 
 use crate::contact::World;
+use crate::contact::passed::Corner;
 use crate::math::{Vec2, cross};
 
 /// Points that stand for a post.
@@ -24,16 +25,6 @@ pub(super) const RINGS: [Ring; 3] =
 const SAME: f64 = 1e-12;
 /// Corners met or left along one leg at most, times the number of corners.
 const MOST: usize = 8;
-
-/// A point no string passes through.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Corner {
-    pub at: Vec2,
-    /// Index of the body.
-    pub body: usize,
-    /// Its feature; that of the whole post for all its points.
-    pub feature: usize,
-}
 
 /// A corner the string bends round.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,6 +15,12 @@ const FLATNESS: [f64; 2] = [0.01, 5e-4];
 /// Part of a piece that lies by which a node stands before its end.
 const AT_THE_END: f64 = 1e-6;
 
+/// Part of an element by which two nodes of an answer are apart at least.
+const SAME_PLACE: f64 = 1e-3;
+
+/// Halvings of an element by which the place of its greatest tension is found: what is left of it is squared.
+const PEAK_HALVINGS: usize = 24;
+
 /// Part of what halving the elements changes that may be left of an error: a fifteenth by the fourth order, twice that where the last
 /// elements beside a contact do not have it yet.
 const LEFT: f64 = 2.0 / 15.0;
@@ -244,7 +250,12 @@ impl Elastica {
             // A sagitta of length times turn over 8.
             let off = (b[ANGLE] - a[ANGLE]).abs() * (b[ARC] - a[ARC]) / 8.0;
             let parts = (off / flat).sqrt().ceil().clamp(1.0, MOST_PARTS) as usize;
-            out.extend((1..parts).map(|i| self.read(piece, g[0] + i as f64 / parts as f64 * (g[1] - g[0]))));
+            let mut places: Vec<f64> = (1..parts).map(|i| g[0] + i as f64 / parts as f64 * (g[1] - g[0])).collect();
+            let apart = SAME_PLACE * (g[1] - g[0]);
+            let clear = |x: &f64| places.iter().chain(g).all(|y| (x - y).abs() > apart);
+            places.extend(self.peak(piece, [g[0], g[1]]).filter(clear));
+            places.sort_by(f64::total_cmp);
+            out.extend(places.into_iter().map(|x| self.read(piece, x)));
             // What is spread along it and the point force at its end are told apart by a node just before that.
             if piece.lies.is_some() && g[1] >= 1.0 {
                 out.push(self.read(piece, 1.0 - AT_THE_END));
@@ -252,6 +263,24 @@ impl Elastica {
             out.push(*b);
         }
         out
+    }
+
+    /// Where between two places of a piece its tension is greatest, if not at one of them: between nodes it is read too small by as much as their
+    /// distance squared.
+    fn peak(&self, piece: &Piece, [mut from, mut to]: [f64; 2]) -> Option<f64> {
+        let rises = |x: f64| {
+            let u = self.read(piece, x);
+            let (t, by) = (tangent(&u), self.slope(piece.lies, &u));
+            Vec2::new(by[4], by[5]).dot(&t) + force(&u).dot(&perp(t)) * by[ANGLE] > 0.0
+        };
+        if !rises(from) || rises(to) {
+            return None;
+        }
+        for _ in 0..PEAK_HALVINGS {
+            let middle = 0.5 * (from + to);
+            if rises(middle) { from = middle } else { to = middle }
+        }
+        Some(from)
     }
 
     /// What a contact does to a piece that lies on it, from place to place.

@@ -28,6 +28,13 @@ impl Band {
         }
     }
 
+    /// Adds to an entry; what lies outside the band is left out.
+    pub fn add(&mut self, row: usize, column: usize, value: f64) {
+        if let Some(k) = self.place(row, column) {
+            self.rows[k] += value;
+        }
+    }
+
     fn get(&self, row: usize, column: usize) -> f64 {
         self.place(row, column).map_or(0.0, |k| self.rows[k])
     }

@@ -26,12 +26,13 @@ mod chain_answer;
 mod relax;
 mod start;
 
+use crate::contact::passed;
 use crate::estimates::ErrorEstimates;
 use crate::math::{Vec2, perp};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Cost};
+use crate::solution::{CableSolution, Cost, Node};
 use band::Band;
-use relax::LetGo;
+use relax::{Chain, LetGo};
 
 /// Unknowns at a node: x, y, θ, M, F (2), s and the length of its piece in s.
 const STATES: usize = 8;
@@ -209,6 +210,7 @@ pub fn rest(
 ) -> Option<(CableSolution, Cost)> {
     let bent = lay.and_then(|lay| Elastica::from_flexible(problem, at.0, at.1, lay));
     let bent = bent.and_then(|e| e.answer(problem, tolerance));
+    let bent = bent.filter(|(found, _)| lay.is_some_and(|lay| keeps_sides(problem, &lay.nodes, found)));
     let chain = match &bent {
         // An equilibrium may be one that a cable runs away from: a chain that is let go there tells.
         Some((answer, _)) => match relax::let_go(problem, at, answer) {
@@ -218,18 +220,28 @@ pub fn rest(
         },
         None => relax::relaxed(problem, at, lay)?,
     };
-    if let Some(found) = Elastica::from_chain(&chain, at.1).and_then(|e| e.answer(problem, tolerance)) {
+    let bend = |chain: &Chain<'_>| {
+        let found = Elastica::from_chain(chain, at.1).and_then(|e| e.answer(problem, tolerance))?;
+        keeps_sides(problem, &chain.nodes(), &found.0).then_some(found)
+    };
+    if let Some(found) = bend(&chain) {
         return Some(found);
     }
     let (fine, rests) = chain.halved(at.1)?;
-    let bent = if rests { Elastica::from_chain(&fine, at.1) } else { None };
-    if let Some(found) = bent.and_then(|e| e.answer(problem, tolerance)) {
+    if let Some(found) = if rests { bend(&fine) } else { None } {
         return Some(found);
     }
     let cost = Cost { iterations: chain.steps + fine.steps, ..Cost::default() };
     let (coarse, finer) = (chain.solution(), fine.solution());
     let errors = ErrorEstimates::between(&coarse, &finer);
     Some((if rests { finer } else { coarse }.known_to(errors), cost))
+}
+
+/// Whether a cable can have come from one shape to an answer without passing through an obstacle. Newton's method can: where a contact of the way up in
+/// stiffness would have to pull it is let go, and what springs off a post may come to rest on its other side.
+fn keeps_sides(problem: &Problem, from: &[Node], to: &CableSolution) -> bool {
+    let [old, new] = [from, &to.nodes].map(|nodes| nodes.iter().map(Node::at).collect::<Vec<Vec2>>());
+    passed::through(&passed::corners(&problem.world), &old, &new, &mut Vec::new()).is_none()
 }
 
 impl Elastica {

@@ -13,6 +13,7 @@
 
 use super::super::contact_start::{leaning_way, push_chain_out};
 use super::super::layout::place as support_place;
+use super::band::Band;
 use super::start::{Curve, mobilised};
 use crate::contact::Gap;
 use crate::contact::pairs::Pair;
@@ -514,8 +515,7 @@ impl<'a> Chain<'a> {
             }
             self.add_chain(matrix, &mut push, shift, exact);
             for t in self.touches.iter().filter(|t| t.active) {
-                let along = (self.x[t.node + 1] - self.x[t.node]).normalize();
-                let f = t.gap.normal * (-stiff * t.gap.gap_m) + along * (t.mobilised * t.push);
+                let f = (t.gap.normal + self.along(t) * t.mobilised) * (-stiff * t.gap.gap_m);
                 let mut k = t.gap.normal * t.gap.normal.transpose() * stiff;
                 if exact && t.push > 0.0 {
                     self.add_round(matrix, t, &mut k);
@@ -539,7 +539,11 @@ impl<'a> Chain<'a> {
                 }
             }
             factor.factor(matrix).ok()?;
-            factor.solve_in_place(&mut right);
+            if self.touches.iter().any(|t| t.active && t.mobilised != 0.0) {
+                self.rubbing(matrix).solve(&mut right).then_some(())?;
+            } else {
+                factor.solve_in_place(&mut right);
+            }
             out = right.chunks_exact(2).map(|d| Vec2::new(d[0], d[1])).collect::<Vec<_>>();
             changed = false;
             for t in &mut self.touches {
@@ -556,6 +560,35 @@ impl<'a> Chain<'a> {
             }
         }
         Some((out, !changed))
+    }
+
+    /// Direction of the bar that a contact is on.
+    fn along(&self, t: &Touch) -> Vec2 {
+        (self.x[t.node + 1] - self.x[t.node]).normalize()
+    }
+
+    /// The matrix with friction that follows its normal force in the same step: with the force of the step before, each change of the one changes the
+    /// other by more where an end is pressed against a corner, and none is found.
+    fn rubbing(&self, matrix: &BandMatrix) -> Band {
+        let size = matrix.rows();
+        let mut band = Band::new(size, HALF_BAND);
+        for i in 0..size {
+            for j in i.saturating_sub(HALF_BAND)..(i + HALF_BAND + 1).min(size) {
+                band.set(i, j, matrix.get(i, j));
+            }
+        }
+        for t in self.touches.iter().filter(|t| t.active && t.mobilised != 0.0) {
+            let k = self.along(t) * t.gap.normal.transpose() * (t.mobilised * self.stiffness());
+            let free = |(i, _): &(usize, f64)| !self.held[*i];
+            for (i, a) in t.shares().into_iter().filter(free) {
+                for (j, b) in t.shares().into_iter().filter(free) {
+                    for (r, c) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                        band.add(2 * i + r, 2 * j + c, k[(r, c)] * (a * b));
+                    }
+                }
+            }
+        }
+        band
     }
 
     /// Distance of the centre line from a round's centre in touch, m.
