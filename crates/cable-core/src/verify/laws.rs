@@ -18,7 +18,7 @@ use crate::solution::{CableSolution, ContactReport, Node, SupportReaction};
 
 /// One cable with what there is to know of it.
 pub(super) struct Subject<'a> {
-    surroundings: &'a Surroundings,
+    surroundings: &'a Surroundings<'a>,
     scene: &'a Scene,
     pub cable: &'a Cable,
     pub answer: &'a CableSolution,
@@ -111,7 +111,7 @@ pub(super) fn check(found: &mut Verification, mut subject: Subject<'_>, depth: D
 impl<'a> Subject<'a> {
     /// The answer for a cable of a scene at a time, s.
     pub fn new(
-        surroundings: &'a Surroundings,
+        surroundings: &'a Surroundings<'a>,
         scene: &'a Scene,
         cable: &'a Cable,
         answer: &'a CableSolution,
@@ -205,7 +205,7 @@ impl Subject<'_> {
         larger(larger(square.sqrt(), loads), larger(load, LEAST_STRAIN * self.cable.axial_stiffness_n))
     }
 
-    /// Forces of what is no obstacle of the scene (the robot, the cable itself), as they are reported.
+    /// Forces of what is no obstacle of the scene (the cable itself), as they are reported.
     fn foreign(&self) -> impl Iterator<Item = PointForce> {
         let foreign = self.answer.contacts.iter().filter(|c| self.surroundings.find(&c.obstacle).is_none());
         foreign.flat_map(|c| &c.samples).map(|s| PointForce { arc_length: s.arc_length_m, force: vec2(s.force_n) })

@@ -1,8 +1,10 @@
-//! Obstacles as the checker sees them: edges and rounds, distances by brute force.
+//! Obstacles and the robot as the checker sees them: edges and rounds, distances by brute force.
 //!
 //! Edges are sorted by their left end, so that those in a box are found without looking at all; nothing else is clever.
 
+use crate::contact::outline::{Outline, Placement};
 use crate::math::{Vec2, cross, vec2};
+use crate::robot::RobotReport;
 use crate::scene::{Obstacle, Scene, Shape};
 
 /// An edge of an obstacle, or a round (both ends in its centre).
@@ -69,10 +71,14 @@ pub(super) struct Neighbours {
 
 impl Neighbours {
     /// Of the lines from each of a chain of points to the next (m), within `reach` (m) of each.
-    pub fn new(surroundings: &Surroundings, chain: impl ExactSizeIterator<Item = Vec2> + Clone, reach: f64) -> Self {
+    pub fn new(
+        surroundings: &Surroundings<'_>,
+        chain: impl ExactSizeIterator<Item = Vec2> + Clone,
+        reach: f64,
+    ) -> Self {
         let mut all = Vec::new();
         let (low, high) = bounds(chain.clone());
-        if surroundings.edges.apart(low - Vec2::repeat(reach), high + Vec2::repeat(reach)) {
+        if surroundings.apart(low - Vec2::repeat(reach), high + Vec2::repeat(reach)) {
             return Self { begins: Vec::new(), all };
         }
         let mut begins = Vec::with_capacity(chain.len());
@@ -133,18 +139,54 @@ pub(super) struct Near {
     pub at: Vec2,
 }
 
-/// The obstacles of a scene.
+/// The obstacles of a scene, and last of all its robot.
 #[derive(Clone, Debug)]
-pub(super) struct Surroundings {
+pub(super) struct Obstacles {
     bodies: Vec<Body>,
+    /// Of those that stand still.
     edges: Edges,
+    outline: Option<Outline>,
 }
 
-impl Surroundings {
+impl Obstacles {
     pub fn new(scene: &Scene) -> Self {
         let mut edges = Vec::new();
-        let bodies = scene.obstacles.iter().enumerate().map(|(k, o)| body(o, k, &mut edges)).collect();
-        Self { bodies, edges: Edges::new(edges) }
+        let mut bodies: Vec<Body> = scene.obstacles.iter().enumerate().map(|(k, o)| body(o, k, &mut edges)).collect();
+        // A cable rubs on it by its own coefficient.
+        let outline = scene.robot_outline(0.0);
+        bodies.extend(outline.as_ref().map(|o| Body { name: o.name.clone(), friction: None, kind: Kind::Inside }));
+        Self { bodies, edges: Edges::new(edges), outline }
+    }
+
+    /// With the robot as it is reported; where it is not, as the scene puts it.
+    pub fn at(&self, robot: Option<&RobotReport>) -> Surroundings<'_> {
+        let reported = robot.map(|r| Placement { at: Vec2::new(r.x_m, r.y_m), angle: r.pitch_deg.to_radians() });
+        let edges = self.outline.iter().flat_map(|outline| {
+            let body = self.bodies.len() - 1;
+            let edges = outline.edges(reported.unwrap_or(outline.placement));
+            edges.map(move |[from, to]| Edge::new(from, to, 0.0, body))
+        });
+        Surroundings { bodies: &self.bodies, fixed: &self.edges, moving: Edges::new(edges.collect()) }
+    }
+}
+
+/// What is there at an instant.
+#[derive(Debug)]
+pub(super) struct Surroundings<'a> {
+    bodies: &'a [Body],
+    fixed: &'a Edges,
+    moving: Edges,
+}
+
+impl Surroundings<'_> {
+    /// Whether nothing is in a box from `low` to `high`, m, as all lies beside it.
+    fn apart(&self, low: Vec2, high: Vec2) -> bool {
+        self.fixed.apart(low, high) && self.moving.apart(low, high)
+    }
+
+    /// Edges whose boxes meet a box from `low` to `high`, m.
+    fn meeting(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = &Edge> {
+        self.fixed.meeting(low, high).chain(self.moving.meeting(low, high))
     }
 
     pub fn name(&self, body: usize) -> &str {
@@ -165,7 +207,7 @@ impl Surroundings {
     /// nearest points of both, and those seen from the two ends.
     pub fn near(&self, a: Vec2, b: Vec2, reach: f64, out: &mut Vec<Near>) {
         let (low, high) = (a.inf(&b) - Vec2::repeat(reach), a.sup(&b) + Vec2::repeat(reach));
-        for e in self.edges.meeting(low, high) {
+        for e in self.meeting(low, high) {
             let t = e.thickness;
             if crosses(a, b, e.from, e.to) {
                 out.push(Near { body: e.body, distance: -t, normal: Vec2::zeros(), at: crossing(a, b, e) });
@@ -192,7 +234,7 @@ impl Surroundings {
         let mut above: Option<(usize, i32)> = None;
         let mut counts: Vec<(usize, i32)> = Vec::new();
         // Those that are nowhere above it do not count.
-        for e in self.edges.meeting(p, Vec2::new(p.x, f64::INFINITY)) {
+        for e in self.meeting(p, Vec2::new(p.x, f64::INFINITY)) {
             if self.bodies.get(e.body).is_none_or(|b| b.kind == Kind::Line) {
                 continue;
             }
@@ -228,7 +270,8 @@ impl Surroundings {
             let q = nearest(p, e.from, e.to);
             (p - q).norm() - e.thickness
         };
-        let depth = self.edges.sorted.iter().filter(|e| e.body == body).map(distance).fold(f64::INFINITY, f64::min);
+        let all = self.fixed.sorted.iter().chain(&self.moving.sorted);
+        let depth = all.filter(|e| e.body == body).map(distance).fold(f64::INFINITY, f64::min);
         Some((body, depth))
     }
 }
