@@ -132,7 +132,13 @@ impl Simulation {
             self.watch.at_rest(&subjects, time_s)
         }
         self.look_for_robot();
-        self.verification = self.verifier.check_cables(&self.scene, &self.answers, time_s, Depth::Always);
+        self.verification = self.verify(&self.answers);
+    }
+
+    /// What the laws say of answers for the cables, with the robot as it is.
+    fn verify(&self, answers: &[CableSolution]) -> Verification {
+        let robot = self.vehicle.as_ref().map(Vehicle::report);
+        self.verifier.check_cables(&self.scene, (answers, robot.as_ref()), self.time_s(), Depth::Always)
     }
 
     /// Says where an answer lies through the robot: models other than `fem` know nothing of it.
@@ -295,7 +301,7 @@ impl Simulation {
         strand.histories(|other| {
             let mut answers = self.answers.clone();
             answers[k].clone_from(other);
-            self.verifier.check_cables(&self.scene, &answers, self.time_s(), Depth::Always).is_sound()
+            self.verify(&answers).is_sound()
         })
     }
 

@@ -8,7 +8,8 @@ use cable_core::record::Fingerprint;
 use cable_core::robot::{Going, RobotReport};
 use cable_core::scene::{Shape, catalog};
 use cable_core::solution::{ContactReport, WarningKind};
-use cable_core::{Model, Obstacle, Scene, Simulation, Vec2};
+use cable_core::verify::Law;
+use cable_core::{Model, Obstacle, Scene, Simulation, SolveError, Vec2};
 
 /// Time between two looks, s.
 const FRAME_S: f64 = 1.0 / 60.0;
@@ -186,7 +187,12 @@ fn squeezed_against_a_wall_it_jams() {
 fn a_model_that_knows_nothing_of_it_says_so() {
     let mut over = scene(11.5, &LEVEL);
     over.cables[0].supports[0].at_m = Some([18.0, 3.0]);
-    let mut s = Simulation::new(over, Model::Spans).unwrap();
-    let answer = s.settle().unwrap();
+    // What lies through the robot is no answer; masses and springs, a quick look, are told so.
+    let refused = Simulation::new(over.clone(), Model::Spans).unwrap().settle().unwrap_err();
+    assert!(matches!(&refused, SolveError::Unsound { finding, .. } if finding.with == "robot"), "{refused}");
+    let answer = Simulation::new(over, Model::MassSpring).unwrap().settle().unwrap();
     assert!(answer.warnings.iter().any(|w| w.kind == WarningKind::ThroughRobot), "{:?}", answer.warnings);
+    let told =
+        answer.verification.as_ref().unwrap().findings.iter().any(|f| f.law == Law::Penetration && f.with == "robot");
+    assert!(told, "{:?}", answer.verification);
 }

@@ -195,9 +195,10 @@ pub fn greatest(scene: &Scene, cable: &Cable, found: &CableSolution) -> f64 {
     let tension = found.nodes.iter().map(|n| size(n.force_n).max(n.tension_n.abs())).fold(0.0, f64::max);
     let loads = scene.loads.iter().filter_map(|l| l.force_n).map(size).fold(0.0, f64::max);
     let ends = cable.supports.iter().filter_map(|s| s.force_n).map(size).fold(0.0, f64::max);
-    let floor = cable.linear_density_kg_per_m * scene.environment.gravity_m_per_s2;
-    let weight = size(body(scene, cable)).max(floor) * cable.length_m;
-    tension.max(loads).max(ends).max(weight).max(1e-7 * cable.axial_stiffness_n)
+    let gravity = scene.environment.gravity_m_per_s2;
+    let masses = cable.supports.iter().filter_map(|s| s.mass_kg).map(|m| m * gravity).fold(0.0, f64::max);
+    let weight = size(body(scene, cable)).max(cable.linear_density_kg_per_m * gravity) * cable.length_m;
+    tension.max(loads).max(ends).max(masses).max(weight).max(1e-7 * cable.axial_stiffness_n)
 }
 
 fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Solution), out: &mut Vec<String>) {
@@ -459,8 +460,11 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
         let tight = turn < 0.5;
         if tight && missing > ds * (0.1 * turn * turn + 1e-5) + 1e-9 * length {
             loose += missing;
-            // Loose material lies: without tension, on something.
-            let lies = plan || !near[k].is_empty();
+            // Loose material lies: without tension, on something; in the air where nothing pulls it down. In the air the force in a
+            // piece follows from that just beyond its first node, whatever acts at the nodes.
+            let touches = !near[k].is_empty();
+            let lies = plan || touches || size(load) == 0.0;
+            let tension = if touches || plan { tension } else { size(w[0].force_n) };
             let slack = tension <= 1e-3 * scale + 2.0 * size(load) * ds;
             let value = if lies && slack { 0.0 } else { missing };
             short.tell(value, 1e-5 * length, || {

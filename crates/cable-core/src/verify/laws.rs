@@ -6,26 +6,28 @@
 //! the cable has no internal force.
 
 use super::supports::{self, Hold, Role};
-use super::surroundings::{Neighbours, Surroundings};
+use super::surroundings::{Near, Neighbours, Surroundings};
 use super::tolerance::{
     ASIDE, BALANCE, COMPRESSION, CONE, DEPTH_DIAMETERS, DEPTH_M, FOLD, LEAST_STRAIN, LENGTH, LUMPED, MATERIAL, MOMENT,
     REACH_DIAMETERS, REACH_M, REPORTED, SAME_NORMAL, TURN,
 };
 use super::{Balance, Depth, Finding, Law, Verification};
-use crate::math::{Vec2, cross, larger, vec2};
+use crate::math::{Vec2, cross, larger, smaller, vec2};
 use crate::scene::{Cable, Scene, View};
 use crate::solution::{CableSolution, ContactReport, Node, SupportReaction};
 
 /// One cable with what there is to know of it.
 pub(super) struct Subject<'a> {
-    surroundings: &'a Surroundings,
+    surroundings: &'a Surroundings<'a>,
     scene: &'a Scene,
     pub cable: &'a Cable,
     pub answer: &'a CableSolution,
-    /// Time, s.
-    time_s: f64,
     /// What its supports do to it.
     pub holds: Vec<Hold<'a>>,
+    /// Centre, radius of the centre line and friction of the wheels that lead the cable now.
+    pub wheels: Vec<(Vec2, f64, f64)>,
+    /// Supports and loads. Wheels are among the obstacles.
+    points: Vec<PointForce>,
     /// Weight and wind, N/m.
     body: Vec2,
     /// 1 + αΔT.
@@ -38,6 +40,21 @@ pub(super) struct Subject<'a> {
 struct PointForce {
     arc_length: f64,
     force: Vec2,
+}
+
+/// The cable from a node to the next.
+#[derive(Clone, Copy, Debug)]
+struct Bar<'a> {
+    /// Index of the first node.
+    k: usize,
+    from: &'a Node,
+    to: &'a Node,
+    /// Arc length, m.
+    length: f64,
+    /// From node to node, m.
+    way: Vec2,
+    /// Sizes of the internal forces of its nodes, N.
+    forces: [f64; 2],
 }
 
 /// How far the way of a piece is from what it should be, how far it may, and its material beyond its way, m.
@@ -77,14 +94,12 @@ pub(super) fn check(found: &mut Verification, mut subject: Subject<'_>, depth: D
     } else {
         subject.supports(found);
         subject.balance(found, &near);
-        subject.length(found, &near);
         if answer.assumptions.bending_stiffness_n_m2 > 0.0 {
-            subject.moments(found);
+            subject.stiff(found);
             subject.stability(found, &near);
         } else {
-            subject.tension(found);
+            subject.flexible(found, &near);
             subject.pulleys(found);
-            subject.compression(found);
         }
     }
     if cable.self_contact && depth == Depth::Full {
@@ -97,7 +112,7 @@ pub(super) fn check(found: &mut Verification, mut subject: Subject<'_>, depth: D
 impl<'a> Subject<'a> {
     /// The answer for a cable of a scene at a time, s.
     pub fn new(
-        surroundings: &'a Surroundings,
+        surroundings: &'a Surroundings<'a>,
         scene: &'a Scene,
         cable: &'a Cable,
         answer: &'a CableSolution,
@@ -111,7 +126,13 @@ impl<'a> Subject<'a> {
         let wind = series(Some(env.wind_n_per_m), &env.wind_times_s, &env.winds_n_per_m, time_s);
         let thermal = 1.0 + cable.thermal_expansion_per_k * env.temperature_change_k;
         let holds = supports::holds(cable, answer, time_s);
-        Self { surroundings, scene, cable, answer, time_s, holds, body: weight + wind, thermal, scale: 0.0 }
+        let led = |hold: &Hold<'_>| match hold.role {
+            Role::Wheel { radius } => Some((hold.at, radius, hold.support.friction.unwrap_or(0.0))),
+            _ => None,
+        };
+        let wheels = holds.iter().filter_map(led).collect();
+        let points = point_forces(scene, cable, &holds, time_s);
+        Self { surroundings, scene, cable, answer, holds, wheels, points, body: weight + wind, thermal, scale: 0.0 }
     }
 }
 
@@ -145,7 +166,8 @@ impl Subject<'_> {
     }
 
     fn not_finite(&self) -> Option<Finding> {
-        let all = |values: &[f64]| values.iter().all(|v| v.is_finite());
+        // Without a branch for each number.
+        let all = |values: &[f64]| values.iter().fold(true, |all, v| all & v.is_finite());
         let node = |n: &Node| {
             all(&[n.arc_length_m, n.x_m, n.y_m, n.vx_m_per_s, n.vy_m_per_s, n.tension_n])
                 && all(&[n.strain, n.stress_pa, n.curvature_per_m, n.force_n[0], n.force_n[1]])
@@ -178,42 +200,16 @@ impl Subject<'_> {
 
     /// The greatest force on or in the cable, N; of one without any the least that anybody would read.
     fn forces_scale(&self) -> f64 {
-        let tension = self.answer.nodes.iter().map(|n| n.force().norm()).fold(0.0, larger);
-        let loads = self.point_forces().iter().map(|p| p.force.norm()).fold(0.0, larger);
+        let square = self.answer.nodes.iter().map(|n| n.force().norm_squared()).fold(0.0, f64::max);
+        let loads = self.points.iter().map(|p| p.force.norm()).fold(0.0, larger);
         let load = self.body.norm() * self.cable.length_m;
-        larger(larger(tension, loads), larger(load, LEAST_STRAIN * self.cable.axial_stiffness_n))
+        larger(larger(square.sqrt(), loads), larger(load, LEAST_STRAIN * self.cable.axial_stiffness_n))
     }
 
-    /// Supports and loads. Wheels are among the obstacles.
-    fn point_forces(&self) -> Vec<PointForce> {
-        let mut out = Vec::new();
-        for hold in &self.holds {
-            let force = match hold.role {
-                Role::Load => hold.dead_load(self.scene, self.time_s),
-                Role::Held | Role::Pulley => hold.force(),
-                Role::Wheel { .. } | Role::Released => continue,
-            };
-            out.push(PointForce { arc_length: hold.arc_length, force });
-        }
-        for l in self.scene.loads.iter().filter(|l| l.cable == self.cable.name) {
-            let force = series(l.force_n, &l.times_s, &l.forces_n, self.time_s);
-            out.push(PointForce { arc_length: l.arc_length_m, force });
-        }
-        out
-    }
-
-    /// Forces of what is no obstacle of the scene (the robot, the cable itself), as they are reported.
+    /// Forces of what is no obstacle of the scene (the cable itself), as they are reported.
     fn foreign(&self) -> impl Iterator<Item = PointForce> {
         let foreign = self.answer.contacts.iter().filter(|c| self.surroundings.find(&c.obstacle).is_none());
         foreign.flat_map(|c| &c.samples).map(|s| PointForce { arc_length: s.arc_length_m, force: vec2(s.force_n) })
-    }
-
-    /// Wheels that lead the cable now: centre, radius of the centre line and friction.
-    pub fn wheels(&self) -> impl Iterator<Item = (Vec2, f64, f64)> {
-        self.holds.iter().filter_map(|hold| match hold.role {
-            Role::Wheel { radius } => Some((hold.at, radius, hold.support.friction.unwrap_or(0.0))),
-            _ => None,
-        })
     }
 
     /// Whether the nodes run along the material: without that nothing else can be asked.
@@ -246,8 +242,7 @@ impl Subject<'_> {
     /// What is near the line from each node to the next.
     fn near(&self) -> Neighbours {
         let reach = self.reach();
-        let bars = self.answer.nodes.windows(2).map(|pair| [pair[0].at(), pair[1].at()]);
-        Neighbours::new(self.surroundings, bars, reach)
+        Neighbours::new(self.surroundings, self.answer.nodes.iter().map(Node::at), reach)
     }
 
     fn penetration(&self, found: &mut Verification, near: &Neighbours) {
@@ -323,65 +318,63 @@ impl Subject<'_> {
 
     /// The pieces from node to node. What acts at a node belongs to the piece that ends there, as internal forces are those just
     /// beyond nodes.
-    fn pieces(&self, points: &[PointForce]) -> Vec<Piece> {
+    fn pieces(&self) -> impl Iterator<Item = Piece> {
         let nodes = &self.answer.nodes;
         let last = nodes.len() - 1;
         let same = MATERIAL * self.cable.length_m;
         let foreign: Vec<PointForce> = self.foreign().collect();
-        let mut known = vec![Vec2::zeros(); nodes.len()];
-        for p in points.iter().chain(&foreign) {
-            // The last of the nodes at that material, and never before the first piece.
-            let k = nodes.partition_point(|n| n.arc_length_m <= p.arc_length + same).clamp(2, nodes.len()) - 1;
-            known[k] += p.force;
-        }
+        // The last of the nodes at that material, and never before the first piece.
+        let node = |s: f64| nodes.partition_point(|n| n.arc_length_m <= s + same).clamp(2, nodes.len()) - 1;
+        let mut known: Vec<_> = self.points.iter().chain(&foreign).map(|p| (node(p.arc_length), p.force)).collect();
+        known.sort_by_key(|p| p.0);
+        let mut known = known.into_iter().peekable();
         // Forces of bodies that the scene does not hold still are known to a node's neighbourhood only.
-        let cut = |k: usize| {
+        let cut = move |k: usize| {
             let [before, after] = [k - 1, (k + 1).min(last)].map(|k| nodes[k].arc_length_m);
             // Nodes of one material point are one: where the cable turns round a point, it is not said what it does there.
             nodes[k + 1].arc_length_m - nodes[k].arc_length_m > same
                 && foreign.iter().all(|p| !(p.arc_length >= before - same && p.arc_length <= after + same))
         };
-        let mut out = Vec::with_capacity(nodes.len());
-        let (mut from, mut acts) = (0, Vec2::zeros());
-        for to in 1..=last {
-            acts += known[to];
-            if to < last && !cut(to) {
-                continue;
+        let mut from = 0;
+        std::iter::from_fn(move || {
+            if from == last {
+                return None;
             }
+            let to = (from + 1..last).find(|&k| cut(k)).unwrap_or(last);
             let [a, b] = [from, to].map(|k| &nodes[k]);
             // Beyond the ends of the cable there is nothing.
             let before = if from == 0 { Vec2::zeros() } else { a.force() };
             let after = if to == last { Vec2::zeros() } else { b.force() };
-            let own = self.body * (b.arc_length_m - a.arc_length_m);
-            out.push(Piece { nodes: [from, to], contact: -(after - before) - own - acts });
-            (from, acts) = (to, Vec2::zeros());
-        }
-        out
+            let mut contact = before - after - self.body * (b.arc_length_m - a.arc_length_m);
+            while let Some((_, force)) = known.next_if(|p| p.0 <= to) {
+                contact -= force;
+            }
+            let piece = Piece { nodes: [from, to], contact };
+            from = to;
+            Some(piece)
+        })
     }
 
     fn balance(&self, found: &mut Verification, near: &Neighbours) {
         found.ask(Law::Balance);
-        let points = self.point_forces();
         let limit = BALANCE * self.scale;
         let mut sums = Balance { scale_n: larger(found.balance.scale_n, self.scale), ..found.balance };
-        let (mut adrift, mut beyond, mut pressed, mut lumped) = (Vec2::zeros(), 0.0, 0.0, 0.0);
+        let (mut adrift, mut beyond, mut pressed, mut in_air) = (Vec2::zeros(), 0.0, 0.0, 0.0);
         let (mut contacts, mut wheels, mut worst) = (Vec2::zeros(), Vec2::zeros(), (0.0, 0));
         let mut rays = Vec::new();
-        for piece in self.pieces(&points) {
-            let turns = self.rays(near, &piece, &mut rays);
-            let excess = if rays.is_empty() && !self.floor_rubs() {
+        for piece in self.pieces() {
+            let Some(excess) = self.excess(near, &piece, &mut rays) else {
                 // In the air residuals add up: each may be small and the sum not.
                 adrift += piece.contact;
-                let size = larger(adrift.norm(), piece.contact.norm());
-                sums.residual_n = larger(sums.residual_n, size);
-                if !(size <= limit) {
-                    found.report(self.finding(Law::Balance, piece.nodes[0], (size, limit)));
+                for square in [adrift.norm_squared(), piece.contact.norm_squared()] {
+                    in_air = f64::max(in_air, square);
+                    if !(square <= limit * limit) {
+                        found.report(self.finding(Law::Balance, piece.nodes[0], (square.sqrt(), limit)));
+                    }
                 }
                 continue;
-            } else {
-                adrift = Vec2::zeros();
-                self.floor_excess(&piece, outside_cone(piece.contact, &rays))
             };
+            adrift = Vec2::zeros();
             if self.on_wheel(&piece) {
                 wheels += piece.contact
             } else {
@@ -389,35 +382,50 @@ impl Subject<'_> {
             }
             beyond += excess;
             pressed += piece.contact.norm();
-            lumped += if turns { self.lumped_friction(&piece) } else { 0.0 };
             if excess > worst.0 || excess.is_nan() {
                 worst = (excess, piece.nodes[0]);
             }
         }
-        sums.residual_n = larger(sums.residual_n, beyond);
-        let allowed = limit + CONE * pressed + lumped;
+        sums.residual_n = larger(larger(sums.residual_n, in_air.sqrt()), beyond);
+        let allowed = limit + CONE * pressed;
         if !(beyond <= allowed) {
             let mut finding = self.finding(Law::Friction, worst.1, (beyond, allowed));
             let here = near.of(worst.1).first();
             self.surroundings.name(here.map_or(usize::MAX, |n| n.body)).clone_into(&mut finding.with);
             found.report(finding);
         }
-        self.sums(found, sums, (&points, contacts, wheels));
+        self.sums(found, sums, [contacts, wheels]);
+    }
+
+    /// What obstacles and the floor would do to a piece beyond what their friction and its own weight allow, N; None where nothing touches it.
+    fn excess(&self, near: &Neighbours, piece: &Piece, rays: &mut Vec<Vec2>) -> Option<f64> {
+        let within = |n: &Near| {
+            let pushes = piece.contact.dot(&n.normal);
+            let friction = self.surroundings.friction(n.body, self.cable.friction);
+            pushes > 0.0 && cross(n.normal, piece.contact).abs() <= friction * pushes
+        };
+        // Most pieces need no more than one of the things that touch them.
+        if near.around(piece.nodes[0], piece.nodes[1]).iter().any(within) {
+            return Some(0.0);
+        }
+        let turns = self.rays(near, piece, rays);
+        if rays.is_empty() && !self.floor_rubs() {
+            return None;
+        }
+        let excess = self.floor_excess(piece, outside_cone(piece.contact, rays));
+        // Each piece has its own: what one of them may be off is no leave for another.
+        let lumped = if turns && excess > 0.0 { self.lumped_friction(piece) } else { 0.0 };
+        Some(larger(excess - lumped, 0.0))
     }
 
     /// What is reported of contacts and wheels adds up to what the cable asks for.
-    fn sums(
-        &self,
-        found: &mut Verification,
-        mut sums: Balance,
-        (points, contacts, wheels): (&[PointForce], Vec2, Vec2),
-    ) {
+    fn sums(&self, found: &mut Verification, mut sums: Balance, [contacts, wheels]: [Vec2; 2]) {
         let limit = BALANCE * self.scale;
         let known_here = |c: &&ContactReport| self.surroundings.find(&c.obstacle).is_some();
         let reported: Vec2 = self.answer.contacts.iter().filter(known_here).map(|c| vec2(c.force_n)).sum::<Vec2>()
             + self.foreign().map(|p| p.force).sum::<Vec2>();
         let led: Vec2 = self.holds.iter().filter(|h| matches!(h.role, Role::Wheel { .. })).map(Hold::force).sum();
-        let known: Vec2 = points.iter().map(|p| p.force).sum();
+        let known: Vec2 = self.points.iter().map(|p| p.force).sum();
         let weight = self.body * self.cable.length_m;
         let whole = known + weight + led + reported;
         let off = if self.floor_rubs() { (wheels - led).norm() } else { whole.norm() };
@@ -463,7 +471,7 @@ impl Subject<'_> {
     }
 
     fn on_wheel(&self, piece: &Piece) -> bool {
-        self.wheels().any(|(center, radius, _)| piece.nodes.iter().any(|&k| self.is_led(k, center, radius)))
+        self.wheels.iter().any(|&(center, radius, _)| piece.nodes.iter().any(|&k| self.is_led(k, center, radius)))
     }
 
     /// Friction that a bar's own weight may add or hide where the ground turns, N: the bar carries it to its ends, where it turns the
@@ -506,7 +514,7 @@ impl Subject<'_> {
         for n in near.around(from, to) {
             add(n.normal, self.surroundings.friction(n.body, self.cable.friction));
         }
-        for (center, radius, friction) in self.wheels() {
+        for &(center, radius, friction) in &self.wheels {
             for k in (from..=to).filter(|&k| self.is_led(k, center, radius)) {
                 add((self.answer.nodes[k].at() - center).try_normalize(0.0).unwrap_or_default(), friction);
             }
@@ -514,113 +522,161 @@ impl Subject<'_> {
         turns
     }
 
-    /// The tension of a flexible cable is the size of the force in it: at a node one of those between just before and just beyond it.
-    fn tension(&self, found: &mut Verification) {
-        found.ask(Law::Tension);
-        let nodes = &self.answer.nodes;
-        let last = nodes.len() - 1;
-        for (k, n) in nodes.iter().enumerate() {
-            // `fem` reads it off the middles of the bars beside a node, half of whose weight is in between.
-            let beside = nodes[(k + 1).min(last)].arc_length_m - nodes[k.saturating_sub(1)].arc_length_m;
-            let limit = REPORTED * self.scale + LUMPED * self.body.norm() * beside;
-            let after = n.force();
-            // Most nodes have it from the piece that begins there.
-            if (n.tension_n - after.norm()).abs() <= limit {
-                continue;
-            }
-            let before = k.checked_sub(1).map_or(after, |j| self.forces_at_end(j)[1]);
-            let most = larger(before.norm(), after.norm());
-            let least = super::surroundings::distance(before, after, Vec2::zeros(), Vec2::zeros());
-            let value = larger(n.tension_n - most, least - n.tension_n);
-            if !(value <= limit) {
-                found.report(self.finding(Law::Tension, k, (value, limit)));
-            }
+    /// The laws of a flexible cable from node to node: its tension is the force in it, it pulls along its way, and its way is its
+    /// material.
+    fn flexible(&self, found: &mut Verification, near: &Neighbours) {
+        [Law::Length, Law::Tension, Law::Compression].into_iter().for_each(|law| found.ask(law));
+        let mut before = None;
+        for bar in self.bars() {
+            self.tension(found, before, &bar);
+            self.compression(found, &bar);
+            self.flexible_length(found, near, &bar);
+            before = Some(bar);
+        }
+        if let Some(bar) = before {
+            let (k, from, forces) = (bar.k + 1, bar.to, [bar.forces[1]; 2]);
+            self.tension(found, before, &Bar { k, from, forces, length: 0.0, way: Vec2::zeros(), ..bar });
+        }
+    }
+
+    /// From each node to the next.
+    fn bars(&self) -> impl Iterator<Item = Bar<'_>> {
+        let mut first = self.answer.nodes[0].force().norm();
+        self.answer.nodes.windows(2).enumerate().map(move |(k, pair)| {
+            let [from, to] = [&pair[0], &pair[1]];
+            let forces = [first, to.force().norm()];
+            first = forces[1];
+            Bar { k, from, to, length: to.arc_length_m - from.arc_length_m, way: to.at() - from.at(), forces }
+        })
+    }
+
+    /// The tension of a flexible cable is the size of the force in it: at the node between two bars one of those between just before
+    /// and just beyond it.
+    fn tension(&self, found: &mut Verification, before: Option<Bar<'_>>, bar: &Bar<'_>) {
+        let tension = bar.from.tension_n;
+        let limit = REPORTED * self.scale;
+        // Most nodes have it from the bar that begins there.
+        if (tension - bar.forces[0]).abs() <= limit {
+            return;
+        }
+        // `fem` reads it off the middles of the bars beside a node, half of whose weight is in between.
+        let beside = bar.length + before.map_or(0.0, |b| b.length);
+        let limit = limit + LUMPED * self.body.norm() * beside;
+        let after = bar.from.force();
+        let before = before.map_or(after, |_| self.force_before(bar.k));
+        let most = larger(before.norm(), bar.forces[0]);
+        let least = super::surroundings::distance(before, after, Vec2::zeros(), Vec2::zeros());
+        let value = larger(tension - most, least - tension);
+        if !(value <= limit) {
+            found.report(self.finding(Law::Tension, bar.k, (value, limit)));
         }
     }
 
     /// A flexible cable pulls along its way.
-    fn compression(&self, found: &mut Verification) {
-        found.ask(Law::Compression);
-        let limit = COMPRESSION * self.scale;
-        for k in 0..self.answer.nodes.len() - 1 {
-            let [a, b] = [&self.answer.nodes[k], &self.answer.nodes[k + 1]];
-            // Nodes of one material point have no way between them.
-            if b.arc_length_m - a.arc_length_m <= MATERIAL * self.cable.length_m {
-                continue;
-            }
-            let way = b.at() - a.at();
-            let pulls = self.forces_at_end(k).map(|end| (a.force() + end).dot(&way));
-            let most = larger(pulls[0], pulls[1]);
-            let pushes = if most < 0.0 { -0.5 * most / way.norm() } else { 0.0 };
-            let value = larger(pushes, larger(-a.tension_n, -b.tension_n));
-            if !(value <= limit) {
-                found.report(self.finding(Law::Compression, k, (value, limit)));
-            }
+    fn compression(&self, found: &mut Verification, bar: &Bar<'_>) {
+        // Nodes of one material point have no way between them.
+        if bar.length <= MATERIAL * self.cable.length_m {
+            return;
+        }
+        let pulls = self.forces_at_end(bar).map(|end| (bar.from.force() + end).dot(&bar.way));
+        let most = if pulls[0] >= 0.0 { pulls[0] } else { larger(pulls[0], pulls[1]) };
+        let least = smaller(bar.from.tension_n, bar.to.tension_n);
+        if most >= 0.0 && least >= 0.0 {
+            return;
+        }
+        let pushes = if most < 0.0 { -0.5 * most / bar.way.norm() } else { 0.0 };
+        let (value, limit) = (larger(pushes, -least), COMPRESSION * self.scale);
+        if !(value <= limit) {
+            found.report(self.finding(Law::Compression, bar.k, (value, limit)));
         }
     }
 
-    /// Internal force at the end of the piece from node k, N: as what touches it is spread along it, and as it is all at the end.
-    pub fn forces_at_end(&self, k: usize) -> [Vec2; 2] {
-        let [a, b] = [&self.answer.nodes[k], &self.answer.nodes[k + 1]];
-        [b.force(), a.force() - self.body * (b.arc_length_m - a.arc_length_m)]
+    /// Internal force at the end of a bar, N: as what touches it is spread along it, and as it is all at the end.
+    fn forces_at_end(&self, bar: &Bar<'_>) -> [Vec2; 2] {
+        [bar.to.force(), bar.from.force() - self.body * bar.length]
     }
 
-    /// The way from each node to the next is what its material and force make of it.
-    fn length(&self, found: &mut Verification, near: &Neighbours) {
-        found.ask(Law::Length);
-        let stiff = self.answer.assumptions.bending_stiffness_n_m2 > 0.0;
-        for k in 0..self.answer.nodes.len() - 1 {
-            let off = |l: &Lengths| l.value / l.limit;
-            let best = if stiff {
-                self.stiff_length(k)
-            } else {
-                let touches = self.touches(near, k);
-                let [spread, at_end] = self.forces_at_end(k);
-                let spread = self.flexible_length(k, spread, touches);
-                if spread.value <= spread.limit && spread.folded == 0.0 {
-                    continue;
-                }
-                let at_end = self.flexible_length(k, at_end, touches);
-                if off(&at_end) < off(&spread) { at_end } else { spread }
-            };
-            found.folded_m += best.folded;
-            if !(best.value <= best.limit) {
-                found.report(self.finding(Law::Length, k, (best.value, best.limit)));
-            }
+    /// Internal force just before a node that is not the first, as what touches the bar before it is all at its end, N.
+    pub fn force_before(&self, node: usize) -> Vec2 {
+        let [a, b] = [&self.answer.nodes[node - 1], &self.answer.nodes[node]];
+        a.force() - self.body * (b.arc_length_m - a.arc_length_m)
+    }
+
+    /// The way of a bar is what its material and force make of it.
+    fn flexible_length(&self, found: &mut Verification, near: &Neighbours, bar: &Bar<'_>) {
+        let touches = self.touches(near, bar.k);
+        let [spread, at_end] = self.forces_at_end(bar);
+        let spread = self.strained(bar, (spread, bar.forces[1]), touches);
+        if spread.is_some_and(|(off, limit)| off.norm_squared() <= limit * limit) {
+            return;
+        }
+        let lengths = |strained: Option<(Vec2, f64)>, q: f64| match strained {
+            Some((off, limit)) => Lengths { value: off.norm(), limit, folded: 0.0 },
+            None => self.folded(bar, q, touches),
+        };
+        let spread = lengths(spread, bar.forces[1]);
+        if spread.value <= spread.limit && spread.folded == 0.0 {
+            return;
+        }
+        let at_end = lengths(self.strained(bar, (at_end, at_end.norm()), touches), at_end.norm());
+        let off = |l: &Lengths| l.value / l.limit;
+        self.tell_length(found, bar, if off(&at_end) < off(&spread) { at_end } else { spread });
+    }
+
+    fn tell_length(&self, found: &mut Verification, bar: &Bar<'_>, lengths: Lengths) {
+        found.folded_m += lengths.folded;
+        if !(lengths.value <= lengths.limit) {
+            found.report(self.finding(Law::Length, bar.k, (lengths.value, lengths.limit)));
         }
     }
 
-    /// The piece from node k of a flexible cable, whose internal force is `end` (N) at its end.
-    fn flexible_length(&self, k: usize, end: Vec2, touches: bool) -> Lengths {
-        let [a, b] = [&self.answer.nodes[k], &self.answer.nodes[k + 1]];
-        let (compliance, start) = (1.0 / self.cable.axial_stiffness_n, a.force());
-        let material = self.thermal * (b.arc_length_m - a.arc_length_m);
-        let slack = LENGTH * material + MATERIAL * self.cable.length_m;
-        let way = b.at() - a.at();
+    /// How far a way may be from what it should be by rounding, and beside what touches, m.
+    fn length_slack(&self, material: f64, touches: bool) -> f64 {
         let aside = if touches { ASIDE * self.cable.diameter_m } else { 0.0 };
-        let [p, q] = [start.norm(), end.norm()];
-        let least = if p < q { p } else { q };
-        let turn = (end - start).norm() / least;
+        LENGTH * material + MATERIAL * self.cable.length_m + aside
+    }
+
+    /// How far the way of a bar of a flexible cable, whose internal force is `end` (N) of size `q` (N) at its end, is from what it
+    /// should be, and how far it may, m; None where the force has no direction.
+    #[inline]
+    fn strained(&self, bar: &Bar<'_>, (end, q): (Vec2, f64), touches: bool) -> Option<(Vec2, f64)> {
+        let (compliance, start, p) = (1.0 / self.cable.axial_stiffness_n, bar.from.force(), bar.forces[0]);
+        let (least, most) = if p < q { (p, q) } else { (q, p) };
+        let turn = (end - start).norm_squared() / (least * least);
         // A force no greater than what is let pass unbalanced has no direction, and may be none.
-        if turn < FOLD && least > BALANCE * self.scale {
-            // Simpson's rule for ∫ F/|F| (1 + |F|/EA) ds with F linear in s.
-            let rate = |f: Vec2| f * (1.0 / f.norm() + compliance);
-            let exact = (rate(start) + rate((start + end) * 0.5) * 4.0 + rate(end)) * (material / 6.0);
-            // Weight that a bar carries beyond its straight part turns it by as much.
-            let bar = self.answer.nodes[(k + 2).min(self.answer.nodes.len() - 1)].arc_length_m
-                - self.answer.nodes[k.saturating_sub(1)].arc_length_m;
-            let lumped = if touches { LUMPED * self.body.norm() * bar / larger(p, q) } else { 0.0 };
-            let limit = slack + aside + (TURN * turn * turn + lumped) * material;
-            return Lengths { value: (way - exact).norm(), limit, folded: 0.0 };
+        if !(turn < FOLD * FOLD && least > BALANCE * self.scale) {
+            return None;
         }
-        let stretched = material * (1.0 + larger(p, q) * compliance);
-        let slack = slack + aside;
-        Lengths { value: way.norm() - stretched, limit: slack, folded: larger(stretched - way.norm(), 0.0) }
+        // Simpson's rule for ∫ F/|F| (1 + |F|/EA) ds with F linear in s.
+        let middle = (start + end) * 0.5;
+        let rates = start * (1.0 / p + compliance)
+            + middle * (4.0 * (1.0 / middle.norm() + compliance))
+            + end * (1.0 / q + compliance);
+        let material = self.thermal * bar.length;
+        // Weight that a bar carries beyond its straight part turns it by as much.
+        let lumped = if touches { LUMPED * self.weight_beside(bar.k) / most } else { 0.0 };
+        let limit = self.length_slack(material, touches) + (TURN * turn + lumped) * material;
+        Some((bar.way - rates * (material / 6.0), limit))
+    }
+
+    /// A bar whose force, of size `q` (N) at its end, has no direction: it is no longer than its material.
+    fn folded(&self, bar: &Bar<'_>, q: f64, touches: bool) -> Lengths {
+        let material = self.thermal * bar.length;
+        let stretched = material * (1.0 + larger(bar.forces[0], q) / self.cable.axial_stiffness_n);
+        let (way, limit) = (bar.way.norm(), self.length_slack(material, touches));
+        Lengths { value: way - stretched, limit, folded: larger(stretched - way, 0.0) }
+    }
+
+    /// Weight and wind of the cable from node k to the next and of its neighbours, N.
+    fn weight_beside(&self, k: usize) -> f64 {
+        let nodes = &self.answer.nodes;
+        let [from, to] = [k.saturating_sub(1), (k + 2).min(nodes.len() - 1)].map(|k| nodes[k].arc_length_m);
+        self.body.norm() * (to - from)
     }
 
     /// Whether something touches a piece or a neighbour.
     pub fn touches(&self, near: &Neighbours, k: usize) -> bool {
-        let led = || [k, k + 1].iter().any(|&k| self.wheels().any(|w| self.is_led(k, w.0, w.1)));
+        let led = || self.wheels.iter().any(|w| [k, k + 1].iter().any(|&k| self.is_led(k, w.0, w.1)));
         !near.around(k, k + 1).is_empty() || led()
     }
 
@@ -630,39 +686,38 @@ impl Subject<'_> {
         (self.answer.nodes[node].at() - center).norm() <= radius + reach
     }
 
-    /// The piece from node k of a stiff cable: its way is an arc.
-    fn stiff_length(&self, k: usize) -> Lengths {
-        let [a, b] = [&self.answer.nodes[k], &self.answer.nodes[k + 1]];
-        let material = self.thermal * (b.arc_length_m - a.arc_length_m);
+    /// The laws of a stiff cable from node to node: its way is an arc of its material, and with M the bending moment, M' + t × F = 0.
+    fn stiff(&self, found: &mut Verification) {
+        [Law::Length, Law::Moment].into_iter().for_each(|law| found.ask(law));
+        let stiffness = self.answer.assumptions.bending_stiffness_n_m2 / self.thermal;
+        let greatest = self.answer.nodes.iter().map(|n| n.curvature_per_m.abs()).fold(0.0, larger) * stiffness;
+        let limit = MOMENT * greatest + BALANCE * self.scale * 0.5 * self.cable.diameter_m;
+        for bar in self.bars() {
+            self.tell_length(found, &bar, self.stiff_length(&bar));
+            // A bar that is longer than the bend beside a clamp or a contact, √(EI/T), cannot show it.
+            if bar.way.norm_squared() * bar.forces[0] > self.answer.assumptions.bending_stiffness_n_m2 {
+                continue;
+            }
+            let change = stiffness * (bar.to.curvature_per_m - bar.from.curvature_per_m);
+            let off = self.forces_at_end(&bar).map(|end| cross(bar.way, (bar.from.force() + end) * 0.5) + change);
+            let value = smaller(off[0].abs(), off[1].abs());
+            if !(value <= limit) {
+                found.report(self.finding(Law::Moment, bar.k, (value, limit)));
+            }
+        }
+    }
+
+    /// The way of a bar of a stiff cable is an arc.
+    fn stiff_length(&self, bar: &Bar<'_>) -> Lengths {
+        let (a, b) = (bar.from, bar.to);
+        let material = self.thermal * bar.length;
         let bend = larger(a.curvature_per_m.abs(), b.curvature_per_m.abs()) * material;
         let pull = 0.5 * (a.tension_n + b.tension_n);
         let change = (b.tension_n - a.tension_n).abs() + self.body.norm() * material;
         let stretched = material * (1.0 + pull / self.cable.axial_stiffness_n);
-        let slack = LENGTH * material + MATERIAL * self.cable.length_m;
-        let limit = slack + (TURN * bend * bend + change / self.cable.axial_stiffness_n) * material;
-        Lengths { value: ((b.at() - a.at()).norm() - stretched).abs(), limit, folded: 0.0 }
-    }
-
-    /// With M the bending moment, M' + t × F = 0.
-    fn moments(&self, found: &mut Verification) {
-        found.ask(Law::Moment);
-        let stiffness = self.answer.assumptions.bending_stiffness_n_m2 / self.thermal;
-        let nodes = &self.answer.nodes;
-        let greatest = nodes.iter().map(|n| (stiffness * n.curvature_per_m).abs()).fold(0.0, larger);
-        let noise = BALANCE * self.scale * 0.5 * self.cable.diameter_m;
-        for (k, pair) in nodes.windows(2).enumerate() {
-            let way = pair[1].at() - pair[0].at();
-            // A bar that is longer than the bend beside a clamp or a contact, √(EI/T), cannot show it.
-            if way.norm_squared() * pair[0].force().norm() > self.answer.assumptions.bending_stiffness_n_m2 {
-                continue;
-            }
-            let change = stiffness * (pair[1].curvature_per_m - pair[0].curvature_per_m);
-            let off = self.forces_at_end(k).map(|end| (change + cross(way, (pair[0].force() + end) * 0.5)).abs());
-            let (value, limit) = (if off[1] < off[0] { off[1] } else { off[0] }, MOMENT * greatest + noise);
-            if !(value <= limit) {
-                found.report(self.finding(Law::Moment, k, (value, limit)));
-            }
-        }
+        let limit = self.length_slack(material, false)
+            + (TURN * bend * bend + change / self.cable.axial_stiffness_n) * material;
+        Lengths { value: (bar.way.norm() - stretched).abs(), limit, folded: 0.0 }
     }
 
     /// Every bar against every other that is further along the cable than it is thick.
@@ -709,6 +764,23 @@ fn outside_cone(force: Vec2, rays: &[Vec2]) -> f64 {
         }
     }
     least
+}
+
+/// Supports and loads on a cable at a time, s.
+fn point_forces(scene: &Scene, cable: &Cable, holds: &[Hold<'_>], time_s: f64) -> Vec<PointForce> {
+    let held = holds.iter().filter_map(|hold| {
+        let force = match hold.role {
+            Role::Load => hold.dead_load(scene, time_s),
+            Role::Held | Role::Pulley => hold.force(),
+            Role::Wheel { .. } | Role::Released => return None,
+        };
+        Some(PointForce { arc_length: hold.arc_length, force })
+    });
+    let loads = scene.loads.iter().filter(|l| l.cable == cable.name).map(|l| {
+        let force = series(l.force_n, &l.times_s, &l.forces_n, time_s);
+        PointForce { arc_length: l.arc_length_m, force }
+    });
+    held.chain(loads).collect()
 }
 
 /// A vector as a function of time: the constant, or linear between its times.

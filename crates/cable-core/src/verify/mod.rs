@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `mod.rs` | [`Verifier`], [`Verification`]: which laws were asked, what was found |
 //! | `laws.rs` | one function a law, over one cable |
-//! | `surroundings.rs` | obstacles as the checker sees them: distances by brute force, normals, friction |
+//! | `surroundings.rs` | obstacles and the robot as the checker sees them: distances by brute force, normals, friction |
 //! | `stability.rs` | whether a stiff cable holds what it pushes with |
 //! | `supports.rs` | what supports do to the cable, and whether it is where they hold it |
 //! | `pulleys.rs` | what friction of eyes and wheels allows between the tensions beside them |
@@ -26,7 +26,8 @@ pub mod tolerance;
 
 use serde::{Deserialize, Serialize};
 
-use self::surroundings::Surroundings;
+use self::surroundings::Obstacles;
+use crate::robot::RobotReport;
 use crate::scene::Scene;
 use crate::solution::{CableSolution, Solution};
 
@@ -243,36 +244,34 @@ impl Verification {
 /// Checks answers of one scene.
 #[derive(Clone, Debug)]
 pub struct Verifier {
-    surroundings: Surroundings,
+    obstacles: Obstacles,
 }
 
 impl Verifier {
     /// For a scene that was validated.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        Self { surroundings: Surroundings::new(scene) }
+        Self { obstacles: Obstacles::new(scene) }
     }
 
     /// Asks every law of an answer of `scene`, the one it was made for.
     #[must_use]
     pub fn check(&self, scene: &Scene, solution: &Solution, depth: Depth) -> Verification {
-        self.check_cables(scene, &solution.cables, solution.time_s, depth)
+        self.check_cables(scene, (&solution.cables, solution.robot.as_ref()), solution.time_s, depth)
     }
 
-    /// The same of the answers for its cables at a time, s.
+    /// The same of the answers for its cables and of its robot at a time, s.
     pub(crate) fn check_cables(
         &self,
         scene: &Scene,
-        answers: &[CableSolution],
+        (answers, robot): (&[CableSolution], Option<&RobotReport>),
         time_s: f64,
         depth: Depth,
     ) -> Verification {
         let mut found = Verification::default();
+        let surroundings = self.obstacles.at(robot);
         for (cable, answer) in scene.cables.iter().zip(answers) {
-            laws::check(&mut found, laws::Subject::new(&self.surroundings, scene, cable, answer, time_s), depth);
-        }
-        if scene.robot.is_some() {
-            found.not_checked.push("the outline of the robot".to_owned());
+            laws::check(&mut found, laws::Subject::new(&surroundings, scene, cable, answer, time_s), depth);
         }
         found
     }

@@ -35,7 +35,7 @@ impl Subject<'_> {
             if first == 0 || last + 1 >= nodes.len() {
                 continue;
             }
-            let before = self.forces_at_end(first - 1)[1];
+            let before = self.force_before(first);
             let after = nodes[last].force();
             let [least, most] = [-led.friction, led.friction].map(|m| self.passed(&led, before, m));
             let value = larger(after.norm() - most, least - after.norm());

@@ -35,7 +35,7 @@ impl Subject<'_> {
                 holds[k + 1] = holds[k + 1].or(holds[k]);
                 continue;
             };
-            let pulls = self.forces_at_end(k).map(|end| (pair[0].force() + end).dot(&way) * 0.5);
+            let pulls = [pair[1].force(), self.force_before(k + 1)].map(|end| (pair[0].force() + end).dot(&way) * 0.5);
             bars.push(Bar {
                 length,
                 pull: larger(pulls[0], pulls[1]),

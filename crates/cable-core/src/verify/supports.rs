@@ -1,11 +1,12 @@
 //! What supports do to the cable, and whether it is where they hold it.
 
 use super::laws::{Subject, series};
+use super::surroundings::distance;
 use super::tolerance::HELD;
 use super::{Law, Verification};
 use crate::math::{Vec2, larger, smaller};
 use crate::scene::{Cable, Scene, Support, SupportKind, View};
-use crate::solution::{CableSolution, SupportReaction};
+use crate::solution::{CableSolution, Node, SupportReaction};
 
 /// What a support does to the cable now.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,14 +84,17 @@ impl Subject<'_> {
         let nodes = &self.answer.nodes;
         let limit = HELD * self.cable.length_m;
         for hold in &self.holds {
-            let to_cable = || {
-                let to_line = |a: Vec2, b: Vec2| super::surroundings::distance(hold.at, hold.at, a, b);
-                nodes.windows(2).map(|p| to_line(p[0].at(), p[1].at())).fold(f64::INFINITY, smaller)
+            let to_bar = |p: &[Node]| distance(hold.at, hold.at, p[0].at(), p[1].at());
+            // Most are there where the cable says that it runs past them.
+            let to_cable = |enough: f64| {
+                let here = nodes.partition_point(|n| n.arc_length_m < hold.arc_length).clamp(1, nodes.len() - 1);
+                let off = to_bar(&nodes[here - 1..=here]);
+                if off <= enough { off } else { nodes.windows(2).map(to_bar).fold(off, smaller) }
             };
             let (off, limit) = match hold.role {
                 Role::Load | Role::Released => continue,
-                Role::Pulley => (to_cable(), larger(limit, self.reach())),
-                Role::Wheel { radius } => (to_cable() - radius, larger(limit, self.reach())),
+                Role::Pulley => (to_cable(limit), larger(limit, self.reach())),
+                Role::Wheel { radius } => (to_cable(radius + limit) - radius, larger(limit, self.reach())),
                 Role::Held => {
                     let from = nodes.partition_point(|n| n.arc_length_m < hold.arc_length - limit);
                     let here = nodes[from..].iter().take_while(|n| n.arc_length_m <= hold.arc_length + limit);

@@ -1,8 +1,10 @@
-//! Obstacles as the checker sees them: edges and rounds, distances by brute force.
+//! Obstacles and the robot as the checker sees them: edges and rounds, distances by brute force.
 //!
 //! Edges are sorted by their left end, so that those in a box are found without looking at all; nothing else is clever.
 
+use crate::contact::outline::{Outline, Placement};
 use crate::math::{Vec2, cross, vec2};
+use crate::robot::RobotReport;
 use crate::scene::{Obstacle, Scene, Shape};
 
 /// An edge of an obstacle, or a round (both ends in its centre).
@@ -26,6 +28,39 @@ impl Edge {
     }
 }
 
+/// Edges by their left ends.
+#[derive(Clone, Debug)]
+struct Edges {
+    sorted: Vec<Edge>,
+    /// Greatest reach of an edge and its thickness along x, m: how far left of a box edges that meet it begin.
+    widest: f64,
+    /// Lower left and upper right corner of the box about them all, m.
+    low: Vec2,
+    high: Vec2,
+}
+
+impl Edges {
+    fn new(mut sorted: Vec<Edge>) -> Self {
+        sorted.sort_by(|a, b| a.low.x.total_cmp(&b.low.x));
+        let widest = sorted.iter().map(|e| e.high.x - e.low.x).fold(0.0, f64::max);
+        let (low, high) = bounds(sorted.iter().flat_map(|e| [e.low, e.high]));
+        Self { sorted, widest, low, high }
+    }
+
+    /// Whether none is in a box from `low` to `high`, m, as all lie beside it.
+    fn apart(&self, low: Vec2, high: Vec2) -> bool {
+        low.x > self.high.x || high.x < self.low.x || low.y > self.high.y || high.y < self.low.y
+    }
+
+    /// Those whose boxes meet a box from `low` to `high`, m.
+    fn meeting(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = &Edge> {
+        let all = if self.apart(low, high) { &[][..] } else { &self.sorted[..] };
+        let first = all.partition_point(|e| e.low.x < low.x - self.widest);
+        let begun = all[first..].iter().take_while(move |e| e.low.x <= high.x);
+        begun.filter(move |e| e.high.x >= low.x && e.low.y <= high.y && e.high.y >= low.y)
+    }
+}
+
 /// What is near each bar of a cable.
 #[derive(Debug)]
 pub(super) struct Neighbours {
@@ -35,11 +70,19 @@ pub(super) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Of bars from end to end (m), within `reach` (m) of each.
-    pub fn new(surroundings: &Surroundings, bars: impl ExactSizeIterator<Item = [Vec2; 2]>, reach: f64) -> Self {
-        let mut begins = Vec::with_capacity(bars.len() + 1);
+    /// Of the lines from each of a chain of points to the next (m), within `reach` (m) of each.
+    pub fn new(
+        surroundings: &Surroundings<'_>,
+        chain: impl ExactSizeIterator<Item = Vec2> + Clone,
+        reach: f64,
+    ) -> Self {
         let mut all = Vec::new();
-        for [a, b] in bars {
+        let (low, high) = bounds(chain.clone());
+        if surroundings.apart(low - Vec2::repeat(reach), high + Vec2::repeat(reach)) {
+            return Self { begins: Vec::new(), all };
+        }
+        let mut begins = Vec::with_capacity(chain.len());
+        for (a, b) in chain.clone().zip(chain.skip(1)) {
             begins.push(all.len());
             surroundings.near(a, b, reach, &mut all);
         }
@@ -59,7 +102,7 @@ impl Neighbours {
 
     fn between(&self, from: usize, to: usize) -> &[Near] {
         let begin = |bar: usize| self.begins.get(bar).copied().unwrap_or(self.all.len());
-        self.all.get(begin(from)..begin(to)).unwrap_or_default()
+        if self.all.is_empty() { &[] } else { self.all.get(begin(from)..begin(to)).unwrap_or_default() }
     }
 }
 
@@ -96,22 +139,54 @@ pub(super) struct Near {
     pub at: Vec2,
 }
 
-/// The obstacles of a scene.
+/// The obstacles of a scene, and last of all its robot.
 #[derive(Clone, Debug)]
-pub(super) struct Surroundings {
+pub(super) struct Obstacles {
     bodies: Vec<Body>,
-    edges: Vec<Edge>,
-    /// Greatest reach of an edge and its thickness along x, m: how far left of a box edges that meet it begin.
-    widest: f64,
+    /// Of those that stand still.
+    edges: Edges,
+    outline: Option<Outline>,
 }
 
-impl Surroundings {
+impl Obstacles {
     pub fn new(scene: &Scene) -> Self {
         let mut edges = Vec::new();
-        let bodies = scene.obstacles.iter().enumerate().map(|(k, o)| body(o, k, &mut edges)).collect();
-        edges.sort_by(|a: &Edge, b: &Edge| a.low.x.total_cmp(&b.low.x));
-        let widest = edges.iter().map(|e| e.high.x - e.low.x).fold(0.0, f64::max);
-        Self { bodies, edges, widest }
+        let mut bodies: Vec<Body> = scene.obstacles.iter().enumerate().map(|(k, o)| body(o, k, &mut edges)).collect();
+        // A cable rubs on it by its own coefficient.
+        let outline = scene.robot_outline(0.0);
+        bodies.extend(outline.as_ref().map(|o| Body { name: o.name.clone(), friction: None, kind: Kind::Inside }));
+        Self { bodies, edges: Edges::new(edges), outline }
+    }
+
+    /// With the robot as it is reported; where it is not, as the scene puts it.
+    pub fn at(&self, robot: Option<&RobotReport>) -> Surroundings<'_> {
+        let reported = robot.map(|r| Placement { at: Vec2::new(r.x_m, r.y_m), angle: r.pitch_deg.to_radians() });
+        let edges = self.outline.iter().flat_map(|outline| {
+            let body = self.bodies.len() - 1;
+            let edges = outline.edges(reported.unwrap_or(outline.placement));
+            edges.map(move |[from, to]| Edge::new(from, to, 0.0, body))
+        });
+        Surroundings { bodies: &self.bodies, fixed: &self.edges, moving: Edges::new(edges.collect()) }
+    }
+}
+
+/// What is there at an instant.
+#[derive(Debug)]
+pub(super) struct Surroundings<'a> {
+    bodies: &'a [Body],
+    fixed: &'a Edges,
+    moving: Edges,
+}
+
+impl Surroundings<'_> {
+    /// Whether nothing is in a box from `low` to `high`, m, as all lies beside it.
+    fn apart(&self, low: Vec2, high: Vec2) -> bool {
+        self.fixed.apart(low, high) && self.moving.apart(low, high)
+    }
+
+    /// Edges whose boxes meet a box from `low` to `high`, m.
+    fn meeting(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = &Edge> {
+        self.fixed.meeting(low, high).chain(self.moving.meeting(low, high))
     }
 
     pub fn name(&self, body: usize) -> &str {
@@ -132,11 +207,7 @@ impl Surroundings {
     /// nearest points of both, and those seen from the two ends.
     pub fn near(&self, a: Vec2, b: Vec2, reach: f64, out: &mut Vec<Near>) {
         let (low, high) = (a.inf(&b) - Vec2::repeat(reach), a.sup(&b) + Vec2::repeat(reach));
-        let first = self.edges.partition_point(|e| e.low.x < low.x - self.widest);
-        for e in self.edges.iter().skip(first).take_while(|e| e.low.x <= high.x) {
-            if e.high.x < low.x || e.low.y > high.y || e.high.y < low.y {
-                continue;
-            }
+        for e in self.meeting(low, high) {
             let t = e.thickness;
             if crosses(a, b, e.from, e.to) {
                 out.push(Near { body: e.body, distance: -t, normal: Vec2::zeros(), at: crossing(a, b, e) });
@@ -162,8 +233,8 @@ impl Surroundings {
         // Each edge above the point counts: where it runs to the right its solid side is below it, where to the left above.
         let mut above: Option<(usize, i32)> = None;
         let mut counts: Vec<(usize, i32)> = Vec::new();
-        let first = self.edges.partition_point(|e| e.low.x < p.x - self.widest);
-        for e in self.edges.iter().skip(first).take_while(|e| e.low.x <= p.x) {
+        // Those that are nowhere above it do not count.
+        for e in self.meeting(p, Vec2::new(p.x, f64::INFINITY)) {
             if self.bodies.get(e.body).is_none_or(|b| b.kind == Kind::Line) {
                 continue;
             }
@@ -199,9 +270,16 @@ impl Surroundings {
             let q = nearest(p, e.from, e.to);
             (p - q).norm() - e.thickness
         };
-        let depth = self.edges.iter().filter(|e| e.body == body).map(distance).fold(f64::INFINITY, f64::min);
+        let all = self.fixed.sorted.iter().chain(&self.moving.sorted);
+        let depth = all.filter(|e| e.body == body).map(distance).fold(f64::INFINITY, f64::min);
         Some((body, depth))
     }
+}
+
+/// Lower left and upper right corner of the box about some points, m.
+fn bounds(points: impl Iterator<Item = Vec2>) -> (Vec2, Vec2) {
+    let nowhere = (Vec2::repeat(f64::INFINITY), Vec2::repeat(f64::NEG_INFINITY));
+    points.fold(nowhere, |(low, high), p| (low.inf(&p), high.sup(&p)))
 }
 
 fn body(o: &Obstacle, index: usize, edges: &mut Vec<Edge>) -> Body {

@@ -257,3 +257,46 @@ fn a_tension_beside_a_pulley_that_is_not_the_force_is_seen() {
     sees(Law::Tension, PULLEYS, |c| c.supports[1].tension_before_n = c.supports[1].tension_before_n.map(|t| 1.01 * t));
     sees(Law::Tension, PULLEYS, |c| c.supports[2].tension_after_n = Some(0.0));
 }
+
+/// A cable that the robot backed over, slack in front of its own tracks, by `fem`.
+fn on_robot() -> (Scene, Solution) {
+    let mut scene = crate::scene::catalog::robot_drive();
+    scene.cables[0].supports[0].at_m = Some([18.0, 3.0]);
+    scene.cables[0].length_m = 11.5;
+    let solution = Simulation::new(scene.clone(), Model::Fem).unwrap().settle().unwrap();
+    (scene, solution)
+}
+
+#[test]
+fn a_cable_on_the_robot_is_asked_everything() {
+    let (scene, solution) = on_robot();
+    let found = check(&scene, &solution);
+    assert_eq!((&found.findings, &found.not_checked), (&vec![], &vec![]), "sound before");
+    let of_robot = |c: &ContactReport| c.obstacle == "robot";
+    let contact = solution.cables[0].contacts.iter().position(of_robot).unwrap();
+    let seen = |change: &dyn Fn(&mut Solution), law: Law, with: &str| {
+        let mut other = solution.clone();
+        change(&mut other);
+        let found = check(&scene, &other);
+        let told = found.findings.iter().any(|f| f.law == law && (f.with == with || with.is_empty()));
+        assert!(told, "{law:?}: {:?}", found.findings);
+    };
+    // Drawn into it, and the robot moved into the cable.
+    seen(&|s| s.cables[0].nodes.iter_mut().for_each(|n| n.y_m -= 0.01), Law::Penetration, "robot");
+    seen(&|s| s.robot.as_mut().unwrap().y_m += 0.01, Law::Penetration, "robot");
+    // Reported beyond its cone, and pulling.
+    let friction = scene.cables[0].friction;
+    let rubs = |s: &mut Solution| {
+        let c = &mut s.cables[0].contacts[contact];
+        c.friction_n = 1.1 * friction * c.normal_n;
+    };
+    seen(&rubs, Law::Friction, "robot");
+    seen(&|s| s.cables[0].contacts[contact].normal_n *= -1.0, Law::Push, "robot");
+    // The robot away from under it: what it did comes from nowhere.
+    seen(&|s| s.robot.as_mut().unwrap().y_m -= 0.1, Law::Balance, "");
+    // Smoother than what holds: the forces in the cable are beyond the cone.
+    let mut smooth = scene.clone();
+    smooth.cables[0].friction = 0.0;
+    let found = Verifier::new(&smooth).check(&smooth, &solution, Depth::Always);
+    assert!(found.findings.iter().any(|f| f.law == Law::Friction && f.with == "robot"), "{:?}", found.findings);
+}
