@@ -38,6 +38,9 @@ pub(super) struct Way {
     load: (f64, f64),
 }
 
+/// Farthest way along an arc, rad: 1600 turns. Less: drums are refused; more: a step of Newton into nowhere takes a minute.
+const MOST_TURN: f64 = 1e4;
+
 /// How tension and material go on from a point of an arc: derivatives by the angle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rates {
@@ -55,6 +58,9 @@ impl Way {
     pub fn new(from: &Spot, way: f64) -> Self {
         let (h, count) = if way.abs() <= PANEL {
             (way, 1)
+        } else if !(way.abs() <= MOST_TURN) {
+            // No cable is wound so: Newton is told to look elsewhere.
+            (f64::NAN, 1)
         } else {
             let panels = (way.abs() / PANEL).ceil().max(1.0);
             (way / panels, panels as usize)
