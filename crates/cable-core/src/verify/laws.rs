@@ -479,7 +479,16 @@ impl Subject<'_> {
     fn lumped_friction(&self, piece: &Piece) -> f64 {
         let nodes = &self.answer.nodes;
         let last = nodes.len() - 1;
-        let [from, to] = [piece.nodes[0].saturating_sub(1), (piece.nodes[1] + 1).min(last)];
+        // Pieces of a corner are shorter than the cable is thick: its bars are those beyond.
+        let [mut from, mut to] = piece.nodes;
+        let ends = piece.nodes.map(|k| nodes[k].arc_length_m);
+        let thick = self.cable.diameter_m;
+        while from > 0 && (from == piece.nodes[0] || ends[0] - nodes[from].arc_length_m < thick) {
+            from -= 1;
+        }
+        while to < last && (to == piece.nodes[1] || nodes[to].arc_length_m - ends[1] < thick) {
+            to += 1;
+        }
         let weight = self.body.norm() * (nodes[to].arc_length_m - nodes[from].arc_length_m);
         let force = larger(nodes[piece.nodes[0]].force().norm(), nodes[piece.nodes[1]].force().norm());
         let turn = if weight < force { weight / force } else { 1.0 };

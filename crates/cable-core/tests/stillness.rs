@@ -1,0 +1,88 @@
+//! What lies still is still: nothing creeps, rattles or gains energy when nothing moves any more.
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
+mod dice;
+
+use cable_core::scene::{Motion, Obstacle, STANDARD_GRAVITY, Scene, Shape, Support, catalog};
+use cable_core::{Model, Settings, Simulation};
+
+use self::dice::Dice;
+
+const STEP_S: f64 = 1.0 / 240.0;
+
+fn fastest(sim: &Simulation) -> f64 {
+    let nodes = sim.solution().cables.into_iter().flat_map(|c| c.nodes);
+    nodes.map(|n| n.vx_m_per_s.hypot(n.vy_m_per_s)).fold(0.0, f64::max)
+}
+
+fn begin(scene: Scene, model: Model) -> Simulation {
+    let mut sim = Simulation::with_settings(scene, model, Settings::default()).expect("a sound scene");
+    sim.settle().expect("a rest");
+    sim
+}
+
+/// A cable on level ground, one end drawn a way along it and stopped.
+fn drawn_over_ground(number: u64) -> (Scene, f64) {
+    let mut dice = Dice(number.wrapping_mul(0x1000_0001) + 11);
+    let mut scene = catalog::hanging_span();
+    scene.loads.clear();
+    let ground = Shape::Terrain { points_m: vec![[-5.0, 0.0], [25.0, 0.0]] };
+    scene.obstacles =
+        vec![Obstacle { name: "ground".to_owned(), shape: ground, friction: Some(dice.within(0.2, 0.8)) }];
+    let c = &mut scene.cables[0];
+    (c.length_m, c.segments, c.route_m) = (8.0, Some(dice.within(40.0, 160.0) as usize), Vec::new());
+    c.bending_stiffness_n_m2 = 0.0;
+    c.axial_stiffness_n = 10f64.powf(dice.within(4.5, 6.5));
+    let above = 0.5 * c.diameter_m + 1e-4;
+    let at = [8.0, above];
+    let mut end = Support::fixed("end", at);
+    let (far, quick) = (dice.within(0.2, 2.0), dice.within(0.2, 1.5));
+    let stop = far / quick;
+    end.motion = Some(Motion { times_s: vec![0.0, stop], points_m: vec![at, [8.0 + far, above]] });
+    c.supports = vec![Support::free("tail"), end];
+    c.route_m = vec![[0.0, above], at];
+    (scene, stop)
+}
+
+#[test]
+fn a_cable_on_the_ground_is_at_rest_five_seconds_after_it_was_drawn() {
+    for number in 0..6 {
+        let (scene, stop) = drawn_over_ground(number);
+        let weight = scene.cables[0].linear_density_kg_per_m * STANDARD_GRAVITY * scene.cables[0].length_m;
+        let mut sim = begin(scene, Model::Fem);
+        for _ in 0..((stop + 5.0) / STEP_S).ceil() as usize {
+            sim.step(STEP_S).expect("a step");
+        }
+        let (speed, before) = (fastest(&sim), sim.max_tension().tension_n);
+        for _ in 0..240 {
+            sim.step(STEP_S).expect("a step");
+        }
+        let change = (sim.max_tension().tension_n - before).abs() / weight;
+        println!("{number}: {speed:.1e} m/s, {change:.1e} of its weight in a second");
+        assert!(speed < 1e-4 && change < 1e-2, "{number}: {speed} m/s, {change} of its weight");
+    }
+}
+
+/// The tank as it is at rest, and played: its rest in motion has straight bars where that without inertia had them, too.
+#[test]
+fn the_tank_at_rest_does_not_ripple() {
+    for model in [Model::Auto, Model::Fem] {
+        let mut scene = catalog::tank();
+        for s in scene.cables.iter_mut().flat_map(|c| &mut c.supports) {
+            s.motion = None;
+        }
+        let mut sim = begin(scene, model);
+        let (mut least, mut most, mut energy) = (f64::INFINITY, 0.0f64, 0.0f64);
+        for _ in 0..(5.0 / STEP_S) as usize {
+            sim.step(STEP_S).expect("a step");
+            let tension = sim.max_tension().tension_n;
+            (least, most) = (least.min(tension), most.max(tension));
+            energy = energy.max(sim.solution().energy.kinetic_j);
+        }
+        println!(
+            "{model}: {least:.4} to {most:.4} N, at most {energy:.1e} J of motion, {:.1e} m/s at last",
+            fastest(&sim)
+        );
+        assert!(most / least - 1.0 < 1e-3, "{model}: {least} to {most} N");
+    }
+}
