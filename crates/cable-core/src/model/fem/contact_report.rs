@@ -16,6 +16,9 @@ use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, 
 /// Nodes on a round: one at least every so many radians.
 const ARC_STEP: f64 = 0.13;
 
+/// Rounds in which it is found where a sagging cable leaves a round: each is nearer by the weight on the round over the tension.
+const SAG_ROUNDS: usize = 4;
+
 /// Part of the diameter by which the way may be drawn longer than its material where a bar sags and leaves a round sooner or later than straight,
 /// which makes it rδ³/6 longer at an angle δ. More: of slack bars, whose sag is not known, more cable is drawn than there is; less: the force leads
 /// away from the round that is drawn.
@@ -302,10 +305,9 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
     let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(node)));
     let stretch = [0, 1].map(|j| paths[j].length / (mesh.arc_length[k + j] - mesh.arc_length[k + j - 1]));
     let (mark, sense, radius) = (node.end.mark, node.end.sense, node.end.radius);
-    // What lies between the node and where the cable meets or leaves the round has its own weight.
-    let lap = [0, 1].map(|j| paths[j].arcs[1 - j] * radius / stretch[j] * [-1.0, 1.0][j]);
-    let ends = [0, 1].map(|j| load.force[j] - d.task.body * lap[j]);
-    // It leaves where its force does: what sags turns further round than the straight bar that stands for it.
+    // What lies between the node and where the cable meets or leaves the round, so far (rad) from it, has its own weight.
+    let force_at =
+        |arcs: [f64; 2]| [0, 1].map(|j| load.force[j] - d.task.body * (arcs[j] * radius / stretch[j] * [-1.0, 1.0][j]));
     let sag = |j: usize, from: Vec2, to: Vec2| {
         let sag = sense * angle_between(from, to);
         let longer = radius * sag.abs().powi(3) / 6.0;
@@ -315,12 +317,19 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
         let (sin, cos) = (sense * turned).sin_cos();
         Vec2::new(cos * mark.x - sin * mark.y, sin * mark.x + cos * mark.y)
     };
+    // It leaves where its force does: what sags turns further round than the straight bar that stands for it, and has less weight beyond.
+    let straight = [paths[0].arcs[1], paths[1].arcs[0]];
+    let mut sagged = straight;
+    for _ in 0..SAG_ROUNDS {
+        let ends = force_at(sagged);
+        let sags = [sag(0, ends[0], paths[0].direction), sag(1, paths[1].direction, ends[1])];
+        sagged = [straight[0] + sags[0], straight[1] + sags[1]];
+    }
     // As far round as it would run into an edge beside a corner it does not sag.
     let clear = |turned: f64| !d.is_over_an_edge(node, node.end.center + normal(turned) * radius, 0.0);
-    let [straight, sagged] = [[0.0; 2], [sag(0, ends[0], paths[0].direction), sag(1, paths[1].direction, ends[1])]]
-        .map(|sag| [paths[0].arcs[1] + sag[0], paths[1].arcs[0] + sag[1]]);
     let before = if clear(-sagged[0]) { sagged[0] } else { straight[0] };
     let after = if clear(sagged[1]) { sagged[1] } else { straight[1] };
+    let ends = force_at([before, after]);
     let whole = before + after;
     if !(whole > 0.0 && radius > 0.0) {
         return vec![OnRound {
