@@ -388,6 +388,7 @@ impl Subject<'_> {
         }
         sums.residual_n = larger(larger(sums.residual_n, in_air.sqrt()), beyond);
         let allowed = limit + CONE * pressed;
+        let allowed = if beyond <= allowed { allowed } else { allowed + self.lumped_friction(near) };
         if !(beyond <= allowed) {
             let mut finding = self.finding(Law::Friction, worst.1, (beyond, allowed));
             let here = near.of(worst.1).first();
@@ -397,7 +398,7 @@ impl Subject<'_> {
         self.sums(found, sums, [contacts, wheels]);
     }
 
-    /// What obstacles and the floor would do to a piece beyond what their friction and its own weight allow, N; None where nothing touches it.
+    /// What obstacles and the floor would do to a piece beyond what their friction allows, N; None where nothing touches it.
     fn excess(&self, near: &Neighbours, piece: &Piece, rays: &mut Vec<Vec2>) -> Option<f64> {
         let within = |n: &Near| {
             let pushes = piece.contact.dot(&n.normal);
@@ -408,14 +409,9 @@ impl Subject<'_> {
         if near.around(piece.nodes[0], piece.nodes[1]).iter().any(within) {
             return Some(0.0);
         }
-        let turns = self.rays(near, piece, rays);
-        if rays.is_empty() && !self.floor_rubs() {
-            return None;
-        }
-        let excess = self.floor_excess(piece, outside_cone(piece.contact, rays));
-        // Each piece has its own: what one of them may be off is no leave for another.
-        let lumped = if turns && excess > 0.0 { self.lumped_friction(piece) } else { 0.0 };
-        Some(larger(excess - lumped, 0.0))
+        self.rays(near, piece, rays);
+        let touches = !rays.is_empty() || self.floor_rubs();
+        touches.then(|| self.floor_excess(piece, outside_cone(piece.contact, rays)))
     }
 
     /// What is reported of contacts and wheels adds up to what the cable asks for.
@@ -474,25 +470,20 @@ impl Subject<'_> {
         self.wheels.iter().any(|&(center, radius, _)| piece.nodes.iter().any(|&k| self.is_led(k, center, radius)))
     }
 
-    /// Friction that a bar's own weight may add or hide where the ground turns, N: the bar carries it to its ends, where it turns the
+    /// Friction that the bars' own weight may add or hide where the ground turns, N: a bar carries it to its ends, where it turns the
     /// cable by weight over tension, and so presses as no edge does.
-    fn lumped_friction(&self, piece: &Piece) -> f64 {
+    fn lumped_friction(&self, near: &Neighbours) -> f64 {
         let nodes = &self.answer.nodes;
         let last = nodes.len() - 1;
-        // Pieces of a corner are shorter than the cable is thick: its bars are those beyond.
-        let [mut from, mut to] = piece.nodes;
-        let ends = piece.nodes.map(|k| nodes[k].arc_length_m);
-        let thick = self.cable.diameter_m;
-        while from > 0 && (from == piece.nodes[0] || ends[0] - nodes[from].arc_length_m < thick) {
-            from -= 1;
-        }
-        while to < last && (to == piece.nodes[1] || nodes[to].arc_length_m - ends[1] < thick) {
-            to += 1;
-        }
-        let weight = self.body.norm() * (nodes[to].arc_length_m - nodes[from].arc_length_m);
-        let force = larger(nodes[piece.nodes[0]].force().norm(), nodes[piece.nodes[1]].force().norm());
-        let turn = if weight < force { weight / force } else { 1.0 };
-        LUMPED * self.greatest_friction() * weight * turn
+        let mut rays = Vec::new();
+        let of_piece = |piece: Piece| {
+            let [from, to] = [piece.nodes[0].saturating_sub(1), (piece.nodes[1] + 1).min(last)];
+            let weight = self.body.norm() * (nodes[to].arc_length_m - nodes[from].arc_length_m);
+            let force = larger(nodes[piece.nodes[0]].force().norm(), nodes[piece.nodes[1]].force().norm());
+            let turn = if weight < force { weight / force } else { 1.0 };
+            if self.rays(near, &piece, &mut rays) { weight * turn } else { 0.0 }
+        };
+        LUMPED * self.greatest_friction() * self.pieces().map(of_piece).sum::<f64>()
     }
 
     /// The greatest friction coefficient that the cable may meet.
