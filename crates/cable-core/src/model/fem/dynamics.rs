@@ -107,6 +107,9 @@ pub struct Dynamics {
     pub(super) due: f64,
     /// The answer of the last step of an advance, as it was balanced: the mesh is changed after it, for the next.
     pub(super) stepped: Option<Box<CableSolution>>,
+    /// Whether the answer is kept before the mesh is changed, and what was kept.
+    pub(super) keeps: bool,
+    pub(super) kept: Option<Box<CableSolution>>,
     /// Iterations times nodes that the search for a resting place may still take.
     pub(super) work_left: usize,
     /// Room for where hands draw supports in a part of a step.
@@ -180,6 +183,8 @@ impl Dynamics {
             held_back: Vec::new(),
             due: f64::INFINITY,
             stepped: None,
+            keeps: false,
+            kept: None,
             work_left: usize::MAX,
             aims: Vec::new(),
             rider,
@@ -481,6 +486,13 @@ impl Dynamics {
     #[must_use]
     pub fn solution(&self) -> CableSolution {
         self.stepped.as_ref().map_or_else(|| self.solution_now(), |s| CableSolution::clone(s))
+    }
+
+    /// Keeps the answer of a step before the first change of its mesh.
+    pub(super) fn keep_answer(&mut self) {
+        if self.keeps && self.kept.is_none() {
+            self.kept = Some(Box::new(self.solution_now()));
+        }
     }
 
     /// The same, with the mesh as it is.

@@ -127,10 +127,10 @@ impl Dynamics {
         self.land_on_itself(QUIET, h);
         self.contacts.carriage = None;
         if !self.never_slides {
-            let ends = self.motion.time >= self.due * (1.0 - f64::EPSILON);
-            let stepped = if ends { Some(Box::new(self.solution_now())) } else { None };
+            self.keeps = self.motion.time >= self.due * (1.0 - f64::EPSILON);
             self.remesh(false);
-            self.stepped = stepped;
+            self.keeps = false;
+            self.stepped = self.kept.take();
             if let Some(node) = self.crossing() {
                 return Err(Failure { node, residual: done.residual, cause: "the cable would run through a corner" });
             }

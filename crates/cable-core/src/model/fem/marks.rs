@@ -50,6 +50,7 @@ impl Dynamics {
             if s[k] + material < s[k - 1] + room || s[k] + material > s[k + 1] - room {
                 continue;
             }
+            self.keep_answer();
             let turned =
                 Sliding { end: End { mark: rotate(node.end.mark, node.end.sense * shift), ..node.end }, ..node };
             self.mesh.sliding[k] = Some(turned);

@@ -8,6 +8,7 @@ use crate::math::Vec2;
 impl Dynamics {
     /// Puts a node at an arc length (m) between nodes `k` − 1 and `k`.
     pub(super) fn insert(&mut self, k: usize, arc_length: f64, sliding: Option<Sliding>) {
+        self.keep_answer();
         let mesh = &mut self.mesh;
         let path = mesh.path(k - 1, &self.motion.x);
         let (a, b) = (mesh.arc_length[k - 1], mesh.arc_length[k]);
@@ -49,6 +50,7 @@ impl Dynamics {
 
     /// Takes node `k` out.
     pub(super) fn remove(&mut self, k: usize) {
+        self.keep_answer();
         let mesh = &mut self.mesh;
         mesh.arc_length.remove(k);
         mesh.rest_length.remove(k);

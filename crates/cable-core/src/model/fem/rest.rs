@@ -193,9 +193,10 @@ impl Dynamics {
         let (mut total, mut grips) = (Done::default(), Grips::FOUND);
         let (mut fewest, mut spare) = (usize::MAX, PLAIN_ROUNDS);
         let (mut off, mut part) = (0.0, 1.0);
+        let mut before = Vec::with_capacity(self.contacts.rubs.capacity());
         for round in 0..rounds {
             self.contacts.look_around(&self.problem, &self.mesh, &pose.x, |_| 0.0);
-            let before = std::mem::take(&mut self.contacts.rubs);
+            std::mem::swap(&mut before, &mut self.contacts.rubs);
             self.contacts.prepare(&self.problem, &self.mesh, &pose.x, &self.motion.x);
             if round > 0 {
                 let now = self.contacts.ease(&before, part);
