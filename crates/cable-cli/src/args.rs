@@ -85,6 +85,9 @@ pub struct RunArguments {
     /// Without inertia: supports move infinitely slowly, friction remembers
     #[arg(long)]
     pub quasi_static: bool,
+    /// Leave out the two coarser runs beside one with inertia, which say its errors for a third of its cost
+    #[arg(long)]
+    pub no_errors: bool,
     /// How mass-spring steps: auto, explicit or preview
     #[arg(long, default_value = "auto", value_parser = stepping)]
     pub stepping: Stepping,

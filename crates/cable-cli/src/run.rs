@@ -12,9 +12,9 @@ use cable_core::files::{RunEnd, RunFolder};
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
 use cable_core::record::{RunRequest, WriteError};
-use cable_core::solution::{MaxTension, Solution, Warning, WarningKind};
+use cable_core::solution::{Solution, Warning, WarningKind};
 use cable_core::summary::summaries;
-use cable_core::timeline::{Instant as Moment, Timeline};
+use cable_core::timeline::{Instant as Moment, Peak, Timeline};
 use cable_core::{Scene, Settings, Simulation, SolveError};
 
 use crate::Done;
@@ -65,10 +65,9 @@ struct Outputs {
     printing: Arc<Mutex<()>>,
     printer: Printer,
     progress: Progress,
-    peak: MaxTension,
-    peak_time_s: f64,
     begun: Begun,
     last: Option<Solution>,
+    peak: Option<Peak>,
 }
 
 impl Outputs {
@@ -90,13 +89,20 @@ impl Outputs {
 
     /// Looks at a step, whether it is written or not.
     fn watch(&mut self, simulation: &Simulation) {
-        let time_s = simulation.time_s();
-        self.begun.look(simulation.warnings(), time_s);
-        let top = simulation.max_tension();
-        if time_s == 0.0 || top.tension_n > self.peak.tension_n || top.tension_n.is_nan() {
-            (self.peak, self.peak_time_s) = (top, time_s);
-        }
+        self.begun.look(simulation.warnings(), simulation.time_s());
     }
+}
+
+/// The greatest tension of a run in a line.
+fn told(peak: &Peak) -> String {
+    let range = peak.range_n.map(|[from, to]| format!("; {from:.6} to {to:.6} N, as coarser runs differ from it"));
+    format!(
+        "Greatest tension of the run  {:.6} N at {:.4} s, at {:.4} m{}",
+        peak.top.tension_n,
+        peak.time_s,
+        peak.top.arc_length_m,
+        range.unwrap_or_default()
+    )
 }
 
 /// Most warnings of a run that are printed: all of them are in its `events.csv`.
@@ -185,8 +191,7 @@ pub fn run(a: RunArguments) -> Done {
         printing: printing.clone(),
         printer: Printer::new(),
         progress: Progress::new(),
-        peak: MaxTension::default(),
-        peak_time_s: 0.0,
+        peak: None,
         begun: Begun::default(),
         last: None,
     };
@@ -247,11 +252,9 @@ fn follow(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, began:
     if let (false, Some(last)) = (arguments.common.json, last) {
         let figures = Figures { cables: summaries(&scene, &last), stiffness: None };
         printer.line(table(&last, &figures).trim_end())?;
-        let (peak, t) = (outputs.peak, outputs.peak_time_s);
-        printer.line(&format!(
-            "\nGreatest tension of the run  {:.6} N at {t:.4} s, at {:.4} m",
-            peak.tension_n, peak.arc_length_m
-        ))?;
+        if let Some(peak) = outputs.peak {
+            printer.line(&format!("\n{}", told(&peak)))?;
+        }
         for line in outputs.begun.lines() {
             printer.line(&line)?;
         }
@@ -274,10 +277,16 @@ fn walk(mut simulation: Simulation, inertia: Inertia, outputs: &mut Outputs, mut
     outputs.push(first, began.elapsed().as_secs_f64(), count == 0)?;
     let interval = Moment::nearest(every);
     let mut timeline = Timeline::new(simulation, inertia, outputs.arguments.step);
+    if !outputs.arguments.no_errors {
+        timeline = timeline.with_errors();
+    }
+    outputs.peak = Some(timeline.peak());
     for k in 1..=count {
         let moment = if k == count { Moment::nearest(duration_s) } else { interval.times(k as u64) };
         began = Instant::now();
-        match timeline.at(moment, |simulation| outputs.watch(simulation)) {
+        let answer = timeline.at(moment, |simulation| outputs.watch(simulation));
+        outputs.peak = Some(timeline.peak());
+        match answer {
             Ok(solution) => outputs.push(solution, began.elapsed().as_secs_f64(), k == count)?,
             Err(e) => return Err(stopped(outputs, timeline.simulation(), e)),
         }

@@ -102,7 +102,7 @@ impl ErrorEstimates {
         self.with(self, |a, _| a * factor)
     }
 
-    fn with(&self, other: &Self, join: impl Fn(f64, f64) -> f64) -> Self {
+    pub(crate) fn with(&self, other: &Self, join: impl Fn(f64, f64) -> f64) -> Self {
         let both = |a: Option<f64>, b: Option<f64>| Some(join(a?, b?));
         // Where only one of two answers touches anything, the other's force is none.
         let contact_force_n = match (self.contact_force_n, other.contact_force_n) {

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::error::{Error, SolveError};
+use crate::estimates::ErrorEstimates;
 use crate::math::{Vec2, larger};
 use crate::model::auto::{self, Question};
 use crate::model::lay::least_sliding;
@@ -30,6 +31,7 @@ pub struct Simulation {
     /// The one in use: of several cables the highest rung.
     model: Model,
     reason: String,
+    settings: Settings,
     cables: Vec<Strand>,
     start: Option<Vec<Strand>>,
     vehicle: Option<Vehicle>,
@@ -100,6 +102,7 @@ impl Simulation {
             built,
             model: chosen,
             reason,
+            settings,
             cables,
             start: None,
             answers,
@@ -165,6 +168,24 @@ impl Simulation {
     #[cfg(test)]
     pub(crate) fn cables_mut(&mut self) -> &mut [Strand] {
         &mut self.cables
+    }
+
+    /// With what it was built.
+    #[must_use]
+    pub fn settings(&self) -> Settings {
+        self.settings
+    }
+
+    /// The answers of the cables at the present instant.
+    pub(crate) fn answers(&self) -> &[CableSolution] {
+        &self.answers
+    }
+
+    /// What is known of the errors of the present answers.
+    pub(crate) fn tell_errors(&mut self, errors: impl Iterator<Item = ErrorEstimates>) {
+        for (answer, errors) in self.answers.iter_mut().zip(errors) {
+            (answer.error_estimate, answer.errors) = (errors.relative(answer), errors);
+        }
     }
 
     /// The scene being solved.

@@ -4,10 +4,14 @@
 //! discarded, so no look changes what happens: states at common instants are equal to the bit. Instants are whole ticks of a third of a
 //! nanosecond: 1/240 s and 0.1 ms are both whole numbers of them, and no sum of steps rounds.
 
+mod coarse;
+
 use crate::error::SolveError;
 use crate::model::Inertia;
 use crate::simulation::Simulation;
-use crate::solution::Solution;
+use crate::solution::{MaxTension, Solution};
+
+use self::coarse::CoarseRuns;
 
 /// Ticks in a second: the least common multiple of nanoseconds and of thirds of them, so that 1/60, 1/240 and 1/3840 s are whole.
 const TICKS_PER_S: f64 = 3e9;
@@ -43,6 +47,17 @@ impl Instant {
     }
 }
 
+/// The greatest tension of a run so far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peak {
+    /// What it is, and where.
+    pub top: MaxTension,
+    /// When, s.
+    pub time_s: f64,
+    /// From what to what it may be, N; None where that is not known.
+    pub range_n: Option<[f64; 2]>,
+}
+
 /// A simulation that goes in even steps and shows any instant.
 pub struct Timeline {
     simulation: Simulation,
@@ -50,6 +65,8 @@ pub struct Timeline {
     step: Instant,
     /// Steps made.
     count: u64,
+    coarse: Option<CoarseRuns>,
+    peak: Peak,
 }
 
 impl Timeline {
@@ -62,13 +79,29 @@ impl Timeline {
             Inertia::QuasiStatic => QUASI_STATIC_STEP_S,
         };
         let step = Instant::nearest(step_s.unwrap_or(usual_s)).max(Instant(1));
-        Self { simulation, inertia, step, count: 0 }
+        let peak = Peak { top: simulation.max_tension(), time_s: simulation.time_s(), range_n: None };
+        Self { simulation, inertia, step, count: 0, coarse: None, peak }
+    }
+
+    /// The same, with errors in motion: coarser runs go beside it, for a third of its cost. Where there is none (no elements, or no
+    /// inertia), nothing is added to what the model says.
+    #[must_use]
+    pub fn with_errors(mut self) -> Self {
+        self.coarse = CoarseRuns::beside(&self.simulation, self.inertia, self.step);
+        self.note_peak();
+        self
     }
 
     /// The simulation at the last step made.
     #[must_use]
     pub fn simulation(&self) -> &Simulation {
         &self.simulation
+    }
+
+    /// The greatest tension so far.
+    #[must_use]
+    pub fn peak(&self) -> Peak {
+        self.peak
     }
 
     /// Makes all steps up to an instant, `watch` looking at each, and returns the answer at the instant itself. An instant before the last
@@ -81,11 +114,19 @@ impl Timeline {
             let next = self.step.times(self.count + 1);
             advance(&mut self.simulation, next, self.inertia)?;
             self.count += 1;
+            self.coarse = self.coarse.take().and_then(|coarse| coarse.follow(&self.simulation, (next, self.count)));
+            if let Some(coarse) = &self.coarse {
+                self.simulation.tell_errors(coarse.errors());
+            }
+            self.note_peak();
             watch(&self.simulation);
         }
         let mut solution = if self.step.times(self.count) < instant {
             let mut copy = self.simulation.clone();
             advance(&mut copy, instant, self.inertia)?;
+            if let Some(coarse) = &self.coarse {
+                copy.tell_errors(coarse.errors());
+            }
             copy.solution()
         } else {
             self.simulation.solution()
@@ -93,6 +134,14 @@ impl Timeline {
         // Adding steps up rounds; the instant asked for is the one meant.
         solution.time_s = instant.max(self.step.times(self.count)).seconds();
         Ok(solution)
+    }
+
+    fn note_peak(&mut self) {
+        let top = self.simulation.max_tension();
+        if top.tension_n > self.peak.top.tension_n || top.tension_n.is_nan() {
+            (self.peak.top, self.peak.time_s) = (top, self.simulation.time_s());
+        }
+        self.peak.range_n = self.coarse.as_ref().map(CoarseRuns::range);
     }
 }
 

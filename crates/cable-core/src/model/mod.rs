@@ -84,11 +84,14 @@ pub struct Settings {
     /// How `mass-spring` takes dynamic steps.
     #[serde(default)]
     pub stepping: Stepping,
+    /// Longest inner step of `fem` with inertia, s, 1e-9 to 1; None = 1/240 s.
+    #[serde(default)]
+    pub inner_step_s: Option<f64>,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { tolerance: 1e-3, segments: None, stepping: Stepping::Auto }
+        Self { tolerance: 1e-3, segments: None, stepping: Stepping::Auto, inner_step_s: None }
     }
 }
 
@@ -96,6 +99,8 @@ impl Default for Settings {
 const LEAST_TOLERANCE: f64 = 1e-14;
 /// Segments, as a scene's own.
 const SEGMENTS: (usize, usize) = (1, 100_000);
+/// Inner steps, s: below, a second of motion takes longer than anyone waits; above, nothing that moves is seen.
+const INNER_STEPS_S: std::ops::RangeInclusive<f64> = 1e-9..=1.0;
 
 impl Settings {
     /// Refuses what no model can work by.
@@ -106,6 +111,9 @@ impl Settings {
         if !(self.tolerance >= LEAST_TOLERANCE && self.tolerance.is_finite()) {
             let (name, allowed) = ("tolerance", "1e-14 or more, and finite");
             return Err(SolveError::Setting { name, value: self.tolerance, allowed });
+        }
+        if let Some(value) = self.inner_step_s.filter(|step| !INNER_STEPS_S.contains(step)) {
+            return Err(SolveError::Setting { name: "inner_step_s", value, allowed: "1e-9 to 1 s" });
         }
         match self.segments {
             Some(n) if !(SEGMENTS.0..=SEGMENTS.1).contains(&n) => {

@@ -177,7 +177,7 @@ impl Dynamics {
             memory: Memory(None),
             free: FreeStep::default(),
             sleep: Sleep::default(),
-            pace: Pace::default(),
+            pace: Pace::new(settings.inner_step_s.unwrap_or(INNER_STEP)),
             tolerance: settings.tolerance,
             rested: false,
             held_back: Vec::new(),
@@ -249,7 +249,7 @@ impl Dynamics {
         m.w_before.clone_from(&m.w);
         m.s_before.clone_from(&self.mesh.arc_length);
         m.step_before = 0.0;
-        self.pace = Pace::default();
+        self.pace.forget();
     }
 
     pub(super) fn refuse(&self) -> Result<(), SolveError> {

@@ -5,10 +5,10 @@
 //! II", 1996, V.1). The frequency of a motion is read off it, ω² = Σ m a² / Σ m v² over the last while, a and v without the mean of
 //! the cable, which falls or is carried along.
 
-use super::dynamics::{Dynamics, INNER_STEP};
+use super::dynamics::Dynamics;
 use crate::math::{Vec2, bounded};
 
-/// The shortest step is this part of the inner step: strings up to 17 Hz are in tune to 1e-3, of 40 Hz to 6e-3. Less: a cable that
+/// The shortest step is this part of the longest, 1/240 s: strings up to 17 Hz are in tune to 1e-3, of 40 Hz to 6e-3. Less: a cable that
 /// rings costs more than it tells; more: the tones that are in tune are lower.
 const SHORTEST: f64 = 0.125;
 
@@ -30,11 +30,19 @@ pub(super) struct Pace {
     seen: [f64; 3],
     /// Longest step of the next frame, s.
     pub(super) step: f64,
+    /// Longest step of all, s.
+    longest: f64,
 }
 
-impl Default for Pace {
-    fn default() -> Self {
-        Self { seen: [0.0; 3], step: INNER_STEP }
+impl Pace {
+    /// Nothing was seen yet.
+    pub(super) fn new(longest: f64) -> Self {
+        Self { seen: [0.0; 3], step: longest, longest }
+    }
+
+    /// What was seen is forgotten.
+    pub(super) fn forget(&mut self) {
+        *self = Self::new(self.longest);
     }
 }
 
@@ -77,9 +85,9 @@ impl Dynamics {
         let frequency = (changes / speeds).sqrt();
         let amplitude = (speeds / (time * length)).sqrt() / frequency;
         let matters = frequency.is_finite() && amplitude > LEAST * length;
-        let wanted = if matters { (3.0 * self.tolerance).sqrt() / frequency } else { INNER_STEP };
+        let wanted = if matters { (3.0 * self.tolerance).sqrt() / frequency } else { pace.longest };
         let near = bounded(wanted, pace.step / CHANGE, pace.step * CHANGE);
-        pace.step = near.clamp(SHORTEST * INNER_STEP, INNER_STEP);
+        pace.step = near.clamp(SHORTEST * pace.longest, pace.longest);
         let left = (-dt / MEMORY).exp();
         pace.seen = pace.seen.map(|s| s * left);
     }
