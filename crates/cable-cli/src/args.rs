@@ -85,6 +85,9 @@ pub struct RunArguments {
     /// Without inertia: supports move infinitely slowly, friction remembers
     #[arg(long)]
     pub quasi_static: bool,
+    /// Where errors of forces are above --tolerance, take elements and steps half as long, at most so often: each time takes four times as long
+    #[arg(long, value_name = "TIMES", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6), conflicts_with = "no_errors")]
+    pub refine: u32,
     /// Leave out the two coarser runs beside one with inertia, which say its errors for a third of its cost
     #[arg(long)]
     pub no_errors: bool,

@@ -67,7 +67,41 @@ struct Outputs {
     progress: Progress,
     begun: Begun,
     last: Option<Solution>,
-    peak: Option<Peak>,
+    reached: Option<Reached>,
+}
+
+/// What is said of a whole run.
+struct Reached {
+    peak: Peak,
+    relative_error: Option<f64>,
+}
+
+impl Reached {
+    fn of(timeline: &Timeline) -> Option<Self> {
+        Some(Self { peak: timeline.peak(), relative_error: timeline.relative_error() })
+    }
+
+    fn lines(&self, tolerance: f64) -> Vec<String> {
+        let Self { peak, relative_error } = self;
+        let range = peak.range_n.map(|[from, to]| format!("; {from:.6} to {to:.6} N, as coarser runs differ from it"));
+        let mut lines = vec![format!(
+            "\nGreatest tension of the run  {:.6} N at {:.4} s, at {:.4} m{}",
+            peak.top.tension_n,
+            peak.time_s,
+            peak.top.arc_length_m,
+            range.unwrap_or_default()
+        )];
+        if let Some(error) = relative_error {
+            let asked = match *error > tolerance {
+                true => format!(
+                    " (asked: {tolerance:.1e}; --refine 1 takes four times as long and is nearer where motion is smooth)"
+                ),
+                false => String::new(),
+            };
+            lines.push(format!("Greatest error of its forces {error:.1e} of that{asked}"));
+        }
+        lines
+    }
 }
 
 impl Outputs {
@@ -91,18 +125,6 @@ impl Outputs {
     fn watch(&mut self, simulation: &Simulation) {
         self.begun.look(simulation.warnings(), simulation.time_s());
     }
-}
-
-/// The greatest tension of a run in a line.
-fn told(peak: &Peak) -> String {
-    let range = peak.range_n.map(|[from, to]| format!("; {from:.6} to {to:.6} N, as coarser runs differ from it"));
-    format!(
-        "Greatest tension of the run  {:.6} N at {:.4} s, at {:.4} m{}",
-        peak.top.tension_n,
-        peak.time_s,
-        peak.top.arc_length_m,
-        range.unwrap_or_default()
-    )
 }
 
 /// Most warnings of a run that are printed: all of them are in its `events.csv`.
@@ -191,7 +213,7 @@ pub fn run(a: RunArguments) -> Done {
         printing: printing.clone(),
         printer: Printer::new(),
         progress: Progress::new(),
-        peak: None,
+        reached: None,
         begun: Begun::default(),
         last: None,
     };
@@ -252,8 +274,8 @@ fn follow(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, began:
     if let (false, Some(last)) = (arguments.common.json, last) {
         let figures = Figures { cables: summaries(&scene, &last), stiffness: None };
         printer.line(table(&last, &figures).trim_end())?;
-        if let Some(peak) = outputs.peak {
-            printer.line(&format!("\n{}", told(&peak)))?;
+        for line in outputs.reached.iter().flat_map(|reached| reached.lines(arguments.common.tolerance)) {
+            printer.line(&line)?;
         }
         for line in outputs.begun.lines() {
             printer.line(&line)?;
@@ -264,28 +286,53 @@ fn follow(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, began:
     Ok(())
 }
 
+/// A run without outputs for every time it is to be finer, until errors are as asked: the simulation to begin with, settled, and its step.
+fn refined(
+    mut simulation: Simulation,
+    inertia: Inertia,
+    arguments: &RunArguments,
+) -> Result<(Simulation, Option<f64>), SolveError> {
+    let mut step = arguments.step;
+    for _ in 0..arguments.refine {
+        let mut timeline = Timeline::new(simulation.clone(), inertia, step).with_errors();
+        timeline.at(Moment::nearest(arguments.duration_s), |_| ())?;
+        if timeline.relative_error().is_none_or(|error| error <= arguments.common.tolerance) {
+            break;
+        }
+        let Ok(Some(mut finer)) = simulation.resolved(2.0) else { break };
+        finer.settle()?;
+        step = Some(0.5 * timeline.step_s());
+        simulation = finer;
+    }
+    Ok((simulation, step))
+}
+
 /// Output k lies at k·every, the last one exactly at the end.
 fn walk(mut simulation: Simulation, inertia: Inertia, outputs: &mut Outputs, mut began: Instant) -> Done {
-    let first = match simulation.settle() {
-        Ok(s) => s,
+    if let Err(e) = simulation.settle() {
+        return Err(stopped(outputs, &simulation, e));
+    }
+    let (simulation, step) = match refined(simulation.clone(), inertia, &outputs.arguments) {
+        Ok(found) => found,
         Err(e) => return Err(stopped(outputs, &simulation, e)),
     };
+    let first = simulation.solution();
     // A last interval shorter than a billionth of the others is round-off, not an interval.
     let (duration_s, every) = (outputs.arguments.duration_s, outputs.arguments.every_s());
     let count = (duration_s / every - 1e-9).ceil() as usize;
     outputs.watch(&simulation);
     outputs.push(first, began.elapsed().as_secs_f64(), count == 0)?;
     let interval = Moment::nearest(every);
-    let mut timeline = Timeline::new(simulation, inertia, outputs.arguments.step);
+    let mut timeline = Timeline::new(simulation, inertia, step);
     if !outputs.arguments.no_errors {
         timeline = timeline.with_errors();
     }
-    outputs.peak = Some(timeline.peak());
+    outputs.reached = Reached::of(&timeline);
     for k in 1..=count {
         let moment = if k == count { Moment::nearest(duration_s) } else { interval.times(k as u64) };
         began = Instant::now();
         let answer = timeline.at(moment, |simulation| outputs.watch(simulation));
-        outputs.peak = Some(timeline.peak());
+        outputs.reached = Reached::of(&timeline);
         match answer {
             Ok(solution) => outputs.push(solution, began.elapsed().as_secs_f64(), k == count)?,
             Err(e) => return Err(stopped(outputs, timeline.simulation(), e)),

@@ -189,6 +189,32 @@ fn run_prints_an_object_a_line_and_its_folder_reads_back() {
     assert_eq!(cable_core::Scene::from_toml(&scene).unwrap(), catalog::hanging_span());
 }
 
+/// A cable drawn over the floor: errors are above a hundredth, and below it on elements and steps of a half or a quarter.
+#[test]
+fn run_says_its_errors_and_refines_until_they_are_as_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("drag.toml");
+    std::fs::write(&file, catalog::floor_drag().to_toml()).unwrap();
+    let run = |more: &[&str]| {
+        let out = folder.path().join("out");
+        let mut arguments = vec!["run", file.to_str().unwrap(), "--for", "1s", "--tolerance", "0.01"];
+        arguments.extend(["--out", out.to_str().unwrap()]);
+        arguments.extend(more);
+        let o = cable(&arguments);
+        assert_eq!(o.status.code(), Some(0), "{}", text(&o.stderr));
+        text(&o.stdout)
+    };
+    let error = |told: &str| -> f64 {
+        let line = told.lines().find_map(|l| l.strip_prefix("Greatest error of its forces "));
+        line.and_then(|l| l.split(' ').next()).expect("an error").parse().unwrap()
+    };
+    let (coarse, fine) = (run(&[]), run(&["--refine", "3"]));
+    assert!(error(&coarse) > 0.01 && coarse.contains("asked: 1.0e-2"), "{coarse}");
+    assert!(error(&fine) <= 0.01 && !fine.contains("asked: "), "{fine}");
+    assert!(coarse.contains("as coarser runs differ"), "{coarse}");
+    assert!(run(&["--no-errors"]).contains("not known"));
+}
+
 #[test]
 fn a_reader_that_leaves_is_no_error() {
     let folder = tempfile::tempdir().unwrap();

@@ -7,18 +7,22 @@ use crate::estimates::ErrorEstimates;
 use crate::math::{Vec2, larger};
 use crate::model::auto::{self, Question};
 use crate::model::lay::least_sliding;
-use crate::model::{Inertia, Model, Settings, StepReport};
+use crate::model::{Inertia, LEAST_TOLERANCE, Model, Settings, StepReport};
 use crate::problem::problems;
 use crate::robot::{self, Vehicle};
 use crate::scene::{Scene, SupportKind};
 use crate::solution::{CableSolution, Cost, Energy, MaxTension, Node, Solution, Warning, WarningKind};
 use crate::state::State;
 use crate::strand::Strand;
+use crate::timeline::STEP_S;
 use crate::verify::{Depth, Verification, Verifier};
 use crate::watch::{Bends, Subject, Watch};
 
 /// Longest step a display frame takes, s: longer makes one slow frame cause the next, shorter slows time at 10 Hz.
 pub const MAX_FRAME_S: f64 = 0.1;
+
+/// Fewer elements than this say nothing of how wrong others are.
+const LEAST_ELEMENTS: usize = 4;
 
 /// A scene being solved.
 #[derive(Clone)]
@@ -469,6 +473,32 @@ impl Simulation {
         let taken = if dt_s > MAX_FRAME_S { MAX_FRAME_S } else { dt_s };
         self.step(taken)?;
         Ok(taken)
+    }
+
+    /// The same scene by the same model at its start, on so many times as many elements in inner steps so many times as short; None where a
+    /// cable would have too few of them to say anything. It has not settled.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; what the settings then ask for is out of range.
+    pub fn resolved(&self, times: f64) -> Result<Option<Self>, Error> {
+        let mut scene = self.scene.clone();
+        for (cable, answer) in scene.cables.iter_mut().zip(&self.answers) {
+            let elements = (answer.nodes.len().saturating_sub(1) as f64 * times).floor() as usize;
+            if elements < LEAST_ELEMENTS {
+                return Ok(None);
+            }
+            cable.segments = Some(elements);
+        }
+        let settings = Settings {
+            // Steps of a taut cable follow its frequency, as the square root of it.
+            tolerance: larger(self.settings.tolerance / (times * times), LEAST_TOLERANCE),
+            segments: None,
+            inner_step_s: Some(self.settings.inner_step_s.unwrap_or(STEP_S) / times),
+            ..self.settings
+        };
+        let mut next = Self::with_settings(scene, self.model, settings)?;
+        next.reason.clone_from(&self.reason);
+        Ok(Some(next))
     }
 
     /// The same run with an edited scene: cables keep their shape, speed and time; the start of [`Self::reset`] is that

@@ -7,6 +7,7 @@
 mod coarse;
 
 use crate::error::SolveError;
+use crate::math::larger;
 use crate::model::Inertia;
 use crate::simulation::Simulation;
 use crate::solution::{MaxTension, Solution};
@@ -67,6 +68,8 @@ pub struct Timeline {
     count: u64,
     coarse: Option<CoarseRuns>,
     peak: Peak,
+    /// Greatest error of a force so far, N; None where one was not known.
+    worst_n: Option<f64>,
 }
 
 impl Timeline {
@@ -80,7 +83,7 @@ impl Timeline {
         };
         let step = Instant::nearest(step_s.unwrap_or(usual_s)).max(Instant(1));
         let peak = Peak { top: simulation.max_tension(), time_s: simulation.time_s(), range_n: None };
-        Self { simulation, inertia, step, count: 0, coarse: None, peak }
+        Self { simulation, inertia, step, count: 0, coarse: None, peak, worst_n: Some(0.0) }
     }
 
     /// The same, with errors in motion: coarser runs go beside it, for a third of its cost. Where there is none (no elements, or no
@@ -88,6 +91,9 @@ impl Timeline {
     #[must_use]
     pub fn with_errors(mut self) -> Self {
         self.coarse = CoarseRuns::beside(&self.simulation, self.inertia, self.step);
+        if let Some(coarse) = &self.coarse {
+            self.simulation.tell_errors(coarse.errors());
+        }
         self.note_peak();
         self
     }
@@ -98,10 +104,24 @@ impl Timeline {
         &self.simulation
     }
 
+    /// Its step, s.
+    #[must_use]
+    pub fn step_s(&self) -> f64 {
+        self.step.seconds()
+    }
+
     /// The greatest tension so far.
     #[must_use]
     pub fn peak(&self) -> Peak {
         self.peak
+    }
+
+    /// The greatest error so far of the greatest tension and of any support's force, in parts of the greatest tension of the run; None where one
+    /// was not known.
+    #[must_use]
+    pub fn relative_error(&self) -> Option<f64> {
+        let most = self.peak.top.tension_n;
+        self.worst_n.map(|worst| if most > 0.0 { worst / most } else { worst })
     }
 
     /// Makes all steps up to an instant, `watch` looking at each, and returns the answer at the instant itself. An instant before the last
@@ -137,6 +157,11 @@ impl Timeline {
     }
 
     fn note_peak(&mut self) {
+        for answer in self.simulation.answers() {
+            let errors = answer.errors;
+            let force = errors.max_tension_n.zip(errors.support_force_n).map(|(a, b)| larger(a, b));
+            self.worst_n = self.worst_n.zip(force).map(|(a, b)| larger(a, b));
+        }
         let top = self.simulation.max_tension();
         if top.tension_n > self.peak.top.tension_n || top.tension_n.is_nan() {
             (self.peak.top, self.peak.time_s) = (top, self.simulation.time_s());

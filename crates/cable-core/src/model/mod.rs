@@ -96,7 +96,7 @@ impl Default for Settings {
 }
 
 /// Least tolerance that makes sense: below, rounding is more than is asked for. From 1 on nothing is asked, which a test of one mesh may want.
-const LEAST_TOLERANCE: f64 = 1e-14;
+pub(crate) const LEAST_TOLERANCE: f64 = 1e-14;
 /// Segments, as a scene's own.
 const SEGMENTS: (usize, usize) = (1, 100_000);
 /// Inner steps, s: below, a second of motion takes longer than anyone waits; above, nothing that moves is seen.

@@ -7,27 +7,23 @@
 //! would a finer one: what is known is then only what they have in common. They cost a quarter and a ninth of the run.
 
 use super::{Instant, advance};
-use crate::error::Error;
 use crate::estimates::ErrorEstimates;
 use crate::math::larger;
-use crate::model::{Inertia, Settings};
+use crate::model::Inertia;
 use crate::simulation::Simulation;
-use crate::timeline::STEP_S;
 
 /// How many times as long elements and steps are.
 const TIMES: [u64; 2] = [2, 3];
 /// Steps after which all runs are at one instant.
 const COMMON: u64 = 6;
-/// Fewer elements than this say nothing.
-const LEAST_ELEMENTS: usize = 4;
 
 /// A difference is forgotten with this time, s. Less: errors vanish wherever two runs cross; more: what once struck is uncertain long after
 /// it lies still.
 const MEMORY_S: f64 = 0.25;
 
-/// Greatest tensions are compared of so much time, s: a jerk comes later in one run than in another. Less: jerks of two runs are apart; more:
-/// one that all runs have hides another that they do not agree on.
-const WINDOW_S: f64 = 0.1;
+/// Greatest tensions are compared of one to two times so much time, s: a jerk comes later in one run than in another. Less: jerks of two runs are
+/// apart; more: one that all runs have hides another that they do not agree on.
+const WINDOW_S: f64 = 0.05;
 /// A finer run may differ from the finest of three by so many times what that one differs by from the others. Of 6999 figures of random
 /// motions (`motion_errors.rs`) 94 in 100 are covered; with 1.5 it is 92.
 const BEYOND: f64 = 2.0;
@@ -47,10 +43,31 @@ pub(super) struct CoarseRuns {
     runs: Vec<Run>,
     /// Steps of a window.
     window: u64,
-    /// Greatest tension of the fine run in the present window, N.
-    greatest_n: f64,
+    lately: Lately,
     /// From what to what the greatest tension of the windows before may be, N.
     range_n: [f64; 2],
+}
+
+/// Greatest tension of the window before and of the present one, N.
+#[derive(Clone, Copy)]
+struct Lately([f64; 2]);
+
+impl Lately {
+    fn begin(tension_n: f64) -> Self {
+        Self([tension_n; 2])
+    }
+
+    fn note(&mut self, tension_n: f64) {
+        self.0[1] = larger(self.0[1], tension_n);
+    }
+
+    fn turn(&mut self, tension_n: f64) {
+        self.0 = [self.0[1], tension_n];
+    }
+
+    fn greatest(&self) -> f64 {
+        larger(self.0[0], self.0[1])
+    }
 }
 
 struct Run {
@@ -59,8 +76,7 @@ struct Run {
     count: u64,
     /// What is remembered of what each cable differs by.
     apart: Vec<ErrorEstimates>,
-    /// Greatest tension in the present window, N.
-    greatest_n: f64,
+    lately: Lately,
 }
 
 impl CoarseRuns {
@@ -72,29 +88,29 @@ impl CoarseRuns {
         }
         let mut runs = Vec::with_capacity(TIMES.len());
         for times in TIMES {
-            let mut simulation = coarse(fine, times).ok().flatten()?;
+            let mut simulation = fine.resolved(1.0 / times as f64).ok().flatten()?;
             simulation.settle().ok()?;
-            let greatest_n = simulation.max_tension().tension_n;
+            let lately = Lately::begin(simulation.max_tension().tension_n);
             let cables = fine.answers().iter().zip(simulation.answers());
             let apart = cables.map(|(a, b)| ErrorEstimates::between(b, a)).collect();
-            runs.push(Run { simulation, step: step.times(times), count: 0, apart, greatest_n });
+            runs.push(Run { simulation, step: step.times(times), count: 0, apart, lately });
         }
         let steps = (WINDOW_S / step.seconds() / COMMON as f64).round().max(1.0);
-        let (window, greatest_n) = (COMMON * steps as u64, fine.max_tension().tension_n);
-        Some(Self { runs, window, greatest_n, range_n: [0.0; 2] })
+        let lately = Lately::begin(fine.max_tension().tension_n);
+        Some(Self { runs, window: COMMON * steps as u64, lately, range_n: [0.0; 2] })
     }
 
     /// Goes on to the run they are beside, which has made so many steps; None where one of them cannot.
     pub fn follow(mut self, fine: &Simulation, (now, count): (Instant, u64)) -> Option<Self> {
-        self.greatest_n = larger(self.greatest_n, fine.max_tension().tension_n);
+        self.lately.note(fine.max_tension().tension_n);
         for run in &mut self.runs {
             run.follow(fine, now)?;
         }
         if count.is_multiple_of(self.window) {
             self.range_n = self.range();
-            self.greatest_n = fine.max_tension().tension_n;
+            self.lately.turn(fine.max_tension().tension_n);
             for run in &mut self.runs {
-                run.greatest_n = run.simulation.max_tension().tension_n;
+                run.lately.turn(run.simulation.max_tension().tension_n);
             }
         }
         Some(self)
@@ -102,12 +118,13 @@ impl CoarseRuns {
 
     /// From what to what the greatest tension of the run so far may be, N.
     pub fn range(&self) -> [f64; 2] {
-        let none = NONE * larger(self.greatest_n, self.range_n[1]);
-        let own = larger(self.greatest_n, none);
-        let others = self.runs.iter().map(|run| larger(run.greatest_n, none));
+        let none = NONE * larger(self.lately.greatest(), self.range_n[1]);
+        let own = larger(self.lately.greatest(), none);
+        let others = self.runs.iter().map(|run| larger(run.lately.greatest(), none));
         let (least, most) =
             others.fold((own, own), |(least, most), n| (if n < least { n } else { least }, larger(most, n)));
         let apart = larger((own / least).ln(), (most / own).ln());
+        // That they converge is not enough: then the greatest tensions of 6 in 100 runs more are outside.
         let here = match apart <= AGREE {
             true => [own * (-BEYOND * apart).exp(), own * (BEYOND * apart).exp()],
             false => [least * UNKNOWN[0], most * UNKNOWN[1]],
@@ -139,7 +156,7 @@ impl Run {
             let next = self.step.times(self.count + 1);
             advance(&mut self.simulation, next, Inertia::Dynamic).ok()?;
             self.count += 1;
-            self.greatest_n = larger(self.greatest_n, self.simulation.max_tension().tension_n);
+            self.lately.note(self.simulation.max_tension().tension_n);
             let kept = (-self.step.seconds() / MEMORY_S).exp();
             let cables = fine.answers().iter().zip(self.simulation.answers());
             for (apart, (a, b)) in self.apart.iter_mut().zip(cables) {
@@ -148,25 +165,4 @@ impl Run {
         }
         Some(())
     }
-}
-
-/// The simulation on longer elements; None where a cable has too few.
-fn coarse(fine: &Simulation, times: u64) -> Result<Option<Simulation>, Error> {
-    let mut scene = fine.scene().clone();
-    for (cable, answer) in scene.cables.iter_mut().zip(fine.answers()) {
-        let elements = answer.nodes.len().saturating_sub(1) / times as usize;
-        if elements < LEAST_ELEMENTS {
-            return Ok(None);
-        }
-        cable.segments = Some(elements);
-    }
-    let (of, times) = (fine.settings(), times as f64);
-    let settings = Settings {
-        // Steps of a taut cable follow its frequency, as the square root of it.
-        tolerance: of.tolerance * times * times,
-        segments: None,
-        inner_step_s: Some(of.inner_step_s.unwrap_or(STEP_S) * times),
-        ..of
-    };
-    Simulation::with_settings(scene, fine.model(), settings).map(Some)
 }
