@@ -322,6 +322,7 @@ impl Simulation {
     }
 
     fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
+        self.cables.iter_mut().for_each(Strand::forget_peaks);
         let done = match self.vehicle.is_some() && dt_s > 0.0 && dt_s.is_finite() {
             true => self.drive(dt_s, inertia),
             false => self.each(|c| c.advance(dt_s, inertia)),
@@ -414,6 +415,7 @@ impl Simulation {
             self.drag_support(cable, support, hitch);
         }
         self.lead_outline();
+        self.cables.iter_mut().for_each(Strand::forget_peaks);
         let done = self.each(|c| c.advance(dt_s, inertia));
         let left_m = self.hold_vehicle();
         self.look(true);

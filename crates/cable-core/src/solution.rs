@@ -83,6 +83,41 @@ pub struct CableSolution {
     /// What the answer took into account.
     #[serde(default)]
     pub assumptions: Assumptions,
+    /// The greatest tensions of the last step, whose inner steps pull harder than its end; None at rest and without inertia.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peaks: Option<TensionPeaks>,
+}
+
+/// The greatest tensions of a while in motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TensionPeaks {
+    /// The greatest tension of any inner step, not averaged.
+    pub greatest: TensionPeak,
+    /// The greatest mean over `over_s` at a point of the cable, and when that time ended: where it reaches the breaking tension the
+    /// cable breaks.
+    pub held: TensionPeak,
+    /// The time that means are taken over, s.
+    pub over_s: f64,
+}
+
+impl TensionPeaks {
+    /// The greater of each; `other` of the same cable.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        let larger = |a: TensionPeak, b: TensionPeak| if b.tension_n > a.tension_n { b } else { a };
+        Self { greatest: larger(self.greatest, other.greatest), held: larger(self.held, other.held), ..other }
+    }
+}
+
+/// A tension, where on the cable and when.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TensionPeak {
+    /// Tension, N.
+    pub tension_n: f64,
+    /// Where on the cable, m.
+    pub arc_length_m: f64,
+    /// When, s.
+    pub time_s: f64,
 }
 
 /// What an answer took into account of its cable. What it left out is an error of the model, not an unbalanced force.

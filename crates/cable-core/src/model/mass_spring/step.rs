@@ -4,6 +4,7 @@ use super::pulley::NONE;
 use super::{Follower, MassSpringModel};
 use crate::error::SolveError;
 use crate::math::Vec2;
+use crate::model::gauge::TensionGauge;
 
 /// Fraction of the stable sub-step that is used: more is unstable as elements stretch, less is slower.
 const STEP_SAFETY: f64 = 0.8;
@@ -105,7 +106,7 @@ impl MassSpringModel {
     }
 
     /// Advances by `dt_s` in equal sub-steps below the stability limit, shorter where motion is fast.
-    pub(super) fn integrate(&mut self, dt_s: f64) -> Result<(), SolveError> {
+    pub(super) fn integrate(&mut self, dt_s: f64, gauge: &mut TensionGauge) -> Result<(), SolveError> {
         let (begin, end) = (self.time_s, self.time_s + dt_s);
         self.release_pulleys();
         self.remesh();
@@ -138,6 +139,8 @@ impl MassSpringModel {
             self.release_pulleys();
             self.supports(h);
             self.forces();
+            gauge.note(self.time_s, &self.s, |i| self.gauged(i));
+            gauge.keep();
             // Velocities go with the middle of a sub-step: from that of the last one to that of this. A motion that begins has half a
             // kick; with a whole one all falls g h t/2 too far, an error of first order.
             let kick = self.behind_s + 0.5 * h;
