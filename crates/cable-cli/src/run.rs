@@ -12,7 +12,7 @@ use cable_core::files::{RunEnd, RunFolder};
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
 use cable_core::record::{RunRequest, WriteError};
-use cable_core::solution::{MaxTension, Solution, Warning, WarningKind};
+use cable_core::solution::{Solution, TensionPeak, TensionPeaks, Warning, WarningKind};
 use cable_core::summary::summaries;
 use cable_core::timeline::{Instant as Moment, Timeline};
 use cable_core::{Scene, Settings, Simulation, SolveError};
@@ -65,14 +65,18 @@ struct Outputs {
     printing: Arc<Mutex<()>>,
     printer: Printer,
     progress: Progress,
-    peak: MaxTension,
-    peak_time_s: f64,
+    /// The greatest tensions of the run, and of each cable since the last answer.
+    peaks: TensionPeaks,
+    since: Vec<Option<TensionPeaks>>,
     begun: Begun,
     last: Option<Solution>,
 }
 
 impl Outputs {
-    fn push(&mut self, solution: Solution, wall_time_s: f64, is_last: bool) -> Done {
+    fn push(&mut self, mut solution: Solution, wall_time_s: f64, is_last: bool) -> Done {
+        for (cable, since) in solution.cables.iter_mut().zip(self.since.drain(..)) {
+            cable.peaks = since.into_iter().chain(cable.peaks).reduce(TensionPeaks::with);
+        }
         let cables = if self.arguments.common.json { summaries(&self.scene, &solution) } else { Vec::new() };
         let figures = Figures { cables, stiffness: None };
         let printable = answer(&solution, &figures, wall_time_s, Some(solution.time_s)).map_err(Failure::NonFinite)?;
@@ -92,9 +96,10 @@ impl Outputs {
     fn watch(&mut self, simulation: &Simulation) {
         let time_s = simulation.time_s();
         self.begun.look(simulation.warnings(), time_s);
-        let top = simulation.max_tension();
-        if time_s == 0.0 || top.tension_n > self.peak.tension_n || top.tension_n.is_nan() {
-            (self.peak, self.peak_time_s) = (top, time_s);
+        self.since.resize(simulation.answers().len(), None);
+        for (answer, since) in simulation.answers().iter().zip(&mut self.since) {
+            self.peaks = self.peaks.with(answer.peaks_at(time_s));
+            *since = since.into_iter().chain(answer.peaks).reduce(TensionPeaks::with);
         }
     }
 }
@@ -185,8 +190,8 @@ pub fn run(a: RunArguments) -> Done {
         printing: printing.clone(),
         printer: Printer::new(),
         progress: Progress::new(),
-        peak: MaxTension::default(),
-        peak_time_s: 0.0,
+        peaks: TensionPeaks::default(),
+        since: Vec::new(),
         begun: Begun::default(),
         last: None,
     };
@@ -247,11 +252,12 @@ fn follow(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, began:
     if let (false, Some(last)) = (arguments.common.json, last) {
         let figures = Figures { cables: summaries(&scene, &last), stiffness: None };
         printer.line(table(&last, &figures).trim_end())?;
-        let (peak, t) = (outputs.peak, outputs.peak_time_s);
-        printer.line(&format!(
-            "\nGreatest tension of the run  {:.6} N at {t:.4} s, at {:.4} m",
-            peak.tension_n, peak.arc_length_m
-        ))?;
+        let TensionPeaks { greatest, held, over_s } = outputs.peaks;
+        let of = |p: TensionPeak| format!("{:.6} N at {:.4} s, at {:.4} m", p.tension_n, p.time_s, p.arc_length_m);
+        printer.line(&format!("\nGreatest tension of the run  {}", of(greatest)))?;
+        if over_s > 0.0 {
+            printer.line(&format!("Greatest mean over {over_s} s   {}", of(held)))?;
+        }
         for line in outputs.begun.lines() {
             printer.line(&line)?;
         }

@@ -495,6 +495,12 @@ impl Simulation {
         Ok(())
     }
 
+    /// The answers of the cables at the present instant, in the scene's order.
+    #[must_use]
+    pub fn answers(&self) -> &[CableSolution] {
+        &self.answers
+    }
+
     /// The greatest tension of all cables now (NaN propagates).
     #[must_use]
     pub fn max_tension(&self) -> MaxTension {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::estimates::ErrorEstimates;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 use crate::model::Model;
 use crate::robot::RobotReport;
 use crate::verify::Verification;
@@ -132,6 +132,17 @@ pub struct Assumptions {
 }
 
 impl CableSolution {
+    /// The greatest tensions of the step that ended at a time (s): of one without inner steps that are gauged, and at rest, the greatest
+    /// of the nodes, which is held.
+    #[must_use]
+    pub fn peaks_at(&self, time_s: f64) -> TensionPeaks {
+        self.peaks.unwrap_or_else(|| {
+            let top = MaxTension::of(std::slice::from_ref(self));
+            let now = TensionPeak { tension_n: larger(top.tension_n, 0.0), arc_length_m: top.arc_length_m, time_s };
+            TensionPeaks { greatest: now, held: now, over_s: 0.0 }
+        })
+    }
+
     /// The nodes of each piece, in order of arc length: one piece while the cable is whole.
     pub fn pieces(&self) -> impl Iterator<Item = &[Node]> {
         let starts = std::iter::once(0).chain(self.breaks.iter().copied());
@@ -511,5 +522,12 @@ impl Solution {
     #[must_use]
     pub fn max_tension(&self) -> MaxTension {
         MaxTension::of(&self.cables)
+    }
+
+    /// The greatest tensions of the step that ended here, over all cables.
+    #[must_use]
+    pub fn peaks(&self) -> TensionPeaks {
+        let all = self.cables.iter().map(|c| c.peaks_at(self.time_s));
+        all.reduce(TensionPeaks::with).unwrap_or_default()
     }
 }

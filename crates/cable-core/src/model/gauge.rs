@@ -259,7 +259,7 @@ impl TensionGauge {
                 // In a step this long the mean goes on evenly from here to its end.
                 (self.look, until_s, self.oldest) = (last, last * part_s, 0);
                 for (k, slot) in self.between.chunks_exact_mut(count).enumerate() {
-                    let middle = (until_s - (k as f64 + 0.5) * part_s - from_s) * per_s;
+                    let middle = (until_s - ((LOOKS - k) as f64 - 0.5) * part_s - from_s) * per_s;
                     let ends = self.now.iter().zip(&self.next);
                     slot.iter_mut().zip(ends).for_each(|(part, (a, b))| *part = part_s * (a + (b - a) * middle));
                 }
@@ -350,3 +350,7 @@ fn higher(before: Option<TensionPeak>, points: &[f64], tensions: &[f64], time_s:
     let arc_length_m = tensions.iter().zip(points).find(|(t, _)| **t == most).map_or(0.0, |p| *p.1);
     Some(TensionPeak { tension_n: most, arc_length_m, time_s })
 }
+
+#[cfg(test)]
+#[path = "gauge_tests.rs"]
+mod tests;

@@ -63,6 +63,8 @@ pub(crate) struct Break {
     pub at: Vec2,
     /// The support it tore off, if it did.
     pub torn_off: Option<String>,
+    /// The time over which its mean tension reached the breaking tension, s; 0 = at once.
+    pub over_s: f64,
 }
 
 /// One cable of a scene.
@@ -241,6 +243,7 @@ impl Strand {
             time_s: *time_s,
             arc_length_m: cut.at,
             at: state.position_at(node.arc_length_m).unwrap_or_default(),
+            over_s: if inertia == Inertia::Dynamic { self.problem.cable.breaking_time_s } else { 0.0 },
             torn_off: torn.and_then(|k| self.problem.supports.get(k)).map(|s| s.name.clone()),
         };
         let from = piece.deal.from;
@@ -360,7 +363,12 @@ impl Strand {
     pub fn carry(&mut self, old: &Self) -> Result<(), SolveError> {
         let (Some(own), Some(first)) = (self.pieces.first(), old.pieces.first()) else { return Ok(()) };
         if old.breaks.is_empty() {
-            return self.adopt(&first.mechanics.state());
+            self.adopt(&first.mechanics.state())?;
+            let same = |p: &Problem| (p.length, p.cable.breaking_time_s);
+            if let (Some(own), true) = (self.pieces.first_mut(), same(&self.problem) == same(&old.problem)) {
+                own.gauge.clone_from(&first.gauge);
+            }
+            return Ok(());
         }
         let model = own.mechanics.model();
         let names = |s: &Self| s.problem.supports.iter().map(|s| s.name.clone()).collect::<Vec<_>>();
