@@ -99,7 +99,7 @@ impl Outputs {
         self.since.resize(simulation.answers().len(), None);
         for (answer, since) in simulation.answers().iter().zip(&mut self.since) {
             self.peaks = self.peaks.with(answer.peaks_at(time_s));
-            *since = since.into_iter().chain(answer.peaks).reduce(TensionPeaks::with);
+            *since = since.take().into_iter().chain(answer.peaks).reduce(TensionPeaks::with);
         }
     }
 }

@@ -28,9 +28,9 @@ fn a_slow_rise_breaks_half_the_time_later() {
         let reached = gauge.reached().unwrap();
         assert!((reached.time_s - (0.2 + 0.5 * OVER_S)).abs() < 1e-9, "{h}: {}", reached.time_s);
         assert_eq!(reached.tension_n, 100.0);
-        // It was not pulled on.
+        // It was not pulled on for longer than to the next look.
         let peaks = gauge.peaks().unwrap();
-        assert!((peaks.greatest.tension_n - 101.0).abs() < 1e-6 && peaks.held.tension_n == 100.0, "{h}: {peaks:?}");
+        assert!((100.9..101.6).contains(&peaks.greatest.tension_n) && peaks.held.tension_n == 100.0, "{h}: {peaks:?}");
     }
     let at_once = told(0.0, breaks_at(100.0), (1.0 / 240.0, 0.3), |t| 500.0 * t);
     assert!((at_once.reached().unwrap().time_s - 0.2).abs() < 1e-9);
@@ -45,9 +45,9 @@ fn a_jerk_between_two_looks_is_seen_and_its_mean_with_it() {
         let peaks = gauge.peaks().unwrap();
         assert!((peaks.greatest.tension_n - 1000.0).abs() < 5.0, "{peaks:?}");
         assert!((peaks.greatest.time_s - begins - 0.5 * OVER_S).abs() < 1.1e-5);
-        assert!((498.0..500.1).contains(&peaks.held.tension_n), "{peaks:?}");
+        assert!((480.0..500.1).contains(&peaks.held.tension_n), "{peaks:?}");
         assert_eq!((gauge.reached(), peaks.over_s), (None, OVER_S));
-        assert!(told(OVER_S, breaks_at(495.0), (1e-5, 0.03), jerk).reached().is_some());
+        assert!(told(OVER_S, breaks_at(475.0), (1e-5, 0.03), jerk).reached().is_some());
         assert!(told(0.0, breaks_at(900.0), (1e-5, 0.03), jerk).reached().is_some());
     }
 }
@@ -113,5 +113,5 @@ fn a_limit_has_its_time_and_its_place() {
     let limit = Limit { tension_n: 10.0, from_s: 0.1, within_m: [0.2, 0.8] };
     let reached = told(OVER_S, limit, (1e-3, 0.2), |_| 20.0).reached().unwrap();
     assert!(reached.arc_length_m == 0.5 && (reached.tension_n - 20.0).abs() < 1e-9, "{reached:?}");
-    assert!((reached.time_s - 0.1).abs() < 6e-4, "{reached:?}");
+    assert!((reached.time_s - 0.1).abs() < 1.1e-3, "{reached:?}");
 }

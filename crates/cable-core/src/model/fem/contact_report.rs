@@ -51,15 +51,25 @@ impl Dynamics {
         let x = &self.motion.x;
         gauged.arc_length.clone_from(&self.mesh.arc_length);
         gauged.bars.clear();
-        gauged.bars.extend((0..self.mesh.rest_length.len()).map(|e| bar_tension(self, x, e)));
+        if self.never_slides {
+            let mesh = &self.mesh;
+            gauged.bars.extend(x.windows(2).enumerate().map(|(e, pair)| {
+                let t = mesh.bar(e).tension((pair[1] - pair[0]).norm());
+                if t < 0.0 && mesh.is_flexible() { 0.0 } else { t }
+            }));
+        } else {
+            gauged.bars.extend((0..self.mesh.rest_length.len()).map(|e| bar_tension(self, x, e)));
+        }
         let ends = end_forces(self, x, &gauged.bars).0.map(|f| f.norm());
         gauged.tension.clear();
         gauged.tension.push(ends[0]);
-        for (k, pair) in gauged.bars.windows(2).enumerate() {
-            let round = self.load(k + 1).filter(|_| self.mesh.sliding[k + 1].is_some());
-            gauged.tension.push(round.map_or(0.5 * (pair[0] + pair[1]), |load| larger(load.tension[0], load.tension[1])));
-        }
+        gauged.tension.extend(gauged.bars.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])));
         gauged.tension.push(ends[1]);
+        for (k, _) in self.mesh.sliding.iter().enumerate().filter(|(_, s)| s.is_some()) {
+            if let (Some(t), Some(load)) = (gauged.tension.get_mut(k), self.load(k)) {
+                *t = larger(load.tension[0], load.tension[1]);
+            }
+        }
         self.gauged = gauged;
     }
 
