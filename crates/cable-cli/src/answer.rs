@@ -2,7 +2,8 @@
 
 use cable_core::ErrorEstimates;
 use cable_core::solution::{
-    Bend, CableSolution, ContactReport, ContactSample, ContactState, Node, Pressure, Solution, SupportReaction, Warning,
+    Bend, CableSolution, ContactReport, ContactSample, ContactState, Node, Pressure, Solution, SupportReaction,
+    TensionPeaks, Warning,
 };
 use cable_core::summary::{CableSummary, EndStiffness};
 use cable_core::verify::Verification;
@@ -25,6 +26,9 @@ pub struct Answer<'a> {
     pub errors: Vec<OfCable<'a, ErrorEstimates>>,
     pub max_tension_n: f64,
     pub max_tension_arc_length_m: f64,
+    /// The greatest tensions of all inner steps since the line before, one a cable in motion.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub peaks: Vec<OfCable<'a, TensionPeaks>>,
     /// The sharpest bend of all cables; null where all are nearly straight.
     pub tightest_bend: Option<OfCable<'a, Bend>>,
     /// Where a cable is pressed hardest against what leads it; null where nothing leads one round.
@@ -144,6 +148,7 @@ pub fn answer<'a>(
         errors: s.cables.iter().map(|c| OfCable { cable: name(c), of: c.errors }).collect(),
         max_tension_n: top.tension_n,
         max_tension_arc_length_m: top.arc_length_m,
+        peaks: s.cables.iter().filter_map(|c| c.peaks.map(|of| OfCable { cable: name(c), of })).collect(),
         tightest_bend: bends.reduce(|a, b| if b.of.radius_m < a.of.radius_m { b } else { a }),
         sidewall_pressure: pressures.reduce(|a, b| if b.of.pressure_n_per_m > a.of.pressure_n_per_m { b } else { a }),
         summary: figures.cables.iter().map(|of| summary(of, figures)).collect(),
@@ -221,6 +226,11 @@ fn check_finite(s: &Solution) -> Result<(), String> {
             if !all(&[k.x_m, k.y_m, k.arc_length_m]) || !all(&forces) {
                 return Err(format!("a contact of cable `{}` with `{}`", c.name, k.obstacle));
             }
+        }
+        if let Some(peaks) = c.peaks
+            && !all(&[peaks.greatest.tension_n, peaks.held.tension_n])
+        {
+            return Err(format!("a peak of the tension of cable `{}`", c.name));
         }
         let bend = c.tightest_bend.unwrap_or_default();
         let pressure = c.sidewall_pressure.unwrap_or_default();

@@ -12,9 +12,9 @@ use cable_core::files::{RunEnd, RunFolder};
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
 use cable_core::record::{RunRequest, WriteError};
-use cable_core::solution::{Solution, Warning, WarningKind};
+use cable_core::solution::{Solution, TensionPeak, TensionPeaks, Warning, WarningKind};
 use cable_core::summary::summaries;
-use cable_core::timeline::{Instant as Moment, Peak, Timeline};
+use cable_core::timeline::{Instant as Moment, RunPeaks, Timeline};
 use cable_core::{Scene, Settings, Simulation, SolveError};
 
 use crate::Done;
@@ -65,6 +65,8 @@ struct Outputs {
     printing: Arc<Mutex<()>>,
     printer: Printer,
     progress: Progress,
+    /// The greatest tensions of each cable since the last answer.
+    since: Vec<Option<TensionPeaks>>,
     begun: Begun,
     last: Option<Solution>,
     reached: Option<Reached>,
@@ -72,27 +74,32 @@ struct Outputs {
 
 /// What is said of a whole run.
 struct Reached {
-    peak: Peak,
+    /// Of the cable that is pulled hardest.
+    peaks: RunPeaks,
     relative_error: Option<f64>,
 }
 
 impl Reached {
     fn of(timeline: &Timeline) -> Option<Self> {
-        Some(Self { peak: timeline.peak(), relative_error: timeline.relative_error() })
+        let top = |run: &RunPeaks| run.peaks.greatest.tension_n;
+        let peaks = timeline.peaks().iter().copied().reduce(|a, b| if top(&b) > top(&a) { b } else { a })?;
+        Some(Self { peaks, relative_error: timeline.relative_error() })
     }
 
     fn lines(&self, tolerance: f64) -> Vec<String> {
-        let Self { peak, relative_error } = self;
-        let range = peak.range_n.map(|[from, to]| format!("; {from:.6} to {to:.6} N, as coarser runs differ from it"));
-        let mut lines = vec![format!(
-            "\nGreatest tension of the run  {:.6} N at {:.4} s, at {:.4} m{}",
-            peak.top.tension_n,
-            peak.time_s,
-            peak.top.arc_length_m,
-            range.unwrap_or_default()
-        )];
-        if let Some(error) = relative_error {
-            let asked = match *error > tolerance {
+        let TensionPeaks { greatest, held, over_s } = self.peaks.peaks;
+        let of = |p: TensionPeak, range: Option<[f64; 2]>| {
+            let range = range.map(|[from, to]| format!("; {from:.6} to {to:.6} N, as coarser runs differ from it"));
+            let (tension_n, time_s, at) = (p.tension_n, p.time_s, p.arc_length_m);
+            format!("{tension_n:.6} N at {time_s:.4} s, at {at:.4} m{}", range.unwrap_or_default())
+        };
+        let ranges = self.peaks.ranges;
+        let mut lines = vec![format!("\nGreatest tension of the run  {}", of(greatest, ranges.map(|r| r.greatest_n)))];
+        if over_s > 0.0 {
+            lines.push(format!("Greatest mean over {over_s} s   {}", of(held, ranges.map(|r| r.held_n))));
+        }
+        if let Some(error) = self.relative_error {
+            let asked = match error > tolerance {
                 true => format!(
                     " (asked: {tolerance:.1e}; --refine 1 takes four times as long and is nearer where motion is smooth)"
                 ),
@@ -105,7 +112,10 @@ impl Reached {
 }
 
 impl Outputs {
-    fn push(&mut self, solution: Solution, wall_time_s: f64, is_last: bool) -> Done {
+    fn push(&mut self, mut solution: Solution, wall_time_s: f64, is_last: bool) -> Done {
+        for (cable, since) in solution.cables.iter_mut().zip(self.since.drain(..)) {
+            cable.peaks = since.into_iter().chain(cable.peaks).reduce(TensionPeaks::with);
+        }
         let cables = if self.arguments.common.json { summaries(&self.scene, &solution) } else { Vec::new() };
         let figures = Figures { cables, stiffness: None };
         let printable = answer(&solution, &figures, wall_time_s, Some(solution.time_s)).map_err(Failure::NonFinite)?;
@@ -123,7 +133,12 @@ impl Outputs {
 
     /// Looks at a step, whether it is written or not.
     fn watch(&mut self, simulation: &Simulation) {
-        self.begun.look(simulation.warnings(), simulation.time_s());
+        let time_s = simulation.time_s();
+        self.begun.look(simulation.warnings(), time_s);
+        self.since.resize(simulation.answers().len(), None);
+        for (answer, since) in simulation.answers().iter().zip(&mut self.since) {
+            *since = since.take().into_iter().chain(answer.peaks).reduce(TensionPeaks::with);
+        }
     }
 }
 
@@ -214,6 +229,7 @@ pub fn run(a: RunArguments) -> Done {
         printer: Printer::new(),
         progress: Progress::new(),
         reached: None,
+        since: Vec::new(),
         begun: Begun::default(),
         last: None,
     };

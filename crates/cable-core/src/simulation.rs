@@ -180,16 +180,17 @@ impl Simulation {
         self.settings
     }
 
-    /// The answers of the cables at the present instant.
-    pub(crate) fn answers(&self) -> &[CableSolution] {
-        &self.answers
-    }
-
     /// What is known of the errors of the present answers.
     pub(crate) fn tell_errors(&mut self, errors: impl Iterator<Item = ErrorEstimates>) {
         for (answer, errors) in self.answers.iter_mut().zip(errors) {
             (answer.error_estimate, answer.errors) = (errors.relative(answer), errors);
         }
+    }
+
+    /// What else is to be said of the present instant.
+    pub(crate) fn tell(&mut self, warnings: Vec<Warning>) {
+        self.warnings.retain(|w| w.kind != WarningKind::MayBreak);
+        self.warnings.extend(warnings);
     }
 
     /// The scene being solved.
@@ -347,6 +348,7 @@ impl Simulation {
     }
 
     fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
+        self.cables.iter_mut().for_each(Strand::forget_peaks);
         let done = match self.vehicle.is_some() && dt_s > 0.0 && dt_s.is_finite() {
             true => self.drive(dt_s, inertia),
             false => self.each(|c| c.advance(dt_s, inertia)),
@@ -439,6 +441,7 @@ impl Simulation {
             self.drag_support(cable, support, hitch);
         }
         self.lead_outline();
+        self.cables.iter_mut().for_each(Strand::forget_peaks);
         let done = self.each(|c| c.advance(dt_s, inertia));
         let left_m = self.hold_vehicle();
         self.look(true);
@@ -542,6 +545,12 @@ impl Simulation {
         self.cost = cost;
         self.warnings = warnings;
         Ok(())
+    }
+
+    /// The answers of the cables at the present instant, in the scene's order.
+    #[must_use]
+    pub fn answers(&self) -> &[CableSolution] {
+        &self.answers
     }
 
     /// The greatest tension of all cables now (NaN propagates).

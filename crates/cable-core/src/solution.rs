@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::estimates::ErrorEstimates;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 use crate::model::Model;
 use crate::robot::RobotReport;
 use crate::verify::Verification;
@@ -83,6 +83,41 @@ pub struct CableSolution {
     /// What the answer took into account.
     #[serde(default)]
     pub assumptions: Assumptions,
+    /// The greatest tensions of the last step, whose inner steps pull harder than its end; None at rest and without inertia.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peaks: Option<TensionPeaks>,
+}
+
+/// The greatest tensions of a while in motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TensionPeaks {
+    /// The greatest tension of any inner step, not averaged.
+    pub greatest: TensionPeak,
+    /// The greatest mean over `over_s` at a point of the cable, and when that time ended: where it reaches the breaking tension the
+    /// cable breaks.
+    pub held: TensionPeak,
+    /// The time that means are taken over, s.
+    pub over_s: f64,
+}
+
+impl TensionPeaks {
+    /// The greater of each; `other` of the same cable.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        let larger = |a: TensionPeak, b: TensionPeak| if b.tension_n > a.tension_n { b } else { a };
+        Self { greatest: larger(self.greatest, other.greatest), held: larger(self.held, other.held), ..other }
+    }
+}
+
+/// A tension, where on the cable and when.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TensionPeak {
+    /// Tension, N.
+    pub tension_n: f64,
+    /// Where on the cable, m.
+    pub arc_length_m: f64,
+    /// When, s.
+    pub time_s: f64,
 }
 
 /// What an answer took into account of its cable. What it left out is an error of the model, not an unbalanced force.
@@ -97,6 +132,17 @@ pub struct Assumptions {
 }
 
 impl CableSolution {
+    /// The greatest tensions of the step that ended at a time (s): of one without inner steps that are gauged, and at rest, the greatest
+    /// of the nodes, which is held.
+    #[must_use]
+    pub fn peaks_at(&self, time_s: f64) -> TensionPeaks {
+        self.peaks.unwrap_or_else(|| {
+            let top = MaxTension::of(std::slice::from_ref(self));
+            let now = TensionPeak { tension_n: larger(top.tension_n, 0.0), arc_length_m: top.arc_length_m, time_s };
+            TensionPeaks { greatest: now, held: now, over_s: 0.0 }
+        })
+    }
+
     /// The nodes of each piece, in order of arc length: one piece while the cable is whole.
     pub fn pieces(&self) -> impl Iterator<Item = &[Node]> {
         let starts = std::iter::once(0).chain(self.breaks.iter().copied());
@@ -358,6 +404,8 @@ pub enum WarningKind {
     BreakingTension,
     /// It broke here; value and limit are the breaking tension.
     Broken,
+    /// Whether it breaks is open: the run is not fine enough to say, or no mesh is.
+    MayBreak,
     /// Led round something narrower than the smallest bend radius allowed.
     BendRadius,
     /// Bent too sharply where nothing leads it.
@@ -390,10 +438,11 @@ pub enum WarningKind {
 
 impl WarningKind {
     /// Every kind.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::ServiceTension,
         Self::BreakingTension,
         Self::Broken,
+        Self::MayBreak,
         Self::BendRadius,
         Self::Kink,
         Self::SidewallPressure,
@@ -417,6 +466,7 @@ impl WarningKind {
             Self::ServiceTension => "service-tension",
             Self::BreakingTension => "breaking-tension",
             Self::Broken => "broken",
+            Self::MayBreak => "may-break",
             Self::BendRadius => "bend-radius",
             Self::Kink => "kink",
             Self::SidewallPressure => "sidewall-pressure",
@@ -476,5 +526,12 @@ impl Solution {
     #[must_use]
     pub fn max_tension(&self) -> MaxTension {
         MaxTension::of(&self.cables)
+    }
+
+    /// The greatest tensions of the step that ended here, over all cables.
+    #[must_use]
+    pub fn peaks(&self) -> TensionPeaks {
+        let all = self.cables.iter().map(|c| c.peaks_at(self.time_s));
+        all.reduce(TensionPeaks::with).unwrap_or_default()
     }
 }

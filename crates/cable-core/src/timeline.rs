@@ -9,8 +9,9 @@ mod coarse;
 use crate::error::SolveError;
 use crate::math::larger;
 use crate::model::Inertia;
+use crate::scene::Cable;
 use crate::simulation::Simulation;
-use crate::solution::{MaxTension, Solution};
+use crate::solution::{CableSolution, Solution, TensionPeaks, Warning, WarningKind};
 
 use self::coarse::CoarseRuns;
 
@@ -48,15 +49,22 @@ impl Instant {
     }
 }
 
-/// The greatest tension of a run so far.
+/// From what to what tensions of a cable may be, N.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TensionRanges {
+    /// The greatest of any inner step.
+    pub greatest_n: [f64; 2],
+    /// The greatest mean over the cable's `breaking_time_s`.
+    pub held_n: [f64; 2],
+}
+
+/// The greatest tensions of a cable in a run so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Peak {
-    /// What it is, and where.
-    pub top: MaxTension,
-    /// When, s.
-    pub time_s: f64,
-    /// From what to what it may be, N; None where that is not known.
-    pub range_n: Option<[f64; 2]>,
+pub struct RunPeaks {
+    /// What they are, where and when.
+    pub peaks: TensionPeaks,
+    /// What is known of them; None where nothing is.
+    pub ranges: Option<TensionRanges>,
 }
 
 /// A simulation that goes in even steps and shows any instant.
@@ -67,7 +75,8 @@ pub struct Timeline {
     /// Steps made.
     count: u64,
     coarse: Option<CoarseRuns>,
-    peak: Peak,
+    /// One a cable.
+    peaks: Vec<RunPeaks>,
     /// Greatest error of a force so far, N; None where one was not known.
     worst_n: Option<f64>,
 }
@@ -82,8 +91,9 @@ impl Timeline {
             Inertia::QuasiStatic => QUASI_STATIC_STEP_S,
         };
         let step = Instant::nearest(step_s.unwrap_or(usual_s)).max(Instant(1));
-        let peak = Peak { top: simulation.max_tension(), time_s: simulation.time_s(), range_n: None };
-        Self { simulation, inertia, step, count: 0, coarse: None, peak, worst_n: Some(0.0) }
+        let at_rest = |answer: &CableSolution| RunPeaks { peaks: answer.peaks_at(simulation.time_s()), ranges: None };
+        let peaks = simulation.answers().iter().map(at_rest).collect();
+        Self { simulation, inertia, step, count: 0, coarse: None, peaks, worst_n: Some(0.0) }
     }
 
     /// The same, with errors in motion: coarser runs go beside it, for a third of its cost. Where there is none (no elements, or no
@@ -91,10 +101,7 @@ impl Timeline {
     #[must_use]
     pub fn with_errors(mut self) -> Self {
         self.coarse = CoarseRuns::beside(&self.simulation, self.inertia, self.step);
-        if let Some(coarse) = &self.coarse {
-            self.simulation.tell_errors(coarse.errors());
-        }
-        self.note_peak();
+        self.note();
         self
     }
 
@@ -110,17 +117,17 @@ impl Timeline {
         self.step.seconds()
     }
 
-    /// The greatest tension so far.
+    /// The greatest tensions so far, one a cable.
     #[must_use]
-    pub fn peak(&self) -> Peak {
-        self.peak
+    pub fn peaks(&self) -> &[RunPeaks] {
+        &self.peaks
     }
 
     /// The greatest error so far of the greatest tension and of any support's force, in parts of the greatest tension of the run; None where one
     /// was not known.
     #[must_use]
     pub fn relative_error(&self) -> Option<f64> {
-        let most = self.peak.top.tension_n;
+        let most = self.peaks.iter().map(|run| run.peaks.greatest.tension_n).fold(0.0, larger);
         self.worst_n.map(|worst| if most > 0.0 { worst / most } else { worst })
     }
 
@@ -135,10 +142,7 @@ impl Timeline {
             advance(&mut self.simulation, next, self.inertia)?;
             self.count += 1;
             self.coarse = self.coarse.take().and_then(|coarse| coarse.follow(&self.simulation, (next, self.count)));
-            if let Some(coarse) = &self.coarse {
-                self.simulation.tell_errors(coarse.errors());
-            }
-            self.note_peak();
+            self.note();
             watch(&self.simulation);
         }
         let mut solution = if self.step.times(self.count) < instant {
@@ -156,18 +160,36 @@ impl Timeline {
         Ok(solution)
     }
 
-    fn note_peak(&mut self) {
-        for answer in self.simulation.answers() {
-            let errors = answer.errors;
-            let force = errors.max_tension_n.zip(errors.support_force_n).map(|(a, b)| larger(a, b));
+    /// Notes what the last step adds to what is known, and says it.
+    fn note(&mut self) {
+        if let Some(coarse) = &self.coarse {
+            self.simulation.tell_errors(coarse.errors());
+        }
+        let mut warnings = Vec::new();
+        let cables = self.simulation.scene().cables.iter().zip(self.simulation.answers());
+        for (k, (run, (cable, answer))) in self.peaks.iter_mut().zip(cables).enumerate() {
+            run.peaks = run.peaks.with(answer.peaks_at(self.simulation.time_s()));
+            run.ranges = self.coarse.as_ref().map(|coarse| coarse.ranges(k));
+            warnings.extend(may_break(cable, answer, run));
+            let force = answer.errors.max_tension_n.zip(answer.errors.support_force_n).map(|(a, b)| larger(a, b));
             self.worst_n = self.worst_n.zip(force).map(|(a, b)| larger(a, b));
         }
-        let top = self.simulation.max_tension();
-        if top.tension_n > self.peak.top.tension_n || top.tension_n.is_nan() {
-            (self.peak.top, self.peak.time_s) = (top, self.simulation.time_s());
-        }
-        self.peak.range_n = self.coarse.as_ref().map(CoarseRuns::range);
+        self.simulation.tell(warnings);
     }
+}
+
+/// Whether a cable breaks where what is known of its tensions leaves that open.
+fn may_break(cable: &Cable, answer: &CableSolution, run: &RunPeaks) -> Option<Warning> {
+    let ([from, to], breaking_n) = (run.ranges?.held_n, cable.breaking_tension_n);
+    let (broke, held, over_s) = (!answer.breaks.is_empty(), run.peaks.held, run.peaks.over_s);
+    let open = if broke { from < breaking_n } else { to >= breaking_n };
+    let does = if broke { "broke here, and may hold" } else { "held here, and may break" };
+    let message = format!(
+        "`{}` {does}: its greatest mean tension over {over_s} s is {:.0} N, {from:.0} to {to:.0} N as coarser runs differ from it, and it breaks at {breaking_n} N: pull less, or more slowly",
+        cable.name, held.tension_n
+    );
+    let warning = Warning::new(WarningKind::MayBreak, &cable.name, held.arc_length_m, [to, breaking_n], message);
+    open.then_some(warning)
 }
 
 /// One step to an instant.

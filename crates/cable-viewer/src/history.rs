@@ -9,7 +9,7 @@ use cable_core::Solution;
 pub struct Sample {
     /// Time, s.
     pub time_s: f64,
-    /// Largest tension over all cables, N.
+    /// Largest tension over all cables in any inner step since the sample before, N.
     pub max_tension_n: f64,
     /// Energy of motion, of height, of stretch and of bending, J.
     pub energy_j: [f64; 4],
@@ -25,7 +25,7 @@ impl Sample {
     pub fn of(solution: &Solution) -> Self {
         Self {
             time_s: solution.time_s,
-            max_tension_n: solution.max_tension().tension_n,
+            max_tension_n: solution.peaks().greatest.tension_n,
             energy_j: [
                 solution.energy.kinetic_j,
                 solution.energy.gravity_j,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use cable_core::record::{Event, HistoryTable, NodeRow, RunTables};
 use cable_core::robot::RobotReport;
 use cable_core::scene::SupportKind;
-use cable_core::solution::{CableSolution, Cost, Energy, SupportReaction, Warning};
+use cable_core::solution::{CableSolution, Cost, Energy, SupportReaction, TensionPeak, TensionPeaks, Warning};
 use cable_core::{Model, Scene, Solution, files};
 
 use crate::history::Sample;
@@ -188,6 +188,7 @@ fn answers(scene: &Scene, history: &HistoryTable, nodes: Vec<NodeRow>, events: &
             cable.nodes.push(row.node);
         }
         reactions(scene, history, k, &mut cables);
+        peaks(history, k, &mut cables);
         out.push(Solution {
             time_s,
             model: Model::Auto,
@@ -205,6 +206,16 @@ fn answers(scene: &Scene, history: &HistoryTable, nodes: Vec<NodeRow>, events: &
 
 fn extra(history: &HistoryTable, name: &str, k: usize) -> Option<f64> {
     history.extras.iter().find(|e| e.name == name)?.values.get(k).copied()
+}
+
+/// Tables hold the peaks over all cables: the first cable is given them, and keeps the others out of it.
+fn peaks(history: &HistoryTable, k: usize, cables: &mut [CableSolution]) {
+    let time_s = history.time_s.get(k).copied().unwrap_or(0.0);
+    let of = |name| Some(TensionPeak { tension_n: extra(history, name, k)?, time_s, ..TensionPeak::default() });
+    if let (Some(first), Some(greatest), Some(held)) = (cables.first_mut(), of("peak_tension_n"), of("held_tension_n"))
+    {
+        first.peaks = Some(TensionPeaks { greatest, held, over_s: 0.0 });
+    }
 }
 
 fn energy(history: &HistoryTable, k: usize) -> Energy {

@@ -10,6 +10,7 @@ pub mod catenary;
 pub mod conformance;
 pub mod drive;
 pub mod fem;
+pub mod gauge;
 pub mod lay;
 pub mod mass_spring;
 pub mod relay;
@@ -20,6 +21,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use self::gauge::TensionGauge;
 use self::mass_spring::Stepping;
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
@@ -182,7 +184,20 @@ pub trait Mechanics: Send {
     ///
     /// # Errors
     /// `TimeStep` for a step that is zero, negative, not finite or too large; `StepFailed` otherwise.
-    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError>;
+    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+        self.advance_gauged(dt_s, inertia, &mut TensionGauge::off())
+    }
+
+    /// The same; every inner step with inertia tells `gauge` the tension along the cable.
+    ///
+    /// # Errors
+    /// As [`Self::advance`].
+    fn advance_gauged(
+        &mut self,
+        dt_s: f64,
+        inertia: Inertia,
+        gauge: &mut TensionGauge,
+    ) -> Result<StepReport, SolveError>;
 
     /// Where the cable is.
     fn state(&self) -> State;

@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use super::fem::FemModel;
+use super::gauge::TensionGauge;
 use super::lay::{is_buried, meets_outline, slid_first, slides_on, work};
 use super::spans::SpansModel;
 use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport, refuse_mobilised};
@@ -254,12 +255,17 @@ impl Mechanics for Relay {
         found
     }
 
-    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+    fn advance_gauged(
+        &mut self,
+        dt_s: f64,
+        inertia: Inertia,
+        gauge: &mut TensionGauge,
+    ) -> Result<StepReport, SolveError> {
         if !(dt_s > 0.0 && dt_s.is_finite()) {
             return Err(SolveError::TimeStep { dt_s, allowed: "more than 0 s" });
         }
         if inertia == Inertia::Dynamic {
-            return self.fem("masses move".to_owned())?.advance(dt_s, inertia);
+            return self.fem("masses move".to_owned())?.advance_gauged(dt_s, inertia, gauge);
         }
         let end_s = self.time_s() + dt_s;
         let mut why = String::new();

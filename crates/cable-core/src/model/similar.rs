@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use super::gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, StepReport};
 use crate::error::{Place, SolveError};
 use crate::math::Vec2;
@@ -189,14 +190,22 @@ impl Mechanics for Similar {
         }
     }
 
-    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+    fn advance_gauged(
+        &mut self,
+        dt_s: f64,
+        inertia: Inertia,
+        gauge: &mut TensionGauge,
+    ) -> Result<StepReport, SolveError> {
         let whole = dt_s * self.by.time;
         // A step that no model takes is refused by it.
         let parts =
             if whole > LONGEST_STEP_S && dt_s <= LONGEST_STEP_S { (whole / LONGEST_STEP_S).ceil() } else { 1.0 };
         let mut sum = StepReport::default();
         for _ in 0..parts as usize {
-            match self.inner.advance(whole / parts, inertia) {
+            gauge.of_copy([self.by.length, self.by.time]);
+            let done = self.inner.advance_gauged(whole / parts, inertia, gauge);
+            gauge.of_copy([self.by.length, self.by.time].map(f64::recip));
+            match done {
                 Ok(report) => {
                     let report = self.report(report);
                     sum.cost.iterations += report.cost.iterations;

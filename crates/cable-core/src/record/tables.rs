@@ -318,7 +318,7 @@ fn history_columns<'a>(
             columns.push(format!("{name}.reaction_y_n"));
         }
     }
-    columns.extend(ENERGY_COLUMNS.map(String::from));
+    columns.extend(ENERGY_COLUMNS.into_iter().chain(PEAK_COLUMNS).map(String::from));
     columns.extend(ROBOT_COLUMNS.map(String::from).into_iter().filter(|_| with_robot));
     columns
 }
@@ -380,13 +380,19 @@ const HISTORY_COLUMNS: [&str; 3] = ["time_s", "max_tension_n", "max_tension_arc_
 
 /// Columns of `history.csv` that are of no support.
 const ENERGY_COLUMNS: [&str; 4] = ["kinetic_energy_j", "gravity_energy_j", "stretch_energy_j", "bending_energy_j"];
+/// The greatest tension of any inner step since the row before, and the greatest mean over the breaking time; at rest and without inertia
+/// that of the instant.
+const PEAK_COLUMNS: [&str; 2] = ["peak_tension_n", "held_tension_n"];
 const ROBOT_COLUMNS: [&str; 5] = ["robot_x_m", "robot_y_m", "robot_pitch_deg", "robot_speed_m_per_s", "robot_thrust_n"];
 
 fn extras(s: &Solution) -> impl Iterator<Item = (&'static str, f64)> {
     let e = s.energy;
     let energies = [e.kinetic_j, e.gravity_j, e.stretch_j, e.bending_j];
     let robot = s.robot.map(|r| [r.x_m, r.y_m, r.pitch_deg, r.speed_m_per_s, r.thrust_n]);
-    ENERGY_COLUMNS.into_iter().zip(energies).chain(ROBOT_COLUMNS.into_iter().zip(robot.into_iter().flatten()))
+    let peaks = s.peaks();
+    let peaks = [peaks.greatest.tension_n, peaks.held.tension_n];
+    let always = ENERGY_COLUMNS.into_iter().zip(energies).chain(PEAK_COLUMNS.into_iter().zip(peaks));
+    always.chain(ROBOT_COLUMNS.into_iter().zip(robot.into_iter().flatten()))
 }
 
 const EVENT_COLUMNS: [&str; 7] = ["time_s", "kind", "cable", "arc_length_m", "value", "limit", "message"];
@@ -559,7 +565,7 @@ pub fn read_history(from: impl Read) -> Result<HistoryTable, ReadError> {
     let mut k = 3;
     while k < header.len() {
         let name = header.get(k).unwrap_or_default();
-        if let Some(known) = ENERGY_COLUMNS.into_iter().chain(ROBOT_COLUMNS).find(|c| *c == name) {
+        if let Some(known) = ENERGY_COLUMNS.into_iter().chain(PEAK_COLUMNS).chain(ROBOT_COLUMNS).find(|c| *c == name) {
             table.extras.push(Extra { name: known, values: Vec::new() });
             k += 1;
             continue;

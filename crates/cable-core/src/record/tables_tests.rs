@@ -73,7 +73,7 @@ proptest! {
         prop_assert_eq!(history.time_s[0].to_bits(), time.to_bits());
         prop_assert_eq!(history.supports[0].reaction_x_n[0].to_bits(), values[1].to_bits());
         prop_assert_eq!(&history.supports[0].name, &name);
-        prop_assert_eq!(history.extras.len(), 4);
+        prop_assert_eq!(history.extras.len(), 6);
         prop_assert_eq!(history.extras[3].values[0].to_bits(), values[7].to_bits());
         let events = read_events(e.as_slice()).unwrap();
         prop_assert_eq!(&events[0].message, &s.warnings[0].message);

@@ -36,6 +36,10 @@ pub struct Cable {
     pub service_tension_n: f64,
     /// Tension at which it breaks, N.
     pub breaking_tension_n: f64,
+    /// Time over which the mean tension of a moving cable has to reach the breaking tension before it breaks, s; 0 = each instant counts.
+    /// Without inertia it breaks at once.
+    #[serde(default = "default_breaking_time_s")]
+    pub breaking_time_s: f64,
     /// Smallest allowed bend radius, m; 0 = none stated.
     #[serde(default)]
     pub min_bend_radius_m: f64,
@@ -59,6 +63,15 @@ pub struct Cable {
     pub route_m: Vec<Point>,
     /// Supports in order along the cable; the first is its start, the last its end.
     pub supports: Vec<Support>,
+}
+
+/// Breaking time of a cable of which none is stated, s. No measurement of cables stands behind it (incubation times of metals are
+/// microseconds): it is the time over which means of tension agree between meshes, 4 % in a drop on rubble, whose instants differ by 30 %.
+/// Shorter: whether the cable breaks in a jerk hangs on the mesh; longer: what is seen of a jerk is less than what the cable feels.
+pub const BREAKING_TIME_S: f64 = 4e-3;
+
+fn default_breaking_time_s() -> f64 {
+    BREAKING_TIME_S
 }
 
 /// How much of the friction is called upon where the cable rests.

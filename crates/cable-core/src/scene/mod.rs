@@ -25,7 +25,7 @@ pub mod survey;
 pub mod validate;
 mod way;
 
-pub use cable::{Cable, FrictionMobilised};
+pub use cable::{BREAKING_TIME_S, Cable, FrictionMobilised};
 pub use load::Load;
 pub use motion::Motion;
 pub use obstacle::{Obstacle, Shape};

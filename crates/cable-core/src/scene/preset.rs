@@ -66,6 +66,8 @@ pub struct CablePreset {
     pub service_tension_n: Figure,
     /// Tension at which it breaks, N.
     pub breaking_tension_n: Figure,
+    /// Time over which the mean tension has to reach that, s.
+    pub breaking_time_s: Figure,
     /// Smallest bend radius, m.
     pub min_bend_radius_m: Figure,
     /// Coulomb friction.
@@ -77,7 +79,7 @@ pub struct CablePreset {
 impl CablePreset {
     /// Its numbers under the keys a scene file gives them.
     #[must_use]
-    pub fn figures(&self) -> [(&'static str, &Figure); 10] {
+    pub fn figures(&self) -> [(&'static str, &Figure); 11] {
         [
             ("linear_density_kg_per_m", &self.linear_density_kg_per_m),
             ("axial_stiffness_n", &self.axial_stiffness_n),
@@ -89,6 +91,7 @@ impl CablePreset {
             ("breaking_tension_n", &self.breaking_tension_n),
             ("min_bend_radius_m", &self.min_bend_radius_m),
             ("friction", &self.friction),
+            ("breaking_time_s", &self.breaking_time_s),
         ]
     }
 

@@ -30,6 +30,7 @@ pub(super) const DIAMETER: Range = Range::new(1e-5, 10.0, "1e-5 to 10 m");
 pub(super) const DAMPING: Range = Range::new(0.0, 10.0, "0 to 10 (1 = critical)");
 pub(super) const THERMAL: Range = Range::new(-1e-2, 1e-2, "-0.01 to 0.01 per K");
 pub(super) const TENSION: Range = Range::new(1e-6, 1e15, "1e-6 to 1e15 N");
+pub(super) const BREAKING_TIME: Range = Range::new(0.0, 5e-3, "0 to 0.005 s");
 pub(super) const BEND_RADIUS: Range = Range::new(0.0, 1e4, "0 to 1e4 m");
 pub(super) const SIDEWALL: Range = Range::new(1e-3, 1e9, "1e-3 to 1e9 N/m");
 pub(super) const FRICTION: Range = Range::new(0.0, 10.0, "0 to 10");

@@ -95,6 +95,7 @@ impl Scene {
             c.bending_stiffness_n_m2 *= l * l;
             c.diameter_m *= l;
             c.min_bend_radius_m *= l;
+            c.breaking_time_s *= by.time;
             if let Some(limit) = &mut c.sidewall_limit_n_per_m {
                 *limit /= l;
             }

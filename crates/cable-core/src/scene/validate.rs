@@ -93,6 +93,7 @@ impl Scene {
             ("thermal_expansion_per_k", cable.thermal_expansion_per_k, range::THERMAL),
             ("service_tension_n", cable.service_tension_n, range::TENSION),
             ("breaking_tension_n", cable.breaking_tension_n, range::TENSION),
+            ("breaking_time_s", cable.breaking_time_s, range::BREAKING_TIME),
             ("min_bend_radius_m", cable.min_bend_radius_m, range::BEND_RADIUS),
             ("friction", cable.friction, range::FRICTION),
         ];

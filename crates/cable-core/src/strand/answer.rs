@@ -9,14 +9,14 @@ impl Strand {
     /// The answer at this instant.
     pub fn answer(&self) -> CableSolution {
         if let ([whole], true) = (self.pieces.as_slice(), self.breaks.is_empty()) {
-            return whole.answer.clone();
+            return CableSolution { peaks: self.peaks, ..whole.answer.clone() };
         }
         let assumptions = self.pieces.first().map_or_else(Default::default, |first| Assumptions {
             inertia: self.pieces.iter().any(|p| p.answer.assumptions.inertia),
             ..first.answer.assumptions
         });
         let name = self.problem.cable.name.clone();
-        let mut out = CableSolution { name, assumptions, ..CableSolution::default() };
+        let mut out = CableSolution { name, assumptions, peaks: self.peaks, ..CableSolution::default() };
         for piece in &self.pieces {
             let from = piece.deal.from;
             if !out.nodes.is_empty() || piece.deal.supports.first() == Some(&None) {

@@ -18,20 +18,16 @@ use deal::{Cut, Deal};
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
 use crate::math::{Vec2, larger};
+use crate::model::gauge::{Limit, TensionGauge};
 use crate::model::{self, Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-use crate::solution::{CableSolution, Cost};
+use crate::solution::{CableSolution, Cost, TensionPeak, TensionPeaks};
 use crate::state::State;
 
-/// Longest step between two looks at the tension of a moving cable that may break, s. Longer: a peak between two looks is
-/// missed; shorter: more looks for the same break. It is the inner step of `fem`.
+/// Longest step that a cable which breaks in it takes from its last place before, s. Longer: the place of the break is blurred; shorter:
+/// more steps for each break. It is the inner step of `fem`.
 const WATCH_STEP_S: f64 = 1.0 / 240.0;
-
-/// A moving cable pulled with more than this part of its breaking tension is looked at every [`WATCH_STEP_S`]. Larger: a
-/// jerk from below it within one step of the caller is seen only if it lasts; smaller: looks that find nothing. A cable
-/// that snaps taut in the tests goes from a tenth to the whole in two inner steps, so half leaves none unseen.
-const NEAR: f64 = 0.5;
 
 /// Looks in a step without inertia that ends beyond the breaking tension. The moment of the break is interpolated between
 /// two of them: with 16 the end of a cable pulled from slack to taut in one step is found to 1e-2 of the step.
@@ -67,6 +63,8 @@ pub(crate) struct Break {
     pub at: Vec2,
     /// The support it tore off, if it did.
     pub torn_off: Option<String>,
+    /// The time over which its mean tension reached the breaking tension, s; 0 = at once.
+    pub over_s: f64,
 }
 
 /// One cable of a scene.
@@ -80,6 +78,8 @@ pub(crate) struct Strand {
     dragged: Vec<Option<Vec2>>,
     /// Where the outline of the robot was led.
     led: Option<Placement>,
+    /// The greatest tensions since they were last forgotten, in motion.
+    peaks: Option<TensionPeaks>,
 }
 
 /// A part of the cable that holds together.
@@ -91,6 +91,8 @@ struct Piece {
     quiet: u32,
     /// Not watched before, s.
     quiet_until_s: f64,
+    /// Its tension in the inner steps of its model, in its own arc lengths.
+    gauge: TensionGauge,
 }
 
 /// What became of a piece in a step.
@@ -104,9 +106,19 @@ impl Strand {
     /// Builds the model of a whole cable.
     pub fn new(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
         let mechanics = model::build(model, problem.clone(), settings)?;
-        let piece = Piece::new(mechanics, Deal::whole(&problem));
+        let gauge = TensionGauge::over(problem.cable.breaking_time_s);
+        let piece = Piece::new(mechanics, Deal::whole(&problem), gauge);
         let dragged = vec![None; problem.supports.len()];
-        Ok(Self { problem, asked: model, settings, pieces: vec![piece], breaks: Vec::new(), dragged, led: None })
+        Ok(Self {
+            problem,
+            asked: model,
+            settings,
+            pieces: vec![piece],
+            breaks: Vec::new(),
+            dragged,
+            led: None,
+            peaks: None,
+        })
     }
 
     /// The same cable by another model: where it is, or at its route where it has not begun.
@@ -156,12 +168,19 @@ impl Strand {
     /// Finds where it rests: nothing breaks at rest, see `crate::watch`.
     pub fn settle(&mut self) -> Result<StepReport, SolveError> {
         let mut sum = StepReport::default();
+        self.peaks = None;
         for piece in &mut self.pieces {
+            piece.gauge.forget();
             add(&mut sum, piece.mechanics.settle()?);
             piece.look();
         }
         sum.warnings.extend(self.problem.notes.iter().cloned());
         Ok(sum)
+    }
+
+    /// A new step of the caller begins: the greatest tensions are those of it from now on.
+    pub fn forget_peaks(&mut self) {
+        self.peaks = None;
     }
 
     /// Advances time by exactly `dt_s`, breaking on the way where it must. Without inertia it stops where something turns
@@ -194,7 +213,12 @@ impl Strand {
                 k += 1;
                 continue;
             }
-            match piece.advance(rest_s, inertia, may_break.then_some(breaking_n), &mut sum)? {
+            let done = piece.advance(rest_s, inertia, may_break.then_some(breaking_n), &mut sum)?;
+            self.peaks = match (self.peaks, piece.peaks()) {
+                (Some(a), Some(b)) => Some(a.with(b)),
+                (a, b) => b.or(a),
+            };
+            match done {
                 Outcome::Held => k += 1,
                 Outcome::Broke(at) => self.split(k, &at, inertia)?,
             }
@@ -228,6 +252,7 @@ impl Strand {
             time_s: *time_s,
             arc_length_m: cut.at,
             at: state.position_at(node.arc_length_m).unwrap_or_default(),
+            over_s: if inertia == Inertia::Dynamic { self.problem.cable.breaking_time_s } else { 0.0 },
             torn_off: torn.and_then(|k| self.problem.supports.get(k)).map(|s| s.name.clone()),
         };
         let from = piece.deal.from;
@@ -262,7 +287,7 @@ impl Strand {
             mechanics.lead_outline(led);
         }
         mechanics.adopt(state)?;
-        Ok(Piece::new(mechanics, deal))
+        Ok(Piece::new(mechanics, deal, TensionGauge::over(self.problem.cable.breaking_time_s)))
     }
 
     /// A piece whose new end has come to a pulley is off it.
@@ -330,7 +355,9 @@ impl Strand {
         match self.pieces.as_mut_slice() {
             [whole] if self.breaks.is_empty() => {
                 whole.mechanics.adopt(state)?;
+                whole.gauge.forget();
                 whole.look();
+                self.peaks = None;
                 Ok(())
             }
             pieces => {
@@ -345,7 +372,12 @@ impl Strand {
     pub fn carry(&mut self, old: &Self) -> Result<(), SolveError> {
         let (Some(own), Some(first)) = (self.pieces.first(), old.pieces.first()) else { return Ok(()) };
         if old.breaks.is_empty() {
-            return self.adopt(&first.mechanics.state());
+            self.adopt(&first.mechanics.state())?;
+            let same = |p: &Problem| (p.length, p.cable.breaking_time_s);
+            if let (Some(own), true) = (self.pieces.first_mut(), same(&self.problem) == same(&old.problem)) {
+                own.gauge.clone_from(&first.gauge);
+            }
+            return Ok(());
         }
         let model = own.mechanics.model();
         let names = |s: &Self| s.problem.supports.iter().map(|s| s.name.clone()).collect::<Vec<_>>();
@@ -368,8 +400,9 @@ impl Strand {
 }
 
 impl Piece {
-    fn new(mechanics: Box<dyn Mechanics>, deal: Deal) -> Self {
-        Self { answer: mechanics.solution(), mechanics, deal, quiet: 0, quiet_until_s: f64::NEG_INFINITY }
+    fn new(mechanics: Box<dyn Mechanics>, deal: Deal, gauge: TensionGauge) -> Self {
+        let answer = mechanics.solution();
+        Self { answer, mechanics, deal, quiet: 0, quiet_until_s: f64::NEG_INFINITY, gauge }
     }
 
     fn look(&mut self) {
@@ -389,16 +422,69 @@ impl Piece {
         breaking_n: Option<f64>,
         sum: &mut StepReport,
     ) -> Result<Outcome, SolveError> {
-        let Some(breaking_n) = breaking_n else {
-            add(sum, self.mechanics.advance(dt_s, inertia)?);
+        match (inertia, breaking_n) {
+            (Inertia::Dynamic, breaking_n) => self.move_on(dt_s, breaking_n.unwrap_or(f64::INFINITY), sum),
+            (Inertia::QuasiStatic, Some(breaking_n)) => self.creep_on(dt_s, breaking_n, sum),
+            (Inertia::QuasiStatic, None) => {
+                self.gauge.forget();
+                add(sum, self.mechanics.advance(dt_s, inertia)?);
+                self.look();
+                Ok(Outcome::Held)
+            }
+        }
+    }
+
+    /// With inertia: it breaks where the gauge says so, which sees the inner steps. A step in which that happens is taken again in
+    /// parts, to have the cable where it breaks.
+    fn move_on(&mut self, dt_s: f64, breaking_n: f64, sum: &mut StepReport) -> Result<Outcome, SolveError> {
+        let looks = (dt_s / WATCH_STEP_S - 1e-9).ceil().max(1.0);
+        if looks > 1.0 && self.quiet == 0 {
+            let before = (self.mechanics.boxed_clone(), self.gauge.clone());
+            let report = self.gauged_step(dt_s, breaking_n)?;
+            if self.gauge.reached().is_none() {
+                self.look();
+                add(sum, report);
+                return Ok(Outcome::Held);
+            }
+            (self.mechanics, self.gauge) = before;
+        }
+        let (mut left_s, h) = (dt_s, dt_s / looks);
+        let mut peaks: Option<TensionPeaks> = None;
+        for _ in 0..looks as usize {
+            let state = self.mechanics.state();
+            let step_s = if left_s < 1.5 * h { left_s } else { h };
+            let breaking_n = if self.quiet > 0 { f64::INFINITY } else { breaking_n };
+            let done = self.gauged_step(step_s, breaking_n);
             self.look();
-            return Ok(Outcome::Held);
-        };
-        let (near_n, looks) = match inertia {
-            Inertia::Dynamic => (NEAR * breaking_n, (dt_s / WATCH_STEP_S - 1e-9).ceil().max(1.0)),
-            Inertia::QuasiStatic => (breaking_n, SLOW_LOOKS),
-        };
-        if looks > 1.0 && rupture::greatest(&self.answer.nodes) < near_n {
+            add(sum, done?);
+            self.gauge.add_peaks(peaks);
+            peaks = self.gauge.peaks();
+            left_s -= step_s;
+            self.quiet = self.quiet.saturating_sub(1);
+            if let Some(reached) = self.gauge.reached() {
+                let now = self.mechanics.state();
+                let fraction = ((reached.time_s - state.time_s) / (now.time_s - state.time_s)).clamp(0.0, 1.0);
+                let at =
+                    rupture::Rupture { node: rupture::nearest(&self.answer.nodes, reached.arc_length_m), fraction };
+                let state = if 1.0 - fraction < LEAST_REST { now } else { rupture::between(&state, &now, fraction) };
+                return Ok(Outcome::Broke(Box::new((reached.time_s, state, at))));
+            }
+        }
+        Ok(Outcome::Held)
+    }
+
+    /// A step with inertia in which a mean of so much is looked for, N.
+    fn gauged_step(&mut self, dt_s: f64, breaking_n: f64) -> Result<StepReport, SolveError> {
+        let limit = Limit { tension_n: breaking_n, from_s: self.quiet_until_s, within_m: self.may_break_within() };
+        self.gauge.watch(limit);
+        self.mechanics.advance_gauged(dt_s, Inertia::Dynamic, &mut self.gauge)
+    }
+
+    /// Without inertia it breaks at once.
+    fn creep_on(&mut self, dt_s: f64, breaking_n: f64, sum: &mut StepReport) -> Result<Outcome, SolveError> {
+        let inertia = Inertia::QuasiStatic;
+        self.gauge.forget();
+        if rupture::greatest(&self.answer.nodes) < breaking_n {
             let before = (self.mechanics.boxed_clone(), std::mem::take(&mut self.answer));
             let report = match self.mechanics.advance(dt_s, inertia) {
                 Ok(report) => report,
@@ -408,15 +494,15 @@ impl Piece {
                 }
             };
             self.look();
-            if rupture::greatest(&self.answer.nodes) < near_n {
-                self.quiet = self.quiet.saturating_sub(looks as u32);
+            if rupture::greatest(&self.answer.nodes) < breaking_n {
+                self.quiet = self.quiet.saturating_sub(SLOW_LOOKS as u32);
                 add(sum, report);
                 return Ok(Outcome::Held);
             }
             (self.mechanics, self.answer) = before;
         }
-        let (mut left_s, h) = (dt_s, dt_s / looks);
-        for _ in 0..looks as usize {
+        let (mut left_s, h) = (dt_s, dt_s / SLOW_LOOKS);
+        for _ in 0..SLOW_LOOKS as usize {
             let (state, nodes) = (self.mechanics.state(), std::mem::take(&mut self.answer.nodes));
             let step_s = if left_s < 1.5 * h { left_s } else { h };
             let done = self.mechanics.advance(step_s, inertia);
@@ -424,9 +510,10 @@ impl Piece {
             add(sum, done?);
             left_s -= step_s;
             let now = self.mechanics.state();
-            let awake = self.quiet == 0 && (inertia == Inertia::QuasiStatic || now.time_s >= self.quiet_until_s);
+            let awake = self.quiet == 0;
             self.quiet = self.quiet.saturating_sub(1);
-            if awake && let Some(at) = rupture::first(&nodes, &self.answer.nodes, breaking_n, |s| self.may_break_at(s))
+            let [low, high] = self.may_break_within();
+            if awake && let Some(at) = rupture::first(&nodes, &self.answer.nodes, breaking_n, |s| low <= s && s <= high)
             {
                 let time_s = state.time_s + (now.time_s - state.time_s) * at.fraction;
                 let rest = 1.0 - at.fraction;
@@ -437,12 +524,29 @@ impl Piece {
         Ok(Outcome::Held)
     }
 
-    /// Whether it may break at an arc length (its own, m): not at an end that is free since a break.
-    fn may_break_at(&self, s: f64) -> bool {
+    /// The arc lengths (its own, m) between which it may break: not at an end that is free since a break.
+    fn may_break_within(&self) -> [f64; 2] {
         let least = 0.5 * self.element();
         let new = |end: Option<&Option<usize>>| end == Some(&None);
-        !(new(self.deal.supports.first()) && s <= least
-            || new(self.deal.supports.last()) && self.deal.length() - s <= least)
+        let low = if new(self.deal.supports.first()) { least } else { f64::NEG_INFINITY };
+        let high = if new(self.deal.supports.last()) { self.deal.length() - least } else { f64::INFINITY };
+        [low, high]
+    }
+
+    /// The greatest tensions of the last advance, with the nodes at its end where it did not break, in arc lengths of the whole cable.
+    fn peaks(&self) -> Option<TensionPeaks> {
+        let mut peaks = self.gauge.peaks()?;
+        if self.gauge.reached().is_none() {
+            let time_s = self.mechanics.time_s();
+            for n in &self.answer.nodes {
+                if n.tension_n > peaks.greatest.tension_n {
+                    peaks.greatest = TensionPeak { tension_n: n.tension_n, arc_length_m: n.arc_length_m, time_s };
+                }
+            }
+        }
+        peaks.greatest.arc_length_m += self.deal.from;
+        peaks.held.arc_length_m += self.deal.from;
+        Some(peaks)
     }
 
     /// A pulley that a new end has come to.
@@ -491,6 +595,7 @@ impl Clone for Piece {
             answer: self.answer.clone(),
             quiet: self.quiet,
             quiet_until_s: self.quiet_until_s,
+            gauge: self.gauge.clone(),
         }
     }
 }
@@ -505,6 +610,7 @@ impl Clone for Strand {
             breaks: self.breaks.clone(),
             dragged: self.dragged.clone(),
             led: self.led,
+            peaks: self.peaks,
         }
     }
 }

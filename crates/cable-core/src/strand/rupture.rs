@@ -39,6 +39,13 @@ pub(super) fn first(
     best.map(|(rupture, _)| rupture)
 }
 
+/// The node nearest to an arc length (m).
+pub(super) fn nearest(nodes: &[Node], s: f64) -> usize {
+    let k = nodes.partition_point(|n| n.arc_length_m < s);
+    let off = |k: usize| nodes.get(k).map_or(f64::INFINITY, |n| (n.arc_length_m - s).abs());
+    k.checked_sub(1).filter(|&before| off(before) < off(k)).unwrap_or(k)
+}
+
 /// The greatest tension, N: not a number if one is not.
 pub(super) fn greatest(nodes: &[Node]) -> f64 {
     nodes.iter().map(|n| n.tension_n).fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })

@@ -65,14 +65,21 @@ fn mass_and_momentum(states: &[State], density: f64) -> (f64, Vec2) {
     (mass, momentum)
 }
 
-/// Pulled so slowly that tension is EA (d/L − 1) everywhere: it breaks when d = L (1 + T/EA) = 11 m. The end moves by the
-/// quintic d = 10 + 2 (10u³ − 15u⁴ + 6u⁵), which is half way at half time.
+/// Pulled so slowly that tension is EA (d/L − 1) everywhere: it reaches the breaking tension when d = L (1 + T/EA) = 11 m. The end
+/// moves by the quintic d = 10 + 2 (10u³ − 15u⁴ + 6u⁵), which is half way at half time. The mean of what rises evenly lags by half of the
+/// time it is taken over.
 #[test]
 fn a_cable_pulled_evenly_breaks_when_its_strain_says() {
-    for (model, inertia) in
-        [(Model::Fem, true), (Model::MassSpring, true), (Model::Fem, false), (Model::Catenary, false)]
-    {
+    for (model, inertia, over_s) in [
+        (Model::Fem, true, 4e-3),
+        (Model::MassSpring, true, 4e-3),
+        (Model::Fem, true, 0.0),
+        (Model::MassSpring, true, 0.0),
+        (Model::Fem, false, 4e-3),
+        (Model::Catenary, false, 4e-3),
+    ] {
         let mut scene = span(0.0, [10.0, 0.0]);
+        scene.cables[0].breaking_time_s = over_s;
         if !inertia {
             // Models without inertia want something that says where a slack cable is.
             scene.environment.gravity_m_per_s2 = 1e-3;
@@ -90,7 +97,10 @@ fn a_cable_pulled_evenly_breaks_when_its_strain_says() {
             last = sim.solution();
         }
         let (time_s, at) = broken(&last)[0];
-        assert!((time_s - 2.0).abs() < 1e-3, "{model}: {time_s} s");
+        let late_s = if inertia { 0.5 * over_s } else { 0.0 };
+        assert!((time_s - 2.0 - late_s).abs() < 1e-3, "{model}: {time_s} s");
+        let said = last.warnings.iter().find(|w| w.kind == WarningKind::Broken).unwrap();
+        assert_eq!(said.message.contains("over 0.004 s"), late_s > 0.0, "{}", said.message);
         assert!(at == 0.0 || at == 10.0, "{model}: {at}");
     }
 }
@@ -145,6 +155,66 @@ fn a_loaded_cable_breaks_at_its_top_and_falls_freely() {
         let again = sim.solution().cables[0].supports[0].reaction_y_n;
         assert!((again + weight).abs() < 1e-3 * weight, "{model}: {again}");
     }
+}
+
+/// A pulse of a force at the lower end of a hanging cable: up and down again within 3 ms, or held for 12 ms.
+fn struck(held_s: f64) -> Scene {
+    let mut scene = span(9.81, [0.0, 0.0]);
+    let c = &mut scene.cables[0];
+    c.axial_stiffness_n = 1e7;
+    c.supports[1] = Support::new("weight", SupportKind::Load);
+    c.supports[1].times_s = vec![0.0, 0.020, 0.0215, 0.0215 + held_s, 0.023 + held_s];
+    c.supports[1].forces_n = [0.0, 0.0, -1.2e4, -1.2e4, 0.0].map(|y| [0.0, y]).into();
+    scene
+}
+
+/// What lasts shorter than the breaking time does not break, however high it is, and is told whichever instants are looked at.
+#[test]
+fn a_jerk_between_two_looks_is_told_and_breaks_what_it_holds() {
+    for step_s in [1.0 / 60.0, 1.0 / 30.0, 1.0 / 240.0] {
+        let mut sim = Simulation::new(struck(1e-6), Model::MassSpring).unwrap();
+        sim.settle().unwrap();
+        let (mut peaks, mut ends) = (crate::solution::TensionPeaks::default(), 0.0f64);
+        let mut said = Vec::new();
+        while sim.time_s() < 0.1 {
+            sim.step(step_s).unwrap();
+            peaks = peaks.with(sim.answers()[0].peaks.unwrap());
+            ends = ends.max(sim.max_tension().tension_n);
+            said.extend(sim.warnings().cloned());
+            assert!(broken(&sim.solution()).is_empty(), "{step_s}: {:?}", broken(&sim.solution()));
+        }
+        // At the top the pulse comes back on itself.
+        assert!((1.2e4..2.6e4).contains(&peaks.greatest.tension_n), "{step_s}: {peaks:?}");
+        assert!((3e3..1e4).contains(&peaks.held.tension_n), "{step_s}: {peaks:?}");
+        assert!(step_s < 0.01 || ends < 0.5 * peaks.greatest.tension_n, "{step_s}: {ends} of {peaks:?}");
+        let service = |w: &&crate::solution::Warning| w.kind == WarningKind::ServiceTension;
+        assert!(said.iter().filter(service).any(|w| w.message.contains("breaking tension")), "{said:?}");
+        assert!(said.iter().all(|w| w.kind != WarningKind::BreakingTension));
+    }
+    for model in MOVING {
+        let (_, answer) = run(&struck(12e-3), model, 0.1);
+        let (time_s, _) = broken(&answer)[0];
+        assert!((0.022..0.035).contains(&time_s), "{model}: {time_s}");
+    }
+    let mut at_once = struck(1e-6);
+    at_once.cables[0].breaking_time_s = 0.0;
+    assert!(!broken(&run(&at_once, Model::MassSpring, 0.1).1).is_empty());
+}
+
+/// Of a frame of a tenth of a second, which `fem` takes in 24 steps, the greatest is in the middle.
+#[test]
+fn the_inner_steps_of_fem_are_told() {
+    let mut scene = struck(1e-6);
+    let c = &mut scene.cables[0];
+    (c.supports[1].times_s, c.breaking_tension_n) = (vec![0.0, 0.03, 0.05, 0.051, 0.07], 1e6);
+    let mut sim = Simulation::new(scene, Model::Fem).unwrap();
+    sim.settle().unwrap();
+    sim.step(0.1).unwrap();
+    let peaks = sim.answers()[0].peaks.unwrap();
+    assert!(peaks.greatest.tension_n > 1.1e4 && (0.045..0.056).contains(&peaks.greatest.time_s), "{peaks:?}");
+    assert!(sim.max_tension().tension_n < 1e3, "{}", sim.max_tension().tension_n);
+    sim.step_quasi_static(0.1).unwrap();
+    assert_eq!(sim.answers()[0].peaks, None);
 }
 
 /// A mass hangs on a slack cable and is thrown: the side that snaps taut breaks beside it, and it flies on with the rest.

@@ -6,7 +6,7 @@
 //! limit*, Phil. Trans. R. Soc. A 226, 1927, without the extrapolation). Where a cable is thrown about the three go different ways, and so
 //! would a finer one: what is known is then only what they have in common. They cost a quarter and a ninth of the run.
 
-use super::{Instant, advance};
+use super::{Instant, TensionRanges, advance};
 use crate::estimates::ErrorEstimates;
 use crate::math::larger;
 use crate::model::Inertia;
@@ -43,30 +43,31 @@ pub(super) struct CoarseRuns {
     runs: Vec<Run>,
     /// Steps of a window.
     window: u64,
-    lately: Lately,
-    /// From what to what the greatest tension of the windows before may be, N.
-    range_n: [f64; 2],
+    own: Vec<Lately>,
+    /// What is known from the windows before, a cable.
+    before: Vec<TensionRanges>,
 }
 
-/// Greatest tension of the window before and of the present one, N.
+/// Greatest tensions and means of one cable, N, in the window before and in the present one.
 #[derive(Clone, Copy)]
-struct Lately([f64; 2]);
+struct Lately([[f64; 2]; 2]);
 
 impl Lately {
-    fn begin(tension_n: f64) -> Self {
-        Self([tension_n; 2])
+    fn begin(tops: [f64; 2]) -> Self {
+        Self([tops; 2])
     }
 
-    fn note(&mut self, tension_n: f64) {
-        self.0[1] = larger(self.0[1], tension_n);
+    fn note(&mut self, tops: [f64; 2]) {
+        self.0[1] = [larger(self.0[1][0], tops[0]), larger(self.0[1][1], tops[1])];
     }
 
-    fn turn(&mut self, tension_n: f64) {
-        self.0 = [self.0[1], tension_n];
+    fn turn(&mut self, tops: [f64; 2]) {
+        self.0 = [self.0[1], tops];
     }
 
-    fn greatest(&self) -> f64 {
-        larger(self.0[0], self.0[1])
+    /// The greatest tension (0) or mean (1).
+    fn greatest(&self, which: usize) -> f64 {
+        larger(self.0[0][which], self.0[1][which])
     }
 }
 
@@ -76,7 +77,7 @@ struct Run {
     count: u64,
     /// What is remembered of what each cable differs by.
     apart: Vec<ErrorEstimates>,
-    lately: Lately,
+    lately: Vec<Lately>,
 }
 
 impl CoarseRuns {
@@ -90,46 +91,57 @@ impl CoarseRuns {
         for times in TIMES {
             let mut simulation = fine.resolved(1.0 / times as f64).ok().flatten()?;
             simulation.settle().ok()?;
-            let lately = Lately::begin(simulation.max_tension().tension_n);
             let cables = fine.answers().iter().zip(simulation.answers());
             let apart = cables.map(|(a, b)| ErrorEstimates::between(b, a)).collect();
+            let lately = tops(&simulation).map(Lately::begin).collect();
             runs.push(Run { simulation, step: step.times(times), count: 0, apart, lately });
         }
         let steps = (WINDOW_S / step.seconds() / COMMON as f64).round().max(1.0);
-        let lately = Lately::begin(fine.max_tension().tension_n);
-        Some(Self { runs, window: COMMON * steps as u64, lately, range_n: [0.0; 2] })
+        let own: Vec<Lately> = tops(fine).map(Lately::begin).collect();
+        let before = vec![TensionRanges::default(); own.len()];
+        Some(Self { runs, window: COMMON * steps as u64, own, before })
     }
 
     /// Goes on to the run they are beside, which has made so many steps; None where one of them cannot.
     pub fn follow(mut self, fine: &Simulation, (now, count): (Instant, u64)) -> Option<Self> {
-        self.lately.note(fine.max_tension().tension_n);
+        self.own.iter_mut().zip(tops(fine)).for_each(|(own, tops)| own.note(tops));
         for run in &mut self.runs {
             run.follow(fine, now)?;
         }
         if count.is_multiple_of(self.window) {
-            self.range_n = self.range();
-            self.lately.turn(fine.max_tension().tension_n);
+            self.before = (0..self.own.len()).map(|cable| self.ranges(cable)).collect();
+            self.own.iter_mut().zip(tops(fine)).for_each(|(own, tops)| own.turn(tops));
             for run in &mut self.runs {
-                run.lately.turn(run.simulation.max_tension().tension_n);
+                run.lately.iter_mut().zip(tops(&run.simulation)).for_each(|(own, tops)| own.turn(tops));
             }
         }
         Some(self)
     }
 
-    /// From what to what the greatest tension of the run so far may be, N.
-    pub fn range(&self) -> [f64; 2] {
-        let none = NONE * larger(self.lately.greatest(), self.range_n[1]);
-        let own = larger(self.lately.greatest(), none);
-        let others = self.runs.iter().map(|run| larger(run.lately.greatest(), none));
+    /// From what to what the greatest tensions of a cable in the run so far may be.
+    pub fn ranges(&self, cable: usize) -> TensionRanges {
+        let before = self.before.get(cable).copied().unwrap_or_default();
+        TensionRanges {
+            greatest_n: self.range(cable, 0, before.greatest_n),
+            held_n: self.range(cable, 1, before.held_n),
+        }
+    }
+
+    fn range(&self, cable: usize, which: usize, before: [f64; 2]) -> [f64; 2] {
+        let of = |all: &[Lately]| all.get(cable).map_or(0.0, |lately| lately.greatest(which));
+        let none = NONE * larger(of(&self.own), before[1]);
+        let own = larger(of(&self.own), none);
+        let others = self.runs.iter().map(|run| larger(of(&run.lately), none));
         let (least, most) =
             others.fold((own, own), |(least, most), n| (if n < least { n } else { least }, larger(most, n)));
-        let apart = larger((own / least).ln(), (most / own).ln());
+        // Of a cable that no run pulls nothing is apart.
+        let apart = if own > 0.0 { larger((own / least).ln(), (most / own).ln()) } else { 0.0 };
         // That they converge is not enough: then the greatest tensions of 6 in 100 runs more are outside.
         let here = match apart <= AGREE {
             true => [own * (-BEYOND * apart).exp(), own * (BEYOND * apart).exp()],
             false => [least * UNKNOWN[0], most * UNKNOWN[1]],
         };
-        [larger(self.range_n[0], here[0]), larger(self.range_n[1], here[1])]
+        [larger(before[0], here[0]), larger(before[1], here[1])]
     }
 
     /// What is known of the errors of each cable.
@@ -140,6 +152,12 @@ impl CoarseRuns {
             apart.reduce(|finer, coarser| finer.with(&coarser, beyond)).unwrap_or_default()
         })
     }
+}
+
+/// Greatest tension and mean of each cable in the last step, N.
+fn tops(simulation: &Simulation) -> impl Iterator<Item = [f64; 2]> {
+    let peaks = simulation.answers().iter().map(|answer| answer.peaks_at(simulation.time_s()));
+    peaks.map(|p| [p.greatest.tension_n, p.held.tension_n])
 }
 
 /// By how much a finer run may differ from one that differs by so much from a coarser one, and from a still coarser one.
@@ -156,7 +174,7 @@ impl Run {
             let next = self.step.times(self.count + 1);
             advance(&mut self.simulation, next, Inertia::Dynamic).ok()?;
             self.count += 1;
-            self.lately.note(self.simulation.max_tension().tension_n);
+            self.lately.iter_mut().zip(tops(&self.simulation)).for_each(|(own, tops)| own.note(tops));
             let kept = (-self.step.seconds() / MEMORY_S).exp();
             let cables = fine.answers().iter().zip(self.simulation.answers());
             for (apart, (a, b)) in self.apart.iter_mut().zip(cables) {

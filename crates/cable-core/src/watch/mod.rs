@@ -116,7 +116,7 @@ impl Watch {
     fn hold_tension(&mut self, cable: usize, subject: &Subject<'_>, time_s: f64) {
         let broke = |s: &Standing| s.warning.kind == WarningKind::BreakingTension && !subject.breaks.is_empty();
         self.standing.retain(|s| s.cable != cable || !broke(s));
-        let top = subject.answer.nodes.iter().map(|n| n.tension_n).fold(0.0, |a, b| if b > a { b } else { a });
+        let top = tension::greatest(subject.answer);
         for s in self.standing.iter_mut().filter(|s| s.cable == cable) {
             let of_tension = matches!(s.warning.kind, WarningKind::ServiceTension | WarningKind::BreakingTension);
             if of_tension && top > RELEASE * s.warning.limit {

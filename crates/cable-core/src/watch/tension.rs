@@ -1,8 +1,9 @@
 //! Tension: above what the cable stands, broken, or none.
 
+use crate::math::Vec2;
 use crate::problem::Problem;
 use crate::scene::Cable;
-use crate::solution::{CableSolution, Node, Warning, WarningKind};
+use crate::solution::{CableSolution, Node, TensionPeaks, Warning, WarningKind};
 use crate::strand::Break;
 
 /// Below this part of the whole load a point has no tension to speak of. Larger: the low point of a slack span counts;
@@ -21,10 +22,66 @@ const FOLDED_PART: f64 = 1e-3;
 /// pushed together a little; larger: 10 m lie on 9.9 m of ground without a word.
 const FOLDED_LENGTH: f64 = 5e-3;
 
-/// Appends the tension limit that is exceeded, at the worst place.
+/// Appends the tension limit that is exceeded, at the worst place: of a cable in motion by any inner step of the last step, and the
+/// breaking tension by what was held.
 pub(super) fn limits(cable: &Cable, answer: &CableSolution, out: &mut Vec<Warning>) {
-    if let Some(top) = worst(&answer.nodes, |n| n.tension_n) {
-        tension(cable, top, out);
+    match answer.peaks {
+        Some(peaks) => jerk(cable, answer, &peaks, out),
+        None => {
+            if let Some(top) = worst(&answer.nodes, |n| n.tension_n) {
+                tension(cable, top, out);
+            }
+        }
+    }
+}
+
+/// The greatest tension of an answer and of the inner steps before it, N.
+pub(super) fn greatest(answer: &CableSolution) -> f64 {
+    let before = answer.peaks.map_or(0.0, |p| p.greatest.tension_n);
+    answer.nodes.iter().map(|n| n.tension_n).fold(before, |a, b| if b > a { b } else { a })
+}
+
+/// What a cable in motion is pulled with.
+fn jerk(cable: &Cable, answer: &CableSolution, peaks: &TensionPeaks, out: &mut Vec<Warning>) {
+    let (service_n, breaking_n, over_s) = (cable.service_tension_n, cable.breaking_tension_n, peaks.over_s);
+    let TensionPeaks { greatest, held, .. } = *peaks;
+    let (kind, top, limit, what) = if held.tension_n > breaking_n {
+        let what = format!(
+            "in the mean over {over_s} s, above its breaking tension of {breaking_n} N: it would break; the answer is that of a cable that does not"
+        );
+        (WarningKind::BreakingTension, held, breaking_n, what)
+    } else if greatest.tension_n > breaking_n {
+        let what = format!(
+            "for an instant, above its service tension of {service_n} N and its breaking tension of {breaking_n} N. It holds, as its mean over {over_s} s is {:.1} N at most; but how high such an instant is hangs on loss and mesh",
+            held.tension_n
+        );
+        (WarningKind::ServiceTension, greatest, service_n, what)
+    } else if greatest.tension_n > service_n {
+        let what = format!(
+            "above its service tension of {service_n} N: it wears out early; lengthen the cable or lighten the load"
+        );
+        (WarningKind::ServiceTension, greatest, service_n, what)
+    } else {
+        return;
+    };
+    let at = at(&answer.nodes, top.arc_length_m);
+    let message = format!(
+        "`{}` is pulled with {:.1} N at {:.3} m ({:.3} m, {:.3} m) at {:.4} s, {what}",
+        cable.name, top.tension_n, top.arc_length_m, at.x, at.y, top.time_s
+    );
+    let warning = Warning::new(kind, &cable.name, top.arc_length_m, [top.tension_n, limit], message);
+    out.push(Warning { at_m: Some([at.x, at.y]), ..warning });
+}
+
+/// Where a point of the cable is, m.
+fn at(nodes: &[Node], s: f64) -> Vec2 {
+    let k = nodes.partition_point(|n| n.arc_length_m < s);
+    match (k.checked_sub(1).and_then(|k| nodes.get(k)), nodes.get(k)) {
+        (Some(a), Some(b)) => {
+            a.at() + (b.at() - a.at()) * ((s - a.arc_length_m) / (b.arc_length_m - a.arc_length_m)).clamp(0.0, 1.0)
+        }
+        (Some(n), None) | (None, Some(n)) => n.at(),
+        (None, None) => Vec2::zeros(),
     }
 }
 
@@ -106,8 +163,12 @@ pub(super) fn broken(cable: &Cable, breaks: &[Break], out: &mut Vec<Warning>) {
             Some(support) => (format!("tore off `{support}`"), "the rest goes on without it"),
             None => ("broke".to_owned(), "the pieces go on apart"),
         };
+        let held = match b.over_s {
+            over_s if over_s > 0.0 => format!("the mean of its tension over {over_s} s"),
+            _ => "its tension".to_owned(),
+        };
         let message = format!(
-            "`{}` {how} at {s:.3} m ({x:.3} m, {y:.3} m) at {t:.4} s, where its tension reached its breaking tension of {limit} N: {rest}; pull less, or take a stronger cable",
+            "`{}` {how} at {s:.3} m ({x:.3} m, {y:.3} m) at {t:.4} s, where {held} reached its breaking tension of {limit} N: {rest}; pull less, or take a stronger cable",
             cable.name
         );
         let warning = Warning::new(WarningKind::Broken, &cable.name, s, [limit, limit], message);

@@ -173,6 +173,7 @@ fn cable() -> impl Strategy<Value = Cable> {
                 thermal_expansion_per_k: value(5, 0.0) / 1e6,
                 service_tension_n: value(6, 1.0),
                 breaking_tension_n: value(7, 1.0) + value(6, 1.0),
+                breaking_time_s: base.map_or(1e-3, |p| p.breaking_time_s.value),
                 min_bend_radius_m: value(8, 0.0),
                 sidewall_limit_n_per_m: None,
                 friction: value(9, 0.0) / 1000.0,

@@ -85,6 +85,8 @@ impl Unit {
     pub const DEGREE: Self = Self::of("°", 1.0, &[]);
     /// Seconds.
     pub const S: Self = Self::of("s", 1.0, TIMES);
+    /// Milliseconds.
+    pub const MS: Self = Self::of("ms", 1e-3, TIMES);
     /// Times real time.
     pub const TIMES: Self = Self::of("×", 1.0, &[("x", 1.0)]);
 

@@ -108,6 +108,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
     let (severity, title) = match warning.kind {
         WarningKind::BreakingTension => (Severity::Stop, "Breaks here"),
         WarningKind::Broken => (Severity::Stop, "Broken"),
+        WarningKind::MayBreak => (Severity::Caution, "May break"),
         WarningKind::Kink => (Severity::Caution, "Kinked"),
         WarningKind::SidewallPressure => (Severity::Caution, "Pressed too hard sideways"),
         WarningKind::Loop => (Severity::Caution, "Crosses itself"),
@@ -143,7 +144,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
 fn figures(warning: &Warning) -> Option<String> {
     let Warning { value, limit, .. } = *warning;
     match warning.kind {
-        WarningKind::ServiceTension | WarningKind::BreakingTension => Some(unit::force_of(value, limit)),
+        WarningKind::ServiceTension | WarningKind::BreakingTension | WarningKind::MayBreak => Some(unit::force_of(value, limit)),
         WarningKind::Broken => Some(unit::force(limit)),
         WarningKind::BendRadius | WarningKind::Kink => {
             Some(format!("{}, least {}", unit::length(value), unit::length(limit)))

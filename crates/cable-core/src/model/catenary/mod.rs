@@ -18,6 +18,7 @@ use self::equilibrium::{Equilibrium, Start, first_arcs, solve};
 use self::layout::{Layout, nearest_along, unsupported};
 use self::report::{report, straight};
 use self::slide::Mode;
+use super::gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::SolveError;
 use crate::math::{Vec2, bounded};
@@ -263,7 +264,12 @@ impl Mechanics for CatenaryModel {
         Ok(report)
     }
 
-    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+    fn advance_gauged(
+        &mut self,
+        dt_s: f64,
+        inertia: Inertia,
+        _gauge: &mut TensionGauge,
+    ) -> Result<StepReport, SolveError> {
         if inertia == Inertia::Dynamic {
             return Err(unsupported("motion with inertia"));
         }

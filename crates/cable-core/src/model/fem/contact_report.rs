@@ -45,6 +45,34 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
 }
 
 impl Dynamics {
+    /// Reads the tension at each node, as [`nodes`] has it.
+    pub(super) fn gauge_tension(&mut self) {
+        let mut gauged = std::mem::take(&mut self.gauged);
+        let x = &self.motion.x;
+        gauged.arc_length.clone_from(&self.mesh.arc_length);
+        gauged.bars.clear();
+        if self.never_slides {
+            let mesh = &self.mesh;
+            gauged.bars.extend(x.windows(2).enumerate().map(|(e, pair)| {
+                let t = mesh.bar(e).tension((pair[1] - pair[0]).norm());
+                if t < 0.0 && mesh.is_flexible() { 0.0 } else { t }
+            }));
+        } else {
+            gauged.bars.extend((0..self.mesh.rest_length.len()).map(|e| bar_tension(self, x, e)));
+        }
+        let ends = end_forces(self, x, &gauged.bars).0.map(|f| f.norm());
+        gauged.tension.clear();
+        gauged.tension.push(ends[0]);
+        gauged.tension.extend(gauged.bars.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])));
+        gauged.tension.push(ends[1]);
+        for (k, _) in self.mesh.sliding.iter().enumerate().filter(|(_, s)| s.is_some()) {
+            if let (Some(t), Some(load)) = (gauged.tension.get_mut(k), self.load(k)) {
+                *t = larger(load.tension[0], load.tension[1]);
+            }
+        }
+        self.gauged = gauged;
+    }
+
     /// Whether the cable slides through any node.
     pub(super) fn slides_anywhere(&self) -> bool {
         self.mesh.sliding.iter().any(Option::is_some)
@@ -91,13 +119,12 @@ impl Dynamics {
 
 /// Tension of each bar, N; a stiff cable's may be less than zero.
 fn bar_tensions(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
-    let mesh = &d.mesh;
-    (0..mesh.rest_length.len())
-        .map(|e| {
-            let t = mesh.bar(e).tension(mesh.path(e, x).length);
-            if t < 0.0 && mesh.is_flexible() { 0.0 } else { t }
-        })
-        .collect()
+    (0..d.mesh.rest_length.len()).map(|e| bar_tension(d, x, e)).collect()
+}
+
+fn bar_tension(d: &Dynamics, x: &[Vec2], e: usize) -> f64 {
+    let t = d.mesh.bar(e).tension(d.mesh.path(e, x).length);
+    if t < 0.0 && d.mesh.is_flexible() { 0.0 } else { t }
 }
 
 /// What the ground does to the half bar at a held end that lies on it.

@@ -18,6 +18,7 @@ use super::task::{Done, Failure, Pose, Task};
 use crate::contact::barrier::Barrier;
 use crate::error::{Place, SolveError};
 use crate::math::{Vec2, bounded};
+use crate::model::gauge::TensionGauge;
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::{Problem, Series};
 use crate::scene::SupportKind;
@@ -70,6 +71,17 @@ impl Clone for Memory {
     }
 }
 
+/// Tension at the nodes of a mesh.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Gauged {
+    /// Arc length of each node, m.
+    pub(super) arc_length: Vec<f64>,
+    /// Tension at each node, N.
+    pub(super) tension: Vec<f64>,
+    /// Tension of each bar, N.
+    pub(super) bars: Vec<f64>,
+}
+
 /// The moving cable, or the resting one where it can touch something.
 #[derive(Clone, Debug)]
 pub struct Dynamics {
@@ -116,6 +128,8 @@ pub struct Dynamics {
     aims: Vec<Option<Vec2>>,
     /// The outline of the robot, if there is one.
     pub(super) rider: Option<Rider>,
+    /// Tension after the last step, on the mesh that it balanced.
+    pub(super) gauged: Gauged,
     /// Room for the contacts among which corners are looked for.
     pub(super) touches: Vec<Touch>,
 }
@@ -188,6 +202,7 @@ impl Dynamics {
             work_left: usize::MAX,
             aims: Vec::new(),
             rider,
+            gauged: Gauged::default(),
             touches: Vec::with_capacity(n),
             support_node,
             loads,
@@ -266,6 +281,19 @@ impl Dynamics {
     /// # Errors
     /// As `Mechanics::advance`.
     pub fn advance(&mut self, dt_s: f64, inertia: Inertia, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
+        self.advance_gauged((dt_s, inertia), dragged, &mut TensionGauge::off())
+    }
+
+    /// The same; every inner step with inertia tells `gauge` the tension.
+    ///
+    /// # Errors
+    /// As `Mechanics::advance`.
+    pub fn advance_gauged(
+        &mut self,
+        (dt_s, inertia): (f64, Inertia),
+        dragged: &[Option<Vec2>],
+        gauge: &mut TensionGauge,
+    ) -> Result<StepReport, SolveError> {
         self.refuse()?;
         if !(dt_s > 0.0 && dt_s.is_finite()) {
             return Err(SolveError::TimeStep { dt_s, allowed: "more than 0 s" });
@@ -277,8 +305,14 @@ impl Dynamics {
         let end = self.motion.time + dt_s;
         self.due = end;
         self.begin_way(end);
+        if inertia == Inertia::Dynamic && gauge.asks(self.motion.time) {
+            self.gauge_tension();
+            let at_rest = self.motion.v.iter().all(|v| *v == Vec2::zeros());
+            gauge.begin(self.motion.time, at_rest, &self.gauged.arc_length, |k| self.gauged.tension[k]);
+        }
         if inertia == Inertia::Dynamic && self.sleeps_until(end, dragged) {
             self.motion.time = end;
+            gauge.stay(end);
             return Ok(self.report(Done::default(), 0, 0.0));
         }
         if inertia == Inertia::Dynamic && self.motion.step_before == 0.0 && self.meets_nothing() {
@@ -291,7 +325,7 @@ impl Dynamics {
         let h = dt_s / pieces;
         let (mut total, mut halved) = (Done::default(), 0);
         for _ in 0..pieces as usize {
-            let done = self.halving((h, end), inertia, dragged, &mut halved)?;
+            let done = self.halving((h, end), (inertia, dragged), &mut halved, gauge)?;
             total = Done { iterations: total.iterations + done.iterations, ..done };
         }
         self.motion.time = end;
@@ -342,9 +376,9 @@ impl Dynamics {
     fn halving(
         &mut self,
         (h, due): (f64, f64),
-        inertia: Inertia,
-        dragged: &[Option<Vec2>],
+        (inertia, dragged): (Inertia, &[Option<Vec2>]),
         halved: &mut usize,
+        gauge: &mut TensionGauge,
     ) -> Result<Done, SolveError> {
         let (mut left, mut size, mut depth) = (h, h, 0);
         let mut total = Done::default();
@@ -384,6 +418,10 @@ impl Dynamics {
             match tried {
                 Ok(done) if finite => {
                     total = Done { iterations: total.iterations + done.iterations, ..done };
+                    if inertia == Inertia::Dynamic {
+                        gauge.note(to, &self.gauged.arc_length, |k| self.gauged.tension[k]);
+                        gauge.keep();
+                    }
                     left -= piece;
                     // Forces jump where a support lets go: with the history from before, BDF2 would feel them half a step late.
                     if self.problem.supports.iter().any(|s| s.holds_from(start) != s.holds_from(to)) {

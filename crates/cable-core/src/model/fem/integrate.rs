@@ -122,6 +122,7 @@ impl Dynamics {
         self.pose = pose;
         self.motion.step_before = h;
         self.motion.time += h;
+        self.gauge_tension();
         self.note_pace(h);
         self.land(h);
         self.land_on_itself(QUIET, h);

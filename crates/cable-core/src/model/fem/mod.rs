@@ -58,6 +58,7 @@ mod wheel;
 use std::sync::Arc;
 
 use self::two_meshes::TwoMeshes;
+use super::gauge::TensionGauge;
 use super::lay::{Lay, least_sliding, slid_first, slides_on, work};
 use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
 use crate::contact::outline::Placement;
@@ -423,7 +424,12 @@ impl Mechanics for FemModel {
         found
     }
 
-    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+    fn advance_gauged(
+        &mut self,
+        dt_s: f64,
+        inertia: Inertia,
+        gauge: &mut TensionGauge,
+    ) -> Result<StepReport, SolveError> {
         if !(dt_s > 0.0 && dt_s.is_finite()) {
             return Err(SolveError::TimeStep { dt_s, allowed: "more than 0 s" });
         }
@@ -436,7 +442,7 @@ impl Mechanics for FemModel {
             if let Some(answer) = self.bent.take() {
                 self.dynamics.take_over(&answer, self.dynamics.time(), &self.dragged)?;
             }
-            let mut report = self.dynamics.advance(dt_s, inertia, &self.dragged)?;
+            let mut report = self.dynamics.advance_gauged((dt_s, inertia), &self.dragged, gauge)?;
             self.meshes.follow((&self.problem, self.settings), &self.dynamics, dt_s, inertia, &self.dragged);
             let led = !touches_nothing(&self.problem) || self.dynamics.slides_anywhere();
             match if led { self.bend_warning() } else { None } {

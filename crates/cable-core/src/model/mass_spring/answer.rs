@@ -4,7 +4,7 @@ use super::collide::SKIN;
 use super::pulley::Pulley;
 use super::{MassSpringModel, Touch};
 use crate::energy::bending::turn;
-use crate::math::{Vec2, angle, perp};
+use crate::math::{Vec2, angle, larger, perp};
 use crate::model::arc_nodes;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 use crate::state::State;
@@ -177,6 +177,34 @@ impl MassSpringModel {
             stress_pa: tension_n / self.problem.cable.area_m2(),
             curvature_per_m,
             force_n: self.internal_force(i).into(),
+        }
+    }
+
+    /// Tension at a node as a gauge takes it in every sub-step, N: the mean of the elements beside it, of a pulley the greater of both
+    /// sides, of a held end what holds it, ground beside it left out.
+    pub(super) fn gauged(&self, i: usize) -> f64 {
+        let e = match i.checked_sub(1) {
+            Some(e) if i < self.rest.len() => {
+                return match self.pulley_of(i) {
+                    Some(p) => larger(p.tension[0], p.tension[1]),
+                    None => 0.5 * (self.tension[e] + self.tension[i]),
+                };
+            }
+            before => before.unwrap_or(0),
+        };
+        if !self.held[i] {
+            return self.tension[e];
+        }
+        let force = self.f[i] - self.held_acceleration[i] * self.mass[i];
+        if self.problem.bending_stiffness > 0.0 { force.dot(&self.reach(e).direction).abs() } else { force.norm() }
+    }
+
+    /// The same where forces are not summed up: of an end that of its element.
+    pub(super) fn gauged_inside(&self, i: usize) -> f64 {
+        match (i, self.rest.len()) {
+            (0, _) => self.tension.first().copied().unwrap_or(0.0),
+            (i, n) if i == n => self.tension.last().copied().unwrap_or(0.0),
+            _ => self.gauged(i),
         }
     }
 

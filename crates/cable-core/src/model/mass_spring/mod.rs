@@ -31,6 +31,7 @@ use std::sync::Arc;
 
 use super::drive::Follower;
 use super::fem::FemModel;
+use super::gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::contact::Gap;
 use crate::error::SolveError;
@@ -273,17 +274,26 @@ impl Mechanics for MassSpringModel {
         Ok(self.report())
     }
 
-    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+    fn advance_gauged(
+        &mut self,
+        dt_s: f64,
+        inertia: Inertia,
+        gauge: &mut TensionGauge,
+    ) -> Result<StepReport, SolveError> {
         if !(dt_s > 0.0 && dt_s <= MAX_STEP_S) {
             return Err(SolveError::TimeStep { dt_s, allowed: "above 0 s, at most 60 s" });
         }
         self.laid = true;
         let end_s = self.time_s + dt_s;
+        if inertia == Inertia::Dynamic && gauge.asks(self.time_s) {
+            let at_rest = self.v.iter().all(|v| *v == Vec2::zeros());
+            gauge.begin(self.time_s, at_rest, &self.s, |i| self.gauged(i));
+        }
         // Not copied with each of its parts.
         let beside = std::mem::take(&mut self.beside);
         let done = self.or_as_before(|this| match inertia {
-            Inertia::Dynamic if this.previews() => this.preview(dt_s),
-            Inertia::Dynamic => this.integrate(dt_s),
+            Inertia::Dynamic if this.previews() => this.preview(dt_s, gauge),
+            Inertia::Dynamic => this.integrate(dt_s, gauge),
             Inertia::QuasiStatic => this.creep(dt_s),
         });
         self.beside = beside;

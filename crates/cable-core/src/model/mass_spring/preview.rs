@@ -15,6 +15,7 @@ use super::chain::Chain;
 use super::stepping::{MOST_SUB_STEPS, Stepping};
 use crate::error::SolveError;
 use crate::math::Vec2;
+use crate::model::gauge::TensionGauge;
 use crate::solution::{Warning, WarningKind};
 
 /// Longest sub-step, s. Longer damps motion and softens contacts visibly, shorter costs in proportion.
@@ -26,7 +27,7 @@ const SWAY: f64 = 1.0;
 
 impl MassSpringModel {
     /// Advances by `dt_s` in sub-steps.
-    pub(super) fn preview(&mut self, dt_s: f64) -> Result<(), SolveError> {
+    pub(super) fn preview(&mut self, dt_s: f64, gauge: &mut TensionGauge) -> Result<(), SolveError> {
         let end = self.time_s + dt_s;
         let mut chain = Chain::default();
         let mut trouble = self.no_trouble();
@@ -39,6 +40,8 @@ impl MassSpringModel {
             left = if parts > 1.0 { left - h } else { 0.0 };
             self.time_s = end - left;
             self.preview_step(h, &mut chain);
+            gauge.note(self.time_s, &self.s, |i| self.gauged_inside(i));
+            gauge.keep();
             self.calm(&mut trouble);
             self.floor_friction(h);
             self.contacts(h);

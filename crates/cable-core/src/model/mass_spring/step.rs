@@ -4,6 +4,7 @@ use super::pulley::NONE;
 use super::{Follower, MassSpringModel};
 use crate::error::SolveError;
 use crate::math::Vec2;
+use crate::model::gauge::TensionGauge;
 
 /// Fraction of the stable sub-step that is used: more is unstable as elements stretch, less is slower.
 const STEP_SAFETY: f64 = 0.8;
@@ -105,7 +106,7 @@ impl MassSpringModel {
     }
 
     /// Advances by `dt_s` in equal sub-steps below the stability limit, shorter where motion is fast.
-    pub(super) fn integrate(&mut self, dt_s: f64) -> Result<(), SolveError> {
+    pub(super) fn integrate(&mut self, dt_s: f64, gauge: &mut TensionGauge) -> Result<(), SolveError> {
         let (begin, end) = (self.time_s, self.time_s + dt_s);
         self.release_pulleys();
         self.remesh();
@@ -114,6 +115,8 @@ impl MassSpringModel {
         let mut left = dt_s;
         let mut shortest = f64::INFINITY;
         let mut trouble = self.no_trouble();
+        // Material only slides over pulleys.
+        let same = self.pulleys.is_empty() && gauge.knows(&self.s);
         while left > 0.0 {
             let fastest = self.calm(&mut trouble);
             let travel = TRAVEL * self.problem.radius / fastest;
@@ -138,6 +141,7 @@ impl MassSpringModel {
             self.release_pulleys();
             self.supports(h);
             self.forces();
+            self.tell(gauge, same);
             // Velocities go with the middle of a sub-step: from that of the last one to that of this. A motion that begins has half a
             // kick; with a whole one all falls g h t/2 too far, an error of first order.
             let kick = self.behind_s + 0.5 * h;
@@ -168,6 +172,23 @@ impl MassSpringModel {
         self.cost.residual_n = 0.0;
         debug_assert!(self.time_s > begin);
         self.non_finite().map_or(Ok(()), Err)
+    }
+
+    /// Tells a gauge the tension; whether its points are the `same` as the nodes, which then are no pulleys.
+    fn tell(&self, gauge: &mut TensionGauge, same: bool) {
+        if same {
+            let last = self.rest.len();
+            let ends = [self.gauged(0), self.gauged(last)];
+            if let [first, inner @ .., end] = gauge.room(self.time_s) {
+                (*first, *end) = (ends[0], ends[1]);
+                for (t, pair) in inner.iter_mut().zip(self.tension.windows(2)) {
+                    *t = 0.5 * (pair[0] + pair[1]);
+                }
+            }
+        } else {
+            gauge.note(self.time_s, &self.s, |i| self.gauged(i));
+        }
+        gauge.keep();
     }
 
     /// Pulleys that have let go become nodes of the chain: the material goes on as it slid.

@@ -53,6 +53,7 @@ use self::newton::Work;
 use self::report::Report;
 use self::trouble::Trouble;
 use super::catenary::slack_without_weight;
+use super::gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::{Place, SolveError};
 use crate::math::{Vec2, larger, smaller};
@@ -322,7 +323,12 @@ impl Mechanics for SpansModel {
         Ok(report)
     }
 
-    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+    fn advance_gauged(
+        &mut self,
+        dt_s: f64,
+        inertia: Inertia,
+        _gauge: &mut TensionGauge,
+    ) -> Result<StepReport, SolveError> {
         if inertia == Inertia::Dynamic {
             return Err(unsupported("motion with inertia"));
         }

@@ -29,7 +29,7 @@ macro_rules! property {
 }
 
 /// All of them but the segments, in the order shown.
-pub const PROPERTIES: [Property; 11] = [
+pub const PROPERTIES: [Property; 12] = [
     property!(
         length_m,
         "Length",
@@ -101,6 +101,14 @@ pub const PROPERTIES: [Property; 11] = [
         [100.0, 1e6],
         true,
         "Tension at which the cable breaks. Not below the service tension."
+    ),
+    property!(
+        breaking_time_s,
+        "Breaking time",
+        Unit::MS,
+        [0.0, 5e-3],
+        false,
+        "In motion the cable breaks where the mean of its tension over this time reaches the breaking tension; at 0 each instant counts. No measurement of cables stands behind its value: it is the time over which means of tension agree between meshes in a drop on rubble."
     ),
     property!(
         min_bend_radius_m,
