@@ -1,14 +1,15 @@
 //! Cables that fall on rough ground and slip over pipes, against an independent explicit chain.
 //!
 //! The whole table of the drop, medians over 16 starts, is
-//! `cargo test -p cable-core --test impact -- --ignored --nocapture` (half an hour).
+//! `cargo test -p cable-core --test impact -- --ignored --nocapture` (half an hour); `BENDING=1 STARTS=4 CHAIN=0` takes one stiffness, fewer
+//! starts and no chain.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 mod explicit_chain;
 mod peaks;
 mod rubble;
 
-use cable_core::scene::catalog;
+use cable_core::scene::{Shape, catalog};
 use cable_core::{Model, Settings, Simulation};
 use peaks::{Tensions, median};
 
@@ -46,6 +47,35 @@ fn a_drop_on_rubble_pulls_as_hard_on_every_mesh() {
     }
 }
 
+/// A plastic floor gives nothing back, whether it rubs or not: contacts without friction were left to the barrier, which is a spring, and threw
+/// the cable 0.8 m high. (On a smooth floor its ends, which come down last, shove it together into folds.)
+#[test]
+fn a_cable_that_falls_on_a_smooth_floor_stays_there() {
+    for (friction, most_m) in [(0.5, 5e-3), (0.0, 0.1)] {
+        let mut scene = rubble::scene(40, 0.0, 0.0);
+        for o in &mut scene.obstacles {
+            if let Shape::Terrain { points_m } = &mut o.shape {
+                points_m.iter_mut().for_each(|p| p[1] = 0.0);
+            }
+            o.friction = Some(friction);
+        }
+        let mut sim = Simulation::with_settings(scene, Model::Fem, Settings::default()).expect("a sound scene");
+        sim.settle().expect("it hangs");
+        let mut least: Option<f64> = None;
+        let mut rises = 0.0f64;
+        for _ in 0..480 {
+            sim.step(1.0 / 240.0).expect("it falls");
+            let nodes = &sim.solution().cables[0].nodes;
+            let height = nodes.iter().map(|n| n.y_m).sum::<f64>() / nodes.len() as f64;
+            let low = least.map_or(height, |least| least.min(height));
+            rises = rises.max(height - low);
+            least = Some(low);
+        }
+        println!("friction {friction}: its middle rises by {rises:.4} m");
+        assert!(rises < most_m, "friction {friction}: its middle rises by {rises} m");
+    }
+}
+
 /// The chain that is compared with is one in its own step.
 #[test]
 fn the_explicit_chain_is_converged_in_its_step() {
@@ -78,21 +108,24 @@ fn a_draped_cable_slips_at_the_same_tension_on_every_mesh() {
 #[test]
 #[ignore = "half an hour: the table of the drop"]
 fn the_table_of_the_drop() {
-    for bending in [0.0, 0.3, 1.0, 3.0] {
-        for n in [42, 84] {
+    let asked = |name: &str| std::env::var(name).ok().and_then(|v| v.parse::<f64>().ok());
+    let starts = asked("STARTS").map_or(16, |n| n as usize);
+    for bending in [0.0, 0.3, 1.0, 3.0].into_iter().filter(|b| asked("BENDING").is_none_or(|a| a == *b)) {
+        for n in if asked("CHAIN") == Some(0.0) { &[][..] } else { &[42, 84][..] } {
+            let n = *n;
             let found = medians(4, |aside| rubble::by_chain(&rubble::scene(n, aside, bending), 0.6, 2e5));
             show(&format!("EI {bending}, explicit chain of {n} bars"), &found);
         }
         for rate in [240.0, 960.0, 3840.0] {
             let peaks = [42, 84, 168, 336].map(|n| {
-                let found = medians(16, |aside| rubble::by_fem(&rubble::scene(n, aside, bending), 1.0 / rate));
+                let found = medians(starts, |aside| rubble::by_fem(&rubble::scene(n, aside, bending), 1.0 / rate));
                 show(&format!("EI {bending}, steps of 1/{rate} s, {n} bars"), &found);
                 found[0][0]
             });
-            // Without bending stiffness: what holds today (1.19, 1.05 and less than 2). The aim is 1.15 at each step.
+            // Without bending stiffness: what holds today (1.10, 1.08 and 1.22, of four starts). The aim is 1.15 at each step.
             if bending == 0.0 {
                 let (least, most) = peaks[1..].iter().fold((f64::INFINITY, 0.0f64), |(a, b), p| (a.min(*p), b.max(*p)));
-                let allowed = if rate > 1000.0 { 2.0 } else { 1.25 };
+                let allowed = if rate > 1000.0 { 1.35 } else { 1.25 };
                 assert!(most / least < allowed, "steps of 1/{rate} s: {peaks:?} N");
             }
         }

@@ -144,7 +144,9 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
 fn figures(warning: &Warning) -> Option<String> {
     let Warning { value, limit, .. } = *warning;
     match warning.kind {
-        WarningKind::ServiceTension | WarningKind::BreakingTension | WarningKind::MayBreak => Some(unit::force_of(value, limit)),
+        WarningKind::ServiceTension | WarningKind::BreakingTension | WarningKind::MayBreak => {
+            Some(unit::force_of(value, limit))
+        }
         WarningKind::Broken => Some(unit::force(limit)),
         WarningKind::BendRadius | WarningKind::Kink => {
             Some(format!("{}, least {}", unit::length(value), unit::length(limit)))

@@ -320,6 +320,21 @@ impl ContactSet {
         self.scratch = touches;
     }
 
+    /// The contacts that were found last, each with its normal force, N.
+    pub fn pressing(&self) -> impl Iterator<Item = (&Touch, f64)> {
+        let same = |a: &Touch, b: &Touch| {
+            (a.node, a.on_segment, a.pair.gap.feature) == (b.node, b.on_segment, b.pair.gap.feature)
+        };
+        self.scratch.iter().enumerate().filter_map(move |(k, touch)| {
+            // Parts of the same contact are taken together, with the first of them.
+            let of_node = |t: &&Touch| t.node == touch.node;
+            let first = !self.scratch[..k].iter().rev().take_while(of_node).any(|t| same(t, touch));
+            let all = self.scratch[k..].iter().take_while(of_node).filter(|t| same(t, touch));
+            let load: f64 = all.map(|t| t.load(&self.barrier)).sum();
+            (first && load > 0.0).then_some((touch, load))
+        })
+    }
+
     /// Takes the friction of every contact by a `part` of the way from what it had `before` to what it has now, none where it was not or is no
     /// longer; returns by how much it was off at most, N.
     pub fn ease(&mut self, before: &[Rub], part: f64) -> f64 {

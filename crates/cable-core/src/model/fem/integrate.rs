@@ -6,7 +6,7 @@
 //! v = a (x − x̂),  a = α₀/h,   v̂ likewise,   m a² (x − x̃) + ∂E/∂x − f = 0,   x̃ = x̂ + v̂/a
 //! ```
 //! After each step contacts are made plastic: the barrier is a spring and would throw a landing cable back at
-//! 0.4 to 0.8 of its speed, so the velocity along the normal is taken out of everything that touches.
+//! 0.4 to 0.8 of its speed.
 
 use super::contact_set::SLIDE;
 use super::dynamics::{Dynamics, STIFFNESS_CHANGE};
@@ -18,6 +18,11 @@ use crate::model::drive::Follower;
 
 /// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
 const QUIET: f64 = 0.05;
+
+/// What a plastic contact takes of the speed along its normal (m/s, positive away from it), of which its force made so much in the step.
+pub(super) fn plastic(speed: f64, made: f64) -> f64 {
+    if speed > made { made } else { speed }
+}
 
 /// Why a step is tried again without a sliding node.
 pub(super) const PULLED: &str = "a corner would have to pull";
@@ -36,17 +41,17 @@ pub(super) const ROUNDS_EACH: usize = 3;
 const ROUNDING: f64 = 16.0;
 
 impl Dynamics {
-    /// Takes the normal velocity out of what touches; the history of nodes it changes starts anew.
-    fn land(&mut self, h: f64) {
+    /// Makes contacts plastic: what still comes nearer stops, and what goes away goes no faster than without the force of the contact, as
+    /// nothing presses on what leaves (J. J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", in: Nonsmooth
+    /// Mechanics and Applications, CISM 302, 1988). What was drawn away by the cable itself keeps its speed: stopped in each step, it would stay
+    /// until one step carries it out of the barrier's reach, and finer steps would hold it harder. The history of nodes that change starts anew.
+    fn land(&mut self, h: f64, a: f64) {
         let m = &mut self.motion;
-        for rub in &self.contacts.rubs {
-            let (touch, n) = (&rub.touch, rub.touch.pair.gap.normal);
+        for (touch, load) in self.contacts.pressing() {
+            let n = touch.pair.gap.normal;
             let carried = self.contacts.carriage.filter(|c| c.obstacle == touch.pair.gap.obstacle);
             let of_it = carried.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(&m.x)) / h);
             let speed = (touch.interpolate(&m.v) - of_it).dot(&n);
-            if speed.abs() < QUIET {
-                continue;
-            }
             let shares = touch.shares();
             let nodes = [touch.node, touch.node + usize::from(touch.on_segment)];
             let free = [0, 1].map(|j| if self.mesh.is_free(nodes[j]) { shares[j] } else { 0.0 });
@@ -54,9 +59,14 @@ impl Dynamics {
             if sum < 1e-3 {
                 continue;
             }
+            let give = |j: usize| free[j] * shares[j] / (self.problem.linear_density * self.mesh.share(nodes[j]));
+            let taken = plastic(speed, load / a * (give(0) + give(1)));
+            if speed.abs() < QUIET {
+                continue;
+            }
             for j in 0..2 {
                 if free[j] > 0.0 {
-                    m.v[nodes[j]] -= n * (speed * free[j] / sum);
+                    m.v[nodes[j]] -= n * (taken * free[j] / sum);
                     m.v_before[nodes[j]] = m.v[nodes[j]];
                     m.x_before[nodes[j]] = m.x[nodes[j]] - m.v[nodes[j]] * h;
                 }
@@ -124,7 +134,7 @@ impl Dynamics {
         self.motion.time += h;
         self.gauge_tension();
         self.note_pace(h);
-        self.land(h);
+        self.land(h, a);
         self.land_on_itself(QUIET, h);
         self.contacts.carriage = None;
         if !self.never_slides {

@@ -5,6 +5,7 @@
 use super::assembly::{Mesh, System};
 use super::contact_set::{ContactSet, SLIDE};
 use super::dynamics::Dynamics;
+use super::integrate::plastic;
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
 use crate::contact::own::{Order, OwnPair, OwnShape};
@@ -178,17 +179,16 @@ impl Dynamics {
         for rub in &self.contacts.own.rubs {
             let n = rub.pair.normal;
             let speed = n.dot(&rub.pair.difference(&m.v));
-            if speed.abs() < quiet {
-                continue;
-            }
             let shares = rub.pair.shares();
             let give = |k: usize| if self.mesh.is_free(k) { 1.0 / self.mesh.share(k) } else { 0.0 };
             let sum: f64 = shares.iter().map(|&(k, part)| part * part * give(k)).sum();
-            if !(sum > 0.0) {
+            let load = -self.contacts.barrier.at(rub.pair.gap_m).slope * rub.pair.weight;
+            let taken = plastic(speed, load * h * sum / self.problem.linear_density);
+            if !(sum > 0.0) || speed.abs() < quiet {
                 continue;
             }
             for (k, part) in shares.into_iter().filter(|&(k, _)| give(k) > 0.0) {
-                m.v[k] -= n * (speed * part * give(k) / sum);
+                m.v[k] -= n * (taken * part * give(k) / sum);
                 m.v_before[k] = m.v[k];
                 m.x_before[k] = m.x[k] - m.v[k] * h;
             }
