@@ -4,7 +4,7 @@
 //!
 //! Each part has its derivation above it: the boundary (`curve`), the law of sliding along it (`law`), what friction
 //! remembers (`history`), a contact's equations (`rub`), the unknowns (`strand`), their solution (`newton`), contacts that
-//! come and go (`events`, `seek`, `ends`), loads that come down and lie (`landing`, `weight`, `wedge`), the way from one instant to the next (`drive`), the first lay (`taut`, `lay`),
+//! come and go (`events`, `seek`, `ends`, `lift`), loads that come down and lie (`landing`, `weight`, `wedge`), the way from one instant to the next (`drive`), the first lay (`taut`, `lay`),
 //! and the checks of each answer that know nothing of all this (`check`, `gaps`).
 //!
 //! What it cannot do it refuses: bending, self-contact, inertia, plan view, supports that let go; a cable that loses its
@@ -25,6 +25,7 @@ mod instant;
 mod landing;
 mod law;
 mod lay;
+mod lift;
 mod loose;
 mod loss;
 mod newton;
