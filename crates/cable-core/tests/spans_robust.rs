@@ -509,3 +509,70 @@ fn nothing_is_drawn_up_to_a_post() {
     );
     assert!(20 * sum(&refused) as u64 <= cases, "{refused:?}");
 }
+
+/// A cable over one to three wheels and eyes that rub.
+fn over_rubbing_wheels(number: u64) -> Scene {
+    let dice = &mut Dice(number.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+    let (count, far) = (1 + (3.0 * dice.unit()) as usize, dice.log(2.0, 50.0));
+    let ends = [[0.0, dice.within(-1.0, 1.0)], [far, dice.within(-1.0, 1.0)]];
+    let mut supports = vec![Support::fixed("A", ends[0])];
+    for k in 0..count {
+        let at = [far * (k as f64 + 1.0) / (count as f64 + 1.0), dice.within(0.5, 3.0)];
+        let radius = if dice.chance(0.4) { 0.0 } else { far * dice.within(0.005, 0.03) };
+        let mut wheel = Support::pulley(format!("w{k}"), at);
+        (wheel.radius_m, wheel.friction) = (Some(radius), Some(dice.within(0.01, 0.5)));
+        supports.push(wheel);
+    }
+    supports.push(Support::fixed("B", ends[1]));
+    let way: f64 =
+        supports.windows(2).map(|w| (Vec2::from(w[1].at_m.unwrap()) - Vec2::from(w[0].at_m.unwrap())).norm()).sum();
+    let mut scene = catalog::hanging_span();
+    scene.loads.clear();
+    let c = &mut scene.cables[0];
+    (c.bending_stiffness_n_m2, c.axial_stiffness_n, c.diameter_m) = (0.0, dice.log(1e5, 1e8), 2.0 * RADIUS);
+    (c.service_tension_n, c.breaking_tension_n) = (1e15, 1e15);
+    c.length_m = way * (1.0 + dice.log(1e-2, 0.3)) + 0.1 * far;
+    c.supports = supports;
+    scene
+}
+
+/// Counted from its other end.
+fn turned(scene: &Scene) -> Scene {
+    let mut turned = scene.clone();
+    let c = &mut turned.cables[0];
+    c.supports.reverse();
+    c.route_m.reverse();
+    turned
+}
+
+/// Friction leaves many rests, but which one is found is not for the order of a list to say.
+#[test]
+fn a_rest_does_not_depend_on_the_end_it_is_counted_from() {
+    let (first, cases) = (number("SPANS_FIRST", 0), number("SPANS_CASES", 60));
+    let mut unlike = [0; 2];
+    for k in first..first + cases {
+        for (kind, scene) in [over_rubbing_wheels(k), case(k).scene].into_iter().enumerate() {
+            let [one, other] = [scene.clone(), turned(&scene)].map(|scene| {
+                let problem = problems(&scene).unwrap().remove(0);
+                let mut model = SpansModel::new(problem.clone(), Settings::default()).unwrap();
+                model.settle().map_err(|e| e.to_string())?;
+                sound(k, &model, &problem);
+                let answer = model.solution();
+                let force = |k: usize| Vec2::new(answer.supports[k].reaction_x_n, answer.supports[k].reaction_y_n);
+                let greatest = answer.nodes.iter().fold(0.0f64, |m, n| m.max(n.tension_n));
+                Ok::<_, String>(([force(0), force(answer.supports.len() - 1)], greatest))
+            });
+            let like = match (&one, &other) {
+                (Ok((f, most)), Ok((g, _))) => (f[0] - g[1]).norm().max((f[1] - g[0]).norm()) <= 1e-9 * most,
+                (Err(_), Err(_)) => true,
+                _ => false,
+            };
+            if !like && std::env::var_os("SPANS_FAILURES").is_some() {
+                println!("{kind} {k}: {one:?} {other:?}");
+            }
+            unlike[kind] += usize::from(!like);
+        }
+    }
+    println!("of {cases} each: {unlike:?} with another rest from the other end");
+    assert_eq!(unlike, [0, 0]);
+}
