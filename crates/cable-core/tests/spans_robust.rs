@@ -16,7 +16,7 @@ use cable_core::model::{Inertia, Mechanics, Settings};
 use cable_core::problem::{Problem, problems};
 use cable_core::scene::obstacle::{Obstacle, Shape};
 use cable_core::scene::{Load, Scene, Support, catalog};
-use cable_core::solution::CableSolution;
+use cable_core::solution::{CableSolution, Node};
 use cable_core::{SolveError, Vec2};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -408,4 +408,171 @@ fn steps_that_were_refused_once_are_taken() {
         run(number, &case(number), &mut table);
         assert!(table.refused.is_empty() && table.steps > 90, "{number}: {:?}, {} steps", table.refused, table.steps);
     }
+}
+
+/// A cable led under a post or once to twice and a half round it, from taut to a third longer than its way.
+fn below_a_post(number: u64) -> Scene {
+    let dice = &mut Dice(number.wrapping_mul(0x2545_f491_4f6c_dd1d) | 1);
+    let (radius_m, center_m) = (dice.log(0.05, 1.0), [5.0, 0.0]);
+    let around = radius_m + RADIUS;
+    let up = std::f64::consts::FRAC_PI_2;
+    // Clockwise from the left end to the right one, round from above; or anticlockwise under it.
+    let (turn, from) = if dice.chance(0.3) {
+        (2.0 * dice.within(0.1, 0.5), -up - 0.3)
+    } else {
+        (-(std::f64::consts::TAU * dice.within(1.0, 2.5).floor() + 1.0), up + 0.5)
+    };
+    let high = if turn > 0.0 { [0.5, 3.0] } else { [0.0, 3.0] };
+    let ends = [[0.0, dice.within(high[0], high[1])], [10.0, dice.within(high[0], high[1])]];
+    let count = 2 + (turn.abs() / 0.2) as usize;
+    let mut route = vec![ends[0]];
+    route.extend((0..=count).map(|k| {
+        let angle: f64 = from + turn * k as f64 / count as f64;
+        [center_m[0] + around * angle.cos(), center_m[1] + around * angle.sin()]
+    }));
+    route.push(ends[1]);
+    let way: f64 = route.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1])).sum();
+    let slack = if dice.chance(0.5) { dice.within(-1e-4, 2e-2) } else { dice.log(1e-3, 0.3) };
+    let mut scene = catalog::hanging_span();
+    scene.loads.clear();
+    scene.obstacles =
+        vec![Obstacle { name: "post".to_owned(), shape: Shape::Circle { center_m, radius_m }, friction: None }];
+    let c = &mut scene.cables[0];
+    (c.bending_stiffness_n_m2, c.axial_stiffness_n, c.diameter_m) = (0.0, dice.log(1e4, 1e8), 2.0 * RADIUS);
+    (c.service_tension_n, c.breaking_tension_n) = (1e15, 1e15);
+    c.friction = if dice.chance(0.2) { 0.0 } else { dice.within(0.05, 0.8) };
+    c.length_m = way * (1.0 + slack);
+    c.supports = vec![Support::fixed("A", ends[0]), Support::fixed("B", ends[1])];
+    c.route_m = route;
+    scene
+}
+
+/// The worst that a post would have to draw the cable to itself, of the greatest tension: each piece between two nodes is balanced by
+/// what its ends feel, its weight and the post, which pushes away from its centre alone.
+fn drawn_to_the_post(scene: &Scene, answer: &CableSolution) -> f64 {
+    let Shape::Circle { center_m, .. } = scene.obstacles[0].shape else { panic!("a post") };
+    let weight = scene.cables[0].linear_density_kg_per_m * scene.environment.gravity_m_per_s2;
+    let greatest = answer.nodes.iter().fold(0.0f64, |m, n| m.max(n.tension_n));
+    let drawn = |w: &[Node]| {
+        let [f, g] = [0, 1].map(|k| Vec2::from(w[k].force_n));
+        let rest = f - g + Vec2::y() * (weight * (w[1].arc_length_m - w[0].arc_length_m));
+        let out = 0.5 * (w[0].at() + w[1].at()) - Vec2::from(center_m);
+        -rest.dot(&out) / out.norm()
+    };
+    // The first and last pieces of the cable have the supports at their ends.
+    answer.nodes.windows(2).map(drawn).fold(0.0, f64::max) / greatest
+}
+
+/// Friction may hold the cable along a post, but nothing holds it up to the post from below.
+#[test]
+fn nothing_is_drawn_up_to_a_post() {
+    let (first, cases) = (number("SPANS_FIRST", 0), number("SPANS_CASES", 60));
+    let (mut refused, mut off, mut steps, mut parted) = (BTreeMap::<String, usize>::new(), 0, 0, 0);
+    for k in first..first + cases {
+        let scene = below_a_post(k);
+        let problem = problems(&scene).unwrap().remove(0);
+        let mut model = SpansModel::new(problem.clone(), Settings::default()).unwrap();
+        if let Err(e) = model.settle() {
+            if std::env::var_os("SPANS_FAILURES").is_some() {
+                println!("{k}: {e}");
+            }
+            *refused.entry(class(&e)).or_default() += 1;
+            continue;
+        }
+        sound(k, &model, &problem);
+        let looked = |model: &SpansModel| {
+            let answer = model.solution();
+            let drawn = drawn_to_the_post(&scene, &answer);
+            assert!(drawn <= 1e-9, "{k}: drawn to the post by {drawn:.1e} of the greatest tension");
+            answer.contacts.len() > 1
+        };
+        off += usize::from(looked(&model));
+        // Drawn taut and let out again.
+        let [x, y] = scene.cables[0].supports[1].at_m.unwrap();
+        let step = 2e-3 * problem.length;
+        for way in (0..20).map(|i| if i < 10 { i + 1 } else { 19 - i }) {
+            model.drag_support(1, Vec2::new(x + step * f64::from(way), y));
+            steps += 1;
+            if let Err(e) = model.advance(0.1, Inertia::QuasiStatic) {
+                if std::env::var_os("SPANS_FAILURES").is_some() {
+                    println!("{k}, drawn: {e}");
+                }
+                *refused.entry(class(&e)).or_default() += 1;
+                break;
+            }
+            sound(k, &model, &problem);
+            parted += usize::from(looked(&model));
+        }
+    }
+    println!(
+        "{cases} scenes, {off} with the cable off the post in between, {steps} steps, {parted} so, refused: {refused:#?}"
+    );
+    assert!(20 * sum(&refused) as u64 <= cases, "{refused:?}");
+}
+
+/// A cable over one to three wheels and eyes that rub.
+fn over_rubbing_wheels(number: u64) -> Scene {
+    let dice = &mut Dice(number.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+    let (count, far) = (1 + (3.0 * dice.unit()) as usize, dice.log(2.0, 50.0));
+    let ends = [[0.0, dice.within(-1.0, 1.0)], [far, dice.within(-1.0, 1.0)]];
+    let mut supports = vec![Support::fixed("A", ends[0])];
+    for k in 0..count {
+        let at = [far * (k as f64 + 1.0) / (count as f64 + 1.0), dice.within(0.5, 3.0)];
+        let radius = if dice.chance(0.4) { 0.0 } else { far * dice.within(0.005, 0.03) };
+        let mut wheel = Support::pulley(format!("w{k}"), at);
+        (wheel.radius_m, wheel.friction) = (Some(radius), Some(dice.within(0.01, 0.5)));
+        supports.push(wheel);
+    }
+    supports.push(Support::fixed("B", ends[1]));
+    let way: f64 =
+        supports.windows(2).map(|w| (Vec2::from(w[1].at_m.unwrap()) - Vec2::from(w[0].at_m.unwrap())).norm()).sum();
+    let mut scene = catalog::hanging_span();
+    scene.loads.clear();
+    let c = &mut scene.cables[0];
+    (c.bending_stiffness_n_m2, c.axial_stiffness_n, c.diameter_m) = (0.0, dice.log(1e5, 1e8), 2.0 * RADIUS);
+    (c.service_tension_n, c.breaking_tension_n) = (1e15, 1e15);
+    c.length_m = way * (1.0 + dice.log(1e-2, 0.3)) + 0.1 * far;
+    c.supports = supports;
+    scene
+}
+
+/// Counted from its other end.
+fn turned(scene: &Scene) -> Scene {
+    let mut turned = scene.clone();
+    let c = &mut turned.cables[0];
+    c.supports.reverse();
+    c.route_m.reverse();
+    turned
+}
+
+/// Friction leaves many rests, but which one is found is not for the order of a list to say.
+#[test]
+fn a_rest_does_not_depend_on_the_end_it_is_counted_from() {
+    let (first, cases) = (number("SPANS_FIRST", 0), number("SPANS_CASES", 60));
+    let mut unlike = [0; 2];
+    for k in first..first + cases {
+        for (kind, scene) in [over_rubbing_wheels(k), case(k).scene].into_iter().enumerate() {
+            let [one, other] = [scene.clone(), turned(&scene)].map(|scene| {
+                let problem = problems(&scene).unwrap().remove(0);
+                let mut model = SpansModel::new(problem.clone(), Settings::default()).unwrap();
+                model.settle().map_err(|e| e.to_string())?;
+                sound(k, &model, &problem);
+                let answer = model.solution();
+                let force = |k: usize| Vec2::new(answer.supports[k].reaction_x_n, answer.supports[k].reaction_y_n);
+                let greatest = answer.nodes.iter().fold(0.0f64, |m, n| m.max(n.tension_n));
+                Ok::<_, String>(([force(0), force(answer.supports.len() - 1)], greatest))
+            });
+            let like = match (&one, &other) {
+                (Ok((f, most)), Ok((g, _))) => (f[0] - g[1]).norm().max((f[1] - g[0]).norm()) <= 1e-9 * most,
+                (Err(_), Err(_)) => true,
+                _ => false,
+            };
+            if !like && std::env::var_os("SPANS_FAILURES").is_some() {
+                println!("{kind} {k}: {one:?} {other:?}");
+            }
+            unlike[kind] += usize::from(!like);
+        }
+    }
+    println!("of {cases} each: {unlike:?} with another rest from the other end");
+    assert_eq!(unlike, [0, 0]);
 }

@@ -461,8 +461,16 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
         if tight && missing > ds * (0.1 * turn * turn + 1e-5) + 1e-9 * length {
             loose += missing;
             // Loose material lies: without tension, on something; in the air where nothing pulls it down. In the air the force in a
-            // piece follows from that just beyond its first node, whatever acts at the nodes.
-            let touches = !near[k].is_empty();
+            // piece follows from that just beyond its first node, whatever acts at the nodes. A slack piece is drawn as its chord c,
+            // and hangs below that by √(3/8 c · missing): it may lie on what it meets there.
+            let below = mul(load, (0.375 * chord * missing).sqrt() / size(load).max(1e-300));
+            let mut met = Vec::new();
+            for i in 1..PARTS {
+                let u = i as f64 / PARTS as f64;
+                let on = add([w[0].x_m, w[0].y_m], mul(sub([w[1].x_m, w[1].y_m], [w[0].x_m, w[0].y_m]), u));
+                world.near(add(on, mul(below, 4.0 * u * (1.0 - u))), reach, &mut met);
+            }
+            let touches = !near[k].is_empty() || !met.is_empty();
             let lies = plan || touches || size(load) == 0.0;
             let tension = if touches || plan { tension } else { size(w[0].force_n) };
             let slack = tension <= 1e-3 * scale + 2.0 * size(load) * ds;

@@ -41,13 +41,16 @@ pub(in crate::model) struct Nodes<'a> {
     problem: &'a Problem,
     flat: f64,
     least_tension: f64,
+    /// Whether the nodes are turned end for start afterwards: of two nodes that are one the first is that beyond the point then.
+    pub turned: bool,
     pub out: Vec<Node>,
 }
 
 impl<'a> Nodes<'a> {
     /// None yet, for a cable with a greatest tension (N).
     pub fn new(problem: &'a Problem, greatest: f64) -> Self {
-        Self { problem, flat: FLATNESS * problem.length, least_tension: TENSION_FLOOR * greatest, out: Vec::new() }
+        let (flat, least_tension) = (FLATNESS * problem.length, TENSION_FLOOR * greatest);
+        Self { problem, flat, least_tension, turned: false, out: Vec::new() }
     }
 
     /// Adds a point.
@@ -72,8 +75,10 @@ impl<'a> Nodes<'a> {
             && node.arc_length_m - last.arc_length_m <= 1e-12 * self.problem.length
             && (node.tension_n - last.tension_n).abs() <= SAME_TENSION * node.tension_n
         {
-            last.curvature_per_m = node.curvature_per_m;
-            last.force_n = node.force_n;
+            if !self.turned {
+                last.curvature_per_m = node.curvature_per_m;
+                last.force_n = node.force_n;
+            }
             return;
         }
         self.out.push(node);

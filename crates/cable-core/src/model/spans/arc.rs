@@ -39,7 +39,7 @@ pub(super) struct Way {
 }
 
 /// Farthest way along an arc, rad: 1600 turns. Less: drums are refused; more: a step of Newton into nowhere takes a minute.
-const MOST_TURN: f64 = 1e4;
+pub(super) const MOST_TURN: f64 = 1e4;
 
 /// How tension and material go on from a point of an arc: derivatives by the angle.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,7 @@
 
 use super::drive::Network;
 use super::instant::Layout;
-use super::law::Track;
+use super::law::{Step, Track};
 use super::pocket;
 use super::report;
 use super::strand::{Contact, Course, Strand, Tie};
@@ -197,13 +197,7 @@ fn along(track: &Track<'_>, c: &Contact, (greatest, length): (f64, f64)) -> Resu
         while p < next.p {
             let q = track.next_border(p, next.p);
             let whole = track.slide(p, q, t, knot.m);
-            let half = || track.slide(p, 0.5 * (p + q), t, knot.m);
-            let looked = if firm(track, (p, q), t, knot.m) {
-                [None; 2]
-            } else {
-                [Some((0.5 * (p + q), half())), Some((q, whole))]
-            };
-            for (x, way) in looked.into_iter().flatten() {
+            let look = |x: f64, way: Step| {
                 let place = track.place(x);
                 if !(way.tension >= -PUSHES * greatest - 1e-9) {
                     return Err(Trouble::Compressed { s: s + way.material, at: place.at, tension: way.tension });
@@ -211,6 +205,14 @@ fn along(track: &Track<'_>, c: &Contact, (greatest, length): (f64, f64)) -> Resu
                 if !(track.law.press(&place, way.tension) >= -room) {
                     return unsound("a contact pulls");
                 }
+                Ok(())
+            };
+            if !firm(track, (p, q), t, knot.m) {
+                let mut found = look(q, whole);
+                track.loosest((p, q), knot.m, |x| {
+                    found = found.clone().and_then(|()| look(x, track.slide(p, x, t, knot.m)))
+                });
+                found?;
             }
             (p, t, s) = (q, whole.tension, s + whole.material);
         }

@@ -357,6 +357,18 @@ impl Curve {
         self.origin(i) + x
     }
 
+    /// Calls back with each place between p and q, on arc i, at which its tangent is that of `along`.
+    pub fn running(&self, i: i64, along: Vec2, (p, q): (f64, f64), mut each: impl FnMut(f64)) {
+        let Form::Arc { from, .. } = self.piece(i).form else { return };
+        let turn = std::f64::consts::TAU;
+        let mut x = self.origin(i) - self.sense * cross(from, along).atan2(from.dot(&along));
+        x += ((p - x) / turn).ceil() * turn;
+        while x < q {
+            each(x);
+            x += turn;
+        }
+    }
+
     /// Whether the tangent of arc i comes to be `along` only before its start (−1) or after its end (+1); 0 where it does on it.
     pub fn aside(&self, i: i64, along: Vec2) -> i64 {
         let piece = self.piece(i);

@@ -1,12 +1,14 @@
 //! What a converged strand may have to change: contacts released, joined, met, made.
 //!
-//! R a contact whose interval has turned round is let go; M two contacts of one chain are one; P where a span runs into
+//! R a contact whose interval has turned round is let go; M two contacts of one chain are one; L one that pulls is parted (`lift`); P where a span runs into
 //! an obstacle the neighbouring contact is drawn out to it, or a new one begins at a point. After each the strand is
 //! solved again, until nothing fires.
 
 use super::curve::{Curve, Home};
 use super::history::{Ends, History, Knot, Mode};
 use super::landing;
+use super::law::Track;
+use super::lift;
 use super::newton::{self, Solved, Work};
 use super::pass;
 use super::pocket;
@@ -77,6 +79,7 @@ pub(super) fn solve(
         // What was passed on the way says better than what is inside on which side of it the cable shall be.
         let changed = release(strand, course)?
             || join(strand, course)
+            || lift::part(strand, course)
             || wedge::enter(strand, course)
             || weight::settle(strand, course)?
             || pocket::open(strand, course)
@@ -203,7 +206,14 @@ fn join(strand: &mut Strand, course: &Course) -> bool {
     for j in 1..strand.contacts.len() {
         let (a, b) = (&strand.contacts[j - 1], &strand.contacts[j]);
         let loads = a.weight || b.weight;
-        if a.curve == b.curve && a.home == b.home && a.wheel.is_none() && !loads && b.ends.p[1] >= a.ends.p[0] {
+        let apart = |track: &Track<'_>| track.curve.is_round() && lift::hangs_between(track, a.ends.p[1], b.ends.p[0]);
+        if a.curve == b.curve
+            && a.home == b.home
+            && a.wheel.is_none()
+            && !loads
+            && b.ends.p[1] >= a.ends.p[0]
+            && !apart(&course.track(a))
+        {
             let b = strand.contacts.remove(j);
             strand.forces.remove(j);
             let a = &mut strand.contacts[j - 1];
@@ -307,12 +317,30 @@ fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit, resting: boo
     let ends = strand.ends_of(course, k);
     let force = strand.force(course, k, hit.s).norm();
     let same = |c: &Contact| c.curve == curve_index && c.home == home && c.wheel.is_none() && !c.weight;
-    if let Some(c) = k.checked_sub(1).and_then(|j| strand.contacts.get_mut(j)).filter(|c| same(c) && p > c.ends.p[1]) {
+    let end = |j: Option<usize>, side: usize| {
+        j.and_then(|j| strand.contacts.get(j)).filter(|c| same(c)).map(|c| c.ends.p[side])
+    };
+    let p = match end(k.checked_sub(1), 1).or_else(|| end(Some(k), 0)).filter(|_| curve.is_round()) {
+        Some(end) => lift::nearest_turn(p, end),
+        None => p,
+    };
+    // Below a post it goes on over the bottom only where its tension bears it there.
+    let bears = |c: &Contact, (from, to): (f64, f64)| {
+        let track = course.track(c);
+        let mut bears = true;
+        track.bottoms((from, to), |p| bears &= track.law.press(&track.place(p), force) >= 0.0);
+        bears || !curve.is_round()
+    };
+    if let Some(c) = k
+        .checked_sub(1)
+        .and_then(|j| strand.contacts.get_mut(j))
+        .filter(|c| same(c) && p > c.ends.p[1] && bears(c, (c.ends.p[1], p)))
+    {
         let p = beyond_edges(curve, home, (p, 1), ends[1]);
         (c.ends.p[1], c.ends.s[1], c.ends.t[1]) = (p, hit.s, force);
         return Ok(());
     }
-    if let Some(c) = strand.contacts.get_mut(k).filter(|c| same(c) && p < c.ends.p[0]) {
+    if let Some(c) = strand.contacts.get_mut(k).filter(|c| same(c) && p < c.ends.p[0] && bears(c, (p, c.ends.p[0]))) {
         let p = beyond_edges(curve, home, (p, 0), ends[0]);
         (c.ends.p[0], c.ends.s[0], c.ends.t[0]) = (p, hit.s, force);
         return Ok(());

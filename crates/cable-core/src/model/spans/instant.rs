@@ -55,6 +55,8 @@ pub(super) struct Pulley {
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     pub problem: Arc<Problem>,
+    /// Whether it counts the cable from the end of the scene's: its problem is that one turned.
+    pub turned: bool,
     loads: Vec<Load>,
     /// Where it must not pass, in order of x.
     pub corners: Arc<[Corner]>,
@@ -80,7 +82,7 @@ impl Layout {
     ///
     /// # Errors
     /// `Unsupported` for what the model lacks.
-    pub fn new(problem: &Arc<Problem>) -> Result<Self, SolveError> {
+    pub fn new(problem: &Arc<Problem>, turned: bool) -> Result<Self, SolveError> {
         let p = problem;
         if p.bending_stiffness > 0.0 {
             return Err(unsupported("the cable has bending stiffness"));
@@ -132,7 +134,7 @@ impl Layout {
         }
         loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
         let corners = passed::corners(&problem.world).into();
-        let mut layout = Self { problem: problem.clone(), loads, corners, strands };
+        let mut layout = Self { problem: problem.clone(), turned, loads, corners, strands };
         layout.face_wheels();
         Ok(layout)
     }
@@ -150,7 +152,8 @@ impl Layout {
             let i = held.iter().position(|&k| k == pulley.support).unwrap_or(0);
             let before = i.checked_sub(1).and_then(|j| held.get(j)).map_or(at(pulley.support), |&k| at(k));
             let after = held.get(i + 1).map_or(at(pulley.support), |&k| at(k));
-            let right = if after.x - before.x < 0.0 { -1.0 } else { 1.0 };
+            let way = after.x - before.x;
+            let right = if way < 0.0 || (way == 0.0 && self.turned) { -1.0 } else { 1.0 };
             let over = if s.side == PulleySide::Over { 1.0 } else { -1.0 };
             pulley.facing = right * over;
         }

@@ -20,10 +20,10 @@
 //! and the exact T differs by −c ∫ e^{m(ψ−ξ)} (b·t + m b·n)(1/λ(T⁰) − 1/λ₀) dξ, a small part (of order cb·ΔT/EA) of a
 //! small part; what this leaves out is of the order of its square over T. Material is c ∫ dψ/λ. Both in `arc`.
 
-use super::arc::Way;
+use super::arc::{MOST_TURN, Way};
 use super::curve::{Curve, Home, Place};
 use super::piece::{OnPiece, Pivot};
-use crate::math::{Vec2, bounded, exp};
+use crate::math::{Vec2, bounded, exp, perp};
 
 /// Load and stiffness of a cable at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -281,6 +281,36 @@ impl Track<'_> {
             at = next;
         }
         sum
+    }
+
+    /// Calls back with the places inside an arc from p to q at which tension or pressure may be least while it slides with m.
+    ///
+    /// With P the [`Law::press`] of a place, P' = mP − 2(c/λ) b·t and T' = mT − (c/λ)(b·t + m b·n), both but for the change of λ: P e^{−mψ}
+    /// is least where b·t = 0 with the load out of the arc, below it, T e^{−mψ} where b·t + m b·n = 0. If neither is below nothing
+    /// there and at the ends, it is nowhere.
+    pub fn loosest(&self, (p, q): (f64, f64), m: f64, mut each: impl FnMut(f64)) {
+        let middle = self.curve.locate(0.5 * (p + q), self.home);
+        if !self.curve.is_arc(middle) {
+            return;
+        }
+        let least = self.law.load - perp(self.law.load) * (m * self.curve.sense);
+        for out in [self.law.load, least] {
+            self.facing(middle, out, (p, q), &mut each);
+        }
+    }
+
+    /// Calls back with the places between p and q at which a round boundary faces the load: its bottoms.
+    pub fn bottoms(&self, (p, q): (f64, f64), each: impl FnMut(f64)) {
+        self.facing(self.home.first, self.law.load, (p, q), each);
+    }
+
+    /// The places between p and q, on arc i, whose outward normal is along `out`.
+    fn facing(&self, i: i64, out: Vec2, (p, q): (f64, f64), each: impl FnMut(f64)) {
+        // No cable is wound further.
+        if out.norm() > 0.0 && q - p <= MOST_TURN {
+            // n = σ perp t.
+            self.curve.running(i, perp(out) * -self.curve.sense, (p, q), each);
+        }
     }
 
     /// The middle of the length between two places.

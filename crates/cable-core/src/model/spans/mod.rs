@@ -4,7 +4,7 @@
 //!
 //! Each part has its derivation above it: the boundary (`curve`), the law of sliding along it (`law`), what friction
 //! remembers (`history`), a contact's equations (`rub`), the unknowns (`strand`), their solution (`newton`), contacts that
-//! come and go (`events`, `seek`, `ends`), loads that come down and lie (`landing`, `weight`, `wedge`), the way from one instant to the next (`drive`), the first lay (`taut`, `lay`),
+//! come and go (`events`, `seek`, `ends`, `lift`), loads that come down and lie (`landing`, `weight`, `wedge`), the way from one instant to the next (`drive`), the first lay (`taut`, `lay`, `turned`),
 //! and the checks of each answer that know nothing of all this (`check`, `gaps`).
 //!
 //! What it cannot do it refuses: bending, self-contact, inertia, plan view, supports that let go; a cable that loses its
@@ -25,6 +25,7 @@ mod instant;
 mod landing;
 mod law;
 mod lay;
+mod lift;
 mod loose;
 mod loss;
 mod newton;
@@ -40,6 +41,7 @@ mod take;
 mod taut;
 mod tight;
 mod trouble;
+mod turned;
 mod way;
 mod wedge;
 mod weight;
@@ -47,11 +49,12 @@ pub(in crate::model) mod wheel_friction;
 
 use std::sync::Arc;
 
-use self::drive::{Network, Taken};
+use self::drive::{Network, Taken, Unfound};
 use self::instant::{Instant, Layout, unsupported};
 use self::newton::Work;
 use self::report::Report;
 use self::trouble::Trouble;
+use self::turned::Turned;
 use super::catenary::slack_without_weight;
 use super::gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
@@ -71,8 +74,11 @@ const LONGEST_STEP_S: f64 = 1e6;
 /// The model's mechanics of one cable.
 #[derive(Clone, Debug)]
 pub struct SpansModel {
+    problem: Arc<Problem>,
+    /// The cable as it is laid: counted from either end.
     layout: Layout,
     time_s: f64,
+    /// In the order of the layout.
     dragged: Vec<Option<Vec2>>,
     network: Option<Network>,
     work: Work,
@@ -88,7 +94,7 @@ impl SpansModel {
     /// # Errors
     /// `Unsupported` when the scene needs what the model lacks.
     pub fn new(problem: Arc<Problem>, _settings: Settings) -> Result<Self, SolveError> {
-        let layout = Layout::new(&problem)?;
+        let layout = counted(&problem, turned::is_led_up(&problem))?;
         let n = problem.supports.len();
         let mut points: Vec<Vec2> = problem.route.clone();
         if points.len() < 2 {
@@ -108,7 +114,7 @@ impl SpansModel {
         let nodes = points.iter().enumerate().map(node).collect();
         let shown = Report { nodes, ..Report::default() };
         let (work, instants) = (Work::default(), <[Instant; 3]>::default());
-        Ok(Self { layout, time_s: 0.0, dragged: vec![None; n], network: None, work, instants, shown })
+        Ok(Self { problem, layout, time_s: 0.0, dragged: vec![None; n], network: None, work, instants, shown })
     }
 
     /// Whether what was found lies without tension.
@@ -124,7 +130,10 @@ impl SpansModel {
     /// What there is to show now.
     fn look(&self) -> Report {
         match &self.network {
-            Some(network) => report::report(&self.layout, network),
+            Some(network) => {
+                let report = report::report(&self.layout, network);
+                if self.layout.turned { self.turned().report(&report) } else { report }
+            }
             None => self.shown.clone(),
         }
     }
@@ -139,9 +148,38 @@ impl SpansModel {
         if let Some(network) = stopped.or(self.network.as_ref())
             && let Some((loss, arc_length_m, at_m)) = loss::lost(&network.strands, &network.course, &trouble)
         {
+            let arc_length_m = if self.layout.turned { self.turned().s(arc_length_m) } else { arc_length_m };
             return SolveError::TensionLost { model: Model::Spans, loss, arc_length_m, at_m };
         }
-        said(&self.layout, trouble)
+        self.in_words(trouble)
+    }
+
+    /// A trouble of the layout in the words everyone uses.
+    fn in_words(&self, trouble: Trouble) -> SolveError {
+        said(&self.problem, if self.layout.turned { self.turned().trouble(trouble) } else { trouble })
+    }
+
+    /// What leads from how the layout counts the cable to how the scene does, where that is otherwise.
+    fn turned(&self) -> Turned<'_> {
+        Turned { problem: &self.problem }
+    }
+
+    /// A rest of the cable laid along its way, counted from its upper end; where none is found so, from the other.
+    fn lay(&mut self, instant: &mut Instant, work: &mut Work) -> Result<Taken, Unfound> {
+        let (network, taken) = match Network::rest(&self.layout, instant, work) {
+            Ok(found) => found,
+            Err(unfound) => {
+                let Ok(other) = counted(&self.problem, !self.layout.turned) else { return Err(unfound) };
+                let (mut there, mut dragged) = (Instant::default(), self.dragged.clone());
+                dragged.reverse();
+                other.instant(&dragged, self.time_s, &mut there);
+                let Ok(found) = Network::rest(&other, &there, work) else { return Err(unfound) };
+                (self.layout, self.dragged, *instant) = (other, dragged, there);
+                found
+            }
+        };
+        self.network = Some(network);
+        Ok(taken)
     }
 
     fn report_of(&self, taken: Taken) -> StepReport {
@@ -160,10 +198,16 @@ impl SpansModel {
     /// What other histories would have left in the cable, in words: as it was laid, and drawn towards either end.
     fn histories(&self, work: &mut Work) -> String {
         let Some(network) = &self.network else { return String::new() };
-        let laid = report::tensions(network);
+        let turned = self.layout.turned;
+        let tensions = |network: &Network| {
+            let [start, end, greatest] = report::tensions(network);
+            if turned { [end, start, greatest] } else { [start, end, greatest] }
+        };
+        let laid = tensions(network);
         let drawn = [FrictionMobilised::TowardsStart, FrictionMobilised::TowardsEnd].map(|drawn| {
+            let drawn = if turned { turned::mobilised(drawn) } else { drawn };
             let found = network.drawn(&self.layout, drawn.way(), work);
-            found.or_else(|| self.laid_anew(drawn, work)).map(|n| report::tensions(&n))
+            found.or_else(|| self.laid_anew(drawn, work)).map(|n| tensions(&n))
         });
         let all = || std::iter::once(laid).chain(drawn.into_iter().flatten());
         let range = |k: usize| {
@@ -221,18 +265,23 @@ fn slides_away(part: f64) -> SolveError {
 /// Why a cable that nothing holds finds no rest where nothing rubs.
 const NOTHING_RUBS: &str = "it slides: nothing rubs that would hold it where it is laid";
 
+/// The layout of a cable counted from its start, or from its end.
+fn counted(problem: &Arc<Problem>, turned: bool) -> Result<Layout, SolveError> {
+    if turned { Layout::new(&Arc::new(turned::problem(problem)), true) } else { Layout::new(problem, false) }
+}
+
 /// A trouble in the words everyone uses.
-fn said(layout: &Layout, trouble: Trouble) -> SolveError {
-    let name = |k: usize| layout.problem.supports.get(k).map_or("", |s| s.name.as_str());
+fn said(problem: &Problem, trouble: Trouble) -> SolveError {
+    let name = |k: usize| problem.supports.get(k).map_or("", |s| s.name.as_str());
     match trouble {
         Trouble::Stalled { iterations, residual, s } => SolveError::NotConverged {
             model: Model::Spans,
             iterations,
-            residual_n: residual * layout.problem.force_scale(),
+            residual_n: residual * problem.force_scale(),
             place: Box::new(Place { arc_length_m: s, at_m: Vec2::repeat(f64::NAN), near: None }),
         },
         Trouble::Compressed { s, at, tension } => {
-            SolveError::Compressed { model: Model::Spans, tension_n: tension, place: layout.problem.place(s, at, 0.0) }
+            SolveError::Compressed { model: Model::Spans, tension_n: tension, place: problem.place(s, at, 0.0) }
         }
         Trouble::Restless { s } => unsupported(format!("contacts come and go without end near {s:.3} m")),
         Trouble::OffWheel { support } => unsupported(format!("the cable lifts off the wheel of `{}`", name(support))),
@@ -273,10 +322,7 @@ impl Mechanics for SpansModel {
         self.network = self.network.take().filter(|n| n.loose().is_none());
         let found = match &mut self.network {
             Some(network) => network.travel(&self.layout, &instant, 1.0, &mut work).map_err(|t| (t.0, None)),
-            None => Network::rest(&self.layout, &instant, &mut work).map(|(network, taken)| {
-                self.network = Some(network);
-                taken
-            }),
+            None => self.lay(&mut instant, &mut work),
         };
         let stable = self.network.as_ref().is_none_or(|n| n.stable(&mut work));
         let slides = found.is_err() && self.network.is_none() && self.hangs_by_friction();
@@ -295,12 +341,12 @@ impl Mechanics for SpansModel {
         let mut report = self.report_of(taken);
         if !stable {
             let message = "This balance runs away at the least push: nothing rubs that would hold the cable in it";
-            let name = &self.layout.problem.cable.name;
+            let name = &self.problem.cable.name;
             report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
         }
         let mobilised = self.layout.problem.cable.friction_mobilised;
         if let Some([material, ground]) = loose {
-            let name = &self.layout.problem.cable.name;
+            let name = &self.problem.cable.name;
             // Whatever the history, nothing but friction on what lies can hold more.
             let held = self.network.as_ref().map_or(0.0, Network::friction_of_loose);
             let message = format!(
@@ -313,12 +359,12 @@ impl Mechanics for SpansModel {
             } else {
                 "With friction the resting place depends on how the cable was laid: this is the one laid along its way with the least sliding"
             };
-            let name = &self.layout.problem.cable.name;
+            let name = &self.problem.cable.name;
             let message = format!("{message}{range}");
             report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message));
         }
         if instant.hint > 0.0 {
-            report.warnings.extend(slack_without_weight(&self.layout.problem, &self.look().nodes));
+            report.warnings.extend(slack_without_weight(&self.problem, &self.look().nodes));
         }
         Ok(report)
     }
@@ -381,7 +427,7 @@ impl Mechanics for SpansModel {
             None => {
                 if ran > 0 {
                     let message = "Nothing held the cable where it was: it slid to the next place that does. How it moved there is not shown";
-                    let name = &self.layout.problem.cable.name;
+                    let name = &self.problem.cable.name;
                     sum.warnings.push(Warning::new(WarningKind::Stabilised, name, 0.0, [0.0; 2], message.to_owned()));
                 }
                 Ok(sum)
@@ -411,28 +457,32 @@ impl Mechanics for SpansModel {
         let mut instant = Instant::default();
         self.layout.instant(&self.dragged, time_s, &mut instant);
         let mut work = std::mem::take(&mut self.work);
-        let taken = Network::taken(&self.layout, &instant, &answer.nodes, &mut work);
+        let nodes = self.layout.turned.then(|| self.turned().nodes(&answer.nodes));
+        let nodes = nodes.as_ref().unwrap_or(&answer.nodes);
+        let taken = Network::taken(&self.layout, &instant, nodes, &mut work);
         self.work = work;
-        self.network = Some(taken.map_err(|t| said(&self.layout, t))?);
+        self.network = Some(taken.map_err(|t| self.in_words(t))?);
         self.time_s = time_s;
         Ok(())
     }
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
-        if let Some(d) = self.dragged.get_mut(support) {
+        let n = self.dragged.len();
+        let k = if self.layout.turned { n.checked_sub(support + 1) } else { Some(support) };
+        if let Some(d) = k.and_then(|k| self.dragged.get_mut(k)) {
             *d = Some(target_m);
         }
     }
 
     fn solution(&self) -> CableSolution {
         let Report { nodes, supports, contacts } = self.look();
-        let name = self.layout.problem.cable.name.clone();
+        let name = self.problem.cable.name.clone();
         let answer = CableSolution { name, nodes, supports, contacts, ..CableSolution::default() };
-        answer.rounded(&self.layout.problem)
+        answer.rounded(&self.problem)
     }
 
     fn problem(&self) -> &Arc<Problem> {
-        &self.layout.problem
+        &self.problem
     }
 
     fn boxed_clone(&self) -> Box<dyn Mechanics> {

@@ -56,6 +56,7 @@ pub(super) fn report(layout: &Layout, network: &Network) -> Report {
         }
     }
     let mut nodes = Nodes::new(&layout.problem, greatest);
+    nodes.turned = layout.turned;
     let mut contacts = Vec::new();
     for strand in &network.strands {
         if let Some(loose) = &strand.loose {

@@ -32,7 +32,7 @@ fn loaded(
     (c.length_m, c.friction) = (length, friction);
     c.supports = vec![Support::fixed("A", route_m[0]), Support::fixed("B", *route_m.last().unwrap())];
     c.route_m = route_m;
-    let layout = Layout::new(&problems(&scene).unwrap().remove(0)).unwrap();
+    let layout = Layout::new(&problems(&scene).unwrap().remove(0), false).unwrap();
     let mut instant = Instant::default();
     layout.instant(&[None, None], 0.0, &mut instant);
     let mut work = Work::default();
