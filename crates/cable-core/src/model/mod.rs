@@ -86,16 +86,25 @@ pub struct Settings {
     /// How `mass-spring` takes dynamic steps.
     #[serde(default)]
     pub stepping: Stepping,
+    /// Fastest a support follows the hand that drags it while masses move, m/s.
+    #[serde(default = "hand_speed")]
+    pub hand_speed_m_per_s: f64,
+}
+
+fn hand_speed() -> f64 {
+    drive::HAND_SPEED
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { tolerance: 1e-3, segments: None, stepping: Stepping::Auto }
+        Self { tolerance: 1e-3, segments: None, stepping: Stepping::Auto, hand_speed_m_per_s: hand_speed() }
     }
 }
 
 /// Least tolerance that makes sense: below, rounding is more than is asked for. From 1 on nothing is asked, which a test of one mesh may want.
 const LEAST_TOLERANCE: f64 = 1e-14;
+/// Slowest hand, m/s: slower is none that means to move anything.
+const LEAST_HAND_SPEED: f64 = 0.01;
 /// Segments, as a scene's own.
 const SEGMENTS: (usize, usize) = (1, 100_000);
 
@@ -108,6 +117,10 @@ impl Settings {
         if !(self.tolerance >= LEAST_TOLERANCE && self.tolerance.is_finite()) {
             let (name, allowed) = ("tolerance", "1e-14 or more, and finite");
             return Err(SolveError::Setting { name, value: self.tolerance, allowed });
+        }
+        if !(LEAST_HAND_SPEED..=drive::MAX_SPEED).contains(&self.hand_speed_m_per_s) {
+            let (name, allowed) = ("hand speed", "0.01 to 20 m/s");
+            return Err(SolveError::Setting { name, value: self.hand_speed_m_per_s, allowed });
         }
         match self.segments {
             Some(n) if !(SEGMENTS.0..=SEGMENTS.1).contains(&n) => {
@@ -214,7 +227,7 @@ pub trait Mechanics: Send {
         self.adopt(&State::of_nodes(&answer.nodes, time_s))
     }
 
-    /// From now on a support follows `target_m` (smoothly and with capped speed in `Dynamic` steps; at the
+    /// From now on a support follows `target_m` (smoothly and no faster than [`Settings::hand_speed_m_per_s`] in `Dynamic` steps; at the
     /// next `settle` or quasi-static step it is there) instead of its `motion`.
     fn drag_support(&mut self, support: usize, target_m: Vec2);
 
@@ -264,8 +277,14 @@ fn refuse_mobilised(model: Model, problem: &Problem) -> Result<(), SolveError> {
 /// `Setting` when the settings are out of range, `Unsupported` when the model lacks what the scene needs.
 pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Box<dyn Mechanics>, SolveError> {
     settings.validate()?;
+    built(model, problem, settings)
+}
+
+fn built(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Box<dyn Mechanics>, SolveError> {
     if let Some((by, copy)) = problem.similar.clone() {
-        return Ok(Box::new(similar::Similar::new(problem, by, build(model, copy, settings)?)));
+        let hand_speed_m_per_s = settings.hand_speed_m_per_s * by.length / by.time;
+        let inner = built(model, copy, Settings { hand_speed_m_per_s, ..settings })?;
+        return Ok(Box::new(similar::Similar::new(problem, by, inner)));
     }
     if !matches!(model, Model::Spans | Model::Auto) {
         refuse_mobilised(model, &problem)?;
@@ -279,7 +298,7 @@ pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<
         }
         Model::Auto => match auto::choose(&problem, auto::Question::Rest).0 {
             Model::Spans => Ok(Box::new(relay::Relay::new(problem, settings)?)),
-            chosen => build(chosen, problem, settings),
+            chosen => built(chosen, problem, settings),
         },
     }
 }
