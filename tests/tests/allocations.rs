@@ -28,8 +28,7 @@ fn warm_steps(model: &mut dyn Mechanics, dt_s: f64) -> u64 {
         }
     };
     steps();
-    measure(steps)
-    .count_total
+    measure(steps).count_total
 }
 
 #[test]

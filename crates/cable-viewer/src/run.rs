@@ -212,7 +212,8 @@ fn extra(history: &HistoryTable, name: &str, k: usize) -> Option<f64> {
 fn peaks(history: &HistoryTable, k: usize, cables: &mut [CableSolution]) {
     let time_s = history.time_s.get(k).copied().unwrap_or(0.0);
     let of = |name| Some(TensionPeak { tension_n: extra(history, name, k)?, time_s, ..TensionPeak::default() });
-    if let (Some(first), Some(greatest), Some(held)) = (cables.first_mut(), of("peak_tension_n"), of("held_tension_n")) {
+    if let (Some(first), Some(greatest), Some(held)) = (cables.first_mut(), of("peak_tension_n"), of("held_tension_n"))
+    {
         first.peaks = Some(TensionPeaks { greatest, held, over_s: 0.0 });
     }
 }

@@ -42,9 +42,8 @@ pub fn fastest(problem: &Problem, support: usize, hand: f64) -> f64 {
 pub fn held_warning(problem: &Problem, support: usize, arc_length_m: f64, (f, fastest): (&Follower, f64)) -> Warning {
     let name = problem.supports.get(support).map_or("", |s| s.name.as_str());
     let behind = f.behind_m();
-    let message = format!(
-        "support `{name}` is {behind:.2} m behind where it is drawn to: it follows at {fastest} m/s at most"
-    );
+    let message =
+        format!("support `{name}` is {behind:.2} m behind where it is drawn to: it follows at {fastest} m/s at most");
     let speeds = [f.velocity().norm(), fastest];
     Warning::new(WarningKind::SupportHeld, &problem.cable.name, arc_length_m, speeds, message)
 }

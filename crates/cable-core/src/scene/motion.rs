@@ -61,7 +61,7 @@ impl Motion {
         let mut most = (0.0, 0.0);
         for pair in self.times_s.windows(2) {
             for k in 0..LOOKS {
-                let time_s = pair[0] + (pair[1] - pair[0]) * (f64::from(k) + 0.5) / f64::from(LOOKS);
+                let time_s = pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(LOOKS);
                 let speed = self.at(time_s).1.norm();
                 if speed > most.0 {
                     most = (speed, time_s);

@@ -109,7 +109,16 @@ impl Strand {
         let gauge = TensionGauge::over(problem.cable.breaking_time_s);
         let piece = Piece::new(mechanics, Deal::whole(&problem), gauge);
         let dragged = vec![None; problem.supports.len()];
-        Ok(Self { problem, asked: model, settings, pieces: vec![piece], breaks: Vec::new(), dragged, led: None, peaks: None })
+        Ok(Self {
+            problem,
+            asked: model,
+            settings,
+            pieces: vec![piece],
+            breaks: Vec::new(),
+            dragged,
+            led: None,
+            peaks: None,
+        })
     }
 
     /// The same cable by another model: where it is, or at its route where it has not begun.
@@ -455,9 +464,9 @@ impl Piece {
             if let Some(reached) = self.gauge.reached() {
                 let now = self.mechanics.state();
                 let fraction = ((reached.time_s - state.time_s) / (now.time_s - state.time_s)).clamp(0.0, 1.0);
-                let at = rupture::Rupture { node: rupture::nearest(&self.answer.nodes, reached.arc_length_m), fraction };
-                let state =
-                    if 1.0 - fraction < LEAST_REST { now } else { rupture::between(&state, &now, fraction) };
+                let at =
+                    rupture::Rupture { node: rupture::nearest(&self.answer.nodes, reached.arc_length_m), fraction };
+                let state = if 1.0 - fraction < LEAST_REST { now } else { rupture::between(&state, &now, fraction) };
                 return Ok(Outcome::Broke(Box::new((reached.time_s, state, at))));
             }
         }
@@ -504,9 +513,7 @@ impl Piece {
             let awake = self.quiet == 0;
             self.quiet = self.quiet.saturating_sub(1);
             let [low, high] = self.may_break_within();
-            if awake
-                && let Some(at) =
-                    rupture::first(&nodes, &self.answer.nodes, breaking_n, |s| low <= s && s <= high)
+            if awake && let Some(at) = rupture::first(&nodes, &self.answer.nodes, breaking_n, |s| low <= s && s <= high)
             {
                 let time_s = state.time_s + (now.time_s - state.time_s) * at.fraction;
                 let rest = 1.0 - at.fraction;

@@ -46,13 +46,20 @@ fn jerk(cable: &Cable, answer: &CableSolution, peaks: &TensionPeaks, out: &mut V
     let (service_n, breaking_n, over_s) = (cable.service_tension_n, cable.breaking_tension_n, peaks.over_s);
     let TensionPeaks { greatest, held, .. } = *peaks;
     let (kind, top, limit, what) = if held.tension_n > breaking_n {
-        let what = format!("in the mean over {over_s} s, above its breaking tension of {breaking_n} N: it would break; the answer is that of a cable that does not");
+        let what = format!(
+            "in the mean over {over_s} s, above its breaking tension of {breaking_n} N: it would break; the answer is that of a cable that does not"
+        );
         (WarningKind::BreakingTension, held, breaking_n, what)
     } else if greatest.tension_n > breaking_n {
-        let what = format!("for an instant, above its service tension of {service_n} N and its breaking tension of {breaking_n} N. It holds, as its mean over {over_s} s is {:.1} N at most; but how high such an instant is hangs on loss and mesh", held.tension_n);
+        let what = format!(
+            "for an instant, above its service tension of {service_n} N and its breaking tension of {breaking_n} N. It holds, as its mean over {over_s} s is {:.1} N at most; but how high such an instant is hangs on loss and mesh",
+            held.tension_n
+        );
         (WarningKind::ServiceTension, greatest, service_n, what)
     } else if greatest.tension_n > service_n {
-        let what = format!("above its service tension of {service_n} N: it wears out early; lengthen the cable or lighten the load");
+        let what = format!(
+            "above its service tension of {service_n} N: it wears out early; lengthen the cable or lighten the load"
+        );
         (WarningKind::ServiceTension, greatest, service_n, what)
     } else {
         return;
