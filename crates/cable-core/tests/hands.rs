@@ -56,9 +56,19 @@ fn a_motion_of_a_scene_is_followed_exactly() {
 
 #[test]
 fn a_motion_faster_than_any_model_follows_is_refused_with_its_speed() {
-    let error = moved(0.05).validate().unwrap_err().to_string();
-    assert!(error.contains("375.0 m/s") && error.contains("300 m/s"), "{error}");
-    assert!(moved(0.07).validate().is_ok());
+    for model in [Model::Fem, Model::MassSpring, Model::Auto] {
+        let mut sim = Simulation::new(moved(0.05), model).unwrap();
+        sim.settle().unwrap();
+        let error = sim.step(1.0 / 60.0).unwrap_err().to_string();
+        assert!(error.contains("`b`") && error.contains("375.0 m/s") && error.contains("300 m/s"), "{error}");
+    }
+    // Without inertia there is no speed.
+    let mut slow = Simulation::new(moved(0.05), Model::Catenary).unwrap();
+    slow.settle().unwrap();
+    for _ in 0..10 {
+        slow.step_quasi_static(0.05).unwrap();
+    }
+    assert!((at(&slow) - Vec2::new(14.0, 3.0)).norm() < 1e-9);
 }
 
 /// Drawn away by 3 m at once.

@@ -47,8 +47,6 @@ pub(super) const WHEEL_RADIUS: Range = Range::new(0.0, 1e4, "0 to 1e4 m");
 pub(super) const RADIUS: Range = Range::new(1e-6, 1e6, "1e-6 to 1e6 m");
 pub(super) const THICKNESS: Range = Range::new(0.0, 1e3, "0 to 1000 m");
 pub(super) const ROLLING: Range = Range::new(0.0, 1.0, "0 to 1");
-/// Beyond, `mass-spring` cuts velocities, and air, which no model has, would rule.
-pub(super) const MOTION_SPEED: Range = Range::new(0.0, 300.0, "300 m/s");
 pub(super) const ROBOT_SPEED: Range = Range::new(1e-6, 20.0, "1e-6 to 20 m/s");
 
 /// How much a temperature may change a length: beyond, expansion or temperature is surely mistyped.

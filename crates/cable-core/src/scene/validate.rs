@@ -162,13 +162,6 @@ pub(super) fn force(at: &Path<'_>, constant: Option<Point>, times: &[f64], force
 /// A motion and that it starts where its support is.
 pub(super) fn motion(at: &Path<'_>, motion: &Motion, start: Point) -> Checked {
     series(&at.key("times_s"), &at.key("points_m"), &motion.times_s, &motion.points_m, range::COORDINATE)?;
-    let (speed, time_s) = motion.fastest();
-    if !range::MOTION_SPEED.holds(speed) {
-        return Err(at.key("points_m").shape(format!(
-            "it moves at {speed:.1} m/s at {time_s:.4} s: a support is followed up to {}",
-            range::MOTION_SPEED.text
-        )));
-    }
     /// Further apart than this the first instant would be a jump, m.
     const SAME_PLACE: f64 = 1e-6;
     let p = motion.at(0.0).0;
