@@ -7,7 +7,7 @@ use cable_core::contact::World;
 use cable_core::contact::own::OwnShape;
 use cable_core::math::Vec2;
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, catalog};
-use cable_core::{Model, Simulation, SolveError};
+use cable_core::{Model, Settings, Simulation, SolveError};
 use proptest::prelude::{Strategy, any};
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
@@ -87,7 +87,9 @@ fn throw_about(scenes: impl IntoIterator<Item = usize>, frames: usize, dt: f64, 
         let c = &scene.cables[0];
         let own = OwnShape { diameter: if self_contact { c.diameter_m } else { 0.0 } };
         let world = World::new(&scene.obstacles, c.friction, c.diameter_m / 2.0);
-        let mut sim = Simulation::new(scene.clone(), Model::Fem).unwrap();
+        // Hands ten times as fast as an arm.
+        let settings = Settings { hand_speed_m_per_s: 20.0, ..Settings::default() };
+        let mut sim = Simulation::with_settings(scene.clone(), Model::Fem, settings).unwrap();
         if let Err(e) = sim.settle() {
             count.failed.push(format!("scene {s} settle: {e}"));
             continue;

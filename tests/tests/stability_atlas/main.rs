@@ -122,7 +122,8 @@ pub fn load(name: &str, force_n: [f64; 2]) -> Support {
 
 /// The simulation of a scene; a scene that is no scene is a fault of the regime.
 pub fn simulation(scene: Scene, model: Model) -> Result<Simulation, SolveError> {
-    match Simulation::with_settings(scene, model, Settings::default()) {
+    // Hands are thrown about.
+    match Simulation::with_settings(scene, model, Settings { hand_speed_m_per_s: 20.0, ..Settings::default() }) {
         Ok(s) => Ok(s),
         Err(Error::Solve(e)) => Err(e),
         Err(e) => panic!("the scene of a regime is refused: {e}"),

@@ -89,16 +89,31 @@ pub struct Settings {
     /// Longest inner step of `fem` with inertia, s, 1e-9 to 1; None = 1/240 s.
     #[serde(default)]
     pub inner_step_s: Option<f64>,
+    /// Fastest a support follows the hand that drags it while masses move, m/s.
+    #[serde(default = "hand_speed")]
+    pub hand_speed_m_per_s: f64,
+}
+
+fn hand_speed() -> f64 {
+    drive::HAND_SPEED
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { tolerance: 1e-3, segments: None, stepping: Stepping::Auto, inner_step_s: None }
+        Self {
+            tolerance: 1e-3,
+            segments: None,
+            stepping: Stepping::Auto,
+            inner_step_s: None,
+            hand_speed_m_per_s: hand_speed(),
+        }
     }
 }
 
 /// Least tolerance that makes sense: below, rounding is more than is asked for. From 1 on nothing is asked, which a test of one mesh may want.
 pub(crate) const LEAST_TOLERANCE: f64 = 1e-14;
+/// Slowest hand, m/s: slower is none that means to move anything.
+const LEAST_HAND_SPEED: f64 = 0.01;
 /// Segments, as a scene's own.
 const SEGMENTS: (usize, usize) = (1, 100_000);
 /// Inner steps, s: below, a second of motion takes longer than anyone waits; above, nothing that moves is seen.
@@ -116,6 +131,10 @@ impl Settings {
         }
         if let Some(value) = self.inner_step_s.filter(|step| !INNER_STEPS_S.contains(step)) {
             return Err(SolveError::Setting { name: "inner_step_s", value, allowed: "1e-9 to 1 s" });
+        }
+        if !(LEAST_HAND_SPEED..=drive::MAX_SPEED).contains(&self.hand_speed_m_per_s) {
+            let (name, allowed) = ("hand speed", "0.01 to 20 m/s");
+            return Err(SolveError::Setting { name, value: self.hand_speed_m_per_s, allowed });
         }
         match self.segments {
             Some(n) if !(SEGMENTS.0..=SEGMENTS.1).contains(&n) => {
@@ -222,7 +241,7 @@ pub trait Mechanics: Send {
         self.adopt(&State::of_nodes(&answer.nodes, time_s))
     }
 
-    /// From now on a support follows `target_m` (smoothly and with capped speed in `Dynamic` steps; at the
+    /// From now on a support follows `target_m` (smoothly and no faster than [`Settings::hand_speed_m_per_s`] in `Dynamic` steps; at the
     /// next `settle` or quasi-static step it is there) instead of its `motion`.
     fn drag_support(&mut self, support: usize, target_m: Vec2);
 
@@ -272,8 +291,14 @@ fn refuse_mobilised(model: Model, problem: &Problem) -> Result<(), SolveError> {
 /// `Setting` when the settings are out of range, `Unsupported` when the model lacks what the scene needs.
 pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Box<dyn Mechanics>, SolveError> {
     settings.validate()?;
+    built(model, problem, settings)
+}
+
+fn built(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Box<dyn Mechanics>, SolveError> {
     if let Some((by, copy)) = problem.similar.clone() {
-        return Ok(Box::new(similar::Similar::new(problem, by, build(model, copy, settings)?)));
+        let hand_speed_m_per_s = settings.hand_speed_m_per_s * by.length / by.time;
+        let inner = built(model, copy, Settings { hand_speed_m_per_s, ..settings })?;
+        return Ok(Box::new(similar::Similar::new(problem, by, inner)));
     }
     if !matches!(model, Model::Spans | Model::Auto) {
         refuse_mobilised(model, &problem)?;
@@ -287,7 +312,7 @@ pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<
         }
         Model::Auto => match auto::choose(&problem, auto::Question::Rest).0 {
             Model::Spans => Ok(Box::new(relay::Relay::new(problem, settings)?)),
-            chosen => build(chosen, problem, settings),
+            chosen => built(chosen, problem, settings),
         },
     }
 }

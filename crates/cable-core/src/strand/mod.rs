@@ -20,7 +20,7 @@ use crate::error::SolveError;
 use crate::math::{Vec2, larger};
 use crate::model::gauge::{Limit, TensionGauge};
 use crate::model::{self, Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
-use crate::problem::Problem;
+use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost, TensionPeak, TensionPeaks};
 use crate::state::State;
@@ -48,6 +48,10 @@ const MOST_PIECES: usize = 32;
 /// A pulley is off the cable when a new end is this near, in elements. Smaller: the end runs into the pulley, where there is
 /// no element left on one side; larger: it drops off visibly early. 2 leaves a moving node beside the pulley.
 const OFF_PULLEY: f64 = 2.0;
+
+/// Fastest motion of a support that is followed while masses move, m/s. Slower: motions are refused that every model follows; faster:
+/// `mass-spring` cuts velocities, and air, which no model has, would rule.
+const FASTEST_MOTION: f64 = 300.0;
 
 /// A velocity that changes nothing, m/s, and tells a model that a piece which broke at rest is not at rest any more.
 const WAKE: f64 = 1e-100;
@@ -80,6 +84,8 @@ pub(crate) struct Strand {
     led: Option<Placement>,
     /// The greatest tensions since they were last forgotten, in motion.
     peaks: Option<TensionPeaks>,
+    /// A motion that is too fast for masses that move, in words.
+    too_fast: Option<String>,
 }
 
 /// A part of the cable that holds together.
@@ -109,7 +115,9 @@ impl Strand {
         let gauge = TensionGauge::over(problem.cable.breaking_time_s);
         let piece = Piece::new(mechanics, Deal::whole(&problem), gauge);
         let dragged = vec![None; problem.supports.len()];
+        let too_fast = problem.supports.iter().find_map(too_fast);
         Ok(Self {
+            too_fast,
             problem,
             asked: model,
             settings,
@@ -186,6 +194,9 @@ impl Strand {
     /// Advances time by exactly `dt_s`, breaking on the way where it must. Without inertia it stops where something turns
     /// back: one step from before a reversal to after it would be another history.
     pub fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+        if let (Inertia::Dynamic, Some(feature)) = (inertia, &self.too_fast) {
+            return Err(SolveError::Unsupported { model: self.model(), feature: feature.clone() });
+        }
         let mut sum = StepReport::default();
         let (mut left, end_s) = (dt_s, self.time_s() + dt_s);
         while inertia == Inertia::QuasiStatic
@@ -563,6 +574,17 @@ impl Piece {
     }
 }
 
+/// What is to be said of a motion that is too fast.
+fn too_fast(support: &SupportPoint) -> Option<String> {
+    let (speed, time_s) = support.motion.as_ref()?.fastest();
+    (speed > FASTEST_MOTION).then(|| {
+        format!(
+            "the motion of support `{}`, which reaches {speed:.1} m/s at {time_s:.4} s: with inertia one is followed up to {FASTEST_MOTION} m/s",
+            support.name
+        )
+    })
+}
+
 fn wake(state: &mut State) {
     if state.velocity_m_per_s.iter().all(|v| v.norm() == 0.0)
         && let Some(v) = state.velocity_m_per_s.first_mut()
@@ -611,6 +633,7 @@ impl Clone for Strand {
             dragged: self.dragged.clone(),
             led: self.led,
             peaks: self.peaks,
+            too_fast: self.too_fast.clone(),
         }
     }
 }

@@ -13,6 +13,9 @@ use crate::units;
 #[must_use]
 pub fn place(state: &AppState, cable: usize, support: usize) -> Option<Point> {
     let s = state.scene.cables.get(cable)?.supports.get(support)?;
+    if let Some([behind, _]) = drawn(state, cable, support) {
+        return Some(behind);
+    }
     let solved = state.snapshot.solution.as_ref().and_then(|x| x.cables.get(cable));
     let answer = solved.and_then(|c| c.supports.get(support)).map(|r| [r.x_m, r.y_m]);
     // A moving or free support is where the answer says; a still one where it is being edited.
@@ -23,12 +26,50 @@ pub fn place(state: &AppState, cable: usize, support: usize) -> Option<Point> {
     }
 }
 
+/// Nearer than this to where it is drawn, a support is there, m.
+const THERE_M: f64 = 1e-3;
+
+/// Where a support is that a hand draws while masses move, and where it is drawn to, m; None where it is there.
+#[must_use]
+pub fn drawn(state: &AppState, cable: usize, support: usize) -> Option<[Point; 2]> {
+    let s = state.scene.cables.get(cable)?.supports.get(support)?;
+    let held = matches!(s.kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Pulley);
+    let to = s.at_m.filter(|_| held && s.motion.is_none() && s.release_s.is_none())?;
+    let solved = state.snapshot.solution.as_ref()?.cables.get(cable)?;
+    let at = solved.supports.get(support).map(|r| [r.x_m, r.y_m])?;
+    let far = (at[0] - to[0]).hypot(at[1] - to[1]) > THERE_M;
+    (far && solved.assumptions.inertia && !state.playback.paused).then_some([at, to])
+}
+
+/// Windings of the spring between a hand and what it draws.
+const WINDINGS: usize = 9;
+/// Half of its width, points.
+const HALF_WIDTH: f32 = 4.0;
+
+/// The spring from a support to the hand that draws it.
+fn spring(view: &View<'_>, [at, to]: [Pos2; 2]) {
+    let stroke = Stroke::new(1.4, view.palette.accent);
+    let (way, length) = (to - at, at.distance(to));
+    let across = if length > 0.0 { vec2(-way.y, way.x) * (HALF_WIDTH / length) } else { egui::Vec2::ZERO };
+    let mut points = vec![at];
+    for k in 1..2 * WINDINGS {
+        let side = if k % 2 == 0 { across } else { -across };
+        points.push(at + way * (k as f32 / (2 * WINDINGS) as f32) + side);
+    }
+    points.push(to);
+    view.painter.line(points, stroke);
+    view.painter.circle_stroke(to, 4.5, stroke);
+}
+
 /// The signs.
 pub fn draw(view: &View<'_>, state: &AppState) {
     for (cable, c) in state.scene.cables.iter().enumerate() {
         for (support, s) in c.supports.iter().enumerate() {
             let Some(at) = place(state, cable, support) else { continue };
             let p = view.at(at);
+            if let Some(ends) = drawn(state, cable, support) {
+                spring(view, ends.map(|p| view.at(p)));
+            }
             let item = Item::Support { cable, support };
             if state.picked(item) || state.hovered == Some(item) {
                 let strong = if state.picked(item) { 0.5 } else { 0.28 };

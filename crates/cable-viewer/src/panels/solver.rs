@@ -24,6 +24,14 @@ const SEGMENTS: Quantity = Quantity {
     help: "Elements every cable is cut into; overrides the cables' own numbers. More: finer and slower.",
 };
 
+const HAND: Quantity = Quantity {
+    name: "Fastest hand",
+    unit: Unit::M_PER_S,
+    usual: [0.1, 20.0],
+    logarithmic: true,
+    help: "How fast a support follows the pointer that drags it while time runs. What the pointer is ahead is drawn as a spring and said as a warning. 2 m/s is an arm's; a faster one may break the cable by a flick of the mouse.",
+};
+
 const MODELS: [(Model, &str, &str); 5] = [
     (Model::Auto, "Automatic", "The cheapest model that can answer the scene; the reason stands below"),
     (
@@ -79,6 +87,15 @@ fn mesh(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         // A solver told to be exact, or not to be, would run for ever or not at all.
         let tolerance = tolerance.clamp(1e-9, 0.5);
         commands.push(Command::SetSettings(Settings { tolerance, ..state.settings }));
+    }
+    let known = Known {
+        value: state.settings.hand_speed_m_per_s,
+        origin: Some((usual.hand_speed_m_per_s, "the default".to_owned())),
+        ..Known::default()
+    };
+    if let Some(speed) = row(ui, &HAND, &known).value {
+        let hand_speed_m_per_s = speed.clamp(0.01, 20.0);
+        commands.push(Command::SetSettings(Settings { hand_speed_m_per_s, ..state.settings }));
     }
     let mut fixed = segments.is_some();
     let help = "Off: the cable's own number, else by the tolerance";

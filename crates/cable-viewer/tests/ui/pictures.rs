@@ -48,6 +48,19 @@ fn waypoints_dark() {
     compare("waypoints_dark", state, Theme::Dark);
 }
 
+/// A hand 2 m ahead of the end it draws while time runs.
+#[test]
+fn a_hand_draws_an_end_dark() {
+    let mut state = solved(catalog::hanging_span());
+    let mut answer = state.snapshot.solution.as_deref().expect("an answer").clone();
+    answer.cables[0].assumptions.inertia = true;
+    state.snapshot.solution = Some(answer.into());
+    state.playback.paused = false;
+    let at = state.scene.cables[0].supports[1].at_m.expect("held");
+    state.scene.cables[0].supports[1].at_m = Some([at[0] - 1.0, at[1] + 1.7]);
+    compare("a_hand_draws_an_end_dark", state, Theme::Dark);
+}
+
 #[test]
 fn loads_and_wind_light() {
     compare("loads_and_wind_light", solved(catalog::loads_wind_heat()), Theme::Light);

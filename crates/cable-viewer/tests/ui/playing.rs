@@ -1,8 +1,10 @@
 //! Time: play, pause, step, reset, and dragging a support while time runs.
 
 use cable_core::scene::catalog;
+use cable_core::solution::WarningKind;
 use cable_core::{Model, Scene, Solution};
 use cable_viewer::ViewerApp;
+use cable_viewer::canvas::supports;
 use cable_viewer::command::{Command, PlaybackCommand, SceneCommand};
 use cable_viewer::state::{Item, WorkerStatus};
 use egui::Key;
@@ -12,8 +14,8 @@ use crate::{apply, open, open_span, support};
 
 /// One frame at normal speed, s.
 const FRAME_S: f64 = 1.0 / 60.0;
-/// Fastest a dragged support moves, m/s (the core's cap), and a margin for rounding.
-const MOST_SPEED: f64 = 20.0 * 1.000_001;
+/// Fastest a dragged support moves, m/s (the default of the core), and a margin for rounding.
+const MOST_SPEED: f64 = 2.0 * 1.000_001;
 
 fn solution(harness: &Harness<'_, ViewerApp>) -> Solution {
     harness.state().state.snapshot.solution.as_deref().expect("an answer").clone()
@@ -106,6 +108,28 @@ fn s08_slow_motion_and_fast_motion_keep_their_speed() {
         let passed = solution(&harness).time_s - before;
         assert!((passed - 6.0 * FRAME_S * speed).abs() < 1e-9, "{speed}: {passed} s");
     }
+}
+
+#[test]
+fn what_a_hand_is_ahead_of_a_support_is_drawn_and_said() {
+    let mut harness = open_span();
+    apply(&mut harness, Command::SetModel(Model::Fem));
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    let at = harness.state().state.scene.cables[0].supports[1].at_m.expect("held");
+    let (item, to_m) = (Item::Support { cable: 0, support: 1 }, [at[0] - 1.0, at[1] + 0.5]);
+    apply(&mut harness, Command::Scene(SceneCommand::Move { item, to_m }));
+    harness.run_steps(8);
+    let drawn = supports::drawn(&harness.state().state, 0, 1).expect("the hand is ahead");
+    assert_eq!(drawn[1], to_m);
+    let moved = (drawn[0][0] - at[0]).hypot(drawn[0][1] - at[1]);
+    assert!((0.02..0.4).contains(&moved), "{moved} m");
+    assert_eq!(supports::place(&harness.state().state, 0, 1), Some(drawn[0]));
+    let said = solution(&harness).warnings;
+    let held = said.iter().find(|w| w.kind == WarningKind::SupportHeld).expect("said");
+    assert!(held.message.contains("2 m/s"), "{}", held.message);
+    harness.run_steps(60);
+    assert_eq!(supports::drawn(&harness.state().state, 0, 1), None);
+    assert_eq!(supports::place(&harness.state().state, 0, 1), Some(to_m));
 }
 
 #[test]

@@ -18,6 +18,7 @@ use super::task::{Done, Failure, Pose, Task};
 use crate::contact::barrier::Barrier;
 use crate::error::{Place, SolveError};
 use crate::math::{Vec2, bounded};
+use crate::model::drive::{fastest, held_warning};
 use crate::model::gauge::TensionGauge;
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::{Problem, Series};
@@ -113,6 +114,8 @@ pub struct Dynamics {
     pub(super) pace: Pace,
     /// Part of its frequency that a vibration may be off by.
     pub(super) tolerance: f64,
+    /// Fastest hand, m/s.
+    pub(super) hand_speed: f64,
     pub(super) rested: bool,
     pub(super) held_back: Vec<usize>,
     /// Until when the present advance goes, s.
@@ -193,6 +196,7 @@ impl Dynamics {
             sleep: Sleep::default(),
             pace: Pace::new(settings.inner_step_s.unwrap_or(INNER_STEP)),
             tolerance: settings.tolerance,
+            hand_speed: settings.hand_speed_m_per_s,
             rested: false,
             held_back: Vec::new(),
             due: f64::INFINITY,
@@ -478,23 +482,24 @@ impl Dynamics {
 
     pub(super) fn report(&self, done: Done, halved_steps: usize, inner_step_s: f64) -> StepReport {
         let cost = Cost { iterations: done.iterations, halved_steps, residual_n: done.residual, inner_step_s };
-        let warnings = self
-            .held_back
-            .iter()
-            .filter_map(|&k| {
-                let seat = Seat::Pulley(k);
-                let sliding = self.mesh.sliding.iter().position(|s| s.is_some_and(|s| s.seat == seat));
-                let node = self.support_node.get(k).copied().flatten().or(sliding)?;
-                let s = self.problem.supports.get(k)?;
-                let (most, reached) = (crate::model::drive::MAX_SPEED, self.motion.v[node].norm());
-                let message = format!(
-                    "support `{}` lags behind where it is sent: an obstacle is in its way, or it would be faster than {most} m/s",
-                    s.name
-                );
-                let (name, arc_length) = (&self.problem.cable.name, self.mesh.arc_length[node]);
-                Some(Warning::new(WarningKind::SupportHeld, name, arc_length, [reached, most], message))
-            })
-            .collect();
+        let node_of = |k: usize| {
+            let seat = Seat::Pulley(k);
+            let sliding = || self.mesh.sliding.iter().position(|s| s.is_some_and(|s| s.seat == seat));
+            self.support_node.get(k).copied().flatten().or_else(sliding)
+        };
+        let held = self.held_back.iter().filter_map(|&k| {
+            let (node, s) = (node_of(k)?, self.problem.supports.get(k)?);
+            let behind = (self.task.target.get(node)? - self.motion.x[node]).norm();
+            let message = format!("support `{}` does not come where it is sent: an obstacle is in its way", s.name);
+            let (name, arc_length) = (&self.problem.cable.name, self.mesh.arc_length[node]);
+            Some(Warning::new(WarningKind::SupportHeld, name, arc_length, [behind, 0.0], message))
+        });
+        let drawn = self.motion.followers.iter().enumerate().filter_map(|(k, f)| {
+            let (f, node) = (f.as_ref().filter(|f| f.behind_m() > 0.0)?, node_of(k)?);
+            let fastest = fastest(&self.problem, k, self.hand_speed);
+            Some(held_warning(&self.problem, k, self.mesh.arc_length[node], (f, fastest)))
+        });
+        let warnings = held.chain(drawn).collect();
         StepReport { cost, warnings }
     }
 

@@ -14,7 +14,7 @@ use super::prepare::damping_time;
 use super::sliding::{Balanced, Grip};
 use super::task::{Done, Failure, Pose};
 use crate::math::Vec2;
-use crate::model::drive::Follower;
+use crate::model::drive::{Follower, fastest};
 
 /// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
 const QUIET: f64 = 0.05;
@@ -79,9 +79,7 @@ impl Dynamics {
         for (k, target) in dragged.iter().enumerate() {
             if let (Some(target), Some(at)) = (target, self.support_position(k)) {
                 let mut f = self.motion.followers[k].unwrap_or_else(|| Follower::at_rest(at));
-                if f.follow(*target, h) && !self.held_back.contains(&k) {
-                    self.held_back.push(k);
-                }
+                f.follow(*target, h, fastest(&self.problem, k, self.hand_speed));
                 self.motion.followers[k] = Some(f);
             }
         }

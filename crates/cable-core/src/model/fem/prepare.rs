@@ -96,8 +96,10 @@ impl Dynamics {
             {
                 let hand = dragged.and_then(|d| d.get(k).copied().flatten());
                 let at = self.motion.followers[k].map_or(hand.unwrap_or(at), |f| f.position());
-                // What was stopped and is free again catches up no faster than anything moves.
-                let at = if to > from { within(self.motion.x[node], at, MAX_SPEED * (to - from)) } else { at };
+                // What was stopped and is free again catches up no faster than this beyond its own motion, which is followed exactly.
+                let own = s.place_at(from).map_or(0.0, |(before, _)| (at - before).norm());
+                let most = if self.motion.followers[k].is_some() { 0.0 } else { own } + MAX_SPEED * (to - from);
+                let at = if to > from { within(self.motion.x[node], at, most) } else { at };
                 mesh.held[node] = true;
                 task.target[node] = clear_way(problem, self.motion.x[node], at);
                 if task.target[node] != at && !self.held_back.contains(&k) {

@@ -29,7 +29,7 @@ mod stepping;
 
 use std::sync::Arc;
 
-use super::drive::Follower;
+use super::drive::{Follower, fastest, held_warning};
 use super::fem::FemModel;
 use super::gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
@@ -258,6 +258,12 @@ impl MassSpringModel {
 
     fn report(&mut self) -> StepReport {
         self.warn_of_corners();
+        for (k, f) in self.followers.iter().enumerate() {
+            if let Some(f) = f.as_ref().filter(|f| f.behind_m() > 0.0) {
+                let fastest = fastest(&self.problem, k, self.settings.hand_speed_m_per_s);
+                self.warnings.push(held_warning(&self.problem, k, self.s[self.node_of[k]], (f, fastest)));
+            }
+        }
         StepReport { cost: self.cost, warnings: std::mem::take(&mut self.warnings) }
     }
 }

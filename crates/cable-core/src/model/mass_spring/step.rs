@@ -4,6 +4,7 @@ use super::pulley::NONE;
 use super::{Follower, MassSpringModel};
 use crate::error::SolveError;
 use crate::math::Vec2;
+use crate::model::drive::fastest;
 use crate::model::gauge::TensionGauge;
 
 /// Fraction of the stable sub-step that is used: more is unstable as elements stretch, less is slower.
@@ -224,7 +225,7 @@ impl MassSpringModel {
                 None => at,
                 Some(target) => {
                     let follower = self.followers[k].get_or_insert_with(|| Follower::at_rest(self.x[node]));
-                    follower.follow(target, h);
+                    follower.follow(target, h, fastest(&self.problem, k, self.settings.hand_speed_m_per_s));
                     follower.position()
                 }
             };
