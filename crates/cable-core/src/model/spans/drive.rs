@@ -145,11 +145,14 @@ impl Network {
                 }
             }
         }
-        // What comes down in a heap, and what hangs over crests.
-        if let Some(strands) = strands_of(layout, |k| loose::lay(layout, k, (&course, instant))) {
-            return Ok((Self { strands, course, instant: instant.clone() }, Taken::default()));
-        }
         Err(stopped.or(first).unwrap_or((Trouble::Restless { s: 0.0 }, None)))
+    }
+
+    /// A cable that comes down in a heap and hangs over crests, without tension where it lies.
+    pub fn heaped(layout: &Layout, instant: &Instant) -> Option<Self> {
+        let course = layout.course(layout.curves(), instant);
+        let strands = strands_of(layout, |k| loose::lay(layout, k, (&course, instant)))?;
+        Some(Self { strands, course, instant: instant.clone() })
     }
 
     /// How a cable can be laid as it is: posts seen nearer, too, where it lies on something and nothing else holds it.

@@ -164,18 +164,25 @@ impl SpansModel {
         Turned { problem: &self.problem }
     }
 
-    /// A rest of the cable laid along its way, counted from its upper end; where none is found so, from the other.
+    /// A rest of the cable laid along its way, counted from its upper end; where none is found so, from the other; else as it comes down.
     fn lay(&mut self, instant: &mut Instant, work: &mut Work) -> Result<Taken, Unfound> {
         let (network, taken) = match Network::rest(&self.layout, instant, work) {
             Ok(found) => found,
             Err(unfound) => {
-                let Ok(other) = counted(&self.problem, !self.layout.turned) else { return Err(unfound) };
                 let (mut there, mut dragged) = (Instant::default(), self.dragged.clone());
                 dragged.reverse();
-                other.instant(&dragged, self.time_s, &mut there);
-                let Ok(found) = Network::rest(&other, &there, work) else { return Err(unfound) };
-                (self.layout, self.dragged, *instant) = (other, dragged, there);
-                found
+                let other = counted(&self.problem, !self.layout.turned).ok().and_then(|other| {
+                    other.instant(&dragged, self.time_s, &mut there);
+                    Some((Network::rest(&other, &there, work).ok()?, other))
+                });
+                match (other, Network::heaped(&self.layout, instant)) {
+                    (Some((found, other)), _) => {
+                        (self.layout, self.dragged, *instant) = (other, dragged, there);
+                        found
+                    }
+                    (None, Some(heap)) => (heap, Taken::default()),
+                    (None, None) => return Err(unfound),
+                }
             }
         };
         self.network = Some(network);
