@@ -8,9 +8,12 @@ use super::layout::{Hold, Layout};
 use super::path::End;
 use super::sliding::{Grip, Seat, Sliding};
 use crate::error::SolveError;
-use crate::math::Vec2;
+use crate::math::{Vec2, perp};
 use crate::scene::PulleySide;
 use crate::state::State;
+
+/// Part of a bar that a new node keeps away from its ends. Less: bars without mass; more: corners beside a node are still cut off.
+const LEAST_PART: f64 = 0.05;
 
 impl Dynamics {
     /// Puts a sliding node at every pulley: where `state` has the cable nearest to it, else where the layout lays it.
@@ -85,6 +88,9 @@ impl Dynamics {
         if !same {
             self.thread_pulleys(Some(state));
         }
+        if !same {
+            self.follow_corners(state);
+        }
         if !same || self.refuse_buried().is_err() {
             let mut x = std::mem::take(&mut self.motion.x);
             push_out(&self.problem, &self.mesh, &mut x, 0.9 * REACH);
@@ -97,6 +103,35 @@ impl Dynamics {
         self.rested = same || !still;
         self.renew_task();
         Ok(())
+    }
+
+    /// Bars that cut off by more than the cable's radius what the state leads round get a node where the state is farthest from them: from
+    /// there inside nothing tells on which side of a corner they were, and nothing could push them out.
+    fn follow_corners(&mut self, state: &State) {
+        let (mut e, mut left) = (0, state.arc_length_m.len());
+        while e + 1 < self.mesh.nodes() {
+            let farthest = if left > 0 && !self.is_clear(e) { self.farthest(e, state) } else { None };
+            let Some((s, at)) = farthest else {
+                e += 1;
+                continue;
+            };
+            self.insert(e + 1, s, None);
+            self.motion.x[e + 1] = at;
+            self.motion.v[e + 1] = state.velocity_at(s).unwrap_or_default();
+            left -= 1;
+        }
+    }
+
+    /// Arc length and place (m) of the node of a state that is farthest from a bar, if that is more than the cable's radius.
+    fn farthest(&self, e: usize, state: &State) -> Option<(f64, Vec2)> {
+        let (s, x) = (&self.mesh.arc_length, &self.motion.x);
+        let (from, along) = (x[e], (x[e + 1] - x[e]).try_normalize(0.0)?);
+        let near = LEAST_PART * (s[e + 1] - s[e]);
+        let nodes = state.arc_length_m.iter().copied().zip(state.position_m.iter().copied());
+        let inside = nodes.filter(|(a, _)| *a > s[e] + near && *a < s[e + 1] - near);
+        let off = |p: &Vec2| perp(along).dot(&(p - from)).abs();
+        let farthest = inside.reduce(|a, b| if off(&b.1) > off(&a.1) { b } else { a })?;
+        (off(&farthest.1) > self.problem.radius).then_some(farthest)
     }
 
     /// Takes all sliding nodes out.
