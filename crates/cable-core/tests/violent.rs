@@ -1,6 +1,6 @@
 //! Violent motion: cables thrown about over random ground, beams and posts, dropped, let go at an end, and torn. Which laws are broken is counted in every
 //! output step. Asked: no figure that is no number, nothing inside anything, less than one step in a thousand that stops, and less than one in two hundred with friction
-//! beyond its cone (338 of 287 760: slack cables that hang on the far side of a round). Not yet asked: nothing inside anything of torn cables (13 of 71 774 steps, a bar over a crest).
+//! beyond its cone (338 of 287 760: slack cables that hang on the far side of a round). Torn cables are counted by themselves.
 //!
 //! All 600 scenes: `cargo test --locked -p cable-core --test violent -- --ignored --nocapture` (five minutes); `FROM=100 TO=200` takes some of them,
 //! `TELL=friction NODES=1` tells what was found of a law.
@@ -103,7 +103,6 @@ fn run(number: u64, seconds: f64, found: &mut Found) {
         let sound = |n: &cable_core::solution::Node| n.x_m.is_finite() && n.y_m.is_finite() && n.tension_n.is_finite();
         found.no_number += usize::from(!cable.nodes.iter().all(sound));
         for f in answer.verification.iter().flat_map(|v| &v.findings) {
-            // Open: a torn cable's bar may cut a crest by a few millimetres; counted by itself.
             let torn = if cable.breaks.is_empty() { "" } else { " (torn)" };
             let entry = found.broken.entry(format!("{}{torn}", f.law.name())).or_insert((0, 0.0, String::new()));
             entry.0 += 1;
@@ -168,7 +167,8 @@ fn campaign(scenes: std::ops::Range<u64>, seconds: f64) -> Found {
 }
 
 fn inside(found: &Found) -> usize {
-    found.broken.get(Law::Penetration.name()).map_or(0, |b| b.0)
+    let name = Law::Penetration.name();
+    found.broken.iter().filter(|(law, _)| law.starts_with(name)).map(|(_, b)| b.0).sum()
 }
 
 #[test]
@@ -183,7 +183,7 @@ fn ten_violent_scenes_obey_the_laws() {
 fn six_hundred_violent_scenes_obey_the_laws() {
     let number = |name: &str, or: u64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(or);
     let found = campaign(number("FROM", 0)..number("TO", 600), 2.0);
-    assert!(found.no_number == 0, "{found:?}");
+    assert!(found.no_number == 0 && inside(&found) == 0, "{found:?}");
     assert!((found.stopped.len() as f64) < 1e-3 * found.steps as f64, "{found:?}");
     let beyond = found.broken.get(Law::Friction.name()).map_or(0, |b| b.0);
     assert!((beyond as f64) < 5e-3 * found.steps as f64, "{found:?}");
