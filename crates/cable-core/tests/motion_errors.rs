@@ -215,6 +215,6 @@ fn errors_of_twelve_motions_are_covered() {
 #[ignore = "minutes: 120 random motions, each on four times as many elements, too"]
 fn errors_in_motion_are_covered() {
     let (figures, peaks) = campaign(number("FROM", 0)..number("TO", 20));
-    assert!(figures.iter().all(|t| t.covered * 100 >= t.all * 88), "{figures:?}");
+    assert!(figures.iter().all(|t| t.covered * 100 >= t.all * 85), "{figures:?}");
     assert!(peaks.inside * 100 >= peaks.all * 90, "{peaks:?}");
 }

@@ -24,8 +24,8 @@ const MEMORY_S: f64 = 0.25;
 /// Greatest tensions are compared of one to two times so much time, s: a jerk comes later in one run than in another. Less: jerks of two runs are
 /// apart; more: one that all runs have hides another that they do not agree on.
 const WINDOW_S: f64 = 0.05;
-/// A finer run may differ from the finest of three by so many times what that one differs by from the others. Of 6999 figures of random
-/// motions (`motion_errors.rs`) 94 in 100 are covered; with 1.5 it is 92.
+/// A finer run may differ from the finest of three by so many times what that one differs by from the others. Of random motions
+/// (`motion_errors.rs`) some 92 figures in 100 are covered; with 1.5 it is two less.
 const BEYOND: f64 = 2.0;
 /// Where the finest is so much nearer to the second than to the third they converge, and what it differs by from the second counts alone. With
 /// 0.6 it is 92 in 100, too; without this what swings freely is said to be up to 20 times as wrong as it is.
