@@ -34,8 +34,11 @@ const THERE_M: f64 = 1e-3;
 pub fn drawn(state: &AppState, cable: usize, support: usize) -> Option<[Point; 2]> {
     let s = state.scene.cables.get(cable)?.supports.get(support)?;
     let held = matches!(s.kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Pulley);
-    let to = s.at_m.filter(|_| held && s.motion.is_none() && s.release_s.is_none())?;
-    let solved = state.snapshot.solution.as_ref()?.cables.get(cable)?;
+    let solution = state.snapshot.solution.as_ref()?;
+    let solved = solution.cables.get(cable)?;
+    // Moved by the scene it is drawn to where its motion has it now.
+    let moved = s.motion.as_ref().map(|m| m.at(solution.time_s).0).map(|p| [p.x, p.y]);
+    let to = moved.or(s.at_m).filter(|_| held && s.release_s.is_none())?;
     let at = solved.supports.get(support).map(|r| [r.x_m, r.y_m])?;
     let far = (at[0] - to[0]).hypot(at[1] - to[1]) > THERE_M;
     (far && solved.assumptions.inertia && !state.playback.paused).then_some([at, to])

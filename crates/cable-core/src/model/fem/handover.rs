@@ -88,7 +88,9 @@ impl Dynamics {
         if !same {
             self.thread_pulleys(Some(state));
         }
-        if !same {
+        // What moves goes on from where it is; a state at rest is brought to rest on this mesh.
+        let still = self.motion.v.iter().all(|v| v.norm() == 0.0);
+        if !same && !still {
             self.follow_corners(state);
         }
         if !same || self.refuse_buried().is_err() {
@@ -99,7 +101,6 @@ impl Dynamics {
         self.refuse_buried()?;
         self.forget_history();
         // A state at rest on another mesh is brought to rest on this one before it moves.
-        let still = self.motion.v.iter().all(|v| v.norm() == 0.0);
         self.rested = same || !still;
         self.renew_task();
         Ok(())
