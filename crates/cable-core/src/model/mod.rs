@@ -86,7 +86,7 @@ pub struct Settings {
     /// How `mass-spring` takes dynamic steps.
     #[serde(default)]
     pub stepping: Stepping,
-    /// Longest inner step of `fem` with inertia, s, 1e-9 to 1; None = 1/240 s.
+    /// Longest inner step of `fem` with inertia, s, 1e-9 to 1, of the cable at the scale at which it is solved; None = 1/240 s.
     #[serde(default)]
     pub inner_step_s: Option<f64>,
     /// Fastest a support follows the hand that drags it while masses move, m/s.

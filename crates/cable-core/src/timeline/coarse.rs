@@ -26,33 +26,33 @@ const MEMORY_S: f64 = 0.25;
 const WINDOW_S: f64 = 0.05;
 /// A finer run may differ from the finest of three by so many times what that one differs by from the others. Of random motions
 /// (`motion_errors.rs`) some 92 figures in 100 are covered; with 1.5 it is two less.
-const BEYOND: f64 = 2.0;
+const ERROR_FACTOR: f64 = 2.0;
 /// Where the finest is so much nearer to the second than to the third they converge, and what it differs by from the second counts alone. With
 /// 0.6 it is 92 in 100, too; without this what swings freely is said to be up to 20 times as wrong as it is.
-const CONVERGING: f64 = 0.5;
+const CONVERGENCE_RATIO: f64 = 0.5;
 /// Greatest tensions of a window that agree to this part, as a logarithm, converge.
-const AGREE: f64 = 0.2;
+const AGREEMENT: f64 = 0.2;
 /// Where they do not agree a finer run may have this part of the least, and so many times the greatest: the whip of a flexible cable grows with
 /// every mesh. With 0.7 and 2 the greatest tension of 6 in 100 runs on four times as many elements is outside, with these of 4.
-const UNKNOWN: [f64; 2] = [0.6, 2.5];
+const UNRESOLVED_FACTORS: [f64; 2] = [0.6, 2.5];
 /// Tensions below this part of the greatest so far are none.
-const NONE: f64 = 1e-9;
+const LEAST_TENSION: f64 = 1e-9;
 
-/// The coarse runs, and what they say.
+/// The coarse runs beside a fine one.
 pub(super) struct CoarseRuns {
-    runs: Vec<Run>,
+    runs: Vec<CoarseRun>,
     /// Steps of a window.
     window: u64,
-    own: Vec<Lately>,
+    own: Vec<RecentPeaks>,
     /// What is known from the windows before, a cable.
     before: Vec<TensionRanges>,
 }
 
 /// Greatest tensions and means of one cable, N, in the window before and in the present one.
 #[derive(Clone, Copy)]
-struct Lately([[f64; 2]; 2]);
+struct RecentPeaks([[f64; 2]; 2]);
 
-impl Lately {
+impl RecentPeaks {
     fn begin(tops: [f64; 2]) -> Self {
         Self([tops; 2])
     }
@@ -71,13 +71,13 @@ impl Lately {
     }
 }
 
-struct Run {
+struct CoarseRun {
     simulation: Simulation,
     step: Instant,
     count: u64,
-    /// What is remembered of what each cable differs by.
-    apart: Vec<ErrorEstimates>,
-    lately: Vec<Lately>,
+    /// Remembered difference of each cable from the fine run.
+    differences: Vec<ErrorEstimates>,
+    recent: Vec<RecentPeaks>,
 }
 
 impl CoarseRuns {
@@ -92,12 +92,12 @@ impl CoarseRuns {
             let mut simulation = fine.resolved(1.0 / times as f64).ok().flatten()?;
             simulation.settle().ok()?;
             let cables = fine.answers().iter().zip(simulation.answers());
-            let apart = cables.map(|(a, b)| ErrorEstimates::between(b, a)).collect();
-            let lately = tops(&simulation).map(Lately::begin).collect();
-            runs.push(Run { simulation, step: step.times(times), count: 0, apart, lately });
+            let differences = cables.map(|(a, b)| ErrorEstimates::between(b, a)).collect();
+            let recent = tops(&simulation).map(RecentPeaks::begin).collect();
+            runs.push(CoarseRun { simulation, step: step.times(times), count: 0, differences, recent });
         }
         let steps = (WINDOW_S / step.seconds() / COMMON as f64).round().max(1.0);
-        let own: Vec<Lately> = tops(fine).map(Lately::begin).collect();
+        let own: Vec<RecentPeaks> = tops(fine).map(RecentPeaks::begin).collect();
         let before = vec![TensionRanges::default(); own.len()];
         Some(Self { runs, window: COMMON * steps as u64, own, before })
     }
@@ -112,7 +112,7 @@ impl CoarseRuns {
             self.before = (0..self.own.len()).map(|cable| self.ranges(cable)).collect();
             self.own.iter_mut().zip(tops(fine)).for_each(|(own, tops)| own.turn(tops));
             for run in &mut self.runs {
-                run.lately.iter_mut().zip(tops(&run.simulation)).for_each(|(own, tops)| own.turn(tops));
+                run.recent.iter_mut().zip(tops(&run.simulation)).for_each(|(own, tops)| own.turn(tops));
             }
         }
         Some(self)
@@ -128,28 +128,28 @@ impl CoarseRuns {
     }
 
     fn range(&self, cable: usize, which: usize, before: [f64; 2]) -> [f64; 2] {
-        let of = |all: &[Lately]| all.get(cable).map_or(0.0, |lately| lately.greatest(which));
-        let none = NONE * larger(of(&self.own), before[1]);
+        let of = |all: &[RecentPeaks]| all.get(cable).map_or(0.0, |recent| recent.greatest(which));
+        let none = LEAST_TENSION * larger(of(&self.own), before[1]);
         let own = larger(of(&self.own), none);
-        let others = self.runs.iter().map(|run| larger(of(&run.lately), none));
+        let others = self.runs.iter().map(|run| larger(of(&run.recent), none));
         let (least, most) =
             others.fold((own, own), |(least, most), n| (if n < least { n } else { least }, larger(most, n)));
         // Of a cable that no run pulls nothing is apart.
         let apart = if own > 0.0 { larger((own / least).ln(), (most / own).ln()) } else { 0.0 };
         // That they converge is not enough: then the greatest tensions of 6 in 100 runs more are outside.
-        let here = match apart <= AGREE {
-            true => [own * (-BEYOND * apart).exp(), own * (BEYOND * apart).exp()],
-            false => [least * UNKNOWN[0], most * UNKNOWN[1]],
+        let here = match apart <= AGREEMENT {
+            true => [own * (-ERROR_FACTOR * apart).exp(), own * (ERROR_FACTOR * apart).exp()],
+            false => [least * UNRESOLVED_FACTORS[0], most * UNRESOLVED_FACTORS[1]],
         };
         [larger(before[0], here[0]), larger(before[1], here[1])]
     }
 
     /// What is known of the errors of each cable.
     pub fn errors(&self) -> impl Iterator<Item = ErrorEstimates> {
-        let cables = self.runs.first().map_or(0, |run| run.apart.len());
+        let cables = self.runs.first().map_or(0, |run| run.differences.len());
         (0..cables).map(|k| {
-            let apart = self.runs.iter().filter_map(|run| run.apart.get(k).copied());
-            apart.reduce(|finer, coarser| finer.with(&coarser, beyond)).unwrap_or_default()
+            let differences = self.runs.iter().filter_map(|run| run.differences.get(k).copied());
+            differences.reduce(|finer, coarser| finer.with(&coarser, error_bound)).unwrap_or_default()
         })
     }
 }
@@ -161,24 +161,24 @@ fn tops(simulation: &Simulation) -> impl Iterator<Item = [f64; 2]> {
 }
 
 /// By how much a finer run may differ from one that differs by so much from a coarser one, and from a still coarser one.
-fn beyond(finer: f64, coarser: f64) -> f64 {
-    match finer <= CONVERGING * coarser {
-        true => BEYOND * finer,
-        false => BEYOND * larger(finer, coarser),
+fn error_bound(finer: f64, coarser: f64) -> f64 {
+    match finer <= CONVERGENCE_RATIO * coarser {
+        true => ERROR_FACTOR * finer,
+        false => ERROR_FACTOR * larger(finer, coarser),
     }
 }
 
-impl Run {
+impl CoarseRun {
     fn follow(&mut self, fine: &Simulation, now: Instant) -> Option<()> {
         while self.step.times(self.count + 1) <= now {
             let next = self.step.times(self.count + 1);
             advance(&mut self.simulation, next, Inertia::Dynamic).ok()?;
             self.count += 1;
-            self.lately.iter_mut().zip(tops(&self.simulation)).for_each(|(own, tops)| own.note(tops));
+            self.recent.iter_mut().zip(tops(&self.simulation)).for_each(|(own, tops)| own.note(tops));
             let kept = (-self.step.seconds() / MEMORY_S).exp();
             let cables = fine.answers().iter().zip(self.simulation.answers());
-            for (apart, (a, b)) in self.apart.iter_mut().zip(cables) {
-                *apart = ErrorEstimates::between(b, a).or_larger(&apart.times(kept));
+            for (difference, (a, b)) in self.differences.iter_mut().zip(cables) {
+                *difference = ErrorEstimates::between(b, a).or_larger(&difference.times(kept));
             }
         }
         Some(())
