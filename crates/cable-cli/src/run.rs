@@ -82,8 +82,8 @@ struct Reached {
 impl Reached {
     fn of(timeline: &Timeline) -> Option<Self> {
         let top = |run: &RunPeaks| run.peaks.greatest.tension_n;
-        let peaks = timeline.peaks().iter().copied().reduce(|a, b| if top(&b) > top(&a) { b } else { a })?;
-        Some(Self { peaks, relative_error: timeline.relative_error() })
+        let peaks = timeline.monitor().peaks().iter().copied().reduce(|a, b| if top(&b) > top(&a) { b } else { a })?;
+        Some(Self { peaks, relative_error: timeline.monitor().relative_error() })
     }
 
     fn lines(&self, tolerance: f64) -> Vec<String> {
@@ -312,7 +312,7 @@ fn refined(
     for _ in 0..arguments.refine {
         let mut timeline = Timeline::new(simulation.clone(), inertia, step).with_errors();
         timeline.at(Moment::nearest(arguments.duration_s), |_| ())?;
-        if timeline.relative_error().is_none_or(|error| error <= arguments.common.tolerance) {
+        if timeline.monitor().relative_error().is_none_or(|error| error <= arguments.common.tolerance) {
             break;
         }
         let Ok(Some(mut finer)) = simulation.resolved(2.0) else { break };

@@ -5,15 +5,14 @@
 //! nanosecond: 1/240 s and 0.1 ms are both whole numbers of them, and no sum of steps rounds.
 
 mod coarse;
+mod monitor;
+
+pub use self::monitor::RunMonitor;
 
 use crate::error::SolveError;
-use crate::math::larger;
 use crate::model::Inertia;
-use crate::scene::Cable;
 use crate::simulation::Simulation;
-use crate::solution::{CableSolution, Solution, TensionPeaks, Warning, WarningKind};
-
-use self::coarse::CoarseRuns;
+use crate::solution::{Solution, TensionPeaks};
 
 /// Ticks in a second: the least common multiple of nanoseconds and of thirds of them, so that 1/60, 1/240 and 1/3840 s are whole.
 const TICKS_PER_S: f64 = 3e9;
@@ -74,11 +73,7 @@ pub struct Timeline {
     step: Instant,
     /// Steps made.
     count: u64,
-    coarse: Option<CoarseRuns>,
-    /// One a cable.
-    peaks: Vec<RunPeaks>,
-    /// Greatest error of a force so far, N; None where one was not known.
-    worst_n: Option<f64>,
+    monitor: RunMonitor,
 }
 
 impl Timeline {
@@ -91,17 +86,15 @@ impl Timeline {
             Inertia::QuasiStatic => QUASI_STATIC_STEP_S,
         };
         let step = Instant::nearest(step_s.unwrap_or(usual_s)).max(Instant(1));
-        let at_rest = |answer: &CableSolution| RunPeaks { peaks: answer.peaks_at(simulation.time_s()), ranges: None };
-        let peaks = simulation.answers().iter().map(at_rest).collect();
-        Self { simulation, inertia, step, count: 0, coarse: None, peaks, worst_n: Some(0.0) }
+        let monitor = RunMonitor::new(&simulation);
+        Self { simulation, inertia, step, count: 0, monitor }
     }
 
     /// The same, with errors in motion: coarser runs go beside it, for a third of its cost. Where there is none (no elements, or no
     /// inertia), nothing is added to what the model says.
     #[must_use]
     pub fn with_errors(mut self) -> Self {
-        self.coarse = CoarseRuns::beside(&self.simulation, self.inertia, self.step);
-        self.note();
+        self.monitor = RunMonitor::with_errors(&mut self.simulation, self.inertia);
         self
     }
 
@@ -117,18 +110,10 @@ impl Timeline {
         self.step.seconds()
     }
 
-    /// The greatest tensions so far, one a cable.
+    /// What is known of the run so far.
     #[must_use]
-    pub fn peaks(&self) -> &[RunPeaks] {
-        &self.peaks
-    }
-
-    /// The greatest error so far of the greatest tension and of any support's force, in parts of the greatest tension of the run; None where one
-    /// was not known.
-    #[must_use]
-    pub fn relative_error(&self) -> Option<f64> {
-        let most = self.peaks.iter().map(|run| run.peaks.greatest.tension_n).fold(0.0, larger);
-        self.worst_n.map(|worst| if most > 0.0 { worst / most } else { worst })
+    pub fn monitor(&self) -> &RunMonitor {
+        &self.monitor
     }
 
     /// Makes all steps up to an instant, `watch` looking at each, and returns the answer at the instant itself. An instant before the last
@@ -139,18 +124,15 @@ impl Timeline {
     pub fn at(&mut self, instant: Instant, mut watch: impl FnMut(&Simulation)) -> Result<Solution, SolveError> {
         while self.step.times(self.count + 1) <= instant {
             let next = self.step.times(self.count + 1);
-            advance(&mut self.simulation, next, self.inertia)?;
+            advance(&mut self.simulation, next.seconds(), self.inertia)?;
             self.count += 1;
-            self.coarse = self.coarse.take().and_then(|coarse| coarse.follow(&self.simulation, (next, self.count)));
-            self.note();
+            self.monitor.follow(&mut self.simulation);
             watch(&self.simulation);
         }
         let mut solution = if self.step.times(self.count) < instant {
             let mut copy = self.simulation.clone();
-            advance(&mut copy, instant, self.inertia)?;
-            if let Some(coarse) = &self.coarse {
-                copy.tell_errors(coarse.errors());
-            }
+            advance(&mut copy, instant.seconds(), self.inertia)?;
+            self.monitor.tell_errors(&mut copy);
             copy.solution()
         } else {
             self.simulation.solution()
@@ -159,42 +141,11 @@ impl Timeline {
         solution.time_s = instant.max(self.step.times(self.count)).seconds();
         Ok(solution)
     }
-
-    /// Notes what the last step adds to what is known, and says it.
-    fn note(&mut self) {
-        if let Some(coarse) = &self.coarse {
-            self.simulation.tell_errors(coarse.errors());
-        }
-        let mut warnings = Vec::new();
-        let cables = self.simulation.scene().cables.iter().zip(self.simulation.answers());
-        for (k, (run, (cable, answer))) in self.peaks.iter_mut().zip(cables).enumerate() {
-            run.peaks = run.peaks.with(answer.peaks_at(self.simulation.time_s()));
-            run.ranges = self.coarse.as_ref().map(|coarse| coarse.ranges(k));
-            warnings.extend(may_break(cable, answer, run));
-            let force = answer.errors.max_tension_n.zip(answer.errors.support_force_n).map(|(a, b)| larger(a, b));
-            self.worst_n = self.worst_n.zip(force).map(|(a, b)| larger(a, b));
-        }
-        self.simulation.tell(warnings);
-    }
 }
 
-/// Whether a cable breaks where what is known of its tensions leaves that open.
-fn may_break(cable: &Cable, answer: &CableSolution, run: &RunPeaks) -> Option<Warning> {
-    let ([from, to], breaking_n) = (run.ranges?.held_n, cable.breaking_tension_n);
-    let (broke, held, over_s) = (!answer.breaks.is_empty(), run.peaks.held, run.peaks.over_s);
-    let open = if broke { from < breaking_n } else { to >= breaking_n };
-    let does = if broke { "broke here, and may hold" } else { "held here, and may break" };
-    let message = format!(
-        "`{}` {does}: its greatest mean tension over {over_s} s is {:.0} N, {from:.0} to {to:.0} N as coarser runs differ from it, and it breaks at {breaking_n} N: pull less, or more slowly",
-        cable.name, held.tension_n
-    );
-    let warning = Warning::new(WarningKind::MayBreak, &cable.name, held.arc_length_m, [to, breaking_n], message);
-    open.then_some(warning)
-}
-
-/// One step to an instant.
-fn advance(simulation: &mut Simulation, to: Instant, inertia: Inertia) -> Result<(), SolveError> {
-    let dt_s = to.seconds() - simulation.time_s();
+/// One step to a time (s).
+fn advance(simulation: &mut Simulation, to_s: f64, inertia: Inertia) -> Result<(), SolveError> {
+    let dt_s = to_s - simulation.time_s();
     match inertia {
         Inertia::Dynamic => simulation.step(dt_s),
         Inertia::QuasiStatic => simulation.step_quasi_static(dt_s),

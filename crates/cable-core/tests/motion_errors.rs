@@ -165,10 +165,10 @@ fn compare(scene: &Scene, model: Model, tallies: &mut [Tally; 4], peaks: &mut Pe
         tallies[2].note(said.contact_force_n, is.contact_force_n, force);
         tallies[3].note(said.position_m, is.position_m, length);
     }
-    let (peaks_of, which) = (&run.peaks()[0], std::env::var("HELD").is_ok());
+    let (peaks_of, which) = (&run.monitor().peaks()[0], std::env::var("HELD").is_ok());
     let ranges = peaks_of.ranges?;
     let [from, to] = if which { ranges.held_n } else { ranges.greatest_n };
-    let better = fine.peaks()[0].peaks;
+    let better = fine.monitor().peaks()[0].peaks;
     let truth = if which { better.held.tension_n } else { better.greatest.tension_n };
     peaks.all += 1;
     peaks.below += usize::from(truth < from * (1.0 - 1e-9));

@@ -75,7 +75,7 @@ fn a_cable_may_break_where_runs_do_not_agree_that_it_holds() {
         sim.settle().unwrap();
         let mut timeline = Timeline::new(sim, Inertia::Dynamic, None).with_errors();
         let answer = timeline.at(Instant::nearest(2.0), |_| ()).unwrap();
-        let run = timeline.peaks()[0];
+        let run = timeline.monitor().peaks()[0];
         let [from, to] = run.ranges.expect("coarser runs").held_n;
         assert!(from <= run.peaks.held.tension_n && run.peaks.held.tension_n <= to, "{run:?}");
         let said = answer.warnings.iter().any(|w| w.kind == WarningKind::MayBreak);

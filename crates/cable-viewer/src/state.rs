@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use cable_core::math::Point;
+use cable_core::timeline::RunPeaks;
 use cable_core::{Model, Scene, SceneError, Settings, Solution};
 
 use crate::camera::Camera;
@@ -207,6 +208,8 @@ pub struct Snapshot {
     pub scene: Option<Arc<Scene>>,
     /// The last good answer.
     pub solution: Option<Arc<Solution>>,
+    /// The greatest tensions of each cable in the run so far; empty where it is not known from its start.
+    pub peaks: Vec<RunPeaks>,
     /// Wall time of the solve or of the steps it took, s.
     pub solve_wall_s: f64,
     /// Why the present scene has no answer.

@@ -6,7 +6,7 @@
 //! limit*, Phil. Trans. R. Soc. A 226, 1927, without the extrapolation). Where a cable is thrown about the three go different ways, and so
 //! would a finer one: what is known is then only what they have in common. They cost a quarter and a ninth of the run.
 
-use super::{Instant, TensionRanges, advance};
+use super::{TensionRanges, advance};
 use crate::estimates::ErrorEstimates;
 use crate::math::larger;
 use crate::model::Inertia;
@@ -16,6 +16,8 @@ use crate::simulation::Simulation;
 const TIMES: [u64; 2] = [2, 3];
 /// Steps after which all runs are at one instant.
 const COMMON: u64 = 6;
+/// Part of a time by which a sum of steps may be short of it.
+const ROUNDING: f64 = 1e-9;
 
 /// A difference is forgotten with this time, s. Less: errors vanish wherever two runs cross; more: what once struck is uncertain long after
 /// it lies still.
@@ -39,17 +41,21 @@ const UNRESOLVED_FACTORS: [f64; 2] = [0.6, 2.5];
 const LEAST_TENSION: f64 = 1e-9;
 
 /// The coarse runs beside a fine one.
+#[derive(Debug)]
 pub(super) struct CoarseRuns {
     runs: Vec<CoarseRun>,
-    /// Steps of a window.
-    window: u64,
+    inertia: Inertia,
+    /// Steps that the fine run has made.
+    count: u64,
+    /// When the present window began, s.
+    window_began_s: f64,
     own: Vec<RecentPeaks>,
     /// What is known from the windows before, a cable.
     before: Vec<TensionRanges>,
 }
 
 /// Greatest tensions and means of one cable, N, in the window before and in the present one.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct RecentPeaks([[f64; 2]; 2]);
 
 impl RecentPeaks {
@@ -71,10 +77,11 @@ impl RecentPeaks {
     }
 }
 
+#[derive(Debug)]
 struct CoarseRun {
     simulation: Simulation,
-    step: Instant,
-    count: u64,
+    /// How many steps of the fine run are one of it.
+    times: u64,
     /// Remembered difference of each cable from the fine run.
     differences: Vec<ErrorEstimates>,
     recent: Vec<RecentPeaks>,
@@ -82,7 +89,7 @@ struct CoarseRun {
 
 impl CoarseRuns {
     /// Coarse runs beside one that has settled; None where it has no elements, or too few, or a coarse one does not come to rest.
-    pub fn beside(fine: &Simulation, inertia: Inertia, step: Instant) -> Option<Self> {
+    pub fn beside(fine: &Simulation, inertia: Inertia) -> Option<Self> {
         // Without inertia models say their errors by themselves.
         if inertia != Inertia::Dynamic {
             return None;
@@ -94,21 +101,28 @@ impl CoarseRuns {
             let cables = fine.answers().iter().zip(simulation.answers());
             let differences = cables.map(|(a, b)| ErrorEstimates::between(b, a)).collect();
             let recent = tops(&simulation).map(RecentPeaks::begin).collect();
-            runs.push(CoarseRun { simulation, step: step.times(times), count: 0, differences, recent });
+            runs.push(CoarseRun { simulation, times, differences, recent });
         }
-        let steps = (WINDOW_S / step.seconds() / COMMON as f64).round().max(1.0);
         let own: Vec<RecentPeaks> = tops(fine).map(RecentPeaks::begin).collect();
         let before = vec![TensionRanges::default(); own.len()];
-        Some(Self { runs, window: COMMON * steps as u64, own, before })
+        Some(Self { runs, inertia, count: 0, window_began_s: fine.time_s(), own, before })
     }
 
-    /// Goes on to the run they are beside, which has made so many steps; None where one of them cannot.
-    pub fn follow(mut self, fine: &Simulation, (now, count): (Instant, u64)) -> Option<Self> {
+    /// The same is done to each of them as to the run they are beside.
+    pub fn steer(&mut self, mut how: impl FnMut(&mut Simulation)) {
+        self.runs.iter_mut().for_each(|run| how(&mut run.simulation));
+    }
+
+    /// Goes on to the run they are beside, which has made one more step; None where one of them cannot.
+    pub fn follow(mut self, fine: &Simulation) -> Option<Self> {
+        self.count += 1;
         self.own.iter_mut().zip(tops(fine)).for_each(|(own, tops)| own.note(tops));
-        for run in &mut self.runs {
-            run.follow(fine, now)?;
+        for run in self.runs.iter_mut().filter(|run| self.count.is_multiple_of(run.times)) {
+            run.follow(fine, self.inertia)?;
         }
-        if count.is_multiple_of(self.window) {
+        // Sums of steps round.
+        if self.count.is_multiple_of(COMMON) && fine.time_s() - self.window_began_s >= WINDOW_S * (1.0 - ROUNDING) {
+            self.window_began_s = fine.time_s();
             self.before = (0..self.own.len()).map(|cable| self.ranges(cable)).collect();
             self.own.iter_mut().zip(tops(fine)).for_each(|(own, tops)| own.turn(tops));
             for run in &mut self.runs {
@@ -169,17 +183,14 @@ fn error_bound(finer: f64, coarser: f64) -> f64 {
 }
 
 impl CoarseRun {
-    fn follow(&mut self, fine: &Simulation, now: Instant) -> Option<()> {
-        while self.step.times(self.count + 1) <= now {
-            let next = self.step.times(self.count + 1);
-            advance(&mut self.simulation, next, Inertia::Dynamic).ok()?;
-            self.count += 1;
-            self.recent.iter_mut().zip(tops(&self.simulation)).for_each(|(own, tops)| own.note(tops));
-            let kept = (-self.step.seconds() / MEMORY_S).exp();
-            let cables = fine.answers().iter().zip(self.simulation.answers());
-            for (difference, (a, b)) in self.differences.iter_mut().zip(cables) {
-                *difference = ErrorEstimates::between(b, a).or_larger(&difference.times(kept));
-            }
+    fn follow(&mut self, fine: &Simulation, inertia: Inertia) -> Option<()> {
+        let before_s = self.simulation.time_s();
+        advance(&mut self.simulation, fine.time_s(), inertia).ok()?;
+        self.recent.iter_mut().zip(tops(&self.simulation)).for_each(|(own, tops)| own.note(tops));
+        let kept = ((before_s - fine.time_s()) / MEMORY_S).exp();
+        let cables = fine.answers().iter().zip(self.simulation.answers());
+        for (difference, (a, b)) in self.differences.iter_mut().zip(cables) {
+            *difference = ErrorEstimates::between(b, a).or_larger(&difference.times(kept));
         }
         Some(())
     }

@@ -6,7 +6,8 @@ use std::time::Instant;
 use cable_core::math::vec2;
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
-use cable_core::{Error, Model, Scene, Settings, Simulation, Solution, SolveError};
+use cable_core::timeline::RunMonitor;
+use cable_core::{Error, Model, Scene, Settings, Simulation, Solution};
 
 use super::draft;
 use super::request::{Drag, Edit, Request, Resume};
@@ -54,6 +55,9 @@ pub struct Engine {
     draft: bool,
     /// That draft has not come to rest: it goes on falling frame by frame.
     falling: bool,
+    /// What is known of the run so far; None where it does not go on from a start that has settled: a change while time runs begins
+    /// another.
+    monitor: Option<RunMonitor>,
     /// Wall time of the last answer to an edit, s.
     solve_s: f64,
     /// Number of a drag while time runs that no frame shows yet.
@@ -94,6 +98,7 @@ impl Default for Engine {
             drafts: false,
             draft: false,
             falling: false,
+            monitor: None,
             solve_s: 0.0,
             dragged: 0,
             tick_s: 0.0,
@@ -237,6 +242,7 @@ impl Engine {
     /// The solver panicked: what it held cannot be trusted any more.
     pub fn abandon(&mut self, message: &str) -> Report {
         self.simulation = None;
+        self.monitor = None;
         self.before_motion = None;
         self.start_kept = false;
         self.draft = false;
@@ -263,6 +269,7 @@ impl Engine {
         let draft = if slow(old.model()) { falls } else { falls.or_else(coarse) };
         let Some(draft) = draft else { return false };
         self.simulation = Some(draft);
+        self.monitor = None;
         self.before_motion = None;
         self.start_kept = false;
         self.draft = true;
@@ -294,6 +301,7 @@ impl Engine {
         }
         self.draft = false;
         self.coarse_since = None;
+        self.monitor = None;
         // Models are compared by what they answer for the scene as laid, not for where another model left the cable.
         let same_model = self.edit.as_ref().is_some_and(|e| e.model == edit.model && e.settings == edit.settings);
         let from = old.as_ref().filter(|o| same_model || o.time_s() > 0.0);
@@ -353,6 +361,9 @@ impl Engine {
         if let Some(simulation) = &mut self.simulation {
             simulation.drag_support(drag.cable, drag.support, vec2(drag.to_m));
         }
+        if let Some(monitor) = &mut self.monitor {
+            monitor.steer(|simulation| simulation.drag_support(drag.cable, drag.support, vec2(drag.to_m)));
+        }
         if let Some(edit) = &mut self.edit {
             edit.scene = drag.scene;
         }
@@ -366,6 +377,7 @@ impl Engine {
         let mut then = Simulation::for_question(edit.scene.clone(), edit.model, edit.settings, MOTION)?;
         then.resume(&answer)?;
         self.simulation = Some(then);
+        self.monitor = None;
         self.before_motion = None;
         self.edit = Some(edit);
         self.start_kept = false;
@@ -381,6 +393,7 @@ impl Engine {
         let (Some(edit), Some(old)) = (&self.edit, &self.simulation) else { return };
         if let Some(coarse) = draft::moving(edit, old, true) {
             self.simulation = Some(coarse);
+            self.monitor = None;
             self.coarse_since = Some(Instant::now());
         }
     }
@@ -392,6 +405,7 @@ impl Engine {
             && let Some(full) = draft::moving(edit, old, false)
         {
             self.simulation = Some(full);
+            self.monitor = None;
         }
     }
 
@@ -401,6 +415,7 @@ impl Engine {
             self.start_kept = false;
         }
         self.answers.clear();
+        self.monitor = None;
         // At the start already: lay the cable anew, which forgets the friction of edits since.
         if self.start_kept
             && self.refused.is_none()
@@ -425,16 +440,29 @@ impl Engine {
         let Some(simulation) = &mut self.simulation else {
             return Ok(());
         };
-        simulation.command_robot(self.robot_order);
         let asked = self.edit.as_ref().map_or(Model::Auto, |e| e.model);
-        let result = if slow(asked) { simulation.step_quasi_static(dt_s) } else { simulation.step(dt_s) };
-        match result {
-            Err(SolveError::Unsupported { .. }) if asked == Model::Auto => {
-                let moving =
-                    take_over(simulation, dt_s, self.edit.as_ref().map_or_else(Settings::default, |e| e.settings))?;
-                self.before_motion = self.simulation.replace(moving);
-            }
-            other => other?,
+        let settings = self.edit.as_ref().map_or_else(Settings::default, |e| e.settings);
+        let inertia = if slow(asked) { Inertia::QuasiStatic } else { Inertia::Dynamic };
+        let mut starts = self.start_kept && simulation.time_s() <= 0.0;
+        if inertia == Inertia::Dynamic && slow(simulation.model()) {
+            let (moving, settled) = moving(simulation, settings)?;
+            self.before_motion = Some(std::mem::replace(simulation, moving));
+            starts &= settled;
+        }
+        if starts {
+            self.monitor = Some(RunMonitor::with_errors(simulation, inertia));
+        }
+        let order = self.robot_order;
+        simulation.command_robot(order);
+        if let Some(monitor) = &mut self.monitor {
+            monitor.steer(|simulation| simulation.command_robot(order));
+        }
+        match inertia {
+            Inertia::QuasiStatic => simulation.step_quasi_static(dt_s)?,
+            Inertia::Dynamic => simulation.step(dt_s)?,
+        }
+        if let Some(monitor) = &mut self.monitor {
+            monitor.follow(simulation);
         }
         self.sample();
         Ok(())
@@ -454,6 +482,7 @@ impl Engine {
         match (result, &self.simulation) {
             (Ok(()), Some(simulation)) => {
                 self.snapshot.solution = Some(Arc::new(simulation.solution()));
+                self.snapshot.peaks = self.monitor.as_ref().map_or_else(Vec::new, |m| m.peaks().to_vec());
                 self.snapshot.error.clone_from(&self.refused);
                 self.snapshot.stale = self.refused.is_some();
                 self.snapshot.draft = self.draft || self.coarse_since.is_some();
@@ -488,10 +517,13 @@ pub fn slow(model: Model) -> bool {
     matches!(model, Model::Catenary | Model::Spans)
 }
 
-/// A simulation that moves takes over from the one that `auto` chose for rest, and takes its first step.
-fn take_over(rest: &Simulation, dt_s: f64, settings: Settings) -> Result<Simulation, Error> {
+/// The simulation that moves from where the one stands that `auto` chose for rest, and whether it has come to rest there on its own mesh.
+fn moving(rest: &Simulation, settings: Settings) -> Result<(Simulation, bool), Error> {
     let mut moving = Simulation::for_question(rest.scene().clone(), Model::Auto, settings, MOTION)?;
     moving.carry(rest)?;
-    moving.step(dt_s)?;
-    Ok(moving)
+    let mut settled = moving.clone();
+    match settled.settle() {
+        Ok(_) => Ok((settled, true)),
+        Err(_) => Ok((moving, false)),
+    }
 }

@@ -221,6 +221,40 @@ fn u12_every_model_answers_what_it_can_and_refuses_the_rest_in_words() {
     }
 }
 
+/// It said "not estimated" as soon as time ran.
+#[test]
+fn figures_have_errors_while_time_runs() {
+    let mut harness = open(catalog::over_beam());
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    harness.run_steps(8);
+    let error = |harness: &Harness<'_, ViewerApp>| solution(harness).cables[0].errors.max_tension_n;
+    let largest = |harness: &Harness<'_, ViewerApp>| solution(harness).max_tension().tension_n;
+    assert!(solution(&harness).time_s > 4.0 * FRAME_S);
+    let at_rest = error(&harness).expect("errors in motion");
+    assert!(at_rest < 0.2 * largest(&harness), "{at_rest} N");
+    // A hand that pulls is felt by the coarser runs, too: what they differ by grows, but they do not stay behind.
+    let last = harness.state().state.scene.cables[0].supports.len() - 1;
+    let at = harness.state().state.scene.cables[0].supports[last].at_m.expect("held");
+    let item = Item::Support { cable: 0, support: last };
+    for k in 1..=12 {
+        let to_m = [at[0] + 0.01 * f64::from(k), at[1]];
+        apply(&mut harness, Command::Scene(SceneCommand::Move { item, to_m }));
+        harness.run_steps(1);
+    }
+    let pulled = error(&harness).expect("errors under the hand");
+    assert!(pulled < 0.5 * largest(&harness), "{pulled} of {} N", largest(&harness));
+    let run = &harness.state().state.snapshot.peaks[0];
+    let [from, to] = run.ranges.expect("a range").greatest_n;
+    let most = run.peaks.greatest.tension_n;
+    assert!(from <= most && most <= to && from > 0.0, "{most} in {from} to {to} N");
+    // What changes the scene while time runs ends what is known.
+    let mut cable = harness.state().state.scene.cables[0].clone();
+    cable.linear_density_kg_per_m *= 2.0;
+    apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
+    harness.run_steps(2);
+    assert_eq!(error(&harness), None);
+}
+
 #[test]
 fn a_property_the_model_lacks_is_refused_beside_the_last_picture() {
     let mut harness = open(catalog::hanging_span());

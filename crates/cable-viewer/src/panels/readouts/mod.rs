@@ -7,6 +7,7 @@ use cable_core::Cable;
 use cable_core::scene::View;
 use cable_core::solution::{CableSolution, ContactState, Node};
 use cable_core::summary::{CableSummary, EndForce, Place, summary};
+use cable_core::timeline::{RunPeaks, TensionRanges};
 use egui::{Color32, Grid, ProgressBar, RichText, Ui};
 
 use super::field;
@@ -47,6 +48,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ends(ui, &first);
         shape(ui, scene.view, &first, commands);
         material(ui, (cable, solved), &first, commands);
+        if let (Some(run), true) = (state.snapshot.peaks.get(index), answer.time_s > 0.0) {
+            greatest_so_far(ui, run);
+        }
         accuracy(ui, solved, &first);
     });
     ui.separator();
@@ -232,6 +236,19 @@ fn material(ui: &mut Ui, (cable, solved): (&Cable, &CableSolution), first: &Cabl
 /// An error of this part of the greatest tension is one of rounding. More: meshes that are very fine are called exact; less: models without a
 /// mesh show their rounding as if it mattered.
 const ROUNDED: f64 = 1e-9;
+
+/// The greatest tension since the run began, and what coarser runs beside it leave open.
+fn greatest_so_far(ui: &mut Ui, run: &RunPeaks) {
+    let most = unit::force(run.peaks.greatest.tension_n);
+    let text = match run.ranges {
+        Some(TensionRanges { greatest_n: [from, to], .. }) => {
+            format!("{most} ({} to {})", unit::force(from), unit::force(to))
+        }
+        None => most,
+    };
+    let help = "Greatest tension of any inner step since the start; in brackets from what to what it may be, as two coarser runs beside this one differ from it";
+    figure(ui, "Greatest so far", text, help, None);
+}
 
 fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
     let text = match solved.error_estimate {

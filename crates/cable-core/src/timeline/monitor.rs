@@ -1,0 +1,102 @@
+//! What is known of a run so far: its greatest tensions, and, from coarser runs beside it, the errors of its figures.
+
+use super::coarse::CoarseRuns;
+use super::{RunPeaks, TensionRanges};
+use crate::math::larger;
+use crate::model::Inertia;
+use crate::scene::Cable;
+use crate::simulation::Simulation;
+use crate::solution::{CableSolution, Warning, WarningKind};
+
+/// Looks at each step of a run, and remembers.
+#[derive(Debug)]
+pub struct RunMonitor {
+    coarse: Option<CoarseRuns>,
+    /// One a cable.
+    peaks: Vec<RunPeaks>,
+    /// Greatest error of a force so far, N; None where one was not known.
+    worst_n: Option<f64>,
+}
+
+impl RunMonitor {
+    /// Of a run that begins with a simulation as it is.
+    #[must_use]
+    pub fn new(simulation: &Simulation) -> Self {
+        let so_far = |answer: &CableSolution| RunPeaks { peaks: answer.peaks_at(simulation.time_s()), ranges: None };
+        let peaks = simulation.answers().iter().map(so_far).collect();
+        Self { coarse: None, peaks, worst_n: Some(0.0) }
+    }
+
+    /// The same, with errors in motion: coarser runs go beside one that has settled at its start, for a third of its cost. Where there is
+    /// none (no elements, or no inertia), nothing is added to what the model says.
+    #[must_use]
+    pub fn with_errors(simulation: &mut Simulation, inertia: Inertia) -> Self {
+        let coarse = CoarseRuns::beside(simulation, inertia);
+        let mut monitor = Self { coarse, ..Self::new(simulation) };
+        monitor.note(simulation);
+        monitor
+    }
+
+    /// The same is done to the coarser runs as to the run: its ends are dragged, its robot is told to drive.
+    pub fn steer(&mut self, how: impl FnMut(&mut Simulation)) {
+        if let Some(coarse) = &mut self.coarse {
+            coarse.steer(how);
+        }
+    }
+
+    /// Looks at a run that has made one more step, and has it say what is known.
+    pub fn follow(&mut self, simulation: &mut Simulation) {
+        self.coarse = self.coarse.take().and_then(|coarse| coarse.follow(simulation));
+        self.note(simulation);
+    }
+
+    /// The greatest tensions so far, one a cable.
+    #[must_use]
+    pub fn peaks(&self) -> &[RunPeaks] {
+        &self.peaks
+    }
+
+    /// The greatest error so far of the greatest tension and of any support's force, in parts of the greatest tension of the run; None where one
+    /// was not known.
+    #[must_use]
+    pub fn relative_error(&self) -> Option<f64> {
+        let most = self.peaks.iter().map(|run| run.peaks.greatest.tension_n).fold(0.0, larger);
+        self.worst_n.map(|worst| if most > 0.0 { worst / most } else { worst })
+    }
+
+    /// Has a simulation say the errors that are known now.
+    pub(super) fn tell_errors(&self, simulation: &mut Simulation) {
+        if let Some(coarse) = &self.coarse {
+            simulation.tell_errors(coarse.errors());
+        }
+    }
+
+    /// Notes what the last step adds to what is known, and says it.
+    fn note(&mut self, simulation: &mut Simulation) {
+        self.tell_errors(simulation);
+        let mut warnings = Vec::new();
+        let cables = simulation.scene().cables.iter().zip(simulation.answers());
+        for (k, (run, (cable, answer))) in self.peaks.iter_mut().zip(cables).enumerate() {
+            run.peaks = run.peaks.with(answer.peaks_at(simulation.time_s()));
+            run.ranges = self.coarse.as_ref().map(|coarse| coarse.ranges(k));
+            warnings.extend(may_break(cable, answer, run));
+            let force = answer.errors.max_tension_n.zip(answer.errors.support_force_n).map(|(a, b)| larger(a, b));
+            self.worst_n = self.worst_n.zip(force).map(|(a, b)| larger(a, b));
+        }
+        simulation.tell(warnings);
+    }
+}
+
+/// Whether a cable breaks where what is known of its tensions leaves that open.
+fn may_break(cable: &Cable, answer: &CableSolution, run: &RunPeaks) -> Option<Warning> {
+    let (TensionRanges { held_n: [from, to], .. }, breaking_n) = (run.ranges?, cable.breaking_tension_n);
+    let (broke, held, over_s) = (!answer.breaks.is_empty(), run.peaks.held, run.peaks.over_s);
+    let open = if broke { from < breaking_n } else { to >= breaking_n };
+    let does = if broke { "broke here, and may hold" } else { "held here, and may break" };
+    let message = format!(
+        "`{}` {does}: its greatest mean tension over {over_s} s is {:.0} N, {from:.0} to {to:.0} N as coarser runs differ from it, and it breaks at {breaking_n} N: pull less, or more slowly",
+        cable.name, held.tension_n
+    );
+    let warning = Warning::new(WarningKind::MayBreak, &cable.name, held.arc_length_m, [to, breaking_n], message);
+    open.then_some(warning)
+}
