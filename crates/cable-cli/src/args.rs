@@ -98,7 +98,7 @@ pub struct RunArguments {
     #[arg(long, value_name = "TIME", value_parser = node_interval)]
     pub nodes_every: Option<NodeInterval>,
     /// Columns of nodes.csv beside time_s and cable, with commas between: arc_length_m, x_m, y_m, vx_m_per_s, vy_m_per_s,
-    /// tension_n, strain, stress_pa, curvature_per_m [default: all]
+    /// tension_n, strain, stress_pa, curvature_per_m, dx_m, dy_m, ax_m_per_s2, ay_m_per_s2 [default: all]
     #[arg(long, value_name = "COLUMNS", value_parser = node_columns)]
     pub node_columns: Option<NodeColumns>,
     /// Folder to write into: a new one, an empty one, or that of an earlier run

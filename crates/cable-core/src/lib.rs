@@ -28,6 +28,7 @@ pub mod energy;
 pub mod error;
 pub mod estimates;
 pub mod files;
+mod kinematics;
 pub mod math;
 pub mod model;
 pub mod origin;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::error::{Error, SolveError};
 use crate::estimates::ErrorEstimates;
+use crate::kinematics::{self, AlongCable};
 use crate::math::{Vec2, larger};
 use crate::model::auto::{self, Question};
 use crate::model::lay::least_sliding;
@@ -41,6 +42,8 @@ pub struct Simulation {
     vehicle: Option<Vehicle>,
     /// The answers of the cables at the present instant.
     answers: Vec<CableSolution>,
+    /// Where the cables were when the run began.
+    first: Vec<AlongCable>,
     watch: Watch,
     energy: Energy,
     cost: Cost,
@@ -110,6 +113,7 @@ impl Simulation {
             cables,
             start: None,
             answers,
+            first: Vec::new(),
             watch: Watch::default(),
             energy: Energy::default(),
             cost: Cost::default(),
@@ -120,6 +124,12 @@ impl Simulation {
     /// Reads the present instant: answers, and what is to be said of them.
     fn look(&mut self, moving: bool) {
         self.answers = self.cables.iter().map(Strand::answer).collect();
+        if !moving {
+            self.first = self.answers.iter().map(|a| AlongCable::places(&a.nodes)).collect();
+        }
+        for (answer, first) in self.answers.iter_mut().zip(&self.first) {
+            kinematics::displace(&mut answer.nodes, first);
+        }
         self.model = self.cables.iter().map(Strand::model).max_by_key(|m| rung(*m)).unwrap_or(self.model);
         let mut bends = Vec::with_capacity(self.cables.len());
         for (strand, answer) in self.cables.iter().zip(&mut self.answers) {
@@ -349,6 +359,7 @@ impl Simulation {
 
     fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
         self.cables.iter_mut().for_each(Strand::forget_peaks);
+        let velocities: Vec<_> = self.answers.iter().map(|a| AlongCable::velocities(&a.nodes)).collect();
         let done = match self.vehicle.is_some() && dt_s > 0.0 && dt_s.is_finite() {
             true => self.drive(dt_s, inertia),
             false => self.each(|c| c.advance(dt_s, inertia)),
@@ -358,6 +369,9 @@ impl Simulation {
         done?;
         // In motion nothing else is there to go back to: the verdict stands with the answer.
         if inertia == Inertia::Dynamic {
+            for (answer, before) in self.answers.iter_mut().zip(&velocities) {
+                kinematics::accelerate(&mut answer.nodes, before, dt_s);
+            }
             return Ok(());
         }
         let Err(error) = self.sound() else { return Ok(()) };

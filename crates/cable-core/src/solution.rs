@@ -213,6 +213,12 @@ pub struct Node {
     /// cable before it. Its size is the tension of a flexible cable; a stiff one has shear as well.
     #[serde(default)]
     pub force_n: [f64; 2],
+    /// How far its material is from where it was when the run began, m.
+    #[serde(default)]
+    pub displacement_m: [f64; 2],
+    /// Mean acceleration of its material over the last step with inertia, m/s²; 0 at rest and without inertia.
+    #[serde(default)]
+    pub acceleration_m_per_s2: [f64; 2],
 }
 
 impl Node {

@@ -34,8 +34,10 @@ fn swing(pulls: &[f64], dt_s: f64) -> [f64; 4] {
     let mean = pulls.iter().sum::<f64>() / pulls.len() as f64;
     let most = |part: &[f64]| part.iter().fold(0.0, |m: f64, p| m.max(p - mean));
     let (first, last) = pulls.split_at(pulls.len() / 2);
-    let crossings = pulls.windows(2).filter(|w| (w[0] - mean) * (w[1] - mean) < 0.0).count();
-    [mean, most(first), most(last), 0.5 * crossings as f64 / (pulls.len() as f64 * dt_s)]
+    let crosses = |k: &usize| (pulls[k - 1] - mean) * (pulls[*k] - mean) < 0.0;
+    let crossings: Vec<usize> = (1..pulls.len()).filter(crosses).collect();
+    let between = (crossings[crossings.len() - 1] - crossings[0]) as f64 * dt_s;
+    [mean, most(first), most(last), 0.5 * (crossings.len() - 1) as f64 / between]
 }
 
 #[test]

@@ -128,3 +128,35 @@ supports = [
         assert!((ratio / capstan - 1.0).abs() < 0.1, "{}: {ratio} instead of {capstan}", support.name);
     }
 }
+
+/// A cable let go at both ends falls as a stone: its nodes say how far and how fast.
+#[test]
+fn nodes_say_how_far_they_came_and_how_their_speed_changes() {
+    for model in [Model::Fem, Model::MassSpring] {
+        let mut scene = catalog::hanging_span();
+        for s in &mut scene.cables[0].supports {
+            s.release_s = Some(1e-6);
+        }
+        let g = scene.environment.gravity_m_per_s2;
+        let mut sim = Simulation::new(scene, model).unwrap();
+        sim.settle().unwrap();
+        let rest = sim.solution().cables[0].nodes.clone();
+        assert!(rest.iter().all(|n| n.displacement_m == [0.0; 2] && n.acceleration_m_per_s2 == [0.0; 2]));
+        for _ in 0..60 {
+            sim.step(1.0 / 240.0).unwrap();
+        }
+        // What held it at its ends leaves waves; its middle of mass knows nothing of them.
+        let nodes = &sim.solution().cables[0].nodes;
+        let mean = |of: &dyn Fn(&cable_core::solution::Node) -> f64| {
+            let length = nodes[nodes.len() - 1].arc_length_m;
+            let part = |w: &[cable_core::solution::Node]| {
+                0.5 * (of(&w[0]) + of(&w[1])) * (w[1].arc_length_m - w[0].arc_length_m) / length
+            };
+            nodes.windows(2).map(part).sum::<f64>()
+        };
+        let (fell, pulled) = (mean(&|n| n.displacement_m[1]), mean(&|n| n.acceleration_m_per_s2[1]));
+        println!("{model}: fell by {fell} m, {pulled} m/s²");
+        assert!((fell / (-0.5 * g * 0.0625) - 1.0).abs() < 1e-2, "{model}: {fell} m");
+        assert!((pulled / -g - 1.0).abs() < 1e-3, "{model}: {pulled} m/s²");
+    }
+}

@@ -152,6 +152,7 @@ fn fill_missing(nodes: &mut [NodeRow]) -> Result<Option<String>, String> {
     let mut missing = Vec::new();
     for row in nodes {
         let n = &mut row.node;
+        let ([dx, dy], [ax, ay]) = (&mut n.displacement_m, &mut n.acceleration_m_per_s2);
         let figures = [
             ("velocity", &mut n.vx_m_per_s),
             ("velocity", &mut n.vy_m_per_s),
@@ -159,6 +160,10 @@ fn fill_missing(nodes: &mut [NodeRow]) -> Result<Option<String>, String> {
             ("strain", &mut n.strain),
             ("stress", &mut n.stress_pa),
             ("curvature", &mut n.curvature_per_m),
+            ("displacement", dx),
+            ("displacement", dy),
+            ("acceleration", ax),
+            ("acceleration", ay),
         ];
         for (name, value) in figures {
             if value.is_nan() {

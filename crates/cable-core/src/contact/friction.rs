@@ -48,12 +48,15 @@ impl Branch {
         }
     }
 
-    /// The branch to try next where this one led to a sliding y. From sliding to sliding the other way leads through holding:
-    /// else a contact that holds is thrown from one side to the other for ever, each time by its whole force.
+    /// The branch to try next where this one led from one sliding y to another. From sliding to sliding the other way leads through holding,
+    /// and so does the way from one side of holding beyond the other, where the law is nearly flat: else a contact that holds is thrown from
+    /// one side to the other for ever, each time by its whole force.
     #[must_use]
-    pub fn next(self, y: f64, epsilon: f64) -> Self {
-        match (self, Self::at(y, epsilon)) {
+    pub fn next(self, [from, to]: [f64; 2], epsilon: f64) -> Self {
+        let across = from.abs() < epsilon && from * to < 0.0;
+        match (self, Self::at(to, epsilon)) {
             (Self::Forwards, Self::Backwards) | (Self::Backwards, Self::Forwards) => Self::Stick,
+            (Self::Stick, _) if across => Self::Stick,
             (_, now) => now,
         }
     }
@@ -143,7 +146,7 @@ mod tests {
             let (_, expected, curvature) = at(y, limit, epsilon);
             assert!((slope - expected).abs() < 1e-12 && (bend - curvature).abs() < 1e-9 * limit / epsilon);
             for branch in all {
-                let next = branch.next(y, epsilon);
+                let next = branch.next([0.0, y], epsilon);
                 assert!(branch == Branch::Stick || next == branch || next == Branch::Stick);
             }
         }
@@ -154,15 +157,18 @@ mod tests {
     #[test]
     fn one_contact_on_a_spring_is_found_in_a_few_iterations() {
         let (limit, epsilon) = (3.0, 1e-5);
-        for (stiffness, force) in [(1.0, 0.5), (1e3, -2.9), (1e3, 3.1), (1e4, 40.0), (10.0, -1e3), (1e5, 0.0)] {
-            for start in [-0.02, -1e-6, 0.0, 3e-5, 0.5] {
+        for (stiffness, force) in
+            [(1.0, 0.5), (1e3, -2.9), (1e3, 3.1), (1e4, 40.0), (10.0, -1e3), (1e5, 0.0), (4.35e4, -2.6)]
+        {
+            for start in [-0.02, -1e-6, 0.0, 9.28e-6, 3e-5, 0.5] {
                 let (mut y, mut branch) = (start, Branch::at(start, epsilon));
                 let residual = |y: f64| stiffness * y + at(y, limit, epsilon).1 - force;
                 let mut iterations = 0;
                 while residual(y).abs() > 1e-9 {
                     let (slope, bend) = branch.force(y, limit, epsilon);
+                    let from = y;
                     y -= (stiffness * y + slope - force) / (stiffness + bend);
-                    branch = branch.next(y, epsilon);
+                    branch = branch.next([from, y], epsilon);
                     iterations += 1;
                     assert!(iterations <= 8, "{stiffness} {force} {start}: {y} {branch:?}");
                 }

@@ -139,6 +139,8 @@ fn answer(mut a: CableSolution, l: f64, t: f64, place: impl Fn(Vec2) -> Vec2) ->
     for n in &mut a.nodes {
         put(&mut n.x_m, &mut n.y_m);
         n.arc_length_m *= l;
+        n.acceleration_m_per_s2 = n.acceleration_m_per_s2.map(|a| a * l / (t * t));
+        n.displacement_m = n.displacement_m.map(|d| d * l);
         n.vx_m_per_s *= l / t;
         n.vy_m_per_s *= l / t;
         n.stress_pa /= l * l;

@@ -6,12 +6,29 @@ use crate::solution::Node;
 
 /// Figures of a node, in the order of the table's columns.
 pub(super) fn node_values(n: &Node) -> [f64; NodeColumns::COUNT] {
-    [n.arc_length_m, n.x_m, n.y_m, n.vx_m_per_s, n.vy_m_per_s, n.tension_n, n.strain, n.stress_pa, n.curvature_per_m]
+    let ([dx_m, dy_m], [ax_m_per_s2, ay_m_per_s2]) = (n.displacement_m, n.acceleration_m_per_s2);
+    [
+        n.arc_length_m,
+        n.x_m,
+        n.y_m,
+        n.vx_m_per_s,
+        n.vy_m_per_s,
+        n.tension_n,
+        n.strain,
+        n.stress_pa,
+        n.curvature_per_m,
+        dx_m,
+        dy_m,
+        ax_m_per_s2,
+        ay_m_per_s2,
+    ]
 }
 
 /// The node with these figures.
 pub(super) fn node_of(values: [f64; NodeColumns::COUNT]) -> Node {
-    let [arc_length_m, x_m, y_m, vx_m_per_s, vy_m_per_s, tension_n, strain, stress_pa, curvature_per_m] = values;
+    let [arc_length_m, x_m, y_m, vx_m_per_s, vy_m_per_s, tension_n, strain, stress_pa, curvature_per_m, more @ ..] =
+        values;
+    let [dx_m, dy_m, ax_m_per_s2, ay_m_per_s2] = more;
     Node {
         arc_length_m,
         x_m,
@@ -22,6 +39,8 @@ pub(super) fn node_of(values: [f64; NodeColumns::COUNT]) -> Node {
         strain,
         stress_pa,
         curvature_per_m,
+        displacement_m: [dx_m, dy_m],
+        acceleration_m_per_s2: [ax_m_per_s2, ay_m_per_s2],
         ..Node::default()
     }
 }
@@ -40,7 +59,7 @@ pub struct UnknownColumn {
 
 impl NodeColumns {
     /// How many there are.
-    pub const COUNT: usize = 9;
+    pub const COUNT: usize = 13;
 
     /// Their names, in the order of the table.
     pub const NAMES: [&str; Self::COUNT] = [
@@ -53,6 +72,10 @@ impl NodeColumns {
         "strain",
         "stress_pa",
         "curvature_per_m",
+        "dx_m",
+        "dy_m",
+        "ax_m_per_s2",
+        "ay_m_per_s2",
     ];
 
     /// All of them.

@@ -3,8 +3,10 @@ use crate::model::Model;
 use crate::solution::{CableSolution, Cost, Energy, Node, SupportReaction};
 use proptest::prelude::*;
 
-fn solution(time_s: f64, values: [f64; 9], name: &str) -> Solution {
-    let [arc_length_m, x_m, y_m, vx_m_per_s, vy_m_per_s, tension_n, strain, stress_pa, curvature_per_m] = values;
+fn solution(time_s: f64, values: [f64; NodeColumns::COUNT], name: &str) -> Solution {
+    let [arc_length_m, x_m, y_m, vx_m_per_s, vy_m_per_s, tension_n, strain, stress_pa, curvature_per_m, more @ ..] =
+        values;
+    let [dx_m, dy_m, ax_m_per_s2, ay_m_per_s2] = more;
     let node = Node {
         arc_length_m,
         x_m,
@@ -15,6 +17,8 @@ fn solution(time_s: f64, values: [f64; 9], name: &str) -> Solution {
         strain,
         stress_pa,
         curvature_per_m,
+        displacement_m: [dx_m, dy_m],
+        acceleration_m_per_s2: [ax_m_per_s2, ay_m_per_s2],
         ..Node::default()
     };
     let support = SupportReaction { name: name.to_owned(), reaction_x_n: x_m, reaction_y_n: y_m, ..Default::default() };
@@ -63,7 +67,7 @@ fn finite() -> impl Strategy<Value = f64> {
 
 proptest! {
     #[test]
-    fn values_come_back_bit_for_bit(values in prop::array::uniform9(finite()), time in finite(), name in "\\PC{1,12}") {
+    fn values_come_back_bit_for_bit(values in prop::array::uniform13(finite()), time in finite(), name in "\\PC{1,12}") {
         let s = solution(time, values, &name);
         let [h, n, e] = write(std::slice::from_ref(&s));
         let nodes = read_nodes(n.as_slice()).unwrap();
@@ -92,7 +96,7 @@ proptest! {
 fn numbers_that_are_not_finite_are_refused_and_nothing_is_written() {
     let (mut h, mut n, mut e) = (Vec::new(), Vec::new(), Vec::new());
     let mut w = RunWriter::new(&mut h, &mut n, &mut e);
-    let mut values = [0.0; 9];
+    let mut values = [0.0; NodeColumns::COUNT];
     values[5] = f64::NAN;
     let error = w.push(&solution(0.0, values, "a")).unwrap_err().to_string();
     assert!(error.contains("tension_n of node 0"), "{error}");
@@ -103,7 +107,7 @@ fn numbers_that_are_not_finite_are_refused_and_nothing_is_written() {
 
 #[test]
 fn a_lasting_warning_is_one_event() {
-    let s: Vec<Solution> = (0..4).map(|k| solution(f64::from(k), [1.0; 9], "a")).collect();
+    let s: Vec<Solution> = (0..4).map(|k| solution(f64::from(k), [1.0; NodeColumns::COUNT], "a")).collect();
     let [_, _, e] = write(&s);
     assert_eq!(read_events(e.as_slice()).unwrap().len(), 1);
 }
@@ -111,7 +115,7 @@ fn a_lasting_warning_is_one_event() {
 #[test]
 fn two_breaks_of_a_cable_are_two_events_with_their_own_times() {
     let at = |time_s: f64, breaks: &[f64]| {
-        let mut s = solution(time_s, [1.0; 9], "a");
+        let mut s = solution(time_s, [1.0; NodeColumns::COUNT], "a");
         let broke = |t: &f64| Warning { kind: WarningKind::Broken, since_s: Some(*t), ..s.warnings[0].clone() };
         s.warnings = breaks.iter().map(broke).collect();
         s
@@ -123,7 +127,8 @@ fn two_breaks_of_a_cable_are_two_events_with_their_own_times() {
 
 #[test]
 fn a_table_cut_short_is_read_up_to_its_last_whole_line() {
-    let [_, n, _] = write(&[solution(0.0, [1.5; 9], "a"), solution(1.0, [2.5; 9], "a")]);
+    let [_, n, _] =
+        write(&[solution(0.0, [1.5; NodeColumns::COUNT], "a"), solution(1.0, [2.5; NodeColumns::COUNT], "a")]);
     let rows = read_nodes(&n[..n.len() - 12]).unwrap();
     assert_eq!(rows.iter().map(|r| r.time_s).collect::<Vec<_>>(), [0.0]);
     // A line that is wrong, not cut, is refused with its number.
@@ -157,7 +162,7 @@ fn a_run_cut_at_any_byte_is_read_up_to_its_last_whole_instant() {
     let mut w = RunWriter::new(history, nodes, events);
     let solutions: Vec<Solution> = (0..5)
         .map(|k| {
-            let mut s = solution(0.1 * f64::from(k), [0.5 + f64::from(k); 9], "a \"b\"");
+            let mut s = solution(0.1 * f64::from(k), [0.5 + f64::from(k); NodeColumns::COUNT], "a \"b\"");
             s.cables[0].nodes = vec![s.cables[0].nodes[0]; 3];
             s.warnings.retain(|_| k % 2 == 1);
             s
@@ -203,7 +208,7 @@ fn chosen_nodes_are_written_and_read_back() {
         let (mut h, mut n, mut e) = (Vec::new(), Vec::new(), Vec::new());
         let mut w = RunWriter::new(&mut h, &mut n, &mut e).with_nodes(choice);
         for (k, t) in times.iter().enumerate() {
-            let s = solution(*t, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0], "a");
+            let s = solution(*t, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0], "a");
             if k + 1 == times.len() { w.push_last(&s) } else { w.push(&s) }.unwrap();
         }
         drop(w);
@@ -225,8 +230,8 @@ fn chosen_nodes_are_written_and_read_back() {
 #[test]
 fn an_answer_with_other_supports_is_refused() {
     let mut w = RunWriter::new(Vec::new(), Vec::new(), Vec::new());
-    w.push(&solution(0.0, [1.0; 9], "a")).unwrap();
-    let error = w.push(&solution(1.0, [1.0; 9], "b")).unwrap_err();
+    w.push(&solution(0.0, [1.0; NodeColumns::COUNT], "a")).unwrap();
+    let error = w.push(&solution(1.0, [1.0; NodeColumns::COUNT], "b")).unwrap_err();
     assert!(matches!(error, WriteError::Columns { .. }), "{error}");
 }
 
@@ -244,6 +249,6 @@ impl Write for FullDisk {
 #[test]
 fn a_full_disk_is_reported_at_the_flush() {
     let mut w = RunWriter::new(FullDisk, FullDisk, FullDisk);
-    w.push(&solution(0.0, [1.0; 9], "a")).unwrap();
+    w.push(&solution(0.0, [1.0; NodeColumns::COUNT], "a")).unwrap();
     assert!(matches!(w.flush(), Err(WriteError::Io { .. })));
 }

@@ -233,6 +233,12 @@ impl Dynamics {
         }
         let far = |p: Vec2| (p - on_it).norm();
         let now = self.task.start[k];
+        // One that was stopped by a wall stays there until the robot is as far from it as the hitch may trail.
+        let gap =
+            |p: Vec2| self.problem.world.signed_gap(p, self.problem.radius).map_or(self.problem.radius, |g| g.gap_m);
+        if far(now) <= LEFT_BEHIND_M && gap(self.task.target[k]) < gap(now) {
+            self.task.target[k] = now;
+        }
         far(now) <= LEFT_BEHIND_M || far(now) <= (now - carriage.from.place(rider.shape.hitch)).norm()
     }
 

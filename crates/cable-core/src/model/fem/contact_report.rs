@@ -268,6 +268,7 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
         stress_pa: t / area,
         curvature_per_m,
         force_n: force.into(),
+        ..Node::default()
     };
     let mut out: Vec<Node> = Vec::with_capacity(n + 2);
     for k in 0..n {

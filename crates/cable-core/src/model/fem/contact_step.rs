@@ -85,6 +85,8 @@ pub struct Workspace {
     pub(super) carried: Vec<bar::Carried>,
     /// Branches of the friction of `rubs`, where that is being found out; empty: those of the present pose.
     pub(super) branches: Vec<friction::Branch>,
+    /// How far each has slid before an iteration, m.
+    pub(super) slid: Vec<f64>,
     pub(super) begun: Pose,
     pub(super) near_enough: bool,
     /// Iterations times nodes that may still be spent.
@@ -115,6 +117,7 @@ impl Workspace {
             ahead: Ahead::new(mesh.nodes()),
             carried: Vec::with_capacity(mesh.nodes()),
             branches: Vec::with_capacity(mesh.nodes()),
+            slid: Vec::with_capacity(mesh.nodes()),
             begun: Pose::default(),
             near_enough: false,
             work_left: usize::MAX,

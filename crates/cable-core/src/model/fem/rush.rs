@@ -167,9 +167,11 @@ impl Workspace {
             }
             let free = self.look_ahead((problem, mesh), contacts, pose);
             let whole = self.whole(task);
+            self.slid.clear();
+            self.slid.extend(contacts.rubs.iter().map(|r| r.sliding(&pose.x)));
             self.walk(mesh, task, pose, if free < whole { free } else { whole });
-            for (b, r) in self.branches.iter_mut().zip(&contacts.rubs) {
-                *b = b.next(r.sliding(&pose.x), contacts.slip);
+            for (b, (from, r)) in self.branches.iter_mut().zip(self.slid.iter().zip(&contacts.rubs)) {
+                *b = b.next([*from, r.sliding(&pose.x)], contacts.slip);
             }
         }
         None
@@ -317,8 +319,7 @@ mod tests {
             assert_eq!(cost.halved_steps, 0);
         }
         println!("{whole} iterations, {long} steps of a dozen or more");
-        // One step with a bar that goes slack and taut by turns comes to the minimiser.
-        assert!(long <= 1 && whole < 400, "{whole} {long}");
+        assert!(long == 0 && whole < 380, "{whole} {long}");
     }
 
     /// Which steps find no answer in a hurry is chance: over many drops it is not.
@@ -333,8 +334,8 @@ mod tests {
             }
         }
         println!("{whole} iterations, {long} steps left to the minimiser");
-        // Measured: 6702 and 19; with every push dropped at once 7735 and 31.
-        assert!(whole < 7250 && long < 26, "{whole} iterations, {long} steps left to the minimiser");
+        // Measured: 4429 and none; where contacts were thrown across holding 6702 and 19.
+        assert!(whole < 4700 && long < 5, "{whole} iterations, {long} steps left to the minimiser");
     }
 
     proptest! {

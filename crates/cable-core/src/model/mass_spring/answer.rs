@@ -106,6 +106,7 @@ impl MassSpringModel {
                     _ => t * tension_n,
                 }
                 .into(),
+                ..Node::default()
             });
         }
     }
@@ -177,6 +178,7 @@ impl MassSpringModel {
             stress_pa: tension_n / self.problem.cable.area_m2(),
             curvature_per_m,
             force_n: self.internal_force(i).into(),
+            ..Node::default()
         }
     }
 
