@@ -62,6 +62,8 @@ pub enum Law {
     Friction,
     /// The cable does not run through itself.
     SelfContact,
+    /// In motion: what a step changes of the momentum is what weight, loads, supports and contacts gave.
+    Momentum,
 }
 
 impl Law {
@@ -82,6 +84,7 @@ impl Law {
             Self::Push => "contacts push",
             Self::Friction => "friction within its cone",
             Self::SelfContact => "nothing through itself",
+            Self::Momentum => "momentum",
         }
     }
 
@@ -102,6 +105,7 @@ impl Law {
             Self::Push => "a contact pulls",
             Self::Friction => "friction exceeds its cone",
             Self::SelfContact => "the cable runs through itself",
+            Self::Momentum => "the change of momentum is not the impulse of what acts",
         }
     }
 
@@ -112,6 +116,7 @@ impl Law {
             Self::Finite => "",
             Self::Material | Self::Support | Self::Length | Self::Penetration | Self::SelfContact => "m",
             Self::Moment => "N m",
+            Self::Momentum => "N s",
             Self::Balance | Self::Tension | Self::Compression | Self::Stability | Self::Push | Self::Friction => "N",
         }
     }

@@ -58,6 +58,13 @@ impl Touch {
         if self.on_segment { [1.0 - self.pair.gap.fraction, self.pair.gap.fraction] } else { [1.0, 0.0] }
     }
 
+    /// The part of its force that acts on nodes that move with their material, as `moves` tells.
+    #[must_use]
+    pub fn felt(&self, moves: impl Fn(usize) -> bool) -> f64 {
+        let [a, b] = self.shares();
+        (if moves(self.node) { a } else { 0.0 }) + (if b != 0.0 && moves(self.node + 1) { b } else { 0.0 })
+    }
+
     /// A field's value at the touching point.
     #[must_use]
     pub fn interpolate(&self, x: &[Vec2]) -> Vec2 {
