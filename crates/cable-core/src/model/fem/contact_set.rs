@@ -342,6 +342,12 @@ impl ContactSet {
         })
     }
 
+    /// Friction force of a contact along its tangent at `x` (m), N.
+    pub fn rubs(&self, touch: &Touch, x: &[Vec2]) -> f64 {
+        let rub = of_node(&self.rubs, touch.node).find(|r| r.is_of(touch));
+        rub.map_or(0.0, |r| -friction::at(r.sliding(x), r.limit, self.slip).1)
+    }
+
     /// Takes the friction of every contact by a `part` of the way from what it had `before` to what it has now, none where it was not or is no
     /// longer; returns by how much it was off at most, N.
     pub fn ease(&mut self, before: &[Rub], part: f64) -> f64 {

@@ -14,7 +14,7 @@ use super::momentum::mass_with;
 use super::prepare::damping_time;
 use super::sliding::{Balanced, Grip};
 use super::task::{Done, Failure, Pose};
-use crate::math::Vec2;
+use crate::math::{Vec2, bounded, perp};
 use crate::model::drive::{Follower, fastest};
 
 /// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
@@ -23,6 +23,13 @@ const QUIET: f64 = 0.05;
 /// What a plastic contact takes of the speed along its normal (m/s, positive away from it), of which its force made so much in the step.
 pub(super) fn plastic(speed: f64, made: f64) -> f64 {
     if speed > made { made } else { speed }
+}
+
+/// What a contact of this normal and friction goes on giving against what other forces give, the opposite of `against`, N s.
+pub(super) fn carried_on(against: Vec2, normal: Vec2, friction: f64) -> Vec2 {
+    let (pressed, along) = (against.dot(&normal), perp(normal));
+    let pressed = if pressed > 0.0 { pressed } else { 0.0 };
+    normal * pressed + along * bounded(against.dot(&along), -friction * pressed, friction * pressed)
 }
 
 /// Why a step is tried again without a sliding node.
@@ -47,8 +54,9 @@ impl Dynamics {
     /// Mechanics and Applications, CISM 302, 1988). What was drawn away by the cable itself keeps its speed: stopped in each step, it would stay
     /// until one step carries it out of the barrier's reach, and finer steps would hold it harder.
     ///
-    /// The history of nodes that change is that of a body that moved as the other forces alone made it move: with a history without acceleration BDF2 gives
-    /// two thirds of the next step's impulse only, whatever force it is of, and half a step of it is lost in all.
+    /// An impact is over with its step: the history of nodes that change has what the other forces gave them, and of the contact what holds against those
+    /// ([`carried_on`]). With all of the contact in it a third of an impact would come after it and throw the cable back; with none of it contacts would
+    /// press by half too much in the next step; without what the others gave BDF2 would give two thirds of their next impulse only.
     fn land(&mut self, h: f64, a: f64) {
         let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
         let mass = |k: usize| mass_with((&self.problem, &self.mesh, &self.support_node), k);
@@ -73,14 +81,17 @@ impl Dynamics {
             if speed.abs() < QUIET {
                 continue;
             }
+            let change = touch.interpolate(&m.v) - touch.interpolate(&m.v_before);
+            let acted = n * made + touch.tangent() * (self.contacts.rubs(touch, &m.x) / a);
+            let over = acted - carried_on(acted - change / sum, n, touch.pair.gap.friction);
             for j in 0..2 {
                 if free[j] > 0.0 {
                     let k = nodes[j];
                     m.v[k] -= n * (taken * give[j]);
-                    m.v_before[k] += n * ((made - taken) * give[j]);
+                    m.v_before[k] += (over - n * taken) * give[j];
                     m.x_before[k] = m.x[k] - (m.v[k] + m.v_before[k]) * (0.5 * h);
                     given -= n * (taken * free[j]);
-                    forgotten += n * (made * free[j]);
+                    forgotten += over * free[j];
                 }
             }
         }

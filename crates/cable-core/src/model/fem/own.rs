@@ -5,7 +5,7 @@
 use super::assembly::{Mesh, System};
 use super::contact_set::{ContactSet, SLIDE};
 use super::dynamics::Dynamics;
-use super::integrate::plastic;
+use super::integrate::{carried_on, plastic};
 use super::momentum::mass_with;
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
@@ -190,12 +190,16 @@ impl Dynamics {
                 continue;
             }
             let taken = plastic(speed, made * sum) / sum;
+            let change = rub.pair.difference(&m.v) - rub.pair.difference(&m.v_before);
+            let (_, rubbing, _) = friction::at(rub.sliding(&m.x), rub.limit, SLIDE);
+            let acted = n * made - rub.pair.tangent() * (rubbing / a);
+            let over = acted - carried_on(acted - change / sum, n, self.contacts.own.friction);
             for (k, part) in shares.into_iter().filter(|&(k, _)| self.mesh.is_free(k)) {
                 m.v[k] -= n * (taken * part * give(k));
-                m.v_before[k] += n * ((made - taken) * part * give(k));
+                m.v_before[k] += (over - n * taken) * (part * give(k));
                 m.x_before[k] = m.x[k] - (m.v[k] + m.v_before[k]) * (0.5 * h);
                 given -= n * (taken * part);
-                forgotten += n * (made * part);
+                forgotten += over * part;
             }
         }
         // Nothing, but where a support holds a side of the contact.
