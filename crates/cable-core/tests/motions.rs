@@ -120,7 +120,7 @@ enum Same {
     Near,
     /// Further apart, where starts micrometres aside are, too: within the range that is stated.
     Chaotic,
-    /// The path is not chaotic, but the mesh or the step coarse, and its own range says so.
+    /// The path is not chaotic, but the mesh of one of them is coarse, and the range that it states says so.
     Coarse,
     Apart,
 }
@@ -132,12 +132,12 @@ fn compared(scene: &Scene, end: f64, way: Way, most: f64, with: &Reference) -> S
     if (most / with.most - 1.0).abs() < NEAR {
         return Same::Near;
     }
-    if with.scatter > NEAR && inside(most, with.range) {
-        return Same::Chaotic;
+    let open = if with.scatter > NEAR { Same::Chaotic } else { Same::Coarse };
+    if inside(most, with.range) {
+        return open;
     }
     match run(scene, end, way, true) {
-        Ok((_, own)) if inside(with.most, own) && with.scatter > NEAR => Same::Chaotic,
-        Ok((_, own)) if inside(with.most, own) => Same::Coarse,
+        Ok((_, own)) if inside(with.most, own) => open,
         _ => Same::Apart,
     }
 }

@@ -13,7 +13,8 @@
 //! Nothing here is shared with the models or with their contact geometry: a fault there cannot hide itself here. What is asked:
 //! each piece of cable is balanced, whatever acts on it that is neither a support nor a load nor weight comes from an
 //! obstacle that touches it there, pushes, and lies within the friction cone that was given; the way of the nodes is the
-//! material with its strain; a flexible cable does not push; nothing lies inside anything.
+//! material with its strain; a flexible cable does not push; nothing lies inside anything. In motion forces on a piece do not add up to nothing:
+//! there the momentum of each cable must change by the impulses that its account of the step names.
 
 mod laws;
 mod pulleys;
