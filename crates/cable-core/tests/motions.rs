@@ -9,6 +9,7 @@ mod dice;
 use std::collections::BTreeMap;
 
 use cable_core::model::Inertia;
+use cable_core::model::auto::Question;
 use cable_core::scene::{Scene, catalog};
 use cable_core::timeline::{Instant, Timeline};
 use cable_core::{Model, Settings, Simulation};
@@ -74,7 +75,8 @@ fn run(scene: &Scene, end: f64, way: Way, errors: bool) -> Result<(f64, [f64; 2]
         o.friction = o.friction.map(|f| f * way.friction);
     }
     let settings = Settings { tolerance: way.tolerance, ..Settings::default() };
-    let mut sim = Simulation::with_settings(scene, way.model, settings).map_err(|e| e.to_string())?;
+    let question = Question::History(way.inertia);
+    let mut sim = Simulation::for_question(scene, way.model, settings, question).map_err(|e| e.to_string())?;
     sim.settle().map_err(|e| format!("no first rest: {e}"))?;
     let timeline = Timeline::new(sim, way.inertia, None);
     let mut timeline = if errors { timeline.with_errors() } else { timeline };
