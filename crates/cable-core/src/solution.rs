@@ -86,6 +86,74 @@ pub struct CableSolution {
     /// The greatest tensions of the last step, whose inner steps pull harder than its end; None at rest and without inertia.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peaks: Option<TensionPeaks>,
+    /// Its momentum before and after the last step, and the impulses between; None at rest, without inertia, and where the model keeps no
+    /// account of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub momentum: Option<MomentumAccount>,
+}
+
+/// What became of a cable's momentum in a step: what it had, and what each kind of force gave it, added up over the inner steps from the very
+/// forces that moved it there. Before and impulses add up to after.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MomentumAccount {
+    /// The time it is of, s.
+    pub over_s: f64,
+    /// Momentum of cable and lumped masses as the step began, kg·m/s: that of the answer before.
+    pub before_kg_m_per_s: [f64; 2],
+    /// The same as it ended, kg·m/s.
+    pub after_kg_m_per_s: [f64; 2],
+    /// Impulse of the weight of cable and lumped masses, N·s.
+    pub weight_n_s: [f64; 2],
+    /// Impulse of wind, current and loads, N·s.
+    pub loads_n_s: [f64; 2],
+    /// Impulse of the supports, pulleys among them, on the cable, N·s.
+    pub supports_n_s: [f64; 2],
+    /// Impulse of obstacles and floor on the cable, friction and impacts included, N·s.
+    pub contacts_n_s: [f64; 2],
+}
+
+impl MomentumAccount {
+    /// The impulses in the order of the fields, N·s.
+    #[must_use]
+    pub fn impulses_n_s(&self) -> [[f64; 2]; 4] {
+        [self.weight_n_s, self.loads_n_s, self.supports_n_s, self.contacts_n_s]
+    }
+
+    /// The same of a similar copy whose times are so many times as long, forces as great.
+    pub(crate) fn scale_times(&mut self, by: f64) {
+        let Self { over_s, before_kg_m_per_s, after_kg_m_per_s, weight_n_s, loads_n_s, supports_n_s, contacts_n_s } =
+            self;
+        *over_s *= by;
+        let vectors = [before_kg_m_per_s, after_kg_m_per_s, weight_n_s, loads_n_s, supports_n_s, contacts_n_s];
+        vectors.into_iter().flatten().for_each(|c| *c *= by);
+    }
+
+    /// The account of two pieces of a cable.
+    #[must_use]
+    pub(crate) fn with(&self, other: &Self) -> Self {
+        let sum = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
+        Self {
+            before_kg_m_per_s: sum(self.before_kg_m_per_s, other.before_kg_m_per_s),
+            after_kg_m_per_s: sum(self.after_kg_m_per_s, other.after_kg_m_per_s),
+            over_s: self.over_s,
+            ..self.then(other)
+        }
+    }
+
+    /// The account of this step and the one `after` it.
+    #[must_use]
+    pub fn then(&self, after: &Self) -> Self {
+        let sum = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
+        Self {
+            over_s: self.over_s + after.over_s,
+            before_kg_m_per_s: self.before_kg_m_per_s,
+            after_kg_m_per_s: after.after_kg_m_per_s,
+            weight_n_s: sum(self.weight_n_s, after.weight_n_s),
+            loads_n_s: sum(self.loads_n_s, after.loads_n_s),
+            supports_n_s: sum(self.supports_n_s, after.supports_n_s),
+            contacts_n_s: sum(self.contacts_n_s, after.contacts_n_s),
+        }
+    }
 }
 
 /// The greatest tensions of a while in motion.

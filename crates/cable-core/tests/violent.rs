@@ -80,6 +80,10 @@ struct Found {
     no_number: usize,
     /// Output steps in which a law was broken, by law, and the worst of each.
     broken: BTreeMap<String, (usize, f64, String)>,
+    /// Momentum that came from nowhere in an output step, of the greatest impulse, and where.
+    imbalance: Vec<(f64, String)>,
+    /// Steps that moved without an account of momentum.
+    no_account: usize,
 }
 
 const RATE: f64 = 240.0;
@@ -90,6 +94,7 @@ fn run(number: u64, seconds: f64, found: &mut Found) {
         found.no_rest.push(format!("{number}: {e}"));
         return;
     }
+    let mut before: Option<[f64; 2]> = None;
     for step in 0..(seconds * RATE) as usize {
         found.steps += 1;
         let stop = sim.step(1.0 / RATE);
@@ -100,6 +105,19 @@ fn run(number: u64, seconds: f64, found: &mut Found) {
         }
         found.halved += answer.cost.halved_steps;
         let cable = &answer.cables[0];
+        match &cable.momentum {
+            Some(account) => {
+                let part = dice::imbalance(account);
+                found.imbalance.push((part, format!("scene {number} step {step}: {account:?}")));
+                if cable.breaks.is_empty()
+                    && let Some(before) = before
+                {
+                    assert_eq!(before, account.before_kg_m_per_s, "scene {number} step {step}");
+                }
+            }
+            None => found.no_account += usize::from(cable.assumptions.inertia),
+        }
+        before = cable.momentum.map(|a| a.after_kg_m_per_s);
         let sound = |n: &cable_core::solution::Node| n.x_m.is_finite() && n.y_m.is_finite() && n.tension_n.is_finite();
         found.no_number += usize::from(!cable.nodes.iter().all(sound));
         for f in answer.verification.iter().flat_map(|v| &v.findings) {
@@ -152,6 +170,8 @@ fn tell(found: &Found) {
     for line in found.no_rest.iter().chain(&found.stopped) {
         println!("  {line}");
     }
+    println!("{} steps that move without an account of momentum", found.no_account);
+    dice::tell_imbalance(&found.imbalance);
     for (law, (count, over, worst)) in &found.broken {
         println!("  {law}: {count} output steps, worst {over:.2} times what is let pass: {worst}");
     }

@@ -163,6 +163,9 @@ fn answer(mut a: CableSolution, l: f64, t: f64, place: impl Fn(Vec2) -> Vec2) ->
         }
         c.samples.iter_mut().for_each(|s| s.arc_length_m *= l);
     }
+    if let Some(account) = &mut a.momentum {
+        account.scale_times(t);
+    }
     if let Some(b) = &mut a.tightest_bend {
         put(&mut b.x_m, &mut b.y_m);
         b.radius_m *= l;

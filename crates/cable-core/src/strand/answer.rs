@@ -1,22 +1,31 @@
 //! The pieces of a cable read as one cable again: arc lengths from its start, supports in the scene's order.
 
-use super::Strand;
+use super::{Piece, Strand};
 use crate::problem::SupportPoint;
-use crate::solution::{Assumptions, CableSolution, SupportReaction};
+use crate::solution::{Assumptions, CableSolution, MomentumAccount, SupportReaction};
 use crate::state::State;
+
+/// Part by which sums of times round.
+const SAME_TIME: f64 = 1e-6;
 
 impl Strand {
     /// The answer at this instant.
     pub fn answer(&self) -> CableSolution {
         if let ([whole], true) = (self.pieces.as_slice(), self.breaks.is_empty()) {
-            return CableSolution { peaks: self.peaks, ..whole.answer.clone() };
+            return CableSolution { peaks: self.peaks, momentum: self.account(), ..whole.answer.clone() };
         }
         let assumptions = self.pieces.first().map_or_else(Default::default, |first| Assumptions {
             inertia: self.pieces.iter().any(|p| p.answer.assumptions.inertia),
             ..first.answer.assumptions
         });
         let name = self.problem.cable.name.clone();
-        let mut out = CableSolution { name, assumptions, peaks: self.peaks, ..CableSolution::default() };
+        let mut out = CableSolution {
+            name,
+            assumptions,
+            peaks: self.peaks,
+            momentum: self.account(),
+            ..CableSolution::default()
+        };
         for piece in &self.pieces {
             let from = piece.deal.from;
             if !out.nodes.is_empty() || piece.deal.supports.first() == Some(&None) {
@@ -41,6 +50,14 @@ impl Strand {
         }
         out.supports = (0..self.problem.supports.len()).map(|k| self.reaction(k)).collect();
         out
+    }
+
+    /// The account of all pieces over the whole of the caller's step, where there is one.
+    fn account(&self) -> Option<MomentumAccount> {
+        let over_s = self.time_s() - self.since_s;
+        let whole = |p: &Piece| p.account.filter(|a| (a.over_s - over_s).abs() <= SAME_TIME * over_s);
+        let accounts: Option<Vec<MomentumAccount>> = self.pieces.iter().map(whole).collect();
+        accounts?.into_iter().reduce(|a, b| a.with(&b))
     }
 
     /// Where the cable is; the end of one piece and the start of the next have the same arc length.

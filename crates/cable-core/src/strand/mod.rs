@@ -22,7 +22,7 @@ use crate::model::gauge::{Limit, TensionGauge};
 use crate::model::{self, Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
-use crate::solution::{CableSolution, Cost, TensionPeak, TensionPeaks};
+use crate::solution::{CableSolution, Cost, MomentumAccount, TensionPeak, TensionPeaks};
 use crate::state::State;
 
 /// Longest step that a cable which breaks in it takes from its last place before, s. Longer: the place of the break is blurred; shorter:
@@ -84,6 +84,8 @@ pub(crate) struct Strand {
     led: Option<Placement>,
     /// The greatest tensions since they were last forgotten, in motion.
     peaks: Option<TensionPeaks>,
+    /// When that was, s.
+    since_s: f64,
     /// A motion that is too fast for masses that move, in words.
     too_fast: Option<String>,
 }
@@ -99,6 +101,8 @@ struct Piece {
     quiet_until_s: f64,
     /// Its tension in the inner steps of its model, in its own arc lengths.
     gauge: TensionGauge,
+    /// Its momentum since the caller's step began, as far as there is an account of it.
+    account: Option<MomentumAccount>,
 }
 
 /// What became of a piece in a step.
@@ -126,6 +130,7 @@ impl Strand {
             dragged,
             led: None,
             peaks: None,
+            since_s: 0.0,
         })
     }
 
@@ -186,9 +191,11 @@ impl Strand {
         Ok(sum)
     }
 
-    /// A new step of the caller begins: the greatest tensions are those of it from now on.
+    /// A new step of the caller begins: the greatest tensions and the account of momentum are those of it from now on.
     pub fn forget_peaks(&mut self) {
         self.peaks = None;
+        self.since_s = self.time_s();
+        self.pieces.iter_mut().for_each(|p| p.account = None);
     }
 
     /// Advances time by exactly `dt_s`, breaking on the way where it must. Without inertia it stops where something turns
@@ -413,11 +420,19 @@ impl Strand {
 impl Piece {
     fn new(mechanics: Box<dyn Mechanics>, deal: Deal, gauge: TensionGauge) -> Self {
         let answer = mechanics.solution();
-        Self { answer, mechanics, deal, quiet: 0, quiet_until_s: f64::NEG_INFINITY, gauge }
+        Self { answer, mechanics, deal, quiet: 0, quiet_until_s: f64::NEG_INFINITY, gauge, account: None }
     }
 
     fn look(&mut self) {
         self.answer = self.mechanics.solution();
+    }
+
+    /// Adds the account of the step just made.
+    fn count(&mut self) {
+        self.account = match (self.account, self.answer.momentum) {
+            (Some(before), Some(now)) => Some(before.then(&now)),
+            (before, now) => now.or(before),
+        };
     }
 
     /// Mean length of an element, m.
@@ -454,6 +469,7 @@ impl Piece {
             let report = self.gauged_step(dt_s, breaking_n)?;
             if self.gauge.reached().is_none() {
                 self.look();
+                self.count();
                 add(sum, report);
                 return Ok(Outcome::Held);
             }
@@ -467,6 +483,7 @@ impl Piece {
             let breaking_n = if self.quiet > 0 { f64::INFINITY } else { breaking_n };
             let done = self.gauged_step(step_s, breaking_n);
             self.look();
+            self.count();
             add(sum, done?);
             self.gauge.add_peaks(peaks);
             peaks = self.gauge.peaks();
@@ -618,6 +635,7 @@ impl Clone for Piece {
             quiet: self.quiet,
             quiet_until_s: self.quiet_until_s,
             gauge: self.gauge.clone(),
+            account: self.account,
         }
     }
 }
@@ -633,6 +651,7 @@ impl Clone for Strand {
             dragged: self.dragged.clone(),
             led: self.led,
             peaks: self.peaks,
+            since_s: self.since_s,
             too_fast: self.too_fast.clone(),
         }
     }

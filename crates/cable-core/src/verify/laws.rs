@@ -9,7 +9,7 @@ use super::supports::{self, Hold, Role};
 use super::surroundings::{Near, Neighbours, Surroundings};
 use super::tolerance::{
     ASIDE, BALANCE, COMPRESSION, CONE, DEPTH_DIAMETERS, DEPTH_M, FOLD, LEAST_STRAIN, LENGTH, LUMPED, MATERIAL, MOMENT,
-    REACH_DIAMETERS, REACH_M, REPORTED, SAME_NORMAL, TURN,
+    MOMENTUM, REACH_DIAMETERS, REACH_M, REPORTED, SAME_NORMAL, TURN,
 };
 use super::{Balance, Depth, Finding, Law, Verification};
 use crate::math::{Vec2, cross, larger, smaller, vec2};
@@ -91,6 +91,7 @@ pub(super) fn check(found: &mut Verification, mut subject: Subject<'_>, depth: D
     if answer.assumptions.inertia || !answer.breaks.is_empty() {
         let why = if answer.breaks.is_empty() { "it moves" } else { "it is broken" };
         found.not_checked.push(format!("balance and length of `{}`: {why}", cable.name));
+        subject.momentum(found);
     } else {
         subject.supports(found);
         subject.balance(found, &near);
@@ -569,6 +570,21 @@ impl Subject<'_> {
         let value = larger(tension - most, least - tension);
         if !(value <= limit) {
             found.report(self.finding(Law::Tension, bar.k, (value, limit)));
+        }
+    }
+
+    /// Momentum changes by the impulses of what acts, and weight gives what its mass does.
+    fn momentum(&self, found: &mut Verification) {
+        let Some(account) = &self.answer.momentum else { return };
+        found.ask(Law::Momentum);
+        let impulses = account.impulses_n_s().map(vec2);
+        let [before, after] = [account.before_kg_m_per_s, account.after_kg_m_per_s].map(vec2);
+        let sum: Vec2 = impulses.iter().sum();
+        let largest = impulses.iter().map(|i| i.norm()).fold((after - before).norm(), larger);
+        let value = (after - before - sum).norm();
+        let limit = MOMENTUM * largest;
+        if !(value <= limit) {
+            found.report(self.finding(Law::Momentum, 0, (value, limit)));
         }
     }
 

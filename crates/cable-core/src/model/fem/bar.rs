@@ -51,6 +51,15 @@ pub fn pull_at_slide((mesh, task): (&Mesh, &Task), e: usize, j: usize, x: &[Vec2
     mesh.thermal_stretch * (tension * (1.0 + 0.5 * strain) + loss) + lifted(task.body, (e, j), x)
 }
 
+/// What a bar with a sliding node at an end pulls with along its way, N.
+#[must_use]
+pub fn pull_on((mesh, task): (&Mesh, &Task), e: usize, x: &[Vec2], slide: &[f64]) -> f64 {
+    let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
+    let strain = p / l - 1.0;
+    let ratio = task.predicted_length[e] / mesh.rest_length[e];
+    stiffness(mesh, !(strain < 0.0)) * strain + task.damping / mesh.rest_length[e] * (p - ratio * l)
+}
+
 /// What it takes to lift the weight from the middle of a bar to its start (`j` 0) or end (1), N.
 #[must_use]
 pub fn lifted(body: Vec2, (e, j): (usize, usize), x: &[Vec2]) -> f64 {

@@ -40,6 +40,7 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
             self_contact: problem.cable.self_contact,
             inertia: d.inertia_counts(),
         },
+        momentum: d.momentum_account(),
         ..CableSolution::default()
     }
 }

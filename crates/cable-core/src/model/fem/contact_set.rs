@@ -58,6 +58,13 @@ impl Touch {
         if self.on_segment { [1.0 - self.pair.gap.fraction, self.pair.gap.fraction] } else { [1.0, 0.0] }
     }
 
+    /// The part of its force that acts on nodes that move with their material, as `moves` tells.
+    #[must_use]
+    pub fn felt(&self, moves: impl Fn(usize) -> bool) -> f64 {
+        let [a, b] = self.shares();
+        (if moves(self.node) { a } else { 0.0 }) + (if b != 0.0 && moves(self.node + 1) { b } else { 0.0 })
+    }
+
     /// A field's value at the touching point.
     #[must_use]
     pub fn interpolate(&self, x: &[Vec2]) -> Vec2 {
@@ -333,6 +340,12 @@ impl ContactSet {
             let load: f64 = all.map(|t| t.load(&self.barrier)).sum();
             (first && load > 0.0).then_some((touch, load))
         })
+    }
+
+    /// Friction force of a contact along its tangent at `x` (m), N.
+    pub fn rubs(&self, touch: &Touch, x: &[Vec2]) -> f64 {
+        let rub = of_node(&self.rubs, touch.node).find(|r| r.is_of(touch));
+        rub.map_or(0.0, |r| -friction::at(r.sliding(x), r.limit, self.slip).1)
     }
 
     /// Takes the friction of every contact by a `part` of the way from what it had `before` to what it has now, none where it was not or is no

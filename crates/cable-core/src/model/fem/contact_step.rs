@@ -70,6 +70,7 @@ pub struct Workspace {
     /// The direction before contacts ahead were looked at.
     pub(super) plain: Vec<f64>,
     pub(super) trial: Pose,
+    /// The contacts of the last assembly.
     pub(super) touches: Vec<Touch>,
     magnitude: f64,
     /// Rounding of the largest contact force, N: a gap is known to the rounding of coordinates only.

@@ -99,6 +99,8 @@ pub struct Dynamics {
     pub(super) pose: Pose,
     /// Whether corners and posts get sliding nodes.
     pub(super) slides: bool,
+    /// Whether the last step was found to touch nothing but its supports.
+    pub(super) freely: bool,
     /// Whether there is nothing that nodes could slide over: no obstacle and no pulley.
     pub(super) never_slides: bool,
     /// Number of bars of the even mesh.
@@ -189,6 +191,7 @@ impl Dynamics {
             // A sliding node scales the forces of all that lies beyond it; what touches itself has one scale.
             slides: !problem.cable.self_contact,
             never_slides: problem.world.is_empty() && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley),
+            freely: false,
             even_bars: segments,
             bar_weight: normal_per_m * even,
             memory: Memory(None),
@@ -269,6 +272,7 @@ impl Dynamics {
         m.s_before.clone_from(&self.mesh.arc_length);
         m.step_before = 0.0;
         self.pace.forget();
+        self.forget_account();
     }
 
     pub(super) fn refuse(&self) -> Result<(), SolveError> {
@@ -309,6 +313,9 @@ impl Dynamics {
         let end = self.motion.time + dt_s;
         self.due = end;
         self.begin_way(end);
+        if inertia == Inertia::Dynamic {
+            self.begin_account();
+        }
         if inertia == Inertia::Dynamic && gauge.asks(self.motion.time) {
             self.gauge_tension();
             let at_rest = self.motion.v.iter().all(|v| *v == Vec2::zeros());
@@ -334,6 +341,7 @@ impl Dynamics {
         }
         self.motion.time = end;
         if inertia == Inertia::Dynamic {
+            self.motion.account.ends_at(end);
             self.set_pace(dt_s);
             self.watch();
         } else {

@@ -51,18 +51,23 @@ impl Dynamics {
                 continue;
             }
             self.keep_answer();
-            let turned =
-                Sliding { end: End { mark: rotate(node.end.mark, node.end.sense * shift), ..node.end }, ..node };
-            self.mesh.sliding[k] = Some(turned);
-            self.mesh.arc_length[k] += material;
-            self.motion.s_before[k] += material;
-            self.mesh.rest_length[k - 1] += self.mesh.thermal_stretch * material;
-            self.mesh.rest_length[k] -= self.mesh.thermal_stretch * material;
-            self.motion.x[k] = turned.position();
-            self.motion.x_before[k] = self.motion.x[k];
             moved = true;
+            self.as_of(node.seat, |d| d.turn_mark(k, shift, material));
         }
         moved
+    }
+
+    /// Turns the mark of a node by an angle (rad), past material (m).
+    fn turn_mark(&mut self, k: usize, shift: f64, material: f64) {
+        let Some(node) = self.mesh.sliding[k] else { return };
+        let turned = Sliding { end: End { mark: rotate(node.end.mark, node.end.sense * shift), ..node.end }, ..node };
+        self.mesh.sliding[k] = Some(turned);
+        self.mesh.arc_length[k] += material;
+        self.motion.s_before[k] += material;
+        self.mesh.rest_length[k - 1] += self.mesh.thermal_stretch * material;
+        self.mesh.rest_length[k] -= self.mesh.thermal_stretch * material;
+        self.motion.x[k] = turned.position();
+        self.motion.x_before[k] = self.motion.x[k];
     }
 
     /// Gives long arcs more marks and takes away those that the tangent has passed.

@@ -8,6 +8,14 @@ use crate::math::Vec2;
 impl Dynamics {
     /// Puts a node at an arc length (m) between nodes `k` − 1 and `k`.
     pub(super) fn insert(&mut self, k: usize, arc_length: f64, sliding: Option<Sliding>) {
+        let beside = [k - 1, k].into_iter().find_map(|j| self.mesh.sliding.get(j).copied().flatten());
+        match sliding.or(beside) {
+            Some(node) => self.as_of(node.seat, |d| d.put_in(k, arc_length, sliding)),
+            None => self.put_in(k, arc_length, None),
+        }
+    }
+
+    fn put_in(&mut self, k: usize, arc_length: f64, sliding: Option<Sliding>) {
         self.keep_answer();
         let mesh = &mut self.mesh;
         let path = mesh.path(k - 1, &self.motion.x);
@@ -21,6 +29,8 @@ impl Dynamics {
         let t = path.direction;
         let speed = |j: usize| if mesh.sliding[j].is_some() { t * -m.w[j] } else { m.v[j] };
         let v = speed(k - 1) * (1.0 - part) + speed(k) * part;
+        let earlier = |j: usize| if mesh.sliding[j].is_some() { t * -m.w_before[j] } else { m.v_before[j] };
+        let v_before = earlier(k - 1) * (1.0 - part) + earlier(k) * part;
         // The floor does to it what it does to its neighbours.
         let slid = |j: usize| {
             let slid = self.contacts.floor_slid[j];
@@ -35,14 +45,15 @@ impl Dynamics {
         mesh.held.insert(k, false);
         mesh.sliding.insert(k, sliding);
         let w = if sliding.is_some() { -v.dot(&t) } else { 0.0 };
-        let (x, v) = sliding.map_or((at, v), |s| (s.position(), Vec2::zeros()));
+        let w_before = if sliding.is_some() { -v_before.dot(&t) } else { 0.0 };
+        let (x, v, v_before) = sliding.map_or((at, v, v_before), |s| (s.position(), Vec2::zeros(), Vec2::zeros()));
         m.x.insert(k, x);
         m.v.insert(k, v);
-        m.x_before.insert(k, x - v * h);
-        m.v_before.insert(k, v);
+        m.x_before.insert(k, x - (v + v_before) * (0.5 * h));
+        m.v_before.insert(k, v_before);
         m.w.insert(k, w);
-        m.w_before.insert(k, w);
-        m.s_before.insert(k, arc_length - w * h);
+        m.w_before.insert(k, w_before);
+        m.s_before.insert(k, arc_length - (w + w_before) * (0.5 * h));
         self.reaction.insert(k, Vec2::zeros());
         self.contacts.floor_slid.insert(k, between);
         self.renumber(|node| Some(if node >= k { node + 1 } else { node }));
@@ -50,6 +61,51 @@ impl Dynamics {
 
     /// Takes node `k` out.
     pub(super) fn remove(&mut self, k: usize) {
+        match self.mesh.sliding.get(k).copied().flatten() {
+            Some(node) => self.as_of(node.seat, |d| d.take_out(k)),
+            None => self.remove_plain(k),
+        }
+    }
+
+    /// Takes a node out that moves with its material. Its neighbours, where they are free, go on with its momentum, now and before.
+    fn remove_plain(&mut self, k: usize) {
+        let beside = [k - 1, k + 1].map(|j| self.mesh.sliding.get(j).copied().flatten());
+        let Some(round) = beside.into_iter().flatten().next() else { return self.merge(k) };
+        if self.mesh.is_free(k - 1) || self.mesh.is_free(k + 1) {
+            // What comes to lie on the round has no history.
+            let had = self.sliding_momentum_at(&self.motion.w) - self.sliding_momentum_at(&self.motion.w_before);
+            self.merge(k);
+            let has = self.sliding_momentum_at(&self.motion.w) - self.sliding_momentum_at(&self.motion.w_before);
+            self.account_for_history(round.seat, had - has);
+        } else {
+            self.as_of(round.seat, |d| d.take_out(k));
+        }
+    }
+
+    fn merge(&mut self, k: usize) {
+        let momentum = |d: &Self| {
+            let m = &d.motion;
+            [(&m.v, &m.w), (&m.v_before, &m.w_before)].map(|(v, w)| d.moved_by(v) + d.sliding_momentum_at(w))
+        };
+        let had = momentum(self);
+        self.take_out(k);
+        let have = momentum(self);
+        let free = [k - 1, k].map(|j| self.mesh.is_free(j));
+        let mass = |j: usize| if free[j + 1 - k] { self.node_mass(j) } else { 0.0 };
+        let mass = mass(k - 1) + mass(k);
+        if !(mass > 0.0) {
+            return;
+        }
+        let [v, v_before] = [0, 1].map(|j| (had[j] - have[j]) / mass);
+        let m = &mut self.motion;
+        for (j, _) in [k - 1, k].into_iter().zip(free).filter(|(_, free)| *free) {
+            m.v[j] += v;
+            m.v_before[j] += v_before;
+            m.x_before[j] -= (v + v_before) * (0.5 * m.step_before);
+        }
+    }
+
+    fn take_out(&mut self, k: usize) {
         self.keep_answer();
         let mesh = &mut self.mesh;
         mesh.arc_length.remove(k);

@@ -32,6 +32,7 @@ mod integrate;
 mod layout;
 mod marks;
 mod mesh_edit;
+mod momentum;
 mod motion;
 mod network;
 mod own;

@@ -3,6 +3,7 @@
 use super::assembly::Mesh;
 use super::contact_set::ContactSet;
 use super::dynamics::Dynamics;
+use super::momentum::Account;
 use crate::contact::outline::Placement;
 use crate::math::{Vec2, cross, perp};
 use crate::model::drive::Follower;
@@ -25,12 +26,15 @@ pub(super) struct Motion {
     pub(super) time: f64,
     /// Where the outline of the robot is, if there is one.
     pub(super) placement: Option<Placement>,
+    /// What became of the momentum since the caller's step began.
+    pub(super) account: Account,
 }
 
 impl Motion {
     /// Becomes a copy without new memory where there is room.
     pub(super) fn copy_from(&mut self, other: &Self) {
-        let Self { x, v, x_before, v_before, s_before, w, w_before, step_before, followers, time, placement } = other;
+        let Self { x, v, x_before, v_before, s_before, w, w_before, step_before, followers, time, placement, account } =
+            other;
         self.x.clone_from(x);
         self.v.clone_from(v);
         self.x_before.clone_from(x_before);
@@ -40,6 +44,7 @@ impl Motion {
         self.w_before.clone_from(w_before);
         self.followers.clone_from(followers);
         (self.step_before, self.time, self.placement) = (*step_before, *time, *placement);
+        self.account = *account;
     }
 }
 

@@ -5,7 +5,8 @@
 use super::assembly::{Mesh, System};
 use super::contact_set::{ContactSet, SLIDE};
 use super::dynamics::Dynamics;
-use super::integrate::plastic;
+use super::integrate::{carried_on, plastic};
+use super::momentum::mass_with;
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
 use crate::contact::own::{Order, OwnPair, OwnShape};
@@ -174,25 +175,35 @@ impl Dynamics {
     }
 
     /// Takes the normal speed out of contacts of the cable with itself that are faster than `quiet` (m/s); momentum is kept.
-    pub(super) fn land_on_itself(&mut self, quiet: f64, h: f64) {
+    pub(super) fn land_on_itself(&mut self, quiet: f64, [h, a]: [f64; 2]) {
+        let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
+        let mass = |k: usize| mass_with((&self.problem, &self.mesh, &self.support_node), k);
         let m = &mut self.motion;
         for rub in &self.contacts.own.rubs {
             let n = rub.pair.normal;
             let speed = n.dot(&rub.pair.difference(&m.v));
             let shares = rub.pair.shares();
-            let give = |k: usize| if self.mesh.is_free(k) { 1.0 / self.mesh.share(k) } else { 0.0 };
+            let give = |k: usize| if self.mesh.is_free(k) { 1.0 / mass(k) } else { 0.0 };
             let sum: f64 = shares.iter().map(|&(k, part)| part * part * give(k)).sum();
-            let load = -self.contacts.barrier.at(rub.pair.gap_m).slope * rub.pair.weight;
-            let taken = plastic(speed, load * h * sum / self.problem.linear_density);
+            let made = -self.contacts.barrier.at(rub.pair.gap_m).slope * rub.pair.weight / a;
             if !(sum > 0.0) || speed.abs() < quiet {
                 continue;
             }
-            for (k, part) in shares.into_iter().filter(|&(k, _)| give(k) > 0.0) {
-                m.v[k] -= n * (taken * part * give(k) / sum);
-                m.v_before[k] = m.v[k];
-                m.x_before[k] = m.x[k] - m.v[k] * h;
+            let taken = plastic(speed, made * sum) / sum;
+            let change = rub.pair.difference(&m.v) - rub.pair.difference(&m.v_before);
+            let (_, rubbing, _) = friction::at(rub.sliding(&m.x), rub.limit, SLIDE);
+            let acted = n * made - rub.pair.tangent() * (rubbing / a);
+            let over = acted - carried_on(acted - change / sum, n, self.contacts.own.friction);
+            for (k, part) in shares.into_iter().filter(|&(k, _)| self.mesh.is_free(k)) {
+                m.v[k] -= n * (taken * part * give(k));
+                m.v_before[k] += (over - n * taken) * (part * give(k));
+                m.x_before[k] = m.x[k] - (m.v[k] + m.v_before[k]) * (0.5 * h);
+                given -= n * (taken * part);
+                forgotten += over * part;
             }
         }
+        // Nothing, but where a support holds a side of the contact.
+        self.account_for_landing(given, forgotten);
     }
 
     /// Where the cable touches itself at positions `x` (m): one report for each stretch of nodes.

@@ -72,6 +72,7 @@ impl Dynamics {
         let gravity =
             if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
         task.body = body;
+        task.to = to;
         task.force.clear();
         task.force.extend((0..n).map(|k| body * mesh.share(k)));
         for (node, force) in &self.loads {
@@ -250,6 +251,7 @@ impl Dynamics {
                 for (k, reaction) in self.reaction.iter_mut().enumerate() {
                     *reaction = -self.free.gradient_at(k);
                 }
+                self.freely = true;
                 return Ok(done);
             }
             // It would have met something: from the start again, with contact.
@@ -264,6 +266,7 @@ impl Dynamics {
             })?),
         };
         memory.work_left = self.work_left;
+        self.freely = false;
         let done = memory.minimise((&self.problem, &self.mesh), &self.contacts, &self.task, pose);
         self.work_left = memory.work_left;
         for k in 0..self.mesh.nodes() {

@@ -214,6 +214,10 @@ impl Dynamics {
 
     /// A node that moves with its material becomes a sliding one.
     fn pin_down(&mut self, k: usize, arc_length: f64, sliding: Sliding) {
+        self.as_of(sliding.seat, |d| d.put_on_seat(k, arc_length, sliding));
+    }
+
+    fn put_on_seat(&mut self, k: usize, arc_length: f64, sliding: Sliding) {
         self.keep_answer();
         let along = self.mesh.path(k - 1, &self.motion.x).direction;
         let (mesh, m) = (&mut self.mesh, &mut self.motion);
@@ -238,6 +242,13 @@ impl Dynamics {
     /// not that of its mark, unless that was in the middle of the arc: see [`Share`]. (A mark 0.08 mm off gave a slack cable of 2 MN
     /// 2000 N there, and broke it.)
     pub(super) fn settle_down(&mut self, k: usize) -> bool {
+        match self.mesh.sliding.get(k).copied().flatten() {
+            Some(node) => self.as_of(node.seat, |d| d.take_off_seat(k)),
+            None => self.take_off_seat(k),
+        }
+    }
+
+    fn take_off_seat(&mut self, k: usize) -> bool {
         self.keep_answer();
         let before = [k - 1, k].map(|e| self.mesh.path(e, &self.motion.x).length / self.mesh.rest_length[e]);
         let half = (0.5 * self.turn(k)).abs();

@@ -50,6 +50,8 @@ pub struct Task {
     pub max_iterations: usize,
     /// Largest move of a node in one iteration, m.
     pub max_move: f64,
+    /// The time that forces are of, s.
+    pub to: f64,
     /// Whether it is a step with inertia.
     pub moves: bool,
     /// Regularisation to begin with, N/m.

@@ -27,6 +27,7 @@ impl MassSpringModel {
                 inertia: self.v.iter().any(|v| v.norm_squared() > 0.0),
                 ..Assumptions::default()
             },
+            momentum: self.momentum_account(),
             contacts: self.wraps().into_iter().map(|(contact, _)| contact).collect(),
             ..CableSolution::default()
         };

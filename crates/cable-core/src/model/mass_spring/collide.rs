@@ -101,6 +101,8 @@ impl MassSpringModel {
         touch.slips = wanted.abs() > cone;
         let j = n * change + t * (friction - touch.friction);
         (touch.normal, touch.friction) = (normal, friction);
+        let of = |i: usize, part: f64| if self.held[i] { 0.0 } else { part };
+        self.account.contacts += j * (of(a, 1.0 - c) + of(b, c));
         self.v[a] += j * ((1.0 - c) * ia);
         self.v[b] += j * (c * ib);
     }

@@ -73,6 +73,7 @@ impl MassSpringModel {
             settings,
             driven,
             beside,
+            account,
             errors
         );
     }

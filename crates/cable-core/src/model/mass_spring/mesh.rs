@@ -103,6 +103,7 @@ impl MassSpringModel {
             driven: 0.0,
             kept: super::Kept::default(),
             beside: super::Beside::default(),
+            account: super::momentum::Account::default(),
             errors: crate::estimates::ErrorEstimates::default(),
             problem,
             s,

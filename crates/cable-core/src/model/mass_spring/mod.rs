@@ -19,6 +19,7 @@ mod corner;
 mod creep;
 mod kept;
 mod mesh;
+mod momentum;
 mod preview;
 mod pulley;
 mod remesh;
@@ -105,6 +106,8 @@ pub struct MassSpringModel {
     kept: Kept,
     /// Who goes on beside it to tell its errors, and what they are.
     beside: Beside,
+    /// What became of the momentum since the caller's step began.
+    account: momentum::Account,
     errors: ErrorEstimates,
 }
 
@@ -245,6 +248,7 @@ impl MassSpringModel {
 
     /// Comes to rest; on an error nothing has changed.
     fn settle_alone(&mut self) -> Result<(), SolveError> {
+        self.account = momentum::Account::default();
         let kept = self.clone();
         if !self.laid {
             self.lay();
@@ -297,10 +301,14 @@ impl Mechanics for MassSpringModel {
         }
         // Not copied with each of its parts.
         let beside = std::mem::take(&mut self.beside);
-        let done = self.or_as_before(|this| match inertia {
-            Inertia::Dynamic if this.previews() => this.preview(dt_s, gauge),
-            Inertia::Dynamic => this.integrate(dt_s, gauge),
-            Inertia::QuasiStatic => this.creep(dt_s),
+        let counts = inertia == Inertia::Dynamic && !self.previews();
+        let done = self.or_as_before(|this| {
+            this.begin_account(dt_s, counts);
+            match inertia {
+                Inertia::Dynamic if this.previews() => this.preview(dt_s, gauge),
+                Inertia::Dynamic => this.integrate(dt_s, gauge),
+                Inertia::QuasiStatic => this.creep(dt_s),
+            }
         });
         self.beside = beside;
         done?;

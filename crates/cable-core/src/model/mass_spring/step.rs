@@ -153,6 +153,7 @@ impl MassSpringModel {
                     self.v[i] += self.f[i] * (kick / self.mass[i]);
                 }
             }
+            self.account_for_kick(kick);
             self.floor_friction(kick);
             self.contacts(h);
             for i in 0..self.x.len() {
@@ -231,6 +232,7 @@ impl MassSpringModel {
             };
             let v = (to - self.x[node]) / h;
             self.held_acceleration[node] = (v - self.v[node]) / h;
+            self.account.supports += (v - self.v[node]) * self.mass[node];
             self.v[node] = v;
         }
     }
@@ -270,7 +272,9 @@ impl MassSpringModel {
             let speed = self.v[i].norm();
             let loss = mu * normal * ds * h / self.mass[i];
             if !self.held[i] {
-                self.v[i] = if speed <= loss { Vec2::zeros() } else { self.v[i] * (1.0 - loss / speed) };
+                let kept = if speed <= loss { 0.0 } else { 1.0 - loss / speed };
+                self.account.contacts -= self.v[i] * ((1.0 - kept) * self.mass[i]);
+                self.v[i] *= kept;
             }
         }
     }
