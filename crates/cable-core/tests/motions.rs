@@ -86,7 +86,11 @@ fn run(scene: &Scene, end: f64, way: Way, errors: bool) -> Result<(f64, [f64; 2]
         timeline.at(at, |sim| most = most.max(sim.max_tension().tension_n)).map_err(|e| e.to_string())?;
     }
     // Of inner steps, as the range is.
-    let ranges = timeline.peaks().iter().filter_map(|run| Some((run.peaks.greatest.tension_n, run.ranges?.greatest_n)));
+    let ranges = timeline
+        .monitor()
+        .peaks()
+        .iter()
+        .filter_map(|run| Some((run.peaks.greatest.tension_n, run.ranges?.greatest_n)));
     let range = ranges.max_by(|a, b| a.0.total_cmp(&b.0)).map_or([most; 2], |found| found.1);
     Ok((most, [range[0].min(most), range[1].max(most)]))
 }

@@ -7,10 +7,10 @@ use cable_core::Solution;
 use cable_core::record::History;
 use cable_core::solution::{Warning, WarningKind};
 
-/// Memory for answers, bytes: 384 MiB. Ten minutes of 200 nodes at 60 answers a second are 750 MB; beyond the budget every
+/// Memory for answers, bytes: 512 MiB. Ten minutes of 200 nodes at 60 answers a second are 1 GB; beyond the budget every
 /// second answer of the older half is left out, again and again, so that the recent past keeps its full rate and nothing is
 /// forgotten altogether. More costs small machines their memory; less makes old answers coarse.
-pub const BUDGET_BYTES: usize = 384 << 20;
+pub const BUDGET_BYTES: usize = 512 << 20;
 
 /// Most events kept: what trembles for hours must not fill the memory.
 const MOST_EVENTS: usize = 5000;
