@@ -243,6 +243,8 @@ fn figures_have_errors_while_time_runs() {
     }
     let pulled = error(&harness).expect("errors under the hand");
     assert!(pulled < 0.5 * largest(&harness), "{pulled} of {} N", largest(&harness));
+    let apart_m = solution(&harness).cables[0].errors.position_m.expect("errors under the hand");
+    assert!(apart_m < 0.05, "{apart_m} m: the coarser runs stay where the hand was");
     let run = &harness.state().state.snapshot.peaks[0];
     let [from, to] = run.ranges.expect("a range").greatest_n;
     let most = run.peaks.greatest.tension_n;
