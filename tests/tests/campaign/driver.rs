@@ -248,10 +248,11 @@ fn judge_case(plan: &Plan, case: &Case, seed: u64) -> Verdict {
                 Expect::Perhaps => v.excused = true,
                 _ => v.refused = Some(why.clone()),
             }
-            // A refusal by `fem` does not hide that of `spans`.
+            // A refusal by `fem` does not hide that of `spans`, unless that says no more than that the scene is not for it.
             if case.model == Model::Auto
                 && why.starts_with("the answer of fem")
                 && let Err(first) = solve(&case.scene, Model::Spans, None, plan.limit_s)
+                && !first.starts_with("spans cannot answer")
             {
                 v.wrong.push(format!("hides: {first}"));
             }
@@ -350,6 +351,13 @@ fn note(plan: &Plan, family: &str, seed: u64, case: &Case, v: &Verdict) {
     let Ok(mut log) = std::fs::OpenOptions::new().create(true).append(true).open(folder.join("log.txt")) else {
         return;
     };
+    for k in 0..plan.relations {
+        let changed = relation(&case.scene, (seed as usize + 3 * k) % COUNT);
+        if v.wrong.iter().chain(&v.outside).any(|w| w.starts_with(changed.name)) {
+            let file = format!("{}-{seed}-{}.toml", family.replace([' ', ','], "_"), changed.name.replace(' ', "_"));
+            let _ = std::fs::write(folder.join(file), changed.scene.to_toml());
+        }
+    }
     let kind = [
         ("WRONG", !v.wrong.is_empty()),
         ("REFUSED", v.refused.is_some()),

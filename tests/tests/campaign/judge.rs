@@ -96,6 +96,26 @@ impl World {
         }
     }
 
+    /// Where a piece is nearest to each corner and each round within `reach` of it, as parts of the piece.
+    fn passed(&self, a: V, b: V, reach: f64) -> Vec<f64> {
+        let way = sub(b, a);
+        let mut out = Vec::new();
+        let mut ask = |at: V, radius: f64| {
+            let u = (dot(sub(at, a), way) / dot(way, way)).clamp(0.0, 1.0);
+            if u > 0.0 && u < 1.0 && size(sub(at, add(a, mul(way, u)))) <= radius + reach {
+                out.push(u);
+            }
+        };
+        for (shape, _) in &self.things {
+            match shape {
+                Shape::Circle { center_m, radius_m } => ask(*center_m, *radius_m),
+                Shape::Polyline { points_m, thickness_m } => points_m.iter().for_each(|p| ask(*p, 0.5 * thickness_m)),
+                Shape::Terrain { points_m } | Shape::Polygon { points_m } => points_m.iter().for_each(|p| ask(*p, 0.0)),
+            }
+        }
+        out
+    }
+
     fn solid(p: V, points: &[V], closed: bool, (reach, friction): (f64, f64), out: &mut Vec<Near>) {
         let n = points.len();
         let edges = || (0..if closed { n } else { n - 1 }).map(|k| (points[k], points[(k + 1) % n]));
@@ -329,11 +349,13 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
         let turn = turn_between(w[0].force_n, w[1].force_n).min(1.0);
         let way = size(sub(b, a));
         let sagitta = (bend * way * way / 8.0).max(turn * way / 8.0);
-        for k in 0..=PARTS {
-            let p = add(a, mul(sub(b, a), k as f64 / PARTS as f64));
+        // Evenly, and where the piece passes corners and rounds: there it leans on them, across itself.
+        let even = (0..=PARTS).map(|k| k as f64 / PARTS as f64);
+        for u in even.chain(world.passed(a, b, reach + sagitta)) {
+            let p = add(a, mul(sub(b, a), u));
             let from = list.len();
             world.near(p, reach + sagitta, &mut list);
-            let allowed = (0.02 * cable.diameter_m).min(1e-3) + if k == 0 || k == PARTS { 0.0 } else { sagitta };
+            let allowed = (0.02 * cable.diameter_m).min(1e-3) + if u == 0.0 || u == 1.0 { 0.0 } else { sagitta };
             for n in &list[from..] {
                 let deep = radius - n.gap;
                 // A support that holds the axis on a surface, or in something, was given so.
@@ -460,8 +482,8 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
         let tight = turn < 0.5;
         if tight && missing > ds * (0.1 * turn * turn + 1e-5) + 1e-9 * length {
             loose += missing;
-            // Loose material lies: without tension, on something; in the air where nothing pulls it down. In the air the force in a
-            // piece follows from that just beyond its first node, whatever acts at the nodes. A slack piece is drawn as its chord c,
+            // Loose material lies: without tension, on something; in the air where nothing pulls it down. The force in a piece
+            // follows from that just beyond its first node, whatever acts at the nodes. A slack piece is drawn as its chord c,
             // and hangs below that by √(3/8 c · missing): it may lie on what it meets there.
             let below = mul(load, (0.375 * chord * missing).sqrt() / size(load).max(1e-300));
             let mut met = Vec::new();
@@ -472,7 +494,7 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
             }
             let touches = !near[k].is_empty() || !met.is_empty();
             let lies = plan || touches || size(load) == 0.0;
-            let tension = if touches || plan { tension } else { size(w[0].force_n) };
+            let tension = if plan { tension } else { size(w[0].force_n) };
             let slack = tension <= 1e-3 * scale + 2.0 * size(load) * ds;
             let value = if lies && slack { 0.0 } else { missing };
             short.tell(value, 1e-5 * length, || {

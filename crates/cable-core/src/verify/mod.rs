@@ -12,7 +12,7 @@
 //!
 //! Nothing here is shared with the models or with their contact geometry: a fault there cannot hide itself here. What is asked:
 //! each piece of cable is balanced, whatever acts on it that is neither a support nor a load nor weight comes from an
-//! obstacle that touches it there, pushes, and lies within the friction cone that was given; the way of the nodes is the
+//! obstacle that touches it there, pushes, and lies within the friction cone that was given; the way drawn through the nodes is the
 //! material with its strain; a flexible cable does not push; nothing lies inside anything. In motion forces on a piece do not add up to nothing:
 //! there the momentum of each cable must change by the impulses that its account of the step names.
 
@@ -101,7 +101,7 @@ impl Law {
             Self::Tension => "tension is not the force in the cable",
             Self::Compression => "a flexible cable pushes",
             Self::Stability => "a stiff cable pushes with more than would bend it aside",
-            Self::Length => "the way of the nodes is not the length of the cable",
+            Self::Length => "the way drawn is not as long as the cable",
             Self::Penetration => "the cable lies inside an obstacle",
             Self::Push => "a contact pulls",
             Self::Friction => "friction exceeds its cone",

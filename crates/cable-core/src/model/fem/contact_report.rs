@@ -8,7 +8,7 @@ use super::path::angle_between;
 use super::sliding::{Balanced, Load, Seat, Sliding};
 use crate::contact::friction;
 use crate::energy::bending::turn;
-use crate::math::{Vec2, larger, perp};
+use crate::math::{Vec2, larger, perp, smaller};
 use crate::model::arc_nodes;
 use crate::problem::Problem;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
@@ -348,11 +348,13 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
     };
     // It leaves where its force does: what sags turns further round than the straight bar that stands for it, and has less weight beyond.
     let straight = [paths[0].arcs[1], paths[1].arcs[0]];
+    // The nearer half of the bar at most: the rest hangs from the node beyond.
+    let room = [0, 1].map(|j| larger(0.5 * (paths[j].length / radius - straight[j]), 0.0));
     let mut sagged = straight;
     for _ in 0..SAG_ROUNDS {
         let ends = force_at(sagged);
         let sags = [sag(0, ends[0], paths[0].direction), sag(1, paths[1].direction, ends[1])];
-        sagged = [straight[0] + sags[0], straight[1] + sags[1]];
+        sagged = [0, 1].map(|j| straight[j] + smaller(sags[j], room[j]));
     }
     // As far round as it would run into an edge beside a corner it does not sag.
     let clear = |turned: f64| !d.is_over_an_edge(node, node.end.center + normal(turned) * radius, 0.0);
@@ -399,7 +401,37 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
         let arc_length = mesh.arc_length[k] + turned * radius / stretch;
         OnRound { arc_length, at: node.end.center + normal * radius, tension, force, stretch }
     };
-    (0..=count as usize).map(|i| at(i as f64)).collect()
+    let mut points: Vec<OnRound> = (0..=count as usize).map(|i| at(i as f64)).collect();
+    // What sags on to the round, or comes from inside its gap, comes and goes by a longer way than the bar.
+    for j in [0, 1] {
+        let beside = if j == 0 { k - 1 } else { k + 1 };
+        let Some(p) = (if j == 0 { points.first_mut() } else { points.last_mut() }) else { continue };
+        if mesh.sliding[beside].is_none() {
+            let way = (p.at - x[beside]).norm() / stretch[j];
+            let least = mesh.arc_length[beside] + [way, -way][j];
+            p.arc_length = if j == 0 { larger(p.arc_length, least) } else { smaller(p.arc_length, least) };
+        }
+    }
+    if !(same[0] || same[1]) {
+        strain_evenly(&mut points, d.problem.axial_stiffness);
+    }
+    points
+}
+
+/// Spreads the material of an arc as the tension along it strains it; how much of it there is on the whole stays.
+fn strain_evenly(points: &mut [OnRound], axial_stiffness: f64) {
+    let [Some(begins), Some(ends)] = [points.first(), points.last()].map(|p| p.map(|p| p.arc_length)) else { return };
+    // Chords of one round are equally long: their material goes by their strain alone.
+    let slackness = |p: &[OnRound]| 1.0 / (1.0 + 0.5 * (p[0].tension + p[1].tension) / axial_stiffness);
+    let whole: f64 = points.windows(2).map(slackness).sum();
+    if !(whole > 0.0 && whole.is_finite()) {
+        return;
+    }
+    let mut s = begins;
+    for k in 1..points.len() {
+        s += (ends - begins) * slackness(&points[k - 1..=k]) / whole;
+        points[k].arc_length = s;
+    }
 }
 
 /// d(angle)/d(arc length) at a node, 1/m.

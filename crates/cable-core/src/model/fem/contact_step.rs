@@ -59,6 +59,8 @@ pub(super) struct Residual {
     pub(super) node: usize,
     /// In parts of what is accepted there.
     pub(super) excess: f64,
+    /// The greatest force (N) that adds up along a stretch, in parts of what may add up for one force left at a node.
+    drift: f64,
 }
 
 /// Memory of the minimisation.
@@ -222,7 +224,7 @@ impl Workspace {
     /// The unbalanced force (N) that is farthest beyond what is accepted, where, and by how many times: the tolerance, or where contact forces are
     /// known no better their rounding. At rest what is left at the nodes of a stretch adds up to a force of its own.
     pub(super) fn residual(&self, mesh: &Mesh, task: &Task) -> Residual {
-        let mut worst = Residual { force: 0.0, node: 0, excess: 0.0 };
+        let mut worst = Residual { force: 0.0, node: 0, excess: 0.0, drift: 0.0 };
         let known = if self.noise > task.most_noise { task.most_noise } else { self.noise };
         let accepted = larger(task.tolerance, known);
         let mut drift = Vec2::zeros();
@@ -235,10 +237,13 @@ impl Workspace {
             let slides = mesh.sliding[node].is_some();
             let r = if slides { left.x.abs() } else { left.norm() };
             drift = if slides || task.moves { Vec2::zeros() } else { drift + left };
-            let excess = larger(r, drift.norm() / DRIFT) / accepted;
+            let adds_up = drift.norm() / DRIFT;
+            let most = larger(adds_up, worst.drift);
+            let excess = larger(r, adds_up) / accepted;
             if !(excess <= worst.excess) && !worst.excess.is_nan() {
-                worst = Residual { force: r, node, excess };
+                worst = Residual { force: r, node, excess, drift: most };
             }
+            worst.drift = most;
         }
         worst
     }
@@ -311,7 +316,7 @@ impl Workspace {
         let mut done = Done::default();
         let mut value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Exact);
         loop {
-            let Residual { force: residual, node, excess } = self.residual(mesh, task);
+            let Residual { force: residual, node, excess, drift } = self.residual(mesh, task);
             let failed = |cause| Err(Failure { node, residual, cause });
             if !value.is_finite() || !residual.is_finite() {
                 return failed("the energy is not finite");
@@ -327,7 +332,8 @@ impl Workspace {
             if excess <= 1.0 && !left {
                 return Ok(done);
             }
-            if done.iterations >= task.max_iterations && residual <= ENOUGH * task.tolerance && !left {
+            let enough = larger(residual, drift) <= ENOUGH * task.tolerance && !left;
+            if done.iterations >= task.max_iterations && enough {
                 return Ok(done);
             }
             if done.iterations >= task.max_iterations {
@@ -382,7 +388,7 @@ impl Workspace {
                 }
                 None => {
                     // At the noise of the energy there is nothing left to gain.
-                    if residual <= ENOUGH * task.tolerance && !left {
+                    if enough {
                         return Ok(done);
                     }
                     if shift > 1e12 * task.shift.max(1e-6) {

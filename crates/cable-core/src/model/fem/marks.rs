@@ -18,9 +18,15 @@ pub(super) const SMALL: f64 = 0.3;
 /// Angle (rad) between marks of one round.
 const SPACING: f64 = 0.4;
 
+/// Logarithm of two tensions beyond which one is nothing beside the other.
+const STEEP: f64 = 30.0;
+
+/// The same below which the next term of the series (x³/720) is rounding.
+const EVEN: f64 = 1e-4;
+
 impl Dynamics {
-    /// Moves the mark of a round with one node to the middle of its arc. In motion the material between the old mark and the new one is
-    /// that of the bar that it leaves, whose strain stays.
+    /// Moves the mark of a round with one node to where the arc is strained as a whole as friction would strain it: in its middle where
+    /// nothing rubs. In motion the material between the old mark and the new one is that of the bar that it leaves, whose strain stays.
     pub(super) fn move_marks(&mut self, rests: bool) -> bool {
         let mut moved = false;
         for k in 1..self.mesh.nodes().saturating_sub(1) {
@@ -31,7 +37,9 @@ impl Dynamics {
             }
             let x = &self.motion.x;
             let paths = [self.mesh.path(k - 1, x), self.mesh.path(k, x)];
-            let shift = 0.5 * (paths[1].arcs[0] - paths[0].arcs[1]);
+            let tensions = [0, 1].map(|j| self.mesh.bar(k - 1 + j).tension(paths[j].length));
+            let whole = paths[0].arcs[1] + paths[1].arcs[0];
+            let shift = part_before(tensions) * whole - paths[0].arcs[1];
             if !(shift.abs() * node.end.radius > STILL) {
                 continue;
             }
@@ -117,8 +125,36 @@ impl Dynamics {
     }
 }
 
+/// The part of an arc before its mark: with the tension T₁ of one bar before it and T₂ of the other behind it the arc is as long as with a
+/// tension whose logarithm changes evenly, T₁ e^{−xu}, 0 ≤ u ≤ 1:
+/// ```text
+/// f T₁ + (1 − f) T₂ = T₁ (1 − e^{−x})/x,   x = ln T₁/T₂,      f = 1/x − 1/(eˣ − 1)
+/// ```
+fn part_before([before, after]: [f64; 2]) -> f64 {
+    let x = if before > 0.0 && after > 0.0 { (before / after).ln().clamp(-STEEP, STEEP) } else { 0.0 };
+    if x.abs() < EVEN { 0.5 - x / 12.0 } else { 1.0 / x - 1.0 / x.exp_m1() }
+}
+
 /// A vector turned by an angle (rad), counter-clockwise.
 pub(super) fn rotate(v: Vec2, angle: f64) -> Vec2 {
     let (sin, cos) = angle.sin_cos();
     Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_arc_with_its_mark_is_as_long_as_friction_makes_it() {
+        for (before, after) in [(100.0, 100.0), (100.0, 99.999), (100.0, 40.0), (3.0, 800.0), (5e-7, 70.0)] {
+            let f = part_before([before, after]);
+            let n = 20_000;
+            let at = |k: i32| before * ((after / before) as f64).powf((f64::from(k) + 0.5) / f64::from(n));
+            let mean = (0..n).map(at).sum::<f64>() / f64::from(n);
+            let two: f64 = f * before + (1.0 - f) * after;
+            assert!((two - mean).abs() < 1e-6 * before.max(after), "{before} {after}: {two} {mean}");
+            assert!((f + part_before([after, before]) - 1.0).abs() < 1e-12);
+        }
+    }
 }

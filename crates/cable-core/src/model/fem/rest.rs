@@ -56,12 +56,10 @@ const NEGLIGIBLE: f64 = 1e3;
 /// refused for what its nodes are let off with. Of slopes, posts, beams and drapes at random those that held left up to 4e-5,
 /// those with 0.3 % too little friction 3e-4 and more.
 const WHOLE: f64 = 1e-4;
-/// Unbalanced force of a polished rest, in tolerances. More: what is left at a hundred nodes of a lay that all but slides is seen in
-/// the balance of the whole; less: nothing but rounding is gained.
-const POLISHED: f64 = 1e-2;
-
-/// Newton iterations of each round of polishing: it starts beside its end.
-const POLISH_ITERATIONS: usize = 30;
+/// Unbalanced force of a polished rest, in tolerances, and the iterations that each part of the way to it may take. Less force left: nothing
+/// but rounding is gained; more: what is left at a hundred nodes of a lay that all but slides is seen in the balance of the whole. The first
+/// has what the search left by coming to its last iteration; fewer for it: what slides as a whole on smooth ground is left as it slides.
+const POLISHES: [(f64, usize); 3] = [(1.0, 600), (0.1, 30), (1e-2, 30)];
 
 /// Times a resting place is sought again because corners were met or left on the way to it.
 const CORNER_ROUNDS: usize = 8;
@@ -142,18 +140,16 @@ impl Dynamics {
         let to = self.motion.time;
         self.save();
         self.prepare_way([to, to], Some(dragged));
-        self.task.max_iterations = POLISH_ITERATIONS;
         self.task.most_noise = exact;
         let mut done = None;
-        for part in [POLISHED, 0.1, 1.0] {
-            self.task.tolerance = part * exact;
+        for (part, iterations) in POLISHES {
+            (self.task.tolerance, self.task.max_iterations) = (part * exact, iterations);
             let mut pose = self.still_pose();
-            done = self.lag(&mut pose, LAG_ROUNDS).ok();
-            if done.is_some() {
-                // With the bars it balances on: new ones would have to be brought to rest again.
-                self.accept_pose(&pose, to);
-                break;
-            }
+            let Ok(found) = self.lag(&mut pose, LAG_ROUNDS) else { break };
+            let before = done.map_or(0, |d: Done| d.iterations);
+            done = Some(Done { iterations: before + found.iterations, ..found });
+            // With the bars it balances on: new ones would have to be brought to rest again.
+            self.accept_pose(&pose, to);
         }
         self.task.tolerance = exact;
         let done = match done {

@@ -3,6 +3,7 @@
 use super::collide::SKIN;
 use super::pulley::Pulley;
 use super::{MassSpringModel, Touch};
+use crate::contact::Gap;
 use crate::energy::bending::turn;
 use crate::math::{Vec2, angle, larger, perp};
 use crate::model::arc_nodes;
@@ -285,15 +286,35 @@ impl MassSpringModel {
             let turned = self.reach(i).direction - self.reach(i - 1).direction;
             return force - turned * (self.problem.linear_density * p.rate * p.rate);
         }
-        let Some(ground) = self.problem.world.signed_gap(self.x[i], SKIN) else { return force };
-        let pressed = -force.dot(&ground.normal);
+        force + self.under_end(i, force).map_or(Vec2::zeros(), |under| under.force)
+    }
+
+    /// What ground under a held end does to the cable there, whose force on all that holds it is `force`, N. At rest the ground can hold
+    /// what the cable pulls along it, but the support is there for that.
+    fn under_end(&self, i: usize, force: Vec2) -> Option<Under> {
+        let gap = self.problem.world.signed_gap(self.x[i], SKIN)?;
+        let pressed = -force.dot(&gap.normal);
         if !(pressed > 0.0) {
-            return force;
+            return None;
         }
-        let along = self.v[i] - ground.normal * self.v[i].dot(&ground.normal);
-        let rubbing = along.try_normalize(RESTING_SPEED).unwrap_or_default() * (ground.friction * pressed);
-        // At rest the ground can hold what the cable pulls along it, but the support is there for that.
-        force + ground.normal * pressed - rubbing
+        let along = self.v[i] - gap.normal * self.v[i].dot(&gap.normal);
+        let rubbing = along.try_normalize(RESTING_SPEED).unwrap_or_default() * (gap.friction * pressed);
+        Some(Under { gap, pressed, force: gap.normal * pressed - rubbing })
+    }
+
+    /// The same as touches, impulses over `h` (s), of the first end and of the last.
+    fn under_ends(&self, h: f64) -> [Option<Touch>; 2] {
+        let last = self.rest.len();
+        [(0, 0, 0.0), (last, last - 1, 1.0)].map(|(i, element, fraction)| {
+            if !self.held[i] || self.pulley_of(i).is_some() {
+                return None;
+            }
+            let under = self.under_end(i, self.f[i] - self.held_acceleration[i] * self.mass[i])?;
+            let n = under.gap.normal;
+            let friction = under.force.dot(&Vec2::new(n.y, -n.x)) * h;
+            let gap = Gap { fraction, ..under.gap };
+            Some(Touch { element, gap, normal: under.pressed * h, friction, slips: friction != 0.0 })
+        })
     }
 
     fn reaction(&self, k: usize) -> SupportReaction {
@@ -322,7 +343,8 @@ impl MassSpringModel {
         let h = if self.cost.inner_step_s > 0.0 { self.cost.inner_step_s } else { 1.0 };
         let mut out: Vec<(ContactReport, [usize; 2], f64)> = Vec::new();
         let mut last: Option<(usize, usize)> = None;
-        for t in self.touches.iter().filter(|t| t.normal > 0.0) {
+        let [first, end] = self.under_ends(h);
+        for t in first.iter().chain(&self.touches).chain(&end).filter(|t| t.normal > 0.0) {
             let (obstacle, e) = (t.gap.obstacle, t.element);
             let nodes = [e + usize::from(t.gap.fraction == 1.0), e + usize::from(t.gap.fraction > 0.0)];
             match (last, out.last_mut()) {
@@ -372,4 +394,13 @@ impl MassSpringModel {
             r.state = if t.slips { ContactState::Slip } else { ContactState::Stick };
         }
     }
+}
+
+/// Ground under a held end.
+struct Under {
+    gap: Gap,
+    /// Normal force, N.
+    pressed: f64,
+    /// On the cable, friction with it, N.
+    force: Vec2,
 }

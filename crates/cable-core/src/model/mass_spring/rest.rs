@@ -19,7 +19,7 @@ use crate::contact::friction;
 use crate::energy::{Blocks, Curvature, Energy};
 use crate::error::SolveError;
 use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH, BandFactor, BandMatrix};
-use crate::math::{Mat2, Vec2};
+use crate::math::{Mat2, Vec2, larger};
 use crate::model::Model;
 
 /// Unbalanced force at rest, of the force scale: round-off allows little less, more shows in the reactions.
@@ -40,7 +40,7 @@ const MAX_STEPS: usize = 1500;
 const FIRST_SHIFT: f64 = 1e-8;
 const SHIFT_DOWN: f64 = 0.1;
 const SHIFT_UP: f64 = 8.0;
-/// Shift beyond which no step helps, of the same; and below which it is left alone.
+/// Shift beyond which no step helps, of that or of the stiffness of contacts where that is more; and below which it is left alone.
 const LAST_SHIFT: f64 = 1e3;
 const LEAST_SHIFT: f64 = 1e-14;
 /// Up to this step friction follows the normal forces at every step, which is fastest; where that runs in circles, later
@@ -144,6 +144,8 @@ impl MassSpringModel {
     fn newton(&mut self, contacts: &mut Contacts) -> Result<(), SolveError> {
         let mut system = System::new(self)?;
         let unit = self.problem.axial_stiffness / self.rest.iter().copied().fold(f64::INFINITY, f64::min);
+        // What meets the ground is as stiff as that: a step must be short for it, too.
+        let stiffest = larger(unit, contacts.stiffness(self));
         let tolerance = self.rest_tolerance();
         let mut shift = FIRST_SHIFT * unit;
         let mut curvature = Curvature::Exact;
@@ -189,7 +191,7 @@ impl MassSpringModel {
                 } else {
                     shift *= SHIFT_UP;
                 }
-                if !(shift < LAST_SHIFT * unit) {
+                if !(shift < LAST_SHIFT * stiffest) {
                     break;
                 }
                 energy = self.assemble(&mut system, contacts, curvature);

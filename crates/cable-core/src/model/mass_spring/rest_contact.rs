@@ -87,6 +87,11 @@ impl Contacts {
         this
     }
 
+    /// Stiffness of a contact, N/m; 0 where there is nothing to touch.
+    pub(super) fn stiffness(&self, model: &MassSpringModel) -> f64 {
+        if model.problem.world.is_empty() { 0.0 } else { self.stiffness }
+    }
+
     /// Every pair nearer than `reach`, m.
     fn find(&mut self, model: &MassSpringModel, reach: f64) {
         self.pushes.clear();

@@ -189,6 +189,20 @@ impl History {
         laid
     }
 
+    /// Counts its material anew from its first knot (its last, if `back`), as its tensions strain it.
+    pub fn measure(&mut self, track: &Track<'_>, back: bool) {
+        let way = |a: &Knot, b: &Knot| track.slide(a.p, b.p, a.tension, a.m).material;
+        if back {
+            for k in (1..self.knots.len()).rev() {
+                self.knots[k - 1].s = self.knots[k].s - way(&self.knots[k - 1], &self.knots[k]);
+            }
+        } else {
+            for k in 1..self.knots.len() {
+                self.knots[k].s = self.knots[k - 1].s + way(&self.knots[k - 1], &self.knots[k]);
+            }
+        }
+    }
+
     /// Its first and last knot.
     fn ends(&self) -> Option<[Knot; 2]> {
         Some([*self.knots.first()?, *self.knots.last()?])
