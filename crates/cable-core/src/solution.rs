@@ -373,7 +373,7 @@ pub struct ContactReport {
     /// does what `state` says, and where the model does not know.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub parts: Vec<ContactPart>,
-    /// Whole force of the obstacle on the cable, N: normal force and friction.
+    /// Whole force of the obstacle on the cable, N: normal force and friction. Of a contact of the cable with itself it is nothing.
     #[serde(default)]
     pub force_n: [f64; 2],
     /// The same along the contact, in order of arc length: it adds up to `force_n`.

@@ -412,7 +412,9 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
             around.extend(next);
         }
         let ds = nodes[k + 1].arc_length_m - nodes[k].arc_length_m;
-        let beside = nodes.get(k + 2).map_or(0.0, |n| n.arc_length_m - nodes[k + 1].arc_length_m);
+        let after = nodes.get(k + 2).map_or(0.0, |n| n.arc_length_m - nodes[k + 1].arc_length_m);
+        let before = if k > 0 { nodes[k].arc_length_m - nodes[k - 1].arc_length_m } else { 0.0 };
+        let beside = before.max(after);
         // The floor of a plan view holds any way.
         let floor = floor * (ds + beside);
         let limit = BALANCE * scale + floor;

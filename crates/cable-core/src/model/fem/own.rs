@@ -233,8 +233,7 @@ impl Dynamics {
             }
             if let Some(report) = out.last_mut() {
                 let force = pair.normal * load - pair.tangent() * rubbing;
-                report.force_n = [report.force_n[0] + force.x, report.force_n[1] + force.y];
-                // The other side of the contact feels the opposite.
+                // The other side of the contact feels the opposite: the force on the whole cable is nothing.
                 for (node, part) in pair.shares() {
                     report.samples.push(ContactSample::new(self.mesh.arc_length[node], force * part));
                 }

@@ -311,7 +311,7 @@ impl MassSpringModel {
             }
             let under = self.under_end(i, self.f[i] - self.held_acceleration[i] * self.mass[i])?;
             let n = under.gap.normal;
-            let friction = under.force.dot(&Vec2::new(n.y, -n.x)) * h;
+            let friction = under.force.dot(&self.along_ground(element, n)) * h;
             let gap = Gap { fraction, ..under.gap };
             Some(Touch { element, gap, normal: under.pressed * h, friction, slips: friction != 0.0 })
         })
@@ -376,12 +376,18 @@ impl MassSpringModel {
         out.into_iter().map(finish).collect()
     }
 
+    /// Direction of growing arc length along ground with a normal, at an element.
+    fn along_ground(&self, e: usize, n: Vec2) -> Vec2 {
+        let along = -perp(n);
+        if along.dot(&(self.x[e + 1] - self.x[e])) < 0.0 { -along } else { along }
+    }
+
     fn add(&self, r: &mut ContactReport, t: &Touch, h: f64) {
         let e = t.element;
         let at = self.s[e] + self.span[e] * t.gap.fraction;
         // The middle, weighted by force.
         let n = t.gap.normal;
-        let force = (n * t.normal + Vec2::new(n.y, -n.x) * t.friction) / h;
+        let force = (n * t.normal + self.along_ground(e, n) * t.friction) / h;
         r.force_n = [r.force_n[0] + force.x, r.force_n[1] + force.y];
         r.samples.push(ContactSample::new(at, force));
         let before = r.normal_n;
