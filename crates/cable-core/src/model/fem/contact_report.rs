@@ -8,7 +8,7 @@ use super::path::angle_between;
 use super::sliding::{Balanced, Load, Seat, Sliding};
 use crate::contact::friction;
 use crate::energy::bending::turn;
-use crate::math::{Vec2, larger, perp, smaller};
+use crate::math::{Vec2, bounded, larger, perp, smaller};
 use crate::model::arc_nodes;
 use crate::problem::Problem;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
@@ -315,6 +315,9 @@ fn by_round(load: &Load) -> Vec2 {
     -load.jump - before * load.floor[0] - on * load.floor[1] - after * load.floor[2]
 }
 
+/// Part of what chords are shorter than their arc that goes to the way on either side. More: they were longer than their material.
+const SPARED: f64 = 0.4;
+
 /// A point of the cable on a round.
 struct OnRound {
     arc_length: f64,
@@ -402,14 +405,18 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
         OnRound { arc_length, at: node.end.center + normal * radius, tension, force, stretch }
     };
     let mut points: Vec<OnRound> = (0..=count as usize).map(|i| at(i as f64)).collect();
-    // What sags on to the round, or comes from inside its gap, comes and goes by a longer way than the bar.
+    // What sags on to the round, or comes from inside its gap, comes and goes by a longer way than the bar: by as much as chords are shorter
+    // than their arc the round has material to spare.
+    let half = 0.5 * whole / count;
+    let spare = SPARED * (whole - count * 2.0 * half.sin()) * radius;
     for j in [0, 1] {
         let beside = if j == 0 { k - 1 } else { k + 1 };
         let Some(p) = (if j == 0 { points.first_mut() } else { points.last_mut() }) else { continue };
         if mesh.sliding[beside].is_none() {
             let way = (p.at - x[beside]).norm() / stretch[j];
-            let least = mesh.arc_length[beside] + [way, -way][j];
-            p.arc_length = if j == 0 { larger(p.arc_length, least) } else { smaller(p.arc_length, least) };
+            let has = (p.arc_length - mesh.arc_length[beside]).abs();
+            let more = bounded(way - has, 0.0, spare / stretch[j]);
+            p.arc_length += [more, -more][j];
         }
     }
     if !(same[0] || same[1]) {
