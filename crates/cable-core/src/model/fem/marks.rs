@@ -147,10 +147,10 @@ mod tests {
 
     #[test]
     fn an_arc_with_its_mark_is_as_long_as_friction_makes_it() {
-        for (before, after) in [(100.0, 100.0), (100.0, 99.999), (100.0, 40.0), (3.0, 800.0), (5e-7, 70.0)] {
+        for (before, after) in [(100.0f64, 100.0f64), (100.0, 99.999), (100.0, 40.0), (3.0, 800.0), (5e-7, 70.0)] {
             let f = part_before([before, after]);
             let n = 20_000;
-            let at = |k: i32| before * ((after / before) as f64).powf((f64::from(k) + 0.5) / f64::from(n));
+            let at = |k: i32| before * (after / before).powf((f64::from(k) + 0.5) / f64::from(n));
             let mean = (0..n).map(at).sum::<f64>() / f64::from(n);
             let two: f64 = f * before + (1.0 - f) * after;
             assert!((two - mean).abs() < 1e-6 * before.max(after), "{before} {after}: {two} {mean}");
