@@ -107,14 +107,13 @@ fn hand(sim: &Simulation) -> (Vec2, Vec2, f64) {
     (Vec2::new(hand.x_m, hand.y_m), Vec2::new(hand.force_x_n, hand.force_y_n), hand.stiffness_n_per_m)
 }
 
-/// What the cable pulls with at its right end, N: the middle of its last element, and what half of it weighs.
+/// What the cable pulls with at its right end, N: the tension at the node before, and what the element between weighs.
 fn pull(sim: &Simulation) -> Vec2 {
     let nodes = &sim.answers()[0].nodes;
     let c = &sim.scene().cables[0];
     let [a, b] = [&nodes[nodes.len() - 2], &nodes[nodes.len() - 1]];
     let (way, part) = (a.at() - b.at(), b.arc_length_m - a.arc_length_m);
-    let tension = c.axial_stiffness_n * (way.norm() / part - 1.0);
-    way * (tension / way.norm()) - Vec2::new(0.0, 0.5 * part * c.linear_density_kg_per_m * 9.80665)
+    way * (a.tension_n / way.norm()) - Vec2::new(0.0, part * c.linear_density_kg_per_m * 9.80665)
 }
 
 fn pulled(model: Model, settings: Settings) -> Simulation {
@@ -135,23 +134,36 @@ fn a_hand_pulls_by_its_stiffness_and_how_far_it_is_ahead() {
         for stiffness in [None, Some(300.0), Some(1e5)] {
             let mut sim = pulled(model, Settings { hand_stiffness_n_per_m: stiffness, ..Settings::default() });
             sim.pull_support(0, 1, Vec2::new(4.0, 3.0));
-            sim.step(1.0 / 60.0).unwrap();
-            // Nothing jerks where it takes hold.
+            // It takes hold with the force that held the support before.
+            let before = pull(&sim);
+            sim.step(1e-3).unwrap();
             let (_, first, k) = hand(&sim);
-            assert!((first + pull(&sim)).norm() < 0.2 * first.norm(), "{model}: {first} for {}", pull(&sim));
+            assert!((first + before).norm() < 0.02 * first.norm(), "{model}: {first} for {before}");
             let weight = 9.80665 * sim.scene().cables[0].linear_density_kg_per_m * 20.0;
             assert!((k / stiffness.unwrap_or(weight / 0.2) - 1.0).abs() < 1e-9, "{k} N/m");
             sim.pull_support(0, 1, Vec2::new(6.0, 4.0));
-            steps(&mut sim, 12.0);
-            let (end, force, _) = hand(&sim);
-            let spring = (end - at(&sim)) * k;
-            assert!((end - Vec2::new(6.0, 4.0)).norm() < 1e-6, "{model}: the hand is at {end}");
-            assert!((spring - force).norm() < 1e-2 * force.norm(), "{model}, {k} N/m: {spring} and {force} N");
-            // The half of an element that moves with the support still swings a little.
-            assert!((force + pull(&sim)).norm() < 1e-2 * force.norm(), "{model}, {k} N/m: {force} and {} N", pull(&sim));
-            let reaction = &sim.answers()[0].supports[1];
-            let on_support = Vec2::new(reaction.reaction_x_n, reaction.reaction_y_n);
-            assert!((force + on_support).norm() < 1e-9 * force.norm(), "{model}: {force} and {on_support} N");
+            steps(&mut sim, 4.0);
+            // The cable swings on, and half of an element with the support.
+            let (mut forces, mut pulls) = (Vec2::zeros(), Vec2::zeros());
+            let damping = 0.5 * (k * sim.scene().cables[0].linear_density_kg_per_m * 20.0).sqrt();
+            for _ in 0..480 {
+                let from = at(&sim);
+                sim.step(1.0 / 240.0).unwrap();
+                let (end, force, _) = hand(&sim);
+                assert!((end - Vec2::new(6.0, 4.0)).norm() < 1e-6, "{model}: the hand is at {end}");
+                let spring = (end - at(&sim)) * k;
+                let whole = spring - (at(&sim) - from) * (240.0 * damping);
+                // Sub-steps of an explicit model have velocities of their own.
+                let near = if model == Model::Fem { 1e-6 } else { 0.05 };
+                assert!((whole - force).norm() < near * force.norm(), "{model}, {k} N/m: {whole} and {force} N");
+                let reaction = &sim.answers()[0].supports[1];
+                let on_support = Vec2::new(reaction.reaction_x_n, reaction.reaction_y_n);
+                assert!((force + on_support).norm() < 1e-9 * force.norm(), "{model}: {force} and {on_support} N");
+                (forces, pulls) = (forces + force, pulls + pull(&sim));
+            }
+            let off = (forces + pulls).norm() / forces.norm();
+            println!("{model}, {k} N/m: the cable pulls with all but {off:.4} of the hand's mean force");
+            assert!(off < 0.01, "{model}, {k} N/m: {forces} {pulls}");
         }
     }
 }
@@ -160,11 +172,8 @@ fn a_hand_pulls_by_its_stiffness_and_how_far_it_is_ahead() {
 fn a_hand_is_no_faster_than_it_may_be_and_a_stiff_one_is_followed_exactly() {
     for model in [Model::Fem, Model::MassSpring] {
         for fastest in [2.0, 5.0] {
-            let settings = Settings {
-                hand_speed_m_per_s: fastest,
-                hand_stiffness_n_per_m: Some(1e8),
-                ..Settings::default()
-            };
+            let settings =
+                Settings { hand_speed_m_per_s: fastest, hand_stiffness_n_per_m: Some(1e8), ..Settings::default() };
             let mut sim = pulled(model, settings);
             sim.pull_support(0, 1, Vec2::new(4.0, 6.0));
             let (mut before, mut lagged) = (at(&sim), 0);
@@ -192,7 +201,7 @@ fn a_hand_is_no_faster_than_it_may_be_and_a_stiff_one_is_followed_exactly() {
 fn a_hand_beyond_the_length_pulls_until_the_cable_breaks() {
     for model in [Model::Fem, Model::MassSpring] {
         let mut scene = slack();
-        scene.cables[0].breaking_tension_n = 2000.0;
+        (scene.cables[0].service_tension_n, scene.cables[0].breaking_tension_n) = (1500.0, 2000.0);
         let mut sim = Simulation::with_settings(scene, model, Settings::default()).unwrap();
         sim.settle().unwrap();
         sim.pull_support(0, 1, Vec2::new(60.0, 3.0));

@@ -68,7 +68,10 @@ mod tests {
         for gap in [1e-15, 1e-14, 1e-12, 1e-9, 1e-6, 5e-5] {
             let b = barrier.at(gap);
             let relief = barrier.relief(gap, by);
-            assert!(relief >= 0.0 && relief < -b.slope && relief <= b.curvature * by * (1.0 + 1e-6), "{gap} m: {relief} N");
+            assert!(
+                relief >= 0.0 && relief < -b.slope && relief <= b.curvature * by * (1.0 + 1e-6),
+                "{gap} m: {relief} N"
+            );
             if gap > 1e4 * by {
                 assert!((relief / (b.curvature * by) - 1.0).abs() < 0.05, "{gap} m: {relief} N");
             }

@@ -11,8 +11,8 @@
 //! F = k (h − x) + c (ḣ − ẋ)
 //! ```
 //! so the support is where this and the cable's pull balance: what is beyond the cable's length is pulled harder and harder, not reached. The support is a
-//! node of the cable like any other. With ẋ = a (x − x̂), as an implicit step has it, F = κ (p − x) is a spring again, of stiffness κ = k + c a to a place p, so
-//! it is one more term of the energy that a step minimises, convex, and needs no exchange of forces and no limit of the step ([`Hand::pull`]).
+//! node of the cable like any other. With both velocities those of the step, the changes over its time, F = κ (p − x) is a spring again, of stiffness κ = k + c/Δt
+//! to a place p, so it is one more term of the energy that a step minimises, convex, and needs no exchange of forces and no limit of the step ([`Hand::pull`]).
 
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
@@ -38,9 +38,9 @@ pub const MAX_SPEED: f64 = 20.0;
 /// put a little beyond the cable's length breaks it at once; larger: what is drawn hangs far below the pointer.
 const HAND_GIVE: f64 = 0.01;
 
-/// Damping ratio of the whole cable on a hand's spring: a quarter of the cable is damped critically. Less: a cable that was lifted goes on bobbing; more: the
-/// support creeps to where it is drawn.
-const HAND_DAMPING_RATIO: f64 = 0.5;
+/// Damping ratio of the whole cable on a hand's spring; of half of it, which a hand carries, it is 0.35. Less: a cable that was lifted goes on bobbing; more: a hand
+/// that starts at its greatest speed pushes the cable by more than that weighs.
+const HAND_DAMPING_RATIO: f64 = 0.25;
 
 /// Stiffnesses a hand may have, N/m. Below: it moves nothing; above: its force is rounding.
 pub const HAND_STIFFNESSES: std::ops::RangeInclusive<f64> = 1e-3..=1e9;
@@ -115,31 +115,21 @@ impl Hand {
         self.stiffness
     }
 
-    /// Force on the cable, N, of a support at `at` (m) that moves at `velocity` (m/s).
+    /// Its force on the cable at the end of a step of `dt_s` that its free end has made, as that of a spring without a damper: stiffness (N/m) and place (m); the
+    /// support comes from `from` (m).
     #[must_use]
-    pub fn force(&self, at: Vec2, velocity: Vec2) -> Vec2 {
-        (self.end.position() - at) * self.stiffness + (self.end.velocity() - velocity) * self.damping
-    }
-
-    /// The same for a support whose velocity at `x` is `a` (1/s) times (x − `from`): the stiffness (N/m) and the place (m) of a spring without a damper.
-    #[must_use]
-    pub fn pull(&self, a: f64, from: Vec2) -> (f64, Vec2) {
-        let stiffness = self.stiffness + self.damping * a;
-        let force = self.end.position() * self.stiffness + (from * a + self.end.velocity()) * self.damping;
-        (stiffness, force / stiffness)
+    pub fn pull(&self, dt_s: f64, from: Vec2) -> (f64, Vec2) {
+        let rate = self.damping / dt_s;
+        let stiffness = self.stiffness + rate;
+        let gone = from + self.end.velocity() * dt_s;
+        (stiffness, (self.end.position() * self.stiffness + gone * rate) / stiffness)
     }
 
     /// What an answer tells of it, with its force on the cable, N.
     #[must_use]
     pub fn report(&self, force: Vec2) -> HandReport {
         let end = self.end.position();
-        HandReport {
-            x_m: end.x,
-            y_m: end.y,
-            stiffness_n_per_m: self.stiffness,
-            force_x_n: force.x,
-            force_y_n: force.y,
-        }
+        HandReport { x_m: end.x, y_m: end.y, stiffness_n_per_m: self.stiffness, force_x_n: force.x, force_y_n: force.y }
     }
 
     /// What is to be said where the hand is behind its target, or the support, at `at` (m), behind the hand by more than a hundredth of the cable; `force`
@@ -163,7 +153,9 @@ impl Hand {
         }
         if slow > 0.0 {
             let hand = if held { "the hand" } else { "its hand" };
-            told.push(format!("{hand} is {slow:.2} m behind where it is drawn to: it follows at {fastest} m/s at most"));
+            told.push(format!(
+                "{hand} is {slow:.2} m behind where it is drawn to: it follows at {fastest} m/s at most"
+            ));
         }
         let message = format!("support `{name}`: {}", told.join("; "));
         let speeds = [self.end.velocity().norm(), fastest];

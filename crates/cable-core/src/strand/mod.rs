@@ -675,6 +675,7 @@ impl Clone for Strand {
             pieces: self.pieces.clone(),
             breaks: self.breaks.clone(),
             dragged: self.dragged.clone(),
+            pulled: self.pulled.clone(),
             led: self.led,
             peaks: self.peaks,
             since_s: self.since_s,

@@ -295,7 +295,7 @@ impl Dynamics {
         }
         for (hand, node) in m.hands.iter().zip(&self.support_node) {
             let (Some(hand), Some(k)) = (hand, *node) else { continue };
-            let (stiffness, at) = hand.pull(a, m.x[k] * now - m.x_before[k] * past);
+            let (stiffness, at) = hand.pull(h, m.x[k]);
             let (inertia, both) = (task.inertia[k], task.inertia[k] + stiffness);
             task.predicted[k] = (task.predicted[k] * inertia + at * stiffness) / both;
             task.inertia[k] = both;

@@ -24,8 +24,7 @@ impl MassSpringModel {
         for (hand, &node) in self.hands.iter().zip(&self.node_of) {
             let Some(hand) = hand else { continue };
             let (mass, before) = (self.mass[node], self.v[node]);
-            // F = k (end − x − h v) + c (ḣ − v) = κ (p − x) with κ = k + c/h and v = (x' − x)/h.
-            let (stiffness, at) = hand.pull(h.recip(), self.x[node]);
+            let (stiffness, at) = hand.pull(h, self.x[node]);
             let push = self.f[node] + (at - self.x[node]) * stiffness;
             let v = (before * mass + push * kick) / (mass + stiffness * h * kick);
             self.held_acceleration[node] = (v - before) / kick;
@@ -40,7 +39,7 @@ impl MassSpringModel {
         for (hand, &node) in self.hands.iter().zip(&self.node_of) {
             let Some(hand) = hand else { continue };
             let (mass, before) = (self.mass[node], self.v[node]);
-            let (stiffness, at) = hand.pull(h.recip(), self.x[node]);
+            let (stiffness, at) = hand.pull(h, self.x[node]);
             let push = self.f[node] + (at - self.x[node]) * stiffness;
             let heavier = mass + stiffness * h * h;
             chain.x[node] = self.x[node] + (before * mass + push * h) * (h / heavier);
