@@ -210,7 +210,8 @@ fn s06_a_pointer_holds_an_end_by_a_spring_while_time_runs() {
     assert!((hand.x_m - pointer[0]).hypot(hand.y_m - pointer[1]) < 1e-3, "{hand:?} for {pointer:?}");
     let ahead = (hand.x_m - end.x_m).hypot(hand.y_m - end.y_m);
     let pulls = end.reaction_x_n.hypot(end.reaction_y_n);
-    assert!(ahead > 1e-3 && (ahead * hand.stiffness_n_per_m / pulls - 1.0).abs() < 0.05, "{ahead} m, {pulls} N");
+    // The cable swings on: the spring has all of the force but what is its damper's.
+    assert!(ahead > 1e-3 && (hand.force_n() / pulls - 1.0).abs() < 1e-6, "{ahead} m, {pulls} N for {hand:?}");
     assert!(harness.query_all_by_label_contains("Hand at right").next().is_some(), "its force is read off");
     crate::press(&harness, from + by, false);
     harness.run_steps(40);
