@@ -595,11 +595,27 @@ impl Simulation {
         }
     }
 
-    /// Drags a support by hand: see [`Mechanics::drag_support`](crate::model::Mechanics::drag_support).
+    /// Leads a support to a place (m) whatever that takes: see [`Mechanics::drag_support`](crate::model::Mechanics::drag_support).
     pub fn drag_support(&mut self, cable: usize, support: usize, target_m: Vec2) {
         if let Some(c) = self.cables.get_mut(cable) {
             c.drag_support(support, target_m);
         }
+    }
+
+    /// Holds a support by a hand at `hand_m` (m), by a spring while masses move: what it pulls with stands in the answer
+    /// ([`SupportReaction::hand`](crate::solution::SupportReaction::hand)). See [`Mechanics::pull_support`](crate::model::Mechanics::pull_support).
+    pub fn pull_support(&mut self, cable: usize, support: usize, hand_m: Vec2) {
+        if let Some(c) = self.cables.get_mut(cable) {
+            c.pull_support(support, hand_m);
+        }
+    }
+
+    /// The hand lets a support go, which is then fixed where it is: returns where, m.
+    pub fn let_go(&mut self, cable: usize, support: usize) -> Option<Vec2> {
+        let now = self.answers.get(cable)?.supports.get(support).filter(|s| s.hand.is_some())?;
+        let at = Vec2::new(now.x_m, now.y_m);
+        self.drag_support(cable, support, at);
+        Some(at)
     }
 
     /// Back to the first settled state, bit for bit.

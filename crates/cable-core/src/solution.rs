@@ -324,6 +324,32 @@ pub struct SupportReaction {
     /// Pulley: tension on the side of greater arc length, N.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tension_after_n: Option<f64>,
+    /// The hand that holds it by a spring, if one does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hand: Option<HandReport>,
+}
+
+/// A hand that holds a support by a linear spring, with a damper beside it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct HandReport {
+    /// The spring's free end, m.
+    pub x_m: f64,
+    /// The spring's free end, m.
+    pub y_m: f64,
+    /// Of the spring, N/m.
+    pub stiffness_n_per_m: f64,
+    /// Force of the hand on the cable, N.
+    pub force_x_n: f64,
+    /// Force of the hand on the cable, N.
+    pub force_y_n: f64,
+}
+
+impl HandReport {
+    /// Size of its force, N.
+    #[must_use]
+    pub fn force_n(&self) -> f64 {
+        self.force_x_n.hypot(self.force_y_n)
+    }
 }
 
 /// Whether a contact holds or slides.

@@ -100,3 +100,165 @@ fn a_hand_is_no_faster_than_it_may_be_and_what_lags_is_said() {
     let wrong = Settings { hand_speed_m_per_s: 21.0, ..Settings::default() };
     assert!(Simulation::with_settings(slack(), Model::Fem, wrong).is_err());
 }
+
+/// A hand: where its spring ends, its force on the cable, N.
+fn hand(sim: &Simulation) -> (Vec2, Vec2, f64) {
+    let hand = sim.answers()[0].supports[1].hand.expect("a hand holds it");
+    (Vec2::new(hand.x_m, hand.y_m), Vec2::new(hand.force_x_n, hand.force_y_n), hand.stiffness_n_per_m)
+}
+
+/// What the cable pulls with at its right end, N: the tension at the node before, and what the element between weighs.
+fn pull(sim: &Simulation) -> Vec2 {
+    let nodes = &sim.answers()[0].nodes;
+    let c = &sim.scene().cables[0];
+    let [a, b] = [&nodes[nodes.len() - 2], &nodes[nodes.len() - 1]];
+    let (way, part) = (a.at() - b.at(), b.arc_length_m - a.arc_length_m);
+    way * (a.tension_n / way.norm()) - Vec2::new(0.0, part * c.linear_density_kg_per_m * 9.80665)
+}
+
+fn pulled(model: Model, settings: Settings) -> Simulation {
+    let mut sim = Simulation::with_settings(slack(), model, settings).unwrap();
+    sim.settle().unwrap();
+    sim
+}
+
+fn steps(sim: &mut Simulation, seconds: f64) {
+    for _ in 0..(seconds * 60.0) as usize {
+        sim.step(1.0 / 60.0).unwrap();
+    }
+}
+
+#[test]
+fn a_hand_pulls_by_its_stiffness_and_how_far_it_is_ahead() {
+    for model in [Model::Fem, Model::MassSpring] {
+        for stiffness in [None, Some(300.0), Some(1e5)] {
+            let mut sim = pulled(model, Settings { hand_stiffness_n_per_m: stiffness, ..Settings::default() });
+            sim.pull_support(0, 1, Vec2::new(4.0, 3.0));
+            // It takes hold with the force that held the support before.
+            let before = pull(&sim);
+            sim.step(1e-3).unwrap();
+            let (_, first, k) = hand(&sim);
+            assert!((first + before).norm() < 0.02 * first.norm(), "{model}: {first} for {before}");
+            let weight = 9.80665 * sim.scene().cables[0].linear_density_kg_per_m * 20.0;
+            assert!((k / stiffness.unwrap_or(weight / 0.2) - 1.0).abs() < 1e-9, "{k} N/m");
+            sim.pull_support(0, 1, Vec2::new(6.0, 4.0));
+            steps(&mut sim, 4.0);
+            // The cable swings on, and half of an element with the support.
+            let (mut forces, mut pulls, mut worst) = (Vec2::zeros(), Vec2::zeros(), 0.0);
+            let damping = 0.5 * (k * sim.scene().cables[0].linear_density_kg_per_m * 20.0).sqrt();
+            for _ in 0..480 {
+                let from = at(&sim);
+                sim.step(1.0 / 240.0).unwrap();
+                let (end, force, _) = hand(&sim);
+                assert!((end - Vec2::new(6.0, 4.0)).norm() < 1e-6, "{model}: the hand is at {end}");
+                let spring = (end - at(&sim)) * k;
+                // Sub-steps of an explicit model have velocities of their own: that of the last, not of the whole step, is damped.
+                let end = sim.answers()[0].nodes.last().unwrap();
+                let speed = match model {
+                    Model::Fem => (at(&sim) - from) * 240.0,
+                    _ => Vec2::new(end.vx_m_per_s, end.vy_m_per_s),
+                };
+                let whole = spring - speed * damping;
+                let off = (whole - force).norm() / force.norm();
+                worst = if off > worst { off } else { worst };
+                assert!(off < 1e-8, "{model}, {k} N/m: {whole} and {force} N");
+                let reaction = &sim.answers()[0].supports[1];
+                let on_support = Vec2::new(reaction.reaction_x_n, reaction.reaction_y_n);
+                assert!((force + on_support).norm() < 1e-9 * force.norm(), "{model}: {force} and {on_support} N");
+                (forces, pulls) = (forces + force, pulls + pull(&sim));
+            }
+            let off = (forces + pulls).norm() / forces.norm();
+            println!("{model}, {k} N/m: {worst:.1e}, the cable pulls with all but {off:.4} of the hand's mean force");
+            assert!(off < 0.01, "{model}, {k} N/m: {forces} {pulls}");
+        }
+    }
+}
+
+#[test]
+fn a_hand_is_no_faster_than_it_may_be_and_a_stiff_one_is_followed_exactly() {
+    for model in [Model::Fem, Model::MassSpring] {
+        for fastest in [2.0, 5.0] {
+            let settings =
+                Settings { hand_speed_m_per_s: fastest, hand_stiffness_n_per_m: Some(1e8), ..Settings::default() };
+            let mut sim = pulled(model, settings);
+            sim.pull_support(0, 1, Vec2::new(4.0, 6.0));
+            let (mut before, mut lagged) = (at(&sim), 0);
+            for k in 0..120 {
+                sim.step(1.0 / 60.0).unwrap();
+                let (end, ..) = hand(&sim);
+                assert!((end - at(&sim)).norm() < 1e-4, "{model}, step {k}: {} m behind", (end - at(&sim)).norm());
+                assert!((end - before).norm() <= fastest / 60.0 * (1.0 + 1e-3) + 1e-4, "{model}, step {k}");
+                lagged += usize::from(held(&sim).iter().any(|w| w.contains("m behind where it is drawn to")));
+                before = end;
+            }
+            let frames = 60.0 * 3.0 / fastest;
+            assert!((lagged as f64 - frames).abs() < 3.0, "{model}, {fastest} m/s: said in {lagged} frames");
+            assert!((at(&sim) - Vec2::new(4.0, 6.0)).norm() < 1e-4, "{model}: {}", at(&sim));
+        }
+    }
+    for wrong in [0.0, f64::NAN, 1e10] {
+        let settings = Settings { hand_stiffness_n_per_m: Some(wrong), ..Settings::default() };
+        assert!(Simulation::with_settings(slack(), Model::Fem, settings).is_err(), "{wrong} N/m");
+    }
+}
+
+/// Beyond the cable's length the hand pulls harder and harder, says so, and breaks it; what is let go stays.
+#[test]
+fn a_hand_beyond_the_length_pulls_until_the_cable_breaks() {
+    for model in [Model::Fem, Model::MassSpring] {
+        let mut scene = slack();
+        (scene.cables[0].service_tension_n, scene.cables[0].breaking_tension_n) = (1500.0, 2000.0);
+        let mut sim = Simulation::with_settings(scene, model, Settings::default()).unwrap();
+        sim.settle().unwrap();
+        sim.pull_support(0, 1, Vec2::new(60.0, 3.0));
+        let (mut most, mut said) = (0.0f64, false);
+        for _ in 0..60 * 30 {
+            sim.step(1.0 / 60.0).unwrap();
+            let reach = (at(&sim) - Vec2::new(0.0, 3.0)).norm();
+            if !sim.answers()[0].breaks.is_empty() {
+                break;
+            }
+            assert!(reach < 20.1, "{model}: {reach} m away");
+            let force = hand(&sim).1.norm();
+            said |= force > 1000.0 && held(&sim).iter().any(|w| w.contains("behind the hand, which pulls it with"));
+            most = most.max(force);
+        }
+        assert!(!sim.answers()[0].breaks.is_empty() && said, "{model}: {most} N");
+        assert!((1800.0..2300.0).contains(&most), "{model}: {most} N");
+    }
+}
+
+/// What the hand gives is what the cable gains: it lifts an end by 2 m, slowly.
+#[test]
+fn a_hand_gives_the_energy_that_the_cable_gains() {
+    for model in [Model::Fem, Model::MassSpring] {
+        let mut sim = pulled(model, Settings { hand_speed_m_per_s: 0.2, ..Settings::default() });
+        sim.pull_support(0, 1, Vec2::new(4.0, 3.0));
+        steps(&mut sim, 4.0);
+        let energy = |sim: &Simulation| sim.solution().energy.total_j();
+        let (begin, mut given) = (energy(&sim), 0.0);
+        sim.pull_support(0, 1, Vec2::new(4.0, 5.0));
+        for _ in 0..60 * 14 {
+            let (from, before) = (at(&sim), hand(&sim).1);
+            sim.step(1.0 / 60.0).unwrap();
+            given += (hand(&sim).1 + before).dot(&(at(&sim) - from)) * 0.5;
+        }
+        let gained = energy(&sim) - begin;
+        println!("{model}: {given} J given, {gained} J gained");
+        assert!(given > 100.0 && (gained / given - 1.0).abs() < 0.02, "{model}: {given} J given, {gained} J gained");
+    }
+}
+
+#[test]
+fn what_a_hand_lets_go_stays_where_it_is() {
+    for model in [Model::Fem, Model::MassSpring] {
+        let mut sim = pulled(model, Settings::default());
+        assert_eq!(sim.let_go(0, 1), None);
+        sim.pull_support(0, 1, Vec2::new(5.0, 4.0));
+        steps(&mut sim, 0.5);
+        let place = sim.let_go(0, 1).expect("it was held");
+        steps(&mut sim, 1.0);
+        assert!((at(&sim) - place).norm() < 1e-6, "{model}: {} of {place}", at(&sim));
+        assert!(sim.answers()[0].supports[1].hand.is_none() && held(&sim).is_empty(), "{model}");
+    }
+}

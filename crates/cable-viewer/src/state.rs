@@ -46,6 +46,8 @@ pub struct AppState {
     pub hovered: Option<Item>,
     /// What is being dragged.
     pub grabbed: Option<Grab>,
+    /// The support (cable, support) that the pointer holds by a spring while time runs.
+    pub pulled: Option<(usize, usize)>,
     /// Where the pointer is, m; None outside the canvas.
     pub cursor_m: Option<Point>,
     /// The part of the world on screen.
@@ -278,6 +280,7 @@ impl AppState {
             probe: None,
             hovered: None,
             grabbed: None,
+            pulled: None,
             cursor_m: None,
             camera: Camera::default(),
             playback: Playback { paused: true, speed: 1.0 },

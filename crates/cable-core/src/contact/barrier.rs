@@ -47,11 +47,36 @@ impl Barrier {
             curvature: self.stiffness / self.reach * (-2.0 * ln - 4.0 * d / u + d * d / (u * u)),
         }
     }
+
+    /// How much less the normal force at a gap (m) is where the gap is wider by `by` (m), N. The curvature times that is more, as the barrier is convex, and many
+    /// times as much where the gap is less than `by`.
+    #[must_use]
+    pub fn relief(&self, gap: f64, by: f64) -> f64 {
+        let closed = self.at(gap).slope;
+        if closed.is_finite() { self.at(gap + by).slope - closed } else { f64::INFINITY }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_gap_below_its_rounding_relieves_no_more_than_its_force() {
+        let barrier = Barrier { reach: 1e-4, stiffness: 24.0 };
+        let by = 7e-15;
+        for gap in [1e-15, 1e-14, 1e-12, 1e-9, 1e-6, 5e-5] {
+            let b = barrier.at(gap);
+            let relief = barrier.relief(gap, by);
+            assert!(
+                relief >= 0.0 && relief < -b.slope && relief <= b.curvature * by * (1.0 + 1e-6),
+                "{gap} m: {relief} N"
+            );
+            if gap > 1e4 * by {
+                assert!((relief / (b.curvature * by) - 1.0).abs() < 0.05, "{gap} m: {relief} N");
+            }
+        }
+    }
 
     #[test]
     fn derivatives_match_differences() {

@@ -1,14 +1,23 @@
-//! A support dragged by hand: a smooth follower of a jumping target, no faster than a hand.
+//! What draws a support: a smooth follower of a jumping target, no faster than a hand; and a hand, which holds the support by a spring whose free end is
+//! such a follower.
 //!
 //! The target comes 60 times a second and jumps. Fed straight into a stiff cable it shakes it: piecewise linear
 //! input costs 52–330 % of tension error where a C² curve of the same input costs 1e-4. So the target is
 //! followed by a point of limited speed and that through three equal lags, p = (τ d/dt + 1)⁻³ q: position,
 //! velocity and acceleration are then continuous whatever the target does.
+//!
+//! A hand at h holds a support at x by a linear spring with a damper beside it,
+//! ```text
+//! F = k (h − x) + c (ḣ − ẋ)
+//! ```
+//! so the support is where this and the cable's pull balance: what is beyond the cable's length is pulled harder and harder, not reached. The support is a
+//! node of the cable like any other. With both velocities those of the step, the changes over its time, F = κ (p − x) is a spring again, of stiffness κ = k + c/Δt
+//! to a place p, so it is one more term of the energy that a step minimises, convex, and needs no exchange of forces and no limit of the step ([`Hand::pull`]).
 
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-use crate::solution::{Warning, WarningKind};
+use crate::solution::{HandReport, Warning, WarningKind};
 
 /// Time constant of each lag, s. Smaller: the cable feels the steps of the hand; larger: the support trails the
 /// hand by 3τ. Chosen so that the trailing (45 ms) is under three frames.
@@ -24,6 +33,17 @@ pub const HAND_SPEED: f64 = 2.0;
 /// The fastest a hand may be asked to be, a robot may be followed, and a support catches up with its motion after something held it, m/s.
 /// Uncapped, a jump of 10 m in a frame loses 77 to 734 steps.
 pub const MAX_SPEED: f64 = 20.0;
+
+/// Part of the cable's length that a hand is ahead of a support where it carries the whole cable, unless its stiffness is asked for. Smaller: a hand that is
+/// put a little beyond the cable's length breaks it at once; larger: what is drawn hangs far below the pointer.
+const HAND_GIVE: f64 = 0.01;
+
+/// Damping ratio of the whole cable on a hand's spring; of half of it, which a hand carries, it is 0.35. Less: a cable that was lifted goes on bobbing; more: a hand
+/// that starts at its greatest speed pushes the cable by more than that weighs.
+const HAND_DAMPING_RATIO: f64 = 0.25;
+
+/// Stiffnesses a hand may have, N/m. Below: it moves nothing; above: its force is rounding.
+pub const HAND_STIFFNESSES: std::ops::RangeInclusive<f64> = 1e-3..=1e9;
 
 /// Below this distance (m) from the target the support is put on it.
 const ARRIVED: f64 = 1e-9;
@@ -48,6 +68,102 @@ pub fn held_warning(problem: &Problem, support: usize, arc_length_m: f64, (f, fa
     Warning::new(WarningKind::SupportHeld, &problem.cable.name, arc_length_m, speeds, message)
 }
 
+/// Stiffness of a hand's spring unless asked otherwise, N/m: with the whole load on a cable (weight, wind, loads, what a floor rubs) it is a hundredth of the
+/// cable's length ahead, whatever the cable.
+#[must_use]
+pub fn hand_stiffness(problem: &Problem) -> f64 {
+    let floor = problem.floor_friction.map_or(0.0, |(friction, normal)| friction * normal * problem.length);
+    let stiffness = larger(problem.force_scale(), floor) / (HAND_GIVE * problem.length);
+    stiffness.clamp(*HAND_STIFFNESSES.start(), *HAND_STIFFNESSES.end())
+}
+
+/// A hand that holds a support by a spring with a damper beside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hand {
+    end: Follower,
+    /// N/m.
+    stiffness: f64,
+    /// N s/m.
+    damping: f64,
+}
+
+impl Hand {
+    /// Takes hold of a support at `at` (m) with the force (N, on the cable) that has held it so far, so nothing jerks; `stiffness` N/m, by default that of
+    /// [`hand_stiffness`].
+    #[must_use]
+    pub fn grip(problem: &Problem, stiffness: Option<f64>, (at, force): (Vec2, Vec2)) -> Self {
+        let stiffness = stiffness.unwrap_or_else(|| hand_stiffness(problem));
+        let mass = problem.linear_density * problem.length + problem.supports.iter().map(|s| s.mass).sum::<f64>();
+        let damping = 2.0 * HAND_DAMPING_RATIO * (stiffness * mass).sqrt();
+        Self { end: Follower::at_rest(at + force / stiffness), stiffness, damping }
+    }
+
+    /// The free end moves towards `target` (m) for `dt_s`, at most at `fastest` (m/s).
+    pub fn follow(&mut self, target: Vec2, dt_s: f64, fastest: f64) {
+        self.end.follow(target, dt_s, fastest);
+    }
+
+    /// The free end.
+    #[must_use]
+    pub fn end(&self) -> &Follower {
+        &self.end
+    }
+
+    /// N/m.
+    #[must_use]
+    pub fn stiffness(&self) -> f64 {
+        self.stiffness
+    }
+
+    /// Its force on the cable at the end of a step of `dt_s` that its free end has made, as that of a spring without a damper: stiffness (N/m) and place (m); the
+    /// support comes from `from` (m).
+    #[must_use]
+    pub fn pull(&self, dt_s: f64, from: Vec2) -> (f64, Vec2) {
+        let rate = self.damping / dt_s;
+        let stiffness = self.stiffness + rate;
+        let gone = from + self.end.velocity() * dt_s;
+        (stiffness, (self.end.position() * self.stiffness + gone * rate) / stiffness)
+    }
+
+    /// What an answer tells of it, with its force on the cable, N.
+    #[must_use]
+    pub fn report(&self, force: Vec2) -> HandReport {
+        let end = self.end.position();
+        HandReport { x_m: end.x, y_m: end.y, stiffness_n_per_m: self.stiffness, force_x_n: force.x, force_y_n: force.y }
+    }
+
+    /// What is to be said where the hand is behind its target, or the support, at `at` (m), behind the hand by more than a hundredth of the cable; `force`
+    /// on the cable in N, `fastest` in m/s.
+    #[must_use]
+    pub fn warning(
+        &self,
+        (problem, support, arc_length_m): (&Problem, usize, f64),
+        (at, force): (Vec2, Vec2),
+        fastest: f64,
+    ) -> Option<Warning> {
+        let name = problem.supports.get(support).map_or("", |s| s.name.as_str());
+        let (slow, behind) = (self.end.behind_m(), (self.end.position() - at).norm());
+        let (k, pulls) = (self.stiffness, force.norm());
+        let held = behind > HAND_GIVE * problem.length;
+        let mut told = Vec::new();
+        if held {
+            told.push(format!(
+                "is {behind:.2} m behind the hand, which pulls it with {pulls:.0} N by a spring of {k:.0} N/m"
+            ));
+        }
+        if slow > 0.0 {
+            let hand = if held { "the hand" } else { "its hand" };
+            told.push(format!(
+                "{hand} is {slow:.2} m behind where it is drawn to: it follows at {fastest} m/s at most"
+            ));
+        }
+        let message = format!("support `{name}`: {}", told.join("; "));
+        let speeds = [self.end.velocity().norm(), fastest];
+        let name = &problem.cable.name;
+        (!told.is_empty()).then(|| Warning::new(WarningKind::SupportHeld, name, arc_length_m, speeds, message))
+    }
+}
+
 /// The follower.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Follower {
@@ -62,6 +178,13 @@ impl Follower {
     #[must_use]
     pub fn at_rest(at: Vec2) -> Self {
         Self { stages: [at; 4], velocity: Vec2::zeros(), behind_m: 0.0 }
+    }
+
+    /// At a point (m), moving evenly (m/s): it goes on, and slows down.
+    #[must_use]
+    pub fn moving(at: Vec2, velocity: Vec2) -> Self {
+        let stages = [3.0, 2.0, 1.0, 0.0].map(|lags| at + velocity * (lags * LAG));
+        Self { stages, velocity, behind_m: 0.0 }
     }
 
     /// Where it is, m.

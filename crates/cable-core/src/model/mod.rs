@@ -92,6 +92,9 @@ pub struct Settings {
     /// Fastest a support follows the hand that drags it while masses move, m/s.
     #[serde(default = "hand_speed")]
     pub hand_speed_m_per_s: f64,
+    /// Stiffness of the spring by which a hand holds a support while masses move, N/m; None: that of [`drive::hand_stiffness`].
+    #[serde(default)]
+    pub hand_stiffness_n_per_m: Option<f64>,
 }
 
 fn hand_speed() -> f64 {
@@ -106,6 +109,7 @@ impl Default for Settings {
             stepping: Stepping::Auto,
             inner_step_s: None,
             hand_speed_m_per_s: hand_speed(),
+            hand_stiffness_n_per_m: None,
         }
     }
 }
@@ -135,6 +139,9 @@ impl Settings {
         if !(LEAST_HAND_SPEED..=drive::MAX_SPEED).contains(&self.hand_speed_m_per_s) {
             let (name, allowed) = ("hand speed", "0.01 to 20 m/s");
             return Err(SolveError::Setting { name, value: self.hand_speed_m_per_s, allowed });
+        }
+        if let Some(value) = self.hand_stiffness_n_per_m.filter(|k| !drive::HAND_STIFFNESSES.contains(k)) {
+            return Err(SolveError::Setting { name: "hand stiffness", value, allowed: "0.001 to 1e9 N/m" });
         }
         match self.segments {
             Some(n) if !(SEGMENTS.0..=SEGMENTS.1).contains(&n) => {
@@ -245,6 +252,12 @@ pub trait Mechanics: Send {
     /// next `settle` or quasi-static step it is there) instead of its `motion`.
     fn drag_support(&mut self, support: usize, target_m: Vec2);
 
+    /// From now on a hand at `hand_m` (m) holds a support by a spring ([`drive::Hand`]) in `Dynamic` steps, its free end no faster than
+    /// [`Settings::hand_speed_m_per_s`]; else as [`Self::drag_support`], which ends it. A support without a node of its own (a pulley), and one of a robot, is dragged.
+    fn pull_support(&mut self, support: usize, hand_m: Vec2) {
+        self.drag_support(support, hand_m);
+    }
+
     /// The outline of the robot goes there in the next advance; what is put somewhere ([`Self::adopt`]) finds it there at once.
     /// Models that know nothing of it leave it out.
     fn lead_outline(&mut self, _to: Placement) {}
@@ -297,7 +310,8 @@ pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<
 fn built(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Box<dyn Mechanics>, SolveError> {
     if let Some((by, copy)) = problem.similar.clone() {
         let hand_speed_m_per_s = settings.hand_speed_m_per_s * by.length / by.time;
-        let inner = built(model, copy, Settings { hand_speed_m_per_s, ..settings })?;
+        let hand_stiffness_n_per_m = settings.hand_stiffness_n_per_m.map(|k| k / by.length);
+        let inner = built(model, copy, Settings { hand_speed_m_per_s, hand_stiffness_n_per_m, ..settings })?;
         return Ok(Box::new(similar::Similar::new(problem, by, inner)));
     }
     if !matches!(model, Model::Spans | Model::Auto) {

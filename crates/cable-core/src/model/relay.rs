@@ -43,6 +43,8 @@ pub struct Relay {
     /// Where the cable was put, until it is known to rest or to move.
     adopted: Option<State>,
     dragged: Vec<Option<Vec2>>,
+    /// Which of them a hand holds by a spring.
+    pulled: Vec<bool>,
     /// Where the outline of the robot was led.
     led: Option<Placement>,
     reason: Option<String>,
@@ -67,6 +69,7 @@ impl Relay {
             spans,
             fem: None,
             adopted: None,
+            pulled: vec![false; dragged.len()],
             dragged,
             reason: None,
             refusal: None,
@@ -104,11 +107,7 @@ impl Relay {
         } else if self.spans.time_s() > 0.0 {
             fem.adopt(&self.spans.state())?;
         }
-        for (k, target) in self.dragged.iter().enumerate() {
-            if let Some(target) = target {
-                fem.drag_support(k, *target);
-            }
-        }
+        self.draw_supports(&mut fem);
         Ok(fem)
     }
 
@@ -128,17 +127,24 @@ impl Relay {
         if let Some(state) = &self.adopted {
             fem.adopt(state)?;
         }
-        for (k, target) in self.dragged.iter().enumerate() {
-            if let Some(target) = target {
-                fem.drag_support(k, *target);
-            }
-        }
+        self.draw_supports(&mut fem);
         Ok(fem)
     }
 
     /// Whether the cable is in touch with the robot, or in its place.
     fn meets_robot(&self, answer: &CableSolution) -> bool {
         meets_outline(&self.problem, self.led, answer)
+    }
+
+    /// Tells `fem` where supports are drawn to, and by what.
+    fn draw_supports(&self, fem: &mut FemModel) {
+        for (k, (target, pulled)) in self.dragged.iter().zip(&self.pulled).enumerate() {
+            match target {
+                Some(target) if *pulled => fem.pull_support(k, *target),
+                Some(target) => fem.drag_support(k, *target),
+                None => {}
+            }
+        }
     }
 
     fn is_dragged(&self, support: usize) -> bool {
@@ -322,11 +328,7 @@ impl Mechanics for Relay {
         };
         if let Err(why) = taken {
             let mut fem = self.new_fem()?;
-            for (k, target) in self.dragged.iter().enumerate() {
-                if let Some(target) = target {
-                    fem.drag_support(k, *target);
-                }
-            }
+            self.draw_supports(&mut fem);
             fem.take_over(answer, time_s)?;
             self.reason = Some(why);
             self.fem = Some(fem);
@@ -335,12 +337,22 @@ impl Mechanics for Relay {
     }
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
-        if let Some(d) = self.dragged.get_mut(support) {
-            *d = Some(target_m);
+        if let (Some(d), Some(pulled)) = (self.dragged.get_mut(support), self.pulled.get_mut(support)) {
+            (*d, *pulled) = (Some(target_m), false);
         }
         self.spans.drag_support(support, target_m);
         if let Some(fem) = &mut self.fem {
             fem.drag_support(support, target_m);
+        }
+    }
+
+    fn pull_support(&mut self, support: usize, hand_m: Vec2) {
+        self.drag_support(support, hand_m);
+        if let Some(pulled) = self.pulled.get_mut(support) {
+            *pulled = true;
+        }
+        if let Some(fem) = &mut self.fem {
+            fem.pull_support(support, hand_m);
         }
     }
 

@@ -151,6 +151,10 @@ fn answer(mut a: CableSolution, l: f64, t: f64, place: impl Fn(Vec2) -> Vec2) ->
     for s in &mut a.supports {
         put(&mut s.x_m, &mut s.y_m);
         s.arc_length_m *= l;
+        if let Some(hand) = &mut s.hand {
+            put(&mut hand.x_m, &mut hand.y_m);
+            hand.stiffness_n_per_m /= l;
+        }
     }
     for c in &mut a.contacts {
         put(&mut c.x_m, &mut c.y_m);
@@ -244,6 +248,10 @@ impl Mechanics for Similar {
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
         self.inner.drag_support(support, self.by.place(target_m));
+    }
+
+    fn pull_support(&mut self, support: usize, hand_m: Vec2) {
+        self.inner.pull_support(support, self.by.place(hand_m));
     }
 
     fn fall_back(&mut self, why: &str) -> bool {

@@ -18,6 +18,7 @@ use deal::{Cut, Deal};
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
 use crate::math::{Vec2, larger};
+use crate::model::drive::hand_stiffness;
 use crate::model::gauge::{Limit, TensionGauge};
 use crate::model::{self, Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
 use crate::problem::{Problem, SupportPoint};
@@ -80,6 +81,8 @@ pub(crate) struct Strand {
     pieces: Vec<Piece>,
     breaks: Vec<Break>,
     dragged: Vec<Option<Vec2>>,
+    /// Which of them a hand holds by a spring.
+    pulled: Vec<bool>,
     /// Where the outline of the robot was led.
     led: Option<Placement>,
     /// The greatest tensions since they were last forgotten, in motion.
@@ -115,6 +118,9 @@ enum Outcome {
 impl Strand {
     /// Builds the model of a whole cable.
     pub fn new(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
+        // A hand's spring is that of the whole cable, whatever breaks off.
+        let stiffness = settings.hand_stiffness_n_per_m.unwrap_or_else(|| hand_stiffness(&problem));
+        let settings = Settings { hand_stiffness_n_per_m: Some(stiffness), ..settings };
         let mechanics = model::build(model, problem.clone(), settings)?;
         let gauge = TensionGauge::over(problem.cable.breaking_time_s);
         let piece = Piece::new(mechanics, Deal::whole(&problem), gauge);
@@ -127,6 +133,7 @@ impl Strand {
             settings,
             pieces: vec![piece],
             breaks: Vec::new(),
+            pulled: vec![false; dragged.len()],
             dragged,
             led: None,
             peaks: None,
@@ -141,8 +148,10 @@ impl Strand {
             next.carry(self)?;
         }
         for (k, target) in self.dragged.iter().enumerate() {
-            if let Some(target) = target {
-                next.drag_support(k, *target);
+            match target {
+                Some(target) if self.pulled[k] => next.pull_support(k, *target),
+                Some(target) => next.drag_support(k, *target),
+                None => {}
             }
         }
         Ok(next)
@@ -297,8 +306,11 @@ impl Strand {
         let problem = Arc::new(deal.problem(&self.problem, state));
         let mut mechanics = model::build(self.asked, problem, Settings { segments: None, ..self.settings })?;
         for (own, k) in deal.supports.iter().enumerate() {
-            if let Some(target) = k.and_then(|k| self.dragged.get(k).copied().flatten()) {
-                mechanics.drag_support(own, target);
+            let drawn = k.and_then(|k| Some((self.dragged.get(k).copied().flatten()?, self.pulled[k])));
+            match drawn {
+                Some((target, true)) => mechanics.pull_support(own, target),
+                Some((target, false)) => mechanics.drag_support(own, target),
+                None => {}
             }
         }
         if let Some(led) = self.led {
@@ -330,16 +342,29 @@ impl Strand {
         Ok(())
     }
 
-    /// From now on a support follows the hand.
+    /// From now on a support follows what leads it.
     pub fn drag_support(&mut self, support: usize, target_m: Vec2) {
-        if let Some(d) = self.dragged.get_mut(support)
-            && target_m.iter().all(|c| c.is_finite())
-        {
-            *d = Some(target_m);
+        self.draw_support(support, (target_m, false));
+    }
+
+    /// From now on a hand holds a support by a spring.
+    pub fn pull_support(&mut self, support: usize, hand_m: Vec2) {
+        self.draw_support(support, (hand_m, true));
+    }
+
+    fn draw_support(&mut self, support: usize, (to, by_spring): (Vec2, bool)) {
+        if !to.iter().all(|c| c.is_finite()) {
+            return;
+        }
+        if let (Some(d), Some(pulled)) = (self.dragged.get_mut(support), self.pulled.get_mut(support)) {
+            (*d, *pulled) = (Some(to), by_spring);
         }
         for piece in &mut self.pieces {
-            if let Some(own) = piece.deal.supports.iter().position(|k| *k == Some(support)) {
-                piece.mechanics.drag_support(own, target_m);
+            let own = piece.deal.supports.iter().position(|k| *k == Some(support));
+            match own {
+                Some(own) if by_spring => piece.mechanics.pull_support(own, to),
+                Some(own) => piece.mechanics.drag_support(own, to),
+                None => {}
             }
         }
     }
@@ -407,6 +432,7 @@ impl Strand {
             return Err(SolveError::Unsupported { model, feature });
         }
         self.dragged.clone_from(&old.dragged);
+        self.pulled.clone_from(&old.pulled);
         let mut pieces = Vec::with_capacity(old.pieces.len());
         for p in &old.pieces {
             pieces.push(self.build(p.deal.clone(), &p.mechanics.state())?);
@@ -649,6 +675,7 @@ impl Clone for Strand {
             pieces: self.pieces.clone(),
             breaks: self.breaks.clone(),
             dragged: self.dragged.clone(),
+            pulled: self.pulled.clone(),
             led: self.led,
             peaks: self.peaks,
             since_s: self.since_s,

@@ -2,6 +2,7 @@
 
 use cable_core::math::Point;
 use cable_core::scene::{Support, SupportKind};
+use cable_core::solution::SupportReaction;
 use egui::{Color32, Pos2, Stroke, vec2};
 
 use super::robot;
@@ -16,6 +17,9 @@ pub fn place(state: &AppState, cable: usize, support: usize) -> Option<Point> {
     if let Some([behind, _]) = drawn(state, cable, support) {
         return Some(behind);
     }
+    if let Some(now) = answer(state, cable, support).filter(|now| now.hand.is_some()) {
+        return Some([now.x_m, now.y_m]);
+    }
     let solved = state.snapshot.solution.as_ref().and_then(|x| x.cables.get(cable));
     let answer = solved.and_then(|c| c.supports.get(support)).map(|r| [r.x_m, r.y_m]);
     // A moving or free support is where the answer says; a still one where it is being edited.
@@ -29,9 +33,21 @@ pub fn place(state: &AppState, cable: usize, support: usize) -> Option<Point> {
 /// Nearer than this to where it is drawn, a support is there, m.
 const THERE_M: f64 = 1e-3;
 
-/// Where a support is that a hand draws while masses move, and where it is drawn to, m; None where it is there.
+/// What the answer says of a support.
+fn answer(state: &AppState, cable: usize, support: usize) -> Option<&SupportReaction> {
+    state.snapshot.solution.as_ref()?.cables.get(cable)?.supports.get(support)
+}
+
+/// Where a support is that a hand draws while masses move, and where the spring between them ends, or where it is drawn to without one, m; None where it is
+/// there.
 #[must_use]
 pub fn drawn(state: &AppState, cable: usize, support: usize) -> Option<[Point; 2]> {
+    if let Some(now) = answer(state, cable, support)
+        && let Some(hand) = &now.hand
+    {
+        let ends = [[now.x_m, now.y_m], [hand.x_m, hand.y_m]];
+        return ((ends[0][0] - ends[1][0]).hypot(ends[0][1] - ends[1][1]) > THERE_M).then_some(ends);
+    }
     let s = state.scene.cables.get(cable)?.supports.get(support)?;
     let held = matches!(s.kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Pulley);
     let solution = state.snapshot.solution.as_ref()?;
@@ -72,6 +88,11 @@ pub fn draw(view: &View<'_>, state: &AppState) {
             let p = view.at(at);
             if let Some(ends) = drawn(state, cable, support) {
                 spring(view, ends.map(|p| view.at(p)));
+                // The pointer may be ahead of the hand, which is no faster than it may be.
+                if let Some(to) = s.at_m.filter(|_| state.pulled == Some((cable, support))) {
+                    let ends = [ends[1], to].map(|p| view.at(p));
+                    view.painter.line_segment(ends, Stroke::new(1.0, view.palette.accent.gamma_multiply(0.6)));
+                }
             }
             let item = Item::Support { cable, support };
             if state.picked(item) || state.hovered == Some(item) {

@@ -8,6 +8,7 @@ use super::items::{drop_lost_selection, hitched, move_item, remove_all, set_robo
 use super::{Effects, clipboard, next_number, route, submit_scene};
 use crate::state::{AppState, Item};
 use crate::undo::EditKind;
+use crate::worker::engine::slow;
 use crate::worker::request::{Drag, Request};
 
 /// Changes the scene. Indices that do not exist change nothing.
@@ -172,11 +173,32 @@ fn after_edit(state: &mut AppState, dragged: Option<(usize, usize, Point)>, effe
     match dragged {
         Some((cable, support, to_m)) if !state.playback.paused && state.scene_fault.is_none() => {
             state.show_time(None);
-            let drag = Drag { cable, support, to_m, scene: state.scene.clone() };
-            let request = Request { drag: Some(drag), number: next_number(state), ..Request::default() };
-            effects.request.merge(request);
+            // A pointer holds by a spring; a key or a robot puts it there.
+            let held = Item::Support { cable, support };
+            let by_spring = state.grabbed.is_some_and(|g| g.item == held) && !slow(state.model);
+            state.pulled = by_spring.then_some((cable, support));
+            draw_support(state, (cable, support, to_m), effects);
         }
         _ => submit_scene(state, false, effects),
+    }
+}
+
+/// Has a support drawn to a point (m), by a spring or not.
+fn draw_support(state: &mut AppState, (cable, support, to_m): (usize, usize, Point), effects: &mut Effects) {
+    let by_spring = state.pulled == Some((cable, support));
+    let drag = Drag { cable, support, to_m, by_spring, scene: state.scene.clone() };
+    effects.request.merge(Request { drag: Some(drag), number: next_number(state), ..Request::default() });
+}
+
+/// The pointer lets go of a support that it held by a spring: it is fixed where it is.
+pub(super) fn let_go(state: &mut AppState, effects: &mut Effects) {
+    let Some((cable, support)) = state.pulled.take() else { return };
+    let answer = state.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable)?.supports.get(support));
+    let at = answer.filter(|r| r.hand.is_some()).map(|r| [r.x_m, r.y_m]);
+    let held = state.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support));
+    if let (Some(at), Some(held)) = (at, held) {
+        held.at_m = Some(at);
+        draw_support(state, (cable, support, at), effects);
     }
 }
 

@@ -93,7 +93,12 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             state.hovered = item;
             state.cursor_m = at_m;
         }
-        ViewCommand::Grab(grab) => state.grabbed = grab,
+        ViewCommand::Grab(grab) => {
+            state.grabbed = grab;
+            if grab.is_none() {
+                super::scene::let_go(state, effects);
+            }
+        }
         ViewCommand::Pan(delta) => state.camera.pan(delta),
         ViewCommand::Zoom { about_m, factor } => state.camera.zoom(about_m, factor),
         ViewCommand::Fit => state.camera.fit_wanted = true,

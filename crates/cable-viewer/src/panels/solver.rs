@@ -1,5 +1,7 @@
 //! Solver panel: the model, its mesh and accuracy, what it did.
 
+use cable_core::model::drive;
+use cable_core::problem::problems;
 use cable_core::{Model, Settings, Solution};
 use egui::{Grid, Ui};
 
@@ -29,7 +31,15 @@ const HAND: Quantity = Quantity {
     unit: Unit::M_PER_S,
     usual: [0.1, 20.0],
     logarithmic: true,
-    help: "How fast a support follows the pointer that drags it while time runs. What the pointer is ahead is drawn as a spring and said as a warning. 2 m/s is an arm's; a faster one may break the cable by a flick of the mouse.",
+    help: "How fast the hand follows the pointer that drags a support while time runs. It holds the support by a spring, which is drawn; where it lags is said as a warning. 2 m/s is an arm's; a faster one may break the cable by a flick of the mouse.",
+};
+
+const HAND_STIFFNESS: Quantity = Quantity {
+    name: "Stiffness of the hand",
+    unit: Unit::N_PER_M,
+    usual: [1.0, 1e6],
+    logarithmic: true,
+    help: "The spring by which the pointer holds a support while time runs. Stiffer: the support follows more exactly, and what is pulled beyond its length breaks sooner.",
 };
 
 const MODELS: [(Model, &str, &str); 5] = [
@@ -55,6 +65,9 @@ const MODELS: [(Model, &str, &str); 5] = [
 
 /// What is set when the user first fixes the number and nothing was solved yet.
 const FIRST_SEGMENTS: usize = 100;
+
+/// N/m, where the scene says nothing.
+const FIRST_STIFFNESS: f64 = 1000.0;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -97,6 +110,7 @@ fn mesh(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let hand_speed_m_per_s = speed.clamp(0.01, 20.0);
         commands.push(Command::SetSettings(Settings { hand_speed_m_per_s, ..state.settings }));
     }
+    hand_stiffness(ui, state, commands);
     let mut fixed = segments.is_some();
     let help = "Off: the cable's own number, else by the tolerance";
     if ui.checkbox(&mut fixed, "Same number of segments for every cable").on_hover_text(help).changed() {
@@ -109,6 +123,22 @@ fn mesh(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         // The range of the scene file's `segments`.
         let segments = Some(value.round().clamp(1.0, 1e5) as usize);
         commands.push(Command::SetSettings(Settings { segments, ..state.settings }));
+    }
+}
+
+fn hand_stiffness(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let stiffness = state.settings.hand_stiffness_n_per_m;
+    let set = |hand_stiffness_n_per_m| Command::SetSettings(Settings { hand_stiffness_n_per_m, ..state.settings });
+    let mut stated = stiffness.is_some();
+    let help = "Off: a hand that carries the whole of a cable is a hundredth of its length ahead of the support";
+    if ui.checkbox(&mut stated, "Same stiffness of the hand for every cable").on_hover_text(help).changed() {
+        // That of the present cable, which is as wide a choice as any.
+        let of_cable = problems(&state.scene).ok().and_then(|all| all.first().map(|p| drive::hand_stiffness(p)));
+        commands.push(set(stated.then(|| of_cable.unwrap_or(FIRST_STIFFNESS))));
+    }
+    let Some(value) = stiffness else { return };
+    if let Some(value) = row(ui, &HAND_STIFFNESS, &Known { value, ..Known::default() }).value {
+        commands.push(set(Some(value.clamp(*drive::HAND_STIFFNESSES.start(), *drive::HAND_STIFFNESSES.end()))));
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use cable_core::math::vec2;
+use cable_core::math::{Point, vec2};
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
 use cable_core::timeline::RunMonitor;
@@ -66,6 +66,8 @@ pub struct Engine {
     tick_s: f64,
     /// Since when the present mesh is the coarse one of a drag while time runs: the last time the hand moved.
     coarse_since: Option<Instant>,
+    /// The support that a hand holds by a spring: cable, support, and where the hand is, m.
+    pulled: Option<(usize, usize, Point)>,
     /// Why the last edit has no answer: what `simulation` holds is of the scene before it, and time stands.
     refused: Option<String>,
 }
@@ -103,6 +105,7 @@ impl Default for Engine {
             dragged: 0,
             tick_s: 0.0,
             coarse_since: None,
+            pulled: None,
             refused: None,
         }
     }
@@ -300,7 +303,7 @@ impl Engine {
             self.answers.clear();
         }
         self.draft = false;
-        self.coarse_since = None;
+        (self.coarse_since, self.pulled) = (None, None);
         self.monitor = None;
         // Models are compared by what they answer for the scene as laid, not for where another model left the cable.
         let same_model = self.edit.as_ref().is_some_and(|e| e.model == edit.model && e.settings == edit.settings);
@@ -358,11 +361,17 @@ impl Engine {
         } else if self.drafts && self.playing() && self.tick_s > DRAFT_AFTER_S {
             self.enter_coarse();
         }
+        let Drag { cable, support, to_m, .. } = drag;
+        let draw = |simulation: &mut Simulation| match drag.by_spring {
+            true => simulation.pull_support(cable, support, vec2(to_m)),
+            false => simulation.drag_support(cable, support, vec2(to_m)),
+        };
+        self.pulled = drag.by_spring.then_some((cable, support, to_m));
         if let Some(simulation) = &mut self.simulation {
-            simulation.drag_support(drag.cable, drag.support, vec2(drag.to_m));
+            draw(simulation);
         }
         if let Some(monitor) = &mut self.monitor {
-            monitor.steer(|simulation| simulation.drag_support(drag.cable, drag.support, vec2(drag.to_m)));
+            monitor.steer(draw);
         }
         if let Some(edit) = &mut self.edit {
             edit.scene = drag.scene;
@@ -382,7 +391,7 @@ impl Engine {
         self.edit = Some(edit);
         self.start_kept = false;
         self.draft = false;
-        self.coarse_since = None;
+        (self.coarse_since, self.pulled) = (None, None);
         self.refused = None;
         self.sample();
         Ok(())
@@ -402,8 +411,11 @@ impl Engine {
     fn leave_coarse(&mut self) {
         self.coarse_since = None;
         if let (Some(edit), Some(old)) = (&self.edit, &self.simulation)
-            && let Some(full) = draft::moving(edit, old, false)
+            && let Some(mut full) = draft::moving(edit, old, false)
         {
+            if let Some((cable, support, to_m)) = self.pulled {
+                full.pull_support(cable, support, vec2(to_m));
+            }
             self.simulation = Some(full);
             self.monitor = None;
         }
@@ -415,7 +427,7 @@ impl Engine {
             self.start_kept = false;
         }
         self.answers.clear();
-        self.monitor = None;
+        (self.monitor, self.pulled) = (None, None);
         // At the start already: lay the cable anew, which forgets the friction of edits since.
         if self.start_kept
             && self.refused.is_none()

@@ -59,6 +59,8 @@ pub struct Drag {
     pub support: usize,
     /// Where to, m.
     pub to_m: Point,
+    /// A hand holds it by a spring; else it goes there whatever that takes.
+    pub by_spring: bool,
     /// The scene with the support there, for the next rebuild.
     pub scene: Scene,
 }

@@ -182,6 +182,46 @@ fn s19_friction_typed_at_an_obstacle_sticks_slides_and_changes_the_tension() {
     assert!(most(&drawn) > 1.5 * most(&smooth), "{} {}", most(&drawn), most(&smooth));
 }
 
+/// The pointer takes an end while time runs and is held still a metre away: a spring holds the end, its force is in the readouts and balances the cable; let go, the
+/// end stays where it came to, in the scene as well.
+#[test]
+fn s06_a_pointer_holds_an_end_by_a_spring_while_time_runs() {
+    let mut harness = open(catalog::hanging_span());
+    tall(&mut harness);
+    click(&mut harness, "FEM");
+    harness.key_press(Key::Space);
+    harness.run_steps(3);
+    let from = crate::support(&harness, "right");
+    let scale = state(&harness).camera.points_per_m;
+    let by = Vec2::new(-scale as f32, -0.5 * scale as f32);
+    harness.hover_at(from);
+    harness.step();
+    crate::press(&harness, from, true);
+    harness.step();
+    for k in 1..=4 {
+        harness.hover_at(from + by * (k as f32 / 4.0));
+        harness.step();
+    }
+    let now = |h: &Harness<'_, ViewerApp>| answer(h).cables[0].supports[1].clone();
+    assert!(now(&harness).hand.is_some() && state(&harness).pulled == Some((0, 1)));
+    harness.run_steps(240);
+    let pointer = state(&harness).scene.cables[0].supports[1].at_m.expect("drawn to the pointer");
+    let (end, hand) = (now(&harness), now(&harness).hand.expect("held"));
+    assert!((hand.x_m - pointer[0]).hypot(hand.y_m - pointer[1]) < 1e-3, "{hand:?} for {pointer:?}");
+    let ahead = (hand.x_m - end.x_m).hypot(hand.y_m - end.y_m);
+    let pulls = end.reaction_x_n.hypot(end.reaction_y_n);
+    // The cable swings on: the spring has all of the force but what is its damper's.
+    assert!(ahead > 1e-3 && (hand.force_n() / pulls - 1.0).abs() < 1e-6, "{ahead} m, {pulls} N for {hand:?}");
+    assert!(harness.query_all_by_label_contains("Hand at right").next().is_some(), "its force is read off");
+    crate::press(&harness, from + by, false);
+    harness.run_steps(40);
+    let (place, fixed) = (now(&harness), state(&harness).scene.cables[0].supports[1].at_m.expect("fixed"));
+    assert!(place.hand.is_none() && state(&harness).pulled.is_none());
+    assert!((place.x_m - end.x_m).hypot(place.y_m - end.y_m) < 0.02, "it stays where it was");
+    assert!((place.x_m - fixed[0]).hypot(place.y_m - fixed[1]) < 1e-6, "{place:?} and {fixed:?}");
+    assert_eq!(state(&harness).snapshot.error, None);
+}
+
 /// Everything by keys: open, pick, move, edit a number, another model, run, look back, hold, save.
 #[test]
 fn a_whole_session_by_keys_alone() {

@@ -216,6 +216,7 @@ pub fn reactions(
             arc_length_m: middle,
             tension_before_n: pulley.then(|| forces[index][0].norm()),
             tension_after_n: pulley.then(|| forces[index][1].norm()),
+            hand: None,
         });
     }
     out

@@ -199,6 +199,9 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
 /// What hangs on a free end, N; None for other nodes, and where a lump moves, whose inertia pulls as well.
 fn free_end(d: &Dynamics, node: usize) -> Option<Vec2> {
     let k = d.support_node.iter().position(|n| *n == Some(node)).filter(|_| !d.mesh.held[node])?;
+    if d.motion.hands[k].is_some() {
+        return Some(d.problem.hung_on(k, d.time()) - d.reaction[node]);
+    }
     let rests = d.problem.supports.get(k)?.mass == 0.0 || !d.inertia_counts();
     rests.then(|| d.problem.hung_on(k, d.time()))
 }
@@ -492,6 +495,7 @@ fn pulley(d: &Dynamics, support: usize, x: &[Vec2], tension: &[f64]) -> Option<S
         arc_length_m: 0.5 * (d.mesh.arc_length[first] + d.mesh.arc_length[last]),
         tension_before_n: Some(before.tension[0]),
         tension_after_n: Some(after.tension[1]),
+        hand: None,
     })
 }
 
@@ -506,7 +510,9 @@ fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<
             let Some(node) = *node else { return pulley(d, k, x, tension) };
             let last = x.len() - 1;
             let lies = problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach).is_some();
+            let hand = d.motion.hands[k];
             let reaction = match node {
+                _ if hand.is_some() => d.reaction[node],
                 // A dead load is what hangs there: the cable pulls it the other way; a lump it may pull faster. Of one that lies
                 // the ground takes a part, which is the contact's.
                 _ if !d.mesh.held[node] && lies => -problem.hung_on(k, d.time()),
@@ -525,8 +531,8 @@ fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<
                 reaction_x_n: reaction.x,
                 reaction_y_n: reaction.y,
                 arc_length_m: d.mesh.arc_length[node],
-                tension_before_n: None,
-                tension_after_n: None,
+                hand: hand.map(|hand| hand.report(-reaction)),
+                ..SupportReaction::default()
             })
         })
         .collect()

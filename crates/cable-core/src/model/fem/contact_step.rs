@@ -75,7 +75,8 @@ pub struct Workspace {
     /// The contacts of the last assembly.
     pub(super) touches: Vec<Touch>,
     magnitude: f64,
-    /// Rounding of the largest contact force, N: a gap is known to the rounding of coordinates only.
+    /// Rounding of the largest contact force on a node, N: a gap is known to the rounding of coordinates only. It is what that much of the gap relieves, never all of the
+    /// force: a step that had come to a gap below its own rounding was taken for balanced, with 2e11 N of contact and nothing to hold them.
     pub(super) noise: f64,
     /// Where held nodes go: their targets, or where they had to stop, m.
     pub(super) goal: Vec<Vec2>,
@@ -198,9 +199,11 @@ impl Workspace {
         }
         for touch in &touches {
             let scale = task.scale.get(touch.node).copied().unwrap_or(node_scale(task, touch.node));
-            let (energy, stiffness) = add_touch(s, mesh, (touch, scale), contacts, x, curvature);
-            value += energy;
-            self.noise = larger(self.noise, stiffness * GAP_ROUNDING * x[touch.node].norm());
+            value += add_touch(s, mesh, (touch, scale), contacts, x, curvature);
+            let (gap, rounding) = (touch.pair.gap.gap_m, GAP_ROUNDING * x[touch.node].norm());
+            let [a, b] = touch.shares();
+            let felt = touch.pair.weight * larger(a, b);
+            self.noise = larger(self.noise, contacts.barrier.relief(gap, rounding) * felt);
         }
         value += add_rubs(s, (mesh, task), contacts, &self.branches, x);
         value += add_floor(s, (mesh, task), contacts, pose);
@@ -214,8 +217,8 @@ impl Workspace {
             value += energy;
             self.magnitude += size;
             for pair in &self.own_pairs {
-                let stiffness = contacts.barrier.at(pair.gap_m).curvature;
-                self.noise = larger(self.noise, stiffness * GAP_ROUNDING * x[pair.node].norm());
+                let rounding = GAP_ROUNDING * x[pair.node].norm();
+                self.noise = larger(self.noise, contacts.barrier.relief(pair.gap_m, rounding) * pair.weight);
             }
         }
         value

@@ -118,6 +118,10 @@ pub struct Dynamics {
     pub(super) tolerance: f64,
     /// Fastest hand, m/s.
     pub(super) hand_speed: f64,
+    /// Stiffness of its spring, N/m, where that was asked for.
+    pub(super) hand_stiffness: Option<f64>,
+    /// Which of the dragged supports a hand holds by a spring.
+    pub(super) pulled: Vec<bool>,
     pub(super) rested: bool,
     pub(super) held_back: Vec<usize>,
     /// Until when the present advance goes, s.
@@ -182,6 +186,7 @@ impl Dynamics {
                 w: vec![0.0; n],
                 w_before: vec![0.0; n],
                 followers: vec![None; problem.supports.len()],
+                hands: vec![None; problem.supports.len()],
                 placement: problem.outline.as_ref().map(|o| o.placement),
                 ..Motion::default()
             },
@@ -200,6 +205,8 @@ impl Dynamics {
             pace: Pace::new(settings.inner_step_s.unwrap_or(INNER_STEP)),
             tolerance: settings.tolerance,
             hand_speed: settings.hand_speed_m_per_s,
+            hand_stiffness: settings.hand_stiffness_n_per_m,
+            pulled: vec![false; problem.supports.len()],
             rested: false,
             held_back: Vec::new(),
             due: f64::INFINITY,
@@ -313,8 +320,10 @@ impl Dynamics {
         let end = self.motion.time + dt_s;
         self.due = end;
         self.begin_way(end);
-        if inertia == Inertia::Dynamic {
-            self.begin_account();
+        match inertia {
+            Inertia::Dynamic => self.begin_account(),
+            // Without inertia supports are where they are drawn to.
+            Inertia::QuasiStatic => self.motion.hands.fill(None),
         }
         if inertia == Inertia::Dynamic && gauge.asks(self.motion.time) {
             self.gauge_tension();
@@ -507,7 +516,7 @@ impl Dynamics {
             let fastest = fastest(&self.problem, k, self.hand_speed);
             Some(held_warning(&self.problem, k, self.mesh.arc_length[node], (f, fastest)))
         });
-        let warnings = held.chain(drawn).collect();
+        let warnings = held.chain(drawn).chain(self.hand_warnings()).collect();
         StepReport { cost, warnings }
     }
 

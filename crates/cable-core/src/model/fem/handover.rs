@@ -84,6 +84,7 @@ impl Dynamics {
         }
         self.motion.time = state.time_s;
         self.motion.followers.fill(None);
+        self.motion.hands.fill(None);
         self.contacts.forget();
         if !same {
             self.thread_pulleys(Some(state));

@@ -15,7 +15,6 @@ use super::prepare::damping_time;
 use super::sliding::{Balanced, Grip};
 use super::task::{Done, Failure, Pose};
 use crate::math::{Vec2, bounded, perp};
-use crate::model::drive::{Follower, fastest};
 
 /// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
 const QUIET: f64 = 0.05;
@@ -105,13 +104,7 @@ impl Dynamics {
 
     /// Sets the task of a step of `h` (s); returns the weights of the history and what turns lengths into speeds (1/s).
     pub(super) fn begin_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> [f64; 3] {
-        for (k, target) in dragged.iter().enumerate() {
-            if let (Some(target), Some(at)) = (target, self.support_position(k)) {
-                let mut f = self.motion.followers[k].unwrap_or_else(|| Follower::at_rest(at));
-                f.follow(*target, h, fastest(&self.problem, k, self.hand_speed));
-                self.motion.followers[k] = Some(f);
-            }
-        }
+        self.follow_hands(h, dragged);
         self.prepare_way([self.motion.time, self.motion.time + h], Some(dragged));
         self.contacts.set_slip(SLIDE);
         self.adapt_stiffness(STIFFNESS_CHANGE, 1.0);
@@ -140,6 +133,7 @@ impl Dynamics {
             return Err(Failure { node, residual: done.residual, cause: PULLED });
         }
         self.note_lag(&pose);
+        self.note_hands(&pose);
         self.note_balanced(&pose);
         let given = self.forces_in_step(&pose);
         let slid = self.sliding_momentum();
@@ -298,6 +292,14 @@ impl Dynamics {
             if let Some(k) = node {
                 task.inertia[*k] += s.mass * a * a;
             }
+        }
+        for (hand, node) in m.hands.iter().zip(&self.support_node) {
+            let (Some(hand), Some(k)) = (hand, *node) else { continue };
+            let (stiffness, at) = hand.pull(h, m.x[k]);
+            let (inertia, both) = (task.inertia[k], task.inertia[k] + stiffness);
+            task.predicted[k] = (task.predicted[k] * inertia + at * stiffness) / both;
+            task.inertia[k] = both;
+            task.hands.push((k, stiffness, at));
         }
         task.moves = true;
         let (rate, time) = (if jumps { 1.0 / h } else { a }, damping_time(&self.problem, rubs));

@@ -28,6 +28,7 @@ mod foresee;
 mod free_step;
 mod free_way;
 mod handover;
+mod hands;
 mod integrate;
 mod layout;
 mod marks;
@@ -494,8 +495,16 @@ impl Mechanics for FemModel {
     }
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
-        if let Some(d) = self.dragged.get_mut(support) {
-            *d = Some(target_m);
+        if let (Some(d), Some(pulled)) = (self.dragged.get_mut(support), self.dynamics.pulled.get_mut(support)) {
+            (*d, *pulled) = (Some(target_m), false);
+        }
+    }
+
+    fn pull_support(&mut self, support: usize, hand_m: Vec2) {
+        self.drag_support(support, hand_m);
+        let kind = self.problem.supports.get(support).map(|s| s.kind);
+        if let Some(pulled) = self.dynamics.pulled.get_mut(support) {
+            *pulled = matches!(kind, Some(SupportKind::Fixed | SupportKind::Clamped));
         }
     }
 

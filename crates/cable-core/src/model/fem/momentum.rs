@@ -182,6 +182,9 @@ impl Dynamics {
         for (k, _) in mesh.held.iter().enumerate().filter(|(_, held)| **held) {
             sum[SUPPORTS] -= self.reaction[k];
         }
+        for &(k, stiffness, at) in &task.hands {
+            sum[SUPPORTS] += (at - x[k]) * stiffness;
+        }
         if self.freely {
             return sum;
         }

@@ -6,7 +6,7 @@ use super::dynamics::Dynamics;
 use super::momentum::Account;
 use crate::contact::outline::Placement;
 use crate::math::{Vec2, cross, perp};
-use crate::model::drive::Follower;
+use crate::model::drive::{Follower, Hand};
 
 /// What a step may change, kept to go back to.
 #[derive(Clone, Debug, Default)]
@@ -23,6 +23,8 @@ pub(super) struct Motion {
     /// Last step, s; 0 = no history, the next step is implicit Euler.
     pub(super) step_before: f64,
     pub(super) followers: Vec<Option<Follower>>,
+    /// Hands that hold supports by springs.
+    pub(super) hands: Vec<Option<Hand>>,
     pub(super) time: f64,
     /// Where the outline of the robot is, if there is one.
     pub(super) placement: Option<Placement>,
@@ -33,8 +35,7 @@ pub(super) struct Motion {
 impl Motion {
     /// Becomes a copy without new memory where there is room.
     pub(super) fn copy_from(&mut self, other: &Self) {
-        let Self { x, v, x_before, v_before, s_before, w, w_before, step_before, followers, time, placement, account } =
-            other;
+        let Self { x, v, x_before, v_before, s_before, w, w_before, followers, hands, .. } = other;
         self.x.clone_from(x);
         self.v.clone_from(v);
         self.x_before.clone_from(x_before);
@@ -43,8 +44,9 @@ impl Motion {
         self.w.clone_from(w);
         self.w_before.clone_from(w_before);
         self.followers.clone_from(followers);
-        (self.step_before, self.time, self.placement) = (*step_before, *time, *placement);
-        self.account = *account;
+        self.hands.clone_from(hands);
+        (self.step_before, self.time, self.placement) = (other.step_before, other.time, other.placement);
+        self.account = other.account;
     }
 }
 

@@ -81,6 +81,7 @@ impl Dynamics {
         task.start.clone_from(&self.motion.x);
         task.target.clone_from(&self.motion.x);
         task.laid.clear();
+        task.hands.clear();
         mesh.held.fill(false);
         mesh.clamps.clear();
         for (k, (s, node)) in problem.supports.iter().zip(&self.support_node).enumerate() {
@@ -95,16 +96,19 @@ impl Dynamics {
             if s.holds_from(from)
                 && let Some((at, _)) = s.place_at(to)
             {
-                let hand = dragged.and_then(|d| d.get(k).copied().flatten());
-                let at = self.motion.followers[k].map_or(hand.unwrap_or(at), |f| f.position());
+                let drawn = dragged.and_then(|d| d.get(k).copied().flatten());
+                let at = self.motion.followers[k].map_or(drawn.unwrap_or(at), |f| f.position());
                 // What was stopped and is free again catches up no faster than this beyond its own motion, which is followed exactly.
                 let own = s.place_at(from).map_or(0.0, |(before, _)| (at - before).norm());
                 let most = if self.motion.followers[k].is_some() { 0.0 } else { own } + MAX_SPEED * (to - from);
                 let at = if to > from { within(self.motion.x[node], at, most) } else { at };
-                mesh.held[node] = true;
-                task.target[node] = clear_way(problem, self.motion.x[node], at);
-                if task.target[node] != at && !self.held_back.contains(&k) {
-                    self.held_back.push(k);
+                // What a hand holds by a spring is a node that moves.
+                if self.motion.hands[k].is_none() {
+                    mesh.held[node] = true;
+                    task.target[node] = clear_way(problem, self.motion.x[node], at);
+                    if task.target[node] != at && !self.held_back.contains(&k) {
+                        self.held_back.push(k);
+                    }
                 }
                 if let Some(angle) = s.angle
                     && s.kind == SupportKind::Clamped

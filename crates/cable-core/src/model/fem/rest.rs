@@ -377,6 +377,7 @@ impl Dynamics {
         self.held_back.clear();
         self.save();
         self.motion.followers.fill(None);
+        self.motion.hands.fill(None);
         if !self.rested && self.put_outline() {
             let mut x = std::mem::take(&mut self.motion.x);
             push_out(&self.problem, &self.mesh, &mut x, 0.9 * REACH);

@@ -71,6 +71,11 @@ impl Dynamics {
         }
         let hand = |k: usize| dragged.get(k).copied().flatten();
         let follows = (0..self.motion.followers.len()).any(|k| match (self.motion.followers[k], hand(k)) {
+            // A hand that takes hold, lets go, or goes on.
+            (_, Some(_)) if self.pulled[k] != self.motion.hands[k].is_some() => true,
+            (_, Some(to)) if self.pulled[k] => {
+                self.motion.hands[k].is_none_or(|h| (h.end().position() - to).norm() > STILL_WITHIN * 1e-3)
+            }
             (Some(f), Some(to)) => (f.position() - to).norm() > STILL_WITHIN * 1e-3,
             (None, Some(to)) => self.support_position(k).is_none_or(|at| (at - to).norm() > STILL_WITHIN * 1e-3),
             _ => false,

@@ -30,6 +30,8 @@ pub struct Task {
     pub bending_damping: f64,
     /// Predicted length of each bar, m.
     pub predicted_length: Vec<f64>,
+    /// Nodes that hands hold by springs, with the stiffness (N/m) and place (m) that these have in this step: a part of inertia and prediction there.
+    pub hands: Vec<(usize, f64, Vec2)>,
     /// External force on each node, N.
     pub force: Vec<Vec2>,
     /// Where each held node has to go, m (others: ignored).

@@ -279,7 +279,7 @@ impl MassSpringModel {
 
     /// Force of the cable on the support that holds node `i`, N. Ground under the node carries its share of the weight
     /// and rubs on it: without that a drag comes out half an element's friction short.
-    fn on_support(&self, i: usize) -> Vec2 {
+    pub(super) fn on_support(&self, i: usize) -> Vec2 {
         let force = self.f[i] - self.held_acceleration[i] * self.mass[i];
         if let Some(p) = self.pulley_of(i) {
             // Material that turns round it pulls less by its momentum.
@@ -335,6 +335,7 @@ impl MassSpringModel {
             arc_length_m: pulley.map_or(self.s[i], |p| self.on_wheel_from_to(p).iter().sum::<f64>() * 0.5),
             tension_before_n: pulley.map(|p| p.tension[0]),
             tension_after_n: pulley.map(|p| p.tension[1]),
+            hand: self.hands[k].map(|hand| hand.report(-force)),
         }
     }
 

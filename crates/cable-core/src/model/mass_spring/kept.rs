@@ -63,6 +63,8 @@ impl MassSpringModel {
             cost,
             laid,
             followers,
+            pulled,
+            hands,
             even,
             share,
             lump,

@@ -92,6 +92,8 @@ impl MassSpringModel {
             cost: Cost::default(),
             laid: false,
             followers: vec![None; ns],
+            pulled: vec![false; ns],
+            hands: vec![None; ns],
             even: problem.length / wanted as f64,
             share: span.clone(),
             lump,

@@ -17,6 +17,7 @@ mod chain;
 mod collide;
 mod corner;
 mod creep;
+mod hands;
 mod kept;
 mod mesh;
 mod momentum;
@@ -30,7 +31,7 @@ mod stepping;
 
 use std::sync::Arc;
 
-use super::drive::{Follower, fastest, held_warning};
+use super::drive::{Follower, Hand, fastest, held_warning};
 use super::fem::FemModel;
 use super::gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
@@ -88,6 +89,9 @@ pub struct MassSpringModel {
     laid: bool,
     /// Followers of dragged supports.
     followers: Vec<Option<Follower>>,
+    /// Which of the dragged supports a hand holds by a spring, and those hands.
+    pulled: Vec<bool>,
+    hands: Vec<Option<Hand>>,
     /// Length of an element where they are even, m.
     even: f64,
     /// Arc length of the straight part of each element (all of it but what lies on a wheel), m.
@@ -222,6 +226,8 @@ impl MassSpringModel {
         next.driven = self.driven;
         next.drag.clone_from(&self.drag);
         next.followers.clone_from(&self.followers);
+        next.pulled.clone_from(&self.pulled);
+        next.hands.clone_from(&self.hands);
         next.place_pulleys();
         for k in 0..next.pulleys.len() {
             // What `slid` says is the middle of the arc, σ is where the mark is.
@@ -268,6 +274,7 @@ impl MassSpringModel {
                 self.warnings.push(held_warning(&self.problem, k, self.s[self.node_of[k]], (f, fastest)));
             }
         }
+        self.warn_of_hands();
         StepReport { cost: self.cost, warnings: std::mem::take(&mut self.warnings) }
     }
 }
@@ -337,6 +344,15 @@ impl Mechanics for MassSpringModel {
             && let Some(d) = self.drag.get_mut(support)
         {
             *d = Some(target_m);
+            self.pulled[support] = false;
+        }
+    }
+
+    fn pull_support(&mut self, support: usize, hand_m: Vec2) {
+        self.drag_support(support, hand_m);
+        let holds = |kind| matches!(kind, SupportKind::Fixed | SupportKind::Clamped);
+        if self.problem.supports.get(support).is_some_and(|s| holds(s.kind)) {
+            self.pulled[support] = true;
         }
     }
 

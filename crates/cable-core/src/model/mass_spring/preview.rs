@@ -92,12 +92,18 @@ impl MassSpringModel {
         self.supports(h);
         self.pull_of_loads();
         self.predict(h, chain);
+        let hands = self.predict_hands(h, chain);
         self.project(h, chain);
         let per_step = h.recip();
         for (((v, x), to), held) in self.v.iter_mut().zip(&self.x).zip(&chain.x).zip(&self.held) {
             if !held {
                 *v = (to - x) * per_step;
             }
+        }
+        for (node, before) in hands {
+            let v = (chain.x[node] - self.x[node]) * per_step;
+            self.held_acceleration[node] = (v - before) * per_step;
+            self.v[node] = v;
         }
     }
 

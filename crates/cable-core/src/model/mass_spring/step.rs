@@ -147,6 +147,7 @@ impl MassSpringModel {
             // kick; with a whole one all falls g h t/2 too far, an error of first order.
             let kick = self.behind_s + 0.5 * h;
             self.behind_s = 0.5 * h;
+            self.pull_by_hands([kick, h]);
             self.slide([kick, h]);
             for i in 0..self.x.len() {
                 if !self.held[i] {
@@ -219,13 +220,23 @@ impl MassSpringModel {
     pub(super) fn supports(&mut self, h: f64) {
         self.held.fill(false);
         for (k, support) in self.problem.supports.iter().enumerate() {
-            let Some((at, _)) = support.position_at(self.time_s) else { continue };
+            let Some((at, _)) = support.position_at(self.time_s) else {
+                self.hands[k] = None;
+                continue;
+            };
             let node = self.node_of[k];
             self.held[node] = true;
+            if self.pulled[k] {
+                continue;
+            }
             let to = match self.drag[k] {
                 None => at,
                 Some(target) => {
-                    let follower = self.followers[k].get_or_insert_with(|| Follower::at_rest(self.x[node]));
+                    let begins = match self.hands[k].take() {
+                        Some(_) => Follower::moving(self.x[node], self.v[node]),
+                        None => Follower::at_rest(self.x[node]),
+                    };
+                    let follower = self.followers[k].get_or_insert(begins);
                     follower.follow(target, h, fastest(&self.problem, k, self.settings.hand_speed_m_per_s));
                     follower.position()
                 }
@@ -234,6 +245,11 @@ impl MassSpringModel {
             self.held_acceleration[node] = (v - self.v[node]) / h;
             self.account.supports += (v - self.v[node]) * self.mass[node];
             self.v[node] = v;
+        }
+        for k in 0..self.pulled.len() {
+            if self.pulled[k] && self.held[self.node_of[k]] {
+                self.follow_hand(k, h);
+            }
         }
     }
 
@@ -259,6 +275,7 @@ impl MassSpringModel {
             self.held_acceleration[node] = Vec2::zeros();
             self.x[node] = self.drag[k].unwrap_or(at);
             self.followers[k] = None;
+            self.hands[k] = None;
         }
         self.clearance.fill(0.0);
     }

@@ -36,6 +36,27 @@ pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Vec
             ui.end_row();
         }
     });
+    for s in &solved.supports {
+        hand(ui, s);
+    }
+}
+
+/// What a hand that holds a support pulls with.
+fn hand(ui: &mut Ui, s: &SupportReaction) {
+    let Some(hand) = &s.hand else { return };
+    let ahead = (hand.x_m - s.x_m).hypot(hand.y_m - s.y_m);
+    ui.label(format!(
+        "Hand at {}: {} by a spring of {}, {} ahead",
+        s.name,
+        unit::force(hand.force_n()),
+        unit::Unit::N_PER_M.text(hand.stiffness_n_per_m),
+        unit::Unit::COORDINATE.text(ahead)
+    ))
+    .on_hover_text(format!(
+        "Force of the hand on the cable: {} to the right, {} up. What the spring's stiffness times its length lacks of it is its damper's",
+        unit::force(hand.force_x_n),
+        unit::force(hand.force_y_n)
+    ));
 }
 
 fn size(s: &SupportReaction) -> f64 {

@@ -1,0 +1,63 @@
+//! What draws supports in a step with inertia: a hand by a spring, which then is a force on a node, or the support itself.
+
+use super::dynamics::Dynamics;
+use super::task::Pose;
+use crate::math::Vec2;
+use crate::model::drive::{Follower, Hand, fastest};
+use crate::solution::Warning;
+
+impl Dynamics {
+    /// Hands and dragged supports move on for `h` (s) towards where they are drawn (m).
+    pub(super) fn follow_hands(&mut self, h: f64, dragged: &[Option<Vec2>]) {
+        for (k, target) in dragged.iter().enumerate() {
+            let (Some(target), Some(at)) = (*target, self.support_position(k)) else { continue };
+            let fastest = fastest(&self.problem, k, self.hand_speed);
+            let node = self.support_node[k].filter(|_| self.problem.supports[k].holds_from(self.motion.time));
+            if let Some(node) = node.filter(|_| self.pulled[k]) {
+                let known = self.motion.hands[k];
+                let mut hand = known.unwrap_or_else(|| {
+                    Hand::grip(&self.problem, self.hand_stiffness, (at, self.holding_force(k, node)))
+                });
+                hand.follow(target, h, fastest);
+                (self.motion.hands[k], self.motion.followers[k]) = (Some(hand), None);
+            } else {
+                let let_go = self.motion.hands[k].take().and(node);
+                let begins = || let_go.map_or(Follower::at_rest(at), |node| Follower::moving(at, self.motion.v[node]));
+                let mut f = self.motion.followers[k].unwrap_or_else(begins);
+                f.follow(target, h, fastest);
+                self.motion.followers[k] = Some(f);
+            }
+        }
+    }
+
+    /// Force that holds a support's node against its bars and what hangs there, N.
+    fn holding_force(&self, support: usize, node: usize) -> Vec2 {
+        let (mesh, x) = (&self.mesh, &self.motion.x);
+        let pull = |e: usize| {
+            let path = mesh.path(e, x);
+            let tension = mesh.bar(e).tension(path.length);
+            path.direction * if tension > 0.0 { tension } else { 0.0 }
+        };
+        let before = if node > 0 { pull(node - 1) } else { Vec2::zeros() };
+        let after = if node + 1 < mesh.nodes() { pull(node) } else { Vec2::zeros() };
+        let time = self.motion.time;
+        before - after - self.problem.body_force(time) * mesh.share(node) - self.problem.hung_on(support, time)
+    }
+
+    /// Keeps the force of the cable on what hands hold, as a pose balances it.
+    pub(super) fn note_hands(&mut self, pose: &Pose) {
+        for &(k, stiffness, at) in &self.task.hands {
+            self.reaction[k] = (pose.x[k] - at) * stiffness;
+        }
+    }
+
+    /// What is to be said of hands that lag, and of supports that lag behind them.
+    pub(super) fn hand_warnings(&self) -> impl Iterator<Item = Warning> {
+        self.motion.hands.iter().enumerate().filter_map(|(k, hand)| {
+            let (hand, node) = (hand.as_ref()?, self.support_node[k]?);
+            let fastest = fastest(&self.problem, k, self.hand_speed);
+            let support = (self.problem.as_ref(), k, self.mesh.arc_length[node]);
+            hand.warning(support, (self.motion.x[node], -self.reaction[node]), fastest)
+        })
+    }
+}
