@@ -133,6 +133,7 @@ impl Dynamics {
             }
         }
         task.may_lag = to > from;
+        task.outlined = self.rider.is_some();
         task.max_iterations = STEP_ITERATIONS;
         task.max_move = 2.0 * INNER_STEP * 100.0;
         task.moves = false;

@@ -136,31 +136,25 @@ impl Dynamics {
     /// the cable lies, or not at all where that does not come to an end.
     pub(super) fn polish(&mut self, found: Done, dragged: &[Option<Vec2>]) -> Done {
         let kept = (self.saved.clone(), self.can_restore);
-        let exact = self.task.tolerance;
-        let to = self.motion.time;
-        self.save();
-        self.prepare_way([to, to], Some(dragged));
-        self.task.most_noise = exact;
-        let mut done = None;
+        let (exact, to) = (self.task.tolerance, self.motion.time);
+        let mut all = found;
         for (part, iterations) in POLISHES {
+            self.save();
+            self.prepare_way([to, to], Some(dragged));
+            self.task.most_noise = exact;
             (self.task.tolerance, self.task.max_iterations) = (part * exact, iterations);
             let mut pose = self.still_pose();
-            let Ok(found) = self.lag(&mut pose, LAG_ROUNDS) else { break };
-            let before = done.map_or(0, |d: Done| d.iterations);
-            done = Some(Done { iterations: before + found.iterations, ..found });
+            let Ok(done) = self.lag(&mut pose, LAG_ROUNDS) else {
+                self.restore();
+                break;
+            };
+            all = Done { iterations: all.iterations + done.iterations, ..done };
             // With the bars it balances on: new ones would have to be brought to rest again.
             self.accept_pose(&pose, to);
         }
         self.task.tolerance = exact;
-        let done = match done {
-            Some(done) => Done { iterations: found.iterations + done.iterations, residual: done.residual },
-            None => {
-                self.restore();
-                found
-            }
-        };
         (self.saved, self.can_restore) = kept;
-        done
+        all
     }
 
     /// Brings straight bars to rest that were laid on the sagging ones of statics: a step of the second order in their

@@ -38,6 +38,8 @@ pub struct Task {
     pub target: Vec<Vec2>,
     /// Whether held nodes may stop short of it where an obstacle or the cable is in the way.
     pub may_lag: bool,
+    /// Whether an outline that is not of the cable may squeeze it against an obstacle.
+    pub outlined: bool,
     /// Where the step began, m.
     pub start: Vec<Vec2>,
     /// Where the iteration begins, m, where that is not where the step begins: an outline moved; else empty.

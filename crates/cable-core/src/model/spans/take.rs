@@ -250,10 +250,13 @@ impl Run<'_> {
         } else {
             History::through(&track, &knots, self.within)
         };
-        // Other models' nodes have their material as their bars have it, not as the tension between them strains it.
-        contact.history.measure(&track, back);
-        if let [first, .., last] = contact.history.knots() {
-            contact.ends.s = [first.s, last.s];
+        // Other models' nodes have their material as their bars have it, not as the tension between them strains it: what that is off goes
+        // to the span beyond, where there is one.
+        if !at_end[usize::from(!back)] {
+            contact.history.measure(&track, back);
+            if let [first, .., last] = contact.history.knots() {
+                contact.ends.s = [first.s, last.s];
+            }
         }
         // What the cone has changed at an end that lies is its tension.
         if let (Some(k), Tie::Lies(_)) = (contact.history.knots().last(), strand.ties[1]) {
