@@ -415,7 +415,7 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
     for j in [0, 1] {
         let beside = if j == 0 { k - 1 } else { k + 1 };
         let Some(p) = (if j == 0 { points.first_mut() } else { points.last_mut() }) else { continue };
-        if mesh.sliding[beside].is_none() {
+        if mesh.sliding[beside].is_none() && !(same[0] || same[1]) {
             let way = (p.at - x[beside]).norm() / stretch[j];
             let has = (p.arc_length - mesh.arc_length[beside]).abs();
             let more = bounded(way - has, 0.0, spare / stretch[j]);
