@@ -13,6 +13,7 @@ use super::foresee::Ahead;
 use super::own::{self, Coupling};
 use super::task::{Done, Failure, Pose, Task};
 use super::touch::{add_floor, add_rubs, add_touch};
+use crate::contact::barrier::Barrier;
 use crate::contact::friction;
 use crate::contact::own::{Order, OwnPair};
 use crate::energy::Curvature;
@@ -63,6 +64,31 @@ pub(super) struct Residual {
     drift: f64,
 }
 
+/// Rounding of contact forces: a gap is known to the rounding of coordinates only.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Rounding {
+    /// Rounding of the largest force by its stiffness, N.
+    pub(super) noise: f64,
+    /// The force that opening the gap by its rounding relieves, N, where it is more than the tolerance.
+    /// It is never all of the force: a step in motion that had come to a gap below its own rounding
+    /// was taken for balanced, with 2e11 N of contact and nothing to hold them.
+    relief: f64,
+    /// Unbalanced force accepted in any case, N.
+    tolerance: f64,
+}
+
+impl Rounding {
+    /// Counts a contact with a gap (m), its stiffness (N/m), and the rounding of its gap (m).
+    fn add(&mut self, barrier: &Barrier, gap: f64, stiffness: f64, rounding: f64) {
+        let noise = stiffness * rounding;
+        self.noise = larger(self.noise, noise);
+        // The barrier is convex: what is relieved is no more than that.
+        if noise > self.tolerance {
+            self.relief = larger(self.relief, barrier.relief(gap, rounding));
+        }
+    }
+}
+
 /// Memory of the minimisation.
 #[derive(Debug)]
 pub struct Workspace {
@@ -75,11 +101,8 @@ pub struct Workspace {
     /// The contacts of the last assembly.
     pub(super) touches: Vec<Touch>,
     magnitude: f64,
-    /// Rounding of the largest contact force, N: a gap is known to the rounding of coordinates only.
-    pub(super) noise: f64,
-    /// What that much of the gap relieves, N: never all of the force. A step in motion that had come to a gap below its own rounding was taken
-    /// for balanced, with 2e11 N of contact and nothing to hold them.
-    relief: f64,
+    /// Rounding of contact forces in the last assembly.
+    pub(super) rounding: Rounding,
     /// Where held nodes go: their targets, or where they had to stop, m.
     pub(super) goal: Vec<Vec2>,
     own_pairs: Vec<OwnPair>,
@@ -115,8 +138,7 @@ impl Workspace {
             trial: Pose { x: vec![Vec2::zeros(); mesh.nodes()], slide: vec![0.0; mesh.nodes()] },
             touches: Vec::with_capacity(mesh.nodes()),
             magnitude: 0.0,
-            noise: 0.0,
-            relief: 0.0,
+            rounding: Rounding::default(),
             goal: Vec::new(),
             own_pairs: Vec::new(),
             order: Order::default(),
@@ -163,7 +185,7 @@ impl Workspace {
         s.gradient.fill(0.0);
         let mut value = 0.0;
         self.magnitude = 0.0;
-        (self.noise, self.relief) = (0.0, 0.0);
+        let mut round = Rounding { tolerance: task.tolerance, ..Rounding::default() };
         // In a hurry nobody asks how well the energy is known.
         let measured = self.carried.is_empty();
         for e in 0..mesh.rest_length.len() {
@@ -202,10 +224,10 @@ impl Workspace {
         }
         for touch in &touches {
             let scale = task.scale.get(touch.node).copied().unwrap_or(node_scale(task, touch.node));
-            value += add_touch(s, mesh, (touch, scale), contacts, x, curvature);
-            let (gap, rounding) = (touch.pair.gap.gap_m, GAP_ROUNDING * x[touch.node].norm());
-            self.noise = larger(self.noise, contacts.barrier.at(gap).curvature * rounding);
-            self.relief = larger(self.relief, contacts.barrier.relief(gap, rounding));
+            let (energy, stiffness) = add_touch(s, mesh, (touch, scale), contacts, x, curvature);
+            value += energy;
+            let rounding = GAP_ROUNDING * x[touch.node].norm();
+            round.add(&contacts.barrier, touch.pair.gap.gap_m, stiffness, rounding);
         }
         value += add_rubs(s, (mesh, task), contacts, &self.branches, x);
         value += add_floor(s, (mesh, task), contacts, pose);
@@ -219,11 +241,11 @@ impl Workspace {
             value += energy;
             self.magnitude += size;
             for pair in &self.own_pairs {
-                let (gap, rounding) = (pair.gap_m, GAP_ROUNDING * x[pair.node].norm());
-                self.noise = larger(self.noise, contacts.barrier.at(gap).curvature * rounding);
-                self.relief = larger(self.relief, contacts.barrier.relief(gap, rounding));
+                let stiffness = contacts.barrier.at(pair.gap_m).curvature;
+                round.add(&contacts.barrier, pair.gap_m, stiffness, GAP_ROUNDING * x[pair.node].norm());
             }
         }
+        self.rounding = round;
         value
     }
 
@@ -232,7 +254,7 @@ impl Workspace {
     pub(super) fn residual(&self, mesh: &Mesh, task: &Task) -> Residual {
         let mut worst = Residual { force: 0.0, node: 0, excess: 0.0, drift: 0.0 };
         // On the way to a rest any force may be hidden, for what is laid in touch begins there, and where an outline squeezes the cable.
-        let hidden = if task.moves && !task.outlined { self.relief } else { self.noise };
+        let hidden = if task.moves && !task.outlined { self.rounding.relief } else { self.rounding.noise };
         let known = smaller(hidden, task.most_noise);
         let accepted = larger(task.tolerance, known);
         let mut drift = Vec2::zeros();
@@ -331,7 +353,7 @@ impl Workspace {
             }
             let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != pose.x[k]);
             // A support that squeezes the cable harder than numbers can tell has come as far as it can.
-            let squeezed = left && task.may_lag && self.noise > task.tolerance;
+            let squeezed = left && task.may_lag && self.rounding.noise > task.tolerance;
             if squeezed {
                 self.goal.clone_from(&pose.x);
             }

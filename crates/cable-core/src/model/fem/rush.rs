@@ -151,7 +151,7 @@ impl Workspace {
             if iterations == 0 {
                 first = residual;
             }
-            let sound = value.is_finite() && residual.is_finite() && self.noise <= task.tolerance;
+            let sound = value.is_finite() && residual.is_finite() && self.rounding.noise <= task.tolerance;
             if sound && residual <= task.tolerance && !left && self.flags_hold(mesh, contacts, &pose.x) {
                 return Some(Done { iterations, residual });
             }

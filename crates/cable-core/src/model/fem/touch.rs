@@ -25,7 +25,7 @@ pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &Touch, gradient: Vec2, bloc
     }
 }
 
-/// The barrier of one touch; returns its energy, J. Its distance d from the corner has curvature (θ the turn of the segment, u its
+/// The barrier of one touch; returns its energy (J) and its stiffness where it weighs one (N/m). Its distance d from the corner has curvature (θ the turn of the segment, u its
 /// direction, c the touching point, all linear in the nodes):
 /// ```text
 /// node:     ∇²d = (I − n nᵀ)/d  at a corner, 0 at an edge
@@ -38,7 +38,7 @@ pub fn add_touch(
     contacts: &ContactSet,
     x: &[Vec2],
     curvature: Curvature,
-) -> f64 {
+) -> (f64, f64) {
     let (gap, weight) = (&touch.pair.gap, touch.pair.weight * scale);
     let b = contacts.barrier.at(gap.gap_m);
     let (slope, bend) = (b.slope * weight, b.curvature * weight);
@@ -47,7 +47,7 @@ pub fn add_touch(
     let bend = if definite && bend < 0.0 { 0.0 } else { bend };
     add_pair(s, mesh, touch, n * slope, &(n * n.transpose() * bend));
     if definite {
-        return b.value * weight;
+        return (b.value * weight, b.curvature);
     }
     if !touch.on_segment {
         let distance = (x[touch.node] - gap.point).norm();
@@ -55,7 +55,7 @@ pub fn add_touch(
         if gap.feature % 2 == 1 && distance > 0.0 {
             s.add_block(touch.node, touch.node, &((Mat2::identity() - n * n.transpose()) * (slope / distance)));
         }
-        return b.value * weight;
+        return (b.value * weight, b.curvature);
     }
     let (i, shares) = (touch.node, touch.shares());
     let [from, to] = mesh.straight(i, x);
@@ -75,7 +75,7 @@ pub fn add_touch(
     if moves == [true, true] {
         s.add_block(i, i + 1, &block(0, 1));
     }
-    b.value * weight
+    (b.value * weight, b.curvature)
 }
 
 /// Friction of the contacts with obstacles, on these branches or, where there are none, where it is; returns its energy, J.

@@ -199,7 +199,7 @@ impl MassSpringModel {
         if !self.held[i] {
             return self.tension[e];
         }
-        let force = self.f[i] - self.held_acceleration[i] * self.mass[i];
+        let force = self.on_all_that_holds(i);
         if self.problem.bending_stiffness > 0.0 { force.dot(&self.reach(e).direction).abs() } else { force.norm() }
     }
 
@@ -277,21 +277,27 @@ impl MassSpringModel {
         clamp.map_or(0.0, |c| turn(c, d) / (0.5 * self.span[e]))
     }
 
+    /// Force of the cable on all that holds node `i`, N: its support, and ground under it.
+    fn on_all_that_holds(&self, i: usize) -> Vec2 {
+        self.f[i] - self.held_acceleration[i] * self.mass[i]
+    }
+
     /// Force of the cable on the support that holds node `i`, N. Ground under the node carries its share of the weight
     /// and rubs on it: without that a drag comes out half an element's friction short.
     pub(super) fn on_support(&self, i: usize) -> Vec2 {
-        let force = self.f[i] - self.held_acceleration[i] * self.mass[i];
+        let force = self.on_all_that_holds(i);
         if let Some(p) = self.pulley_of(i) {
             // Material that turns round it pulls less by its momentum.
             let turned = self.reach(i).direction - self.reach(i - 1).direction;
             return force - turned * (self.problem.linear_density * p.rate * p.rate);
         }
-        force + self.under_end(i, force).map_or(Vec2::zeros(), |under| under.force)
+        force + self.under_end(i).map_or(Vec2::zeros(), |under| under.force)
     }
 
-    /// What ground under a held end does to the cable there, whose force on all that holds it is `force`, N. At rest the ground can hold
+    /// The force of ground under a held end on the cable. At rest the ground can hold
     /// what the cable pulls along it, but the support is there for that.
-    fn under_end(&self, i: usize, force: Vec2) -> Option<Under> {
+    fn under_end(&self, i: usize) -> Option<Under> {
+        let force = self.on_all_that_holds(i);
         let gap = self.problem.world.signed_gap(self.x[i], SKIN)?;
         let pressed = -force.dot(&gap.normal);
         if !(pressed > 0.0) {
@@ -309,7 +315,7 @@ impl MassSpringModel {
             if !self.held[i] || self.pulley_of(i).is_some() {
                 return None;
             }
-            let under = self.under_end(i, self.f[i] - self.held_acceleration[i] * self.mass[i])?;
+            let under = self.under_end(i)?;
             let n = under.gap.normal;
             let friction = under.force.dot(&self.along_ground(element, n)) * h;
             let gap = Gap { fraction, ..under.gap };

@@ -672,7 +672,7 @@ impl Elastica {
         let z = ((x - piece.grid[e]) / h).clamp(0.0, 1.0);
         let [(fa, ga), (fb, gb)] = [a, b].map(|u| {
             let f = self.slope(piece.lies, u);
-            (f, self.second_slope(piece.lies, (u, &f), h))
+            (f, self.second_slope(piece.lies, u, &f, h))
         });
         let (z2, z3) = (z * z, z * z * z);
         let (z4, z5) = (z2 * z2, z2 * z3);
@@ -685,7 +685,7 @@ impl Elastica {
     }
 
     /// How the slope `f` of a state changes along a piece, by central differences over a part of an element of length `h`.
-    fn second_slope(&self, lies: Option<usize>, (u, f): (&[f64; STATES], &[f64; STATES]), h: f64) -> [f64; STATES] {
+    fn second_slope(&self, lies: Option<usize>, u: &[f64; STATES], f: &[f64; STATES], h: f64) -> [f64; STATES] {
         let step = DIFFERENCE * h;
         let [back, on] = [-step, step].map(|by| self.slope(lies, &std::array::from_fn(|i| u[i] + by * f[i])));
         std::array::from_fn(|i| (on[i] - back[i]) / (2.0 * step))
