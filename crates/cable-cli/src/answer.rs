@@ -5,7 +5,7 @@ use cable_core::solution::{
     Bend, CableSolution, ContactReport, ContactSample, ContactState, Node, Pressure, Solution, SupportReaction,
     TensionPeaks, Warning,
 };
-use cable_core::summary::{CableSummary, EndStiffness};
+use cable_core::summary::{CableSummary, EndStiffness, NeglectedBending};
 use cable_core::verify::Verification;
 use serde::Serialize;
 
@@ -50,6 +50,9 @@ pub struct Summary<'a> {
     pub figures: &'a CableSummary,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub end_stiffness: Option<Vec<&'a EndStiffness>>,
+    /// What neglecting its bending stiffness changed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub neglected_bending: Option<&'a NeglectedBending>,
 }
 
 /// What is read first of a solution.
@@ -59,6 +62,8 @@ pub struct Figures {
     pub cables: Vec<CableSummary>,
     /// Of all held ends, where it was asked for.
     pub stiffness: Option<Vec<EndStiffness>>,
+    /// What neglecting bending stiffness changed, of the cables of which that is known.
+    pub bending: Vec<NeglectedBending>,
 }
 
 /// Something of one cable, which is named where there are several.
@@ -169,7 +174,8 @@ pub fn answer<'a>(
 
 fn summary<'a>(of: &'a CableSummary, figures: &'a Figures) -> Summary<'a> {
     let own = |all: &'a Vec<EndStiffness>| all.iter().filter(|e| e.cable == of.cable).collect();
-    Summary { figures: of, end_stiffness: figures.stiffness.as_ref().map(own) }
+    let neglected_bending = figures.bending.iter().find(|b| b.cable == of.cable);
+    Summary { figures: of, end_stiffness: figures.stiffness.as_ref().map(own), neglected_bending }
 }
 
 fn node<'a>(cable: Option<&'a str>, n: &Node) -> NodeEntry<'a> {

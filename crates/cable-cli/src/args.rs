@@ -62,6 +62,9 @@ pub struct SolveArguments {
     /// Also say how stiffly the cable holds its ends: a dozen small moves of each, without inertia, friction remembered
     #[arg(long)]
     pub stiffness: bool,
+    /// Leave out what the likely bending stiffness of a preset would change where it was neglected, which takes a second answer
+    #[arg(long)]
+    pub no_bending: bool,
 }
 
 #[derive(Debug, Args)]

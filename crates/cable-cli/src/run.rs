@@ -117,7 +117,7 @@ impl Outputs {
             cable.peaks = since.into_iter().chain(cable.peaks).reduce(TensionPeaks::with);
         }
         let cables = if self.arguments.common.json { summaries(&self.scene, &solution) } else { Vec::new() };
-        let figures = Figures { cables, stiffness: None };
+        let figures = Figures { cables, ..Figures::default() };
         let printable = answer(&solution, &figures, wall_time_s, Some(solution.time_s)).map_err(Failure::NonFinite)?;
         let push = if is_last { RunFolder::push_last } else { RunFolder::push };
         self.folder.write(&self.arguments.out, |folder| push(folder, &solution))?;
@@ -288,7 +288,7 @@ fn follow(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, began:
     let place = finished.ok_or(Failure::Ended)??;
     let Outputs { arguments, scene, mut printer, last, .. } = outputs;
     if let (false, Some(last)) = (arguments.common.json, last) {
-        let figures = Figures { cables: summaries(&scene, &last), stiffness: None };
+        let figures = Figures { cables: summaries(&scene, &last), ..Figures::default() };
         printer.line(table(&last, &figures).trim_end())?;
         for line in outputs.reached.iter().flat_map(|reached| reached.lines(arguments.common.tolerance)) {
             printer.line(&line)?;

@@ -6,7 +6,7 @@ use std::sync::mpsc::{RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
 use cable_core::model::Settings;
-use cable_core::summary::{end_stiffness, summaries};
+use cable_core::summary::{end_stiffness, neglected_bending, summaries};
 use cable_core::{Model, Scene, Simulation, SolveError, files};
 
 use crate::Done;
@@ -56,7 +56,9 @@ pub fn solve(arguments: &SolveArguments) -> Done {
         Ok(solution) => {
             let stiffness = arguments.stiffness.then(|| end_stiffness(&scene, a.model, settings(a))).transpose();
             let stiffness = stiffness.map_err(|e| Failure::from_core(&a.scene, e))?;
-            let figures = Figures { cables: summaries(&scene, &solution), stiffness };
+            let neglected = || neglected_bending(&scene, &solution, settings(a));
+            let bending = if arguments.no_bending { Vec::new() } else { neglected() };
+            let figures = Figures { cables: summaries(&scene, &solution), stiffness, bending };
             let printable = answer(&solution, &figures, wall_time_s, None).map_err(Failure::NonFinite)?;
             if a.json {
                 out.json(&printable)?;

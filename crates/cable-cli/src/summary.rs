@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use cable_core::summary::{CableSummary, EndForce, EndStiffness, Place, Touch};
+use cable_core::summary::{CableSummary, EndForce, EndStiffness, NeglectedBending, Place, Touch};
 
 use crate::answer::Figures;
 
@@ -15,6 +15,9 @@ pub fn write(t: &mut String, figures: &Figures) {
         }
         for e in figures.stiffness.iter().flatten().filter(|e| e.cable == s.cable) {
             let _ = writeln!(t, "  {:<17} {}", "End stiffness", stiffness(e));
+        }
+        for b in figures.bending.iter().filter(|b| b.cable == s.cable) {
+            let _ = writeln!(t, "  {:<17} {}", "Bending neglected", neglected(b, s.greatest_tension.tension_n));
         }
     }
 }
@@ -111,4 +114,23 @@ fn at(p: Place) -> String {
 
 fn percent(ratio: f64) -> String {
     format!("{:.4} %", 100.0 * ratio)
+}
+
+/// What a cable would be like with the bending stiffness that was left out; `most` is the greatest tension without it, N.
+fn neglected(b: &NeglectedBending, most: f64) -> String {
+    let range = match b.range_n_m2 {
+        [Some(low), Some(high)] => format!(" ({low} to {high})"),
+        _ => String::new(),
+    };
+    let with = format!("with {}{range} N·m², likely of its preset,", b.bending_stiffness_n_m2);
+    let Some(tension) = b.greatest_tension_n else {
+        return format!("{with} no answer was found: {}", b.unknown.as_deref().unwrap_or("not sought"));
+    };
+    let more = if most > 0.0 { format!(" ({:+.2} %)", 100.0 * (tension / most - 1.0)) } else { String::new() };
+    let change = |what: &str, of: Option<f64>, unit: &str| {
+        of.map_or_else(|| format!("{what} by what is not known"), |v| format!("{what} by up to {v:.2e} {unit}"))
+    };
+    let supports = change("forces on supports change", b.changes.support_force_n, "N");
+    let shape = change("the shape", b.changes.position_m, "m");
+    format!("{with} the greatest tension is {tension:.4} N{more}; {supports}, {shape}")
 }

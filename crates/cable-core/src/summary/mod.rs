@@ -5,6 +5,7 @@
 //! write it down. Accuracy is that of the answer's nodes: of a free span they leave its line by 1e-5 of its length at most.
 
 mod balance;
+mod bending;
 mod shape;
 pub mod stiffness;
 #[cfg(test)]
@@ -17,6 +18,7 @@ use crate::scene::{Cable, Scene, View};
 use crate::solution::{Bend, CableSolution, JudgedBend, Node, Pressure, Solution};
 
 pub use balance::Balance;
+pub use bending::{NeglectedBending, neglected_bending};
 pub use shape::{sag, stretched_length_m};
 pub use stiffness::{EndStiffness, end_stiffness};
 

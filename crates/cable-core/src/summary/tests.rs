@@ -266,3 +266,26 @@ fn lying_length_is_that_of_the_union_of_all_contacts() {
     let seen: Vec<_> = downs.iter().map(|d| (d.obstacle.as_str(), d.touch, d.at.arc_length_m)).collect();
     assert_eq!(seen, [("c", Touch::Ends, 0.4), ("d", Touch::Point, 0.6)]);
 }
+
+/// A cable whose preset is known to bend stiffly: what that changes is what the same scene says with the stiffness written down. It is
+/// nothing that anybody knows of a cable without a preset, and nothing was left out of one whose stiffness was used.
+#[test]
+fn what_bending_would_change_is_told_where_it_was_left_out() {
+    let scene = catalog::round_post();
+    let flexible = answered(&scene, Model::Auto);
+    let [told] = &neglected_bending(&scene, &flexible, Settings::default())[..] else { panic!("one cable") };
+    let mut stiff = scene.clone();
+    stiff.cables[0].bending_stiffness_n_m2 = told.bending_stiffness_n_m2;
+    let with = answered(&stiff, Model::Auto);
+    assert_eq!(told.greatest_tension_n, Some(with.max_tension().tension_n));
+    let change = (with.max_tension().tension_n - flexible.max_tension().tension_n).abs();
+    let said = told.changes.max_tension_n.unwrap();
+    assert!(said >= change && said < 1.02 * change, "{said} for {change}");
+    // About a post of this size a cable of 1.4 N·m² is some per cent slacker.
+    assert!(change > 0.01 * flexible.max_tension().tension_n);
+    assert_eq!(neglected_bending(&stiff, &with, Settings::default()), []);
+    let mut unknown = scene;
+    unknown.cables[0].preset = None;
+    let answer = answered(&unknown, Model::Auto);
+    assert_eq!(neglected_bending(&unknown, &answer, Settings::default()), []);
+}

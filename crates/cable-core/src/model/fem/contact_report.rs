@@ -415,16 +415,14 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
     for j in [0, 1] {
         let beside = if j == 0 { k - 1 } else { k + 1 };
         let Some(p) = (if j == 0 { points.first_mut() } else { points.last_mut() }) else { continue };
-        if mesh.sliding[beside].is_none() && !(same[0] || same[1]) {
+        if mesh.sliding[beside].is_none() {
             let way = (p.at - x[beside]).norm() / stretch[j];
             let has = (p.arc_length - mesh.arc_length[beside]).abs();
             let more = bounded(way - has, 0.0, spare / stretch[j]);
             p.arc_length += [more, -more][j];
         }
     }
-    if !(same[0] || same[1]) {
-        strain_evenly(&mut points, d.problem.axial_stiffness);
-    }
+    strain_evenly(&mut points, d.problem.axial_stiffness);
     points
 }
 

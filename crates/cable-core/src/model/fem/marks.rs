@@ -4,19 +4,16 @@ use super::dynamics::Dynamics;
 use super::path::End;
 use super::remesh::{MAX_CHANGES, NEAR};
 use super::sliding::Sliding;
-use crate::math::Vec2;
+use crate::math::{Vec2, smaller};
 
 /// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
 const STILL: f64 = 1e-9;
 
-/// An arc of more than this (rad) from the tangent to the first mark gets another mark.
+/// An arc of more than this (rad) from the tangent to the first mark gets another mark, in the middle of it.
 pub(super) const WIDE: f64 = 0.8;
 
 /// Rounds with less than this part of an even bar on them keep one mark.
 pub(super) const SMALL: f64 = 0.3;
-
-/// Angle (rad) between marks of one round.
-const SPACING: f64 = 0.4;
 
 /// Logarithm of two tensions below which the next term of the series (x³/720) is rounding.
 const EVEN: f64 = 1e-4;
@@ -76,7 +73,8 @@ impl Dynamics {
     }
 
     /// Gives long arcs more marks and takes away those that the tangent has passed.
-    pub(super) fn wind(&mut self) -> bool {
+    pub(super) fn wind(&mut self, rests: bool) -> bool {
+        let even = self.even();
         let mut changed = false;
         let mut k = 1;
         let mut changes = 0;
@@ -88,16 +86,18 @@ impl Dynamics {
             let shared = [k - 1, k + 1].map(|j| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node)));
             let x = &self.motion.x;
             let arcs = [self.mesh.path(k - 1, x).arcs[1], self.mesh.path(k, x).arcs[0]];
-            let big = |arc: f64| arc > WIDE && arc * node.end.radius > SMALL * self.even();
+            // On a large round the marks of a cable at rest are as far apart as nodes elsewhere: the weight of a bar is shared by its ends.
+            let spacing = if rests { smaller(0.5 * WIDE, even / node.end.radius) } else { 0.5 * WIDE };
+            let big = |arc: f64| arc > 2.0 * spacing && arc * node.end.radius > SMALL * even;
             changes += 1;
             if (!shared[0] && shared[1] && arcs[0] < 0.0) || (!shared[1] && shared[0] && arcs[1] < 0.0) {
                 self.remove(k);
                 changed = true;
             } else if !shared[0] && big(arcs[0]) {
-                self.add_mark(k, 0, arcs[0] - SPACING);
+                self.add_mark(k, 0, arcs[0] - spacing);
                 changed = true;
             } else if !shared[1] && big(arcs[1]) {
-                self.add_mark(k, 1, arcs[1] - SPACING);
+                self.add_mark(k, 1, arcs[1] - spacing);
                 changed = true;
                 k += 1;
             } else {
@@ -144,7 +144,9 @@ mod tests {
 
     #[test]
     fn an_arc_with_its_mark_is_as_long_as_friction_makes_it() {
-        for (before, after) in [(100.0f64, 100.0f64), (100.0, 99.999), (100.0, 40.0), (3.0, 800.0), (5e-7, 70.0), (1e-300, 1e9)] {
+        for (before, after) in
+            [(100.0f64, 100.0f64), (100.0, 99.999), (100.0, 40.0), (3.0, 800.0), (5e-7, 70.0), (1e-300, 1e9)]
+        {
             let f = part_before([before, after]);
             let n = 20_000;
             let at = |k: i32| before * (after / before).powf((f64::from(k) + 0.5) / f64::from(n));

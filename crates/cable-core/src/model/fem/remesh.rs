@@ -125,7 +125,7 @@ impl Dynamics {
             changed = true;
         }
         let moved = self.move_marks(rests);
-        let wound = self.wind();
+        let wound = self.wind(rests);
         let evened = self.even_out();
         let bars = changed || wound || evened;
         if bars || moved {
