@@ -54,6 +54,7 @@ impl MassSpringModel {
             f,
             tension,
             held,
+            let_go,
             held_acceleration,
             drag,
             clearance,

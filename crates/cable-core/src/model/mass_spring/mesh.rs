@@ -84,6 +84,7 @@ impl MassSpringModel {
             f: vec![Vec2::zeros(); n],
             tension: vec![0.0; ne],
             held: vec![false; n],
+            let_go: Vec::new(),
             held_acceleration: vec![Vec2::zeros(); n],
             drag: vec![None; ns],
             clearance: vec![0.0; ne],

@@ -75,6 +75,8 @@ pub struct MassSpringModel {
     tension: Vec<f64>,
     /// Whether a support holds the node now.
     held: Vec<bool>,
+    /// Nodes that their support has let go as the present sub-step began.
+    let_go: Vec<usize>,
     /// Acceleration of held nodes, m/s².
     held_acceleration: Vec<Vec2>,
     /// Where each support is dragged to, if it is.

@@ -3,7 +3,7 @@
 use super::pulley::NONE;
 use super::{Follower, MassSpringModel};
 use crate::error::SolveError;
-use crate::math::Vec2;
+use crate::math::{Vec2, smaller};
 use crate::model::drive::fastest;
 use crate::model::gauge::TensionGauge;
 
@@ -122,7 +122,7 @@ impl MassSpringModel {
             let fastest = self.calm(&mut trouble);
             let travel = TRAVEL * self.problem.radius / fastest;
             let limit = if !self.problem.world.is_empty() && travel < stable { travel } else { stable };
-            let h = left / (left / limit).ceil();
+            let h = self.until_let_go(left / (left / limit).ceil());
             if let Some(e) = self.non_finite() {
                 return Err(e);
             }
@@ -155,6 +155,7 @@ impl MassSpringModel {
                 }
             }
             self.account_for_kick(kick);
+            self.begin_let_go(kick - 0.5 * h);
             self.floor_friction(kick);
             self.contacts(h);
             for i in 0..self.x.len() {
@@ -175,6 +176,12 @@ impl MassSpringModel {
         self.cost.residual_n = 0.0;
         debug_assert!(self.time_s > begin);
         self.non_finite().map_or(Ok(()), Err)
+    }
+
+    /// A sub-step `h` (s), cut short where a support lets go in it.
+    fn until_let_go(&self, h: f64) -> f64 {
+        let releases = self.problem.supports.iter().filter_map(|s| s.release_between(self.time_s, self.time_s + h));
+        releases.map(|at| at - self.time_s).fold(h, smaller)
     }
 
     /// Tells a gauge the tension; whether its points are the `same` as the nodes, which then are no pulleys.
@@ -216,11 +223,29 @@ impl MassSpringModel {
         }
     }
 
+    /// Nodes let go as the sub-step began have the velocity of then: of the time before, `held_s`, their forces were their supports'.
+    fn begin_let_go(&mut self, held_s: f64) {
+        for k in 0..self.let_go.len() {
+            let i = self.let_go[k];
+            let impulse = self.f[i] * held_s;
+            self.v[i] -= impulse / self.mass[i];
+            self.account.supports -= impulse;
+        }
+    }
+
     /// Velocities that bring held nodes to where their supports are at the end of the sub-step.
     pub(super) fn supports(&mut self, h: f64) {
+        let begins_s = self.time_s - h;
+        self.let_go.clear();
+        for (support, &node) in self.problem.supports.iter().zip(&self.node_of) {
+            if self.held[node] && !support.holds_from(begins_s) {
+                self.let_go.push(node);
+            }
+        }
         self.held.fill(false);
         for (k, support) in self.problem.supports.iter().enumerate() {
-            let Some((at, _)) = support.position_at(self.time_s) else {
+            // What lets go at the end of the sub-step holds to its end.
+            let Some((at, _)) = support.place_at(self.time_s).filter(|_| support.holds_from(begins_s)) else {
                 self.hands[k] = None;
                 continue;
             };

@@ -1,0 +1,120 @@
+//! How errors of motions fall with elements and steps: each motion of [`cable_benches::motion`] on a ladder of meshes at the finest
+//! step, and of steps on the finest mesh, into `docs/convergence.md`.
+//!
+//! Run from the root of the repository: `cargo run --release -p cable-benches --bin convergence`; `-- swing fold` takes some motions
+//! and prints their tables without writing them.
+
+use std::error::Error;
+use std::fmt::Write as _;
+
+use cable_benches::motion::{Measured, Motion, motions};
+use cable_core::{Model, Vec2};
+
+const FILE: &str = "docs/convergence.md";
+
+/// Steps of the ladder, s. `mass-spring` takes its own steps within them: the longest that its mesh is stable with.
+const STEPS: [f64; 5] = [1.0 / 120.0, 1.0 / 240.0, 1.0 / 480.0, 1.0 / 960.0, 1.0 / 1920.0];
+
+/// A mesh is not tried where the one before took longer than this, s.
+const LONGEST_S: f64 = 20.0;
+
+/// A line of a table: its name, the error and what it cost.
+struct Line {
+    name: String,
+    /// How much finer than the line before.
+    finer: f64,
+    run: Result<Measured, String>,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let asked: Vec<String> = std::env::args().skip(1).collect();
+    let mut text = String::from(HEAD);
+    for motion in motions().iter().filter(|m| asked.is_empty() || asked.iter().any(|a| a == m.id)) {
+        let tables = measured(motion)?;
+        print!("{tables}");
+        text.push_str(&tables);
+    }
+    if asked.is_empty() {
+        std::fs::write(FILE, text)?;
+    }
+    Ok(())
+}
+
+const HEAD: &str = "# How errors of motions fall
+
+`cargo run --release -p cable-benches --bin convergence` makes this page. Each motion is followed on a ladder of meshes with the shortest step, and of steps on the
+finest mesh, where the error is of the step alone: against half of the shortest. Elsewhere it is that of the figure named, relative to what it should be; the order is the exponent by which it fell
+from the line before. `mass-spring` takes steps of its own, as long as its mesh is stable with: only its mesh is changed. Times are of the motion alone, on one core of
+whatever machine made the page.
+";
+
+fn measured(motion: &Motion) -> Result<String, Box<dyn Error>> {
+    let finest = motion.meshes.last().copied().ok_or("a motion without meshes")?;
+    let step = STEPS[STEPS.len() - 1];
+    let exact = match motion.exact {
+        Some(exact) => exact(),
+        None => extrapolated(motion, finest, step)?,
+    };
+    let mut text = format!("\n## {}\n\n{}.\n", motion.id, motion.about);
+    let scale = exact.norm();
+    let _ = match motion.exact {
+        Some(_) => writeln!(text, "It should be {:.6}.", exact.x + exact.y),
+        None => {
+            writeln!(text, "It should be ({:.6}, {:.6}): the finest runs of `fem`, extrapolated.", exact.x, exact.y)
+        }
+    };
+    for model in [Model::Fem, Model::MassSpring] {
+        let by = |elements: usize, step_s: f64| motion.measure(model, elements, step_s).map_err(|e| e.to_string());
+        let coarser = |k: usize| k.checked_sub(1).map_or(1.0, |j| motion.meshes[k] as f64 / motion.meshes[j] as f64);
+        let mut lines: Vec<Line> = Vec::new();
+        for (k, &n) in motion.meshes.iter().enumerate() {
+            let slow = lines.last().and_then(|l| l.run.as_ref().ok()).is_some_and(|run| run.elapsed_s > LONGEST_S);
+            let run = if slow { Err("not tried: it would take minutes".to_owned()) } else { by(n, step) };
+            lines.push(Line { name: n.to_string(), finer: coarser(k), run });
+        }
+        table(&mut text, &format!("`{model}`, elements"), &lines, (exact, scale));
+        if model == Model::Fem {
+            let line = |(k, &h): (usize, &f64)| Line {
+                name: format!("1/{:.0} s", 1.0 / h),
+                finer: k.checked_sub(1).map_or(1.0, |j| STEPS[j] / h),
+                run: by(finest, h),
+            };
+            let lines: Vec<Line> = STEPS.iter().enumerate().map(line).collect();
+            // The error of the step alone: against half the shortest on the same mesh.
+            if let Ok(limit) = by(finest, 0.5 * step) {
+                table(&mut text, &format!("`{model}`, steps"), &lines, (limit.figure, scale));
+            }
+        }
+    }
+    Ok(text)
+}
+
+/// The figure without the errors of mesh and step, both taken to be of the second order.
+fn extrapolated(motion: &Motion, finest: usize, step: f64) -> Result<Vec2, Box<dyn Error>> {
+    let at = |elements: usize, step_s: f64| motion.measure(Model::Fem, elements, step_s).map(|m| m.figure);
+    let fine = at(finest, step)?;
+    let [mesh, steps] = [at(finest / 2, step)?, at(finest, 2.0 * step)?];
+    Ok(fine + (fine - mesh) / 3.0 + (fine - steps) / 3.0)
+}
+
+fn table(text: &mut String, what: &str, lines: &[Line], (exact, scale): (Vec2, f64)) {
+    let _ = writeln!(text, "\n| {what} | figure | error | order | time (ms) |\n|---|---|---|---|---|");
+    let mut before = None;
+    for line in lines {
+        match &line.run {
+            Ok(run) => {
+                let error = (run.figure - exact).norm() / scale;
+                let order = before
+                    .map_or_else(String::new, |last: f64| format!("{:.2}", (last / error).ln() / line.finer.ln()));
+                let second = if run.figure.y == 0.0 { String::new() } else { format!(", {:.6}", run.figure.y) };
+                let [name, time] = [line.name.clone(), format!("{:.1}", 1e3 * run.elapsed_s)];
+                let _ = writeln!(text, "| {name} | {:.6}{second} | {error:.1e} | {order} | {time} |", run.figure.x);
+                before = Some(error);
+            }
+            Err(why) => {
+                let _ = writeln!(text, "| {} | {why} | | | |", line.name);
+                before = None;
+            }
+        }
+    }
+}
