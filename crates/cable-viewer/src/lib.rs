@@ -6,6 +6,7 @@
 pub mod app;
 pub mod autosave;
 pub mod background;
+pub mod bending;
 pub mod camera;
 pub mod canvas;
 pub mod colour;

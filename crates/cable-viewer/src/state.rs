@@ -7,6 +7,7 @@ use cable_core::math::Point;
 use cable_core::timeline::RunPeaks;
 use cable_core::{Model, Scene, SceneError, Settings, Solution};
 
+use crate::bending;
 use crate::camera::Camera;
 use crate::colour::ColourScale;
 use crate::command::clipboard::Clipboard;
@@ -82,6 +83,8 @@ pub struct AppState {
     pub visible_m: [Point; 2],
     /// What every model says of a scene.
     pub models: models::Progress,
+    /// What neglecting bending stiffness changes.
+    pub bending: bending::View,
     /// What less and more friction does.
     pub spread: spread::View,
     /// The guided scene that is on.
@@ -306,6 +309,7 @@ impl AppState {
             reach: reach::View::default(),
             visible_m: [[-1.0; 2], [1.0; 2]],
             models: models::Progress::None,
+            bending: bending::View::default(),
             spread: spread::View::default(),
             guide: None,
             worker: WorkerStatus::Idle,

@@ -15,6 +15,7 @@ use std::time::Instant;
 use cable_core::Scene;
 
 use crate::autosave::Autosave;
+use crate::bending;
 use crate::command::{self, Command, Effects};
 use crate::dialog::Dialog;
 use crate::history::Sample;
@@ -46,6 +47,8 @@ pub struct ViewerApp {
     reach: Option<reach::Job>,
     /// Every model being asked.
     models: Option<models::Job>,
+    /// What neglecting bending stiffness changes, computed or being computed.
+    bending: Option<bending::Job>,
     /// The ribbon of less and more friction, computed or being computed.
     spread: Option<spread::Job>,
 }
@@ -75,6 +78,7 @@ impl ViewerApp {
             asked: VecDeque::new(),
             reach: None,
             models: None,
+            bending: None,
             spread: None,
         };
         let mut effects = Effects::default();
@@ -176,6 +180,7 @@ impl ViewerApp {
                 self.models = None;
             }
         }
+        self.keep_bending(ctx);
         self.keep_spread(ctx);
         self.state.worker = self.worker.status();
         if !self.threaded && !self.state.playback.paused {
@@ -186,6 +191,22 @@ impl ViewerApp {
             self.state.snapshot.stale = true;
             self.asked.clear();
         }
+    }
+
+    /// Looks after what neglecting bending stiffness changes: a question about what is no longer on screen is forgotten.
+    fn keep_bending(&mut self, ctx: &egui::Context) {
+        if !bending::fits(&self.state) {
+            self.state.bending = bending::View::default();
+        }
+        let Some(ask) = self.state.bending.ask.clone() else { return };
+        let runs = |job: &bending::Job| matches!(job.progress(), bending::Progress::Running(..));
+        // One that still runs cannot be stopped within its solve: the next waits for it.
+        if self.bending.as_ref().is_none_or(|job| !job.is_of(&ask) && !runs(job)) {
+            let shown = ctx.clone();
+            self.bending = Some(bending::Job::start(ask.clone(), move || shown.request_repaint()));
+        }
+        let own = self.bending.as_ref().filter(|job| job.is_of(&ask));
+        self.state.bending.progress = own.map_or(bending::Progress::Running(0.0, None), bending::Job::progress);
     }
 
     /// Looks after the ribbon of less and more friction: one of another question ends, a missing one begins.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use cable_core::math::Point;
 
 use super::Effects;
+use crate::bending;
 use crate::colour::ColourScale;
 use crate::guide;
 use crate::models;
@@ -57,6 +58,8 @@ pub enum ViewCommand {
     SetReach(reach::Choice),
     /// Shows what less and more friction does, or not any more; least and greatest friction over that of the scene.
     Spread(bool, [f64; 2]),
+    /// Ask what neglecting bending stiffness changes.
+    AskBending,
     /// Leads to a step of a guided scene, or not any more.
     Guide(Option<guide::Place>),
     /// SI or US units; files stay SI.
@@ -137,6 +140,9 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
                 // The scene's own friction lies in between.
                 state.spread.factors = [low.min(1.0), high.max(1.0)];
             }
+        }
+        ViewCommand::AskBending => {
+            state.bending = bending::View { ask: bending::asked(state), ..bending::View::default() }
         }
         ViewCommand::Guide(place) => state.guide = place.filter(|p| p.step().is_some()),
         ViewCommand::SetUnits(units) => state.units = units,

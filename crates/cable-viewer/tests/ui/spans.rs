@@ -237,3 +237,40 @@ fn friction_that_is_not_known_well_is_a_ribbon_of_tension() {
     let figure = harness.get_by_role_and_label(Role::Figure, "Over time");
     assert!(!figure.accesskit_node().description().unwrap_or_default().contains("friction"));
 }
+
+/// What neglecting bending stiffness changes is told on request, of the answer on screen only.
+#[test]
+fn a_flexible_answer_is_compared_with_a_stiff_one() {
+    use cable_viewer::background::Progress;
+    let mut harness = open(catalog::round_post());
+    harness.set_size(Vec2::new(1400.0, 1800.0));
+    harness.run_steps(3);
+    let flexible = answer(&harness).max_tension().tension_n;
+    click(&mut harness, "Compare with the likely bending stiffness");
+    let begun = std::time::Instant::now();
+    let found = loop {
+        harness.run_steps(1);
+        match &state(&harness).bending.progress {
+            Progress::Done(found) => break found.clone(),
+            Progress::Failed(why) => panic!("{why}"),
+            _ => assert!(begun.elapsed().as_secs() < 60, "no answer in a minute"),
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    };
+    harness.run_steps(2);
+    let with = found[0].greatest_tension_n.unwrap();
+    assert!(with < 0.99 * flexible, "{with} N of {flexible} N");
+    let said = format!(
+        "neglected; {} ({:+.2} %) with it",
+        cable_viewer::panels::unit::force(with),
+        100.0 * (with / flexible - 1.0)
+    );
+    harness.get_by_label(&said);
+    // It is of this answer: another one has not been compared.
+    let item = cable_viewer::state::Item::Support { cable: 0, support: 1 };
+    let [x, y] = state(&harness).scene.cables[0].supports[1].at_m.unwrap();
+    let edit = cable_viewer::command::SceneCommand::Move { item, to_m: [x - 0.1, y] };
+    apply(&mut harness, Command::Scene(edit));
+    harness.run_steps(3);
+    harness.get_by_label("Compare with the likely bending stiffness");
+}

@@ -13,6 +13,8 @@ use egui::{Color32, Grid, ProgressBar, RichText, Ui};
 use super::field;
 use super::icon::{self, Icon};
 use super::unit;
+use crate::background::Progress;
+use crate::bending;
 use crate::command::{Command, ViewCommand};
 use crate::state::AppState;
 
@@ -52,6 +54,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             greatest_so_far(ui, run);
         }
         accuracy(ui, solved, &first);
+        bending_stiffness(ui, state, (cable, solved), commands);
     });
     ui.separator();
     reactions::ui(ui, cable, solved, commands);
@@ -248,6 +251,68 @@ fn greatest_so_far(ui: &mut Ui, run: &RunPeaks) {
     };
     let help = "Greatest tension of any inner step since the start; in brackets from what to what it may be, as two coarser runs beside this one differ from it";
     figure(ui, "Greatest so far", text, help, None);
+}
+
+/// Whether bending stiffness was taken into account, and what it changes where it was not.
+fn bending_stiffness(
+    ui: &mut Ui,
+    state: &AppState,
+    (cable, solved): (&Cable, &CableSolution),
+    commands: &mut Vec<Command>,
+) {
+    let (used, likely) = (solved.assumptions.bending_stiffness_n_m2, cable.likely_bending_stiffness_n_m2());
+    let name = "Bending stiffness";
+    if used > 0.0 || likely == 0.0 {
+        let text = if used > 0.0 { unit::Unit::N_M2.text(used) } else { "none".to_owned() };
+        figure(ui, name, text, "Bending stiffness that this answer took into account", None);
+        return;
+    }
+    let likely = unit::Unit::N_M2.text(likely);
+    let help = format!("This answer is of a perfectly flexible cable; of its preset {likely} is likely");
+    if let Some((text, more)) = compared(state, cable, solved) {
+        figure(ui, name, text, &format!("{help}{more}"), None);
+        return;
+    }
+    ui.label(name).on_hover_text(&help);
+    ui.label("neglected").on_hover_text(&help);
+    let can = bending::asked(state).is_some();
+    let button = ui.add_enabled(can, egui::Button::new("Compare").small());
+    field::name(&button, "Compare with the likely bending stiffness");
+    let does = format!("Answers once more with {likely}, and says what that changes");
+    if button.on_hover_text(does).on_disabled_hover_text("Of a cable at rest only").clicked() {
+        commands.push(Command::View(ViewCommand::AskBending));
+    }
+    ui.end_row();
+}
+
+/// What came of comparing an answer with one that has the likely bending stiffness, in short and in full; None where nobody asked.
+fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<(String, String)> {
+    if !bending::fits(state) {
+        return None;
+    }
+    let neglected = "neglected".to_owned();
+    let found = match &state.bending.progress {
+        Progress::None => return None,
+        Progress::Running(..) => return Some(("neglected, being compared".to_owned(), String::new())),
+        Progress::Failed(why) => return Some((neglected, format!(". {why}"))),
+        Progress::Done(found) => found.iter().find(|b| b.cable == cable.name)?,
+    };
+    let Some(with) = found.greatest_tension_n else {
+        let why = found.unknown.as_deref().unwrap_or("not sought");
+        return Some((neglected, format!(". No answer was found with that: {why}")));
+    };
+    let most = figures::greatest(solved, |n| n.tension_n).map_or(0.0, |(tension, _)| tension);
+    let more = if most > 0.0 { format!(" ({:+.2} %)", 100.0 * (with / most - 1.0)) } else { String::new() };
+    let part = |of: Option<f64>, text: fn(f64) -> String| {
+        of.map_or_else(|| "by what is not known".to_owned(), |v| format!("by up to {}", text(v)))
+    };
+    let details = format!(
+        ". With that the greatest tension is {}{more}, forces on supports change {}, the shape {}",
+        unit::force(with),
+        part(found.changes.support_force_n, unit::force),
+        part(found.changes.position_m, unit::length),
+    );
+    Some((format!("neglected; {}{more} with it", unit::force(with)), details))
 }
 
 fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
