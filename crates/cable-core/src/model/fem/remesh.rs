@@ -108,6 +108,8 @@ pub(super) struct Remeshed {
     pub(super) seats: bool,
     /// Its bars are not those that were balanced.
     pub(super) bars: bool,
+    /// Material went from bar to bar as marks on rounds were moved.
+    pub(super) marks: bool,
 }
 
 impl Dynamics {
@@ -134,7 +136,7 @@ impl Dynamics {
             self.motion.x = x;
             self.renew_task();
         }
-        Remeshed { seats: changed, bars }
+        Remeshed { seats: changed, bars, marks: moved }
     }
 
     /// Length of an even bar, m of arc length.

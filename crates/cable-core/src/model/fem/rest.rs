@@ -99,7 +99,7 @@ impl Dynamics {
     }
 
     fn rest_rounds(&mut self, to: f64, dragged: &[Option<Vec2>], pull: f64) -> Result<Done, Failure> {
-        let mut total = Done::default();
+        let (mut total, mut settled) = (Done::default(), false);
         for round in 0..CORNER_ROUNDS {
             self.prepare_way([to, to], Some(dragged));
             self.adapt_slip();
@@ -125,7 +125,13 @@ impl Dynamics {
             total = Done { iterations: total.iterations + done.iterations, ..done };
             self.accept_pose(&pose, to);
             // Where corners are met and left by turns to the last, the mesh stays as it balances.
-            if round + 1 == CORNER_ROUNDS || !self.remesh(true).bars {
+            if settled || round + 1 == CORNER_ROUNDS {
+                break;
+            }
+            let found = self.remesh(true);
+            // Marks that are moved take strain from bar to bar, which has to be balanced once more.
+            settled = !found.bars;
+            if settled && !found.marks {
                 break;
             }
         }
