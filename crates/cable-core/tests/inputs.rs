@@ -366,3 +366,28 @@ fn extreme_values_are_answered_or_refused_in_words() {
     println!("{answered} answered, {refused} refused");
     assert!(answered > 9 * refused, "{answered} answered, {refused} refused");
 }
+
+/// A step of no time, back in time, of no number or of ages is refused as such by every model, and nothing has moved.
+#[test]
+fn steps_that_cannot_be_are_refused_and_change_nothing() {
+    use cable_core::scene::catalog;
+    use cable_core::{Model, Simulation, SolveError};
+    let scenes = [("hanging-span", catalog::hanging_span()), ("tank", catalog::tank())];
+    for (name, scene) in scenes {
+        for model in [Model::Auto, Model::Spans, Model::Fem, Model::MassSpring] {
+            let Ok(mut sim) = Simulation::new(scene.clone(), model) else { continue };
+            if sim.settle().is_err() {
+                continue;
+            }
+            for dt_s in [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e12] {
+                let before = sim.states();
+                for quasi_static in [false, true] {
+                    let done = if quasi_static { sim.step_quasi_static(dt_s) } else { sim.step(dt_s) };
+                    let refused = matches!(done, Err(SolveError::TimeStep { .. } | SolveError::Unsupported { .. }));
+                    assert!(refused, "{name}, {model}, {dt_s} s, without inertia {quasi_static}: {done:?}");
+                    assert_eq!(sim.states(), before, "{name}, {model}, {dt_s} s");
+                }
+            }
+        }
+    }
+}
