@@ -21,6 +21,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use self::fem::contact_step::Workspace;
 use self::gauge::TensionGauge;
 use self::mass_spring::Stepping;
 use crate::contact::outline::Placement;
@@ -249,7 +250,7 @@ pub trait Mechanics: Send {
     }
 
     /// From now on a support follows `target_m` (smoothly and no faster than [`Settings::hand_speed_m_per_s`] in `Dynamic` steps; at the
-    /// next `settle` or quasi-static step it is there) instead of its `motion`.
+    /// next `settle` or quasi-static step it is there) instead of its `motion`. One of a robot goes there evenly in the next step, whatever that takes.
     fn drag_support(&mut self, support: usize, target_m: Vec2);
 
     /// From now on a hand at `hand_m` (m) holds a support by a spring ([`drive::Hand`]) in `Dynamic` steps, its free end no faster than
@@ -278,6 +279,19 @@ pub trait Mechanics: Send {
 
     /// The problem it solves.
     fn problem(&self) -> &Arc<Problem>;
+
+    /// Longest inner step that the next step with inertia is made of, s; infinite where there is none to speak of.
+    fn inner_step_s(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Gives its working memory away, which holds nothing of its state: for a copy that takes its place.
+    fn lend_memory(&mut self) -> Option<Box<Workspace>> {
+        None
+    }
+
+    /// Works in the memory of the one whose place it takes.
+    fn borrow_memory(&mut self, _memory: Box<Workspace>) {}
 
     /// A copy with all its history, for reset and compare.
     fn boxed_clone(&self) -> Box<dyn Mechanics>;

@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use super::fem::FemModel;
+use super::fem::contact_step::Workspace;
 use super::gauge::TensionGauge;
 use super::lay::{is_buried, meets_outline, slid_first, slides_on, work};
 use super::spans::SpansModel;
@@ -384,6 +385,20 @@ impl Mechanics for Relay {
 
     fn problem(&self) -> &Arc<Problem> {
         &self.problem
+    }
+
+    fn inner_step_s(&self) -> f64 {
+        self.fem.as_ref().map_or(f64::INFINITY, Mechanics::inner_step_s)
+    }
+
+    fn lend_memory(&mut self) -> Option<Box<Workspace>> {
+        self.fem.as_mut().and_then(Mechanics::lend_memory)
+    }
+
+    fn borrow_memory(&mut self, memory: Box<Workspace>) {
+        if let Some(fem) = &mut self.fem {
+            fem.borrow_memory(memory);
+        }
     }
 
     fn boxed_clone(&self) -> Box<dyn Mechanics> {

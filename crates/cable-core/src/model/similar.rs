@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use super::fem::contact_step::Workspace;
 use super::gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, StepReport};
 use crate::error::{Place, SolveError};
@@ -264,6 +265,18 @@ impl Mechanics for Similar {
 
     fn problem(&self) -> &Arc<Problem> {
         &self.problem
+    }
+
+    fn inner_step_s(&self) -> f64 {
+        self.inner.inner_step_s() / self.by.time
+    }
+
+    fn lend_memory(&mut self) -> Option<Box<Workspace>> {
+        self.inner.lend_memory()
+    }
+
+    fn borrow_memory(&mut self, memory: Box<Workspace>) {
+        self.inner.borrow_memory(memory);
     }
 
     fn boxed_clone(&self) -> Box<dyn Mechanics> {

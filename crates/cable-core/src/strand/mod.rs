@@ -17,7 +17,7 @@ use deal::{Cut, Deal};
 
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
-use crate::math::{Vec2, larger};
+use crate::math::{Vec2, larger, smaller};
 use crate::model::drive::hand_stiffness;
 use crate::model::gauge::{Limit, TensionGauge};
 use crate::model::{self, Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
@@ -391,6 +391,26 @@ impl Strand {
             .iter()
             .filter_map(|p| p.mechanics.outline())
             .reduce(|a, b| OutlineReport { force_n: a.force_n + b.force_n, ..if b.left_m > a.left_m { b } else { a } })
+    }
+
+    /// Longest inner step of the next step with inertia, s.
+    pub fn inner_step_s(&self) -> f64 {
+        self.pieces.iter().map(|p| p.mechanics.inner_step_s()).fold(f64::INFINITY, smaller)
+    }
+
+    /// What it does to a support now, N.
+    pub fn pull_on(&self, support: usize) -> Vec2 {
+        let r = self.reaction(support);
+        Vec2::new(r.reaction_x_n, r.reaction_y_n)
+    }
+
+    /// Becomes what it was when `before` was copied from it, in the memory it works in.
+    pub fn go_back(&mut self, before: &Self) {
+        let mut memory = self.pieces.first_mut().and_then(|p| p.mechanics.lend_memory());
+        self.clone_from(before);
+        if let (Some(first), Some(memory)) = (self.pieces.first_mut(), memory.take()) {
+            first.mechanics.borrow_memory(memory);
+        }
     }
 
     /// Takes over a state of the whole cable.

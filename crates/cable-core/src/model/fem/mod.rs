@@ -540,6 +540,18 @@ impl Mechanics for FemModel {
         &self.problem
     }
 
+    fn inner_step_s(&self) -> f64 {
+        self.dynamics.pace.step
+    }
+
+    fn lend_memory(&mut self) -> Option<Box<contact_step::Workspace>> {
+        self.dynamics.memory.0.take()
+    }
+
+    fn borrow_memory(&mut self, memory: Box<contact_step::Workspace>) {
+        self.dynamics.memory.0 = Some(memory);
+    }
+
     fn boxed_clone(&self) -> Box<dyn Mechanics> {
         Box::new(self.clone())
     }
