@@ -21,7 +21,6 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use self::fem::contact_step::Workspace;
 use self::gauge::TensionGauge;
 use self::mass_spring::Stepping;
 use crate::contact::outline::Placement;
@@ -184,6 +183,13 @@ pub struct OutlineReport {
     pub left_m: f64,
 }
 
+/// What a model has for itself alone: the memory it works in, and its obstacles, among which it moves the outline of the robot.
+#[derive(Debug)]
+pub struct Own {
+    memory: Option<Box<fem::contact_step::Workspace>>,
+    problem: Arc<Problem>,
+}
+
 /// What every model does. One cable; time and positions in SI units.
 pub trait Mechanics: Send {
     /// Which model this is.
@@ -285,13 +291,18 @@ pub trait Mechanics: Send {
         f64::INFINITY
     }
 
-    /// Gives its working memory away, which holds nothing of its state: for a copy that takes its place.
-    fn lend_memory(&mut self) -> Option<Box<Workspace>> {
+    /// A copy to go back to, which does not hold what the model can have for itself alone.
+    fn copy_to_keep(&self) -> Box<dyn Mechanics> {
+        self.boxed_clone()
+    }
+
+    /// Gives away what it has for itself alone and what holds nothing of its state.
+    fn lend(&mut self) -> Option<Own> {
         None
     }
 
-    /// Works in the memory of the one whose place it takes.
-    fn borrow_memory(&mut self, _memory: Box<Workspace>) {}
+    /// A copy that was kept goes on with what the model that it was copied from has lent, or with its own.
+    fn borrow(&mut self, _own: Option<Own>) {}
 
     /// A copy with all its history, for reset and compare.
     fn boxed_clone(&self) -> Box<dyn Mechanics>;

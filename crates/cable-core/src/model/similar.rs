@@ -5,9 +5,8 @@
 
 use std::sync::Arc;
 
-use super::fem::contact_step::Workspace;
 use super::gauge::TensionGauge;
-use super::{Inertia, Mechanics, Model, StepReport};
+use super::{Inertia, Mechanics, Model, Own, StepReport};
 use crate::error::{Place, SolveError};
 use crate::math::Vec2;
 use crate::problem::Problem;
@@ -271,12 +270,16 @@ impl Mechanics for Similar {
         self.inner.inner_step_s() / self.by.time
     }
 
-    fn lend_memory(&mut self) -> Option<Box<Workspace>> {
-        self.inner.lend_memory()
+    fn copy_to_keep(&self) -> Box<dyn Mechanics> {
+        Box::new(Self { problem: self.problem.clone(), by: self.by, inner: self.inner.copy_to_keep() })
     }
 
-    fn borrow_memory(&mut self, memory: Box<Workspace>) {
-        self.inner.borrow_memory(memory);
+    fn lend(&mut self) -> Option<Own> {
+        self.inner.lend()
+    }
+
+    fn borrow(&mut self, own: Option<Own>) {
+        self.inner.borrow(own);
     }
 
     fn boxed_clone(&self) -> Box<dyn Mechanics> {

@@ -23,6 +23,8 @@
 //!
 //! Robot and cable are one system: how their steps are brought together stands in `simulation/coupling.rs`.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use crate::contact::outline::Placement;
@@ -52,11 +54,9 @@ const RAMP: f64 = 1.0;
 /// Faster: its hitch jerks the cable where the ground has a corner; slower: it hangs in the air behind its middle.
 const TIP_RAD_PER_S: f64 = 1.0;
 
-/// Part of the forces on vehicle and cable that may be left over in a step. Less: more steps of the cable; more: they pull each other about.
-const BALANCED: f64 = 1e-3;
-
-/// A way that is too short to have a slope, m.
-const LEAST_WAY_M: f64 = 1e-7;
+/// Part of the forces on vehicle and cable by which a trial of a step may be off. The speed is that of the balance; what is off is the place of the hitch, by
+/// less than a millionth of a metre where a machine of a tonne is off by 100 N. Less: more trials; more: the hitch lags behind the vehicle.
+const BALANCED: f64 = 5e-3;
 
 /// Slower than this it stands, m/s.
 const STANDS_M_PER_S: f64 = 1e-4;
@@ -111,10 +111,12 @@ pub struct Work {
     pub slip_j: f64,
     /// Of rolling resistance.
     pub rolling_j: f64,
-    /// Of its weight.
+    /// Of its weight, by how high it stands.
     pub weight_j: f64,
-    /// Of the cable on its hitch and outline, along the ground.
+    /// Of the cable, on its hitch by how that goes, and on its outline along the ground.
     pub cable_j: f64,
+    /// Of the ground where it tips the vehicle over corners: that takes nothing from its speed.
+    pub ground_j: f64,
     /// What is lost where the ground or a cable squeezed against a wall stops it.
     pub impact_j: f64,
 }
@@ -123,7 +125,7 @@ impl Work {
     /// Of all forces: the change of its kinetic energy.
     #[must_use]
     pub fn total_j(&self) -> f64 {
-        self.drive_j + self.slip_j + self.rolling_j + self.weight_j + self.cable_j + self.impact_j
+        self.drive_j + self.slip_j + self.rolling_j + self.weight_j + self.cable_j + self.ground_j + self.impact_j
     }
 }
 
@@ -168,9 +170,9 @@ pub struct RobotReport {
 /// The vehicle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vehicle {
-    robot: Robot,
+    robot: Arc<Robot>,
     preset: &'static RobotPreset,
-    ground: Ground,
+    ground: Arc<Ground>,
     /// m g, N.
     weight: f64,
     track_friction: f64,
@@ -197,7 +199,7 @@ impl Vehicle {
     pub fn of(scene: &Scene) -> Option<Self> {
         let robot = scene.robot.as_ref()?;
         let preset = robot_preset(&robot.preset)?;
-        let ground = Ground::of(scene);
+        let ground = Arc::new(Ground::of(scene));
         if scene.view == View::Plan {
             return None;
         }
@@ -206,7 +208,7 @@ impl Vehicle {
             weight: preset.mass_kg.value * scene.environment.gravity_m_per_s2,
             track_friction: robot.track_friction.unwrap_or(TRACK_FRICTION),
             rolling: robot.rolling_resistance.unwrap_or(ROLLING_RESISTANCE),
-            robot: robot.clone(),
+            robot: Arc::new(robot.clone()),
             preset,
             ground,
             pose,
@@ -319,7 +321,7 @@ impl Vehicle {
     #[must_use]
     pub fn foreseen(&self, drive: Drive) -> f64 {
         let pulls = Pulls { hitch: self.pulls.hitch + self.rate * drive.h, ..self.pulls };
-        self.law_on(drive, pulls, self.pose.pitch.sin()).speed
+        self.balance(drive, pulls).speed
     }
 
     /// Where it is at the end of a step in which it comes to this speed (m/s); None where it cannot stand there.
@@ -329,8 +331,9 @@ impl Vehicle {
         if way == 0.0 && self.speed == 0.0 {
             return self.tipped(self.pose.at_m[0], drive.h);
         }
-        let pose = self.tipped(self.pose.at_m[0] + way * self.pose.pitch.cos(), drive.h)?;
-        (pose.pitch * way.signum() <= STEEPEST).then_some(pose)
+        let x_m = self.pose.at_m[0] + way * self.pose.pitch.cos();
+        let ground = self.robot.pose_on(&self.ground, self.preset, x_m)?;
+        if ground.pitch * way.signum() <= STEEPEST { self.tipped(x_m, drive.h) } else { None }
     }
 
     fn tipped(&self, x_m: f64, h: f64) -> Option<Pose> {
@@ -339,24 +342,37 @@ impl Vehicle {
         Some(Pose { pitch: self.pose.pitch + tips, ..pose })
     }
 
-    /// What its balance makes of the forces of the cable at the end of a step in which it rises by `rise` (m) on its `way` (m).
+    /// What its balance makes of the forces of the cable at the end of a step.
     #[must_use]
-    pub fn balance(&self, drive: Drive, pulls: Pulls, to: Pose, speed: f64) -> Balance {
-        let way = 0.5 * drive.h * (self.speed + speed);
-        let rise = to.at_m[1] - self.pose.at_m[1];
-        let slope = if way.abs() > LEAST_WAY_M { rise / way } else { self.pose.pitch.sin() };
-        self.law_on(drive, pulls, slope)
+    pub fn balance(&self, drive: Drive, pulls: Pulls) -> Balance {
+        let (sin, cos) = self.pose.pitch.sin_cos();
+        let felt = self.mean(pulls) + pulls.outline;
+        let normal = self.weight * cos - (felt.y * cos - felt.x * sin);
+        // Lifted off the ground its tracks find no hold at all.
+        let normal = if normal > 0.0 { normal } else { 0.0 };
+        let (pull, weight) = (felt.x * cos + felt.y * sin, -self.weight * sin);
+        let done = self.solve(drive, normal, pull + weight);
+        Balance { normal, pull, weight, ..done }
+    }
+
+    /// Mean pull on its hitch in a step that ends with `pulls`, N.
+    fn mean(&self, pulls: Pulls) -> Vec2 {
+        (self.pulls.hitch + pulls.hitch) * 0.5
     }
 
     /// Ends a step at a place with a speed (m/s) that a balance gave, or that it was given beside one.
     pub fn arrive(&mut self, drive: Drive, (to, led): (Pose, f64), (balance, speed): (Balance, f64), pulls: Pulls) {
         let way = 0.5 * drive.h * (self.speed + led);
         let Balance { tracks, rolling, pull, weight, slips, .. } = balance;
+        let along = Vec2::new(self.pose.pitch.cos(), self.pose.pitch.sin());
+        let cable = self.mean(pulls).dot(&(self.hitch_at(to) - self.hitch())) + pulls.outline.dot(&along) * way;
+        let lifted = -self.weight * (to.at_m[1] - self.pose.at_m[1]);
         let work = &mut self.report.work;
         *(if slips { &mut work.slip_j } else { &mut work.drive_j }) += tracks * way;
         work.rolling_j += rolling * way;
-        work.weight_j += weight * way;
-        work.cable_j += pull * way;
+        work.weight_j += lifted;
+        work.cable_j += cable;
+        work.ground_j += (weight + pull) * way - lifted - cable;
         // What a stop takes is none of those.
         work.impact_j += self.preset.mass_kg.value * (speed - balance.speed) / drive.h * way;
         (self.pose, self.speed, self.set) = (to, speed, balance.asked);
@@ -368,7 +384,7 @@ impl Vehicle {
 
     /// It cannot go on: it stays where it is.
     pub fn stop(&mut self, drive: Drive, pulls: Pulls, going: Going) {
-        let balance = self.law_on(drive, pulls, self.pose.pitch.sin());
+        let balance = self.balance(drive, pulls);
         self.report.work.impact_j -= self.kinetic_j();
         self.speed = 0.0;
         self.arrive(drive, (self.pose, 0.0), (Balance { going, ..balance }, 0.0), pulls);
@@ -390,17 +406,6 @@ impl Vehicle {
     #[must_use]
     pub fn speed(&self) -> f64 {
         self.speed
-    }
-
-    fn law_on(&self, drive: Drive, pulls: Pulls, slope: f64) -> Balance {
-        let (sin, cos) = self.pose.pitch.sin_cos();
-        let felt = (self.pulls.hitch + pulls.hitch) * 0.5 + pulls.outline;
-        let normal = self.weight * cos - (felt.y * cos - felt.x * sin);
-        // Lifted off the ground its tracks find no hold at all.
-        let normal = if normal > 0.0 { normal } else { 0.0 };
-        let (pull, weight) = (felt.x * cos + felt.y * sin, -self.weight * slope);
-        let done = self.solve(drive, normal, pull + weight);
-        Balance { normal, pull, weight, ..done }
     }
 
     /// The speed v' at which m (v' − v)/h is what acts: `pull` (N) along the ground, and what the tracks and rolling resistance add to it.

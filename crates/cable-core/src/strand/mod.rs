@@ -20,7 +20,7 @@ use crate::error::SolveError;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::drive::hand_stiffness;
 use crate::model::gauge::{Limit, TensionGauge};
-use crate::model::{self, Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
+use crate::model::{self, Inertia, Mechanics, Model, OutlineReport, Own, Settings, StepReport};
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost, MomentumAccount, TensionPeak, TensionPeaks};
@@ -404,12 +404,20 @@ impl Strand {
         Vec2::new(r.reaction_x_n, r.reaction_y_n)
     }
 
-    /// Becomes what it was when `before` was copied from it, in the memory it works in.
-    pub fn go_back(&mut self, before: &Self) {
-        let mut memory = self.pieces.first_mut().and_then(|p| p.mechanics.lend_memory());
-        self.clone_from(before);
-        if let (Some(first), Some(memory)) = (self.pieces.first_mut(), memory.take()) {
-            first.mechanics.borrow_memory(memory);
+    /// A copy to go back to.
+    pub fn kept(&self) -> Self {
+        self.with(self.pieces.iter().map(Piece::kept).collect())
+    }
+
+    /// Becomes what it was when `kept` was copied from it.
+    pub fn go_back(&mut self, kept: &Self) {
+        let mut own: Vec<Option<Own>> = self.pieces.iter_mut().map(|p| p.mechanics.lend()).collect();
+        own.resize_with(kept.pieces.len(), || None);
+        // What broke since has nothing of the whole.
+        let same = self.breaks.len() == kept.breaks.len();
+        *self = kept.kept();
+        for (piece, own) in self.pieces.iter_mut().zip(own) {
+            piece.mechanics.borrow(own.filter(|_| same));
         }
     }
 
@@ -672,10 +680,15 @@ fn add(sum: &mut StepReport, more: StepReport) {
     }
 }
 
-impl Clone for Piece {
-    fn clone(&self) -> Self {
+impl Piece {
+    fn kept(&self) -> Self {
+        self.with(self.mechanics.copy_to_keep())
+    }
+
+    /// A copy with a copy of its mechanics.
+    fn with(&self, mechanics: Box<dyn Mechanics>) -> Self {
         Self {
-            mechanics: self.mechanics.boxed_clone(),
+            mechanics,
             deal: self.deal.clone(),
             answer: self.answer.clone(),
             quiet: self.quiet,
@@ -686,13 +699,26 @@ impl Clone for Piece {
     }
 }
 
+impl Clone for Piece {
+    fn clone(&self) -> Self {
+        self.with(self.mechanics.boxed_clone())
+    }
+}
+
 impl Clone for Strand {
     fn clone(&self) -> Self {
+        self.with(self.pieces.clone())
+    }
+}
+
+impl Strand {
+    /// A copy with copies of its pieces.
+    fn with(&self, pieces: Vec<Piece>) -> Self {
         Self {
             problem: self.problem.clone(),
             asked: self.asked,
             settings: self.settings,
-            pieces: self.pieces.clone(),
+            pieces,
             breaks: self.breaks.clone(),
             dragged: self.dragged.clone(),
             pulled: self.pulled.clone(),

@@ -106,6 +106,11 @@ impl Carriage {
     }
 }
 
+/// The problem with the outline of the robot among its obstacles.
+pub(super) fn with_outline(problem: Arc<Problem>) -> Arc<Problem> {
+    Rider::of(problem).1
+}
+
 impl Rider {
     /// That of a problem, and the problem with it among its obstacles.
     pub(super) fn of(problem: Arc<Problem>) -> (Option<Self>, Arc<Problem>) {
