@@ -84,7 +84,8 @@ fn the_peak_of_a_hanging_cable_converges_and_is_that_of_an_impact() {
     let k = scene.cables[0].axial_stiffness_n / scene.cables[0].length_m;
     let estimate = |f: f64| f + (f * f + k * mass * v * v).sqrt();
     let rolling = 0.06 * mass * 9.80665;
-    let [least, most] = [robot.drive_pull_n.value * (1.0 - v / robot.speed_m_per_s.value), robot.drive_pull_n.value].map(|f| estimate(f - rolling));
+    let [least, most] = [robot.drive_pull_n.value * (1.0 - v / robot.speed_m_per_s.value), robot.drive_pull_n.value]
+        .map(|f| estimate(f - rolling));
     println!("{:.0} N, an impact's {least:.0} to {most:.0} N", plain.peak_n);
     assert!(plain.peak_n > 0.8 * least && plain.peak_n < most, "{} N, an impact's {least} to {most} N", plain.peak_n);
 }
@@ -103,7 +104,11 @@ fn the_energy_of_robot_and_cable_is_that_of_the_forces() {
         sim.settle().unwrap();
         let lengths = |sim: &Simulation| -> Vec<[f64; 2]> {
             let answer = sim.solution();
-            answer.cables[0].nodes.windows(2).map(|p| [p[1].arc_length_m - p[0].arc_length_m, (p[1].at() - p[0].at()).norm()]).collect()
+            answer.cables[0]
+                .nodes
+                .windows(2)
+                .map(|p| [p[1].arc_length_m - p[0].arc_length_m, (p[1].at() - p[0].at()).norm()])
+                .collect()
         };
         let energy = |sim: &Simulation| {
             let answer = sim.solution();
@@ -111,7 +116,9 @@ fn the_energy_of_robot_and_cable_is_that_of_the_forces() {
                 let ds = p[1].arc_length_m - p[0].arc_length_m;
                 let stretch = ((p[1].at() - p[0].at()).norm() / ds - 1.0).max(0.0);
                 let speeds = [p[0], p[1]].map(|n| n.vx_m_per_s.powi(2) + n.vy_m_per_s.powi(2));
-                ds * (0.5 * ea * stretch * stretch + 0.25 * density * (speeds[0] + speeds[1]) + 0.5 * density * g * (p[0].y_m + p[1].y_m))
+                ds * (0.5 * ea * stretch * stretch
+                    + 0.25 * density * (speeds[0] + speeds[1])
+                    + 0.5 * density * g * (p[0].y_m + p[1].y_m))
             });
             bars.sum::<f64>()
         };
@@ -127,12 +134,15 @@ fn the_energy_of_robot_and_cable_is_that_of_the_forces() {
             let robot = sim.solution().robot.unwrap();
             let mass = preset::robot_preset(&scene.robot.as_ref().unwrap().preset).unwrap().mass_kg.value;
             let kinetic = 0.5 * mass * robot.speed_m_per_s.powi(2);
-            assert!((kinetic - robot.work.total_j()).abs() < 1e-3 * (1.0 + kinetic), "{kinetic} {robot:?}");
+            assert!((kinetic - robot.work.total_j()).abs() < 1e-3 + 1e-4 * robot.work.drive_j, "{kinetic} {robot:?}");
             most = most.max(-robot.work.cable_j);
         }
         let taken = -sim.solution().robot.unwrap().work.cable_j;
         let left = taken - (energy(&sim) - begun) - lost;
-        println!("1/{n} s: {taken:.3} J of {most:.3} J, cable {:.3} J, damping {lost:.3} J, left {left:.4} J", energy(&sim) - begun);
+        println!(
+            "1/{n} s: {taken:.3} J of {most:.3} J, cable {:.3} J, damping {lost:.3} J, left {left:.4} J",
+            energy(&sim) - begun
+        );
         assert!(left.abs() < 1e-3 * most, "{left} J of {most} J");
     }
 }

@@ -265,7 +265,7 @@ impl Vehicle {
     /// Puts it with its tracks' middle at `x_m`, standing; where its hitch is then, m. None where it cannot stand.
     pub fn put(&mut self, x_m: f64) -> Option<Vec2> {
         self.pose = self.robot.pose_on(&self.ground, self.preset, x_m)?;
-        self.speed = 0.0;
+        (self.speed, self.rate) = (0.0, Vec2::zeros());
         (self.report.x_m, self.report.y_m) = (self.pose.at_m[0], self.pose.at_m[1]);
         (self.report.pitch_deg, self.report.speed_m_per_s) = (self.pose.pitch.to_degrees(), 0.0);
         Some(vec2(self.pose.hitch_m(self.preset)))
@@ -434,7 +434,8 @@ impl Vehicle {
             (q, tracks, total - tracks, q == 0.0 && grip.drives && grip.drive >= grip.hold)
         } else {
             let rolls = grip.rolls(near, true);
-            let reached = |force: f64, falls: f64| (mass * v / drive.h + pull + rolls + force) / (mass / drive.h + falls);
+            let reached =
+                |force: f64, falls: f64| (mass * v / drive.h + pull + rolls + force) / (mass / drive.h + falls);
             let tracks = grip.tracks(near, true);
             let slid = reached(if tracks < 0.0 { -grip.hold } else { grip.hold }, 0.0);
             let driven = reached(grip.drive, grip.falls);

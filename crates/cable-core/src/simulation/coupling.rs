@@ -18,7 +18,7 @@ use crate::contact::outline::Placement;
 use crate::error::SolveError;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::Inertia;
-use crate::robot::{self, Going, Pulls, Vehicle};
+use crate::robot::{self, Drive, Going, Pulls, Vehicle};
 use crate::scene::{Cable, SupportKind};
 use crate::solution::Cost;
 use crate::strand::Strand;
@@ -28,6 +28,29 @@ const TRIALS: usize = 12;
 
 /// Speeds that come out too slow and too fast are the same when they are this near to each other, m/s: what presses between robot and wall jumps there.
 const SAME_SPEED: f64 = 1e-4;
+
+/// Longest step of a robot whose cables have no inertia, s: they pull evenly.
+const SLOW_STEP_S: f64 = 1.0 / 120.0;
+
+/// A step of robot and cables.
+#[derive(Clone, Copy, Debug)]
+struct Step<'a> {
+    /// Its length, s.
+    h: f64,
+    inertia: Inertia,
+    /// Cable and support of everything that hangs on the robot.
+    hitches: &'a [(usize, usize)],
+}
+
+/// What became of a trial.
+enum Tried {
+    /// The robot at the end of the step.
+    Ends(Box<Vehicle>),
+    /// The speed to try next, m/s.
+    Again(f64),
+    /// It cannot go on, and why.
+    Stuck(Going),
+}
 
 /// A trial of a step.
 #[derive(Clone, Copy, Debug)]
@@ -39,8 +62,9 @@ struct Trial {
 }
 
 /// What is known of the speed that is sought.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Search {
+    left: usize,
     last: Option<Trial>,
     /// The fastest that comes out faster, and the slowest that comes out slower.
     low: Option<f64>,
@@ -48,8 +72,13 @@ struct Search {
 }
 
 impl Search {
-    /// The next speed to try after a trial, m/s; None where nothing is left between.
-    fn next(&mut self, now: Trial, stop: f64) -> Option<f64> {
+    fn new() -> Self {
+        Self { left: TRIALS, last: None, low: None, high: None }
+    }
+
+    /// The next speed to try after a trial, m/s; None where nothing is left between, or no trial.
+    fn next(&mut self, now: Trial) -> Option<f64> {
+        self.left = self.left.checked_sub(1)?;
         let before = self.last.replace(now);
         match now.off > 0.0 {
             true => self.low = Some(now.speed),
@@ -65,8 +94,8 @@ impl Search {
         Some(match (self.low, self.high) {
             (Some(low), Some(high)) if !(low < wanted && wanted < high) => 0.5 * (low + high),
             // What would throw it back stops it first.
-            (None, Some(high)) if wanted < stop && stop < high => stop,
-            (Some(low), None) if wanted > stop && stop > low => stop,
+            (None, Some(high)) if wanted < 0.0 && 0.0 < high => 0.0,
+            (Some(low), None) if wanted > 0.0 && 0.0 > low => 0.0,
             _ => wanted,
         })
     }
@@ -79,11 +108,13 @@ impl Simulation {
         let hitches = self.hitches();
         let mut left = dt_s;
         while left > 0.0 {
-            let inner = self.cables.iter().map(Strand::inner_step_s).fold(robot::STEP_S, smaller);
-            let longest = if inertia == Inertia::Dynamic { inner } else { robot::STEP_S };
+            let longest = match inertia {
+                Inertia::Dynamic => self.cables.iter().map(Strand::inner_step_s).fold(robot::STEP_S, smaller),
+                Inertia::QuasiStatic => SLOW_STEP_S,
+            };
             let pieces = (left / longest - 1e-9).ceil().max(1.0);
             let h = left / pieces;
-            let iterations = self.couple(h, inertia, &hitches)?;
+            let iterations = self.couple(&Step { h, inertia, hitches: &hitches })?;
             left = if pieces > 1.0 { left - h } else { 0.0 };
             cost = Cost {
                 iterations: cost.iterations + iterations,
@@ -97,63 +128,76 @@ impl Simulation {
         Ok(())
     }
 
-    /// A step of `h` (s) of robot and cables; returns the iterations that it took.
-    fn couple(&mut self, h: f64, inertia: Inertia, hitches: &[(usize, usize)]) -> Result<usize, SolveError> {
-        let begun = self.pulls(hitches);
+    /// A step of robot and cables; returns the iterations that it took.
+    fn couple(&mut self, step: &Step<'_>) -> Result<usize, SolveError> {
+        let begun = self.pulls(step.hitches);
         let Some(vehicle) = &mut self.vehicle else { return Ok(0) };
-        let drive = vehicle.begin(h, begun);
-        let mut start = vehicle.clone();
-        let before: Vec<Strand> = self.cables.iter().map(Strand::kept).collect();
-        let (mut speed, mut search, mut iterations) = (start.foreseen(drive), Search::default(), 0);
-        for count in 1..=TRIALS {
-            let Some(to) = start.come_to(drive, speed) else {
-                start.stop(drive, begun, Going::Blocked);
-                iterations += self.stay(start, (&before, hitches), (h, inertia))?;
-                break;
-            };
-            self.lead((start.hitch_at(to), to.placement()), hitches);
-            let done = self.each(|c| c.advance(h, inertia));
+        let drive = vehicle.begin(step.h, begun);
+        let start = vehicle.clone();
+        let kept: Vec<Strand> = self.cables.iter().map(Strand::kept).collect();
+        let (mut speed, mut search, mut iterations) = (start.foreseen(drive), Search::new(), 0);
+        loop {
+            self.cost = Cost::default();
+            let tried = self.try_speed(step, (&start, drive, speed), &mut search);
             iterations += self.cost.iterations;
-            if done.is_err() {
-                // The cable cannot get out of its way.
-                start.stop(drive, begun, Going::Jammed);
-                iterations += self.stay(start, (&before, hitches), (h, inertia))?;
-                break;
+            match tried {
+                Tried::Ends(vehicle) => {
+                    self.vehicle = Some(*vehicle);
+                    self.hold_vehicle();
+                    return Ok(iterations);
+                }
+                Tried::Again(next) => {
+                    self.go_back(&kept);
+                    speed = next;
+                }
+                Tried::Stuck(going) => {
+                    self.go_back(&kept);
+                    let mut vehicle = start;
+                    vehicle.stop(drive, begun, going);
+                    self.lead((vehicle.hitch(), vehicle.pose().placement()), step.hitches);
+                    self.vehicle = Some(vehicle);
+                    self.each(|c| c.advance(step.h, step.inertia))?;
+                    return Ok(iterations + self.cost.iterations);
+                }
             }
-            let pulls = self.pulls(hitches);
-            let balance = start.balance(drive, pulls);
-            let off = balance.speed - speed;
-            let even = (off * start.mass() / h).abs() <= start.tolerance(pulls);
-            let broke = self.cables.iter().zip(&before).any(|(now, then)| now.breaks().len() > then.breaks().len());
-            let held = self.left_m() > 0.0;
-            let next = if even || broke || held || count == TRIALS { None } else { search.next(Trial { speed, off }, 0.0) };
-            let Some(next) = next else {
-                if std::env::var_os("TRIALS").is_some() { eprintln!("TRIALS {count} even {even} held {held} h {h:.5} v {speed} off {off} S {:.3} O {:.3}", pulls.hitch.norm(), pulls.outline.norm()); }
-                // Where forces jump the robot has the speed at which they do.
-                let ends = if even || broke { balance.speed } else { speed };
-                start.arrive(drive, (to, speed), (balance, ends), pulls);
-                self.vehicle = Some(start);
-                self.hold_vehicle();
-                break;
-            };
-            self.go_back(&before);
-            speed = next;
         }
-        Ok(iterations)
     }
 
-    /// A step in which the robot, which cannot go on, stays where it is.
-    fn stay(
+    /// The step with the robot at this speed (m/s) at its end.
+    fn try_speed(
         &mut self,
-        vehicle: Vehicle,
-        (before, hitches): (&[Strand], &[(usize, usize)]),
-        (h, inertia): (f64, Inertia),
-    ) -> Result<usize, SolveError> {
-        self.go_back(before);
-        self.lead((vehicle.hitch(), vehicle.pose().placement()), hitches);
-        self.vehicle = Some(vehicle);
-        self.each(|c| c.advance(h, inertia))?;
-        Ok(self.cost.iterations)
+        step: &Step<'_>,
+        (start, drive, speed): (&Vehicle, Drive, f64),
+        search: &mut Search,
+    ) -> Tried {
+        let Some(to) = start.come_to(drive, speed) else { return Tried::Stuck(Going::Blocked) };
+        self.lead((start.hitch_at(to), to.placement()), step.hitches);
+        let breaks = self.breaks();
+        if self.each(|c| c.advance(step.h, step.inertia)).is_err() {
+            // The cable cannot get out of its way.
+            return Tried::Stuck(Going::Jammed);
+        }
+        let pulls = self.pulls(step.hitches);
+        let balance = start.balance(drive, pulls);
+        let off = balance.speed - speed;
+        // A break is no force that a speed could be found for.
+        let even = (off * start.mass() / step.h).abs() <= start.tolerance(pulls) || self.breaks() > breaks;
+        if !even
+            && !(self.left_m() > 0.0)
+            && let Some(next) = search.next(Trial { speed, off })
+        {
+            return Tried::Again(next);
+        }
+        let mut vehicle = start.clone();
+        // Where forces jump the robot has the speed at which they do.
+        let ends = if even { balance.speed } else { speed };
+        vehicle.arrive(drive, (to, speed), (balance, ends), pulls);
+        Tried::Ends(Box::new(vehicle))
+    }
+
+    /// How many times the cables have broken.
+    fn breaks(&self) -> usize {
+        self.cables.iter().map(|c| c.breaks().len()).sum()
     }
 
     /// The cables are as they were before.
@@ -175,7 +219,9 @@ impl Simulation {
 
     /// What the cables do to the robot now.
     fn pulls(&self, hitches: &[(usize, usize)]) -> Pulls {
-        let pull = |&(cable, support): &(usize, usize)| self.cables.get(cable).map_or_else(Vec2::zeros, |c| c.pull_on(support));
+        let pull = |&(cable, support): &(usize, usize)| {
+            self.cables.get(cable).map_or_else(Vec2::zeros, |c| c.pull_on(support))
+        };
         Pulls {
             hitch: hitches.iter().map(pull).sum(),
             outline: self.cables.iter().filter_map(Strand::outline).map(|o| o.force_n).sum(),
