@@ -21,6 +21,9 @@
 //! "Unilateral contact and dry friction in finite freedom dynamics", in: Nonsmooth Mechanics and Applications, CISM 302, 1988):
 //! all of them fall as v' grows, m v'/h grows, so there is one v'. What the cable does to the outline is that of the end of the step.
 //!
+//! What the ground does where it tips the vehicle over a corner takes nothing from its speed: on such ground its weight and the hitch do work that is not
+//! along the way, and [`Work::ground_j`] is that.
+//!
 //! Robot and cable are one system: how their steps are brought together stands in `simulation/coupling.rs`.
 
 use std::sync::Arc;

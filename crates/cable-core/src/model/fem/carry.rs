@@ -48,7 +48,7 @@ const ROUNDS: usize = 40;
 /// Part of the time of a way that counts as nothing.
 const ARRIVED: f64 = 1e-9;
 
-/// A hitch that is farther from its place on the outline, m, was stopped: the outline waits for it.
+/// A hitch that a wall stopped is left behind by so much, m; then the outline waits for it.
 const LEFT_BEHIND_M: f64 = 0.06;
 
 /// A way of the outline that counts as none, m.
