@@ -1,4 +1,5 @@
-//! A robot that snaps its cable taut: the peak of the pull is that of robot and cable, whatever the step, and each joule of it is that of a force.
+//! A robot that snaps its cable taut: the peak of the pull is that of robot and cable, whatever the
+//! step, and each joule of it is that of a force.
 //!
 //! `cargo test --locked --test robot_snap -- --nocapture` tells the figures.
 
@@ -57,8 +58,9 @@ fn run(scene: &Scene, model: Model, dt_s: f64, until_s: f64) -> Snap {
     out
 }
 
-/// Vehicle and hitch in turn gave 8.7 kN at 1/240 s, 10 kN at 1/960 s, and a broken cable at 1/1920 s. How the slack lies on the ground before differs a little in each
-/// run, and with it how the cable rings along itself in the snap: single runs are 4 % apart. Where the robot turns round is the same to 3 mm.
+/// Vehicle and hitch in turn gave 8.7 kN at 1/240 s, 10 kN at 1/960 s, and a broken cable at
+/// 1/1920 s. A vehicle that tipped at once over the mound made the cable ring so that single runs
+/// were 4 % apart.
 #[test]
 fn the_peak_of_a_snap_is_that_of_finer_steps() {
     let at = |n: f64| run(&stall(), Model::Fem, 1.0 / n, 7.4);
@@ -67,21 +69,22 @@ fn the_peak_of_a_snap_is_that_of_finer_steps() {
     let mean = |of: fn(&Snap) -> f64| finer.iter().map(of).sum::<f64>() / finer.len() as f64;
     let limit = mean(|s| s.peak_n);
     println!("{:.0} N, {limit:.0} N in finer steps", plain.peak_n);
-    assert!((plain.peak_n / limit - 1.0).abs() < 0.02, "{} and {limit} N", plain.peak_n);
+    assert!((plain.peak_n / limit - 1.0).abs() < 0.01, "{} and {limit} N", plain.peak_n);
     for other in finer {
-        assert!((other.peak_n / limit - 1.0).abs() < 0.04, "{other:?}, {limit} N");
-        assert!((other.farthest_m - plain.farthest_m).abs() < 3e-3, "{other:?} and {plain:?}");
+        assert!((other.peak_n / limit - 1.0).abs() < 0.01, "{other:?}, {limit} N");
+        assert!((other.farthest_m - plain.farthest_m).abs() < 1e-3, "{other:?} and {plain:?}");
     }
 }
 
-/// A cable that hangs free has no history on the ground: its peak converges. It is below that of a spring EA/L that takes the motion of the robot while the
-/// drive goes on with all that it has, F + √(F² + k m v²), as the sag gives way first and the drive pulls less while it moves.
+/// A cable that hangs free has no history on the ground: its peak converges. It is below that of a
+/// spring EA/L that takes the motion of the robot while the drive goes on with all that it has, F +
+/// √(F² + k m v²), as the sag gives way first and the drive pulls less while it moves.
 #[test]
 fn the_peak_of_a_hanging_cable_converges_and_is_that_of_an_impact() {
     let scene = hanging();
     let at = |n: f64| run(&scene, Model::Fem, 1.0 / n, 1.5);
     let (plain, finest) = (at(240.0), at(1920.0));
-    assert!((plain.peak_n / finest.peak_n - 1.0).abs() < 0.02, "{plain:?} {finest:?}");
+    assert!((plain.peak_n / finest.peak_n - 1.0).abs() < 2e-3, "{plain:?} {finest:?}");
     let robot = preset::robot_preset(&scene.robot.as_ref().unwrap().preset).unwrap();
     let (mass, v) = (robot.mass_kg.value, plain.speed_m_per_s);
     let k = scene.cables[0].axial_stiffness_n / scene.cables[0].length_m;
@@ -93,7 +96,8 @@ fn the_peak_of_a_hanging_cable_converges_and_is_that_of_an_impact() {
     assert!(plain.peak_n > 0.8 * least && plain.peak_n < most, "{} N, an impact's {least} to {most} N", plain.peak_n);
 }
 
-/// Every joule of the robot is that of a force, through the snap and after it; and what the cable takes from it, the cable has, or lost by its own damping.
+/// Every joule of the robot is that of a force, through the snap and after it; and what the cable
+/// takes from it, the cable has, or lost by its own damping.
 #[test]
 fn the_energy_of_robot_and_cable_is_that_of_the_forces() {
     for n in [240.0, 960.0] {
@@ -150,7 +154,8 @@ fn the_energy_of_robot_and_cable_is_that_of_the_forces() {
     }
 }
 
-/// Trials of a step leave nothing behind, and looks change nothing: the answer at an instant is the same to the bit, whatever was looked at before.
+/// Trials of a step leave nothing behind, and looks change nothing: the answer at an instant is the
+/// same to the bit, whatever was looked at before.
 #[test]
 fn looks_between_steps_change_nothing() {
     let shown = |every_s: f64| {

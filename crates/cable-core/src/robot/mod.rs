@@ -16,13 +16,16 @@
 //! ```text
 //! m (v' − v)/h = F + R + S̄,   way = h (v + v')/2
 //! ```
-//! S̄ is the mean of the cable's pull at both ends of the step (trapezoidal rule), the drive's limit that of the mean speed. Where a
-//! force may jump (brakes, tracks that slip, rolling resistance), its law is that of the speed v' at the end of the step (J. J. Moreau,
-//! "Unilateral contact and dry friction in finite freedom dynamics", in: Nonsmooth Mechanics and Applications, CISM 302, 1988):
-//! all of them fall as v' grows, m v'/h grows, so there is one v'. What the cable does to the outline is that of the end of the step.
+//! S̄ is the mean of the cable's pull at both ends of the step (trapezoidal rule), the drive's
+//! limit that of the mean speed. Where a force may jump (brakes, tracks that slip, rolling
+//! resistance), its law is that of the speed v' at the end of the step (J. J. Moreau, "Unilateral
+//! contact and dry friction in finite freedom dynamics", in: Nonsmooth Mechanics and Applications,
+//! CISM 302, 1988): all of them fall as v' grows, m v'/h grows, so there is one v'. What the cable
+//! does to the outline is that of the end of the step.
 //!
-//! What the ground does where it tips the vehicle over a corner takes nothing from its speed: on such ground its weight and the hitch do work that is not
-//! along the way, and [`Work::ground_j`] is that.
+//! What the ground does where it tips the vehicle over a corner takes nothing from its speed: on
+//! such ground its weight and the hitch do work that is not along the way, and [`Work::ground_j`]
+//! is that.
 //!
 //! Robot and cable are one system: how their steps are brought together stands in `simulation/coupling.rs`.
 
@@ -37,7 +40,8 @@ use crate::scene::preset::{RobotPreset, robot_preset};
 use crate::scene::robot::{Pose, ROLLING_RESISTANCE, TRACK_FRICTION};
 use crate::scene::{Robot, RobotTask, Scene, View};
 
-/// Longest step of the vehicle, s: that of the cable. The taut spring of 10 m of a 2 MN cable and 1 t swing at 14 rad/s, 17 times slower.
+/// Longest step of the vehicle, s: that of the cable. The taut spring of 10 m of a 2 MN cable and 1
+/// t swing at 14 rad/s, 17 times slower.
 pub const STEP_S: f64 = 1.0 / 240.0;
 
 /// Steepest slope it climbs, rad: 35°. Makers allow 30° for such machines (remembered; estimated).
@@ -54,11 +58,17 @@ const APPROACH_S: f64 = 0.3;
 const RAMP: f64 = 1.0;
 
 /// Fastest it tips over an edge, rad/s: a machine of a metre's length that falls by a hand's breadth takes a fifth of a second.
-/// Faster: its hitch jerks the cable where the ground has a corner; slower: it hangs in the air behind its middle.
+/// Faster: its hitch draws the cable along where the ground has a corner; slower: it hangs in the air behind its middle.
 const TIP_RAD_PER_S: f64 = 1.0;
 
-/// Part of the forces on vehicle and cable by which a trial of a step may be off. The speed is that of the balance; what is off is the place of the hitch, by
-/// less than a millionth of a metre where a machine of a tonne is off by 100 N. Less: more trials; more: the hitch lags behind the vehicle.
+/// Greatest change of that, rad/s²: the end of a machine of two metres' length that falls freely. More: its
+/// hitch jerks the cable at every corner, by 1.3 kN where it tips at once; less: it tips late.
+const TIP_RAD_PER_S2: f64 = 10.0;
+
+/// Part of the forces on vehicle and cable by which a trial of a step may be off. The speed is that
+/// of the balance; what is off is the place of the hitch, by less than a millionth of a metre where
+/// a machine of a tonne is off by 100 N. Less: more trials; more: the hitch lags behind the
+/// vehicle.
 const BALANCED: f64 = 5e-3;
 
 /// Slower than this it stands, m/s.
@@ -193,6 +203,8 @@ pub struct Vehicle {
     rate: Vec2,
     /// Speed that the governor asked for in the last step, m/s.
     set: f64,
+    /// How fast it tips, rad/s.
+    tipping: f64,
     report: RobotReport,
 }
 
@@ -222,6 +234,7 @@ impl Vehicle {
             pulls: Pulls::default(),
             rate: Vec2::zeros(),
             set: 0.0,
+            tipping: 0.0,
             report: RobotReport::default(),
         };
         let (sin, cos) = pose.pitch.sin_cos();
@@ -268,7 +281,7 @@ impl Vehicle {
     /// Puts it with its tracks' middle at `x_m`, standing; where its hitch is then, m. None where it cannot stand.
     pub fn put(&mut self, x_m: f64) -> Option<Vec2> {
         self.pose = self.robot.pose_on(&self.ground, self.preset, x_m)?;
-        (self.speed, self.rate) = (0.0, Vec2::zeros());
+        (self.speed, self.tipping, self.rate) = (0.0, 0.0, Vec2::zeros());
         (self.report.x_m, self.report.y_m) = (self.pose.at_m[0], self.pose.at_m[1]);
         (self.report.pitch_deg, self.report.speed_m_per_s) = (self.pose.pitch.to_degrees(), 0.0);
         Some(vec2(self.pose.hitch_m(self.preset)))
@@ -302,7 +315,7 @@ impl Vehicle {
     pub fn hold_back(&mut self, placement: Placement) {
         self.pose = Pose { at_m: [placement.at.x, placement.at.y], pitch: placement.angle, ..self.pose };
         self.report.work.impact_j -= self.kinetic_j();
-        self.speed = 0.0;
+        (self.speed, self.tipping) = (0.0, 0.0);
         (self.report.x_m, self.report.y_m) = (placement.at.x, placement.at.y);
         self.report.pitch_deg = placement.angle.to_degrees();
         (self.report.speed_m_per_s, self.report.going) = (0.0, Going::Jammed);
@@ -341,8 +354,13 @@ impl Vehicle {
 
     fn tipped(&self, x_m: f64, h: f64) -> Option<Pose> {
         let pose = self.robot.pose_on(&self.ground, self.preset, x_m)?;
-        let tips = (pose.pitch - self.pose.pitch).clamp(-TIP_RAD_PER_S * h, TIP_RAD_PER_S * h);
-        Some(Pose { pitch: self.pose.pitch + tips, ..pose })
+        let left = pose.pitch - self.pose.pitch;
+        // It comes to rest on the ground: no faster than it can still be slowed down, and than it is there.
+        let most =
+            [(2.0 * TIP_RAD_PER_S2 * left.abs()).sqrt(), left.abs() / h].into_iter().fold(TIP_RAD_PER_S, smaller);
+        let change = TIP_RAD_PER_S2 * h;
+        let tipping = bounded(most.copysign(left), self.tipping - change, self.tipping + change);
+        Some(Pose { pitch: self.pose.pitch + tipping * h, ..pose })
     }
 
     /// What its balance makes of the forces of the cable at the end of a step.
@@ -378,6 +396,7 @@ impl Vehicle {
         work.ground_j += (weight + pull) * way - lifted - cable;
         // What a stop takes is none of those.
         work.impact_j += self.preset.mass_kg.value * (speed - balance.speed) / drive.h * way;
+        self.tipping = (to.pitch - self.pose.pitch) / drive.h;
         (self.pose, self.speed, self.set) = (to, speed, balance.asked);
         self.rate = (pulls.hitch - self.pulls.hitch) / drive.h;
         self.pulls = pulls;
@@ -411,7 +430,8 @@ impl Vehicle {
         self.speed
     }
 
-    /// The speed v' at which m (v' − v)/h is what acts: `pull` (N) along the ground, and what the tracks and rolling resistance add to it.
+    /// The speed v' at which m (v' − v)/h is what acts: `pull` (N) along the ground, and what the
+    /// tracks and rolling resistance add to it.
     fn solve(&self, drive: Drive, normal: f64, pull: f64) -> Balance {
         let sense = [drive.wanted, self.speed, -pull].into_iter().find(|s| *s != 0.0).map_or(1.0, f64::signum);
         let (v, pull, mass) = (self.speed * sense, pull * sense, self.preset.mass_kg.value);
@@ -565,8 +585,9 @@ pub struct Balance {
     going: Going,
 }
 
-/// Tracks and rolling resistance in a step, as functions of the speed at its end. Below a speed of 0 the tracks give all their hold (brakes), up to the
-/// speed asked for the pull of the drive, and beyond that they brake with all their hold. Where that jumps it may be anything between.
+/// Tracks and rolling resistance in a step, as functions of the speed at its end. Below a speed of
+/// 0 the tracks give all their hold (brakes), up to the speed asked for the pull of the drive, and
+/// beyond that they brake with all their hold. Where that jumps it may be anything between.
 #[derive(Clone, Copy, Debug)]
 struct Grip {
     /// Speed that the governor asks for at the end, m/s.

@@ -1,17 +1,19 @@
 //! Robot and cables advanced together.
 //!
-//! In a step of h the robot comes from its speed v to v', and its hitch and outline with it; the cables, from copies that can be gone back
-//! to, are advanced to where they then are, and pull with S(v'). The balance of the robot makes of that a speed V(S(v')). Both are of
-//! one system where
+//! In a step of h the robot comes from its speed v to v', and its hitch and outline with it; the
+//! cables, from copies that can be gone back to, are advanced to where they then are, and pull with
+//! S(v'). The balance of the robot makes of that a speed V(S(v')). Both are of one system where
 //! ```text
 //! v' = V(S(v'))
 //! ```
-//! A faster robot is pulled back harder, so V∘S falls as v' grows: there is one such speed, between any that comes out too fast and any that
-//! comes out too slow. It is sought by the secant through the last two trials, and halfway between where that leaves them (regula falsi with
-//! bisection: G. Dahlquist and Å. Björck, "Numerical Methods", Prentice-Hall, 1974, 6.4). What the governor reaches anyway needs one
-//! trial, a cable that pulls evenly harder one or two.
+//! A faster robot is pulled back harder, so V∘S falls as v' grows: there is one such speed, between
+//! any that comes out too fast and any that comes out too slow. It is sought by the secant through
+//! the last two trials, and halfway between where that leaves them (regula falsi with bisection: G.
+//! Dahlquist and Å. Björck, "Numerical Methods", Prentice-Hall, 1974). What the governor
+//! reaches anyway needs one trial, a cable that pulls evenly harder one or two.
 //!
-//! The step is that of the cable where that is shorter: then both see each other at every instant that either of them knows.
+//! The step is that of the cable where that is shorter: then both see each other at every instant
+//! that either of them knows.
 
 use super::Simulation;
 use crate::contact::outline::Placement;
@@ -23,10 +25,12 @@ use crate::scene::{Cable, SupportKind};
 use crate::solution::Cost;
 use crate::strand::Strand;
 
-/// Trials of a step. Fewer: a robot that squeezes its cable against a wall is stopped a little early; more: that takes longer.
+/// Trials of a step. Fewer: a robot that squeezes its cable against a wall is stopped a little
+/// early; more: that takes longer.
 const TRIALS: usize = 12;
 
-/// Speeds that come out too slow and too fast are the same when they are this near to each other, m/s: what presses between robot and wall jumps there.
+/// Speeds that come out too slow and too fast are the same when they are this near to each other,
+/// m/s: what presses between robot and wall jumps there.
 const SAME_SPEED: f64 = 1e-4;
 
 /// Longest step of a robot whose cables have no inertia, s: they pull evenly.
@@ -245,16 +249,18 @@ impl Simulation {
         self.scene.cables.iter().enumerate().flat_map(of).collect()
     }
 
-    /// From now on the robot goes at this speed (m/s, positive to the right); None: on along its path.
+    /// From now on the robot goes at this speed (m/s, positive to the right); None: on along its
+    /// path.
     pub fn command_robot(&mut self, speed_m_per_s: Option<f64>) {
         if let Some(vehicle) = &mut self.vehicle {
             vehicle.command(speed_m_per_s);
         }
     }
 
-    /// Puts the middle of the robot's tracks at `x_m` (m) whatever that takes, in one step of `dt_s` (s): no drive and no traction
-    /// limits it, its outline pushes the cable. Returns how far from there the cable stopped it, m; None where it cannot stand
-    /// there, and nothing has moved then.
+    /// Puts the middle of the robot's tracks at `x_m` (m) whatever that takes, in one step of
+    /// `dt_s` (s): no drive and no traction limits it, its outline pushes the cable. Returns how
+    /// far from there the cable stopped it, m; None where it cannot stand there, and nothing has
+    /// moved then.
     ///
     /// # Errors
     /// See [`Mechanics::advance`](crate::model::Mechanics::advance).
@@ -275,7 +281,8 @@ impl Simulation {
         self.cables.iter().filter_map(Strand::outline).map(|o| o.left_m).fold(0.0, larger)
     }
 
-    /// The vehicle is where the outline came that came least far; how far that is from where it was led, m.
+    /// The vehicle is where the outline came that came least far; how far that is from where it was
+    /// led, m.
     fn hold_vehicle(&mut self) -> f64 {
         let outlines = self.cables.iter().filter_map(Strand::outline);
         let last = outlines.reduce(|a, b| if b.left_m > a.left_m { b } else { a }).filter(|o| o.left_m > 0.0);
