@@ -1,5 +1,7 @@
 //! A scene, a model and its state: the object users hold.
 
+mod coupling;
+
 use std::sync::Arc;
 
 use crate::error::{Error, SolveError};
@@ -10,8 +12,8 @@ use crate::model::auto::{self, Question};
 use crate::model::lay::least_sliding;
 use crate::model::{Inertia, LEAST_TOLERANCE, Model, Settings, StepReport};
 use crate::problem::problems;
-use crate::robot::{self, Vehicle};
-use crate::scene::{Scene, SupportKind};
+use crate::robot::Vehicle;
+use crate::scene::Scene;
 use crate::solution::{CableSolution, Cost, Energy, MaxTension, Node, Solution, Warning, WarningKind};
 use crate::state::State;
 use crate::strand::Strand;
@@ -361,7 +363,7 @@ impl Simulation {
         self.cables.iter_mut().for_each(Strand::forget_peaks);
         let velocities: Vec<_> = self.answers.iter().map(|a| AlongCable::velocities(&a.nodes)).collect();
         let done = match self.vehicle.is_some() && dt_s > 0.0 && dt_s.is_finite() {
-            true => self.drive(dt_s, inertia),
+            true => self.advance_with_robot(dt_s, inertia),
             false => self.each(|c| c.advance(dt_s, inertia)),
         };
         // A cable alone that fails stays where it came: that is what there is to see then.
@@ -379,97 +381,6 @@ impl Simulation {
             return Err(error);
         }
         self.settle_soundly()
-    }
-
-    /// Advances robot and cables in turn: the robot under the pull of the cables as they are, then the cables with
-    /// their hitch where the robot then is.
-    fn drive(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
-        let pieces = (dt_s / robot::STEP_S - 1e-9).ceil().max(1.0);
-        let h = dt_s / pieces;
-        let (mut cost, mut warnings) = (Cost::default(), Vec::new());
-        for piece in 0..pieces as u64 {
-            // Those of the start are known.
-            if piece > 0 {
-                self.answers = self.cables.iter().map(Strand::answer).collect();
-            }
-            let hitches = self.hitches();
-            let pull = hitches.iter().fold(Vec2::zeros(), |sum, &(cable, support)| {
-                let at = self.answers.get(cable).and_then(|a| a.supports.get(support));
-                sum + at.map_or_else(Vec2::zeros, |s| Vec2::new(s.reaction_x_n, s.reaction_y_n))
-            });
-            let push = self.cables.iter().filter_map(Strand::outline).map(|o| o.force_n).sum();
-            let Some(vehicle) = &mut self.vehicle else { break };
-            vehicle.advance(h, pull, push);
-            let target = vehicle.hitch_target();
-            for (cable, support) in hitches {
-                self.drag_support(cable, support, target);
-            }
-            self.lead_outline();
-            self.each(|c| c.advance(h, inertia))?;
-            self.hold_vehicle();
-            cost = Cost {
-                iterations: cost.iterations + self.cost.iterations,
-                halved_steps: cost.halved_steps + self.cost.halved_steps,
-                ..self.cost
-            };
-            warnings.append(&mut self.warnings);
-        }
-        warnings.dedup_by(|a, b| (a.kind, &a.cable) == (b.kind, &b.cable));
-        (self.cost, self.warnings) = (cost, warnings);
-        Ok(())
-    }
-
-    /// Tells the cables where the robot stands.
-    fn lead_outline(&mut self) {
-        let Some(to) = self.vehicle.as_ref().map(|v| v.pose().placement()) else { return };
-        for cable in &mut self.cables {
-            cable.lead_outline(to);
-        }
-    }
-
-    /// Cable and support of everything that hangs on the robot.
-    fn hitches(&self) -> Vec<(usize, usize)> {
-        let of = |(k, c): (usize, &crate::scene::Cable)| {
-            let supports = c.supports.iter().enumerate().filter(|(_, s)| s.kind == SupportKind::Robot);
-            supports.map(move |(i, _)| (k, i)).collect::<Vec<_>>()
-        };
-        self.scene.cables.iter().enumerate().flat_map(of).collect()
-    }
-
-    /// From now on the robot goes at this speed (m/s, positive to the right); None: on along its path.
-    pub fn command_robot(&mut self, speed_m_per_s: Option<f64>) {
-        if let Some(vehicle) = &mut self.vehicle {
-            vehicle.command(speed_m_per_s);
-        }
-    }
-
-    /// Puts the middle of the robot's tracks at `x_m` (m) whatever that takes, in one step of `dt_s` (s): no drive and no traction
-    /// limits it, its outline pushes the cable. Returns how far from there the cable stopped it, m; None where it cannot stand
-    /// there, and nothing has moved then.
-    ///
-    /// # Errors
-    /// See [`Mechanics::advance`](crate::model::Mechanics::advance).
-    pub fn lead_robot(&mut self, x_m: f64, (dt_s, inertia): (f64, Inertia)) -> Result<Option<f64>, SolveError> {
-        let Some(hitch) = self.vehicle.as_mut().and_then(|v| v.put(x_m)) else { return Ok(None) };
-        for (cable, support) in self.hitches() {
-            self.drag_support(cable, support, hitch);
-        }
-        self.lead_outline();
-        self.cables.iter_mut().for_each(Strand::forget_peaks);
-        let done = self.each(|c| c.advance(dt_s, inertia));
-        let left_m = self.hold_vehicle();
-        self.look(true);
-        done.map(|()| Some(left_m))
-    }
-
-    /// The vehicle is where the outline came that came least far; how far that is from where it was led, m.
-    fn hold_vehicle(&mut self) -> f64 {
-        let outlines = self.cables.iter().filter_map(Strand::outline);
-        let last = outlines.reduce(|a, b| if b.left_m > a.left_m { b } else { a }).filter(|o| o.left_m > 0.0);
-        if let (Some(vehicle), Some(last)) = (&mut self.vehicle, last) {
-            vehicle.hold_back(last.placement);
-        }
-        last.map_or(0.0, |o| o.left_m)
     }
 
     /// The largest tension of some cables now, N (NaN propagates).

@@ -49,7 +49,7 @@ fn the_cable_ends_on_the_hitch_and_follows_it() {
     });
     let r = s.solution().robot.unwrap();
     assert!((r.speed_m_per_s - 0.6).abs() < 1e-9 && r.going == Going::Driving, "{r:?}");
-    assert!(far < 0.012, "the cable's end is {far} m off the hitch");
+    assert!(far < 1e-9, "the cable's end is {far} m off the hitch");
 }
 
 /// Driven by hand beyond the length of its cable it comes to a stand, and the pull is what its drive and tracks give.

@@ -1,4 +1,4 @@
-//! What draws a support: a smooth follower of a jumping target, no faster than a hand; and a hand, which holds the support by a spring whose free end is
+//! What draws a support: a smooth follower of a jumping target, no faster than a hand (a robot leads its hitch exactly); and a hand, which holds the support by a spring whose free end is
 //! such a follower.
 //!
 //! The target comes 60 times a second and jumps. Fed straight into a stiff cable it shakes it: piecewise linear
@@ -24,13 +24,14 @@ use crate::solution::{HandReport, Warning, WarningKind};
 const LAG: f64 = 0.015;
 
 /// How long a support trails a target that moves evenly, s.
-pub const TRAILING_S: f64 = 3.0 * LAG;
+#[cfg(test)]
+const TRAILING_S: f64 = 3.0 * LAG;
 
 /// Fastest a hand draws a support unless asked otherwise, m/s: that of an arm. Faster: a flick of the mouse over metres of scene, which no
 /// hand could do there, breaks the cable; slower: the support trails a hand that means it.
 pub const HAND_SPEED: f64 = 2.0;
 
-/// The fastest a hand may be asked to be, a robot may be followed, and a support catches up with its motion after something held it, m/s.
+/// The fastest a hand may be asked to be, and a support catches up with its motion after something held it, m/s.
 /// Uncapped, a jump of 10 m in a frame loses 77 to 734 steps.
 pub const MAX_SPEED: f64 = 20.0;
 
@@ -48,13 +49,10 @@ pub const HAND_STIFFNESSES: std::ops::RangeInclusive<f64> = 1e-3..=1e9;
 /// Below this distance (m) from the target the support is put on it.
 const ARRIVED: f64 = 1e-9;
 
-/// The fastest that a support follows what draws it, m/s: a hand, or a robot.
+/// Whether a support is a robot's: it is where the robot is, and does not follow it.
 #[must_use]
-pub fn fastest(problem: &Problem, support: usize, hand: f64) -> f64 {
-    match problem.supports.get(support) {
-        Some(s) if s.kind == SupportKind::Robot => MAX_SPEED,
-        _ => hand,
-    }
+pub fn is_led(problem: &Problem, support: usize) -> bool {
+    problem.supports.get(support).is_some_and(|s| s.kind == SupportKind::Robot)
 }
 
 /// Says that a support is behind the hand that draws it.
@@ -222,6 +220,13 @@ impl Follower {
         }
         self.velocity = (self.position() - before) / dt_s;
         self.behind_m = if capped { (target - self.position()).norm() } else { 0.0 };
+    }
+
+    /// Goes this part of the way to `target` (m) in `dt_s`: led, it does not trail.
+    pub fn lead(&mut self, target: Vec2, part: f64, dt_s: f64) {
+        let before = self.position();
+        let to = if part < 1.0 { before + (target - before) * part } else { target };
+        *self = Self { stages: [to; 4], velocity: (to - before) / dt_s, behind_m: 0.0 };
     }
 
     /// Where it was stopped instead (m): it starts again from there, at rest.

@@ -183,6 +183,13 @@ pub struct OutlineReport {
     pub left_m: f64,
 }
 
+/// What a model has for itself alone: the memory it works in, and its obstacles, among which it moves the outline of the robot.
+#[derive(Debug)]
+pub struct Own {
+    memory: Option<Box<fem::contact_step::Workspace>>,
+    problem: Arc<Problem>,
+}
+
 /// What every model does. One cable; time and positions in SI units.
 pub trait Mechanics: Send {
     /// Which model this is.
@@ -249,7 +256,7 @@ pub trait Mechanics: Send {
     }
 
     /// From now on a support follows `target_m` (smoothly and no faster than [`Settings::hand_speed_m_per_s`] in `Dynamic` steps; at the
-    /// next `settle` or quasi-static step it is there) instead of its `motion`.
+    /// next `settle` or quasi-static step it is there) instead of its `motion`. One of a robot goes there evenly in the next step, whatever that takes.
     fn drag_support(&mut self, support: usize, target_m: Vec2);
 
     /// From now on a hand at `hand_m` (m) holds a support by a spring ([`drive::Hand`]) in `Dynamic` steps, its free end no faster than
@@ -278,6 +285,24 @@ pub trait Mechanics: Send {
 
     /// The problem it solves.
     fn problem(&self) -> &Arc<Problem>;
+
+    /// Longest inner step that the next step with inertia is made of, s; infinite where there is none to speak of.
+    fn inner_step_s(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// A copy to go back to, which does not hold what the model can have for itself alone.
+    fn copy_to_keep(&self) -> Box<dyn Mechanics> {
+        self.boxed_clone()
+    }
+
+    /// Gives away what it has for itself alone and what holds nothing of its state.
+    fn lend(&mut self) -> Option<Own> {
+        None
+    }
+
+    /// A copy that was kept goes on with what the model that it was copied from has lent, or with its own.
+    fn borrow(&mut self, _own: Option<Own>) {}
 
     /// A copy with all its history, for reset and compare.
     fn boxed_clone(&self) -> Box<dyn Mechanics>;

@@ -10,7 +10,7 @@ use super::fem::FemModel;
 use super::gauge::TensionGauge;
 use super::lay::{is_buried, meets_outline, slid_first, slides_on, work};
 use super::spans::SpansModel;
-use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport, refuse_mobilised};
+use super::{Inertia, Mechanics, Model, OutlineReport, Own, Settings, StepReport, refuse_mobilised};
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
 use crate::math::Vec2;
@@ -384,6 +384,36 @@ impl Mechanics for Relay {
 
     fn problem(&self) -> &Arc<Problem> {
         &self.problem
+    }
+
+    fn inner_step_s(&self) -> f64 {
+        self.fem.as_ref().map_or(f64::INFINITY, Mechanics::inner_step_s)
+    }
+
+    fn copy_to_keep(&self) -> Box<dyn Mechanics> {
+        Box::new(Self {
+            settings: self.settings,
+            problem: self.problem.clone(),
+            spans: self.spans.clone(),
+            fem: self.fem.as_ref().map(FemModel::kept),
+            adopted: self.adopted.clone(),
+            dragged: self.dragged.clone(),
+            pulled: self.pulled.clone(),
+            led: self.led,
+            reason: self.reason.clone(),
+            refusal: self.refusal.clone(),
+            wait: self.wait,
+        })
+    }
+
+    fn lend(&mut self) -> Option<Own> {
+        self.fem.as_mut().and_then(Mechanics::lend)
+    }
+
+    fn borrow(&mut self, own: Option<Own>) {
+        if let Some(fem) = &mut self.fem {
+            fem.borrow(own);
+        }
     }
 
     fn boxed_clone(&self) -> Box<dyn Mechanics> {

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::gauge::TensionGauge;
-use super::{Inertia, Mechanics, Model, StepReport};
+use super::{Inertia, Mechanics, Model, Own, StepReport};
 use crate::error::{Place, SolveError};
 use crate::math::Vec2;
 use crate::problem::Problem;
@@ -264,6 +264,22 @@ impl Mechanics for Similar {
 
     fn problem(&self) -> &Arc<Problem> {
         &self.problem
+    }
+
+    fn inner_step_s(&self) -> f64 {
+        self.inner.inner_step_s() / self.by.time
+    }
+
+    fn copy_to_keep(&self) -> Box<dyn Mechanics> {
+        Box::new(Self { problem: self.problem.clone(), by: self.by, inner: self.inner.copy_to_keep() })
+    }
+
+    fn lend(&mut self) -> Option<Own> {
+        self.inner.lend()
+    }
+
+    fn borrow(&mut self, own: Option<Own>) {
+        self.inner.borrow(own);
     }
 
     fn boxed_clone(&self) -> Box<dyn Mechanics> {

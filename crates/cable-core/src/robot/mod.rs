@@ -12,22 +12,37 @@
 //! stalls holds what its tracks can hold: hydraulic track motors have brakes. The pull that falls linearly with speed is the
 //! common picture of such a drive; makers publish no curves.
 //!
-//! The cable is felt with the delay of one [`STEP_S`]; its own hitch follows the vehicle as a support dragged by hand does.
+//! A step of h goes from v to v' so that the change of motion is the work of the forces, each times the way of the step:
+//! ```text
+//! m (v' − v)/h = F + R + S̄,   way = h (v + v')/2
+//! ```
+//! S̄ is the mean of the cable's pull at both ends of the step (trapezoidal rule), the drive's
+//! limit that of the mean speed. Where a force may jump (brakes, tracks that slip, rolling
+//! resistance), its law is that of the speed v' at the end of the step (J. J. Moreau, "Unilateral
+//! contact and dry friction in finite freedom dynamics", in: Nonsmooth Mechanics and Applications,
+//! CISM 302, 1988): all of them fall as v' grows, m v'/h grows, so there is one v'. What the cable
+//! does to the outline is that of the end of the step.
+//!
+//! What the ground does where it tips the vehicle over a corner takes nothing from its speed: on
+//! such ground its weight and the hitch do work that is not along the way, and [`Work::ground_j`]
+//! is that.
+//!
+//! Robot and cable are one system: how their steps are brought together stands in `simulation/coupling.rs`.
+
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
 use crate::contact::outline::Placement;
-use crate::math::{Vec2, vec2};
-use crate::model::drive::TRAILING_S;
+use crate::math::{Vec2, bounded, larger, smaller, vec2};
 use crate::scene::ground::Ground;
 use crate::scene::preset::{RobotPreset, robot_preset};
 use crate::scene::robot::{Pose, ROLLING_RESISTANCE, TRACK_FRICTION};
 use crate::scene::{Robot, RobotTask, Scene, View};
 
-/// Longest step of the vehicle and of its exchange with the cable, s. Longer: a cable that snaps taut against a light vehicle
-/// is felt too late and shakes it; shorter: as many steps of the cable. The taut spring of 10 m of a 2 MN cable and 1 t swing at
-/// 14 rad/s, 400 times slower.
-pub const STEP_S: f64 = 1.0 / 120.0;
+/// Longest step of the vehicle, s: that of the cable. The taut spring of 10 m of a 2 MN cable and 1
+/// t swing at 14 rad/s, 17 times slower.
+pub const STEP_S: f64 = 1.0 / 240.0;
 
 /// Steepest slope it climbs, rad: 35°. Makers allow 30° for such machines (remembered; estimated).
 const STEEPEST: f64 = 35.0 * std::f64::consts::PI / 180.0;
@@ -43,12 +58,18 @@ const APPROACH_S: f64 = 0.3;
 const RAMP: f64 = 1.0;
 
 /// Fastest it tips over an edge, rad/s: a machine of a metre's length that falls by a hand's breadth takes a fifth of a second.
-/// Faster: its hitch jerks the cable where the ground has a corner; slower: it hangs in the air behind its middle.
+/// Faster: its hitch draws the cable along where the ground has a corner; slower: it hangs in the air behind its middle.
 const TIP_RAD_PER_S: f64 = 1.0;
 
-/// Over this time a robot that is held feels the pull of its cable, s, before it starts again. Shorter: it creeps on with every
-/// swing of a taut cable, lets none of it die down, and the pull stays a third off its mean; longer: it starts late by hand.
-const FELT_S: f64 = 0.3;
+/// Greatest change of that, rad/s²: the end of a machine of two metres' length that falls freely. More: its
+/// hitch jerks the cable at every corner, by 1.3 kN where it tips at once; less: it tips late.
+const TIP_RAD_PER_S2: f64 = 10.0;
+
+/// Part of the forces on vehicle and cable by which a trial of a step may be off. The speed is that
+/// of the balance; what is off is the place of the hitch, by less than a millionth of a metre where
+/// a machine of a tonne is off by 100 N. Less: more trials; more: the hitch lags behind the
+/// vehicle.
+const BALANCED: f64 = 5e-3;
 
 /// Slower than this it stands, m/s.
 const STANDS_M_PER_S: f64 = 1e-4;
@@ -93,6 +114,34 @@ impl Going {
     }
 }
 
+/// Work of each force on the vehicle, force times way, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Work {
+    /// Of its tracks while they hold: the drive, less what it brakes.
+    pub drive_j: f64,
+    /// Of its tracks while they slip.
+    pub slip_j: f64,
+    /// Of rolling resistance.
+    pub rolling_j: f64,
+    /// Of its weight, by how high it stands.
+    pub weight_j: f64,
+    /// Of the cable, on its hitch by how that goes, and on its outline along the ground.
+    pub cable_j: f64,
+    /// Of the ground where it tips the vehicle over corners: that takes nothing from its speed.
+    pub ground_j: f64,
+    /// What is lost where the ground or a cable squeezed against a wall stops it.
+    pub impact_j: f64,
+}
+
+impl Work {
+    /// Of all forces: the change of its kinetic energy.
+    #[must_use]
+    pub fn total_j(&self) -> f64 {
+        self.drive_j + self.slip_j + self.rolling_j + self.weight_j + self.cable_j + self.ground_j + self.impact_j
+    }
+}
+
 /// How it is at an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RobotReport {
@@ -122,6 +171,9 @@ pub struct RobotReport {
     /// Force of the cable on its outline, N.
     #[serde(default)]
     pub push_y_n: f64,
+    /// What the forces on it have done since it began.
+    #[serde(default)]
+    pub work: Work,
     /// Why it is as fast as it is.
     pub going: Going,
     /// The leg of its path it is on; None by hand or at the end.
@@ -131,9 +183,9 @@ pub struct RobotReport {
 /// The vehicle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vehicle {
-    robot: Robot,
+    robot: Arc<Robot>,
     preset: &'static RobotPreset,
-    ground: Ground,
+    ground: Arc<Ground>,
     /// m g, N.
     weight: f64,
     track_friction: f64,
@@ -146,8 +198,13 @@ pub struct Vehicle {
     leg: usize,
     /// Time spent waiting on this leg, s.
     waited: f64,
-    /// Force along the ground as it is felt: its mean over the last [`FELT_S`], N.
-    felt: f64,
+    /// Forces of the cable on hitch and outline, N, and how fast that on the hitch changes, N/s.
+    pulls: Pulls,
+    rate: Vec2,
+    /// Speed that the governor asked for in the last step, m/s.
+    set: f64,
+    /// How fast it tips, rad/s.
+    tipping: f64,
     report: RobotReport,
 }
 
@@ -157,7 +214,7 @@ impl Vehicle {
     pub fn of(scene: &Scene) -> Option<Self> {
         let robot = scene.robot.as_ref()?;
         let preset = robot_preset(&robot.preset)?;
-        let ground = Ground::of(scene);
+        let ground = Arc::new(Ground::of(scene));
         if scene.view == View::Plan {
             return None;
         }
@@ -166,7 +223,7 @@ impl Vehicle {
             weight: preset.mass_kg.value * scene.environment.gravity_m_per_s2,
             track_friction: robot.track_friction.unwrap_or(TRACK_FRICTION),
             rolling: robot.rolling_resistance.unwrap_or(ROLLING_RESISTANCE),
-            robot: robot.clone(),
+            robot: Arc::new(robot.clone()),
             preset,
             ground,
             pose,
@@ -174,7 +231,10 @@ impl Vehicle {
             by_hand: None,
             leg: 0,
             waited: 0.0,
-            felt: 0.0,
+            pulls: Pulls::default(),
+            rate: Vec2::zeros(),
+            set: 0.0,
+            tipping: 0.0,
             report: RobotReport::default(),
         };
         let (sin, cos) = pose.pitch.sin_cos();
@@ -196,7 +256,8 @@ impl Vehicle {
         {
             let legs = self.robot.path.len();
             (self.pose, self.speed, self.by_hand) = (pose, old.speed, old.by_hand);
-            (self.leg, self.waited, self.felt) = (old.leg.min(legs), old.waited, old.felt);
+            (self.leg, self.waited) = (old.leg.min(legs), old.waited);
+            (self.report.work, self.set) = (old.report.work, old.set);
             let forces = Forces { normal: old.report.normal_n, thrust: old.report.thrust_n };
             let hitch = Vec2::new(old.report.hitch_x_n, old.report.hitch_y_n);
             let push = Vec2::new(old.report.push_x_n, old.report.push_y_n);
@@ -209,6 +270,7 @@ impl Vehicle {
         if let Some(pose) = self.robot.pose_on(&self.ground, self.preset, then.x_m) {
             (self.pose, self.speed) = (pose, then.speed_m_per_s);
             (self.leg, self.waited) = (then.leg.unwrap_or(self.robot.path.len()), 0.0);
+            (self.report.work, self.set) = (then.work, then.speed_m_per_s);
             let forces = Forces { normal: then.normal_n, thrust: then.thrust_n };
             let hitch = Vec2::new(then.hitch_x_n, then.hitch_y_n);
             let push = Vec2::new(then.push_x_n, then.push_y_n);
@@ -219,7 +281,7 @@ impl Vehicle {
     /// Puts it with its tracks' middle at `x_m`, standing; where its hitch is then, m. None where it cannot stand.
     pub fn put(&mut self, x_m: f64) -> Option<Vec2> {
         self.pose = self.robot.pose_on(&self.ground, self.preset, x_m)?;
-        self.speed = 0.0;
+        (self.speed, self.tipping, self.rate) = (0.0, 0.0, Vec2::zeros());
         (self.report.x_m, self.report.y_m) = (self.pose.at_m[0], self.pose.at_m[1]);
         (self.report.pitch_deg, self.report.speed_m_per_s) = (self.pose.pitch.to_degrees(), 0.0);
         Some(vec2(self.pose.hitch_m(self.preset)))
@@ -237,100 +299,195 @@ impl Vehicle {
         self.report
     }
 
-    /// Where its hitch is to be sent so that a follower that trails by [`TRAILING_S`] is where the hitch is, m.
+    /// Where its hitch is, m.
     #[must_use]
-    pub fn hitch_target(&self) -> Vec2 {
-        let along = Vec2::new(self.pose.pitch.cos(), self.pose.pitch.sin());
-        vec2(self.pose.hitch_m(self.preset)) + along * (self.speed * TRAILING_S)
+    pub fn hitch(&self) -> Vec2 {
+        self.hitch_at(self.pose)
+    }
+
+    /// Where its hitch is when it stands so, m.
+    #[must_use]
+    pub fn hitch_at(&self, pose: Pose) -> Vec2 {
+        vec2(pose.hitch_m(self.preset))
     }
 
     /// It came only there in its last step: the cable was in its way.
     pub fn hold_back(&mut self, placement: Placement) {
         self.pose = Pose { at_m: [placement.at.x, placement.at.y], pitch: placement.angle, ..self.pose };
-        self.speed = 0.0;
+        self.report.work.impact_j -= self.kinetic_j();
+        (self.speed, self.tipping) = (0.0, 0.0);
         (self.report.x_m, self.report.y_m) = (placement.at.x, placement.at.y);
         self.report.pitch_deg = placement.angle.to_degrees();
         (self.report.speed_m_per_s, self.report.going) = (0.0, Going::Jammed);
     }
 
-    /// Moves on by `dt` (s, at most [`STEP_S`] for accuracy) under the forces of the cable on its hitch and on its outline, N.
-    pub fn advance(&mut self, dt: f64, hitch: Vec2, outline: Vec2) {
-        let wanted = self.wanted(dt);
+    /// Kinetic energy, J.
+    #[must_use]
+    pub fn kinetic_j(&self) -> f64 {
+        0.5 * self.preset.mass_kg.value * self.speed * self.speed
+    }
+
+    /// Begins a step of `h` (s): its path goes on.
+    pub fn begin(&mut self, h: f64, pulls: Pulls) -> Drive {
+        self.pulls = pulls;
+        Drive { wanted: self.wanted(h), h }
+    }
+
+    /// The speed that it would have at the end of a step if the pull on its hitch went on changing as it did, m/s.
+    #[must_use]
+    pub fn foreseen(&self, drive: Drive) -> f64 {
+        let pulls = Pulls { hitch: self.pulls.hitch + self.rate * drive.h, ..self.pulls };
+        self.balance(drive, pulls).speed
+    }
+
+    /// Where it is at the end of a step in which it comes to this speed (m/s); None where it cannot stand there.
+    #[must_use]
+    pub fn come_to(&self, drive: Drive, speed: f64) -> Option<Pose> {
+        let way = 0.5 * drive.h * (self.speed + speed);
+        if way == 0.0 && self.speed == 0.0 {
+            return self.tipped(self.pose.at_m[0], drive.h);
+        }
+        let x_m = self.pose.at_m[0] + way * self.pose.pitch.cos();
+        let ground = self.robot.pose_on(&self.ground, self.preset, x_m)?;
+        if ground.pitch * way.signum() <= STEEPEST { self.tipped(x_m, drive.h) } else { None }
+    }
+
+    fn tipped(&self, x_m: f64, h: f64) -> Option<Pose> {
+        let pose = self.robot.pose_on(&self.ground, self.preset, x_m)?;
+        let left = pose.pitch - self.pose.pitch;
+        // It comes to rest on the ground: no faster than it can still be slowed down, and than it is there.
+        let most =
+            [(2.0 * TIP_RAD_PER_S2 * left.abs()).sqrt(), left.abs() / h].into_iter().fold(TIP_RAD_PER_S, smaller);
+        let change = TIP_RAD_PER_S2 * h;
+        let tipping = bounded(most.copysign(left), self.tipping - change, self.tipping + change);
+        Some(Pose { pitch: self.pose.pitch + tipping * h, ..pose })
+    }
+
+    /// What its balance makes of the forces of the cable at the end of a step.
+    #[must_use]
+    pub fn balance(&self, drive: Drive, pulls: Pulls) -> Balance {
         let (sin, cos) = self.pose.pitch.sin_cos();
-        let felt = hitch + self.bearable(outline, dt);
-        let lift = felt.y * cos - felt.x * sin;
-        let normal = self.weight * cos - lift;
+        let felt = self.mean(pulls) + pulls.outline;
+        let normal = self.weight * cos - (felt.y * cos - felt.x * sin);
         // Lifted off the ground its tracks find no hold at all.
         let normal = if normal > 0.0 { normal } else { 0.0 };
-        let pull = felt.x * cos + felt.y * sin - self.weight * sin;
-        self.felt += (pull - self.felt) * (dt / FELT_S).min(1.0);
-        // Held, it starts again when the cable lets it on the whole, not at every swing.
-        let held = self.speed == 0.0 && wanted != 0.0 && self.felt * wanted < pull * wanted;
-        let pull = if held { self.felt } else { pull };
-        let (speed, thrust, going) = self.balance(wanted, (normal, pull), dt);
-        let x = self.pose.at_m[0] + speed * cos * dt;
-        let (speed, going) = match self.robot.pose_on(&self.ground, self.preset, x) {
-            Some(pose) if pose.pitch * speed.signum() <= STEEPEST || speed == 0.0 => {
-                let tips = (pose.pitch - self.pose.pitch).clamp(-TIP_RAD_PER_S * dt, TIP_RAD_PER_S * dt);
-                self.pose = Pose { pitch: self.pose.pitch + tips, ..pose };
-                (speed, going)
+        let (pull, weight) = (felt.x * cos + felt.y * sin, -self.weight * sin);
+        let done = self.solve(drive, normal, pull + weight);
+        Balance { normal, pull, weight, ..done }
+    }
+
+    /// Mean pull on its hitch in a step that ends with `pulls`, N.
+    fn mean(&self, pulls: Pulls) -> Vec2 {
+        (self.pulls.hitch + pulls.hitch) * 0.5
+    }
+
+    /// Ends a step at a place with a speed (m/s) that a balance gave, or that it was given beside one.
+    pub fn arrive(&mut self, drive: Drive, (to, led): (Pose, f64), (balance, speed): (Balance, f64), pulls: Pulls) {
+        let way = 0.5 * drive.h * (self.speed + led);
+        let Balance { tracks, rolling, pull, weight, slips, .. } = balance;
+        let along = Vec2::new(self.pose.pitch.cos(), self.pose.pitch.sin());
+        let cable = self.mean(pulls).dot(&(self.hitch_at(to) - self.hitch())) + pulls.outline.dot(&along) * way;
+        let lifted = -self.weight * (to.at_m[1] - self.pose.at_m[1]);
+        let work = &mut self.report.work;
+        *(if slips { &mut work.slip_j } else { &mut work.drive_j }) += tracks * way;
+        work.rolling_j += rolling * way;
+        work.weight_j += lifted;
+        work.cable_j += cable;
+        work.ground_j += (weight + pull) * way - lifted - cable;
+        // What a stop takes is none of those.
+        work.impact_j += self.preset.mass_kg.value * (speed - balance.speed) / drive.h * way;
+        self.tipping = (to.pitch - self.pose.pitch) / drive.h;
+        (self.pose, self.speed, self.set) = (to, speed, balance.asked);
+        self.rate = (pulls.hitch - self.pulls.hitch) / drive.h;
+        self.pulls = pulls;
+        let forces = Forces { normal: balance.normal, thrust: tracks };
+        self.tell([pulls.hitch, pulls.outline], forces, (drive.wanted, balance.going));
+    }
+
+    /// It cannot go on: it stays where it is.
+    pub fn stop(&mut self, drive: Drive, pulls: Pulls, going: Going) {
+        let balance = self.balance(drive, pulls);
+        self.report.work.impact_j -= self.kinetic_j();
+        self.speed = 0.0;
+        self.arrive(drive, (self.pose, 0.0), (Balance { going, ..balance }, 0.0), pulls);
+    }
+
+    /// Unbalanced impulse over time (N) that counts as none beside forces of the cable.
+    #[must_use]
+    pub fn tolerance(&self, pulls: Pulls) -> f64 {
+        BALANCED * (self.weight + pulls.hitch.norm() + pulls.outline.norm())
+    }
+
+    /// Mass, kg.
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        self.preset.mass_kg.value
+    }
+
+    /// Speed, m/s.
+    #[must_use]
+    pub fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    /// The speed v' at which m (v' − v)/h is what acts: `pull` (N) along the ground, and what the
+    /// tracks and rolling resistance add to it.
+    fn solve(&self, drive: Drive, normal: f64, pull: f64) -> Balance {
+        let sense = [drive.wanted, self.speed, -pull].into_iter().find(|s| *s != 0.0).map_or(1.0, f64::signum);
+        let (v, pull, mass) = (self.speed * sense, pull * sense, self.preset.mass_kg.value);
+        let grip = self.grip(drive, normal, sense);
+        let needed = |q: f64| mass * (q - v) / drive.h - pull;
+        let edges = if grip.asked < 0.0 { [grip.asked, 0.0] } else { [0.0, grip.asked] };
+        let middle = 0.5 * (edges[0] + edges[1]);
+        let mut found = None;
+        for (edge, before) in edges.into_iter().zip([edges[0] - 1.0, middle]) {
+            if needed(edge) > grip.total(edge, false) {
+                found = Some((before, None));
+            } else if needed(edge) >= grip.total(edge, true) {
+                found = Some((edge, Some(edge)));
             }
-            _ => (0.0, Going::Blocked),
+            if found.is_some() {
+                break;
+            }
+        }
+        let (near, edge) = found.unwrap_or((edges[1] + 1.0, None));
+        let (speed, tracks, rolling, slips) = if let Some(q) = edge {
+            let total = needed(q);
+            let tracks = grip.share(q, total);
+            (q, tracks, total - tracks, q == 0.0 && grip.drives && grip.drive >= grip.hold)
+        } else {
+            let rolls = grip.rolls(near, true);
+            let reached =
+                |force: f64, falls: f64| (mass * v / drive.h + pull + rolls + force) / (mass / drive.h + falls);
+            let tracks = grip.tracks(near, true);
+            let slid = reached(if tracks < 0.0 { -grip.hold } else { grip.hold }, 0.0);
+            let driven = reached(grip.drive, grip.falls);
+            if grip.is_driven(near, true) && driven <= slid {
+                (driven, grip.tracks(driven, true), rolls, false)
+            } else {
+                (slid, if tracks < 0.0 { -grip.hold } else { grip.hold }, rolls, true)
+            }
         };
-        self.speed = speed;
-        self.tell([hitch, outline], Forces { normal, thrust }, (wanted, going));
+        let going = grip.going((v, speed), slips);
+        let [speed, tracks, rolling, asked] = [speed, tracks, rolling, grip.asked].map(|x| x * sense);
+        Balance { speed, tracks, rolling, asked, slips, going, ..Balance::default() }
     }
 
-    /// The force on its outline that it feels, N: at most what stops it in this step against its full drive. What is squeezed
-    /// between it and a wall presses as hard as the stiffness of the squeeze, a step late, and would throw it back.
-    fn bearable(&self, outline: Vec2, dt: f64) -> Vec2 {
-        let most = self.preset.mass_kg.value * self.speed.abs() / dt + self.preset.drive_pull_n.value;
-        let size = outline.norm();
-        if size > most { outline * (most / size) } else { outline }
-    }
-
-    /// New speed (m/s), force of the tracks (N) and why, from the speed wanted and the forces across and along the ground.
-    fn balance(&self, wanted: f64, (normal, pull): (f64, f64), dt: f64) -> (f64, f64, Going) {
-        let (mass, v) = (self.preset.mass_kg.value, self.speed);
-        let (hold, rolling) = (self.track_friction * normal, self.rolling * normal);
-        let at_rest = v == 0.0;
-        if at_rest && wanted == 0.0 && pull.abs() <= hold + rolling {
-            return (0.0, -pull, Going::Standing);
+    /// What tracks and rolling resistance can do in a step, in the `sense` in which it is asked to go.
+    fn grip(&self, drive: Drive, normal: f64, sense: f64) -> Grip {
+        let (v, set, wanted) = (self.speed * sense, self.set * sense, drive.wanted * sense);
+        // The governor goes on from the speed that it has given; dragged by its cable the vehicle has none of that.
+        let given = if set * v > 0.0 { v.signum() * smaller(set.abs(), v.abs()) } else { 0.0 };
+        let goes = larger(v, 0.0);
+        let (most, top) = (self.preset.drive_pull_n.value, self.preset.speed_m_per_s.value);
+        Grip {
+            asked: given + (wanted - given).clamp(-RAMP * drive.h, RAMP * drive.h),
+            drives: wanted > 0.0,
+            hold: self.track_friction * normal,
+            rolling: self.rolling * normal,
+            drive: larger(most * (1.0 - 0.5 * goes / top), 0.0),
+            falls: 0.5 * most / top,
         }
-        let way = if wanted == 0.0 { v } else { wanted };
-        let way = if way == 0.0 { -pull.signum() } else { way.signum() };
-        // Against its way it moves only where the pull exceeds friction and rolling together.
-        let stays = pull.abs() <= hold + rolling;
-        let rolls = rolling
-            * match (at_rest, stays) {
-                (false, _) => v.signum(),
-                (true, true) => way,
-                (true, false) => pull.signum(),
-            };
-        let asked = v + (wanted - v).clamp(-RAMP * dt, RAMP * dt);
-        let (drive, top) = (self.preset.drive_pull_n.value, self.preset.speed_m_per_s.value);
-        // What the full drive would reach: m (v' − v)/dt = P (1 − v'/v₀) + S − R, implicit in v'.
-        let full = (mass * v + dt * (way * drive + pull - rolls)) / (mass + dt * drive / top);
-        let weak = way * full < way * asked;
-        // Brakes hold where the drive would be pushed back.
-        let reached = if weak { way * (way * full).max(0.0) } else { asked };
-        let needed = mass * (reached - v) / dt - pull + rolls;
-        if needed.abs() <= hold {
-            let going = match (wanted == 0.0, weak) {
-                (true, _) if reached.abs() < STANDS_M_PER_S => Going::Standing,
-                (false, true) if reached.abs() < STANDS_M_PER_S => Going::Stalled,
-                // While it gains speed with its full drive it is on its way.
-                (false, true) if way * (reached - v) < STANDS_M_PER_S => Going::Slowed,
-                _ => Going::Driving,
-            };
-            return (reached, needed, going);
-        }
-        // The tracks slide: Coulomb friction in the sense asked for, whatever the drive does.
-        let thrust = needed.signum() * hold;
-        let slid = v + dt * (thrust + pull - rolls) / mass;
-        let speed = if stays && (way * slid < 0.0 || v * slid < 0.0) { 0.0 } else { slid };
-        let against = if wanted == 0.0 { speed.abs() } else { -way * speed };
-        (speed, thrust, if against > STANDS_M_PER_S { Going::Dragged } else { Going::Slipping })
     }
 
     /// The speed asked for now, m/s, by hand or by its path, on which it moves on.
@@ -381,9 +538,119 @@ impl Vehicle {
             hitch_y_n: hitch.y,
             push_x_n: push.x,
             push_y_n: push.y,
+            work: self.report.work,
             going,
             leg: (self.by_hand.is_none() && self.leg < self.robot.path.len()).then_some(self.leg),
         };
+    }
+}
+
+/// Forces of the cable on the vehicle, N.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pulls {
+    /// On its hitch.
+    pub hitch: Vec2,
+    /// On its outline.
+    pub outline: Vec2,
+}
+
+/// What a step is to do.
+#[derive(Clone, Copy, Debug)]
+pub struct Drive {
+    /// Speed asked for, m/s.
+    wanted: f64,
+    /// Its length, s.
+    h: f64,
+}
+
+/// How the forces of a step balance; along the ground to the right.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Balance {
+    /// Speed at the end, m/s.
+    pub speed: f64,
+    /// Force of the tracks, N.
+    tracks: f64,
+    /// Rolling resistance, N.
+    rolling: f64,
+    /// Of the cable, N.
+    pull: f64,
+    /// Of its weight, N.
+    weight: f64,
+    /// Across the ground, N.
+    normal: f64,
+    /// Speed that the governor asked for, m/s.
+    asked: f64,
+    /// Whether the tracks slip.
+    slips: bool,
+    going: Going,
+}
+
+/// Tracks and rolling resistance in a step, as functions of the speed at its end. Below a speed of
+/// 0 the tracks give all their hold (brakes), up to the speed asked for the pull of the drive, and
+/// beyond that they brake with all their hold. Where that jumps it may be anything between.
+#[derive(Clone, Copy, Debug)]
+struct Grip {
+    /// Speed that the governor asks for at the end, m/s.
+    asked: f64,
+    /// Whether it is to go; else it comes to a stand.
+    drives: bool,
+    /// Most that the tracks can transmit, N.
+    hold: f64,
+    /// Rolling resistance, N.
+    rolling: f64,
+    /// Pull of the drive in the mean of the step at a last speed of 0, N, and how much it falls by that speed, N s/m.
+    drive: f64,
+    falls: f64,
+}
+
+impl Grip {
+    /// Whether a speed, or what is just below or `above` it, is beyond an edge.
+    fn is_beyond(q: f64, edge: f64, above: bool) -> bool {
+        q > edge || (q == edge && above)
+    }
+
+    fn is_driven(&self, q: f64, above: bool) -> bool {
+        self.drives && Self::is_beyond(q, 0.0, above) && !Self::is_beyond(q, self.asked, above)
+    }
+
+    /// Force of the tracks, N.
+    fn tracks(&self, q: f64, above: bool) -> f64 {
+        if Self::is_beyond(q, self.asked, above) {
+            -self.hold
+        } else if self.is_driven(q, above) {
+            smaller(larger(self.drive - self.falls * q, 0.0), self.hold)
+        } else {
+            self.hold
+        }
+    }
+
+    /// Rolling resistance, N.
+    fn rolls(&self, q: f64, above: bool) -> f64 {
+        if Self::is_beyond(q, 0.0, above) { -self.rolling } else { self.rolling }
+    }
+
+    fn total(&self, q: f64, above: bool) -> f64 {
+        self.tracks(q, above) + self.rolls(q, above)
+    }
+
+    /// What the tracks give of a `total` (N) at a speed where forces jump: rolling resistance is against the drive.
+    fn share(&self, q: f64, total: f64) -> f64 {
+        let own = if q == 0.0 && !self.drives { total } else { total - self.rolls(q, true) };
+        bounded(own, self.tracks(q, true), self.tracks(q, false))
+    }
+
+    /// Why it comes from one speed to another, m/s.
+    fn going(&self, (from, to): (f64, f64), slips: bool) -> Going {
+        let against = if self.drives { -to } else { to.abs() };
+        match (self.drives, slips) {
+            (_, true) if against > STANDS_M_PER_S => Going::Dragged,
+            (_, true) => Going::Slipping,
+            (false, _) if to.abs() < STANDS_M_PER_S => Going::Standing,
+            (true, _) if to < self.asked && to < STANDS_M_PER_S => Going::Stalled,
+            // While it gains speed with its full drive it is on its way.
+            (true, _) if to < self.asked && to - from < STANDS_M_PER_S => Going::Slowed,
+            _ => Going::Driving,
+        }
     }
 }
 

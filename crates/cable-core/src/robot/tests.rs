@@ -19,9 +19,23 @@ fn on_slope(slope: f64, change: impl FnOnce(&mut Robot)) -> Vehicle {
     Vehicle::of(&scene).unwrap()
 }
 
+/// One step under a force on the hitch, N.
+fn step(v: &mut Vehicle, hitch: Vec2) {
+    let pulls = Pulls { hitch, ..Pulls::default() };
+    let drive = v.begin(STEP_S, pulls);
+    let speed = v.foreseen(drive);
+    match v.come_to(drive, speed) {
+        Some(to) => {
+            let balance = v.balance(drive, pulls);
+            v.arrive(drive, (to, speed), (balance, balance.speed), pulls);
+        }
+        None => v.stop(drive, pulls, Going::Blocked),
+    }
+}
+
 fn run(v: &mut Vehicle, seconds: f64, hitch: Vec2) {
     for _ in 0..(seconds / STEP_S) as usize {
-        v.advance(STEP_S, hitch, Vec2::zeros());
+        step(v, hitch);
     }
 }
 
@@ -179,32 +193,88 @@ fn it_tips_over_an_edge_and_does_not_jump() {
     scene.robot = Some(Robot { preset: "brokk-110".to_owned(), ..Robot::default() });
     let mut v = Vehicle::of(&scene).unwrap();
     v.command(Some(0.5));
-    let (mut before, mut most) = (v.pose.pitch, 0.0_f64);
+    let (mut before, mut most, mut rate) = (v.pose.pitch, 0.0_f64, 0.0);
     for _ in 0..(12.0 / STEP_S) as usize {
-        v.advance(STEP_S, Vec2::zeros(), Vec2::zeros());
+        step(&mut v, Vec2::zeros());
         assert!((v.pose.pitch - before).abs() <= TIP_RAD_PER_S * STEP_S * (1.0 + 1e-9));
-        before = v.pose.pitch;
+        let now = (v.pose.pitch - before) / STEP_S;
+        assert!((now - rate).abs() <= TIP_RAD_PER_S2 * STEP_S * (1.0 + 1e-9), "{rate} {now} rad/s");
+        (before, rate) = (v.pose.pitch, now);
         most = most.max(before);
     }
     assert!(most > 0.1, "{most}");
     assert!(v.pose.pitch.abs() < 1e-12 && v.pose.at_m[0] > 2.5, "{:?}", v.report);
 }
 
-/// A swing of the pull about what the drive can just hold: it stands, and does not creep on with every dip.
+/// A swing of the pull about what the drive can just hold: above that it stands, held by its
+/// brakes; below it goes on, and nothing is gained by the swing.
 #[test]
-fn a_swinging_pull_does_not_draw_it_on() {
-    let mut v = on_slope(0.0, |_| {});
-    let [m, p, top, c] = figures(&v);
+fn a_swinging_pull_draws_it_on_only_while_it_is_less_than_the_drive() {
+    let [m, p, top, c] = figures(&on_slope(0.0, |_| {}));
     let most = p - c * m * G;
-    v.command(Some(top));
-    run(&mut v, 3.0, Vec2::new(-1.05 * most, 0.0));
-    let x = v.pose.at_m[0];
-    for k in 0..600_u32 {
-        let swing = if k % 2 == 0 { 0.15 } else { -0.15 };
-        v.advance(STEP_S, Vec2::new(-(1.05 + swing) * most, 0.0), Vec2::zeros());
+    for (mean, goes) in [(1.2, false), (1.05, true)] {
+        let mut v = on_slope(0.0, |_| {});
+        v.command(Some(top));
+        run(&mut v, 3.0, Vec2::new(-mean * most, 0.0));
+        assert!(v.speed == 0.0 && v.report.going == Going::Stalled, "{:?}", v.report);
+        let x = v.pose.at_m[0];
+        for k in 0..1200_u32 {
+            let swing = if k % 24 < 12 { 0.15 } else { -0.15 };
+            step(&mut v, Vec2::new(-(mean + swing) * most, 0.0));
+        }
+        assert_eq!(v.pose.at_m[0] > x, goes, "{:?}", v.report);
+        assert!((v.report.work.total_j() - v.kinetic_j()).abs() <= 1e-9 * v.report.work.drive_j, "{:?}", v.report);
+        // Let go for good, it goes on.
+        run(&mut v, 2.0, Vec2::new(-0.5 * most, 0.0));
+        assert!(v.pose.at_m[0] > x + 0.2, "{:?}", v.report);
     }
-    assert!((v.pose.at_m[0] - x).abs() < 1e-9 && v.report.going == Going::Stalled, "{:?}", v.report);
-    // Let go for good, it goes on.
-    run(&mut v, 2.0, Vec2::new(-0.5 * most, 0.0));
-    assert!(v.pose.at_m[0] > x + 0.2, "{:?}", v.report);
+}
+
+/// Thrown against a spring, without drive and rolling resistance, it comes back as fast, and is as
+/// far then as its energy says.
+#[test]
+fn a_spring_throws_it_back_with_what_it_brought() {
+    let mut v = on_slope(0.0, |r| (r.track_friction, r.rolling_resistance) = (Some(0.0), Some(0.0)));
+    let (stiffness, begun) = (2e5, 0.6);
+    v.speed = begun;
+    let m = v.mass();
+    let (mut farthest, mut left) = (0.0_f64, 0);
+    while left < 1000 && (v.speed > 0.0 || v.pose.at_m[0] > 0.0) {
+        // The step and the spring together, as robot and cable.
+        let drive = v.begin(STEP_S, Pulls { hitch: Vec2::new(-stiffness * v.pose.at_m[0], 0.0), ..Pulls::default() });
+        let mut speed = v.foreseen(drive);
+        for _ in 0..50 {
+            let to = v.come_to(drive, speed).unwrap();
+            let pulls = Pulls { hitch: Vec2::new(-stiffness * to.at_m[0], 0.0), ..Pulls::default() };
+            let balance = v.balance(drive, pulls);
+            if (balance.speed - speed).abs() < 1e-13 {
+                v.arrive(drive, (to, speed), (balance, balance.speed), pulls);
+                break;
+            }
+            speed = balance.speed;
+        }
+        farthest = farthest.max(v.pose.at_m[0]);
+        left += 1;
+    }
+    assert!((farthest / (begun * (m / stiffness).sqrt()) - 1.0).abs() < 2e-3, "{farthest}");
+    let energy = v.kinetic_j() + 0.5 * stiffness * v.pose.at_m[0].powi(2);
+    assert!((energy / (0.5 * m * begun * begun) - 1.0).abs() < 1e-9, "{energy} {:?}", v.report);
+}
+
+/// Dragged back by its cable it is braked at once by all that its tracks hold, and no motion is
+/// lost in one step.
+#[test]
+fn dragged_back_it_slides_until_its_tracks_have_stopped_it() {
+    let mut v = on_slope(0.0, |r| r.track_friction = Some(0.45));
+    let [m, _, top, c] = figures(&v);
+    v.command(Some(top));
+    run(&mut v, 1.0, Vec2::new(-1.2 * (0.45 + c) * m * G, 0.0));
+    assert!(v.speed < -0.5 && v.report.going == Going::Dragged, "{:?}", v.report);
+    let (mut before, brakes) = (v.speed, (0.45 + c) * G);
+    while v.speed < 0.0 {
+        step(&mut v, Vec2::zeros());
+        assert!((v.speed - before) / STEP_S <= brakes * (1.0 + 1e-9), "{before} {:?}", v.report);
+        before = v.speed;
+    }
+    assert!((v.report.work.total_j() - v.kinetic_j()).abs() < 1e-9 * v.report.work.slip_j.abs(), "{:?}", v.report);
 }

@@ -78,7 +78,7 @@ impl Strand {
     }
 
     /// What the cable does to a support of the scene: nothing, if it is off it.
-    fn reaction(&self, k: usize) -> SupportReaction {
+    pub(super) fn reaction(&self, k: usize) -> SupportReaction {
         let held = self.pieces.iter().find_map(|p| {
             let own = p.deal.supports.iter().position(|s| *s == Some(k))?;
             let mut r = p.answer.supports.get(own)?.clone();

@@ -17,10 +17,10 @@ use deal::{Cut, Deal};
 
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
-use crate::math::{Vec2, larger};
+use crate::math::{Vec2, larger, smaller};
 use crate::model::drive::hand_stiffness;
 use crate::model::gauge::{Limit, TensionGauge};
-use crate::model::{self, Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
+use crate::model::{self, Inertia, Mechanics, Model, OutlineReport, Own, Settings, StepReport};
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost, MomentumAccount, TensionPeak, TensionPeaks};
@@ -393,6 +393,34 @@ impl Strand {
             .reduce(|a, b| OutlineReport { force_n: a.force_n + b.force_n, ..if b.left_m > a.left_m { b } else { a } })
     }
 
+    /// Longest inner step of the next step with inertia, s.
+    pub fn inner_step_s(&self) -> f64 {
+        self.pieces.iter().map(|p| p.mechanics.inner_step_s()).fold(f64::INFINITY, smaller)
+    }
+
+    /// What it does to a support now, N.
+    pub fn pull_on(&self, support: usize) -> Vec2 {
+        let r = self.reaction(support);
+        Vec2::new(r.reaction_x_n, r.reaction_y_n)
+    }
+
+    /// A copy to go back to.
+    pub fn kept(&self) -> Self {
+        self.with(self.pieces.iter().map(Piece::kept).collect())
+    }
+
+    /// Becomes what it was when `kept` was copied from it.
+    pub fn go_back(&mut self, kept: &Self) {
+        let mut own: Vec<Option<Own>> = self.pieces.iter_mut().map(|p| p.mechanics.lend()).collect();
+        own.resize_with(kept.pieces.len(), || None);
+        // What broke since has nothing of the whole.
+        let same = self.breaks.len() == kept.breaks.len();
+        *self = kept.kept();
+        for (piece, own) in self.pieces.iter_mut().zip(own) {
+            piece.mechanics.borrow(own.filter(|_| same));
+        }
+    }
+
     /// Takes over a state of the whole cable.
     pub fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
         match self.pieces.as_mut_slice() {
@@ -652,10 +680,15 @@ fn add(sum: &mut StepReport, more: StepReport) {
     }
 }
 
-impl Clone for Piece {
-    fn clone(&self) -> Self {
+impl Piece {
+    fn kept(&self) -> Self {
+        self.with(self.mechanics.copy_to_keep())
+    }
+
+    /// A copy with a copy of its mechanics.
+    fn with(&self, mechanics: Box<dyn Mechanics>) -> Self {
         Self {
-            mechanics: self.mechanics.boxed_clone(),
+            mechanics,
             deal: self.deal.clone(),
             answer: self.answer.clone(),
             quiet: self.quiet,
@@ -666,13 +699,26 @@ impl Clone for Piece {
     }
 }
 
+impl Clone for Piece {
+    fn clone(&self) -> Self {
+        self.with(self.mechanics.boxed_clone())
+    }
+}
+
 impl Clone for Strand {
     fn clone(&self) -> Self {
+        self.with(self.pieces.clone())
+    }
+}
+
+impl Strand {
+    /// A copy with copies of its pieces.
+    fn with(&self, pieces: Vec<Piece>) -> Self {
         Self {
             problem: self.problem.clone(),
             asked: self.asked,
             settings: self.settings,
-            pieces: self.pieces.clone(),
+            pieces,
             breaks: self.breaks.clone(),
             dragged: self.dragged.clone(),
             pulled: self.pulled.clone(),

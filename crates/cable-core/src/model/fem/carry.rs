@@ -18,6 +18,7 @@ use super::assembly::Mesh;
 use super::contact_report::rub_force;
 use super::contact_set::Touch;
 use super::dynamics::Dynamics;
+use super::prepare::clear_way;
 use crate::contact::distance::segment_segment;
 use crate::contact::geometry::{Geometry, Part};
 use crate::contact::outline::{Outline, Placement};
@@ -47,11 +48,7 @@ const ROUNDS: usize = 40;
 /// Part of the time of a way that counts as nothing.
 const ARRIVED: f64 = 1e-9;
 
-/// How far from its place on the outline the hitch may be, m: it is drawn smoothly and trails. Less: the cable is jerked when the
-/// robot stops; more: it comes into the outline, from which it is led a tenth of a metre away.
-const TRAILS_M: f64 = 0.04;
-
-/// A hitch that is farther from its place on the outline, m, was stopped: the outline waits for it.
+/// A hitch that a wall stopped is left behind by so much, m; then the outline waits for it.
 const LEFT_BEHIND_M: f64 = 0.06;
 
 /// A way of the outline that counts as none, m.
@@ -107,6 +104,11 @@ impl Carriage {
     pub fn way(&self, p: Vec2) -> Vec2 {
         p - self.to.carried(&self.from, p)
     }
+}
+
+/// The problem with the outline of the robot among its obstacles.
+pub(super) fn with_outline(problem: Arc<Problem>) -> Arc<Problem> {
+    Rider::of(problem).1
 }
 
 impl Rider {
@@ -222,18 +224,16 @@ impl Dynamics {
         self.mesh.held[node].then_some(node)
     }
 
-    /// Keeps the hitch where the outline is: it is drawn smoothly, so a little before or behind it, but not away from it. Returns
-    /// whether it can come along.
+    /// Puts the hitch where it is on the outline. Returns whether it can come along.
     fn hitch_on(&mut self, carriage: &Carriage) -> bool {
         let (Some(k), Some(rider)) = (self.hitch(), &self.rider) else { return true };
         let on_it = carriage.to.place(rider.shape.hitch);
-        let off = self.task.target[k] - on_it;
-        if off.norm() > TRAILS_M {
-            self.task.target[k] = on_it + off * (TRAILS_M / off.norm());
+        if (self.task.target[k] - on_it).norm() > STANDS_M {
+            self.task.target[k] = clear_way(&self.problem, self.task.start[k], on_it);
         }
         let far = |p: Vec2| (p - on_it).norm();
         let now = self.task.start[k];
-        // One that was stopped by a wall stays there until the robot is as far from it as the hitch may trail.
+        // One that was stopped by a wall stays there until the robot is as far from it as it may be left behind.
         let gap =
             |p: Vec2| self.problem.world.signed_gap(p, self.problem.radius).map_or(self.problem.radius, |g| g.gap_m);
         if far(now) <= LEFT_BEHIND_M && gap(self.task.target[k]) < gap(now) {

@@ -18,7 +18,7 @@ use super::task::{Done, Failure, Pose, Task};
 use crate::contact::barrier::Barrier;
 use crate::error::{Place, SolveError};
 use crate::math::{Vec2, bounded};
-use crate::model::drive::{fastest, held_warning};
+use crate::model::drive::held_warning;
 use crate::model::gauge::TensionGauge;
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::{Problem, Series};
@@ -513,8 +513,7 @@ impl Dynamics {
         });
         let drawn = self.motion.followers.iter().enumerate().filter_map(|(k, f)| {
             let (f, node) = (f.as_ref().filter(|f| f.behind_m() > 0.0)?, node_of(k)?);
-            let fastest = fastest(&self.problem, k, self.hand_speed);
-            Some(held_warning(&self.problem, k, self.mesh.arc_length[node], (f, fastest)))
+            Some(held_warning(&self.problem, k, self.mesh.arc_length[node], (f, self.hand_speed)))
         });
         let warnings = held.chain(drawn).chain(self.hand_warnings()).collect();
         StepReport { cost, warnings }

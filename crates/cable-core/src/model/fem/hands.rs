@@ -3,7 +3,7 @@
 use super::dynamics::Dynamics;
 use super::task::Pose;
 use crate::math::Vec2;
-use crate::model::drive::{Follower, Hand, fastest};
+use crate::model::drive::{Follower, Hand, is_led};
 use crate::solution::Warning;
 
 impl Dynamics {
@@ -11,7 +11,13 @@ impl Dynamics {
     pub(super) fn follow_hands(&mut self, h: f64, dragged: &[Option<Vec2>]) {
         for (k, target) in dragged.iter().enumerate() {
             let (Some(target), Some(at)) = (*target, self.support_position(k)) else { continue };
-            let fastest = fastest(&self.problem, k, self.hand_speed);
+            let fastest = self.hand_speed;
+            if is_led(&self.problem, k) {
+                let left = self.due - self.motion.time;
+                let f = self.motion.followers[k].get_or_insert(Follower::at_rest(at));
+                f.lead(target, if left > h { h / left } else { 1.0 }, h);
+                continue;
+            }
             let node = self.support_node[k].filter(|_| self.problem.supports[k].holds_from(self.motion.time));
             if let Some(node) = node.filter(|_| self.pulled[k]) {
                 let known = self.motion.hands[k];
@@ -55,7 +61,7 @@ impl Dynamics {
     pub(super) fn hand_warnings(&self) -> impl Iterator<Item = Warning> {
         self.motion.hands.iter().enumerate().filter_map(|(k, hand)| {
             let (hand, node) = (hand.as_ref()?, self.support_node[k]?);
-            let fastest = fastest(&self.problem, k, self.hand_speed);
+            let fastest = self.hand_speed;
             let support = (self.problem.as_ref(), k, self.mesh.arc_length[node]);
             hand.warning(support, (self.motion.x[node], -self.reaction[node]), fastest)
         })

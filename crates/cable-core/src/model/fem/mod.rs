@@ -62,7 +62,7 @@ use std::sync::Arc;
 use self::two_meshes::TwoMeshes;
 use super::gauge::TensionGauge;
 use super::lay::{Lay, least_sliding, slid_first, slides_on, work};
-use super::{Inertia, Mechanics, Model, OutlineReport, Settings, StepReport};
+use super::{Inertia, Mechanics, Model, OutlineReport, Own, Settings, StepReport};
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
 use crate::estimates::ErrorEstimates;
@@ -362,6 +362,13 @@ impl FemModel {
         self
     }
 
+    /// A copy to go back to. It leaves the obstacles, among which the outline of the robot is moved, to this one.
+    pub(super) fn kept(&self) -> Self {
+        let mut copy = self.clone();
+        copy.dynamics.problem = self.problem.clone();
+        copy
+    }
+
     /// Looks at the cable in contact beside an answer without a mesh, or on another one, and makes its own finer where the scene
     /// leaves that open.
     fn compare_meshes(&mut self, exact: Option<Lay>) {
@@ -538,6 +545,24 @@ impl Mechanics for FemModel {
 
     fn problem(&self) -> &Arc<Problem> {
         &self.problem
+    }
+
+    fn inner_step_s(&self) -> f64 {
+        self.dynamics.pace.step
+    }
+
+    fn copy_to_keep(&self) -> Box<dyn Mechanics> {
+        Box::new(self.kept())
+    }
+
+    fn lend(&mut self) -> Option<Own> {
+        Some(Own { memory: self.dynamics.memory.0.take(), problem: self.dynamics.problem.clone() })
+    }
+
+    fn borrow(&mut self, own: Option<Own>) {
+        let own = own.unwrap_or_else(|| Own { memory: None, problem: carry::with_outline(self.problem.clone()) });
+        (self.dynamics.memory.0, self.dynamics.problem) = (own.memory, own.problem);
+        self.dynamics.place_outline();
     }
 
     fn boxed_clone(&self) -> Box<dyn Mechanics> {

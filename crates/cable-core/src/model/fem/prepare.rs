@@ -303,7 +303,7 @@ const KEEP_GAP: f64 = 0.2;
 const STAND_OFF_TRIES: usize = 4;
 
 /// The target of a held node, stopped where an obstacle is in its way (m).
-fn clear_way(problem: &Problem, from: Vec2, to: Vec2) -> Vec2 {
+pub(super) fn clear_way(problem: &Problem, from: Vec2, to: Vec2) -> Vec2 {
     if problem.world.is_empty() || from == to {
         return to;
     }

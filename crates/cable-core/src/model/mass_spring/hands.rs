@@ -4,18 +4,17 @@
 use super::MassSpringModel;
 use super::chain::Chain;
 use crate::math::Vec2;
-use crate::model::drive::{Hand, fastest};
+use crate::model::drive::Hand;
 
 impl MassSpringModel {
     /// The free end of a hand that holds a support goes on for `h` (s).
     pub(super) fn follow_hand(&mut self, support: usize, h: f64) {
         let (node, Some(target)) = (self.node_of[support], self.drag[support]) else { return };
-        let fastest = fastest(&self.problem, support, self.settings.hand_speed_m_per_s);
         let (known, held_by) = (self.hands[support], -self.f[node]);
         let mut hand = known.unwrap_or_else(|| {
             Hand::grip(&self.problem, self.settings.hand_stiffness_n_per_m, (self.x[node], held_by))
         });
-        hand.follow(target, h, fastest);
+        hand.follow(target, h, self.settings.hand_speed_m_per_s);
         (self.hands[support], self.followers[support]) = (Some(hand), None);
     }
 
@@ -54,7 +53,7 @@ impl MassSpringModel {
         for (k, hand) in self.hands.iter().enumerate() {
             let (Some(hand), node) = (hand, self.node_of[k]) else { continue };
             let force = -self.on_support(node);
-            let fastest = fastest(&self.problem, k, self.settings.hand_speed_m_per_s);
+            let fastest = self.settings.hand_speed_m_per_s;
             let at = (self.problem.as_ref(), k, self.s[node]);
             self.warnings.extend(hand.warning(at, (self.x[node], force), fastest));
         }

@@ -42,6 +42,7 @@ impl MassSpringModel {
         }
         copy!(
             time_s,
+            due_s,
             s,
             rest,
             span,

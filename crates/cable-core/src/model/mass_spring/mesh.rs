@@ -79,6 +79,7 @@ impl MassSpringModel {
         let damping_time_s = damping_time(&problem, &rest);
         let mut model = Self {
             time_s: 0.0,
+            due_s: 0.0,
             behind_s: 0.0,
             v: vec![Vec2::zeros(); n],
             f: vec![Vec2::zeros(); n],

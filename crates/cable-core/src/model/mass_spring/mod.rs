@@ -31,7 +31,7 @@ mod stepping;
 
 use std::sync::Arc;
 
-use super::drive::{Follower, Hand, fastest, held_warning};
+use super::drive::{Follower, Hand, held_warning};
 use super::fem::FemModel;
 use super::gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
@@ -53,6 +53,8 @@ pub use stepping::Stepping;
 pub struct MassSpringModel {
     problem: Arc<Problem>,
     time_s: f64,
+    /// When the present step of the caller ends, s.
+    due_s: f64,
     /// Arc length of each node, m.
     s: Vec<f64>,
     /// Unstretched length of each element at the present temperature, m.
@@ -272,7 +274,7 @@ impl MassSpringModel {
         self.warn_of_corners();
         for (k, f) in self.followers.iter().enumerate() {
             if let Some(f) = f.as_ref().filter(|f| f.behind_m() > 0.0) {
-                let fastest = fastest(&self.problem, k, self.settings.hand_speed_m_per_s);
+                let fastest = self.settings.hand_speed_m_per_s;
                 self.warnings.push(held_warning(&self.problem, k, self.s[self.node_of[k]], (f, fastest)));
             }
         }
@@ -304,6 +306,7 @@ impl Mechanics for MassSpringModel {
         }
         self.laid = true;
         let end_s = self.time_s + dt_s;
+        self.due_s = end_s;
         if inertia == Inertia::Dynamic && gauge.asks(self.time_s) {
             let at_rest = self.v.iter().all(|v| *v == Vec2::zeros());
             gauge.begin(self.time_s, at_rest, &self.s, |i| self.gauged(i));

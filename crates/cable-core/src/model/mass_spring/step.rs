@@ -4,7 +4,7 @@ use super::pulley::NONE;
 use super::{Follower, MassSpringModel};
 use crate::error::SolveError;
 use crate::math::{Vec2, smaller};
-use crate::model::drive::fastest;
+use crate::model::drive::is_led;
 use crate::model::gauge::TensionGauge;
 
 /// Fraction of the stable sub-step that is used: more is unstable as elements stretch, less is slower.
@@ -262,7 +262,12 @@ impl MassSpringModel {
                         None => Follower::at_rest(self.x[node]),
                     };
                     let follower = self.followers[k].get_or_insert(begins);
-                    follower.follow(target, h, fastest(&self.problem, k, self.settings.hand_speed_m_per_s));
+                    if is_led(&self.problem, k) {
+                        let left = self.due_s - self.time_s + h;
+                        follower.lead(target, if left > h { h / left } else { 1.0 }, h);
+                    } else {
+                        follower.follow(target, h, self.settings.hand_speed_m_per_s);
+                    }
                     follower.position()
                 }
             };

@@ -1,0 +1,294 @@
+//! Robot and cables advanced together.
+//!
+//! In a step of h the robot comes from its speed v to v', and its hitch and outline with it; the
+//! cables, from copies that can be gone back to, are advanced to where they then are, and pull with
+//! S(v'). The balance of the robot makes of that a speed V(S(v')). Both are of one system where
+//! ```text
+//! v' = V(S(v'))
+//! ```
+//! A faster robot is pulled back harder, so V∘S falls as v' grows: there is one such speed, between
+//! any that comes out too fast and any that comes out too slow. It is sought by the secant through
+//! the last two trials, and halfway between where that leaves them (regula falsi with bisection: G.
+//! Dahlquist and Å. Björck, "Numerical Methods", Prentice-Hall, 1974). What the governor
+//! reaches anyway needs one trial, a cable that pulls evenly harder one or two.
+//!
+//! The step is that of the cable where that is shorter: then both see each other at every instant
+//! that either of them knows.
+
+use super::Simulation;
+use crate::contact::outline::Placement;
+use crate::error::SolveError;
+use crate::math::{Vec2, larger, smaller};
+use crate::model::Inertia;
+use crate::robot::{self, Drive, Going, Pulls, Vehicle};
+use crate::scene::{Cable, SupportKind};
+use crate::solution::Cost;
+use crate::strand::Strand;
+
+/// Trials of a step. Fewer: a robot that squeezes its cable against a wall is stopped a little
+/// early; more: that takes longer.
+const TRIALS: usize = 12;
+
+/// Speeds that come out too slow and too fast are the same when they are this near to each other,
+/// m/s: what presses between robot and wall jumps there.
+const SAME_SPEED: f64 = 1e-4;
+
+/// Longest step of a robot whose cables have no inertia, s: they pull evenly.
+const SLOW_STEP_S: f64 = 1.0 / 120.0;
+
+/// A step of robot and cables.
+#[derive(Clone, Copy, Debug)]
+struct Step<'a> {
+    /// Its length, s.
+    h: f64,
+    inertia: Inertia,
+    /// Cable and support of everything that hangs on the robot.
+    hitches: &'a [(usize, usize)],
+}
+
+/// What became of a trial.
+enum Tried {
+    /// The robot at the end of the step.
+    Ends(Box<Vehicle>),
+    /// The speed to try next, m/s.
+    Again(f64),
+    /// It cannot go on, and why.
+    Stuck(Going),
+}
+
+/// A trial of a step.
+#[derive(Clone, Copy, Debug)]
+struct Trial {
+    /// Speed at its end, m/s.
+    speed: f64,
+    /// How much faster it comes out, m/s.
+    off: f64,
+}
+
+/// What is known of the speed that is sought.
+#[derive(Clone, Copy, Debug)]
+struct Search {
+    left: usize,
+    last: Option<Trial>,
+    /// The fastest that comes out faster, and the slowest that comes out slower.
+    low: Option<f64>,
+    high: Option<f64>,
+}
+
+impl Search {
+    fn new() -> Self {
+        Self { left: TRIALS, last: None, low: None, high: None }
+    }
+
+    /// The next speed to try after a trial, m/s; None where nothing is left between, or no trial.
+    fn next(&mut self, now: Trial) -> Option<f64> {
+        self.left = self.left.checked_sub(1)?;
+        let before = self.last.replace(now);
+        match now.off > 0.0 {
+            true => self.low = Some(now.speed),
+            false => self.high = Some(now.speed),
+        }
+        if let (Some(low), Some(high)) = (self.low, self.high)
+            && high - low < SAME_SPEED
+        {
+            return None;
+        }
+        let slope = before.map_or(-1.0, |b| (now.off - b.off) / (now.speed - b.speed));
+        let wanted = now.speed - now.off / if slope < -1.0 { slope } else { -1.0 };
+        Some(match (self.low, self.high) {
+            (Some(low), Some(high)) if !(low < wanted && wanted < high) => 0.5 * (low + high),
+            // What would throw it back stops it first.
+            (None, Some(high)) if wanted < 0.0 && 0.0 < high => 0.0,
+            (Some(low), None) if wanted > 0.0 && 0.0 > low => 0.0,
+            _ => wanted,
+        })
+    }
+}
+
+impl Simulation {
+    /// Advances robot and cables together.
+    pub(super) fn advance_with_robot(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
+        let (mut cost, mut warnings) = (Cost::default(), Vec::new());
+        let hitches = self.hitches();
+        let mut left = dt_s;
+        while left > 0.0 {
+            let longest = match inertia {
+                Inertia::Dynamic => self.cables.iter().map(Strand::inner_step_s).fold(robot::STEP_S, smaller),
+                Inertia::QuasiStatic => SLOW_STEP_S,
+            };
+            let pieces = (left / longest - 1e-9).ceil().max(1.0);
+            let h = left / pieces;
+            let iterations = self.couple(&Step { h, inertia, hitches: &hitches })?;
+            left = if pieces > 1.0 { left - h } else { 0.0 };
+            cost = Cost {
+                iterations: cost.iterations + iterations,
+                halved_steps: cost.halved_steps + self.cost.halved_steps,
+                ..self.cost
+            };
+            warnings.append(&mut self.warnings);
+        }
+        warnings.dedup_by(|a, b| (a.kind, &a.cable) == (b.kind, &b.cable));
+        (self.cost, self.warnings) = (cost, warnings);
+        Ok(())
+    }
+
+    /// A step of robot and cables; returns the iterations that it took.
+    fn couple(&mut self, step: &Step<'_>) -> Result<usize, SolveError> {
+        let begun = self.pulls(step.hitches);
+        let Some(vehicle) = &mut self.vehicle else { return Ok(0) };
+        let drive = vehicle.begin(step.h, begun);
+        let start = vehicle.clone();
+        let kept: Vec<Strand> = self.cables.iter().map(Strand::kept).collect();
+        let (mut speed, mut search, mut iterations) = (start.foreseen(drive), Search::new(), 0);
+        loop {
+            self.cost = Cost::default();
+            let tried = self.try_speed(step, (&start, drive, speed), &mut search);
+            iterations += self.cost.iterations;
+            match tried {
+                Tried::Ends(vehicle) => {
+                    self.vehicle = Some(*vehicle);
+                    self.hold_vehicle();
+                    return Ok(iterations);
+                }
+                Tried::Again(next) => {
+                    self.go_back(&kept);
+                    speed = next;
+                }
+                Tried::Stuck(going) => {
+                    self.go_back(&kept);
+                    let mut vehicle = start;
+                    vehicle.stop(drive, begun, going);
+                    self.lead((vehicle.hitch(), vehicle.pose().placement()), step.hitches);
+                    self.vehicle = Some(vehicle);
+                    self.each(|c| c.advance(step.h, step.inertia))?;
+                    return Ok(iterations + self.cost.iterations);
+                }
+            }
+        }
+    }
+
+    /// The step with the robot at this speed (m/s) at its end.
+    fn try_speed(
+        &mut self,
+        step: &Step<'_>,
+        (start, drive, speed): (&Vehicle, Drive, f64),
+        search: &mut Search,
+    ) -> Tried {
+        let Some(to) = start.come_to(drive, speed) else { return Tried::Stuck(Going::Blocked) };
+        self.lead((start.hitch_at(to), to.placement()), step.hitches);
+        let breaks = self.breaks();
+        if self.each(|c| c.advance(step.h, step.inertia)).is_err() {
+            // The cable cannot get out of its way.
+            return Tried::Stuck(Going::Jammed);
+        }
+        let pulls = self.pulls(step.hitches);
+        let balance = start.balance(drive, pulls);
+        let off = balance.speed - speed;
+        // A break is no force that a speed could be found for.
+        let even = (off * start.mass() / step.h).abs() <= start.tolerance(pulls) || self.breaks() > breaks;
+        if !even
+            && !(self.left_m() > 0.0)
+            && let Some(next) = search.next(Trial { speed, off })
+        {
+            return Tried::Again(next);
+        }
+        let mut vehicle = start.clone();
+        // Where forces jump the robot has the speed at which they do.
+        let ends = if even { balance.speed } else { speed };
+        vehicle.arrive(drive, (to, speed), (balance, ends), pulls);
+        Tried::Ends(Box::new(vehicle))
+    }
+
+    /// How many times the cables have broken.
+    fn breaks(&self) -> usize {
+        self.cables.iter().map(|c| c.breaks().len()).sum()
+    }
+
+    /// The cables are as they were before.
+    fn go_back(&mut self, before: &[Strand]) {
+        for (cable, before) in self.cables.iter_mut().zip(before) {
+            cable.go_back(before);
+        }
+    }
+
+    /// Tells the cables where the hitch of the robot, and its outline, will be.
+    fn lead(&mut self, (hitch, to): (Vec2, Placement), hitches: &[(usize, usize)]) {
+        for &(cable, support) in hitches {
+            self.drag_support(cable, support, hitch);
+        }
+        for cable in &mut self.cables {
+            cable.lead_outline(to);
+        }
+    }
+
+    /// What the cables do to the robot now.
+    fn pulls(&self, hitches: &[(usize, usize)]) -> Pulls {
+        let pull = |&(cable, support): &(usize, usize)| {
+            self.cables.get(cable).map_or_else(Vec2::zeros, |c| c.pull_on(support))
+        };
+        Pulls {
+            hitch: hitches.iter().map(pull).sum(),
+            outline: self.cables.iter().filter_map(Strand::outline).map(|o| o.force_n).sum(),
+        }
+    }
+
+    /// Tells the cables where the robot stands.
+    pub(super) fn lead_outline(&mut self) {
+        let Some(to) = self.vehicle.as_ref().map(|v| v.pose().placement()) else { return };
+        for cable in &mut self.cables {
+            cable.lead_outline(to);
+        }
+    }
+
+    /// Cable and support of everything that hangs on the robot.
+    fn hitches(&self) -> Vec<(usize, usize)> {
+        let of = |(k, c): (usize, &Cable)| {
+            let supports = c.supports.iter().enumerate().filter(|(_, s)| s.kind == SupportKind::Robot);
+            supports.map(move |(i, _)| (k, i)).collect::<Vec<_>>()
+        };
+        self.scene.cables.iter().enumerate().flat_map(of).collect()
+    }
+
+    /// From now on the robot goes at this speed (m/s, positive to the right); None: on along its
+    /// path.
+    pub fn command_robot(&mut self, speed_m_per_s: Option<f64>) {
+        if let Some(vehicle) = &mut self.vehicle {
+            vehicle.command(speed_m_per_s);
+        }
+    }
+
+    /// Puts the middle of the robot's tracks at `x_m` (m) whatever that takes, in one step of
+    /// `dt_s` (s): no drive and no traction limits it, its outline pushes the cable. Returns how
+    /// far from there the cable stopped it, m; None where it cannot stand there, and nothing has
+    /// moved then.
+    ///
+    /// # Errors
+    /// See [`Mechanics::advance`](crate::model::Mechanics::advance).
+    pub fn lead_robot(&mut self, x_m: f64, (dt_s, inertia): (f64, Inertia)) -> Result<Option<f64>, SolveError> {
+        let Some(vehicle) = &mut self.vehicle else { return Ok(None) };
+        let Some(hitch) = vehicle.put(x_m) else { return Ok(None) };
+        let to = vehicle.pose().placement();
+        self.lead((hitch, to), &self.hitches());
+        self.cables.iter_mut().for_each(Strand::forget_peaks);
+        let done = self.each(|c| c.advance(dt_s, inertia));
+        let left_m = self.hold_vehicle();
+        self.look(true);
+        done.map(|()| Some(left_m))
+    }
+
+    /// How far the outline that came least far is from where it was led, m.
+    fn left_m(&self) -> f64 {
+        self.cables.iter().filter_map(Strand::outline).map(|o| o.left_m).fold(0.0, larger)
+    }
+
+    /// The vehicle is where the outline came that came least far; how far that is from where it was
+    /// led, m.
+    fn hold_vehicle(&mut self) -> f64 {
+        let outlines = self.cables.iter().filter_map(Strand::outline);
+        let last = outlines.reduce(|a, b| if b.left_m > a.left_m { b } else { a }).filter(|o| o.left_m > 0.0);
+        if let (Some(vehicle), Some(last)) = (&mut self.vehicle, last) {
+            vehicle.hold_back(last.placement);
+        }
+        last.map_or(0.0, |o| o.left_m)
+    }
+}
