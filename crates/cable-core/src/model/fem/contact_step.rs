@@ -3,7 +3,8 @@
 //! ```text
 //! Φ(x) = ½ Σ mᵢ a² |xᵢ − x̃ᵢ|² + E(x) − Σ fᵢ·xᵢ + Σ w B(g(x)) + Σ D(y(x))
 //! ```
-//! with a = α₀/h of the integrator and x̃ what its history predicts (a = 0 for a step without inertia). Damping
+//! with a = α₀/h of the integrator and x̃ what its history predicts (a = 0 for a step without inertia), and, where the cable can touch
+//! nothing, −½ mₑ a² |(x₂ − x₁) − (x̃₂ − x̃₁)|² for each bar (see `mass`). Damping
 //! of a bar with time constant τ is a second bar of stiffness EA τ a whose rest length is the one predicted.
 
 use super::assembly::{Mesh, System};
@@ -171,6 +172,14 @@ impl Workspace {
             let (energy, size) = bar::add(s, (mesh, task), (e, pose), curvature, carried);
             value += energy;
             self.magnitude += size;
+        }
+        for (e, (coupling, chord)) in task.coupling.iter().enumerate() {
+            let (late, scale) = (x[e + 1] - x[e] - chord, task.scale[e]);
+            let inertia = late * (coupling * scale);
+            s.add_gradient(e, inertia);
+            s.add_gradient(e + 1, -inertia);
+            s.hessian.add_spring(2 * e, [-coupling * scale, 0.0, -coupling * scale]);
+            value -= 0.5 * late.dot(&inertia);
         }
         if mesh.bending_stiffness > 0.0 {
             value += s.add_bending(mesh, x, curvature);

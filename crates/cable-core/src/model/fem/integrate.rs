@@ -288,6 +288,12 @@ impl Dynamics {
                 task.predicted_slide[k] = s * now - m.s_before[k] * past + w_hat / a - s;
             }
         }
+        // Of the masses alone: hands draw at their nodes, not at what these are coupled with.
+        let predicted = &task.predicted;
+        task.coupling.extend(mesh.spread.coupling.iter().enumerate().map(|(e, length)| {
+            let chord = predicted[e + 1] - predicted[e];
+            (self.problem.linear_density * length * a * a, chord)
+        }));
         for (s, node) in self.problem.supports.iter().zip(&self.support_node) {
             if let Some(k) = node {
                 task.inertia[*k] += s.mass * a * a;
