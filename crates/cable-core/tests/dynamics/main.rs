@@ -23,4 +23,5 @@ mod pendulum;
 mod release;
 mod rest_stretch;
 mod swing_energy;
+mod swing_explore;
 mod taut_string;

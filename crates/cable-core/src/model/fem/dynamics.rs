@@ -183,6 +183,8 @@ impl Dynamics {
                 v: vec![Vec2::zeros(); n],
                 x_before: vec![Vec2::zeros(); n],
                 v_before: vec![Vec2::zeros(); n],
+                x_older: vec![Vec2::zeros(); if mesh.spread.is_lumped() { 0 } else { n }],
+                v_older: vec![Vec2::zeros(); if mesh.spread.is_lumped() { 0 } else { n }],
                 s_before: mesh.arc_length.clone(),
                 w: vec![0.0; n],
                 w_before: vec![0.0; n],

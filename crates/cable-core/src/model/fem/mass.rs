@@ -65,6 +65,12 @@ impl Spread {
         self.coupling[last] = MEAN * (1.0 - END) * bar;
     }
 
+    /// Whether it does not differ.
+    #[must_use]
+    pub fn is_lumped(&self) -> bool {
+        self.coupling.is_empty()
+    }
+
     /// Lumped, as for a mesh whose nodes come and go.
     pub fn clear(&mut self) {
         self.more.clear();
