@@ -11,7 +11,7 @@ use cable_core::state::State;
 
 use super::linked_rods::Rods;
 use super::mass_spring;
-use super::measure::{G, cable, energy, ladder, started};
+use super::measure::{G, cable, energy, ladder, spread_energy, started};
 
 const LENGTH: f64 = 10.0;
 /// How far the end falls, m.
@@ -81,12 +81,12 @@ fn fold(state: &mut State) {
 fn by_bars(n: usize, h: f64) -> [f64; 2] {
     let scene = scene(1e7, n);
     let mut sim = started(&scene, fold);
-    let start = energy(&scene, &sim.states()[0]);
+    let start = spread_energy(&scene, &sim.states()[0]);
     let time = passed(h, || {
         sim.step(h).unwrap();
         -sim.states()[0].position_m[n].y
     });
-    [time, (start - energy(&scene, &sim.states()[0])) / (G * LENGTH * LENGTH)]
+    [time, (start - spread_energy(&scene, &sim.states()[0])) / (G * LENGTH * LENGTH)]
 }
 
 #[test]
