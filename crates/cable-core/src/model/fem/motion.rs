@@ -25,8 +25,8 @@ pub(super) struct Motion {
     pub(super) w_before: Vec<f64>,
     /// Last step, s; 0 = no history, the next step is implicit Euler.
     pub(super) step_before: f64,
-    /// The step before the last, s; 0 = none.
-    pub(super) step_older: f64,
+    /// Steps as long as the last, one after the other, after each of which all bars pulled.
+    pub(super) even_steps: usize,
     pub(super) followers: Vec<Option<Follower>>,
     /// Hands that hold supports by springs.
     pub(super) hands: Vec<Option<Hand>>,
@@ -52,7 +52,7 @@ impl Motion {
         self.w_before.clone_from(w_before);
         self.followers.clone_from(followers);
         self.hands.clone_from(hands);
-        (self.step_before, self.step_older) = (other.step_before, other.step_older);
+        (self.step_before, self.even_steps) = (other.step_before, other.even_steps);
         (self.time, self.placement) = (other.time, other.placement);
         self.account = other.account;
     }
