@@ -98,11 +98,12 @@ pub fn heavy_pendulum(length: f64, density: f64, mass: f64) -> (f64, Vec<f64>) {
 
 #[test]
 fn a_mass_below_a_heavy_cable() {
-    for (part, bound) in [(0.1, 2e-6), (1.0, 3e-5), (10.0, 4e-4)] {
+    for (part, bound) in [(0.1, 2e-6), (1.0, 3e-5), (10.0, 4e-3)] {
         let (length, mass) = (10.0, 5.0);
         let density = part * mass / length;
         let (exact, shape) = heavy_pendulum(length, density, mass);
-        let errors = [4, 8, 16].map(|n| {
+        let bars = if part > 1.0 { [3, 6, 12] } else { [4, 8, 16] };
+        let errors = bars.map(|n| {
             let supports = vec![Support::fixed("top", [0.0, 0.0]), lump("mass", mass)];
             // It stretches by some parts of 1e-7.
             let scene = cable([length, density, 1e8], n, supports);
@@ -124,7 +125,7 @@ fn a_mass_below_a_heavy_cable() {
         println!("{name}: {errors:?}");
         assert!(errors.iter().all(|e| e.abs() < bound), "{name}: {errors:?}");
         if part > 1.0 {
-            climbs(&name, &errors, 3.4, bound);
+            climbs(&name, &errors, 3.5, bound);
         }
     }
 }
