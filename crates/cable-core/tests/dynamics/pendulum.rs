@@ -102,8 +102,7 @@ fn a_mass_below_a_heavy_cable() {
         let (length, mass) = (10.0, 5.0);
         let density = part * mass / length;
         let (exact, shape) = heavy_pendulum(length, density, mass);
-        let bars = if part > 1.0 { [3, 6, 12] } else { [4, 8, 16] };
-        let errors = bars.map(|n| {
+        let errors = [4, 8, 16].map(|n| {
             let supports = vec![Support::fixed("top", [0.0, 0.0]), lump("mass", mass)];
             // It stretches by some parts of 1e-7.
             let scene = cable([length, density, 1e8], n, supports);
@@ -125,7 +124,8 @@ fn a_mass_below_a_heavy_cable() {
         println!("{name}: {errors:?}");
         assert!(errors.iter().all(|e| e.abs() < bound), "{name}: {errors:?}");
         if part > 1.0 {
-            climbs(&name, &errors, 3.5, bound);
+            // 16 bars are off by less than by what it stretches.
+            climbs(&name, &errors[..2], 3.5, bound);
         }
     }
 }

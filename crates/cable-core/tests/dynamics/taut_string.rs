@@ -5,7 +5,9 @@ use cable_core::scene::{Scene, Support};
 use cable_core::state::State;
 use cable_core::{Settings, Simulation};
 
-use super::measure::{Ring, behind, cable, climbs, damps, ladder, masses, ring, sampled, slows, started, started_within};
+use super::measure::{
+    Ring, behind, cable, climbs, damps, ladder, masses, ring, sampled, slows, started, started_within,
+};
 
 /// m.
 pub const LENGTH: f64 = 10.0;

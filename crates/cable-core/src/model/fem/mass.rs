@@ -104,7 +104,9 @@ mod tests {
 
     #[test]
     fn the_whole_mass_stays_and_is_positive() {
-        for stretches in [&[(1, 0.3)][..], &[(2, 0.3)], &[(3, 1.0)], &[(7, 0.2), (1, 1e-3), (2, 0.5)], &[(50, 0.2), (40, 0.21)]] {
+        for stretches in
+            [&[(1, 0.3)][..], &[(2, 0.3)], &[(3, 1.0)], &[(7, 0.2), (1, 1e-3), (2, 0.5)], &[(50, 0.2), (40, 0.21)]]
+        {
             let (diagonal, beside) = rows(stretches);
             let whole: f64 = stretches.iter().map(|&(count, bar)| count as f64 * bar).sum();
             let sum = diagonal.iter().sum::<f64>() + 2.0 * beside.iter().sum::<f64>();
@@ -122,7 +124,8 @@ mod tests {
         let off = |n: usize| {
             let bar = 1.0 / n as f64;
             let (diagonal, beside) = rows(&[(n, bar)]);
-            let weight = |k: usize| diagonal[k] + if k > 0 { beside[k - 1] } else { 0.0 } + beside.get(k).unwrap_or(&0.0);
+            let weight =
+                |k: usize| diagonal[k] + if k > 0 { beside[k - 1] } else { 0.0 } + beside.get(k).unwrap_or(&0.0);
             let sum: f64 = (0..=n).map(|k| weight(k) * (2.0 * k as f64 * bar).exp()).sum();
             let rise = 2f64.exp() - 1.0;
             let exact = 0.5 * rise + bar * bar / 24.0 * 2.0 * rise;
@@ -203,7 +206,9 @@ mod tests {
         let string: Vec<(usize, f64)> = (0..3).map(|k| (k, pi * (k as f64 + 1.0))).collect();
         let quarter: Vec<(usize, f64)> = (0..3).map(|k| (k, pi * (k as f64 + 0.5))).collect();
         let chain: Vec<(usize, f64)> = (0..3).map(|k| (k, 0.5 * ZEROS[k])).collect();
-        orders("string or bar held at both ends", &string, [10, 20, 40, 80], |n| frequencies(&even(n), Held::Both, pulled));
+        orders("string or bar held at both ends", &string, [10, 20, 40, 80], |n| {
+            frequencies(&even(n), Held::Both, pulled)
+        });
         orders("bar with a free end", &quarter, [10, 20, 40, 80], |n| frequencies(&even(n), Held::First, pulled));
         orders("hanging chain", &chain[..2], [10, 20, 40, 80], |n| frequencies(&even(n), Held::First, weight_below));
         // Of 10 bars it has three to a half wave.
@@ -211,7 +216,9 @@ mod tests {
         orders("chain of two stretches", &chain[..2], [10, 20, 40, 80], |n| {
             frequencies(&uneven(n), Held::First, weight_below)
         });
-        orders("string of two stretches", &string[..1], [10, 20, 40, 80], |n| frequencies(&uneven(n), Held::Both, pulled));
+        orders("string of two stretches", &string[..1], [10, 20, 40, 80], |n| {
+            frequencies(&uneven(n), Held::Both, pulled)
+        });
     }
 
     /// Why it is not the mean of lumped and consistent mass alone.

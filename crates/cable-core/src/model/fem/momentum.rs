@@ -2,7 +2,7 @@
 //!
 //! With p the momentum and F a force at the end of a step, its history gives (see `integrate`)
 //! ```text
-//! Δp = F/a + past Δp₋ − older Δp₌
+//! Δp = F/a + (past − older) Δp₋ − older Δp₌
 //! ```
 //! so that the impulse of each kind of force is filtered as their sum is. What a round does to the cable that runs over it is what bends its way:
 //! the pull of the bars beside it, and the change of the momentum of what lies on it and of what goes over it.
@@ -219,12 +219,7 @@ impl Dynamics {
 
     /// Adds the impulses of a step of these weights in which forces (N) were balanced: the step is made, contacts are not yet
     /// made plastic. `slid` is the momentum of what lay on rounds before (kg m/s), `slide` how far it slid (m).
-    pub(super) fn account_for_step(
-        &mut self,
-        weights: Weights,
-        forces: Kinds,
-        (slid, slide): ([Vec2; 2], &[f64]),
-    ) {
+    pub(super) fn account_for_step(&mut self, weights: Weights, forces: Kinds, (slid, slide): ([Vec2; 2], &[f64])) {
         let now = self.sliding_momentum();
         let mut over = [now[0] - slid[0], now[1] - slid[1]];
         let mut history = [Vec2::zeros(); 2];
@@ -244,7 +239,8 @@ impl Dynamics {
         }
         let account = &mut self.motion.account;
         for (k, force) in forces.into_iter().enumerate() {
-            let given = force / weights.a + account.last[k] * weights.past - account.older[k] * weights.older;
+            let Weights { past, older, a, .. } = weights;
+            let given = force / a + account.last[k] * (past - older) - account.older[k] * older;
             account.older[k] = account.last[k];
             account.last[k] = given;
             account.add(k, given);
