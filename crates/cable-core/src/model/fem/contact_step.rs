@@ -173,13 +173,8 @@ impl Workspace {
             value += energy;
             self.magnitude += size;
         }
-        for (e, (coupling, chord)) in task.coupling.iter().enumerate() {
-            let (late, scale) = (x[e + 1] - x[e] - chord, task.scale[e]);
-            let inertia = late * (coupling * scale);
-            s.add_gradient(e, inertia);
-            s.add_gradient(e + 1, -inertia);
-            s.hessian.add_spring(2 * e, [-coupling * scale, 0.0, -coupling * scale]);
-            value -= 0.5 * late.dot(&inertia);
+        if !task.coupling.is_empty() {
+            value += add_coupling(s, task, x);
         }
         if mesh.bending_stiffness > 0.0 {
             value += s.add_bending(mesh, x, curvature);
@@ -458,6 +453,21 @@ impl Workspace {
         }
         None
     }
+}
+
+/// What the inertia of nodes loses by being coupled over the bars (see `mass`): adds gradient and Hessian, returns the energy, J. Not
+/// inlined: the loop over contacts beside it would be too long for the compiler to leave out logarithms that nobody reads.
+#[inline(never)]
+fn add_coupling(s: &mut System, task: &Task, x: &[Vec2]) -> f64 {
+    let mut value = 0.0;
+    for (e, (coupling, chord)) in task.coupling.iter().enumerate() {
+        let (late, k) = (x[e + 1] - x[e] - chord, coupling * task.scale[e]);
+        s.add_gradient(e, late * k);
+        s.add_gradient(e + 1, late * -k);
+        s.hessian.add_spring(2 * e, [-k, 0.0, -k]);
+        value -= 0.5 * k * late.norm_squared();
+    }
+    value
 }
 
 /// Factor of the equations of a node.

@@ -166,9 +166,8 @@ impl Dynamics {
 
     /// Counts a step of `h` (s). Where contact may change what was, history is not looked for so far back.
     fn note_step(&mut self, h: f64) {
-        let pulls = self.gauged.bars.iter().all(|tension| *tension > 0.0);
         let count = if self.is_even(h) { self.motion.even_steps } else { 0 };
-        let smooth = pulls && !self.mesh.spread.is_lumped();
+        let smooth = !self.mesh.spread.is_lumped() && self.gauged.bars.iter().all(|tension| *tension > 0.0);
         self.motion.even_steps = if smooth { (count + 1).min(SMOOTH) } else { 0 };
         self.motion.step_before = h;
     }
