@@ -455,8 +455,7 @@ impl Workspace {
     }
 }
 
-/// What the inertia of nodes loses by being coupled over the bars (see `mass`): adds gradient and Hessian, returns the energy, J. Not
-/// inlined: the loop over contacts beside it would be too long for the compiler to leave out logarithms that nobody reads.
+/// What the inertia of nodes loses by being coupled over the bars (see `mass`): adds gradient and Hessian, returns the energy, J.
 #[inline(never)]
 fn add_coupling(s: &mut System, task: &Task, x: &[Vec2]) -> f64 {
     let mut value = 0.0;
