@@ -4,7 +4,7 @@
 use cable_core::scene::Support;
 use cable_core::{Load, Model, Simulation, Vec2};
 
-use super::measure::{G, cable, ladder, lump, masses, settled, started};
+use super::measure::{G, Mass, cable, ladder, lump, settled, started};
 
 /// When the cable is let go, s.
 const RELEASE: f64 = 0.1;
@@ -29,10 +29,10 @@ fn wind_and_pulls_move_the_middle_of_mass() {
     }];
     let errors = [1.0 / 240.0, 1.0 / 480.0, 1.0 / 960.0].map(|h| {
         let mut sim = settled(&scene, Model::Fem);
-        let mass = masses(&scene, &sim.states()[0]);
+        let mass = Mass::of(&scene, &sim.states()[0]);
         let middle = |sim: &Simulation| {
             let x = &sim.states()[0].position_m;
-            x.iter().zip(&mass).map(|(x, m)| x * *m).sum::<Vec2>() / whole
+            mass.times(x).into_iter().sum::<Vec2>() / whole
         };
         let (from, t) = (middle(&sim), 0.6);
         for _ in 0..((RELEASE + t) / h).round() as usize {

@@ -1,5 +1,6 @@
 //! Scenes of one cable, starts away from rest, and what is read off a motion.
 
+use cable_core::model::fem::mass::Spread;
 use cable_core::scene::{Scene, Support, SupportKind, catalog};
 use cable_core::state::State;
 use cable_core::{Model, Settings, Simulation, Vec2};
@@ -86,7 +87,57 @@ pub fn masses(scene: &Scene, state: &State) -> Vec<f64> {
     mass
 }
 
-/// Motion, height and stretching together, J.
+/// The mass of a cable of `fem` that can touch nothing: of each node, and what couples the nodes of each bar, kg.
+pub struct Mass {
+    pub node: Vec<f64>,
+    pub coupling: Vec<f64>,
+}
+
+impl Mass {
+    /// Of the mesh of a state.
+    pub fn of(scene: &Scene, state: &State) -> Self {
+        let (s, cable) = (&state.arc_length_m, &scene.cables[0]);
+        let whole = cable.length_m;
+        let at = |a: f64, b: f64| (a - b).abs() < 1e-6 * whole;
+        let is_break = |k: usize| {
+            let load = scene.loads.iter().any(|l| at(l.arc_length_m, s[k]));
+            let support = cable.supports.iter().any(|p| p.arc_length_m.is_some_and(|a| at(a, s[k])));
+            k == 0 || k + 1 == s.len() || load || support
+        };
+        let breaks: Vec<usize> = (0..s.len()).filter(|k| is_break(*k)).collect();
+        let even = |pair: &[usize]| (pair[1] - pair[0], (s[pair[1]] - s[pair[0]]) / (pair[1] - pair[0]) as f64);
+        let spread = Spread::of(&breaks.windows(2).map(even).collect::<Vec<_>>());
+        let density = cable.linear_density_kg_per_m;
+        let lumped = masses(scene, state);
+        Self {
+            node: lumped.iter().zip(&spread.more).map(|(m, more)| m + density * more).collect(),
+            coupling: spread.coupling.iter().map(|l| density * l).collect(),
+        }
+    }
+
+    /// Its product with places or velocities.
+    pub fn times(&self, v: &[Vec2]) -> Vec<Vec2> {
+        let mut out: Vec<Vec2> = v.iter().zip(&self.node).map(|(v, m)| v * *m).collect();
+        for (e, c) in self.coupling.iter().enumerate() {
+            let turned = (v[e + 1] - v[e]) * *c;
+            out[e] += turned;
+            out[e + 1] -= turned;
+        }
+        out
+    }
+}
+
+/// Motion, height and stretching of a cable of `fem` that can touch nothing together, J.
+pub fn spread_energy(scene: &Scene, state: &State) -> f64 {
+    let (mass, lumped) = (Mass::of(scene, state), masses(scene, state));
+    let (x, v) = (&state.position_m, &state.velocity_m_per_s);
+    let g = scene.environment.gravity_m_per_s2;
+    let turned: f64 = mass.coupling.iter().enumerate().map(|(e, c)| -0.5 * c * (v[e + 1] - v[e]).norm_squared()).sum();
+    let more = (0..x.len()).map(|k| (mass.node[k] - lumped[k]) * (0.5 * v[k].norm_squared() + g * x[k].y));
+    energy(scene, state) + turned + more.sum::<f64>()
+}
+
+/// Motion, height and stretching together, the mass lumped at the nodes, J.
 pub fn energy(scene: &Scene, state: &State) -> f64 {
     let mass = masses(scene, state);
     let g = scene.environment.gravity_m_per_s2;
@@ -129,25 +180,39 @@ pub fn ring(samples: &[f64], dt: f64) -> Ring {
     Ring { omega: (0.5 * ab[0] / ab[1].sqrt()).acos() / dt, decay }
 }
 
-/// Part by which BDF2 at step `h` (s) swings too slowly: (ωh)²/3.
-pub fn bdf2_slows(omega: f64, h: f64) -> f64 {
-    (omega * h).powi(2) / 3.0
-}
+/// Part of BDF3 in even steps of a cable that can touch nothing.
+pub const THIRD: f64 = 0.48;
 
-/// Frequency and decay that BDF2 at step `h` (s) makes of λ = −σ + iω: λ(1 + (λh)²/3 − (λh)³/4).
-pub fn bdf2_ring(Ring { omega, decay }: Ring, h: f64) -> Ring {
+/// What a ring is a ring of: steps of `h` (s) turn λ into μ with λh = δ(e^{−μh}), δ(z) = (1 − z) + (1 − z)²/2 + β (1 − z)³/3.
+pub fn behind(Ring { omega, decay }: Ring, h: f64) -> Ring {
     let times = |a: [f64; 2], b: [f64; 2]| [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]];
-    let l = [-decay * h, omega * h];
-    let square = times(l, l);
-    let cube = times(square, l);
-    let factor = [1.0 + square[0] / 3.0 - cube[0] / 4.0, square[1] / 3.0 - cube[1] / 4.0];
-    let found = times(l, factor);
-    Ring { omega: found[1] / h, decay: -found[0] / h }
+    let (size, angle) = ((decay * h).exp(), omega * h);
+    let first = [1.0 - size * angle.cos(), size * angle.sin()];
+    let second = times(first, first);
+    let third = times(second, first);
+    let lambda = [0, 1].map(|k| (first[k] + 0.5 * second[k] + THIRD / 3.0 * third[k]) / h);
+    Ring { omega: lambda[1], decay: -lambda[0] }
 }
 
-/// Decay rate that BDF2 at step `h` (s) adds: ω⁴h³/4, 1/s.
-pub fn bdf2_damps(omega: f64, h: f64) -> f64 {
-    omega.powi(4) * h.powi(3) / 4.0
+/// Part by which steps of `h` (s) swing too slowly: (1 − β)(ωh)²/3.
+pub fn slows(omega: f64, h: f64) -> f64 {
+    (1.0 - THIRD) * (omega * h).powi(2) / 3.0
+}
+
+/// Decay rate that steps of `h` (s) add to the order h³: (1 − 2β) ω⁴h³/4, 1/s.
+pub fn damps(omega: f64, h: f64) -> f64 {
+    (1.0 - 2.0 * THIRD) * omega.powi(4) * h.powi(3) / 4.0
+}
+
+/// Errors of ever finer rungs: the first at most `bound`, each step of at least order `least`.
+pub fn climbs(name: &str, errors: &[f64], least: f64, bound: f64) {
+    let orders: Vec<f64> = errors.windows(2).map(|e| (e[0] / e[1]).abs().log2()).collect();
+    let shown: Vec<String> = errors.iter().map(|e| format!("{e:.2e}")).collect();
+    println!("{name}: {} order {:.2?}", shown.join(" "), orders);
+    assert!(errors[0].abs() <= bound, "{name}: rung 0 is {:.3e}, not {bound:.3e}", errors[0]);
+    for o in orders {
+        assert!(o >= least, "{name}: order {o:.2}, less than {least}");
+    }
 }
 
 /// Errors of ever finer rungs: each below `bound` divided by its refinement, each step of order `order` ± 0.25.

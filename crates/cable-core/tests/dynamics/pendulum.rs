@@ -3,7 +3,7 @@
 use cable_core::Vec2;
 use cable_core::scene::Support;
 
-use super::measure::{G, bdf2_slows, cable, energy, ladder, lump, masses, ring, sampled, started};
+use super::measure::{G, behind, cable, climbs, energy, ladder, lump, masses, ring, sampled, started};
 
 /// Period of a mathematical pendulum, s: 4√(L/g) K(sin θ₀/2) = 2π√(L/g)/agm(1, cos θ₀/2) (C. F. Gauss).
 pub fn period(length: f64, amplitude: f64) -> f64 {
@@ -98,17 +98,18 @@ pub fn heavy_pendulum(length: f64, density: f64, mass: f64) -> (f64, Vec<f64>) {
 
 #[test]
 fn a_mass_below_a_heavy_cable() {
-    for (part, bound) in [(0.1, 5.1e-4), (1.0, 3.8e-3), (10.0, 1.1e-2)] {
+    for (part, bound) in [(0.1, 2e-6), (1.0, 3e-5), (10.0, 4e-3)] {
         let (length, mass) = (10.0, 5.0);
         let density = part * mass / length;
         let (exact, shape) = heavy_pendulum(length, density, mass);
         let errors = [4, 8, 16].map(|n| {
             let supports = vec![Support::fixed("top", [0.0, 0.0]), lump("mass", mass)];
-            let scene = cable([length, density, 1e7], n, supports);
+            // It stretches by some parts of 1e-7.
+            let scene = cable([length, density, 1e8], n, supports);
             let at = |k: usize| shape[k * 400 / n];
             let mut sim = started(&scene, |state| {
                 for (k, p) in state.position_m.iter_mut().enumerate() {
-                    p.x = 5e-3 * length * at(k);
+                    p.x = 1e-3 * length * at(k);
                 }
             });
             let mass = masses(&scene, &sim.states()[0]);
@@ -117,8 +118,14 @@ fn a_mass_below_a_heavy_cable() {
             let samples = sampled(&mut sim, (h, every), 60, |state| {
                 state.position_m.iter().enumerate().map(|(k, p)| mass[k] * at(k) * p.x).sum()
             });
-            ring(&samples, h * every as f64).omega * (1.0 + bdf2_slows(exact, h)) / exact - 1.0
+            behind(ring(&samples, h * every as f64), h).omega / exact - 1.0
         });
-        ladder(&format!("mass below a cable of {part} of it"), &errors, 2.0, bound);
+        let name = format!("mass below a cable of {part} of it");
+        println!("{name}: {errors:?}");
+        assert!(errors.iter().all(|e| e.abs() < bound), "{name}: {errors:?}");
+        if part > 1.0 {
+            // 16 bars are off by less than by what it stretches.
+            climbs(&name, &errors[..2], 3.5, bound);
+        }
     }
 }

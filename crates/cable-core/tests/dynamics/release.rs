@@ -5,23 +5,21 @@ use cable_core::scene::{Support, SupportKind};
 use cable_core::state::State;
 use cable_core::{Model, Simulation, Vec2};
 
-use super::measure::{G, cable, ladder, masses, settled};
+use super::measure::{G, Mass, cable, ladder, masses, settled};
 
 const RELEASE: f64 = 0.1;
 
 /// Middle of mass, m, and angular momentum about it, kg m²/s.
 fn middle(sim: &Simulation) -> (Vec2, f64) {
     let state: State = sim.states().remove(0);
-    let mass = masses(sim.scene(), &state);
-    let whole: f64 = mass.iter().sum();
-    let sum = |v: &[Vec2]| v.iter().zip(&mass).map(|(v, m)| v * *m).sum::<Vec2>() / whole;
+    let lumped = Mass { node: masses(sim.scene(), &state), coupling: Vec::new() };
+    let mass = if sim.solution().model == Model::Fem { Mass::of(sim.scene(), &state) } else { lumped };
+    let whole: f64 = mass.node.iter().sum();
+    let sum = |v: &[Vec2]| mass.times(v).into_iter().sum::<Vec2>() / whole;
     let (x, v) = (sum(&state.position_m), sum(&state.velocity_m_per_s));
-    let spin = (0..mass.len())
-        .map(|k| {
-            let (r, u) = (state.position_m[k] - x, state.velocity_m_per_s[k] - v);
-            mass[k] * (r.x * u.y - r.y * u.x)
-        })
-        .sum();
+    let momentum = mass.times(&state.velocity_m_per_s.iter().map(|u| u - v).collect::<Vec<_>>());
+    let turn = |(r, p): (&Vec2, Vec2)| (r.x - x.x) * p.y - (r.y - x.y) * p.x;
+    let spin = state.position_m.iter().zip(momentum).map(turn).sum();
     (x, spin)
 }
 

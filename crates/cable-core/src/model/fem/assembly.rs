@@ -5,6 +5,7 @@
 //! and the numbering never change. Before pinning, minus the gradient at a held node is the force of the cable
 //! on its support.
 
+use super::mass::Spread;
 use super::path::{End, Path};
 use super::sliding::Sliding;
 use crate::energy::axial::Bar;
@@ -42,18 +43,22 @@ pub struct Mesh {
     pub axial_stiffness: f64,
     /// EI, N·m²; 0 = no bending.
     pub bending_stiffness: f64,
+    /// How its mass differs from that lumped at its nodes.
+    pub spread: Spread,
 }
 
 impl Mesh {
     /// Cuts a cable into about `segments` bars with a node at each of `breaks` (arc lengths, m, increasing, the
-    /// ends among them) and even bars in between. All nodes are free.
+    /// ends among them) and even bars in between. All nodes are free. `spreads`: whether its mass is spread over the bars.
     #[must_use]
-    pub fn new(problem: &Problem, breaks: &[f64], segments: usize) -> Self {
+    pub fn new(problem: &Problem, breaks: &[f64], segments: usize, spreads: bool) -> Self {
         let mut arc_length: Vec<f64> = Vec::with_capacity(segments + breaks.len());
+        let mut stretches = Vec::with_capacity(breaks.len());
         for pair in breaks.windows(2) {
             let count = bars_between(pair[1] - pair[0], problem.length, segments);
             let step = (pair[1] - pair[0]) / count as f64;
             arc_length.extend((0..count).map(|k| pair[0] + step * k as f64));
+            stretches.push((count, step));
         }
         arc_length.extend(breaks.last());
         let rest_length = arc_length.windows(2).map(|p| problem.thermal_stretch * (p[1] - p[0])).collect();
@@ -66,16 +71,18 @@ impl Mesh {
             clamps: Vec::new(),
             axial_stiffness: problem.axial_stiffness,
             bending_stiffness: problem.bending_stiffness,
+            spread: if spreads { Spread::of(&stretches) } else { Spread::default() },
         }
     }
 
     /// Becomes a copy without new memory where there is room; `slides`: whether there can be sliding nodes to copy.
     pub fn copy_from(&mut self, other: &Self, slides: bool) {
-        let Self { arc_length, rest_length, held, clamps, sliding, .. } = other;
+        let Self { arc_length, rest_length, held, clamps, sliding, spread, .. } = other;
         self.arc_length.clone_from(arc_length);
         self.rest_length.clone_from(rest_length);
         self.held.clone_from(held);
         self.clamps.clone_from(clamps);
+        self.spread.copy_from(spread);
         if slides {
             self.sliding.clone_from(sliding);
         }
@@ -141,14 +148,14 @@ impl Mesh {
         Bar { rest_length: self.rest_length[e], stiffness: self.axial_stiffness }
     }
 
-    /// Arc length that belongs to a node (half of the bars beside it, at rest temperature), m: weight, wind and
-    /// mass are this times their value per metre.
+    /// Arc length that belongs to a node (half of the bars beside it, at rest temperature, and what of them is spread), m:
+    /// weight, wind and what momentum a node has are this times their value per metre.
     #[must_use]
     pub fn share(&self, node: usize) -> f64 {
         let s = &self.arc_length;
         let before = if node > 0 { s[node] - s[node - 1] } else { 0.0 };
         let after = if node + 1 < s.len() { s[node + 1] - s[node] } else { 0.0 };
-        0.5 * (before + after)
+        0.5 * (before + after) + self.spread.more.get(node).copied().unwrap_or(0.0)
     }
 
     /// The node at an arc length (m), within a millionth of the cable.
@@ -328,6 +335,7 @@ mod tests {
             bending_stiffness,
             sliding: vec![None; 9],
             thermal_stretch: 1.0,
+            spread: Spread::default(),
         }
     }
 

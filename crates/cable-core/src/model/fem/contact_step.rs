@@ -3,7 +3,8 @@
 //! ```text
 //! Φ(x) = ½ Σ mᵢ a² |xᵢ − x̃ᵢ|² + E(x) − Σ fᵢ·xᵢ + Σ w B(g(x)) + Σ D(y(x))
 //! ```
-//! with a = α₀/h of the integrator and x̃ what its history predicts (a = 0 for a step without inertia). Damping
+//! with a = α₀/h of the integrator and x̃ what its history predicts (a = 0 for a step without inertia), and, where the cable can touch
+//! nothing, −½ mₑ a² |(x₂ − x₁) − (x̃₂ − x̃₁)|² for each bar (see `mass`). Damping
 //! of a bar with time constant τ is a second bar of stiffness EA τ a whose rest length is the one predicted.
 
 use super::assembly::{Mesh, System};
@@ -193,6 +194,9 @@ impl Workspace {
             let (energy, size) = bar::add(s, (mesh, task), (e, pose), curvature, carried);
             value += energy;
             self.magnitude += size;
+        }
+        if !task.coupling.is_empty() {
+            value += add_coupling(s, task, x);
         }
         if mesh.bending_stiffness > 0.0 {
             value += s.add_bending(mesh, x, curvature);
@@ -471,6 +475,20 @@ impl Workspace {
         }
         None
     }
+}
+
+/// What the inertia of nodes loses by being coupled over the bars (see `mass`): adds gradient and Hessian, returns the energy, J.
+#[inline(never)]
+fn add_coupling(s: &mut System, task: &Task, x: &[Vec2]) -> f64 {
+    let mut value = 0.0;
+    for (e, (coupling, chord)) in task.coupling.iter().enumerate() {
+        let (late, k) = (x[e + 1] - x[e] - chord, coupling * task.scale[e]);
+        s.add_gradient(e, late * k);
+        s.add_gradient(e + 1, late * -k);
+        s.hessian.add_spring(2 * e, [-k, 0.0, -k]);
+        value -= 0.5 * k * late.norm_squared();
+    }
+    value
 }
 
 /// Factor of the equations of a node.

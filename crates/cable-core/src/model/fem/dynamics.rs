@@ -15,6 +15,7 @@ use super::prepare::{load_scale, tolerance};
 use super::sleep::Sleep;
 use super::sliding::Seat;
 use super::task::{Done, Failure, Pose, Task};
+use super::touches_nothing;
 use crate::contact::barrier::Barrier;
 use crate::error::{Place, SolveError};
 use crate::math::{Vec2, bounded};
@@ -166,7 +167,7 @@ impl Dynamics {
             }
             breaks.sort_by(f64::total_cmp);
         }
-        let mesh = Mesh::new(&problem, &breaks, segments);
+        let mesh = Mesh::new(&problem, &breaks, segments, spreads_mass(&problem));
         let n = mesh.nodes();
         let support_node: Vec<Option<usize>> =
             problem.supports.iter().map(|s| s.arc_length.and_then(|a| mesh.node_at(a))).collect();
@@ -182,6 +183,8 @@ impl Dynamics {
                 v: vec![Vec2::zeros(); n],
                 x_before: vec![Vec2::zeros(); n],
                 v_before: vec![Vec2::zeros(); n],
+                x_older: vec![Vec2::zeros(); if mesh.spread.is_lumped() { 0 } else { n }],
+                v_older: vec![Vec2::zeros(); if mesh.spread.is_lumped() { 0 } else { n }],
                 s_before: mesh.arc_length.clone(),
                 w: vec![0.0; n],
                 w_before: vec![0.0; n],
@@ -566,6 +569,12 @@ impl Dynamics {
         self.contacts.find(&self.problem, &self.mesh, &self.motion.x, &mut touches);
         touches.iter().map(|t| t.pair.gap.gap_m).fold(f64::INFINITY, |a, b| if b < a { b } else { a })
     }
+}
+
+/// Whether the mass is spread over the bars. Where the cable can touch something it is lumped all the time: contacts take momentum
+/// of one node, nodes come and go with corners and pulleys, and a mass that changed as contact begins would change the energy.
+fn spreads_mass(problem: &Problem) -> bool {
+    touches_nothing(problem) && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley)
 }
 
 /// Elements of a cable where neither the scene nor the settings say: finer where it can touch something.

@@ -8,6 +8,7 @@
 //! [A + Bᵀ(k + c)B] δx = −(residual with Q of the present lengths),     Q ← Q(P) + (k + c) t·δ(x₂ − x₁)
 //! A = m a² + Q/P (I − t tᵀ)
 //! ```
+//! with the mass m as it is spread over the bars (see `mass`).
 //! (Q < 0 is taken for 0 where the matrix is not positive definite with it.) The same matrix as Newton in positions but
 //! for the Q in it (the multiplier, as in the augmented Lagrangian methods: R.
 //! Glowinski and P. Le Tallec, *Augmented Lagrangian and operator-splitting methods in nonlinear mechanics*, SIAM 1989).
@@ -144,14 +145,17 @@ impl FreeStep {
             let pull = self.pull[e];
             let off = (now - pull).abs() - ROUNDING * f64::EPSILON * stiffness * x[e].norm();
             balance.pull = larger(balance.pull, off);
-            self.gradient[e] -= t * pull;
-            self.gradient[e + 1] += t * pull;
-            self.step[e] += t * now;
-            self.step[e + 1] -= t * now;
+            let (coupling, chord) = task.coupling.get(e).copied().unwrap_or_default();
+            let inertia = (d - chord) * coupling;
+            self.gradient[e] -= t * pull - inertia;
+            self.gradient[e + 1] += t * pull - inertia;
+            self.step[e] += t * now - inertia;
+            self.step[e + 1] -= t * now - inertia;
             let clip = curvature == Curvature::Clipped && pull < 0.0;
             let geometric = if p > 0.0 && !clip { pull / p } else { 0.0 };
             let along = stiffness - geometric;
-            let block = [along * t.x * t.x + geometric, along * t.x * t.y, along * t.y * t.y + geometric];
+            let across = geometric - coupling;
+            let block = [along * t.x * t.x + across, along * t.x * t.y, along * t.y * t.y + across];
             for c in 0..3 {
                 self.diagonal[e][c] += block[c];
                 self.diagonal[e + 1][c] += block[c];

@@ -39,6 +39,7 @@ impl Dynamics {
         let between = slid(k - 1) * (1.0 - part) + slid(k) * part;
         let between = if sliding.is_some() { floor::as_slide(between, t) } else { between };
         let h = m.step_before;
+        mesh.spread.clear();
         mesh.arc_length.insert(k, arc_length);
         mesh.rest_length[k - 1] = mesh.thermal_stretch * (arc_length - a);
         mesh.rest_length.insert(k, mesh.thermal_stretch * (b - arc_length));
@@ -108,6 +109,7 @@ impl Dynamics {
     fn take_out(&mut self, k: usize) {
         self.keep_answer();
         let mesh = &mut self.mesh;
+        mesh.spread.clear();
         mesh.arc_length.remove(k);
         mesh.rest_length.remove(k);
         mesh.rest_length[k - 1] = mesh.thermal_stretch * (mesh.arc_length[k] - mesh.arc_length[k - 1]);

@@ -32,6 +32,7 @@ mod hands;
 mod integrate;
 mod layout;
 mod marks;
+pub mod mass;
 mod mesh_edit;
 mod momentum;
 mod motion;

@@ -1,8 +1,8 @@
 //! The account of a cable's momentum in a step of its caller: what each kind of force gave it.
 //!
-//! With p the momentum and F a force at the end of a step, BDF2 gives (see `integrate`)
+//! With p the momentum and F a force at the end of a step, its history gives (see `integrate`)
 //! ```text
-//! Δp = ((1 + ω) h F + ω² Δp₋)/(1 + 2ω)
+//! Δp = F/a + (past − older) Δp₋ − older Δp₌
 //! ```
 //! so that the impulse of each kind of force is filtered as their sum is. What a round does to the cable that runs over it is what bends its way:
 //! the pull of the bars beside it, and the change of the momentum of what lies on it and of what goes over it.
@@ -10,6 +10,7 @@
 use super::assembly::Mesh;
 use super::bar;
 use super::dynamics::Dynamics;
+use super::integrate::Weights;
 use super::sliding::Seat;
 use super::task::Pose;
 use crate::contact::friction;
@@ -42,6 +43,8 @@ pub(super) struct Account {
     late: Kinds,
     /// Impulses of the last step that the history of the next one has, N s.
     last: Kinds,
+    /// Those of the step before that, N s.
+    older: Kinds,
 }
 
 impl Account {
@@ -214,14 +217,9 @@ impl Dynamics {
         sum
     }
 
-    /// Adds the impulses of a step of `h` (s), `omega` times the one before, in which forces (N) were balanced: the step is made, contacts are not yet
+    /// Adds the impulses of a step of these weights in which forces (N) were balanced: the step is made, contacts are not yet
     /// made plastic. `slid` is the momentum of what lay on rounds before (kg m/s), `slide` how far it slid (m).
-    pub(super) fn account_for_step(
-        &mut self,
-        (h, omega): (f64, f64),
-        forces: Kinds,
-        (slid, slide): ([Vec2; 2], &[f64]),
-    ) {
+    pub(super) fn account_for_step(&mut self, weights: Weights, forces: Kinds, (slid, slide): ([Vec2; 2], &[f64])) {
         let now = self.sliding_momentum();
         let mut over = [now[0] - slid[0], now[1] - slid[1]];
         let mut history = [Vec2::zeros(); 2];
@@ -241,7 +239,9 @@ impl Dynamics {
         }
         let account = &mut self.motion.account;
         for (k, force) in forces.into_iter().enumerate() {
-            let given = (force * ((1.0 + omega) * h) + account.last[k] * (omega * omega)) / (1.0 + 2.0 * omega);
+            let Weights { past, older, a, .. } = weights;
+            let given = force / a + account.last[k] * (past - older) - account.older[k] * older;
+            account.older[k] = account.last[k];
             account.last[k] = given;
             account.add(k, given);
         }

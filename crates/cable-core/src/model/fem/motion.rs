@@ -15,6 +15,9 @@ pub(super) struct Motion {
     pub(super) v: Vec<Vec2>,
     pub(super) x_before: Vec<Vec2>,
     pub(super) v_before: Vec<Vec2>,
+    /// Place and velocity two steps ago, where the integrator looks so far back.
+    pub(super) x_older: Vec<Vec2>,
+    pub(super) v_older: Vec<Vec2>,
     /// Arc length at sliding nodes one step ago, m.
     pub(super) s_before: Vec<f64>,
     /// Rate of the arc length at sliding nodes, m/s.
@@ -22,6 +25,8 @@ pub(super) struct Motion {
     pub(super) w_before: Vec<f64>,
     /// Last step, s; 0 = no history, the next step is implicit Euler.
     pub(super) step_before: f64,
+    /// Steps as long as the last, one after the other, after each of which all bars pulled.
+    pub(super) even_steps: usize,
     pub(super) followers: Vec<Option<Follower>>,
     /// Hands that hold supports by springs.
     pub(super) hands: Vec<Option<Hand>>,
@@ -35,17 +40,20 @@ pub(super) struct Motion {
 impl Motion {
     /// Becomes a copy without new memory where there is room.
     pub(super) fn copy_from(&mut self, other: &Self) {
-        let Self { x, v, x_before, v_before, s_before, w, w_before, followers, hands, .. } = other;
+        let Self { x, v, x_before, v_before, x_older, v_older, s_before, w, w_before, followers, hands, .. } = other;
         self.x.clone_from(x);
         self.v.clone_from(v);
         self.x_before.clone_from(x_before);
         self.v_before.clone_from(v_before);
+        self.x_older.clone_from(x_older);
+        self.v_older.clone_from(v_older);
         self.s_before.clone_from(s_before);
         self.w.clone_from(w);
         self.w_before.clone_from(w_before);
         self.followers.clone_from(followers);
         self.hands.clone_from(hands);
-        (self.step_before, self.time, self.placement) = (other.step_before, other.time, other.placement);
+        (self.step_before, self.even_steps) = (other.step_before, other.even_steps);
+        (self.time, self.placement) = (other.time, other.placement);
         self.account = other.account;
     }
 }

@@ -2,8 +2,9 @@
 //!
 //! BDF2 puts (3x₁ − 4x₀ + x₋)/2h = ẋ − h²/3 x⃛ + … for ẋ, so that a vibration of angular frequency ω comes out slower by
 //! (ωh)²/3 of it, and loses π(ωh)³/2 of its amplitude a period (Hairer, Wanner, "Solving ordinary differential equations
-//! II", 1996, V.1). The frequency of a motion is read off it, ω² = Σ m a² / Σ m v² over the last while, a and v without the mean of
-//! the cable, which falls or is carried along.
+//! II", 1996, V.1). Even steps have a part of BDF3 and half of that error; it is BDF2's that is reckoned with, for steps that change. The
+//! frequency of a motion is read off it, ω² = Σ m a² / Σ m v² over the last while, a and v without the mean of the cable, which falls or
+//! is carried along.
 
 use super::dynamics::Dynamics;
 use crate::math::{Vec2, bounded};

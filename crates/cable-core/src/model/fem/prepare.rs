@@ -144,6 +144,7 @@ impl Dynamics {
         task.inertia.clear();
         task.inertia.resize(n, 0.0);
         task.predicted.clone_from(&self.motion.x);
+        task.coupling.clear();
         task.predicted_length.clear();
         task.predicted_length.extend_from_slice(&mesh.rest_length);
         task.predicted_slide.clear();

@@ -24,6 +24,8 @@ pub struct Task {
     pub inertia: Vec<f64>,
     /// x̃, m.
     pub predicted: Vec<Vec2>,
+    /// Of each bar what couples the inertia of its nodes (m a², N/m) and its predicted chord (m); empty: nothing does.
+    pub coupling: Vec<(f64, Vec2)>,
     /// EA τ a, N (0: no damping).
     pub damping: f64,
     /// EI τ/h, N m² (0: no damping).
