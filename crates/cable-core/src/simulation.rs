@@ -24,6 +24,12 @@ use crate::watch::{Bends, Subject, Watch};
 /// Longest step a display frame takes, s: longer makes one slow frame cause the next, shorter slows time at 10 Hz.
 pub const MAX_FRAME_S: f64 = 0.1;
 
+/// Longest step with inertia, s: a quarter of a million inner steps. Longer: a slip of the pen computes for hours without a word.
+const LONGEST_STEP_S: f64 = 1e3;
+
+/// The same without inertia, s.
+const LONGEST_SLOW_STEP_S: f64 = 1e6;
+
 /// Fewer elements than this say nothing of how wrong others are.
 const LEAST_ELEMENTS: usize = 4;
 
@@ -360,9 +366,16 @@ impl Simulation {
     }
 
     fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
+        let (longest, allowed) = match inertia {
+            Inertia::Dynamic => (LONGEST_STEP_S, "more than 0 and at most 1000 s"),
+            Inertia::QuasiStatic => (LONGEST_SLOW_STEP_S, "more than 0 and at most 1e6 s"),
+        };
+        if !(dt_s > 0.0 && dt_s <= longest) {
+            return Err(SolveError::TimeStep { dt_s, allowed });
+        }
         self.cables.iter_mut().for_each(Strand::forget_peaks);
         let velocities: Vec<_> = self.answers.iter().map(|a| AlongCable::velocities(&a.nodes)).collect();
-        let done = match self.vehicle.is_some() && dt_s > 0.0 && dt_s.is_finite() {
+        let done = match self.vehicle.is_some() {
             true => self.advance_with_robot(dt_s, inertia),
             false => self.each(|c| c.advance(dt_s, inertia)),
         };
