@@ -28,7 +28,7 @@ pub struct Motion {
 pub struct Measured {
     /// The figure, a place (m) or a number with 0 beside it.
     pub figure: Vec2,
-    /// CPU time would be better; elapsed time of the motion alone, s.
+    /// Elapsed time of the motion alone, s.
     pub elapsed_s: f64,
 }
 
