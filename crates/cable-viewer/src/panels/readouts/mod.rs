@@ -213,19 +213,25 @@ fn material(ui: &mut Ui, (cable, solved): (&Cable, &CableSolution), first: &Cabl
         return;
     };
     let help = "Tightest bend of the cable's line; what a support of no radius turns sharply is not counted";
-    let tight = if first.utilisation.bend_radius_ratio.is_some_and(|r| r > 1.0) { ", too tight" } else { "" };
+    let limit = cable.min_bend_radius_m;
+    let radius = |radius_m: f64| {
+        let tight = if radius_m < limit { ", too tight" } else { "" };
+        format!("{}{tight}", unit::length(radius_m))
+    };
     let judged = first.judged_bend.filter(|j| j.bend.radius_m > bend.radius_m);
-    let text = format!("{}{}", unit::length(bend.radius_m), if judged.is_none() { tight } else { "" });
+    let text = if judged.is_none() { radius(bend.radius_m) } else { unit::length(bend.radius_m) };
     figure(ui, "Min bend radius", text, help, Some((&place(bend), &mut *commands)));
     if let Some(j) = judged {
         let help = format!(
             "Sharpest bend where something leads it, at sharp corners with a bending stiffness of {}: this is what is warned of",
             unit::Unit::N_M2.text(j.bending_stiffness_n_m2)
         );
-        let text = format!("{}{tight}", unit::length(j.bend.radius_m));
-        figure(ui, "  as stiff as it is", text, &help, Some((&place(j.bend), &mut *commands)));
+        figure(ui, "  as stiff as it is", radius(j.bend.radius_m), &help, Some((&place(j.bend), &mut *commands)));
     }
-    let limit = cable.min_bend_radius_m;
+    if let Some(free) = solved.free_bend.filter(|b| judged.is_some() && b.radius_m < limit) {
+        let help = "Sharpest bend where nothing leads it: it kinks there";
+        figure(ui, "  free", radius(free.radius_m), help, Some((&place(free), &mut *commands)));
+    }
     if limit > 0.0 {
         figure(ui, "  allowed", format!("≥ {}", unit::length(limit)), "The cable's smallest allowed bend radius", None);
     }
@@ -302,17 +308,17 @@ fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<(
         return Some((neglected, format!(". No answer was found with that: {why}")));
     };
     let most = figures::greatest(solved, |n| n.tension_n).map_or(0.0, |(tension, _)| tension);
-    let more = if most > 0.0 { format!(" ({:+.2} %)", 100.0 * (with / most - 1.0)) } else { String::new() };
+    let change = if most > 0.0 { format!("{:+.2} %", 100.0 * (with / most - 1.0)) } else { unit::force(with) };
     let part = |of: Option<f64>, text: fn(f64) -> String| {
         of.map_or_else(|| "by what is not known".to_owned(), |v| format!("by up to {}", text(v)))
     };
     let details = format!(
-        ". With that the greatest tension is {}{more}, forces on supports change {}, the shape {}",
+        ". With that the greatest tension is {} ({change}), forces on supports change {}, the shape {}",
         unit::force(with),
         part(found.changes.support_force_n, unit::force),
         part(found.changes.position_m, unit::length),
     );
-    Some((format!("neglected; {}{more} with it", unit::force(with)), details))
+    Some((format!("neglected: {change}"), details))
 }
 
 fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
