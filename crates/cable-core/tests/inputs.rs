@@ -391,3 +391,23 @@ fn steps_that_cannot_be_are_refused_and_change_nothing() {
         }
     }
 }
+
+/// A cable that is answered at another scale says why the first model has no answer as others do, with the places of its own scene. (No
+/// resting place is found for this one: it lies on a smooth slope, a kilometre long and as light as a thread.)
+#[test]
+fn what_a_first_model_says_is_told_at_the_scale_of_the_scene() {
+    use cable_core::scene::{Obstacle, Shape, Support, catalog};
+    use cable_core::{Model, Simulation};
+    let ends =
+        vec![Support::fixed("a", [-0.020_871_9, 0.042_036]), Support::fixed("b", [902.120_943_8, 645.258_519_7])];
+    let mut scene = catalog::cable_alone([1189.712_097_8, 3.567_511_869e-5, 281.826_448_8], ends);
+    scene.cables[0].diameter_m = 0.093_865;
+    let slope = Shape::Terrain { points_m: vec![[-6275.499_125, -3115.937_886_4], [12_550.998_25, 6231.875_772_8]] };
+    scene.obstacles = vec![Obstacle { name: "slope".into(), shape: slope, friction: Some(0.0) }];
+    let said = match Simulation::new(scene, Model::Auto).unwrap().settle() {
+        Ok(answer) => answer.reason,
+        Err(error) => error.to_string(),
+    };
+    println!("{said}");
+    assert!(said.contains("spans follows a taut cable only") && said.contains("at (-0.021 m, 0.042 m)"), "{said}");
+}

@@ -22,13 +22,31 @@ pub struct Similar {
     problem: Arc<Problem>,
     by: Similarity,
     inner: Box<dyn Mechanics>,
+    /// What the inner model says of itself, at this scale.
+    reason: Option<String>,
+    refusal: Option<SolveError>,
 }
 
 impl Similar {
     /// Wraps the model of the copy.
     #[must_use]
     pub fn new(problem: Arc<Problem>, by: Similarity, inner: Box<dyn Mechanics>) -> Self {
-        Self { problem, by, inner }
+        let mut this = Self { problem, by, inner, reason: None, refusal: None };
+        this.listen();
+        this
+    }
+
+    /// Takes down why the inner model is the one it is, and why another has no answer.
+    fn listen(&mut self) {
+        self.refusal = self.inner.refusal().cloned().map(|e| self.error(e));
+        let inner = self.inner.reason().map(str::to_owned).map(|text| self.told(text));
+        self.reason = inner.map(|text| self.refusal.as_ref().map_or(text, ToString::to_string));
+    }
+
+    /// The same with another inner model.
+    fn around(&self, inner: Box<dyn Mechanics>) -> Box<dyn Mechanics> {
+        let (problem, reason, refusal) = (self.problem.clone(), self.reason.clone(), self.refusal.clone());
+        Box::new(Self { problem, by: self.by, inner, reason, refusal })
     }
 
     /// Text that was written at the copy's scale: where it may name lengths it says so.
@@ -189,11 +207,17 @@ impl Mechanics for Similar {
     }
 
     fn reason(&self) -> Option<&str> {
-        self.inner.reason()
+        self.reason.as_deref()
+    }
+
+    fn refusal(&self) -> Option<&SolveError> {
+        self.refusal.as_ref()
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        match self.inner.settle() {
+        let found = self.inner.settle();
+        self.listen();
+        match found {
             Ok(report) => Ok(self.report(report)),
             Err(e) => Err(self.error(e)),
         }
@@ -222,9 +246,13 @@ impl Mechanics for Similar {
                     (sum.cost.residual_n, sum.cost.inner_step_s) = (report.cost.residual_n, report.cost.inner_step_s);
                     sum.warnings = report.warnings;
                 }
-                Err(e) => return Err(self.error(e)),
+                Err(e) => {
+                    self.listen();
+                    return Err(self.error(e));
+                }
             }
         }
+        self.listen();
         Ok(sum)
     }
 
@@ -238,12 +266,16 @@ impl Mechanics for Similar {
 
     fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
         let to = self.state_to(state);
-        self.inner.adopt(&to).map_err(|e| self.error(e))
+        let done = self.inner.adopt(&to);
+        self.listen();
+        done.map_err(|e| self.error(e))
     }
 
     fn take_over(&mut self, given: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         let to = answer(given.clone(), self.by.length, self.by.time, |p| self.by.place(p));
-        self.inner.take_over(&to, time_s * self.by.time).map_err(|e| self.error(e))
+        let done = self.inner.take_over(&to, time_s * self.by.time);
+        self.listen();
+        done.map_err(|e| self.error(e))
     }
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
@@ -255,7 +287,9 @@ impl Mechanics for Similar {
     }
 
     fn fall_back(&mut self, why: &str) -> bool {
-        self.inner.fall_back(why)
+        let fell = self.inner.fall_back(why);
+        self.listen();
+        fell
     }
 
     fn solution(&self) -> CableSolution {
@@ -271,7 +305,7 @@ impl Mechanics for Similar {
     }
 
     fn copy_to_keep(&self) -> Box<dyn Mechanics> {
-        Box::new(Self { problem: self.problem.clone(), by: self.by, inner: self.inner.copy_to_keep() })
+        self.around(self.inner.copy_to_keep())
     }
 
     fn lend(&mut self) -> Option<Own> {
@@ -283,6 +317,6 @@ impl Mechanics for Similar {
     }
 
     fn boxed_clone(&self) -> Box<dyn Mechanics> {
-        Box::new(Self { problem: self.problem.clone(), by: self.by, inner: self.inner.boxed_clone() })
+        self.around(self.inner.boxed_clone())
     }
 }
