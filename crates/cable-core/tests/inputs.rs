@@ -400,9 +400,9 @@ fn what_a_first_model_says_is_told_at_the_scale_of_the_scene() {
     use cable_core::{Model, Simulation};
     let ends =
         vec![Support::fixed("a", [-0.020_871_9, 0.042_036]), Support::fixed("b", [902.120_943_8, 645.258_519_7])];
-    let mut scene = catalog::cable_alone([1189.712_097_8, 3.567_511_869e-5, 281.826_448_8], ends);
+    let mut scene = catalog::cable_alone([1_189.712_097_8, 3.567_511_869e-5, 281.826_448_8], ends);
     scene.cables[0].diameter_m = 0.093_865;
-    let slope = Shape::Terrain { points_m: vec![[-6275.499_125, -3115.937_886_4], [12_550.998_25, 6231.875_772_8]] };
+    let slope = Shape::Terrain { points_m: vec![[-6_275.499_125, -3_115.937_886_4], [12_550.998_25, 6_231.875_772_8]] };
     scene.obstacles = vec![Obstacle { name: "slope".into(), shape: slope, friction: Some(0.0) }];
     let said = match Simulation::new(scene, Model::Auto).unwrap().settle() {
         Ok(answer) => answer.reason,
