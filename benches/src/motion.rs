@@ -185,10 +185,16 @@ pub fn motions() -> [Motion; 9] {
             },
             exact: None,
         },
-        capstan("capstan-half", "half a turn", |n| wound(std::f64::consts::PI, n), || euler(std::f64::consts::PI)),
+        capstan(
+            "capstan-half",
+            "a cord wound half a turn round a rod is drawn on, a weight on its other end: mean pull over the weight, against \
+             Euler's e^(μφ), and its ripple",
+            |n| wound(std::f64::consts::PI, n),
+            || euler(std::f64::consts::PI),
+        ),
         capstan(
             "capstan-one-and-a-half",
-            "one and a half turns",
+            "the same with one and a half turns",
             |n| wound(3.0 * std::f64::consts::PI, n),
             || euler(3.0 * std::f64::consts::PI),
         ),
@@ -241,13 +247,7 @@ pub fn motions() -> [Motion; 9] {
     ]
 }
 
-fn capstan(id: &'static str, turns: &'static str, scene: fn(usize) -> Scene, exact: fn() -> Vec2) -> Motion {
-    let about = match turns {
-        "half a turn" => {
-            "a cord wound half a turn round a rod is drawn on, a weight on its other end: mean pull over the weight, against Euler's e^(μφ), and its ripple"
-        }
-        _ => "the same with one and a half turns",
-    };
+fn capstan(id: &'static str, about: &'static str, scene: fn(usize) -> Scene, exact: fn() -> Vec2) -> Motion {
     Motion {
         id,
         about,
