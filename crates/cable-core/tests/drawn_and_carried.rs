@@ -4,6 +4,7 @@
 
 use cable_core::scene::{Obstacle, Scene, Shape, Support, SupportKind, View, catalog};
 use cable_core::solution::CableSolution;
+use cable_core::verify::{Depth, Verifier};
 use cable_core::{Model, Settings, Simulation};
 use proptest::prelude::*;
 
@@ -145,5 +146,40 @@ proptest! {
         let found = solve(&scene, Model::MassSpring, Some(segments));
         let left = not_carried(&scene, &found);
         prop_assert!(left < 1e-4, "{left:.1e} of the weight");
+    }
+}
+
+/// A slack cable over a round that is wider than its bars are long, and down to the ground: bars leave the round in their middle, and the weight of
+/// what lies on it acts there. With half of it at the free node beyond, the piece from the round to that node was 0.64 N off its balance
+/// (105374), and another cable was refused as one that pushes (105486).
+#[test]
+fn weight_on_a_round_acts_on_the_round() {
+    let cases = [
+        (
+            12.762_014_771_7,
+            2.507_334_379,
+            [7.383_288_603, 1.977_618_116],
+            [1.355_944_1, 0.755_033_85, 0.570_025_607],
+            1.077,
+        ),
+        (9.9, 2.2, [5.1, 1.7], [1.1, 0.8, 0.45], 6.0),
+        (14.0, 2.9, [8.2, 2.4], [1.6, 0.6, 0.5], 3.0),
+    ];
+    for (length, from, to, [x, y, radius_m], density) in cases {
+        let mut scene = over(&[[-40.0, 0.0], [50.0, 0.0]], [[0.0, from], to], length);
+        scene.obstacles[0].friction = Some(0.5);
+        let shape = Shape::Circle { center_m: [x, y], radius_m };
+        scene.obstacles.push(Obstacle { name: "post".into(), friction: Some(0.5), shape });
+        let c = &mut scene.cables[0];
+        (c.linear_density_kg_per_m, c.axial_stiffness_n) = (density, 2.34e6);
+        for segments in [60, 107, 150] {
+            let settings = Settings { segments: Some(segments), ..Settings::default() };
+            let mut simulation = Simulation::with_settings(scene.clone(), Model::Fem, settings).unwrap();
+            let found = simulation.settle().unwrap_or_else(|e| panic!("{e}"));
+            let balance = Verifier::new(&scene).check(&scene, &found, Depth::Full).balance;
+            let off = balance.residual_n / balance.scale_n;
+            println!("{length} m, {segments} bars: pieces are balanced within {off:.1e} of {:.1} N", balance.scale_n);
+            assert!(off < 1e-6, "{off:.1e}");
+        }
     }
 }

@@ -271,39 +271,42 @@ fn recover(ui: &mut Ui, scene: &cable_core::Scene, commands: &mut Vec<Command>) 
     });
 }
 
+/// What pointer and keys do; docs/controls.md has the same table.
+const CONTROLS: [(&str, &str); 26] = [
+    ("Drag a support, waypoint or corner", "Moves it; the cable follows"),
+    ("Drag an obstacle", "Moves all of it; click it to see its corners"),
+    ("Double-click the cable", "Adds a waypoint"),
+    ("Shift+click, Shift+drag", "Picks several things; draws a frame round them"),
+    ("Drag the head of a load's arrow", "Sets its force"),
+    ("Double-click the ground", "Adds a leg to the robot's path; drag its flag to move it"),
+    ("Drag the background", "Moves the view"),
+    ("Wheel", "Zooms at the pointer, in graphs too"),
+    ("+, −, Shift+arrows", "Zooms about the middle; moves the view"),
+    ("Click the cable", "Takes its tension there apart"),
+    ("Click in a graph", "Sets a cursor; a second one tells the difference"),
+    ("Tab, Enter, Esc", "Next control; presses it; back to the canvas"),
+    ("Left, right in a graph", "Moves its cursor; with Shift what is in view"),
+    ("Up, down, Enter in a graph", "Zooms; sets another cursor"),
+    ("F, C", "Fits the scene, recentres on the cable"),
+    ("Space", "Runs or pauses"),
+    ("Arrow right, left", "One step of 1/60 s; one picture back"),
+    ("Hold A, D", "Drives the robot left, right"),
+    ("R", "Back to the start"),
+    ("Del", "Removes what is selected"),
+    ("Ctrl+Z, Ctrl+Shift+Z", "Undo, redo"),
+    ("N, Shift+N, M", "Picks the next thing, the one before, one more"),
+    ("Alt+arrows", "Moves what is picked by a grid line"),
+    ("Ctrl+C, X, V, A", "Copy, cut, paste, pick everything"),
+    ("Ctrl+O, Ctrl+S", "Open, save"),
+    ("Ctrl+P", "Everything by name"),
+];
+
 fn help(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.heading("Pointer and keys");
     ui.add_space(6.0);
     tall(ui, |ui| {
         egui::Grid::new("keys").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
-            for (what, does) in [
-                ("Drag a support, waypoint or corner", "Moves it; the cable follows"),
-                ("Drag an obstacle", "Moves all of it; click it to see its corners"),
-                ("Double-click the cable", "Adds a waypoint"),
-                ("Shift+click, Shift+drag", "Picks several things; draws a frame round them"),
-                ("Drag the head of a load's arrow", "Sets its force"),
-                ("Double-click the ground", "Adds a leg to the robot's path; drag its flag to move it"),
-                ("Drag the background", "Moves the view"),
-                ("Wheel", "Zooms at the pointer, in graphs too"),
-                ("+, −, Shift+arrows", "Zooms about the middle; moves the view"),
-                ("Click the cable", "Takes its tension there apart"),
-                ("Click in a graph", "Sets a cursor; a second one tells the difference"),
-                ("Tab, Enter, Esc", "Next control; presses it; back to the canvas"),
-                ("Left, right in a graph", "Moves its cursor; with Shift what is in view"),
-                ("Up, down, Enter in a graph", "Zooms; sets another cursor"),
-                ("F, C", "Fits the scene, recentres on the cable"),
-                ("Space", "Runs or pauses"),
-                ("Arrow right, left", "One step of 1/60 s; one picture back"),
-                ("Hold A, D", "Drives the robot left, right"),
-                ("R", "Back to the start"),
-                ("Del", "Removes what is selected"),
-                ("Ctrl+Z, Ctrl+Shift+Z", "Undo, redo"),
-                ("N, Shift+N, M", "Picks the next thing, the one before, one more"),
-                ("Alt+arrows", "Moves what is picked by a grid line"),
-                ("Ctrl+C, X, V, A", "Copy, cut, paste, pick everything"),
-                ("Ctrl+O, Ctrl+S", "Open, save"),
-                ("Ctrl+P", "Everything by name"),
-            ] {
+            for (what, does) in CONTROLS {
                 ui.strong(what);
                 ui.label(does);
                 ui.end_row();
@@ -313,5 +316,16 @@ fn help(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.add_space(10.0);
     if ui.button("Close").clicked() {
         commands.push(close());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_page_of_controls_lists_what_the_window_lists() {
+        let page = include_str!("../../../../docs/controls.md");
+        let rows: Vec<String> = super::CONTROLS.iter().map(|(what, does)| format!("| {what} | {does} |")).collect();
+        let listed: Vec<&str> = page.lines().filter(|l| l.starts_with("| ")).skip(1).collect();
+        assert_eq!(rows, listed);
     }
 }

@@ -6,13 +6,14 @@
 //! ∂²E/∂P² = EA/L,    ∂²E/∂P∂L = −EA P/L²,   ∂²E/∂L² = EA P²/L³
 //! ```
 //! At a node that moves with the material P depends on where the node is; at a sliding node L depends on its slide.
-//! The weight of half the bar acts at each end, so a change δL of the material adds −b·((x₁ + x₂)/2 − x₀) δL, with x₀
+//! The weight of the bar acts at the centroid c of its way (`weight.rs`), so a change δL of the material adds −b·(c − x₀) δL, with x₀
 //! the sliding node it came through.
 //! Damping with time constant τ is a second bar of stiffness EA τ a whose strain is measured from the one predicted.
 
 use super::assembly::{Mesh, System};
 use super::contact_step::ROUNDED;
 use super::task::{Pose, Task};
+use super::weight::Weight;
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 
@@ -48,7 +49,7 @@ pub fn pull_at_slide((mesh, task): (&Mesh, &Task), e: usize, j: usize, x: &[Vec2
     let ratio = task.predicted_length[e] / mesh.rest_length[e];
     let loss = task.damping / mesh.rest_length[e] * (p - ratio * l) * ratio;
     let tension = stiffness(mesh, !(strain < 0.0)) * strain;
-    mesh.thermal_stretch * (tension * (1.0 + 0.5 * strain) + loss) + lifted(task.body, (e, j), x)
+    mesh.thermal_stretch * (tension * (1.0 + 0.5 * strain) + loss) + lifted((mesh, task.body), (e, j), x)
 }
 
 /// What a bar with a sliding node at an end pulls with along its way, N.
@@ -60,10 +61,10 @@ pub fn pull_on((mesh, task): (&Mesh, &Task), e: usize, x: &[Vec2], slide: &[f64]
     stiffness(mesh, !(strain < 0.0)) * strain + task.damping / mesh.rest_length[e] * (p - ratio * l)
 }
 
-/// What it takes to lift the weight from the middle of a bar to its start (`j` 0) or end (1), N.
+/// What it takes to lift the weight from the centroid of a bar to its start (`j` 0) or end (1), N.
 #[must_use]
-pub fn lifted(body: Vec2, (e, j): (usize, usize), x: &[Vec2]) -> f64 {
-    body.dot(&((x[e] + x[e + 1]) * 0.5 - x[e + j]))
+pub fn lifted((mesh, body): (&Mesh, Vec2), (e, j): (usize, usize), x: &[Vec2]) -> f64 {
+    body.dot(&(Weight::of(mesh, e, &mesh.path(e, x), body).center - x[e + j]))
 }
 
 /// The pull at the present length P of a bar between nodes that move with the material, and its slope by P, N and N/m.
@@ -141,19 +142,25 @@ fn add_sliding(
     let viscous = 0.5 * c * late * late;
     let rounding = ROUNDED * pull.abs() * pose.x[e].norm();
     let carried = mesh.thermal_stretch;
-    let middle = (pose.x[e] + pose.x[e + 1]) * 0.5;
+    let hung = Weight::of(mesh, e, &path, task.body);
     let sign = [-1.0, 1.0];
     // Work is measured from the sliding node itself: with friction the two sides of it count differently.
-    let weight = [0, 1].map(|j| if slides[j] { task.body.dot(&(middle - pose.x[e + j])) } else { 0.0 });
+    let weight = [0, 1].map(|j| if slides[j] { task.body.dot(&(hung.center - pose.x[e + j])) } else { 0.0 });
     // Generalised directions of P and of L, and of the weight's lever, at both ends.
     let along = [0, 1].map(|j| if slides[j] { Vec2::zeros() } else { t * sign[j] });
     let length = [0, 1].map(|j| if slides[j] { Vec2::new(carried * sign[j], 0.0) } else { Vec2::zeros() });
     let lever = [0, 1].map(|j| if slides[j] { Vec2::new(sign[j], 0.0) } else { Vec2::zeros() });
-    let hang = [0, 1].map(|j| if slides[j] { Vec2::zeros() } else { task.body * 0.5 });
     let change = pose.slide[e + 1] - pose.slide[e];
+    // Half of what the bar held at first is among the forces on its nodes.
+    let held = mesh.arc_length[e + 1] - mesh.arc_length[e];
+    let half = (pose.x[e] + pose.x[e + 1]) * 0.5;
+    let shifted = task.body.dot(&(hung.center - half)) * held;
+    let hang = [0, 1].map(|j| {
+        if slides[j] { Vec2::zeros() } else { hung.slope[j] * change + (hung.slope[j] - task.body * 0.5) * held }
+    });
     let across = Mat2::identity() - t * t.transpose();
     for j in 0..2 {
-        s.add_gradient(e + j, (along[j] * pull + length[j] * push - lever[j] * weight[j] - hang[j] * change) * scale);
+        s.add_gradient(e + j, (along[j] * pull + length[j] * push - lever[j] * weight[j] - hang[j]) * scale);
         for k in j..2 {
             let mixed = along[j] * length[k].transpose() + length[j] * along[k].transpose();
             let mut block =
@@ -162,11 +169,14 @@ fn add_sliding(
                 block += across * (geometric * sign[j] * sign[k]);
             }
             if curvature == Curvature::Exact {
-                block -= (lever[j] * hang[k].transpose() + hang[j] * lever[k].transpose()) * scale;
+                block -= (lever[j] * hung.slope[k].transpose() + hung.slope[j] * lever[k].transpose()) * scale;
+                if j == k && !slides[j] {
+                    block -= Weight::bend(mesh, (e, j), (&path, pose.x[e + j]), task.body) * ((held + change) * scale);
+                }
             }
             s.add_block(e + j, e + k, &block);
         }
     }
-    let hung = weight[1] * pose.slide[e + 1] - weight[0] * pose.slide[e];
-    (scale * (elastic + viscous - hung), scale * (elastic + viscous + hung.abs() + rounding))
+    let fallen = weight[1] * pose.slide[e + 1] - weight[0] * pose.slide[e] + shifted;
+    (scale * (elastic + viscous - fallen), scale * (elastic + viscous + fallen.abs() + rounding))
 }

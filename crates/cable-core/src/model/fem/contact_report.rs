@@ -4,8 +4,10 @@ use super::assembly::Mesh;
 use super::contact_set::{ContactSet, Rub, Touch};
 use super::dynamics::Dynamics;
 use super::floor::OverRound;
+use super::marks::SMALL;
 use super::path::angle_between;
 use super::sliding::{Balanced, Load, Seat, Sliding};
+use super::weight::{self, Weight};
 use crate::contact::friction;
 use crate::energy::bending::turn;
 use crate::math::{Vec2, bounded, larger, perp, smaller};
@@ -118,14 +120,27 @@ impl Dynamics {
     }
 }
 
-/// Tension of each bar, N; a stiff cable's may be less than zero.
+/// Tension in the middle of the straight part of each bar, N; a stiff cable's may be less than zero.
 fn bar_tensions(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
     (0..d.mesh.rest_length.len()).map(|e| bar_tension(d, x, e)).collect()
 }
 
 fn bar_tension(d: &Dynamics, x: &[Vec2], e: usize) -> f64 {
-    let t = d.mesh.bar(e).tension(d.mesh.path(e, x).length);
-    if t < 0.0 && d.mesh.is_flexible() { 0.0 } else { t }
+    let path = d.mesh.path(e, x);
+    let t = d.mesh.bar(e).tension(path.length);
+    let flexible = d.mesh.is_flexible();
+    if d.mesh.sliding[e].is_some() || d.mesh.sliding[e + 1].is_some() {
+        let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
+        return Weight::of(&d.mesh, e, &path, d.task.body).in_the_middle(t, material, flexible);
+    }
+    if t < 0.0 && flexible { 0.0 } else { t }
+}
+
+/// Arc length from a node to the middle of the straight part of the bar before it (`side` 0) or after it (1), m.
+fn half(d: &Dynamics, (node, side): (usize, usize), x: &[Vec2]) -> f64 {
+    let e = node + side - 1;
+    let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
+    Weight::of(&d.mesh, e, &d.mesh.path(e, x), d.task.body).carried(material)[1 - side]
 }
 
 /// What the ground does to the half bar at a held end that lies on it.
@@ -162,7 +177,7 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
             return (taken - hung) * sign;
         }
         let middle = d.mesh.path(e, x).direction * tension[e];
-        let half = d.mesh.share(node);
+        let half = half(d, (node, usize::from(sign > 0.0)), x);
         let body = d.problem.body_force(d.time()) * half;
         let Some(ground) = ground else { return middle + body * sign };
         let grounded = ground_force(d, next, x) * (half / d.mesh.share(next));
@@ -244,7 +259,7 @@ pub(super) fn unbalanced(d: &Dynamics, x: &[Vec2], time_s: f64) -> Vec2 {
                 let path = d.mesh.path(e, x);
                 path.direction * d.mesh.bar(e).tension(path.length)
             });
-            sum += before - after - problem.body_force(time_s) * d.mesh.share(k);
+            sum += before - after - weight::on_node(&d.mesh, k, x, problem.body_force(time_s));
         } else {
             sum -= floor.unwrap_or_default();
         }
@@ -294,13 +309,11 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
             k if k + 1 == n => ends[1].norm(),
             k => 0.5 * (tension[k - 1] + tension[k]),
         };
-        let body = d.task.body;
-        let half = |e: usize| body * (0.5 * (mesh.arc_length[e + 1] - mesh.arc_length[e]));
         let bar = |e: usize| mesh.path(e, x).direction * tension[e] + shear(mesh, &moments, e, x);
         let force = match k {
             0 => ends[0] + shear(mesh, &moments, 0, x),
             k if k + 1 == n => ends[1] + shear(mesh, &moments, k - 1, x),
-            k => bar(k) + half(k),
+            k => bar(k) + d.task.body * half(d, (k, 1), x),
         };
         // Where a round reaches to it within a step, the round ends there.
         while out.last().is_some_and(|l: &Node| l.arc_length_m >= mesh.arc_length[k]) {
@@ -388,6 +401,12 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
     let unrubbed = |normal: Vec2| a - d.task.body.dot(&(normal - first)) * radius / mesh.thermal_stretch;
     let last = unrubbed(normal(after));
     let over = OverRound::between([a, b - (last - a)], floor);
+    // On a round that is small beside its bars, friction of the weight that hangs over it from them is beside it: on the round it is no more than
+    // its turn there allows.
+    let grown = (b / last).ln();
+    let small = same == [false; 2] && whole * radius < SMALL * d.even();
+    let rate = if small { bounded(grown, -node.friction * whole, node.friction * whole) } else { grown };
+    let begins = (0.5 * (grown - rate)).exp();
     let at = |i: f64| {
         let f = i / count;
         let turned = f * whole - before;
@@ -397,7 +416,7 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
         let tension = if floor != 0.0 {
             over.map_or(a + (b - a) * f, |over| over.at(f) + smooth - a)
         } else if a > 0.0 && b > 0.0 && smooth > 0.0 && last > 0.0 {
-            smooth * (b / last).powf(f)
+            smooth * begins * (rate * f).exp()
         } else {
             a + (b - a) * f
         };
@@ -408,19 +427,23 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
         OnRound { arc_length, at: node.end.center + normal * radius, tension, force, stretch }
     };
     let mut points: Vec<OnRound> = (0..=count as usize).map(|i| at(i as f64)).collect();
-    // What sags on to the round, or comes from inside its gap, comes and goes by a longer way than the bar: by as much as chords are shorter
-    // than their arc the round has material to spare.
+    // Friction on the round strains what lies there otherwise than the straight part beyond, which has its own tension. And what sags on to the
+    // round, or comes from inside its gap, comes and goes by a longer way than the bar: by as much as chords are shorter than their arc the
+    // round has material to spare.
     let half = 0.5 * whole / count;
     let spare = SPARED * (whole - count * 2.0 * half.sin()) * radius;
     for j in [0, 1] {
-        let beside = if j == 0 { k - 1 } else { k + 1 };
+        let (bar, beside) = (k + j - 1, if j == 0 { k - 1 } else { k + 1 });
         let Some(p) = (if j == 0 { points.first_mut() } else { points.last_mut() }) else { continue };
-        if mesh.sliding[beside].is_none() {
-            let way = (p.at - x[beside]).norm() / stretch[j];
-            let has = (p.arc_length - mesh.arc_length[beside]).abs();
-            let more = bounded(way - has, 0.0, spare / stretch[j]);
-            p.arc_length += [more, -more][j];
+        if mesh.sliding[beside].is_some() {
+            continue;
         }
+        let strained = |tension: f64| 1.0 + tension / d.problem.axial_stiffness;
+        let even = mesh.bar(bar).tension(paths[j].length);
+        let beyond = if even > 0.0 { stretch[j] * strained(tension[bar]) / strained(even) } else { stretch[j] };
+        let own = (p.arc_length - mesh.arc_length[beside]).abs() * stretch[j] / beyond;
+        let more = bounded((p.at - x[beside]).norm() / beyond - own, 0.0, spare / beyond);
+        p.arc_length = mesh.arc_length[beside] + [own + more, -own - more][j];
     }
     strain_evenly(&mut points, d.problem.axial_stiffness);
     points
@@ -480,7 +503,8 @@ fn pulley(d: &Dynamics, support: usize, x: &[Vec2], tension: &[f64]) -> Option<S
     let first = (1..x.len() - 1).find(on)?;
     let last = (1..x.len() - 1).rev().find(on)?;
     let (before, after) = (d.load(first)?, d.load(last)?);
-    let share: f64 = (first..=last).map(|k| d.mesh.share(k)).sum();
+    let inner = d.mesh.arc_length[last] - d.mesh.arc_length[first];
+    let share = half(d, (first, 0), x) + inner + half(d, (last, 1), x);
     let directions = [d.mesh.path(first - 1, x).direction, d.mesh.path(last, x).direction];
     let force = directions[1] * tension[last] - directions[0] * tension[first - 1] + d.task.body * share;
     let center = d.mesh.sliding[first]?.end.center;

@@ -2,6 +2,7 @@
 
 use super::dynamics::Dynamics;
 use super::task::Pose;
+use super::weight;
 use crate::math::Vec2;
 use crate::model::drive::{Follower, Hand, is_led};
 use crate::solution::Warning;
@@ -47,7 +48,10 @@ impl Dynamics {
         let before = if node > 0 { pull(node - 1) } else { Vec2::zeros() };
         let after = if node + 1 < mesh.nodes() { pull(node) } else { Vec2::zeros() };
         let time = self.motion.time;
-        before - after - self.problem.body_force(time) * mesh.share(node) - self.problem.hung_on(support, time)
+        before
+            - after
+            - weight::on_node(mesh, node, x, self.problem.body_force(time))
+            - self.problem.hung_on(support, time)
     }
 
     /// Keeps the force of the cable on what hands hold, as a pose balances it.

@@ -86,7 +86,7 @@ impl Dynamics {
             let shared = [k - 1, k + 1].map(|j| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node)));
             let x = &self.motion.x;
             let arcs = [self.mesh.path(k - 1, x).arcs[1], self.mesh.path(k, x).arcs[0]];
-            // On a large round the marks of a cable at rest are as far apart as nodes elsewhere: the weight of a bar is shared by its ends.
+            // On a large round the marks of a cable at rest are as far apart as nodes elsewhere: what friction holds is known between marks only.
             let spacing = if rests { smaller(0.5 * WIDE, even / node.end.radius) } else { 0.5 * WIDE };
             let big = |arc: f64| arc > 2.0 * spacing && arc * node.end.radius > SMALL * even;
             changes += 1;

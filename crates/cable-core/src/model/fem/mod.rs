@@ -56,6 +56,7 @@ mod take_over;
 mod task;
 mod touch;
 mod two_meshes;
+mod weight;
 mod wheel;
 
 use std::sync::Arc;

@@ -13,6 +13,7 @@ use super::dynamics::Dynamics;
 use super::integrate::Weights;
 use super::sliding::Seat;
 use super::task::Pose;
+use super::weight;
 use crate::contact::friction;
 use crate::math::Vec2;
 use crate::problem::Problem;
@@ -212,7 +213,9 @@ impl Dynamics {
             if moves(k + 1) {
                 *round -= mesh.path(k, x).direction * bar::pull_on((mesh, task), k, x, &pose.slide);
             }
-            *round -= task.body * (mesh.share(k) + 0.5 * (pose.slide[k + 1] - pose.slide[k - 1]));
+            for (e, side) in [(k - 1, 1), (k, 0)] {
+                *round -= weight::on_ends(mesh, e, (x, Some(&pose.slide)), task.body)[side];
+            }
         }
         sum
     }

@@ -34,6 +34,14 @@ impl End {
     pub fn point(at: Vec2) -> Self {
         Self { center: at, radius: 0.0, mark: Vec2::x(), sense: 1.0 }
     }
+
+    /// ∫r ds over the arc from the mark on through an angle (rad; negative: back), m². Its length counts negative where the angle times its direction does.
+    #[must_use]
+    pub fn arc(&self, angle: f64) -> Vec2 {
+        let (sin, cos) = (0.5 * self.sense * angle).sin_cos();
+        let middle = Vec2::new(cos * self.mark.x - sin * self.mark.y, sin * self.mark.x + cos * self.mark.y);
+        self.center * (self.radius * angle) + middle * (2.0 * self.radius * self.radius * (0.5 * angle).sin())
+    }
 }
 
 /// The way from one end to the other.

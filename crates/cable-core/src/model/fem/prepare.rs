@@ -5,6 +5,7 @@ use super::dynamics::{Dynamics, INNER_STEP, REACH};
 use super::floor;
 use super::sliding::Seat;
 use super::task::{Done, Failure, Pose};
+use super::weight;
 use crate::math::Vec2;
 use crate::model::drive::MAX_SPEED;
 use crate::problem::Problem;
@@ -152,6 +153,14 @@ impl Dynamics {
         self.set_scale();
         let x = std::mem::take(&mut self.motion.x);
         self.press_on_floor(&x, None);
+        for k in 1..n.saturating_sub(1) {
+            if self.mesh.sliding[k].is_some() {
+                let (lies, _) = self.parts_that_lie(k, &x, None);
+                if let Some(node) = &mut self.mesh.sliding[k] {
+                    node.lies = lies;
+                }
+            }
+        }
         self.motion.x = x;
     }
 
@@ -199,10 +208,18 @@ impl Dynamics {
             let (Some(node), Some(load)) = (self.mesh.sliding[k], self.load_at(k, &pose.x, Some(&pose.slide))) else {
                 continue;
             };
+            let mut next = node;
+            if !self.task.moves {
+                let (lies, weight) = self.parts_that_lie(k, &pose.x, Some(&pose.slide));
+                next.lies = lies;
+                let slack = self.task.tolerance + EVEN_FORCE * (load.pull[0].abs() + load.pull[1].abs());
+                grips.same &= weight <= slack;
+                grips.lawful &= weight <= slack;
+                self.mesh.sliding[k] = Some(next);
+            }
             if !(node.friction > 0.0) {
                 continue;
             }
-            let mut next = node;
             // What does not pull presses on nothing.
             let presses = load.turn > 0.0 && load.pull[0] + load.pull[1] > 0.0;
             let exponent = if presses { node.friction * load.turn } else { 0.0 };
@@ -232,6 +249,24 @@ impl Dynamics {
         }
         self.set_scale();
         grips
+    }
+
+    /// Parts of the weight of the bars beside sliding node `k` on rounds that may act there, at positions (m) and slides (m), and how much weight
+    /// (N) that moves.
+    fn parts_that_lie(&self, k: usize, x: &[Vec2], slide: Option<&[f64]>) -> ([f64; 2], f64) {
+        let (mesh, body) = (&self.mesh, self.task.body);
+        let mut moved = 0.0;
+        let lies = [0, 1].map(|j| {
+            let e = k - 1 + j;
+            let path = mesh.path(e, x);
+            let rest = slide.map_or(mesh.rest_length[e], |s| super::bar::rest_length(mesh, e, s));
+            let tension = mesh.axial_stiffness * (path.length / rest - 1.0);
+            let part = weight::may_lie(mesh, e, &path, (body, tension));
+            let before = mesh.sliding[k].map_or(1.0, |s| s.lies[j]);
+            moved += (part - before).abs() * body.norm() * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
+            part
+        });
+        (lies, moved)
     }
 
     /// Whether the cable is flexible and nothing but its supports can touch it on the way to places `to` (m).

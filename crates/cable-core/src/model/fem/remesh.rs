@@ -14,6 +14,7 @@ use super::floor;
 use super::path::{End, Path, angle_between};
 use super::prepare::load_scale;
 use super::sliding::{Grip, Load, Seat, Sliding, round_of};
+use super::weight::Weight;
 use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp};
 
@@ -171,18 +172,22 @@ impl Dynamics {
                 elastic
             }
         });
-        let share = rest.map(|l| 0.5 * l / mesh.thermal_stretch);
+        let body = self.task.body;
+        let weight = [0, 1].map(|j| Weight::of(mesh, k - 1 + j, &path[j], body));
+        let material = rest.map(|l| l / mesh.thermal_stretch);
+        let share = [0, 1].map(|j| weight[j].carried(material[j])[1 - j]);
+        let straight = [0, 1].map(|j| weight[j].in_the_middle(tension[j], material[j], true));
         let floor = self.problem.floor_friction.map_or([0.0; 3], |(rough, normal)| {
             let slid = self.contacts.floor_slid[k].x + slide.map_or(0.0, |s| s[k]);
             let per_m = friction::at(slid, rough * normal, self.contacts.slip).1;
             floor::reaches(mesh, k, x, slide).map(|reach| per_m * reach)
         });
-        let load = Load::new(node, tension, [&path[0], &path[1]], (self.task.body, share));
+        let load = Load::new(node, straight, [&path[0], &path[1]], (body, share));
         // Between steps the task may be of another mesh, and nothing is balanced.
         let at_material = slide.map_or(load.pull, |slide| {
             [k - 1, k].map(|e| super::bar::pull_at_slide((mesh, &self.task), e, k - e, x, slide))
         });
-        let lifted = [0, 1].map(|j| tension[j] + super::bar::lifted(self.task.body, (k - 1 + j, 1 - j), x));
+        let lifted = [0, 1].map(|j| tension[j] + body.dot(&(weight[j].center - x[k])));
         Some(Load { floor, lifted, at_material, ..load })
     }
 
@@ -506,6 +511,7 @@ impl Dynamics {
             factor: 1.0,
             exponent: 0.0,
             floor_factor: 1.0,
+            lies: [1.0; 2],
             balanced: None,
         };
         Some((bar, arc_length, sliding))

@@ -60,6 +60,8 @@ pub struct Sliding {
     pub exponent: f64,
     /// Plan view: the floor's friction as the scaled energy sees it, in parts of its own size (see `floor.rs`).
     pub floor_factor: f64,
+    /// Parts of the weight of the bars before and after it on rounds that act there; less than 1 where they are nearly slack (see `weight.rs`).
+    pub lies: [f64; 2],
     /// What friction acted between in the last step with inertia. None at rest and of a new node.
     pub balanced: Option<Balanced>,
 }

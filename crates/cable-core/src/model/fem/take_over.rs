@@ -235,6 +235,7 @@ impl Dynamics {
                     factor: 1.0,
                     exponent: 0.0,
                     floor_factor: 1.0,
+                    lies: [1.0; 2],
                     balanced: None,
                 },
             };
