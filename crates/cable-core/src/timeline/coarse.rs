@@ -19,21 +19,19 @@ const COMMON: u64 = 6;
 /// Part of a time by which a sum of steps may be short of it.
 const ROUNDING: f64 = 1e-9;
 
-/// A difference is forgotten with this time, s. With 0.2 one figure in 100 less is covered, as errors vanish wherever two runs cross; with 0.3 one in
-/// 100 more is said to be over ten times what it is: what once struck is uncertain long after it lies still.
+/// A difference is forgotten with this time, s. Less: errors vanish wherever two runs cross; more: what once struck is uncertain long after
+/// it lies still.
 const MEMORY_S: f64 = 0.25;
 
 /// Greatest tensions are compared of one to two times so much time, s: a jerk comes later in one run than in another. Less: jerks of two runs are
 /// apart; more: one that all runs have hides another that they do not agree on.
 const WINDOW_S: f64 = 0.05;
-/// Where the finest run is so much nearer to the second than to the third they converge. With 0.3 what swings freely is said to be up to 20 times as
-/// wrong as it is; with 0.8 one figure in 100 more is not covered.
+/// A finer run may differ from the finest of three by so many times what that one differs by from the others. Of random motions
+/// (`motion_errors.rs`) some 92 figures in 100 are covered; with 1.5 it is two less.
+const ERROR_FACTOR: f64 = 2.0;
+/// Where the finest is so much nearer to the second than to the third they converge, and what it differs by from the second counts alone. With
+/// 0.6 it is 92 in 100, too; without this what swings freely is said to be up to 20 times as wrong as it is.
 const CONVERGENCE_RATIO: f64 = 0.5;
-/// What a finer run may differ by from the finest of three: so many times what that one differs by from the second, and from the third, where they
-/// converge and where they do not. Two parts instead of the greater of both: one of the coarse runs is often near by chance. Half as much covers
-/// 86 instead of 95 figures in 100 of random motions (`motion_errors.rs`), twice as much has 55 instead of 79 within half and ten times the error.
-const CONVERGING: [f64; 2] = [1.5, 0.4];
-const PARTING: [f64; 2] = [1.5, 1.5];
 /// The logarithm of the greatest tension of a window may be so many times as far down and up on finer meshes as it is apart in the three runs. With
 /// [2, 2] 9 in 100 runs on four times as many elements are outside of ranges that call themselves resolved, with these 4.
 const PEAK_FACTORS: [f64; 2] = [3.0, 2.5];
@@ -50,8 +48,6 @@ pub(super) struct CoarseRuns {
     inertia: Inertia,
     /// Steps that the fine run has made.
     count: u64,
-    /// When they were compared last, s.
-    compared_s: f64,
     /// When the present window began, s.
     window_began_s: f64,
     own: Vec<RecentPeaks>,
@@ -110,8 +106,7 @@ impl CoarseRuns {
         }
         let own: Vec<RecentPeaks> = tops(fine).map(RecentPeaks::begin).collect();
         let before = vec![TensionRanges::default(); own.len()];
-        let now_s = fine.time_s();
-        Some(Self { runs, inertia, count: 0, compared_s: now_s, window_began_s: now_s, own, before })
+        Some(Self { runs, inertia, count: 0, window_began_s: fine.time_s(), own, before })
     }
 
     /// The same is done to each of them as to the run they are beside.
@@ -126,21 +121,8 @@ impl CoarseRuns {
         for run in self.runs.iter_mut().filter(|run| self.count.is_multiple_of(run.times)) {
             run.follow(fine, self.inertia)?;
         }
-        if self.count.is_multiple_of(COMMON) {
-            self.compare(fine);
-        }
-        Some(self)
-    }
-
-    /// Compares the runs at an instant that all have come to.
-    fn compare(&mut self, fine: &Simulation) {
-        let kept = ((self.compared_s - fine.time_s()) / MEMORY_S).exp();
-        self.compared_s = fine.time_s();
-        for run in &mut self.runs {
-            run.compare(fine, kept);
-        }
         // Sums of steps round.
-        if fine.time_s() - self.window_began_s >= WINDOW_S * (1.0 - ROUNDING) {
+        if self.count.is_multiple_of(COMMON) && fine.time_s() - self.window_began_s >= WINDOW_S * (1.0 - ROUNDING) {
             self.window_began_s = fine.time_s();
             self.before = (0..self.own.len()).map(|cable| self.ranges(cable)).collect();
             self.own.iter_mut().zip(tops(fine)).for_each(|(own, tops)| own.turn(tops));
@@ -148,6 +130,7 @@ impl CoarseRuns {
                 run.recent.iter_mut().zip(tops(&run.simulation)).for_each(|(own, tops)| own.turn(tops));
             }
         }
+        Some(self)
     }
 
     /// From what to what the greatest tensions of a cable in the run so far may be.
@@ -168,6 +151,7 @@ impl CoarseRuns {
             others.fold((own, own), |(least, most), n| (if n < least { n } else { least }, larger(most, n)));
         // Of a cable that no run pulls nothing is apart.
         let apart = if own > 0.0 { larger((own / least).ln(), (most / own).ln()) } else { 0.0 };
+        // That they converge is not enough: then the greatest tensions of 6 in 100 runs more are outside.
         let [down, up] = [0, 1].map(|j| smaller(PEAK_FACTORS[j] * apart, UNRESOLVED[j]));
         let here = [own * (-down).exp(), own * up.exp()];
         [larger(before[0], here[0]), larger(before[1], here[1])]
@@ -191,22 +175,22 @@ fn tops(simulation: &Simulation) -> impl Iterator<Item = [f64; 2]> {
 
 /// By how much a finer run may differ from one that differs by so much from a coarser one, and from a still coarser one.
 fn error_bound(finer: f64, coarser: f64) -> f64 {
-    let [by_finer, by_coarser] = if finer <= CONVERGENCE_RATIO * coarser { CONVERGING } else { PARTING };
-    by_finer * finer + by_coarser * coarser
+    match finer <= CONVERGENCE_RATIO * coarser {
+        true => ERROR_FACTOR * finer,
+        false => ERROR_FACTOR * larger(finer, coarser),
+    }
 }
 
 impl CoarseRun {
     fn follow(&mut self, fine: &Simulation, inertia: Inertia) -> Option<()> {
+        let before_s = self.simulation.time_s();
         advance(&mut self.simulation, fine.time_s(), inertia).ok()?;
         self.recent.iter_mut().zip(tops(&self.simulation)).for_each(|(own, tops)| own.note(tops));
-        Some(())
-    }
-
-    /// Remembers what it differs by, of what it differed by before so much.
-    fn compare(&mut self, fine: &Simulation, kept: f64) {
+        let kept = ((before_s - fine.time_s()) / MEMORY_S).exp();
         let cables = fine.answers().iter().zip(self.simulation.answers());
         for (difference, (a, b)) in self.differences.iter_mut().zip(cables) {
             *difference = ErrorEstimates::between(b, a).or_larger(&difference.times(kept));
         }
+        Some(())
     }
 }
