@@ -6,6 +6,7 @@ use cable_core::solution::{
     TensionPeaks, Warning,
 };
 use cable_core::summary::{CableSummary, EndStiffness, NeglectedBending};
+use cable_core::timeline::RunPeaks;
 use cable_core::verify::Verification;
 use serde::Serialize;
 
@@ -29,6 +30,9 @@ pub struct Answer<'a> {
     /// The greatest tensions of all inner steps since the line before, one a cable in motion.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub peaks: Vec<OfCable<'a, TensionPeaks>>,
+    /// What is known of the greatest tensions of the run so far, one a cable in motion.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub run_peaks: Vec<OfCable<'a, RunPeaksEntry>>,
     /// The sharpest bend of all cables; null where all are nearly straight.
     pub tightest_bend: Option<OfCable<'a, Bend>>,
     /// Where a cable is pressed hardest against what leads it; null where nothing leads one round.
@@ -41,6 +45,32 @@ pub struct Answer<'a> {
     pub warnings: &'a [Warning],
     /// What the laws say of the answer.
     pub verification: Option<&'a Verification>,
+}
+
+/// The greatest tensions of a run so far, and from what to what they may be.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct RunPeaksEntry {
+    pub greatest_tension_n: f64,
+    /// The greatest mean over `breaking_time_s`.
+    pub held_tension_n: f64,
+    /// From, to; null where nothing is known of them.
+    pub greatest_tension_range_n: Option<[f64; 2]>,
+    pub held_tension_range_n: Option<[f64; 2]>,
+    /// Whether coarser runs part from this one so far that another mesh, step or start has another greatest tension; null where that is
+    /// not known.
+    pub depends_on_small_differences: Option<bool>,
+}
+
+impl RunPeaksEntry {
+    pub fn of(run: &RunPeaks) -> Self {
+        Self {
+            greatest_tension_n: run.peaks.greatest.tension_n,
+            held_tension_n: run.peaks.held.tension_n,
+            greatest_tension_range_n: run.ranges.map(|r| r.greatest_n),
+            held_tension_range_n: run.ranges.map(|r| r.held_n),
+            depends_on_small_differences: run.ranges.map(|r| r.depend_on_small_differences()),
+        }
+    }
 }
 
 /// The figures of a cable, and the stiffness of its ends where that was asked for.
@@ -64,6 +94,8 @@ pub struct Figures {
     pub stiffness: Option<Vec<EndStiffness>>,
     /// What neglecting bending stiffness changed, of the cables of which that is known.
     pub bending: Vec<NeglectedBending>,
+    /// The greatest tensions of a run so far, one a cable.
+    pub run_peaks: Vec<RunPeaksEntry>,
 }
 
 /// Something of one cable, which is named where there are several.
@@ -154,6 +186,7 @@ pub fn answer<'a>(
         max_tension_n: top.tension_n,
         max_tension_arc_length_m: top.arc_length_m,
         peaks: s.cables.iter().filter_map(|c| c.peaks.map(|of| OfCable { cable: name(c), of })).collect(),
+        run_peaks: s.cables.iter().zip(&figures.run_peaks).map(|(c, &of)| OfCable { cable: name(c), of }).collect(),
         tightest_bend: bends.reduce(|a, b| if b.of.radius_m < a.of.radius_m { b } else { a }),
         sidewall_pressure: pressures.reduce(|a, b| if b.of.pressure_n_per_m > a.of.pressure_n_per_m { b } else { a }),
         summary: figures.cables.iter().map(|of| summary(of, figures)).collect(),

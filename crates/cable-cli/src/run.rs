@@ -18,7 +18,7 @@ use cable_core::timeline::{Instant as Moment, RunPeaks, Timeline};
 use cable_core::{Scene, Settings, Simulation, SolveError};
 
 use crate::Done;
-use crate::answer::{Figures, answer};
+use crate::answer::{Figures, RunPeaksEntry, answer};
 use crate::args::RunArguments;
 use crate::output::{Failure, Printer, Progress};
 use crate::signals::Signals;
@@ -70,6 +70,8 @@ struct Outputs {
     begun: Begun,
     last: Option<Solution>,
     reached: Option<Reached>,
+    /// The greatest tensions of each cable in the run so far.
+    run_peaks: Vec<RunPeaksEntry>,
 }
 
 /// What is said of a whole run.
@@ -98,6 +100,12 @@ impl Reached {
         if over_s > 0.0 {
             lines.push(format!("Greatest mean over {over_s} s   {}", of(held, ranges.map(|r| r.held_n))));
         }
+        if ranges.is_some_and(|r| r.depend_on_small_differences()) {
+            lines.push(
+                "It depends on small differences: the coarser runs beside it do not converge, and another mesh, step or start has another"
+                    .to_owned(),
+            );
+        }
         if let Some(error) = self.relative_error {
             let asked = match error > tolerance {
                 true => format!(
@@ -117,7 +125,7 @@ impl Outputs {
             cable.peaks = since.into_iter().chain(cable.peaks).reduce(TensionPeaks::with);
         }
         let cables = if self.arguments.common.json { summaries(&self.scene, &solution) } else { Vec::new() };
-        let figures = Figures { cables, ..Figures::default() };
+        let figures = Figures { cables, run_peaks: self.run_peaks.clone(), ..Figures::default() };
         let printable = answer(&solution, &figures, wall_time_s, Some(solution.time_s)).map_err(Failure::NonFinite)?;
         let push = if is_last { RunFolder::push_last } else { RunFolder::push };
         self.folder.write(&self.arguments.out, |folder| push(folder, &solution))?;
@@ -129,6 +137,12 @@ impl Outputs {
         self.progress.at(solution.time_s, self.arguments.duration_s, solution.max_tension().tension_n);
         self.last = Some(solution);
         Ok(())
+    }
+
+    /// Notes what is known of the run so far.
+    fn note(&mut self, timeline: &Timeline) {
+        self.reached = Reached::of(timeline);
+        self.run_peaks = timeline.monitor().peaks().iter().map(RunPeaksEntry::of).collect();
     }
 
     /// Looks at a step, whether it is written or not.
@@ -229,6 +243,7 @@ pub fn run(a: RunArguments) -> Done {
         printer: Printer::new(),
         progress: Progress::new(),
         reached: None,
+        run_peaks: Vec::new(),
         since: Vec::new(),
         begun: Begun::default(),
         last: None,
@@ -343,12 +358,12 @@ fn walk(mut simulation: Simulation, inertia: Inertia, outputs: &mut Outputs, mut
     if !outputs.arguments.no_errors {
         timeline = timeline.with_errors();
     }
-    outputs.reached = Reached::of(&timeline);
+    outputs.note(&timeline);
     for k in 1..=count {
         let moment = if k == count { Moment::nearest(duration_s) } else { interval.times(k as u64) };
         began = Instant::now();
         let answer = timeline.at(moment, |simulation| outputs.watch(simulation));
-        outputs.reached = Reached::of(&timeline);
+        outputs.note(&timeline);
         match answer {
             Ok(solution) => outputs.push(solution, began.elapsed().as_secs_f64(), k == count)?,
             Err(e) => return Err(stopped(outputs, timeline.simulation(), e)),

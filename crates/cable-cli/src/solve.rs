@@ -58,7 +58,7 @@ pub fn solve(arguments: &SolveArguments) -> Done {
             let stiffness = stiffness.map_err(|e| Failure::from_core(&a.scene, e))?;
             let neglected = || neglected_bending(&scene, &solution, settings(a));
             let bending = if arguments.no_bending { Vec::new() } else { neglected() };
-            let figures = Figures { cables: summaries(&scene, &solution), stiffness, bending };
+            let figures = Figures { cables: summaries(&scene, &solution), stiffness, bending, ..Figures::default() };
             let printable = answer(&solution, &figures, wall_time_s, None).map_err(Failure::NonFinite)?;
             if a.json {
                 out.json(&printable)?;

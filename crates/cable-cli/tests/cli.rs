@@ -215,6 +215,34 @@ fn run_says_its_errors_and_refines_until_they_are_as_asked() {
     assert!(run(&["--no-errors"]).contains("not known"));
 }
 
+/// A drop on rubble: the greatest tension of the run has a range, and it is said that it depends on small differences.
+#[test]
+fn run_says_that_a_greatest_tension_depends_on_small_differences() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("drop.toml");
+    std::fs::write(&file, catalog::rubble_drop().to_toml()).unwrap();
+    let run = |more: &[&str]| {
+        let out = folder.path().join("out");
+        let mut arguments = vec!["run", file.to_str().unwrap(), "--for", "1.5s", "--every", "0.5s"];
+        arguments.extend(["--out", out.to_str().unwrap()]);
+        arguments.extend(more);
+        let o = cable(&arguments);
+        assert_eq!(o.status.code(), Some(0), "{}", text(&o.stderr));
+        text(&o.stdout)
+    };
+    let told = run(&[]);
+    assert!(told.contains("It depends on small differences"), "{told}");
+    let lines = run(&["--json"]);
+    let last: Value = serde_json::from_str(lines.lines().last().expect("a line")).unwrap();
+    let of_run = &last["run_peaks"][0];
+    let greatest = of_run["greatest_tension_n"].as_f64().expect("a tension");
+    let range = |key: &str, end: usize| of_run[key][end].as_f64().expect("a range");
+    assert!(range("greatest_tension_range_n", 0) <= greatest && greatest <= range("greatest_tension_range_n", 1));
+    assert_eq!(of_run["depends_on_small_differences"], true, "{of_run}");
+    let unknown: Value = serde_json::from_str(run(&["--json", "--no-errors"]).lines().last().expect("a line")).unwrap();
+    assert!(unknown["run_peaks"][0]["depends_on_small_differences"].is_null(), "{unknown}");
+}
+
 #[test]
 fn a_reader_that_leaves_is_no_error() {
     let folder = tempfile::tempdir().unwrap();

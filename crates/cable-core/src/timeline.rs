@@ -23,6 +23,10 @@ pub const STEP_S: f64 = 1.0 / 240.0;
 /// Step without inertia, s: that of a display.
 pub const QUASI_STATIC_STEP_S: f64 = 1.0 / 60.0;
 
+/// Ends of a range of tensions that are no more than so many times each other are those of one tension that is known, if roughly. Less: peaks that
+/// any finer run has as well are called uncertain; more: a cable is chosen by a peak that another mesh does not have.
+pub const RESOLVED_RATIO: f64 = 1.5;
+
 /// An instant: a whole number of ticks after the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Instant(u64);
@@ -55,6 +59,15 @@ pub struct TensionRanges {
     pub greatest_n: [f64; 2],
     /// The greatest mean over the cable's `breaking_time_s`.
     pub held_n: [f64; 2],
+}
+
+impl TensionRanges {
+    /// Whether the runs beside this one part from it so far that its greatest tension depends on small differences, of mesh and step and
+    /// so of how it began: the ends of a range are more than [`RESOLVED_RATIO`] times apart.
+    #[must_use]
+    pub fn depend_on_small_differences(&self) -> bool {
+        [self.greatest_n, self.held_n].iter().any(|[from, to]| *to > RESOLVED_RATIO * from)
+    }
 }
 
 /// The greatest tensions of a cable in a run so far.

@@ -110,6 +110,8 @@ struct Peaks {
     inside: usize,
     /// Ends of a range that are more than 1.5 times each other.
     wide: usize,
+    /// Of those that are not: whose range holds that of the fine one.
+    narrow_inside: usize,
     above: usize,
     below: usize,
 }
@@ -173,8 +175,12 @@ fn compare(scene: &Scene, model: Model, tallies: &mut [Tally; 4], peaks: &mut Pe
     peaks.all += 1;
     peaks.below += usize::from(truth < from * (1.0 - 1e-9));
     peaks.above += usize::from(truth > to * (1.0 + 1e-9));
-    peaks.inside += usize::from((from * (1.0 - 1e-9)..=to * (1.0 + 1e-9)).contains(&truth));
-    peaks.wide += usize::from(to > 1.5 * from);
+    let inside = (from * (1.0 - 1e-9)..=to * (1.0 + 1e-9)).contains(&truth);
+    let wide = to > 1.5 * from;
+    assert!(!wide || ranges.depend_on_small_differences(), "a range that is wide says why: {ranges:?}");
+    peaks.inside += usize::from(inside);
+    peaks.wide += usize::from(wide);
+    peaks.narrow_inside += usize::from(inside && !wide);
     if std::env::var("TELL").is_ok() {
         println!("    {:.3} N, {from:.3} to {to:.3} N, fine {truth:.3} N", peaks_of.peaks.greatest.tension_n);
     }
@@ -199,6 +205,7 @@ fn campaign(numbers: std::ops::Range<u64>) -> ([Tally; 4], Peaks) {
         (peaks.all, peaks.inside) = (peaks.all + own_peaks.all, peaks.inside + own_peaks.inside);
         (peaks.above, peaks.below) = (peaks.above + own_peaks.above, peaks.below + own_peaks.below);
         peaks.wide += own_peaks.wide;
+        peaks.narrow_inside += own_peaks.narrow_inside;
     }
     println!("all        {} | {peaks:?}, {stopped} stopped", all.map(|t| t.tell()).join(" | "));
     (all, peaks)

@@ -2,7 +2,7 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use cable_core::model::Inertia;
-use cable_core::scene::{Scene, catalog};
+use cable_core::scene::{Motion, Scene, catalog};
 use cable_core::solution::TensionPeaks;
 use cable_core::solution::WarningKind;
 use cable_core::state::State;
@@ -85,4 +85,25 @@ fn a_cable_may_break_where_runs_do_not_agree_that_it_holds() {
     assert!(!said && held, "up to {to} N");
     let (said, _, held) = open(0.9 * to);
     assert!(said && held, "up to {to} N");
+}
+
+/// What hangs and swings has one greatest tension; where what falls on rubble is pulled hardest depends on which nodes strike which corners, and the
+/// answer says so.
+#[test]
+fn a_greatest_tension_that_depends_on_small_differences_says_so() {
+    let depends = |scene: Scene| {
+        let mut sim = Simulation::new(scene, Model::Fem).unwrap();
+        sim.settle().unwrap();
+        let mut timeline = Timeline::new(sim, Inertia::Dynamic, None).with_errors();
+        timeline.at(Instant::nearest(1.5), |_| ()).unwrap();
+        let ranges = timeline.monitor().peaks()[0].ranges.expect("coarser runs");
+        (ranges.depend_on_small_differences(), ranges)
+    };
+    let mut swung = catalog::hanging_span();
+    let support = &mut swung.cables[0].supports[1];
+    let [x, y] = support.at_m.expect("a place");
+    support.motion = Some(Motion { times_s: vec![0.0, 0.7, 1.4], points_m: vec![[x, y], [x - 0.5, y], [x, y]] });
+    let (swung, rubble) = (depends(swung), depends(catalog::rubble_drop()));
+    assert!(!swung.0, "{swung:?}");
+    assert!(rubble.0, "{rubble:?}");
 }

@@ -150,6 +150,8 @@ pub struct ContactSet {
     pub slip: f64,
     /// Friction of the present step.
     pub rubs: Vec<Rub>,
+    /// What it was before its normal forces were taken anew.
+    before: Vec<Rub>,
     /// By node; of one node the newest first.
     memory: Vec<Memory>,
     /// Room for the next memory.
@@ -173,6 +175,7 @@ impl ContactSet {
             barrier,
             slip,
             rubs: Vec::with_capacity(nodes),
+            before: Vec::with_capacity(nodes),
             memory: Vec::with_capacity(2 * nodes),
             spare: Vec::with_capacity(2 * nodes),
             scratch: Vec::with_capacity(nodes),
@@ -185,7 +188,7 @@ impl ContactSet {
 
     /// Becomes a copy without new memory where there is room.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { barrier, slip, rubs, memory, spare: _, scratch: _, near: _, floor_slid, own, carriage } = other;
+        let Self { barrier, slip, rubs, memory, floor_slid, own, carriage, .. } = other;
         (self.barrier, self.slip) = (*barrier, *slip);
         // With room for as many, so that a front of contact that runs on asks for none; and no more, or each copy would double it.
         self.rubs.clear();
@@ -305,9 +308,14 @@ impl ContactSet {
 
     /// Sets up friction for a step that began at `start`: contacts and normal forces as at `now` (m).
     pub fn prepare(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
+        self.own.prepare(&self.barrier, mesh, now, start);
+        self.rub(problem, mesh, now, start);
+    }
+
+    /// The same for obstacles alone.
+    fn rub(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
         let mut touches = std::mem::take(&mut self.scratch);
         self.find(problem, mesh, now, &mut touches);
-        self.own.prepare(&self.barrier, mesh, now, start);
         self.rubs.clear();
         for touch in &touches {
             let limit = touch.pair.gap.friction * touch.load(&self.barrier);
@@ -325,6 +333,33 @@ impl ContactSet {
         }
         self.rubs.retain(|r| r.limit != 0.0);
         self.scratch = touches;
+    }
+
+    /// Takes the normal forces of friction as they are at `now` (m) in a step that began at `start`, unless with them each contact can carry what
+    /// it could before: `same` tells that of the greatest change and of the most that one can carry (N). Returns whether it took them.
+    pub fn renew(
+        &mut self,
+        (problem, mesh): (&Problem, &Mesh),
+        [now, start]: [&[Vec2]; 2],
+        same: impl Fn(f64, f64) -> bool,
+    ) -> bool {
+        std::mem::swap(&mut self.rubs, &mut self.before);
+        self.rub(problem, mesh, now, start);
+        let limit =
+            |all: &[Rub], touch: &Touch| of_node(all, touch.node).find(|r| r.is_of(touch)).map_or(0.0, |r| r.limit);
+        let (mut change, mut most) = (0.0, 0.0);
+        for rub in self.rubs.iter().chain(&self.before) {
+            let (was, is) = (limit(&self.before, &rub.touch), limit(&self.rubs, &rub.touch));
+            (change, most) = (larger(change, (is - was).abs()), larger(most, larger(is, was)));
+        }
+        let renewed = !same(change, most);
+        if renewed {
+            self.own.prepare(&self.barrier, mesh, now, start);
+        } else {
+            // The step balances these.
+            std::mem::swap(&mut self.rubs, &mut self.before);
+        }
+        renewed
     }
 
     /// The contacts that were found last, each with its normal force, N.

@@ -255,7 +255,14 @@ fn greatest_so_far(ui: &mut Ui, run: &RunPeaks) {
         }
         None => most,
     };
-    let help = "Greatest tension of any inner step since the start; in brackets from what to what it may be, as two coarser runs beside this one differ from it";
+    let help = match run.ranges.is_some_and(|r| r.depend_on_small_differences()) {
+        true => {
+            "Greatest tension of any inner step since the start; in brackets from what to what it may be. It depends on small differences: two coarser runs beside this one do not converge, and another mesh, step or start has another"
+        }
+        false => {
+            "Greatest tension of any inner step since the start; in brackets from what to what it may be, as two coarser runs beside this one differ from it"
+        }
+    };
     figure(ui, "Greatest so far", text, help, None);
 }
 
