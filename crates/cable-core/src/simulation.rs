@@ -147,10 +147,13 @@ impl Simulation {
             bends.push(found);
         }
         let time_s = self.time_s();
-        self.energy = self.cables.iter().zip(&self.answers).map(|(c, a)| Energy::of(c.problem(), a)).sum();
         let subjects: Vec<Subject<'_>> = (self.cables.iter().zip(&self.answers).zip(bends))
-            .map(|((c, answer), bends)| Subject { problem: c.problem(), answer, bends, breaks: c.breaks() })
+            .map(|((c, answer), bends)| {
+                let energy = Energy::of(c.problem(), answer);
+                Subject { problem: c.problem(), answer, energy, bends, breaks: c.breaks() }
+            })
             .collect();
+        self.energy = subjects.iter().map(|s| s.energy).sum();
         if moving {
             self.watch.moving(&subjects, time_s)
         } else {
