@@ -25,7 +25,7 @@ use crate::solution::{CableSolution, Energy, Warning, WarningKind};
 const PART: f64 = 0.25;
 
 /// Growth that is none, of what the cable's weight and loads would give over its length. Bars that sag are drawn straight in E, so that an edit of
-/// the mesh changes it: by up to 1.5e-4 in violent scenes. Smaller: that is told; larger: small motions of long cables may grow unseen.
+/// the mesh changes it; what violent scenes grow by comes to half of the limit. Smaller: that is told; larger: small motions of long cables may grow unseen.
 const LEAST: f64 = 3e-4;
 
 /// What is least is the greatest of so long a time, s, and of [`RECENT`] instants. Shorter: a velocity that an integrator swings beyond its
