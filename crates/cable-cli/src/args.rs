@@ -6,6 +6,7 @@ use cable_core::Model;
 use cable_core::model::mass_spring::Stepping;
 use cable_core::record::{NodeChoice, NodeColumns, NodeInterval};
 use cable_core::scene::FrictionMobilised;
+use cable_core::summary::Bending;
 use clap::{Args, Parser, Subcommand};
 
 #[derive(Debug, Parser)]
@@ -65,6 +66,10 @@ pub struct SolveArguments {
     /// Leave out what the likely bending stiffness of a preset would change where it was neglected, which takes a second answer
     #[arg(long)]
     pub no_bending: bool,
+    /// Bending stiffness of cables that are flexible in the scene: as-written (none), likely (what their preset is likely to have), or
+    /// where-it-matters (that, of cables which without it are bent too tightly, curl up or cross themselves)
+    #[arg(long, default_value = "as-written", value_parser = bending)]
+    pub bending: Bending,
 }
 
 #[derive(Debug, Args)]
@@ -140,6 +145,15 @@ fn stepping(text: &str) -> Result<Stepping, String> {
 fn mobilised(text: &str) -> Result<FrictionMobilised, String> {
     let names = || "the ways are least-sliding, towards-start and towards-end".to_owned();
     FrictionMobilised::from_name(text).ok_or_else(names)
+}
+
+fn bending(text: &str) -> Result<Bending, String> {
+    match text {
+        "as-written" => Ok(Bending::AsWritten),
+        "likely" => Ok(Bending::Likely),
+        "where-it-matters" => Ok(Bending::WhereItMatters),
+        _ => Err("neither as-written, likely nor where-it-matters".to_owned()),
+    }
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

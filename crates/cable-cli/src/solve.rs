@@ -6,8 +6,8 @@ use std::sync::mpsc::{RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
 use cable_core::model::Settings;
-use cable_core::summary::{end_stiffness, neglected_bending, summaries};
-use cable_core::{Model, Scene, Simulation, SolveError, files};
+use cable_core::summary::{end_stiffness, neglected_bending, settle_with_bending, summaries};
+use cable_core::{Model, Scene, SolveError, files};
 
 use crate::Done;
 use crate::answer::{Figures, NoAnswer, answer};
@@ -47,13 +47,12 @@ pub fn solve(arguments: &SolveArguments) -> Done {
     let scene = asked_scene(a)?;
     let mut out = Printer::new();
     let began = Instant::now();
-    let built = Simulation::with_settings(scene.clone(), a.model, settings(a));
     let waiting = Waiting::begin();
-    let solved = built.and_then(|mut s| s.settle().map_err(Into::into));
+    let solved = settle_with_bending(&scene, (a.model, settings(a)), arguments.bending);
     drop(waiting);
     let wall_time_s = began.elapsed().as_secs_f64();
     match solved {
-        Ok(solution) => {
+        Ok((scene, solution)) => {
             let stiffness = arguments.stiffness.then(|| end_stiffness(&scene, a.model, settings(a))).transpose();
             let stiffness = stiffness.map_err(|e| Failure::from_core(&a.scene, e))?;
             let neglected = || neglected_bending(&scene, &solution, settings(a));

@@ -348,6 +348,10 @@ fn solve_tells_what_is_read_first() {
     assert!((s["neglected_bending"]["greatest_tension_n"].as_f64().unwrap() - 93.02).abs() < 0.01);
     let said = text(&cable(&["solve", file.to_str().unwrap(), "--no-bending"]).stdout);
     assert!(!said.contains("Bending neglected"), "{said}");
+    // Or it is taken.
+    let said = text(&cable(&["solve", file.to_str().unwrap(), "--bending", "likely"]).stdout);
+    assert!(said.contains("likely of its preset was taken: `") && !said.contains("Bending neglected"), "{said}");
+    assert_eq!(cable(&["solve", file.to_str().unwrap(), "--bending", "some"]).status.code(), Some(2));
 }
 
 /// A run that says a limit is exceeded says so once in its text, in its JSON with its place, and in its events.

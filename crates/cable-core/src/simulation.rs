@@ -147,10 +147,13 @@ impl Simulation {
             bends.push(found);
         }
         let time_s = self.time_s();
-        self.energy = self.cables.iter().zip(&self.answers).map(|(c, a)| Energy::of(c.problem(), a)).sum();
         let subjects: Vec<Subject<'_>> = (self.cables.iter().zip(&self.answers).zip(bends))
-            .map(|((c, answer), bends)| Subject { problem: c.problem(), answer, bends, breaks: c.breaks() })
+            .map(|((c, answer), bends)| {
+                let energy = Energy::of(c.problem(), answer);
+                Subject { problem: c.problem(), answer, energy, bends, breaks: c.breaks() }
+            })
             .collect();
+        self.energy = subjects.iter().map(|s| s.energy).sum();
         if moving {
             self.watch.moving(&subjects, time_s)
         } else {
@@ -322,12 +325,13 @@ impl Simulation {
             if !problem.rubs(answer) || self.warnings.iter().any(said) {
                 continue;
             }
-            let whole = Arc::new(problem.clone());
-            let known = least_sliding(&whole, Settings::default(), (&[], None)).ok().flatten();
+            let seek = || least_sliding(&Arc::new(problem.clone()), Settings::default(), (&[], None)).ok().flatten();
+            let known = if self.settings.histories { seek() } else { None };
             let mut known: Vec<Warning> = known.map(|lay| lay.warnings).unwrap_or_default();
             known.retain(said);
             if known.is_empty() {
-                let range = self.histories(k).unwrap_or_else(|| ", no other was sought".to_owned());
+                let range = if self.settings.histories { self.histories(k) } else { None };
+                let range = range.unwrap_or_else(|| ", no other was sought".to_owned());
                 let message = format!(
                     "With friction the resting place depends on how the cable was laid: this is the one found from its way{range}"
                 );
@@ -435,6 +439,7 @@ impl Simulation {
             tolerance: larger(self.settings.tolerance / (times * times), LEAST_TOLERANCE),
             segments: None,
             inner_step_s: Some(self.settings.inner_step_s.unwrap_or(STEP_S) / times),
+            histories: false,
             ..self.settings
         };
         let mut next = Self::with_settings(scene, self.model, settings)?;

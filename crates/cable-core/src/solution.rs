@@ -532,13 +532,15 @@ pub enum WarningKind {
     ThroughRobot,
     /// Damping or velocity was raised to keep the motion stable.
     Stabilised,
+    /// It has more energy than what moves it can have given; value and limit in J.
+    EnergyGrows,
     /// The mesh is too coarse for the asked accuracy.
     Accuracy,
 }
 
 impl WarningKind {
     /// Every kind.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::ServiceTension,
         Self::BreakingTension,
         Self::Broken,
@@ -556,6 +558,7 @@ impl WarningKind {
         Self::InitialPenetration,
         Self::ThroughRobot,
         Self::Stabilised,
+        Self::EnergyGrows,
         Self::Accuracy,
     ];
 
@@ -580,6 +583,7 @@ impl WarningKind {
             Self::InitialPenetration => "initial-penetration",
             Self::ThroughRobot => "through-robot",
             Self::Stabilised => "stabilised",
+            Self::EnergyGrows => "energy-grows",
             Self::Accuracy => "accuracy",
         }
     }

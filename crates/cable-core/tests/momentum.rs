@@ -7,7 +7,7 @@
 mod dice;
 
 use cable_core::scene::{Scene, catalog};
-use cable_core::solution::{MomentumAccount, Solution};
+use cable_core::solution::{MomentumAccount, Solution, WarningKind};
 use cable_core::verify::{Depth, Law, Verifier};
 use cable_core::{Model, Settings, Simulation};
 
@@ -20,6 +20,8 @@ fn run(name: &str, scene: &Scene, model: Model, (seconds, dt_s): (f64, f64), fou
     for step in 0..(seconds / dt_s) as usize {
         sim.step(dt_s).expect("it runs");
         let answer = sim.solution();
+        let grown: Vec<_> = answer.warnings.iter().filter(|w| w.kind == WarningKind::EnergyGrows).collect();
+        assert!(grown.is_empty(), "{name} by {model}, step {step}: {grown:?}");
         for (cable, before) in answer.cables.iter().zip(&mut before) {
             if let (Some(was), Some(now)) = (*before, cable.momentum) {
                 assert_eq!(was.after_kg_m_per_s, now.before_kg_m_per_s, "{name} by {model}, step {step}");

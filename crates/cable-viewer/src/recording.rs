@@ -146,6 +146,7 @@ fn marks(kind: WarningKind) -> bool {
         WarningKind::NotUnique
             | WarningKind::Accuracy
             | WarningKind::Stabilised
+            | WarningKind::EnergyGrows
             | WarningKind::SupportHeld
             | WarningKind::InitialPenetration
     )

@@ -95,6 +95,14 @@ pub struct Settings {
     /// Stiffness of the spring by which a hand holds a support while masses move, N/m; None: that of [`drive::hand_stiffness`].
     #[serde(default)]
     pub hand_stiffness_n_per_m: Option<f64>,
+    /// Whether a rest that friction makes one of many is told with what other histories would have left in it: `spans` lays the cable anew for
+    /// each, which takes some times as long as the rest. No figure of the answer hangs on it.
+    #[serde(default = "yes")]
+    pub histories: bool,
+}
+
+fn yes() -> bool {
+    true
 }
 
 fn hand_speed() -> f64 {
@@ -110,6 +118,7 @@ impl Default for Settings {
             inner_step_s: None,
             hand_speed_m_per_s: hand_speed(),
             hand_stiffness_n_per_m: None,
+            histories: true,
         }
     }
 }

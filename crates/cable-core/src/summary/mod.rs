@@ -18,7 +18,7 @@ use crate::scene::{Cable, Scene, View};
 use crate::solution::{Bend, CableSolution, JudgedBend, Node, Pressure, Solution};
 
 pub use balance::Balance;
-pub use bending::{NeglectedBending, neglected_bending};
+pub use bending::{Bending, NeglectedBending, neglected_bending, settle_with_bending};
 pub use shape::{sag, stretched_length_m};
 pub use stiffness::{EndStiffness, end_stiffness};
 

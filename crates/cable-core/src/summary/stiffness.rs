@@ -47,6 +47,7 @@ pub struct EndStiffness {
 pub fn end_stiffness(scene: &Scene, model: Model, settings: Settings) -> Result<Vec<EndStiffness>, Error> {
     let still = stilled(scene);
     let question = if model == Model::Auto { Question::History(Inertia::QuasiStatic) } else { Question::Rest };
+    let settings = Settings { histories: false, ..settings };
     let mut rest = Simulation::for_question(still.clone(), model, settings, question)?;
     let answer = rest.settle()?;
     let mut out = Vec::new();

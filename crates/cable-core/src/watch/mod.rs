@@ -1,4 +1,4 @@
-//! What becomes of a cable beyond its shape: limits it exceeds, breaks, bends, slack, tangles, snags.
+//! What becomes of a cable beyond its shape: limits it exceeds, breaks, bends, slack, tangles, snags, energy from nowhere.
 //!
 //! Each part looks at one answer of one cable ([`CableSolution`]) and says what it finds; [`Watch`] adds time: since when,
 //! and no flicker. Models know nothing of it, so all of them get it.
@@ -6,6 +6,7 @@
 mod bend;
 mod crossing;
 pub(crate) use crossing::crossings;
+mod growth;
 mod snag;
 mod tangle;
 mod tension;
@@ -13,8 +14,9 @@ mod tension;
 mod tests;
 
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Warning, WarningKind};
+use crate::solution::{CableSolution, Energy, Warning, WarningKind};
 use crate::strand::Break;
+use growth::Growth;
 use snag::Snags;
 
 pub(crate) use bend::Bends;
@@ -35,6 +37,8 @@ pub(crate) struct Subject<'a> {
     pub problem: &'a Problem,
     /// Its answer.
     pub answer: &'a CableSolution,
+    /// Its energy.
+    pub energy: Energy,
     /// Its bends.
     pub bends: Bends,
     /// Its breaks.
@@ -46,6 +50,7 @@ pub(crate) struct Subject<'a> {
 pub(crate) struct Watch {
     standing: Vec<Standing>,
     snags: Vec<Snags>,
+    growth: Vec<Growth>,
     last_s: Option<f64>,
 }
 
@@ -81,8 +86,12 @@ impl Watch {
 
     fn take(&mut self, subjects: &[Subject<'_>], time_s: f64, since_s: Option<f64>) {
         self.snags.resize_with(subjects.len(), Snags::default);
+        self.growth.resize_with(subjects.len(), Growth::default);
         for (cable, subject) in subjects.iter().enumerate() {
             let mut found = look(subject);
+            if let Some(growth) = self.growth.get_mut(cable) {
+                growth.look(subject, time_s, &mut found);
+            }
             if since_s.is_some()
                 && let Some(snags) = self.snags.get_mut(cable)
             {
@@ -128,7 +137,7 @@ impl Watch {
 
 /// What one answer shows by itself.
 fn look(subject: &Subject<'_>) -> Vec<Warning> {
-    let Subject { problem, answer, bends, breaks } = *subject;
+    let Subject { problem, answer, bends, breaks, .. } = *subject;
     let mut out = Vec::new();
     tension::broken(&problem.cable, breaks, &mut out);
     tension::limits(&problem.cable, answer, &mut out);

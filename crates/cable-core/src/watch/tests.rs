@@ -3,8 +3,10 @@ use super::crossing::{crossings, meet};
 use super::{HOLD_S, Subject, Watch};
 use crate::math::{Point, Vec2};
 use crate::problem::{Problem, problems};
-use crate::scene::{Obstacle, Scene, Shape, Support, catalog};
-use crate::solution::{CableSolution, ContactReport, ContactState, Node, SupportReaction, Warning, WarningKind};
+use crate::scene::{Obstacle, Scene, Shape, Support, SupportKind, catalog};
+use crate::solution::{
+    CableSolution, ContactReport, ContactState, Energy, Node, SupportReaction, TensionPeaks, Warning, WarningKind,
+};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
@@ -50,7 +52,12 @@ fn arc(center: Point, radius: f64, from: f64, to: f64, count: usize) -> Vec<Poin
 }
 
 fn found(problem: &Problem, answer: &CableSolution) -> Vec<Warning> {
-    super::look(&Subject { problem, answer, bends: Bends::of(problem, answer), breaks: &[] })
+    super::look(&subject(problem, answer))
+}
+
+fn subject<'a>(problem: &'a Problem, answer: &'a CableSolution) -> Subject<'a> {
+    let (energy, bends) = (Energy::of(problem, answer), Bends::of(problem, answer));
+    Subject { problem, answer, energy, bends, breaks: &[] }
 }
 
 fn kinds(problem: &Problem, answer: &CableSolution) -> Vec<WarningKind> {
@@ -313,7 +320,7 @@ fn toggles(watch: &mut Watch, p: &Problem, tension: impl Fn(f64) -> f64, kind: W
     for k in 0..(for_s * 240.0) as usize {
         let t = k as f64 / 240.0;
         let answer = along(&[[0.0, 5.0], [6.0, 5.0]], tension(t));
-        watch.moving(&[Subject { problem: p, answer: &answer, bends: Bends::of(p, &answer), breaks: &[] }], t);
+        watch.moving(&[subject(p, &answer)], t);
         let now = watch.warnings().any(|w| w.kind == kind);
         if now != on {
             out.push(t);
@@ -365,7 +372,7 @@ fn at_rest_the_past_does_not_count_and_times_are_kept_in_motion() {
     let mut watch = Watch::default();
     let see = |watch: &mut Watch, tension: f64, t: f64| {
         let answer = along(&[[0.0, 5.0], [6.0, 5.0]], tension);
-        watch.moving(&[Subject { problem: &p, answer: &answer, bends: Bends::of(&p, &answer), breaks: &[] }], t);
+        watch.moving(&[subject(&p, &answer)], t);
     };
     for k in 0..10 {
         see(&mut watch, 900.0 + f64::from(k), 0.1 * f64::from(k + 1));
@@ -373,7 +380,7 @@ fn at_rest_the_past_does_not_count_and_times_are_kept_in_motion() {
     let w: Vec<_> = watch.warnings().cloned().collect();
     assert_eq!((w.len(), w[0].since_s, w[0].value), (1, Some(0.1), 909.0));
     let calm = along(&[[0.0, 5.0], [6.0, 5.0]], 100.0);
-    watch.at_rest(&[Subject { problem: &p, answer: &calm, bends: Bends::of(&p, &calm), breaks: &[] }], 1.1);
+    watch.at_rest(&[subject(&p, &calm)], 1.1);
     assert_eq!(watch.warnings().count(), 0);
 }
 
@@ -395,7 +402,7 @@ fn a_contact_that_holds_against_a_growing_pull_is_a_snag() {
                 tension_after_n: after(t),
                 ..ContactReport::default()
             }];
-            watch.moving(&[Subject { problem: &p, answer: &answer, bends: Bends::of(&p, &answer), breaks: &[] }], t);
+            watch.moving(&[subject(&p, &answer)], t);
         }
         watch.warnings().find(|w| w.kind == WarningKind::Snag).cloned()
     };
@@ -491,4 +498,123 @@ fn the_catalogue_is_named_for_what_it_shows() {
         assert!(answer.warnings.iter().all(|w| w.at_m.is_some() && w.since_s.is_none()));
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A hanging chain by forward Euler, an integrator that gives an undamped spring energy in every step: what is told of it,
+/// and when, s. Else by symplectic Euler, which is stable up to twice the inverse of the greatest frequency.
+fn explicit(dt_s: f64, forward: bool) -> Option<(Warning, f64)> {
+    let mut scene = scene();
+    scene.cables[0].supports = vec![Support::fixed("top", [0.0, 0.0]), Support::free("tip")];
+    let mut p = problem(&scene);
+    p.axial_stiffness = 1e3;
+    let (count, ds) = (20, 0.5);
+    let mass = p.linear_density * ds;
+    let mut x: Vec<Vec2> = (0..=count).map(|k| Vec2::new(ds * f64::from(k), 0.0)).collect();
+    let mut v = vec![Vec2::zeros(); x.len()];
+    let mut watch = Watch::default();
+    for step in 0..(2.0 / dt_s) as usize {
+        let pulls: Vec<Vec2> = x
+            .windows(2)
+            .map(|w| (w[1] - w[0]).normalize() * (p.axial_stiffness * ((w[1] - w[0]).norm() / ds - 1.0)))
+            .collect();
+        let mut answer = along(&[[0.0, 0.0], [1.0, 0.0]], 0.0);
+        let tension = |k: usize| {
+            let beside = [k.checked_sub(1), Some(k)].map(|e| e.and_then(|e| pulls.get(e)).map(|f| f.norm()));
+            beside.iter().flatten().sum::<f64>() / beside.iter().flatten().count() as f64
+        };
+        let node = |k: usize| Node {
+            arc_length_m: ds * k as f64,
+            x_m: x[k].x,
+            y_m: x[k].y,
+            vx_m_per_s: v[k].x,
+            vy_m_per_s: v[k].y,
+            tension_n: tension(k),
+            ..Node::default()
+        };
+        answer.nodes = (0..x.len()).map(node).collect();
+        let at = |k: usize| SupportReaction {
+            x_m: x[k].x,
+            y_m: x[k].y,
+            arc_length_m: ds * k as f64,
+            ..SupportReaction::default()
+        };
+        answer.supports = vec![at(0), at(x.len() - 1)];
+        answer.peaks = (step > 0).then(TensionPeaks::default);
+        watch.moving(&[subject(&p, &answer)], dt_s * step as f64);
+        if let Some(w) = watch.warnings().find(|w| w.kind == WarningKind::EnergyGrows) {
+            return Some((w.clone(), dt_s * step as f64));
+        }
+        let old = v.clone();
+        for k in 1..x.len() {
+            let share = if k == x.len() - 1 { 0.5 } else { 1.0 };
+            let force = pulls.get(k).copied().unwrap_or_default() - pulls[k - 1] + p.weight * ds * share;
+            v[k] += force * (dt_s / (mass * share));
+        }
+        for k in 1..x.len() {
+            x[k] += if forward { old[k] } else { v[k] } * dt_s;
+        }
+    }
+    None
+}
+
+#[test]
+fn energy_of_an_unstable_integrator_is_told_and_of_a_stable_one_is_not() {
+    assert_eq!(explicit(1e-4, false), None);
+    for dt_s in [3e-3, 6e-3] {
+        let (told, when) = explicit(dt_s, true).expect("forward Euler gains energy");
+        println!("{dt_s} s: {when} s: {told:?}");
+        assert!(told.value > told.limit && told.since_s.is_some() && when > 0.0, "{told:?}");
+        assert!(told.message.contains("from nowhere") && told.value.is_finite(), "{told:?}");
+    }
+    // Beyond its limit the stable one is not.
+    assert!(explicit(2e-2, false).is_some());
+}
+
+/// A model whose velocities a fault multiplies after each step.
+#[test]
+fn a_model_that_gains_speed_from_nowhere_is_told() {
+    for model in [crate::Model::Fem, crate::Model::MassSpring] {
+        let told = |gain: f64| {
+            let mut s = scene();
+            s.cables[0].supports[1].release_s = Some(0.05);
+            let mut sim = crate::Simulation::new(s, model).unwrap();
+            sim.settle().unwrap();
+            for step in 0..90 {
+                sim.step(1.0 / 60.0).unwrap();
+                if let Some(w) = sim.solution().warnings.iter().find(|w| w.kind == WarningKind::EnergyGrows) {
+                    return Some((step, w.clone()));
+                }
+                let strand = &mut sim.cables_mut()[0];
+                let mut state = strand.state();
+                state.velocity_m_per_s.iter_mut().for_each(|v| *v *= gain);
+                strand.adopt(&state).unwrap();
+            }
+            None
+        };
+        assert_eq!(told(1.0), None, "{model}");
+        let (step, warning) = told(1.05).expect("a twentieth of its speed more in every step");
+        println!("{model}: step {step}: {}", warning.message);
+        assert!(step < 30, "{model}: {step}");
+    }
+}
+
+/// What supports, loads and wind give is not from nowhere.
+#[test]
+fn work_is_not_energy_from_nowhere() {
+    let mut s = scene();
+    let times_s = vec![0.0, 0.1, 0.6];
+    let forces_n = vec![[200.0, 300.0], [-900.0, 500.0], [900.0, -500.0]];
+    s.cables[0].supports[1] = Support { kind: SupportKind::Load, times_s, forces_n, ..Support::free("tip") };
+    s.environment.wind_times_s = vec![0.0, 0.1];
+    s.environment.winds_n_per_m = vec![[20.0, 0.0], [-60.0, 30.0]];
+    let mut sim = crate::Simulation::new(s, crate::Model::Fem).unwrap();
+    sim.settle().unwrap();
+    let mut most = 0.0;
+    for _ in 0..60 {
+        sim.step(1.0 / 60.0).unwrap();
+        most = f64::max(most, sim.solution().energy.kinetic_j);
+        let told: Vec<Warning> = sim.solution().warnings;
+        assert!(told.iter().all(|w| w.kind != WarningKind::EnergyGrows), "{told:?}");
+    }
+    assert!(most > 100.0, "it is thrown about: {most} J");
 }

@@ -123,6 +123,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
         WarningKind::InitialPenetration => (Severity::Note, "Put outside of an obstacle"),
         WarningKind::ThroughRobot => (Severity::Caution, "Lies through the robot"),
         WarningKind::Stabilised => (Severity::Caution, "The motion was stabilised"),
+        WarningKind::EnergyGrows => (Severity::Stop, "Energy from nowhere"),
         WarningKind::NotUnique => (Severity::Note, "One of several resting places"),
     };
     let index = state.scene.cables.iter().position(|c| c.name == warning.cable);
@@ -159,6 +160,7 @@ fn figures(warning: &Warning) -> Option<String> {
         WarningKind::Wrapped => Some(format!("{value:.2} turns")),
         WarningKind::Curl => Some(format!("{value:.0}° of {limit:.0}°")),
         WarningKind::Snag => Some(format!("tension ratio {value:.2}")),
+        WarningKind::EnergyGrows => Some(format!("{} more than given", unit::energy(value))),
         WarningKind::Loop => None,
         WarningKind::Accuracy => Some(format!("{} of {}", unit::percent(value), unit::percent(limit))),
         WarningKind::InitialPenetration

@@ -50,8 +50,8 @@ const GRIP_ROUNDS: usize = 6;
 pub(super) const ROUNDS_EACH: usize = 3;
 
 /// Rounds in which friction follows its normal forces. With none the greatest tension of a stiff cable (1 N m²) that drops on rubble is 537, 352 and
-/// 789 N with 84, 168 and 336 bars at 1/960 s, with one 427, 399 and 463 N; from there on it changes by 2 %, and each round costs as much as the step.
-const RUB_ROUNDS: usize = 2;
+/// 789 N with 84, 168 and 336 bars at 1/960 s, with one 427, 399 and 463 N; a second changes that by 2 %, and costs as much as the step (a pile: 1.5 s, 0.9 with one).
+const RUB_ROUNDS: usize = 1;
 
 /// Change of a friction force that is none, in parts of the greatest; and one of the weight of a bar is none. Less: sliding costs twice as much and
 /// changes by nothing that shows; more: impacts rub late.

@@ -75,6 +75,8 @@ const LONGEST_STEP_S: f64 = 1e6;
 #[derive(Clone, Debug)]
 pub struct SpansModel {
     problem: Arc<Problem>,
+    /// Whether other histories are sought.
+    histories: bool,
     /// The cable as it is laid: counted from either end.
     layout: Layout,
     time_s: f64,
@@ -93,7 +95,7 @@ impl SpansModel {
     ///
     /// # Errors
     /// `Unsupported` when the scene needs what the model lacks.
-    pub fn new(problem: Arc<Problem>, _settings: Settings) -> Result<Self, SolveError> {
+    pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
         let layout = counted(&problem, turned::is_led_up(&problem))?;
         let n = problem.supports.len();
         let mut points: Vec<Vec2> = problem.route.clone();
@@ -114,7 +116,8 @@ impl SpansModel {
         let nodes = points.iter().enumerate().map(node).collect();
         let shown = Report { nodes, ..Report::default() };
         let (work, instants) = (Work::default(), <[Instant; 3]>::default());
-        Ok(Self { problem, layout, time_s: 0.0, dragged: vec![None; n], network: None, work, instants, shown })
+        let (histories, dragged) = (settings.histories, vec![None; n]);
+        Ok(Self { problem, histories, layout, time_s: 0.0, dragged, network: None, work, instants, shown })
     }
 
     /// Whether what was found lies without tension.
@@ -335,8 +338,8 @@ impl Mechanics for SpansModel {
         let slides = found.is_err() && self.network.is_none() && self.hangs_by_friction();
         let needed = if slides { Network::friction_needed(&self.layout, &instant, &mut work) } else { None };
         let loose = self.network.as_ref().and_then(Network::loose);
-        let range =
-            if found.is_ok() && loose.is_none() && self.rubs() { self.histories(&mut work) } else { String::new() };
+        let seeks = self.histories && found.is_ok() && loose.is_none() && self.rubs();
+        let range = if seeks { self.histories(&mut work) } else { String::new() };
         self.work = work;
         if let Some(part) = needed {
             return Err(slides_away(part));
