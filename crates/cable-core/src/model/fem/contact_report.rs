@@ -331,8 +331,8 @@ fn by_round(load: &Load) -> Vec2 {
     -load.jump - before * load.floor[0] - on * load.floor[1] - after * load.floor[2]
 }
 
-/// Part of what chords are shorter than their arc that goes to the way on either side. More: they were longer than their material.
-const SPARED: f64 = 0.4;
+/// Part of what chords are shorter than their arc that goes to the ways beside it. More: they were longer than their material.
+const SPARED: f64 = 0.8;
 
 /// A point of the cable on a round.
 struct OnRound {
@@ -431,7 +431,8 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
     // round, or comes from inside its gap, comes and goes by a longer way than the bar: by as much as chords are shorter than their arc the
     // round has material to spare.
     let half = 0.5 * whole / count;
-    let spare = SPARED * (whole - count * 2.0 * half.sin()) * radius;
+    let sides = if same.contains(&true) { 1.0 } else { 2.0 };
+    let spare = SPARED / sides * (whole - count * 2.0 * half.sin()) * radius;
     for j in [0, 1] {
         let (bar, beside) = (k + j - 1, if j == 0 { k - 1 } else { k + 1 });
         let Some(p) = (if j == 0 { points.first_mut() } else { points.last_mut() }) else { continue };
