@@ -331,6 +331,11 @@ fn by_round(load: &Load) -> Vec2 {
     -load.jump - before * load.floor[0] - on * load.floor[1] - after * load.floor[2]
 }
 
+/// Growth of the logarithm of tension over a small round, in parts of what friction makes of its turn, from which on weight that hangs over it from the
+/// bars beside it is told from sag. Less: what a sagging bar rubs in the air beside a corner is said to rub there; more: short pieces rub beyond
+/// their cone.
+const HUNG: f64 = 1.2;
+
 /// Part of what chords are shorter than their arc that goes to the ways beside it. More: they were longer than their material.
 const SPARED: f64 = 0.8;
 
@@ -405,7 +410,8 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2],
     // its turn there allows.
     let grown = (b / last).ln();
     let small = same == [false; 2] && whole * radius < SMALL * d.even();
-    let rate = if small { bounded(grown, -node.friction * whole, node.friction * whole) } else { grown };
+    let most = node.friction * whole;
+    let rate = if small && grown.abs() > HUNG * most { most.copysign(grown) } else { grown };
     let begins = (0.5 * (grown - rate)).exp();
     let at = |i: f64| {
         let f = i / count;
