@@ -126,10 +126,21 @@ impl Weight {
     }
 }
 
+/// Whether the round of a sliding node has several marks (a mesh of one bar stands for a part of a longer one): what lies on a small one is little, and its friction is found as if it hung beside it.
+fn is_large(mesh: &Mesh, k: usize) -> bool {
+    let shares = |j: Option<usize>| {
+        let beside = j.and_then(|j| mesh.sliding.get(j)?.as_ref());
+        beside.zip(mesh.sliding[k].as_ref()).is_some_and(|(a, b)| a.shares_round(b))
+    };
+    shares(k.checked_sub(1)) || shares(Some(k + 1))
+}
+
 /// Part of the weight of bar `e` on rounds that acts there.
 fn lies(mesh: &Mesh, e: usize) -> f64 {
-    let [first, second] = [mesh.sliding[e].map_or(1.0, |s| s.lies[1]), mesh.sliding[e + 1].map_or(1.0, |s| s.lies[0])];
-    smaller(first, second)
+    let of = |k: usize, side: usize| {
+        mesh.sliding[k].map_or(1.0, |s| if is_large(mesh, k) || mesh.nodes() == 2 { s.lies[side] } else { 0.0 })
+    };
+    smaller(of(e, 1), of(e + 1, 0))
 }
 
 /// The part of the weight of bar `e` on rounds that may act there while the bar as a whole pulls with `tension` (N): the middle of its straight part
