@@ -155,7 +155,7 @@ impl Dynamics {
         self.press_on_floor(&x, None);
         for k in 1..n.saturating_sub(1) {
             if self.mesh.sliding[k].is_some() {
-                let (lies, _) = self.parts_that_lie(k, &x, None);
+                let lies = self.parts_that_lie(k, &x);
                 if let Some(node) = &mut self.mesh.sliding[k] {
                     node.lies = lies;
                 }
@@ -208,18 +208,10 @@ impl Dynamics {
             let (Some(node), Some(load)) = (self.mesh.sliding[k], self.load_at(k, &pose.x, Some(&pose.slide))) else {
                 continue;
             };
-            let mut next = node;
-            if !self.task.moves {
-                let (lies, weight) = self.parts_that_lie(k, &pose.x, Some(&pose.slide));
-                next.lies = lies;
-                let slack = self.task.tolerance + EVEN_FORCE * (load.pull[0].abs() + load.pull[1].abs());
-                grips.same &= weight <= slack;
-                grips.lawful &= weight <= slack;
-                self.mesh.sliding[k] = Some(next);
-            }
             if !(node.friction > 0.0) {
                 continue;
             }
+            let mut next = node;
             // What does not pull presses on nothing.
             let presses = load.turn > 0.0 && load.pull[0] + load.pull[1] > 0.0;
             let exponent = if presses { node.friction * load.turn } else { 0.0 };
@@ -251,22 +243,14 @@ impl Dynamics {
         grips
     }
 
-    /// Parts of the weight of the bars beside sliding node `k` on rounds that may act there, at positions (m) and slides (m), and how much weight
-    /// (N) that moves.
-    fn parts_that_lie(&self, k: usize, x: &[Vec2], slide: Option<&[f64]>) -> ([f64; 2], f64) {
-        let (mesh, body) = (&self.mesh, self.task.body);
-        let mut moved = 0.0;
-        let lies = [0, 1].map(|j| {
-            let e = k - 1 + j;
+    /// Parts of the weight of the bars beside sliding node `k` on rounds that may act there, at positions (m).
+    fn parts_that_lie(&self, k: usize, x: &[Vec2]) -> [f64; 2] {
+        let mesh = &self.mesh;
+        [k - 1, k].map(|e| {
             let path = mesh.path(e, x);
-            let rest = slide.map_or(mesh.rest_length[e], |s| super::bar::rest_length(mesh, e, s));
-            let tension = mesh.axial_stiffness * (path.length / rest - 1.0);
-            let part = weight::may_lie(mesh, e, &path, (body, tension));
-            let before = mesh.sliding[k].map_or(1.0, |s| s.lies[j]);
-            moved += (part - before).abs() * body.norm() * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
-            part
-        });
-        (lies, moved)
+            let tension = mesh.axial_stiffness * (path.length / mesh.rest_length[e] - 1.0);
+            weight::may_lie(mesh, e, &path, (self.task.body, tension))
+        })
     }
 
     /// Whether the cable is flexible and nothing but its supports can touch it on the way to places `to` (m).

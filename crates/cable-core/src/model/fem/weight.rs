@@ -11,7 +11,8 @@
 //! T − L b·(m − c)/P, with T the pull of the bar as a whole. A bar that lies on nothing has c = m and l = P: half at each end.
 //!
 //! Where that pull would be a push the bar is slack, and its material is not spread evenly: only so much of the weight on the round acts there
-//! that nothing pushes, and of the rest half at each end. How much is found between searches, as the grip of friction is.
+//! that nothing pushes, and of the rest half at each end. How much is found from the pose in which a step begins: sought within the step, it goes to
+//! and fro where a bar is nearly slack.
 
 use super::assembly::Mesh;
 use super::path::Path;
@@ -126,7 +127,8 @@ impl Weight {
     }
 }
 
-/// Whether the round of a sliding node has several marks (a mesh of one bar stands for a part of a longer one): what lies on a small one is little, and its friction is found as if it hung beside it.
+/// Whether the round of a sliding node has several marks: what lies on a small one is little, and its friction is found as if it hung beside it.
+/// (A mesh of one bar stands for a part of a longer one.)
 fn is_large(mesh: &Mesh, k: usize) -> bool {
     let shares = |j: Option<usize>| {
         let beside = j.and_then(|j| mesh.sliding.get(j)?.as_ref());
