@@ -66,7 +66,7 @@ fn print_of(scene: &Scene, model: Model, question: Question) -> String {
 }
 
 #[test]
-#[ignore = "two minutes: not a bit of any catalogue scene has changed"]
+#[ignore = "half a minute: not a bit of any catalogue scene has changed"]
 fn no_bit_has_changed() {
     let questions = [
         ("rest", Question::Rest),
