@@ -451,6 +451,15 @@ impl Subject<'_> {
         self.scene.view == View::Plan && self.cable.friction > 0.0
     }
 
+    /// What may act on each metre of the cable without touching it at a place, N/m: weight and wind, and in plan view the floor's friction.
+    fn spread_load(&self) -> f64 {
+        if !self.floor_rubs() {
+            return self.body.norm();
+        }
+        let weight = self.cable.linear_density_kg_per_m * self.scene.environment.gravity_m_per_s2;
+        self.body.norm() + self.cable.friction * weight
+    }
+
     /// What is beyond the floor's friction, too, N.
     fn floor_excess(&self, piece: &Piece, excess: f64) -> f64 {
         if !self.floor_rubs() {
@@ -560,9 +569,9 @@ impl Subject<'_> {
         if (tension - bar.forces[0]).abs() <= limit {
             return;
         }
-        // `fem` reads it off the middles of the bars beside a node, half of whose weight is in between.
+        // `fem` reads it off the middles of the bars beside a node: half of their weight, or of the floor's friction on them, is in between.
         let beside = bar.length + before.map_or(0.0, |b| b.length);
-        let limit = limit + LUMPED * self.body.norm() * beside;
+        let limit = limit + LUMPED * self.spread_load() * beside;
         let after = bar.from.force();
         let before = before.map_or(after, |_| self.force_before(bar.k));
         let most = larger(before.norm(), bar.forces[0]);
