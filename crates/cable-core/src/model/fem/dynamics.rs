@@ -27,7 +27,8 @@ use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
 
-/// Longest inner time step, s. METHODS' comparison at 1/240: tip of a falling chain within 5e-4 of its length.
+/// Longest inner time step, s. At 1/240 the tip of a falling chain of 10 m is within 5e-4 m of that of rigid links
+/// (`tests/dynamics`).
 pub(super) const INNER_STEP: f64 = 1.0 / 240.0;
 
 /// Gap at which contact begins (d̂), m. Where the cable is taut a corner lifts it by this: 1e-3 adds 2 % to the tension of a
