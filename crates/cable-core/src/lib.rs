@@ -22,6 +22,7 @@
 //!
 //! Dependencies point one way: `math, error → scene → (catenary, energy, contact) → model → simulation → record`.
 
+mod breakage;
 pub mod catenary;
 pub mod contact;
 pub mod energy;
@@ -41,7 +42,6 @@ pub mod simulation;
 pub mod solution;
 pub mod spread;
 pub mod state;
-mod strand;
 pub mod summary;
 pub mod timeline;
 pub mod verify;

@@ -4,6 +4,7 @@ mod coupling;
 
 use std::sync::Arc;
 
+use crate::breakage::BreakableCable;
 use crate::error::{Error, SolveError};
 use crate::estimates::ErrorEstimates;
 use crate::kinematics::{self, AlongCable};
@@ -16,7 +17,6 @@ use crate::robot::Vehicle;
 use crate::scene::Scene;
 use crate::solution::{CableSolution, Cost, Energy, MaxTension, Node, Solution, Warning, WarningKind};
 use crate::state::State;
-use crate::strand::Strand;
 use crate::timeline::STEP_S;
 use crate::verify::{Depth, Verification, Verifier};
 use crate::watch::{Bends, Subject, Watch};
@@ -45,8 +45,8 @@ pub struct Simulation {
     model: Model,
     reason: String,
     settings: Settings,
-    cables: Vec<Strand>,
-    start: Option<Vec<Strand>>,
+    cables: Vec<BreakableCable>,
+    start: Option<Vec<BreakableCable>>,
     vehicle: Option<Vehicle>,
     /// The answers of the cables at the present instant.
     answers: Vec<CableSolution>,
@@ -85,7 +85,7 @@ impl Simulation {
     pub fn for_question(scene: Scene, model: Model, settings: Settings, question: Question) -> Result<Self, Error> {
         let problems = problems(&scene)?;
         let build_all = |m: Model| {
-            problems.iter().map(|p| Strand::new(m, p.clone(), settings)).collect::<Result<Vec<_>, SolveError>>()
+            problems.iter().map(|p| BreakableCable::new(m, p.clone(), settings)).collect::<Result<Vec<_>, SolveError>>()
         };
         let (mut chosen, mut reason) = (model, "asked for".to_owned());
         if model == Model::Auto {
@@ -107,7 +107,7 @@ impl Simulation {
             cables = build_all(built);
         }
         let cables = cables?;
-        let answers = cables.iter().map(Strand::answer).collect();
+        let answers = cables.iter().map(BreakableCable::answer).collect();
         Ok(Self {
             vehicle: Vehicle::of(&scene),
             verifier: Arc::new(Verifier::new(&scene)),
@@ -131,17 +131,17 @@ impl Simulation {
 
     /// Reads the present instant: answers, and what is to be said of them.
     fn look(&mut self, moving: bool) {
-        self.answers = self.cables.iter().map(Strand::answer).collect();
+        self.answers = self.cables.iter().map(BreakableCable::answer).collect();
         if !moving {
             self.first = self.answers.iter().map(|a| AlongCable::places(&a.nodes)).collect();
         }
         for (answer, first) in self.answers.iter_mut().zip(&self.first) {
             kinematics::displace(&mut answer.nodes, first);
         }
-        self.model = self.cables.iter().map(Strand::model).max_by_key(|m| rung(*m)).unwrap_or(self.model);
+        self.model = self.cables.iter().map(BreakableCable::model).max_by_key(|m| rung(*m)).unwrap_or(self.model);
         let mut bends = Vec::with_capacity(self.cables.len());
-        for (strand, answer) in self.cables.iter().zip(&mut self.answers) {
-            let found = Bends::of(strand.problem(), answer);
+        for (cable, answer) in self.cables.iter().zip(&mut self.answers) {
+            let found = Bends::of(cable.problem(), answer);
             (answer.tightest_bend, answer.sidewall_pressure) = (found.tightest(), found.pressure);
             (answer.free_bend, answer.judged_bend) = (found.free(), found.judged());
             bends.push(found);
@@ -173,12 +173,12 @@ impl Simulation {
     fn look_for_robot(&mut self) {
         self.warnings.retain(|w| w.kind != WarningKind::ThroughRobot);
         let Some(at) = self.vehicle.as_ref().map(|v| v.pose().placement()) else { return };
-        for (strand, answer) in self.cables.iter().zip(&self.answers) {
-            let problem = strand.problem();
-            let Some(outline) = problem.outline.as_ref().filter(|_| strand.outline().is_none()) else { continue };
+        for (cable, answer) in self.cables.iter().zip(&self.answers) {
+            let problem = cable.problem();
+            let Some(outline) = problem.outline.as_ref().filter(|_| cable.outline().is_none()) else { continue };
             if !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius) {
                 let message =
-                    format!("`{}` lies through the robot: {} knows nothing of it", answer.name, strand.model());
+                    format!("`{}` lies through the robot: {} knows nothing of it", answer.name, cable.model());
                 let kind = WarningKind::ThroughRobot;
                 self.warnings.push(Warning::new(kind, &answer.name, problem.length, [0.0, 0.0], message));
             }
@@ -186,12 +186,12 @@ impl Simulation {
     }
 
     #[cfg(test)]
-    pub(crate) fn cables(&self) -> &[Strand] {
+    pub(crate) fn cables(&self) -> &[BreakableCable] {
         &self.cables
     }
 
     #[cfg(test)]
-    pub(crate) fn cables_mut(&mut self) -> &mut [Strand] {
+    pub(crate) fn cables_mut(&mut self) -> &mut [BreakableCable] {
         &mut self.cables
     }
 
@@ -229,13 +229,13 @@ impl Simulation {
     /// Why that model.
     #[must_use]
     pub fn reason(&self) -> &str {
-        self.cables.iter().find_map(Strand::reason).unwrap_or(&self.reason)
+        self.cables.iter().find_map(BreakableCable::reason).unwrap_or(&self.reason)
     }
 
     /// Time reached, s.
     #[must_use]
     pub fn time_s(&self) -> f64 {
-        self.cables.first().map_or(0.0, Strand::time_s)
+        self.cables.first().map_or(0.0, BreakableCable::time_s)
     }
 
     /// Finds where everything rests. The first answer is kept as the start that [`Self::reset`] returns to.
@@ -261,12 +261,12 @@ impl Simulation {
     fn settle_soundly(&mut self) -> Result<(), SolveError> {
         let mut first: Option<SolveError> = None;
         loop {
-            let found = self.each(Strand::settle).and_then(|()| {
+            let found = self.each(BreakableCable::settle).and_then(|()| {
                 self.look(false);
                 self.sound()
             });
             let Err(error) = found else { return Ok(()) };
-            let error = match self.cables.iter().find_map(Strand::refusal) {
+            let error = match self.cables.iter().find_map(BreakableCable::refusal) {
                 Some(refusal) if matches!(error, SolveError::Unsound { .. }) => {
                     SolveError::clearer(refusal.clone(), error)
                 }
@@ -319,8 +319,8 @@ impl Simulation {
     /// With friction a resting place is one of many: said of every cable that rubs where it rests, whichever model answered, with what
     /// other histories would have left in it where `spans` knows.
     fn say_where_friction_chose(&mut self) {
-        for (k, (strand, answer)) in self.cables.iter().zip(&self.answers).enumerate() {
-            let problem = strand.problem();
+        for (k, (cable, answer)) in self.cables.iter().zip(&self.answers).enumerate() {
+            let problem = cable.problem();
             let said = |w: &Warning| w.kind == WarningKind::NotUnique && w.cable == problem.cable.name;
             if !problem.rubs(answer) || self.warnings.iter().any(said) {
                 continue;
@@ -345,8 +345,8 @@ impl Simulation {
     /// What other histories would have left in a cable, in words: in plan view, where a floor that rubs everywhere chose the rest and
     /// `spans` has no answer; None where none was sought or found.
     fn histories(&self, k: usize) -> Option<String> {
-        let strand = self.cables.get(k).filter(|c| c.problem().floor_friction.is_some() && c.model() == Model::Fem)?;
-        strand.histories(|other| {
+        let cable = self.cables.get(k).filter(|c| c.problem().floor_friction.is_some() && c.model() == Model::Fem)?;
+        cable.histories(|other| {
             let mut answers = self.answers.clone();
             answers[k].clone_from(other);
             self.verify(&answers).is_sound()
@@ -377,7 +377,7 @@ impl Simulation {
         if !(dt_s > 0.0 && dt_s <= longest) {
             return Err(SolveError::TimeStep { dt_s, allowed });
         }
-        self.cables.iter_mut().for_each(Strand::forget_peaks);
+        self.cables.iter_mut().for_each(BreakableCable::forget_peaks);
         let velocities: Vec<_> = self.answers.iter().map(|a| AlongCable::velocities(&a.nodes)).collect();
         let done = match self.vehicle.is_some() {
             true => self.advance_with_robot(dt_s, inertia),
@@ -461,7 +461,10 @@ impl Simulation {
 
     /// Asks every cable the same. Where one of several fails, all are as before: never some of them a step ahead. (A
     /// cable alone stays where it came, see [`Mechanics::advance`](crate::model::Mechanics::advance).)
-    fn each(&mut self, mut f: impl FnMut(&mut Strand) -> Result<StepReport, SolveError>) -> Result<(), SolveError> {
+    fn each(
+        &mut self,
+        mut f: impl FnMut(&mut BreakableCable) -> Result<StepReport, SolveError>,
+    ) -> Result<(), SolveError> {
         let (mut cost, mut warnings) = (Cost::default(), Vec::new());
         let several = self.cables.len() > 1;
         let mut before = Vec::with_capacity(if several { self.cables.len() } else { 0 });
@@ -561,7 +564,7 @@ impl Simulation {
     /// Where each cable is. Where one broke, its state has two nodes of the same arc length.
     #[must_use]
     pub fn states(&self) -> Vec<State> {
-        self.cables.iter().map(Strand::state).collect()
+        self.cables.iter().map(BreakableCable::state).collect()
     }
 
     /// Goes on where `old`, a simulation of the same cables, is: broken where that one broke.

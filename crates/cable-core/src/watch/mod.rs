@@ -13,9 +13,9 @@ mod tension;
 #[cfg(test)]
 mod tests;
 
+use crate::breakage::Break;
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Energy, Warning, WarningKind};
-use crate::strand::Break;
 use growth::Growth;
 use snag::Snags;
 

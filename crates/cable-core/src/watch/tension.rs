@@ -1,10 +1,10 @@
 //! Tension: above what the cable stands, broken, or none.
 
+use crate::breakage::Break;
 use crate::math::Vec2;
 use crate::problem::Problem;
 use crate::scene::Cable;
 use crate::solution::{CableSolution, Node, TensionPeaks, Warning, WarningKind};
-use crate::strand::Break;
 
 /// Below this part of the whole load a point has no tension to speak of. Larger: the low point of a slack span counts;
 /// smaller: friction on the ground leaves enough that nothing is ever slack.
@@ -159,7 +159,7 @@ fn loose(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
 pub(super) fn broken(cable: &Cable, breaks: &[Break], out: &mut Vec<Warning>) {
     for b in breaks {
         let (s, t, x, y, limit) = (b.arc_length_m, b.time_s, b.at.x, b.at.y, cable.breaking_tension_n);
-        let (how, rest) = match &b.torn_off {
+        let (how, rest) = match &b.detached_from {
             Some(support) => (format!("tore off `{support}`"), "the rest goes on without it"),
             None => ("broke".to_owned(), "the pieces go on apart"),
         };

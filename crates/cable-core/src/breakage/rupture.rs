@@ -82,7 +82,7 @@ pub(super) fn between(before: &State, after: &State, fraction: f64) -> State {
 }
 
 /// The part of a state between two arc lengths (m), with nodes at both; its arc lengths start at 0.
-pub(super) fn part(state: &State, from: f64, to: f64) -> State {
+pub(super) fn section(state: &State, from: f64, to: f64) -> State {
     let near = 1e-9 * (to - from);
     let inside = |s: f64| s > from + near && s < to - near;
     let mut out = State { time_s: state.time_s, ..State::default() };

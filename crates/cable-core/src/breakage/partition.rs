@@ -7,7 +7,7 @@ use crate::state::State;
 
 /// The stretch of the whole cable that a piece is, and what hangs on it.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Deal {
+pub(super) struct CablePart {
     /// Arc length of the whole cable at its start, m.
     pub from: f64,
     /// Arc length of the whole cable at its end, m.
@@ -28,10 +28,10 @@ pub(super) struct Cut<'a> {
     /// The cable gives way on the side of greater arc length of what sits at the cut.
     pub after: bool,
     /// Where each support of the scene sits now, m on the whole cable.
-    pub sits: &'a [f64],
+    pub support_arc_lengths: &'a [f64],
 }
 
-impl Deal {
+impl CablePart {
     /// The whole cable.
     pub fn whole(problem: &Problem) -> Self {
         Self {
@@ -50,10 +50,10 @@ impl Deal {
     /// The pieces this one breaks into: two, or itself torn off what held its end.
     pub fn cut(&self, problem: &Problem, cut: &Cut<'_>) -> Vec<Self> {
         if cut.at - self.from <= cut.near {
-            return vec![self.torn(0, problem, cut)];
+            return vec![self.detached(0, problem, cut)];
         }
         if self.to - cut.at <= cut.near {
-            return vec![self.torn(self.supports.len() - 1, problem, cut)];
+            return vec![self.detached(self.supports.len() - 1, problem, cut)];
         }
         // What sits at the cut stays with the side that does not give way.
         let before = |s: f64| s < cut.at - cut.near || (s <= cut.at + cut.near && cut.after);
@@ -61,7 +61,7 @@ impl Deal {
         let (mut left, mut right) = (Vec::new(), Vec::new());
         for (i, &k) in self.supports.iter().enumerate() {
             let Some(k) = k else { continue };
-            let s = cut.sits.get(k).copied().unwrap_or(self.from);
+            let s = cut.support_arc_lengths.get(k).copied().unwrap_or(self.from);
             let pulley = problem.supports.get(k).is_some_and(|p| p.kind == SupportKind::Pulley);
             if pulley && (s - cut.at).abs() <= cut.near {
                 continue; // it would slip off at once
@@ -75,7 +75,9 @@ impl Deal {
             right.push(None);
         }
         // A support that stays at the new end is that end.
-        let at_cut = |k: Option<usize>| k.and_then(|k| cut.sits.get(k)).is_some_and(|s| (s - cut.at).abs() <= cut.near);
+        let at_cut = |k: Option<usize>| {
+            k.and_then(|k| cut.support_arc_lengths.get(k)).is_some_and(|s| (s - cut.at).abs() <= cut.near)
+        };
         if !(left.len() > 1 && at_cut(left[left.len() - 1])) {
             left.push(None);
         }
@@ -90,28 +92,28 @@ impl Deal {
         ]
     }
 
-    fn torn(&self, end: usize, problem: &Problem, cut: &Cut<'_>) -> Self {
-        let mut deal = self.clone();
-        if let Some(s) = deal.supports.get_mut(end) {
+    fn detached(&self, end: usize, problem: &Problem, cut: &Cut<'_>) -> Self {
+        let mut part = self.clone();
+        if let Some(s) = part.supports.get_mut(end) {
             *s = None;
         }
         let at = if end == 0 { self.from } else { self.to };
-        deal.loads.retain(|&l| problem.loads.get(l).is_some_and(|l| (l.arc_length - at).abs() > cut.near));
-        deal
+        part.loads.retain(|&l| problem.loads.get(l).is_some_and(|l| (l.arc_length - at).abs() > cut.near));
+        part
     }
 
     /// The same without a support that the cable has slipped off.
     pub fn without(&self, support: usize) -> Self {
-        let mut deal = self.clone();
-        deal.supports.retain(|s| *s != Some(support));
-        deal
+        let mut part = self.clone();
+        part.supports.retain(|s| *s != Some(support));
+        part
     }
 
     /// The piece as a problem of its own: arc lengths from its start, its first route where it lies in `state` (whose arc
     /// lengths are the piece's own), as many elements as it had.
     pub fn problem(&self, whole: &Problem, state: &State) -> Problem {
         let length = self.length();
-        let elements = state.arc_length_m.len().saturating_sub(1).max(LEAST_ELEMENTS);
+        let elements = state.arc_length_m.len().saturating_sub(1).max(MIN_ELEMENTS);
         let last = self.supports.len().saturating_sub(1);
         let mut supports = Vec::with_capacity(self.supports.len());
         for (i, &k) in self.supports.iter().enumerate() {
@@ -134,7 +136,7 @@ impl Deal {
 }
 
 /// A piece has at least so many elements: the tension of its ends is read from the next node.
-const LEAST_ELEMENTS: usize = 2;
+const MIN_ELEMENTS: usize = 2;
 
 /// The way it lies, without points on each other.
 fn route(state: &State) -> Vec<Vec2> {
@@ -182,8 +184,8 @@ mod tests {
         (*crate::problem::problems(&scene).unwrap()[0]).clone()
     }
 
-    fn cut(problem: &Problem, at: f64, after: bool) -> Vec<Deal> {
-        Deal::whole(problem).cut(problem, &Cut { at, near: 0.1, after, sits: &[0.0, 6.0, 10.0] })
+    fn cut(problem: &Problem, at: f64, after: bool) -> Vec<CablePart> {
+        CablePart::whole(problem).cut(problem, &Cut { at, near: 0.1, after, support_arc_lengths: &[0.0, 6.0, 10.0] })
     }
 
     #[test]

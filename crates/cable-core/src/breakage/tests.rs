@@ -234,9 +234,9 @@ fn a_mass_on_a_cable_breaks_it_into_two_pieces_that_go_on() {
         let strand = &sim.cables()[0];
         assert!(!strand.breaks().is_empty());
         // Every metre of cable and the mass are still somewhere, once.
-        let length: f64 = strand.pieces.iter().map(|p| p.deal.length()).sum();
+        let length: f64 = strand.pieces.iter().map(|p| p.part.length()).sum();
         assert!((length - 10.0).abs() < 1e-12);
-        assert_eq!(strand.pieces.iter().filter(|p| p.deal.supports.contains(&Some(1))).count(), 1);
+        assert_eq!(strand.pieces.iter().filter(|p| p.part.supports.contains(&Some(1))).count(), 1);
         // What is free falls: the next frames change its momentum by its weight.
         assert_eq!(answer.cables[0].supports.len(), 3);
         assert_eq!(answer.cables[0].pieces().map(<[_]>::len).sum::<usize>(), answer.cables[0].nodes.len());
@@ -321,7 +321,7 @@ fn a_broken_cable_runs_off_its_pulleys() {
     let (sim, answer) = run(&scene, Model::MassSpring, 4.0);
     let strand = &sim.cables()[0];
     assert_eq!(broken(&answer)[0].1, 10.0, "{:?}", broken(&answer));
-    assert!(strand.pieces.iter().all(|p| !p.deal.supports.contains(&Some(1))), "{:?}", strand.pieces[0].deal);
+    assert!(strand.pieces.iter().all(|p| !p.part.supports.contains(&Some(1))), "{:?}", strand.pieces[0].part);
     assert_eq!(answer.cables[0].supports.len(), 3);
     let highest = answer.cables[0].nodes.iter().map(|n| n.y_m).fold(f64::NEG_INFINITY, f64::max);
     assert!(highest < 1.0, "{highest}");
@@ -368,10 +368,10 @@ proptest! {
         };
         let Some(sim) = go() else { return Ok(()) };
         let strand = &sim.cables()[0];
-        let whole: f64 = strand.pieces.iter().map(|p| p.deal.length()).sum();
+        let whole: f64 = strand.pieces.iter().map(|p| p.part.length()).sum();
         prop_assert!((whole - 11.0).abs() < 1e-9);
-        let held: usize = strand.pieces.iter().map(|p| p.deal.supports.iter().flatten().count()).sum();
-        let torn = strand.breaks().iter().filter(|b| b.torn_off.is_some()).count();
+        let held: usize = strand.pieces.iter().map(|p| p.part.supports.iter().flatten().count()).sum();
+        let torn = strand.breaks().iter().filter(|b| b.detached_from.is_some()).count();
         prop_assert_eq!(held + torn, strand.problem().supports.len());
         prop_assert_eq!(strand.pieces.len() + torn, strand.breaks().len() + 1);
         prop_assert_eq!(go().unwrap().solution(), sim.solution());

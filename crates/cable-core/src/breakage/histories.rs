@@ -8,27 +8,27 @@ use crate::math::{Vec2, larger, smaller};
 use crate::model::Inertia;
 use crate::solution::CableSolution;
 
-use super::Strand;
+use super::BreakableCable;
 
 /// Way of an end, of the cable's length. Less: what is held in the middle of a long cable is never reached; more: a cable that is nearly taut is torn
 /// rather than drawn, and it takes longer.
-const WAY: f64 = 0.01;
+const END_TRAVEL_FRACTION: f64 = 0.01;
 
 /// Time in which an end moves, s: none that counts for what else moves.
-const MOMENT_S: f64 = 1e-6;
+const MOVE_TIME_S: f64 = 1e-6;
 
 /// What a history left.
-struct Left {
+struct HistoryResult {
     words: String,
     /// Tension at the start, at the end and the greatest, N.
     tension: [f64; 3],
 }
 
-impl Strand {
+impl BreakableCable {
     /// What other histories would have left in the cable, in words; `sound` judges each as if it were the answer.
     pub(crate) fn histories(&self, sound: impl Fn(&CableSolution) -> bool) -> Option<String> {
         let laid = self.answer();
-        let way = WAY * self.problem().length;
+        let way = END_TRAVEL_FRACTION * self.problem().length;
         let mut found = Vec::new();
         let last = self.problem().supports.len().checked_sub(1)?;
         for k in [0, last] {
@@ -39,7 +39,7 @@ impl Strand {
             for (sign, what) in [(-1.0, "drawn out"), (1.0, "let in")] {
                 let there = self.after(k, [at + out * (sign * way), at]).filter(|a| sound(a));
                 let words = format!("`{}` {what} by {way:.3} m and put back", support.name);
-                found.extend(there.map(|a| Left { words, tension: tensions(&a) }));
+                found.extend(there.map(|a| HistoryResult { words, tension: tensions(&a) }));
             }
         }
         let laid = tensions(&laid);
@@ -66,7 +66,7 @@ impl Strand {
         let mut other = self.clone();
         for place in places {
             other.drag_support(support, place);
-            other.advance(MOMENT_S, Inertia::QuasiStatic).ok()?;
+            other.advance(MOVE_TIME_S, Inertia::QuasiStatic).ok()?;
         }
         other.breaks().is_empty().then(|| other.answer())
     }

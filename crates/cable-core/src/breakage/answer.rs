@@ -1,14 +1,14 @@
 //! The pieces of a cable read as one cable again: arc lengths from its start, supports in the scene's order.
 
-use super::{Piece, Strand};
+use super::{BreakableCable, Piece};
 use crate::problem::SupportPoint;
 use crate::solution::{Assumptions, CableSolution, MomentumAccount, SupportReaction};
 use crate::state::State;
 
 /// Part by which sums of times round.
-const SAME_TIME: f64 = 1e-6;
+const TIME_TOLERANCE: f64 = 1e-6;
 
-impl Strand {
+impl BreakableCable {
     /// The answer at this instant.
     pub fn answer(&self) -> CableSolution {
         if let ([whole], true) = (self.pieces.as_slice(), self.breaks.is_empty()) {
@@ -27,8 +27,8 @@ impl Strand {
             ..CableSolution::default()
         };
         for piece in &self.pieces {
-            let from = piece.deal.from;
-            if !out.nodes.is_empty() || piece.deal.supports.first() == Some(&None) {
+            let from = piece.part.from;
+            if !out.nodes.is_empty() || piece.part.supports.first() == Some(&None) {
                 out.breaks.push(out.nodes.len());
             }
             out.nodes.extend(piece.answer.nodes.iter().map(|n| {
@@ -45,7 +45,7 @@ impl Strand {
                 c
             }));
         }
-        if self.pieces.last().is_some_and(|p| p.deal.supports.last() == Some(&None)) {
+        if self.pieces.last().is_some_and(|p| p.part.supports.last() == Some(&None)) {
             out.breaks.push(out.nodes.len());
         }
         out.supports = (0..self.problem.supports.len()).map(|k| self.reaction(k)).collect();
@@ -55,7 +55,7 @@ impl Strand {
     /// The account of all pieces over the whole of the caller's step, where there is one.
     fn account(&self) -> Option<MomentumAccount> {
         let over_s = self.time_s() - self.since_s;
-        let whole = |p: &Piece| p.account.filter(|a| (a.over_s - over_s).abs() <= SAME_TIME * over_s);
+        let whole = |p: &Piece| p.account.filter(|a| (a.over_s - over_s).abs() <= TIME_TOLERANCE * over_s);
         let accounts: Option<Vec<MomentumAccount>> = self.pieces.iter().map(whole).collect();
         accounts?.into_iter().reduce(|a, b| a.with(&b))
     }
@@ -65,7 +65,7 @@ impl Strand {
         let mut out = State { time_s: self.time_s(), ..State::default() };
         for piece in &self.pieces {
             let state = piece.mechanics.state();
-            out.arc_length_m.extend(state.arc_length_m.iter().map(|s| s + piece.deal.from));
+            out.arc_length_m.extend(state.arc_length_m.iter().map(|s| s + piece.part.from));
             out.position_m.extend(state.position_m);
             out.velocity_m_per_s.extend(state.velocity_m_per_s);
         }
@@ -73,24 +73,24 @@ impl Strand {
     }
 
     /// Where each support sits, m on the whole cable.
-    pub(super) fn sits(&self) -> Vec<f64> {
+    pub(super) fn support_arc_lengths(&self) -> Vec<f64> {
         (0..self.problem.supports.len()).map(|k| self.reaction(k).arc_length_m).collect()
     }
 
     /// What the cable does to a support of the scene: nothing, if it is off it.
     pub(super) fn reaction(&self, k: usize) -> SupportReaction {
         let held = self.pieces.iter().find_map(|p| {
-            let own = p.deal.supports.iter().position(|s| *s == Some(k))?;
+            let own = p.part.supports.iter().position(|s| *s == Some(k))?;
             let mut r = p.answer.supports.get(own)?.clone();
-            r.arc_length_m += p.deal.from;
+            r.arc_length_m += p.part.from;
             Some(r)
         });
         held.unwrap_or_else(|| {
-            self.problem.supports.get(k).map_or_else(SupportReaction::default, |s| self.left_alone(s))
+            self.problem.supports.get(k).map_or_else(SupportReaction::default, |s| self.unloaded_reaction(s))
         })
     }
 
-    fn left_alone(&self, support: &SupportPoint) -> SupportReaction {
+    fn unloaded_reaction(&self, support: &SupportPoint) -> SupportReaction {
         let at = support.position_at(self.time_s()).map(|p| p.0).or(support.at).unwrap_or_default();
         SupportReaction {
             name: support.name.clone(),

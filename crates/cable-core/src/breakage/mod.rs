@@ -1,19 +1,19 @@
 //! One cable of a scene over time: whole, or the pieces it broke into.
 //!
-//! A model knows one unbroken cable. Where tension reaches the breaking tension, [`Strand`] stops the model there, deals
+//! A model knows one unbroken cable. Where tension reaches the breaking tension, [`BreakableCable`] stops the model there, parts
 //! what hangs on the cable out to two shorter [`Problem`]s with free ends, and goes on with a model for each, from the
 //! positions and velocities of the moment. Every model breaks, and none knows that it can.
 
 mod answer;
-mod deal;
 mod histories;
+mod partition;
 mod rupture;
 #[cfg(test)]
 mod tests;
 
 use std::sync::Arc;
 
-use deal::{Cut, Deal};
+use partition::{CablePart, Cut};
 
 use crate::contact::outline::Placement;
 use crate::error::SolveError;
@@ -28,34 +28,34 @@ use crate::state::State;
 
 /// Longest step that a cable which breaks in it takes from its last place before, s. Longer: the place of the break is blurred; shorter:
 /// more steps for each break. It is the inner step of `fem`.
-const WATCH_STEP_S: f64 = 1.0 / 240.0;
+const BREAK_SEARCH_STEP_S: f64 = 1.0 / 240.0;
 
 /// Looks in a step without inertia that ends beyond the breaking tension. The moment of the break is interpolated between
 /// two of them: with 16 the end of a cable pulled from slack to taut in one step is found to 1e-2 of the step.
-const SLOW_LOOKS: f64 = 16.0;
+const QUASI_STATIC_SUBSTEPS: f64 = 16.0;
 
 /// Steps after a break in which a piece is not watched: the models start with a first-order step, and the free end is met
 /// by a wave of its own. Fewer: false breaks beside the first; more: true ones are late. In motion it is also not watched
 /// until that wave, at c = √(EA/ρ), has crossed it there and back (once is too short: a mesh blurs its front): where the break is not felt yet, a cable of exactly even strength that
 /// was pulled evenly would break everywhere at once, which no cable does.
-const QUIET_STEPS: u32 = 2;
+const UNWATCHED_STEPS: u32 = 2;
 
 /// A rest of a step shorter than this part of it is left out: at a millionth of a step the forces of inertia are rounding.
-const LEAST_REST: f64 = 0.1;
+const MIN_STEP_REMAINDER: f64 = 0.1;
 
 /// Most pieces of one cable. More are no longer a cable that breaks but a step that fails.
-const MOST_PIECES: usize = 32;
+const MAX_PIECES: usize = 32;
 
 /// A pulley is off the cable when a new end is this near, in elements. Smaller: the end runs into the pulley, where there is
 /// no element left on one side; larger: it drops off visibly early. 2 leaves a moving node beside the pulley.
-const OFF_PULLEY: f64 = 2.0;
+const PULLEY_RELEASE_ELEMENTS: f64 = 2.0;
 
 /// Fastest motion of a support that is followed while masses move, m/s. Slower: motions are refused that every model follows; faster:
 /// `mass-spring` cuts velocities, and air, which no model has, would rule.
-const FASTEST_MOTION: f64 = 300.0;
+const MAX_SUPPORT_SPEED: f64 = 300.0;
 
 /// A velocity that changes nothing, m/s, and tells a model that a piece which broke at rest is not at rest any more.
-const WAKE: f64 = 1e-100;
+const WAKE_VELOCITY: f64 = 1e-100;
 
 /// A break.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,16 +67,16 @@ pub(crate) struct Break {
     /// Where in the plane, m.
     pub at: Vec2,
     /// The support it tore off, if it did.
-    pub torn_off: Option<String>,
+    pub detached_from: Option<String>,
     /// The time over which its mean tension reached the breaking tension, s; 0 = at once.
     pub over_s: f64,
 }
 
 /// One cable of a scene.
-pub(crate) struct Strand {
+pub(crate) struct BreakableCable {
     problem: Arc<Problem>,
     /// What was asked for: pieces of a broken cable are built by it.
-    asked: Model,
+    requested: Model,
     settings: Settings,
     pieces: Vec<Piece>,
     breaks: Vec<Break>,
@@ -84,7 +84,7 @@ pub(crate) struct Strand {
     /// Which of them a hand holds by a spring.
     pulled: Vec<bool>,
     /// Where the outline of the robot was led.
-    led: Option<Placement>,
+    robot_pose: Option<Placement>,
     /// The greatest tensions since they were last forgotten, in motion.
     peaks: Option<TensionPeaks>,
     /// When that was, s.
@@ -96,12 +96,12 @@ pub(crate) struct Strand {
 /// A part of the cable that holds together.
 struct Piece {
     mechanics: Box<dyn Mechanics>,
-    deal: Deal,
+    part: CablePart,
     /// The answer at its present instant, in its own arc lengths.
     answer: CableSolution,
-    quiet: u32,
+    unwatched_steps: u32,
     /// Not watched before, s.
-    quiet_until_s: f64,
+    unwatched_until_s: f64,
     /// Its tension in the inner steps of its model, in its own arc lengths.
     gauge: TensionGauge,
     /// Its momentum since the caller's step began, as far as there is an account of it.
@@ -109,13 +109,13 @@ struct Piece {
 }
 
 /// What became of a piece in a step.
-enum Outcome {
-    Held,
+enum StepOutcome {
+    Intact,
     /// When (s), and where it then is.
     Broke(Box<(f64, State, rupture::Rupture)>),
 }
 
-impl Strand {
+impl BreakableCable {
     /// Builds the model of a whole cable.
     pub fn new(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
         // A hand's spring is that of the whole cable, whatever breaks off.
@@ -123,19 +123,19 @@ impl Strand {
         let settings = Settings { hand_stiffness_n_per_m: Some(stiffness), ..settings };
         let mechanics = model::build(model, problem.clone(), settings)?;
         let gauge = TensionGauge::over(problem.cable.breaking_time_s);
-        let piece = Piece::new(mechanics, Deal::whole(&problem), gauge);
+        let piece = Piece::new(mechanics, CablePart::whole(&problem), gauge);
         let dragged = vec![None; problem.supports.len()];
         let too_fast = problem.supports.iter().find_map(too_fast);
         Ok(Self {
             too_fast,
             problem,
-            asked: model,
+            requested: model,
             settings,
             pieces: vec![piece],
             breaks: Vec::new(),
             pulled: vec![false; dragged.len()],
             dragged,
-            led: None,
+            robot_pose: None,
             peaks: None,
             since_s: 0.0,
         })
@@ -159,7 +159,7 @@ impl Strand {
 
     /// The model in use: of several pieces that of the first.
     pub fn model(&self) -> Model {
-        self.pieces.first().map_or(self.asked, |p| p.mechanics.model())
+        self.pieces.first().map_or(self.requested, |p| p.mechanics.model())
     }
 
     /// Why it is that model, where that changed on the way.
@@ -194,7 +194,7 @@ impl Strand {
         for piece in &mut self.pieces {
             piece.gauge.forget();
             add(&mut sum, piece.mechanics.settle()?);
-            piece.look();
+            piece.refresh_answer();
         }
         sum.warnings.extend(self.problem.notes.iter().cloned());
         Ok(sum)
@@ -232,7 +232,7 @@ impl Strand {
         let breaking_n = self.problem.cable.breaking_tension_n;
         let mut k = 0;
         while k < self.pieces.len() {
-            let may_break = self.pieces.len() < MOST_PIECES;
+            let may_break = self.pieces.len() < MAX_PIECES;
             let Some(piece) = self.pieces.get_mut(k) else { break };
             // A whole cable takes the very step it was asked for.
             let rest_s = if self.breaks.is_empty() { dt_s } else { end_s - piece.mechanics.time_s() };
@@ -246,8 +246,8 @@ impl Strand {
                 (a, b) => b.or(a),
             };
             match done {
-                Outcome::Held => k += 1,
-                Outcome::Broke(at) => self.split(k, &at, inertia)?,
+                StepOutcome::Intact => k += 1,
+                StepOutcome::Broke(at) => self.split(k, &at, inertia)?,
             }
         }
         Ok(sum)
@@ -260,52 +260,52 @@ impl Strand {
         (time_s, state, at): &(f64, State, rupture::Rupture),
         inertia: Inertia,
     ) -> Result<(), SolveError> {
-        let sits = self.sits();
+        let support_arc_lengths = self.support_arc_lengths();
         let Some(piece) = self.pieces.get(k) else { return Ok(()) };
         let nodes = &piece.answer.nodes;
         let Some(node) = nodes.get(at.node) else { return Ok(()) };
         let tension = |i: Option<usize>| i.and_then(|i| nodes.get(i)).map_or(0.0, |n| n.tension_n);
         let cut = Cut {
-            at: piece.deal.from + node.arc_length_m,
+            at: piece.part.from + node.arc_length_m,
             near: 0.5 * piece.element(),
             after: tension(Some(at.node + 1)) > tension(at.node.checked_sub(1)),
-            sits: &sits,
+            support_arc_lengths: &support_arc_lengths,
         };
-        let deals = piece.deal.cut(&self.problem, &cut);
+        let parts = piece.part.cut(&self.problem, &cut);
         let end =
-            if cut.at - piece.deal.from <= cut.near { piece.deal.supports.first() } else { piece.deal.supports.last() };
-        let torn = (deals.len() == 1).then(|| end.copied().flatten()).flatten();
+            if cut.at - piece.part.from <= cut.near { piece.part.supports.first() } else { piece.part.supports.last() };
+        let detached = (parts.len() == 1).then(|| end.copied().flatten()).flatten();
         let event = Break {
             time_s: *time_s,
             arc_length_m: cut.at,
             at: state.position_at(node.arc_length_m).unwrap_or_default(),
             over_s: if inertia == Inertia::Dynamic { self.problem.cable.breaking_time_s } else { 0.0 },
-            torn_off: torn.and_then(|k| self.problem.supports.get(k)).map(|s| s.name.clone()),
+            detached_from: detached.and_then(|k| self.problem.supports.get(k)).map(|s| s.name.clone()),
         };
-        let from = piece.deal.from;
-        let mut parts = Vec::with_capacity(2);
-        for deal in deals {
-            let mut own = rupture::part(state, deal.from - from, deal.to - from);
+        let from = piece.part.from;
+        let mut new_pieces = Vec::with_capacity(2);
+        for part in parts {
+            let mut own = rupture::section(state, part.from - from, part.to - from);
             if inertia == Inertia::Dynamic {
-                wake(&mut own);
+                mark_moving(&mut own);
             }
             let there_and_back_s =
-                2.0 * deal.length() * (self.problem.linear_density / self.problem.axial_stiffness).sqrt();
-            let mut part = self.build(deal, &own)?;
-            part.quiet = QUIET_STEPS;
-            part.quiet_until_s = time_s + there_and_back_s;
-            parts.push(part);
+                2.0 * part.length() * (self.problem.linear_density / self.problem.axial_stiffness).sqrt();
+            let mut new_piece = self.build(part, &own)?;
+            new_piece.unwatched_steps = UNWATCHED_STEPS;
+            new_piece.unwatched_until_s = time_s + there_and_back_s;
+            new_pieces.push(new_piece);
         }
-        self.pieces.splice(k..=k, parts);
+        self.pieces.splice(k..=k, new_pieces);
         self.breaks.push(event);
         Ok(())
     }
 
     /// A piece from where it is; `state` in its own arc lengths.
-    fn build(&self, deal: Deal, state: &State) -> Result<Piece, SolveError> {
-        let problem = Arc::new(deal.problem(&self.problem, state));
-        let mut mechanics = model::build(self.asked, problem, Settings { segments: None, ..self.settings })?;
-        for (own, k) in deal.supports.iter().enumerate() {
+    fn build(&self, part: CablePart, state: &State) -> Result<Piece, SolveError> {
+        let problem = Arc::new(part.problem(&self.problem, state));
+        let mut mechanics = model::build(self.requested, problem, Settings { segments: None, ..self.settings })?;
+        for (own, k) in part.supports.iter().enumerate() {
             let drawn = k.and_then(|k| Some((self.dragged.get(k).copied().flatten()?, self.pulled[k])));
             match drawn {
                 Some((target, true)) => mechanics.pull_support(own, target),
@@ -313,11 +313,11 @@ impl Strand {
                 None => {}
             }
         }
-        if let Some(led) = self.led {
-            mechanics.lead_outline(led);
+        if let Some(pose) = self.robot_pose {
+            mechanics.lead_outline(pose);
         }
         mechanics.adopt(state)?;
-        Ok(Piece::new(mechanics, deal, TensionGauge::over(self.problem.cable.breaking_time_s)))
+        Ok(Piece::new(mechanics, part, TensionGauge::over(self.problem.cable.breaking_time_s)))
     }
 
     /// A piece whose new end has come to a pulley is off it.
@@ -331,9 +331,9 @@ impl Strand {
             {
                 let mut state = piece.mechanics.state();
                 if inertia == Inertia::Dynamic {
-                    wake(&mut state);
+                    mark_moving(&mut state);
                 }
-                let next = self.build(piece.deal.without(support), &state)?;
+                let next = self.build(piece.part.without(support), &state)?;
                 if let Some(piece) = self.pieces.get_mut(k) {
                     *piece = next;
                 }
@@ -360,7 +360,7 @@ impl Strand {
             (*d, *pulled) = (Some(to), by_spring);
         }
         for piece in &mut self.pieces {
-            let own = piece.deal.supports.iter().position(|k| *k == Some(support));
+            let own = piece.part.supports.iter().position(|k| *k == Some(support));
             match own {
                 Some(own) if by_spring => piece.mechanics.pull_support(own, to),
                 Some(own) => piece.mechanics.drag_support(own, to),
@@ -371,7 +371,7 @@ impl Strand {
 
     /// Leads the outline of the robot: it goes there in the next advance.
     pub fn lead_outline(&mut self, to: Placement) {
-        self.led = Some(to);
+        self.robot_pose = Some(to);
         for piece in &mut self.pieces {
             piece.mechanics.lead_outline(to);
         }
@@ -405,17 +405,17 @@ impl Strand {
     }
 
     /// A copy to go back to.
-    pub fn kept(&self) -> Self {
-        self.with(self.pieces.iter().map(Piece::kept).collect())
+    pub fn checkpoint(&self) -> Self {
+        self.with(self.pieces.iter().map(Piece::checkpoint).collect())
     }
 
     /// Becomes what it was when `kept` was copied from it.
-    pub fn go_back(&mut self, kept: &Self) {
+    pub fn restore(&mut self, kept: &Self) {
         let mut own: Vec<Option<Own>> = self.pieces.iter_mut().map(|p| p.mechanics.lend()).collect();
         own.resize_with(kept.pieces.len(), || None);
         // What broke since has nothing of the whole.
         let same = self.breaks.len() == kept.breaks.len();
-        *self = kept.kept();
+        *self = kept.checkpoint();
         for (piece, own) in self.pieces.iter_mut().zip(own) {
             piece.mechanics.borrow(own.filter(|_| same));
         }
@@ -427,7 +427,7 @@ impl Strand {
             [whole] if self.breaks.is_empty() => {
                 whole.mechanics.adopt(state)?;
                 whole.gauge.forget();
-                whole.look();
+                whole.refresh_answer();
                 self.peaks = None;
                 Ok(())
             }
@@ -463,7 +463,7 @@ impl Strand {
         self.pulled.clone_from(&old.pulled);
         let mut pieces = Vec::with_capacity(old.pieces.len());
         for p in &old.pieces {
-            pieces.push(self.build(p.deal.clone(), &p.mechanics.state())?);
+            pieces.push(self.build(p.part.clone(), &p.mechanics.state())?);
         }
         self.pieces = pieces;
         self.breaks.clone_from(&old.breaks);
@@ -472,17 +472,17 @@ impl Strand {
 }
 
 impl Piece {
-    fn new(mechanics: Box<dyn Mechanics>, deal: Deal, gauge: TensionGauge) -> Self {
+    fn new(mechanics: Box<dyn Mechanics>, part: CablePart, gauge: TensionGauge) -> Self {
         let answer = mechanics.solution();
-        Self { answer, mechanics, deal, quiet: 0, quiet_until_s: f64::NEG_INFINITY, gauge, account: None }
+        Self { answer, mechanics, part, unwatched_steps: 0, unwatched_until_s: f64::NEG_INFINITY, gauge, account: None }
     }
 
-    fn look(&mut self) {
+    fn refresh_answer(&mut self) {
         self.answer = self.mechanics.solution();
     }
 
     /// Adds the account of the step just made.
-    fn count(&mut self) {
+    fn accumulate_momentum(&mut self) {
         self.account = match (self.account, self.answer.momentum) {
             (Some(before), Some(now)) => Some(before.then(&now)),
             (before, now) => now.or(before),
@@ -491,7 +491,7 @@ impl Piece {
 
     /// Mean length of an element, m.
     fn element(&self) -> f64 {
-        self.deal.length() / self.answer.nodes.len().saturating_sub(1).max(1) as f64
+        self.part.length() / self.answer.nodes.len().saturating_sub(1).max(1) as f64
     }
 
     /// Advances until it breaks, at most by `dt_s`.
@@ -501,31 +501,31 @@ impl Piece {
         inertia: Inertia,
         breaking_n: Option<f64>,
         sum: &mut StepReport,
-    ) -> Result<Outcome, SolveError> {
+    ) -> Result<StepOutcome, SolveError> {
         match (inertia, breaking_n) {
-            (Inertia::Dynamic, breaking_n) => self.move_on(dt_s, breaking_n.unwrap_or(f64::INFINITY), sum),
-            (Inertia::QuasiStatic, Some(breaking_n)) => self.creep_on(dt_s, breaking_n, sum),
+            (Inertia::Dynamic, breaking_n) => self.advance_dynamic(dt_s, breaking_n.unwrap_or(f64::INFINITY), sum),
+            (Inertia::QuasiStatic, Some(breaking_n)) => self.advance_quasi_static(dt_s, breaking_n, sum),
             (Inertia::QuasiStatic, None) => {
                 self.gauge.forget();
                 add(sum, self.mechanics.advance(dt_s, inertia)?);
-                self.look();
-                Ok(Outcome::Held)
+                self.refresh_answer();
+                Ok(StepOutcome::Intact)
             }
         }
     }
 
     /// With inertia: it breaks where the gauge says so, which sees the inner steps. A step in which that happens is taken again in
-    /// parts, to have the cable where it breaks.
-    fn move_on(&mut self, dt_s: f64, breaking_n: f64, sum: &mut StepReport) -> Result<Outcome, SolveError> {
-        let looks = (dt_s / WATCH_STEP_S - 1e-9).ceil().max(1.0);
-        if looks > 1.0 && self.quiet == 0 {
+    /// new_pieces, to have the cable where it breaks.
+    fn advance_dynamic(&mut self, dt_s: f64, breaking_n: f64, sum: &mut StepReport) -> Result<StepOutcome, SolveError> {
+        let looks = (dt_s / BREAK_SEARCH_STEP_S - 1e-9).ceil().max(1.0);
+        if looks > 1.0 && self.unwatched_steps == 0 {
             let before = (self.mechanics.boxed_clone(), self.gauge.clone());
             let report = self.gauged_step(dt_s, breaking_n)?;
             if self.gauge.reached().is_none() {
-                self.look();
-                self.count();
+                self.refresh_answer();
+                self.accumulate_momentum();
                 add(sum, report);
-                return Ok(Outcome::Held);
+                return Ok(StepOutcome::Intact);
             }
             (self.mechanics, self.gauge) = before;
         }
@@ -534,36 +534,42 @@ impl Piece {
         for _ in 0..looks as usize {
             let state = self.mechanics.state();
             let step_s = if left_s < 1.5 * h { left_s } else { h };
-            let breaking_n = if self.quiet > 0 { f64::INFINITY } else { breaking_n };
+            let breaking_n = if self.unwatched_steps > 0 { f64::INFINITY } else { breaking_n };
             let done = self.gauged_step(step_s, breaking_n);
-            self.look();
-            self.count();
+            self.refresh_answer();
+            self.accumulate_momentum();
             add(sum, done?);
             self.gauge.add_peaks(peaks);
             peaks = self.gauge.peaks();
             left_s -= step_s;
-            self.quiet = self.quiet.saturating_sub(1);
+            self.unwatched_steps = self.unwatched_steps.saturating_sub(1);
             if let Some(reached) = self.gauge.reached() {
                 let now = self.mechanics.state();
                 let fraction = ((reached.time_s - state.time_s) / (now.time_s - state.time_s)).clamp(0.0, 1.0);
                 let at =
                     rupture::Rupture { node: rupture::nearest(&self.answer.nodes, reached.arc_length_m), fraction };
-                let state = if 1.0 - fraction < LEAST_REST { now } else { rupture::between(&state, &now, fraction) };
-                return Ok(Outcome::Broke(Box::new((reached.time_s, state, at))));
+                let state =
+                    if 1.0 - fraction < MIN_STEP_REMAINDER { now } else { rupture::between(&state, &now, fraction) };
+                return Ok(StepOutcome::Broke(Box::new((reached.time_s, state, at))));
             }
         }
-        Ok(Outcome::Held)
+        Ok(StepOutcome::Intact)
     }
 
     /// A step with inertia in which a mean of so much is looked for, N.
     fn gauged_step(&mut self, dt_s: f64, breaking_n: f64) -> Result<StepReport, SolveError> {
-        let limit = Limit { tension_n: breaking_n, from_s: self.quiet_until_s, within_m: self.may_break_within() };
+        let limit = Limit { tension_n: breaking_n, from_s: self.unwatched_until_s, within_m: self.may_break_within() };
         self.gauge.watch(limit);
         self.mechanics.advance_gauged(dt_s, Inertia::Dynamic, &mut self.gauge)
     }
 
     /// Without inertia it breaks at once.
-    fn creep_on(&mut self, dt_s: f64, breaking_n: f64, sum: &mut StepReport) -> Result<Outcome, SolveError> {
+    fn advance_quasi_static(
+        &mut self,
+        dt_s: f64,
+        breaking_n: f64,
+        sum: &mut StepReport,
+    ) -> Result<StepOutcome, SolveError> {
         let inertia = Inertia::QuasiStatic;
         self.gauge.forget();
         if rupture::greatest(&self.answer.nodes) < breaking_n {
@@ -575,43 +581,43 @@ impl Piece {
                     return Err(error);
                 }
             };
-            self.look();
+            self.refresh_answer();
             if rupture::greatest(&self.answer.nodes) < breaking_n {
-                self.quiet = self.quiet.saturating_sub(SLOW_LOOKS as u32);
+                self.unwatched_steps = self.unwatched_steps.saturating_sub(QUASI_STATIC_SUBSTEPS as u32);
                 add(sum, report);
-                return Ok(Outcome::Held);
+                return Ok(StepOutcome::Intact);
             }
             (self.mechanics, self.answer) = before;
         }
-        let (mut left_s, h) = (dt_s, dt_s / SLOW_LOOKS);
-        for _ in 0..SLOW_LOOKS as usize {
+        let (mut left_s, h) = (dt_s, dt_s / QUASI_STATIC_SUBSTEPS);
+        for _ in 0..QUASI_STATIC_SUBSTEPS as usize {
             let (state, nodes) = (self.mechanics.state(), std::mem::take(&mut self.answer.nodes));
             let step_s = if left_s < 1.5 * h { left_s } else { h };
             let done = self.mechanics.advance(step_s, inertia);
-            self.look();
+            self.refresh_answer();
             add(sum, done?);
             left_s -= step_s;
             let now = self.mechanics.state();
-            let awake = self.quiet == 0;
-            self.quiet = self.quiet.saturating_sub(1);
+            let awake = self.unwatched_steps == 0;
+            self.unwatched_steps = self.unwatched_steps.saturating_sub(1);
             let [low, high] = self.may_break_within();
             if awake && let Some(at) = rupture::first(&nodes, &self.answer.nodes, breaking_n, |s| low <= s && s <= high)
             {
                 let time_s = state.time_s + (now.time_s - state.time_s) * at.fraction;
                 let rest = 1.0 - at.fraction;
-                let state = if rest < LEAST_REST { now } else { rupture::between(&state, &now, at.fraction) };
-                return Ok(Outcome::Broke(Box::new((time_s, state, at))));
+                let state = if rest < MIN_STEP_REMAINDER { now } else { rupture::between(&state, &now, at.fraction) };
+                return Ok(StepOutcome::Broke(Box::new((time_s, state, at))));
             }
         }
-        Ok(Outcome::Held)
+        Ok(StepOutcome::Intact)
     }
 
     /// The arc lengths (its own, m) between which it may break: not at an end that is free since a break.
     fn may_break_within(&self) -> [f64; 2] {
         let least = 0.5 * self.element();
         let new = |end: Option<&Option<usize>>| end == Some(&None);
-        let low = if new(self.deal.supports.first()) { least } else { f64::NEG_INFINITY };
-        let high = if new(self.deal.supports.last()) { self.deal.length() - least } else { f64::INFINITY };
+        let low = if new(self.part.supports.first()) { least } else { f64::NEG_INFINITY };
+        let high = if new(self.part.supports.last()) { self.part.length() - least } else { f64::INFINITY };
         [low, high]
     }
 
@@ -626,20 +632,20 @@ impl Piece {
                 }
             }
         }
-        peaks.greatest.arc_length_m += self.deal.from;
-        peaks.held.arc_length_m += self.deal.from;
+        peaks.greatest.arc_length_m += self.part.from;
+        peaks.held.arc_length_m += self.part.from;
         Some(peaks)
     }
 
     /// A pulley that a new end has come to.
     fn pulley_at_new_end(&self, whole: &Problem) -> Option<usize> {
-        let supports = &self.deal.supports;
+        let supports = &self.part.supports;
         let [start, end] = [supports.first(), supports.last()].map(|s| s == Some(&None));
-        let near = OFF_PULLEY * self.element();
+        let near = PULLEY_RELEASE_ELEMENTS * self.element();
         supports.iter().zip(&self.answer.supports).find_map(|(k, r)| {
             let k = (*k)?;
             let pulley = whole.supports.get(k)?.kind == SupportKind::Pulley;
-            let off = (start && r.arc_length_m <= near) || (end && self.deal.length() - r.arc_length_m <= near);
+            let off = (start && r.arc_length_m <= near) || (end && self.part.length() - r.arc_length_m <= near);
             (pulley && off).then_some(k)
         })
     }
@@ -648,19 +654,19 @@ impl Piece {
 /// What is to be said of a motion that is too fast.
 fn too_fast(support: &SupportPoint) -> Option<String> {
     let (speed, time_s) = support.motion.as_ref()?.fastest();
-    (speed > FASTEST_MOTION).then(|| {
+    (speed > MAX_SUPPORT_SPEED).then(|| {
         format!(
-            "the motion of support `{}`, which reaches {speed:.1} m/s at {time_s:.4} s: with inertia one is followed up to {FASTEST_MOTION} m/s",
+            "the motion of support `{}`, which reaches {speed:.1} m/s at {time_s:.4} s: with inertia one is followed up to {MAX_SUPPORT_SPEED} m/s",
             support.name
         )
     })
 }
 
-fn wake(state: &mut State) {
+fn mark_moving(state: &mut State) {
     if state.velocity_m_per_s.iter().all(|v| v.norm() == 0.0)
         && let Some(v) = state.velocity_m_per_s.first_mut()
     {
-        v.x = WAKE;
+        v.x = WAKE_VELOCITY;
     }
 }
 
@@ -674,14 +680,14 @@ fn add(sum: &mut StepReport, more: StepReport) {
         sum.cost.inner_step_s = inner_step_s;
     }
     for warning in more.warnings {
-        // Of the parts of a step each says the same again.
+        // Of the new_pieces of a step each says the same again.
         sum.warnings.retain(|w| w.kind != warning.kind || w.message != warning.message);
         sum.warnings.push(warning);
     }
 }
 
 impl Piece {
-    fn kept(&self) -> Self {
+    fn checkpoint(&self) -> Self {
         self.with(self.mechanics.copy_to_keep())
     }
 
@@ -689,10 +695,10 @@ impl Piece {
     fn with(&self, mechanics: Box<dyn Mechanics>) -> Self {
         Self {
             mechanics,
-            deal: self.deal.clone(),
+            part: self.part.clone(),
             answer: self.answer.clone(),
-            quiet: self.quiet,
-            quiet_until_s: self.quiet_until_s,
+            unwatched_steps: self.unwatched_steps,
+            unwatched_until_s: self.unwatched_until_s,
             gauge: self.gauge.clone(),
             account: self.account,
         }
@@ -705,24 +711,24 @@ impl Clone for Piece {
     }
 }
 
-impl Clone for Strand {
+impl Clone for BreakableCable {
     fn clone(&self) -> Self {
         self.with(self.pieces.clone())
     }
 }
 
-impl Strand {
+impl BreakableCable {
     /// A copy with copies of its pieces.
     fn with(&self, pieces: Vec<Piece>) -> Self {
         Self {
             problem: self.problem.clone(),
-            asked: self.asked,
+            requested: self.requested,
             settings: self.settings,
             pieces,
             breaks: self.breaks.clone(),
             dragged: self.dragged.clone(),
             pulled: self.pulled.clone(),
-            led: self.led,
+            robot_pose: self.robot_pose,
             peaks: self.peaks,
             since_s: self.since_s,
             too_fast: self.too_fast.clone(),
