@@ -45,7 +45,7 @@ pub mod state;
 pub mod summary;
 pub mod timeline;
 pub mod verify;
-mod watch;
+mod warnings;
 
 pub use cable_linalg as linalg;
 pub use error::{Error, SceneError, SolveError};

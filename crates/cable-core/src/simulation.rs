@@ -19,7 +19,7 @@ use crate::solution::{CableSolution, Cost, Energy, MaxTension, Node, Solution, W
 use crate::state::State;
 use crate::timeline::STEP_S;
 use crate::verify::{Depth, Verification, Verifier};
-use crate::watch::{Bends, Subject, Watch};
+use crate::warnings::{Bends, Observed, WarningMonitor};
 
 /// Longest step a display frame takes, s: longer makes one slow frame cause the next, shorter slows time at 10 Hz.
 pub const MAX_FRAME_S: f64 = 0.1;
@@ -52,7 +52,7 @@ pub struct Simulation {
     answers: Vec<CableSolution>,
     /// Where the cables were when the run began.
     first: Vec<AlongCable>,
-    watch: Watch,
+    warning_monitor: WarningMonitor,
     energy: Energy,
     cost: Cost,
     warnings: Vec<Warning>,
@@ -122,7 +122,7 @@ impl Simulation {
             start: None,
             answers,
             first: Vec::new(),
-            watch: Watch::default(),
+            warning_monitor: WarningMonitor::default(),
             energy: Energy::default(),
             cost: Cost::default(),
             warnings: Vec::new(),
@@ -147,17 +147,17 @@ impl Simulation {
             bends.push(found);
         }
         let time_s = self.time_s();
-        let subjects: Vec<Subject<'_>> = (self.cables.iter().zip(&self.answers).zip(bends))
+        let observed: Vec<Observed<'_>> = (self.cables.iter().zip(&self.answers).zip(bends))
             .map(|((c, answer), bends)| {
                 let energy = Energy::of(c.problem(), answer);
-                Subject { problem: c.problem(), answer, energy, bends, breaks: c.breaks() }
+                Observed { problem: c.problem(), answer, energy, bends, breaks: c.breaks() }
             })
             .collect();
-        self.energy = subjects.iter().map(|s| s.energy).sum();
+        self.energy = observed.iter().map(|s| s.energy).sum();
         if moving {
-            self.watch.moving(&subjects, time_s)
+            self.warning_monitor.moving(&observed, time_s)
         } else {
-            self.watch.at_rest(&subjects, time_s)
+            self.warning_monitor.at_rest(&observed, time_s)
         }
         self.look_for_robot();
         self.verification = self.verify(&self.answers);
@@ -507,7 +507,7 @@ impl Simulation {
 
     /// What is to be said of this instant.
     pub fn warnings(&self) -> impl Iterator<Item = &Warning> {
-        self.warnings.iter().chain(self.watch.warnings())
+        self.warnings.iter().chain(self.warning_monitor.warnings())
     }
 
     /// The answer at this instant, with what the cables cannot stand among its warnings.

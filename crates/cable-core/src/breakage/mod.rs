@@ -1,7 +1,7 @@
 //! One cable of a scene over time: whole, or the pieces it broke into.
 //!
-//! A model knows one unbroken cable. Where tension reaches the breaking tension, [`BreakableCable`] stops the model there, parts
-//! what hangs on the cable out to two shorter [`Problem`]s with free ends, and goes on with a model for each, from the
+//! A model knows one unbroken cable. Where tension reaches the breaking tension, [`BreakableCable`] stops the model there, distributes
+//! what hangs on the cable over two shorter [`Problem`]s with free ends, and goes on with a model for each, from the
 //! positions and velocities of the moment. Every model breaks, and none knows that it can.
 
 mod answer;
@@ -187,7 +187,7 @@ impl BreakableCable {
         self.pieces.iter().map(|p| p.mechanics.time_s()).fold(f64::INFINITY, |a, b| if b < a { b } else { a })
     }
 
-    /// Finds where it rests: nothing breaks at rest, see `crate::watch`.
+    /// Finds where it rests: nothing breaks at rest, see `crate::warnings`.
     pub fn settle(&mut self) -> Result<StepReport, SolveError> {
         let mut sum = StepReport::default();
         self.peaks = None;
@@ -515,7 +515,7 @@ impl Piece {
     }
 
     /// With inertia: it breaks where the gauge says so, which sees the inner steps. A step in which that happens is taken again in
-    /// new_pieces, to have the cable where it breaks.
+    /// parts, to have the cable where it breaks.
     fn advance_dynamic(&mut self, dt_s: f64, breaking_n: f64, sum: &mut StepReport) -> Result<StepOutcome, SolveError> {
         let looks = (dt_s / BREAK_SEARCH_STEP_S - 1e-9).ceil().max(1.0);
         if looks > 1.0 && self.unwatched_steps == 0 {
@@ -680,7 +680,7 @@ fn add(sum: &mut StepReport, more: StepReport) {
         sum.cost.inner_step_s = inner_step_s;
     }
     for warning in more.warnings {
-        // Of the new_pieces of a step each says the same again.
+        // Of the parts of a step each says the same again.
         sum.warnings.retain(|w| w.kind != warning.kind || w.message != warning.message);
         sum.warnings.push(warning);
     }

@@ -14,6 +14,7 @@ pub mod own;
 pub mod pairs;
 pub mod passed;
 pub mod round;
+pub mod self_crossings;
 pub mod sweep;
 #[cfg(test)]
 mod tests;

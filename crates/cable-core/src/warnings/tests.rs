@@ -1,6 +1,6 @@
 use super::Bends;
-use super::crossing::{crossings, meet};
-use super::{HOLD_S, Subject, Watch};
+use super::{HOLD_TIME_S, Observed, WarningMonitor};
+use crate::contact::self_crossings::{crossings, meet};
 use crate::math::{Point, Vec2};
 use crate::problem::{Problem, problems};
 use crate::scene::{Obstacle, Scene, Shape, Support, SupportKind, catalog};
@@ -52,12 +52,12 @@ fn arc(center: Point, radius: f64, from: f64, to: f64, count: usize) -> Vec<Poin
 }
 
 fn found(problem: &Problem, answer: &CableSolution) -> Vec<Warning> {
-    super::look(&subject(problem, answer))
+    super::instantaneous(&observed(problem, answer))
 }
 
-fn subject<'a>(problem: &'a Problem, answer: &'a CableSolution) -> Subject<'a> {
+fn observed<'a>(problem: &'a Problem, answer: &'a CableSolution) -> Observed<'a> {
     let (energy, bends) = (Energy::of(problem, answer), Bends::of(problem, answer));
-    Subject { problem, answer, energy, bends, breaks: &[] }
+    Observed { problem, answer, energy, bends, breaks: &[] }
 }
 
 fn kinds(problem: &Problem, answer: &CableSolution) -> Vec<WarningKind> {
@@ -315,12 +315,18 @@ fn a_long_part_without_tension_is_slack() {
     assert!(!kinds(&p, &part(0.03)).contains(&WarningKind::Slack));
 }
 
-fn toggles(watch: &mut Watch, p: &Problem, tension: impl Fn(f64) -> f64, kind: WarningKind, for_s: f64) -> Vec<f64> {
+fn toggles(
+    watch: &mut WarningMonitor,
+    p: &Problem,
+    tension: impl Fn(f64) -> f64,
+    kind: WarningKind,
+    for_s: f64,
+) -> Vec<f64> {
     let (mut on, mut out) = (false, Vec::new());
     for k in 0..(for_s * 240.0) as usize {
         let t = k as f64 / 240.0;
         let answer = along(&[[0.0, 5.0], [6.0, 5.0]], tension(t));
-        watch.moving(&[subject(p, &answer)], t);
+        watch.moving(&[observed(p, &answer)], t);
         let now = watch.warnings().any(|w| w.kind == kind);
         if now != on {
             out.push(t);
@@ -338,7 +344,7 @@ fn tension_warnings_do_not_flicker() {
         for hertz in [0.3, 0.7, 1.3, 5.0, 30.0, 60.0] {
             for swing in [0.01, 0.2, 0.9] {
                 let tension = |t: f64| level * (1.0 + swing * (2.0 * PI * hertz * t).sin());
-                let times = toggles(&mut Watch::default(), &p, tension, kind, 8.0);
+                let times = toggles(&mut WarningMonitor::default(), &p, tension, kind, 8.0);
                 assert!(times[0] < 1.0 / hertz, "{times:?}");
                 // From one beginning to the next.
                 for w in times.windows(3).step_by(2) {
@@ -357,22 +363,23 @@ fn tension_warnings_do_not_flicker() {
                     0.9
                 }
         };
-        let times = toggles(&mut Watch::default(), &p, hovers, kind, 8.0);
-        assert!(times.len() == 2 && (times[1] - 4.0 - HOLD_S).abs() < 0.02, "{times:?}");
-        assert!(toggles(&mut Watch::default(), &p, |_| 0.97 * level, kind, 1.0).is_empty());
+        let times = toggles(&mut WarningMonitor::default(), &p, hovers, kind, 8.0);
+        assert!(times.len() == 2 && (times[1] - 4.0 - HOLD_TIME_S).abs() < 0.02, "{times:?}");
+        assert!(toggles(&mut WarningMonitor::default(), &p, |_| 0.97 * level, kind, 1.0).is_empty());
         // A single peak is said for a second.
-        let times = toggles(&mut Watch::default(), &p, |t| if t < 0.1 { 1.1 * level } else { 10.0 }, kind, 3.0);
-        assert!(times.len() == 2 && (times[1] - times[0] - HOLD_S - 0.1).abs() < 0.02, "{times:?}");
+        let times =
+            toggles(&mut WarningMonitor::default(), &p, |t| if t < 0.1 { 1.1 * level } else { 10.0 }, kind, 3.0);
+        assert!(times.len() == 2 && (times[1] - times[0] - HOLD_TIME_S - 0.1).abs() < 0.02, "{times:?}");
     }
 }
 
 #[test]
 fn at_rest_the_past_does_not_count_and_times_are_kept_in_motion() {
     let p = problem(&scene());
-    let mut watch = Watch::default();
-    let see = |watch: &mut Watch, tension: f64, t: f64| {
+    let mut watch = WarningMonitor::default();
+    let see = |watch: &mut WarningMonitor, tension: f64, t: f64| {
         let answer = along(&[[0.0, 5.0], [6.0, 5.0]], tension);
-        watch.moving(&[subject(&p, &answer)], t);
+        watch.moving(&[observed(&p, &answer)], t);
     };
     for k in 0..10 {
         see(&mut watch, 900.0 + f64::from(k), 0.1 * f64::from(k + 1));
@@ -380,7 +387,7 @@ fn at_rest_the_past_does_not_count_and_times_are_kept_in_motion() {
     let w: Vec<_> = watch.warnings().cloned().collect();
     assert_eq!((w.len(), w[0].since_s, w[0].value), (1, Some(0.1), 909.0));
     let calm = along(&[[0.0, 5.0], [6.0, 5.0]], 100.0);
-    watch.at_rest(&[subject(&p, &calm)], 1.1);
+    watch.at_rest(&[observed(&p, &calm)], 1.1);
     assert_eq!(watch.warnings().count(), 0);
 }
 
@@ -389,7 +396,7 @@ fn at_rest_the_past_does_not_count_and_times_are_kept_in_motion() {
 fn a_contact_that_holds_against_a_growing_pull_is_a_snag() {
     let p = problem(&scene());
     let run_at = |state: ContactState, at: fn(f64) -> f64, before: fn(f64) -> f64, after: fn(f64) -> f64| {
-        let mut watch = Watch::default();
+        let mut watch = WarningMonitor::default();
         for k in 0..60 {
             let t = f64::from(k) / 30.0;
             let mut answer = along(&[[0.0, 5.0], [6.0, 5.0]], 100.0);
@@ -402,7 +409,7 @@ fn a_contact_that_holds_against_a_growing_pull_is_a_snag() {
                 tension_after_n: after(t),
                 ..ContactReport::default()
             }];
-            watch.moving(&[subject(&p, &answer)], t);
+            watch.moving(&[observed(&p, &answer)], t);
         }
         watch.warnings().find(|w| w.kind == WarningKind::Snag).cloned()
     };
@@ -511,7 +518,7 @@ fn explicit(dt_s: f64, forward: bool) -> Option<(Warning, f64)> {
     let mass = p.linear_density * ds;
     let mut x: Vec<Vec2> = (0..=count).map(|k| Vec2::new(ds * f64::from(k), 0.0)).collect();
     let mut v = vec![Vec2::zeros(); x.len()];
-    let mut watch = Watch::default();
+    let mut watch = WarningMonitor::default();
     for step in 0..(2.0 / dt_s) as usize {
         let pulls: Vec<Vec2> = x
             .windows(2)
@@ -540,7 +547,7 @@ fn explicit(dt_s: f64, forward: bool) -> Option<(Warning, f64)> {
         };
         answer.supports = vec![at(0), at(x.len() - 1)];
         answer.peaks = (step > 0).then(TensionPeaks::default);
-        watch.moving(&[subject(&p, &answer)], dt_s * step as f64);
+        watch.moving(&[observed(&p, &answer)], dt_s * step as f64);
         if let Some(w) = watch.warnings().find(|w| w.kind == WarningKind::EnergyGrows) {
             return Some((w.clone(), dt_s * step as f64));
         }

@@ -15,53 +15,53 @@
 
 use std::collections::VecDeque;
 
-use super::Subject;
+use super::Observed;
 use crate::math::{Vec2, larger};
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Energy, Warning, WarningKind};
 
-/// Growth that is told, of the energy that goes to and fro meanwhile. Smaller: what the nodes of an answer are wrong by is told; larger: an
+/// EnergyGrowth that is told, of the energy that goes to and fro meanwhile. Smaller: what the nodes of an answer are wrong by is told; larger: an
 /// unstable motion is shown for longer before it is.
-const PART: f64 = 0.25;
+const GROWTH_LIMIT: f64 = 0.25;
 
-/// Growth that is none, of what the cable's weight and loads would give over its length. Bars that sag are drawn straight in E, so that an edit of
+/// EnergyGrowth that is none, of what the cable's weight and loads would give over its length. Bars that sag are drawn straight in E, so that an edit of
 /// the mesh changes it; what violent scenes grow by comes to half of the limit. Smaller: that is told; larger: small motions of long cables may grow unseen.
-const LEAST: f64 = 3e-4;
+const MIN_GROWTH_FRACTION: f64 = 3e-4;
 
-/// What is least is the greatest of so long a time, s, and of [`RECENT`] instants. Shorter: a velocity that an integrator swings beyond its
+/// What is least is the greatest of so long a time, s, and of [`RECENT_INSTANTS`] instants. Shorter: a velocity that an integrator swings beyond its
 /// own for a few steps after an impact and back is growth; longer: growth is told later.
 const RECENT_S: f64 = 0.05;
 
 /// See [`RECENT_S`].
-const RECENT: usize = 3;
+const RECENT_INSTANTS: usize = 3;
 
 /// What one cable had, and what it has been given since.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Growth {
-    before: Option<Moment>,
+pub(super) struct EnergyGrowth {
+    before: Option<Snapshot>,
     /// Work done since the motion began at most, J.
     work_j: f64,
     /// When, s, and energy less work, J, lately.
     recent: VecDeque<[f64; 2]>,
-    least: Least,
+    least: EnergyMinimum,
 }
 
 /// The least energy less work of a motion.
 #[derive(Clone, Copy, Debug, Default)]
-struct Least {
+struct EnergyMinimum {
     /// Itself, J.
     energy_j: f64,
     /// When it was, s.
     time_s: f64,
     /// Work that had been done, J.
     work_j: f64,
-    /// Least and greatest of each form of energy since then, J.
+    /// EnergyMinimum and greatest of each form of energy since then, J.
     ranges: [[f64; 2]; 4],
 }
 
 /// What is known of a cable at an instant.
 #[derive(Clone, Debug)]
-struct Moment {
+struct Snapshot {
     time_s: f64,
     energy_j: f64,
     breaks: usize,
@@ -77,32 +77,34 @@ struct Moment {
     fastest: f64,
 }
 
-impl Growth {
+impl EnergyGrowth {
     /// Follows the energy, and appends a warning where it has grown from nowhere.
-    pub fn look(&mut self, subject: &Subject<'_>, time_s: f64, out: &mut Vec<Warning>) {
-        let (now, forms) = Moment::of(subject, time_s);
+    pub fn update(&mut self, observed: &Observed<'_>, time_s: f64, out: &mut Vec<Warning>) {
+        let (now, forms) = Snapshot::of(observed, time_s);
         let before = self.before.replace(now);
         let Some(now) = &self.before else { return };
         // Without inertia, and where a support let go or the cable broke, it begins anew.
-        let goes_on = |b: &Moment| {
-            let holds = |m: &Moment| m.supports.iter().filter(|s| s.3).count();
-            subject.answer.peaks.is_some() && b.time_s < time_s && b.breaks == now.breaks && holds(b) == holds(now)
+        let goes_on = |b: &Snapshot| {
+            let holds = |m: &Snapshot| m.supports.iter().filter(|s| s.3).count();
+            observed.answer.peaks.is_some() && b.time_s < time_s && b.breaks == now.breaks && holds(b) == holds(now)
         };
         match before.filter(goes_on) {
-            Some(before) => self.work_j += work(subject, &before, now),
-            None => (self.work_j, self.least) = (0.0, Least { energy_j: f64::INFINITY, ..Least::default() }),
+            Some(before) => self.work_j += work(observed, &before, now),
+            None => {
+                (self.work_j, self.least) = (0.0, EnergyMinimum { energy_j: f64::INFINITY, ..EnergyMinimum::default() })
+            }
         }
         if self.least.energy_j == f64::INFINITY {
             self.recent.clear();
         }
         let left_j = now.energy_j - self.work_j;
         self.recent.push_back([time_s, left_j]);
-        while self.recent.len() > RECENT && self.recent.front().is_some_and(|[t, _]| time_s - t > RECENT_S) {
+        while self.recent.len() > RECENT_INSTANTS && self.recent.front().is_some_and(|[t, _]| time_s - t > RECENT_S) {
             self.recent.pop_front();
         }
         let lately = self.recent.iter().fold(f64::NEG_INFINITY, |most, [_, e]| larger(most, *e));
         if lately < self.least.energy_j {
-            self.least = Least { energy_j: lately, time_s, work_j: self.work_j, ranges: forms.map(|e| [e; 2]) };
+            self.least = EnergyMinimum { energy_j: lately, time_s, work_j: self.work_j, ranges: forms.map(|e| [e; 2]) };
             return;
         }
         for (range, e) in self.least.ranges.iter_mut().zip(forms) {
@@ -111,15 +113,15 @@ impl Growth {
         let grown = left_j - self.least.energy_j;
         let [kinetic, rest @ ..] = self.least.ranges;
         let moved = kinetic[1] + rest.iter().map(|[least, most]| most - least).sum::<f64>();
-        let problem = subject.problem;
-        let limit = PART * moved + LEAST * problem.force_scale() * problem.length;
+        let problem = observed.problem;
+        let limit = GROWTH_LIMIT * moved + MIN_GROWTH_FRACTION * problem.force_scale() * problem.length;
         if grown > limit || grown.is_nan() {
-            out.push(self.warning(subject, grown, limit));
+            out.push(self.warning(observed, grown, limit));
         }
     }
 
-    fn warning(&self, subject: &Subject<'_>, grown: f64, limit: f64) -> Warning {
-        let (name, nodes) = (&subject.problem.cable.name, &subject.answer.nodes);
+    fn warning(&self, observed: &Observed<'_>, grown: f64, limit: f64) -> Warning {
+        let (name, nodes) = (&observed.problem.cable.name, &observed.answer.nodes);
         let speed = |k: usize| nodes.get(k).map_or(0.0, |n| n.vx_m_per_s.hypot(n.vy_m_per_s));
         let fastest = (0..nodes.len()).max_by(|a, b| speed(*a).total_cmp(&speed(*b))).unwrap_or(0);
         let at = nodes.get(fastest).copied().unwrap_or_default();
@@ -137,10 +139,10 @@ impl Growth {
     }
 }
 
-impl Moment {
+impl Snapshot {
     /// Of an answer, with the forms of its energy (J): of motion first.
-    fn of(subject: &Subject<'_>, time_s: f64) -> (Self, [f64; 4]) {
-        let Subject { problem, answer, energy, breaks, .. } = *subject;
+    fn of(observed: &Observed<'_>, time_s: f64) -> (Self, [f64; 4]) {
+        let Observed { problem, answer, energy, breaks, .. } = *observed;
         let Energy { mut kinetic_j, mut gravity_j, stretch_j, bending_j } = energy;
         let gravity =
             if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
@@ -197,8 +199,8 @@ fn along(answer: &CableSolution, s: f64) -> (Vec2, Vec2) {
 }
 
 /// What was done between two instants at most, J.
-fn work(subject: &Subject<'_>, before: &Moment, now: &Moment) -> f64 {
-    let Subject { problem, answer, .. } = *subject;
+fn work(observed: &Observed<'_>, before: &Snapshot, now: &Snapshot) -> f64 {
+    let Observed { problem, answer, .. } = *observed;
     let (from, to) = (before.time_s, now.time_s);
     let dt = to - from;
     let greatest = super::tension::greatest(answer);

@@ -7,8 +7,8 @@ use crate::math::{Vec2, angle};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Node, Warning, WarningKind};
 
-use super::bend::{Lead, lead};
-use super::crossing::{Crossing, crossings};
+use super::bend::{Guide, lead};
+use crate::contact::self_crossings::{SelfCrossing, crossings};
 
 /// Least sine of the angle at which strands cross. Smaller: a cable that lies along itself, out and back, crosses itself in
 /// every element; larger: flat loops are missed. 10° is above what element ends stand out of a straight lay.
@@ -18,7 +18,7 @@ const CROSSING_SINE: f64 = 0.17;
 const LOOP_DIAMETERS: f64 = 4.0;
 
 /// Most loops named of one cable.
-const MOST_LOOPS: usize = 8;
+const MAX_LOOPS: usize = 8;
 
 /// Turn of a free part that makes a curl, rad: 270°. A cable that hangs turns by less than 180°; a loop that is about to
 /// close, and jump into a kink when pulled, by about 270°.
@@ -51,17 +51,17 @@ fn loops(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
     };
     let name = &problem.cable.name;
     let least = LOOP_DIAMETERS * problem.cable.diameter_m;
-    let spans = |c: &Crossing| [arc(c.first, c.fractions[0]), arc(c.second, c.fractions[1])];
-    let real = |c: &&Crossing| c.sine >= CROSSING_SINE && spans(c)[1] - spans(c)[0] >= least;
-    let mut all: Vec<&Crossing> = found.iter().filter(real).collect();
+    let spans = |c: &SelfCrossing| [arc(c.first, c.fractions[0]), arc(c.second, c.fractions[1])];
+    let real = |c: &&SelfCrossing| c.sine >= CROSSING_SINE && spans(c)[1] - spans(c)[0] >= least;
+    let mut all: Vec<&SelfCrossing> = found.iter().filter(real).collect();
     let count = all.len();
     // The tightest first; of loops in or across each other one is named: a heap would be a list of almost the same.
-    let length = |c: &Crossing| spans(c)[1] - spans(c)[0];
+    let length = |c: &SelfCrossing| spans(c)[1] - spans(c)[0];
     all.sort_by(|a, b| length(a).total_cmp(&length(b)));
     let mut named: Vec<[f64; 2]> = Vec::new();
     for c in all {
         let [s, t] = spans(c);
-        if named.len() == MOST_LOOPS || named.iter().any(|[a, b]| s < *b && *a < t) {
+        if named.len() == MAX_LOOPS || named.iter().any(|[a, b]| s < *b && *a < t) {
             continue;
         }
         named.push([s, t]);
@@ -110,7 +110,7 @@ fn curl(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
                 shortest(piece, |k| sign * turns[k]).filter(|f| f.0 <= longest && best.is_none_or(|b| f.0 < b.0));
             if let Some((length, i, j)) = found {
                 // Only where nothing leads it: the turns of wheels, posts and corners are not its own.
-                let free = |k: usize| turns[k].abs() < 1e-3 || matches!(lead(problem, answer, start + k), Lead::Free);
+                let free = |k: usize| turns[k].abs() < 1e-3 || matches!(lead(problem, answer, start + k), Guide::Free);
                 if (i..=j).all(free) {
                     best = Some((length, start + i, start + j));
                 }

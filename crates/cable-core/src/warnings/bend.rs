@@ -25,7 +25,7 @@ use crate::solution::{Bend, CableSolution, ContactReport, JudgedBend, Node, Pres
 
 /// Gap (m) within which an obstacle leads the cable. Smaller: a contact that a model holds a barrier's width off is missed;
 /// larger: what passes close by leads it. The models keep up to 1 mm.
-const TOUCH: f64 = 3e-3;
+const CONTACT_GAP: f64 = 3e-3;
 
 /// Least turn at a sharp corner that bends a cable of unknown bending stiffness to the corner's radius, rad: 15°. Less is spread by the
 /// stiffness that every cable has; more lets sharp bends pass. Over 15° a cable of diameter d leaves the corner within d/4 of its line.
@@ -34,10 +34,10 @@ const CORNER_TURN: f64 = 0.26;
 /// A stiff cable whose line has no more than this times the radius of a corner's own arc was given no moment there: its mesh follows
 /// the corner. Closer to 1: rounding passes for a moment; further: bends that are as sharp are judged by the formula, which
 /// says the same.
-const ON_CORNER: f64 = 1.05;
+const CORNER_ARC_RATIO: f64 = 1.05;
 
 /// Least turn between two elements of a flexible cable that is a bend, rad. Less is a radius of a hundred elements.
-const LEAST_TURN: f64 = 0.01;
+const MIN_TURN: f64 = 0.01;
 
 /// Radius of a free bend that is a kink where the cable states no smallest radius, in diameters: a round cable bent to less
 /// than its own width flattens.
@@ -45,7 +45,7 @@ const KINK_DIAMETERS: f64 = 1.0;
 
 /// What leads the cable at a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Lead {
+pub(super) enum Guide {
     /// Nothing.
     Free,
     /// Something round: radius of the centre line, m.
@@ -85,17 +85,17 @@ impl Bends {
                 let (own, curvature) = (turn(Some(k)), n.curvature_per_m.abs());
                 // What leads a node costs a search: it is asked where the answer can change what was found so far.
                 let presses = led && curvature * n.tension_n > this.pressure.map_or(0.0, |p| p.pressure_n_per_m);
-                if own.abs() < LEAST_TURN && !(curvature > sharpest) && !presses && problem.bending_stiffness == 0.0 {
+                if own.abs() < MIN_TURN && !(curvature > sharpest) && !presses && problem.bending_stiffness == 0.0 {
                     continue;
                 }
                 // A corner between two nodes is shared by them, a round by all that lie on it.
                 let pair = (own + turn(k.checked_sub(1))).abs().max((own + turn(Some(k + 1))).abs());
                 let lead = lead(problem, answer, start + k);
                 let shared = match lead {
-                    Lead::Round(radius) | Lead::Corner(radius) => larger(pair, round(piece, &turns, k, radius)),
+                    Guide::Round(radius) | Guide::Corner(radius) => larger(pair, round(piece, &turns, k, radius)),
                     _ => pair,
                 };
-                if lead == Lead::Free && curvature > sharpest {
+                if lead == Guide::Free && curvature > sharpest {
                     sharpest = curvature;
                 }
                 this.add(problem, n, lead, shared);
@@ -123,15 +123,15 @@ impl Bends {
         self.free
     }
 
-    fn add(&mut self, problem: &Problem, n: &Node, lead: Lead, turn: f64) {
+    fn add(&mut self, problem: &Problem, n: &Node, lead: Guide, turn: f64) {
         let stiff = problem.bending_stiffness > 0.0;
         let own = 1.0 / n.curvature_per_m.abs();
         let line = match lead {
-            Lead::Free => own,
-            Lead::Held if !stiff => return,
-            Lead::Round(_) if !stiff && turn < LEAST_TURN => return,
-            Lead::Round(radius) if !stiff => radius,
-            Lead::Corner(radius) if !stiff && turn >= CORNER_TURN && radius < own => radius,
+            Guide::Free => own,
+            Guide::Held if !stiff => return,
+            Guide::Round(_) if !stiff && turn < MIN_TURN => return,
+            Guide::Round(radius) if !stiff => radius,
+            Guide::Corner(radius) if !stiff && turn >= CORNER_TURN && radius < own => radius,
             _ => own,
         };
         let bend = |radius_m: f64| Bend { radius_m, arc_length_m: n.arc_length_m, x_m: n.x_m, y_m: n.y_m };
@@ -140,23 +140,23 @@ impl Bends {
                 *kept = Some(bend(radius_m));
             }
         };
-        if lead == Lead::Free {
+        if lead == Guide::Free {
             keep(&mut self.free, line);
             return;
         }
         keep(&mut self.led, line);
         let judged = match lead {
-            Lead::Corner(radius) if stiff && own > ON_CORNER * radius => own,
-            Lead::Corner(radius) if self.bending_stiffness > 0.0 => {
+            Guide::Corner(radius) if stiff && own > CORNER_ARC_RATIO * radius => own,
+            Guide::Corner(radius) if self.bending_stiffness > 0.0 => {
                 larger(radius, corner_radius(self.bending_stiffness, n.tension_n, turn))
             }
-            Lead::Corner(_) if turn < CORNER_TURN => f64::INFINITY,
+            Guide::Corner(_) if turn < CORNER_TURN => f64::INFINITY,
             _ => line,
         };
         keep(&mut self.judged, judged);
         let round = match lead {
-            Lead::Round(radius) => Some(radius),
-            Lead::Corner(radius) if turn >= CORNER_TURN => Some(radius),
+            Guide::Round(radius) => Some(radius),
+            Guide::Corner(radius) if turn >= CORNER_TURN => Some(radius),
             _ => None,
         };
         let Some(radius_m) = round.map(|radius| if stiff { own } else { radius }).filter(|r| r.is_finite() && *r > 0.0)
@@ -192,8 +192,8 @@ fn round(piece: &[Node], turns: &[f64], k: usize, radius: f64) -> f64 {
 }
 
 /// What leads the cable at a node of its answer.
-pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Lead {
-    let Some(n) = answer.nodes.get(node) else { return Lead::Free };
+pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Guide {
+    let Some(n) = answer.nodes.get(node) else { return Guide::Free };
     let at = |k: usize| answer.nodes.get(k).map(|n| Vec2::new(n.x_m, n.y_m));
     let here = Vec2::new(n.x_m, n.y_m);
     for (s, r) in problem.supports.iter().zip(&answer.supports) {
@@ -203,20 +203,20 @@ pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Le
             && (s.wheel_radius > 0.0 || (r.arc_length_m - n.arc_length_m).abs() < 1e-3)
         {
             return match s.kind {
-                SupportKind::Pulley if s.wheel_radius > 0.0 => Lead::Round(s.wheel_radius),
-                SupportKind::Pulley => Lead::Corner(problem.radius),
-                _ => Lead::Held,
+                SupportKind::Pulley if s.wheel_radius > 0.0 => Guide::Round(s.wheel_radius),
+                SupportKind::Pulley => Guide::Corner(problem.radius),
+                _ => Guide::Held,
             };
         }
     }
     if problem.loads.iter().any(|l| (l.arc_length - n.arc_length_m).abs() < 1e-6 * problem.length) {
-        return Lead::Held;
+        return Guide::Held;
     }
     if on_outline(problem, answer, node) {
-        return Lead::Corner(problem.radius);
+        return Guide::Corner(problem.radius);
     }
     if problem.world.is_empty() {
-        return Lead::Free;
+        return Guide::Free;
     }
     // A flat edge leads nobody round: only corners and circles do.
     let chain = [node.checked_sub(1), Some(node), Some(node + 1)].map(|k| k.and_then(at));
@@ -224,8 +224,8 @@ pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Le
     problem
         .world
         .geometry()
-        .round_near(&chain, TOUCH)
-        .map_or(Lead::Free, |b| if b.center.is_some() { Lead::Round(b.offset) } else { Lead::Corner(b.offset) })
+        .round_near(&chain, CONTACT_GAP)
+        .map_or(Guide::Free, |b| if b.center.is_some() { Guide::Round(b.offset) } else { Guide::Corner(b.offset) })
 }
 
 /// Whether the cable lies on the outline of the robot at a node or beside it: that moves, and is not among the obstacles.

@@ -6,11 +6,11 @@
 use crate::math::{Vec2, cross};
 
 /// Segments in a leaf. Fewer: more boxes; more: more pairs to look at.
-const LEAF: usize = 4;
+const LEAF_SEGMENTS: usize = 4;
 
 /// A crossing of segment `first` with the later segment `second`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Crossing {
+pub(crate) struct SelfCrossing {
     /// Index of a segment.
     pub first: usize,
     /// Index of a later one.
@@ -22,18 +22,18 @@ pub(crate) struct Crossing {
 }
 
 /// Least and greatest corner of what a run of segments covers.
-type Extent = [Vec2; 2];
+type BoundingBox = [Vec2; 2];
 
 /// All crossings of the segments `points[k]`–`points[k + 1]`, by first and second segment. `joined(k)` says whether segment
 /// k is one (a break of the line is none).
-pub(crate) fn crossings(points: &[Vec2], joined: impl Fn(usize) -> bool) -> Vec<Crossing> {
+pub(crate) fn crossings(points: &[Vec2], joined: impl Fn(usize) -> bool) -> Vec<SelfCrossing> {
     let segments = points.len().saturating_sub(1);
     // What goes on and on in one direction does not come back.
     let goes_on = |way: fn(&[Vec2]) -> f64| points.windows(2).all(|w| way(w) > 0.0);
     if goes_on(|w| w[1].x - w[0].x) || goes_on(|w| w[0].x - w[1].x) {
         return Vec::new();
     }
-    let leaves = segments.div_ceil(LEAF).next_power_of_two();
+    let leaves = segments.div_ceil(LEAF_SEGMENTS).next_power_of_two();
     let boxes = boxes(points, segments, leaves);
     let apart = |a: usize, b: usize| {
         let ([a0, a1], [b0, b1]) = (boxes[a], boxes[b]);
@@ -52,7 +52,7 @@ pub(crate) fn crossings(points: &[Vec2], joined: impl Fn(usize) -> bool) -> Vec<
             }
             continue;
         }
-        let run = |leaf: usize| (leaf - leaves) * LEAF..segments.min((leaf - leaves + 1) * LEAF);
+        let run = |leaf: usize| (leaf - leaves) * LEAF_SEGMENTS..segments.min((leaf - leaves + 1) * LEAF_SEGMENTS);
         for i in run(a).filter(|&i| joined(i)) {
             // Neighbours share a point and cannot cross.
             for j in run(b).filter(|&j| j > i + 1 && joined(j)) {
@@ -60,15 +60,15 @@ pub(crate) fn crossings(points: &[Vec2], joined: impl Fn(usize) -> bool) -> Vec<
             }
         }
     }
-    out.sort_by_key(|c: &Crossing| (c.first, c.second));
+    out.sort_by_key(|c: &SelfCrossing| (c.first, c.second));
     out
 }
 
-fn boxes(points: &[Vec2], segments: usize, leaves: usize) -> Vec<Extent> {
+fn boxes(points: &[Vec2], segments: usize, leaves: usize) -> Vec<BoundingBox> {
     let empty = [Vec2::repeat(f64::INFINITY), Vec2::repeat(f64::NEG_INFINITY)];
     let mut boxes = vec![empty; 2 * leaves];
     for k in 0..segments {
-        let b = &mut boxes[leaves + k / LEAF];
+        let b = &mut boxes[leaves + k / LEAF_SEGMENTS];
         for p in &points[k..k + 2] {
             *b = [b[0].inf(p), b[1].sup(p)];
         }
@@ -81,12 +81,12 @@ fn boxes(points: &[Vec2], segments: usize, leaves: usize) -> Vec<Extent> {
 }
 
 /// p + t r = q + u s: t = (q − p)×s/(r×s), u = (q − p)×r/(r×s).
-pub(super) fn meet(points: &[Vec2], first: usize, second: usize) -> Option<Crossing> {
+pub(crate) fn meet(points: &[Vec2], first: usize, second: usize) -> Option<SelfCrossing> {
     let (p, q) = (*points.get(first)?, *points.get(second)?);
     let (r, s) = (points.get(first + 1)? - p, points.get(second + 1)? - q);
     let area = cross(r, s);
     let (t, u) = (cross(q - p, s) / area, cross(q - p, r) / area);
     let inside = |f: f64| (0.0..1.0).contains(&f);
     let sine = area.abs() / (r.norm() * s.norm());
-    (inside(t) && inside(u)).then_some(Crossing { first, second, fractions: [t, u], sine })
+    (inside(t) && inside(u)).then_some(SelfCrossing { first, second, fractions: [t, u], sine })
 }
