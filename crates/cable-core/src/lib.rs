@@ -22,6 +22,7 @@
 //!
 //! Dependencies point one way: `math, error → scene → (catenary, energy, contact) → model → simulation → record`.
 
+pub mod analysis;
 mod breakage;
 pub mod catenary;
 pub mod contact;
@@ -32,15 +33,12 @@ pub mod files;
 mod kinematics;
 pub mod math;
 pub mod model;
-pub mod origin;
 pub mod problem;
-pub mod reach;
 pub mod record;
 pub mod robot;
 pub mod scene;
 pub mod simulation;
 pub mod solution;
-pub mod spread;
 pub mod state;
 pub mod summary;
 pub mod timeline;

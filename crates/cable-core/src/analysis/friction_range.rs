@@ -16,14 +16,14 @@ use crate::simulation::Simulation;
 use crate::solution::{CableSolution, Solution};
 
 /// Places along a cable at which answers are compared. Fewer: the jump at a corner is drawn as a slope that can be seen.
-const PLACES: usize = 401;
+const SAMPLES_ALONG: usize = 401;
 
 /// Longest step, s: that of a frame, so that the ribbon is of the run on screen.
 const STEP_S: f64 = 1.0 / 60.0;
 
 /// Least and greatest of the tensions at a place or an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Band {
+pub struct TensionRange {
     /// Arc length, m, or time, s.
     pub at: f64,
     /// Least, N.
@@ -34,11 +34,11 @@ pub struct Band {
 
 /// What less and more friction does.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Spread {
+pub struct FrictionRange {
     /// Of each cable: along it, at the end of the time asked for.
-    pub along: Vec<Vec<Band>>,
+    pub along: Vec<Vec<TensionRange>>,
     /// The largest tension over time; one instant for a resting place.
-    pub over_time: Vec<Band>,
+    pub over_time: Vec<TensionRange>,
     /// Largest tension at the end with the least, the likely and the most friction, N.
     pub most_n: [f64; 3],
     /// Up to when all three could be followed, s, and why no further.
@@ -47,7 +47,7 @@ pub struct Spread {
 
 /// The question: which scene, by what, and for how long.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Ask {
+pub struct Query {
     /// The scene.
     pub scene: Scene,
     /// The model.
@@ -59,21 +59,21 @@ pub struct Ask {
     /// How long time runs, s; 0 asks for the resting place.
     pub span_s: f64,
     /// What a hand did meanwhile, in order of time; what it did at 0 s is how the scene begins.
-    pub hands: Vec<Hand>,
+    pub hands: Vec<Action>,
 }
 
 /// What a hand did.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hand {
+pub struct Action {
     /// When, s.
     pub time_s: f64,
     /// What.
-    pub what: Handled,
+    pub what: ActionKind,
 }
 
 /// What a hand moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Handled {
+pub enum ActionKind {
     /// A support is then at a place.
     Support {
         /// Index of the cable.
@@ -87,9 +87,9 @@ pub enum Handled {
     Robot(Option<f64>),
 }
 
-impl Hand {
+impl Action {
     fn place(self, scene: &mut Scene) {
-        if let Handled::Support { cable, support, to_m } = self.what
+        if let ActionKind::Support { cable, support, to_m } = self.what
             && let Some(s) = scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support))
         {
             s.at_m = Some(to_m);
@@ -98,15 +98,15 @@ impl Hand {
 
     fn act(self, run: &mut Simulation) {
         match self.what {
-            Handled::Support { cable, support, to_m } => run.drag_support(cable, support, vec2(to_m)),
-            Handled::Robot(speed_m_per_s) => run.command_robot(speed_m_per_s),
+            ActionKind::Support { cable, support, to_m } => run.drag_support(cable, support, vec2(to_m)),
+            ActionKind::Robot(speed_m_per_s) => run.command_robot(speed_m_per_s),
         }
     }
 }
 
 /// The scene with every coefficient of friction of its cables, obstacles and pulleys scaled.
 #[must_use]
-pub fn scaled(scene: &Scene, factor: f64) -> Scene {
+pub fn with_scaled_friction(scene: &Scene, factor: f64) -> Scene {
     let mut scene = scene.clone();
     for cable in &mut scene.cables {
         cable.friction *= factor;
@@ -124,34 +124,35 @@ pub fn scaled(scene: &Scene, factor: f64) -> Scene {
 ///
 /// # Errors
 /// The scene is wrong, or one of its resting places was not found.
-pub fn spread(ask: &Ask, mut progress: impl FnMut(f64) -> ControlFlow<()>) -> Result<Spread, Error> {
-    let [low, high] = ask.factors;
-    let motion = ask.span_s > 0.0;
+pub fn friction_range(query: &Query, mut progress: impl FnMut(f64) -> ControlFlow<()>) -> Result<FrictionRange, Error> {
+    let [low, high] = query.factors;
+    let motion = query.span_s > 0.0;
     // Models without inertia let time run without it, as the window does.
-    let slow = matches!(ask.model, Model::Catenary | Model::Spans);
+    let slow = matches!(query.model, Model::Catenary | Model::Spans);
     let inertia = if slow { Inertia::QuasiStatic } else { Inertia::Dynamic };
     let question = if motion { Question::History(inertia) } else { Question::Rest };
     let mut runs = Vec::with_capacity(3);
-    let mut hands = ask.hands.as_slice();
-    let mut start = ask.scene.clone();
+    let mut hands = query.hands.as_slice();
+    let mut start = query.scene.clone();
     while let Some((hand, later)) = hands.split_first().filter(|(h, _)| h.time_s <= 0.0) {
         hand.place(&mut start);
         hands = later;
     }
     for factor in [low, 1.0, high] {
-        let mut run = Simulation::for_question(scaled(&start, factor), ask.model, ask.settings, question)?;
+        let mut run =
+            Simulation::for_question(with_scaled_friction(&start, factor), query.model, query.settings, question)?;
         run.settle()?;
         runs.push(run);
         if progress(if motion { 0.0 } else { runs.len() as f64 / 3.0 }).is_break() {
-            return Ok(Spread::default());
+            return Ok(FrictionRange::default());
         }
     }
-    let mut out = Spread::default();
+    let mut out = FrictionRange::default();
     let mut answers: Vec<Solution> = runs.iter().map(Simulation::solution).collect();
     out.over_time.push(most(&answers));
-    let steps = (ask.span_s / STEP_S).ceil();
+    let steps = (query.span_s / STEP_S).ceil();
     for k in 1..=steps as u64 {
-        let end = if k as f64 >= steps { ask.span_s } else { k as f64 * STEP_S };
+        let end = if k as f64 >= steps { query.span_s } else { k as f64 * STEP_S };
         while let Some((hand, later)) = hands.split_first().filter(|(h, _)| h.time_s < end + 0.5 * STEP_S) {
             runs.iter_mut().for_each(|run| hand.act(run));
             hands = later;
@@ -170,7 +171,7 @@ pub fn spread(ask: &Ask, mut progress: impl FnMut(f64) -> ControlFlow<()>) -> Re
             break;
         }
     }
-    out.along = (0..ask.scene.cables.len()).map(|k| along(&answers, k, ask.scene.cables[k].length_m)).collect();
+    out.along = (0..query.scene.cables.len()).map(|k| along(&answers, k, query.scene.cables[k].length_m)).collect();
     for (most, answer) in out.most_n.iter_mut().zip(&answers) {
         *most = answer.max_tension().tension_n;
     }
@@ -178,23 +179,23 @@ pub fn spread(ask: &Ask, mut progress: impl FnMut(f64) -> ControlFlow<()>) -> Re
 }
 
 /// Least and greatest; NaN where one is.
-fn band(at: f64, values: impl Iterator<Item = f64>) -> Band {
-    let start = Band { at, low_n: f64::INFINITY, high_n: f64::NEG_INFINITY };
-    values.fold(start, |b, v| Band {
+fn band(at: f64, values: impl Iterator<Item = f64>) -> TensionRange {
+    let start = TensionRange { at, low_n: f64::INFINITY, high_n: f64::NEG_INFINITY };
+    values.fold(start, |b, v| TensionRange {
         at,
         low_n: if v < b.low_n || v.is_nan() { v } else { b.low_n },
         high_n: if v > b.high_n || v.is_nan() { v } else { b.high_n },
     })
 }
 
-fn most(answers: &[Solution]) -> Band {
+fn most(answers: &[Solution]) -> TensionRange {
     let time_s = answers.first().map_or(0.0, |a| a.time_s);
     band(time_s, answers.iter().map(|a| a.max_tension().tension_n))
 }
 
-fn along(answers: &[Solution], cable: usize, length_m: f64) -> Vec<Band> {
+fn along(answers: &[Solution], cable: usize, length_m: f64) -> Vec<TensionRange> {
     let solved: Vec<&CableSolution> = answers.iter().filter_map(|a| a.cables.get(cable)).collect();
-    let places = (0..PLACES).map(|i| length_m * i as f64 / (PLACES - 1) as f64);
+    let places = (0..SAMPLES_ALONG).map(|i| length_m * i as f64 / (SAMPLES_ALONG - 1) as f64);
     places.map(|s| band(s, solved.iter().map(|c| tension(c, s)))).collect()
 }
 

@@ -18,7 +18,7 @@ use crate::solution::Solution;
 const STEP_S: f64 = 0.5;
 
 /// A cable that would have to bear this many times its breaking tension will not get any farther.
-const HOPELESS: f64 = 2.0;
+const UNREACHABLE_FACTOR: f64 = 2.0;
 
 /// Breaking tension while looking, N: the map says where it would break and goes on.
 const UNBREAKABLE_N: f64 = 1e15;

@@ -1,15 +1,15 @@
 //! Where an end of a cable can be taken by a hand or a crane: everywhere in the plane that a way through free space leads to.
 //!
-//! From where it is the end is taken outwards from place to place of a grid (`flood.rs`), each on the shortest way that passes
+//! From where it is the end is taken outwards from place to place of a grid (`exploration.rs`), each on the shortest way that passes
 //! no obstacle, a coarse grid first and finer ones from its places. Each place goes on from the cable as it was at the one before:
 //! with the friction and the wraps of the way there. The way back is the same way.
 
-mod flood;
+mod exploration;
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use flood::Flood;
+use exploration::Exploration;
 
 use super::{lay, least, stilled, unsupported};
 use crate::contact::World;
@@ -24,17 +24,17 @@ use crate::solution::Solution;
 /// Length of a bar where the cable hangs slack and finite elements answer, m. Longer: nodes catch on rough ground and pull by
 /// thousands of newtons that no cable feels (0.6 m over ground of 0.23 m: 800 kN), and the cable is laid anew more often; shorter:
 /// each step of a heap of slack takes longer (0.2 m on the tank: 2.5 times as long).
-const BAR_M: f64 = 0.4;
+const SLACK_ELEMENT_M: f64 = 0.4;
 
 /// Most places that are looked at: more is a slip of the unit.
-const MOST_PLACES: usize = 100_000;
+const MAX_PLACES: usize = 100_000;
 
 /// How much farther than its length a cable is tried, of its length: more than any cable stretches before it breaks.
-const STRETCHED: f64 = 1.1;
+const REACH_FACTOR: f64 = 1.1;
 
 /// What is asked.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Ask {
+pub struct Query {
     /// The scene.
     pub scene: Scene,
     /// How its cables lie now; None: as the scene lays them.
@@ -104,46 +104,46 @@ impl Area {
 ///
 /// # Errors
 /// The scene is wrong, the support is none that has a place, or its start has no answer.
-pub fn area(ask: &Ask, mut progress: impl FnMut(&Area, f64) -> ControlFlow<()>) -> Result<Area, Error> {
-    let (mut flood, laid) = begin(ask)?;
+pub fn area(query: &Query, mut progress: impl FnMut(&Area, f64) -> ControlFlow<()>) -> Result<Area, Error> {
+    let (mut exploration, laid) = begin(query)?;
     // Ended early, what is known so far is the answer.
-    flood.spread(laid, &mut progress);
-    Ok(flood.found)
+    exploration.spread(laid, &mut progress);
+    Ok(exploration.found)
 }
 
 /// The search before its first step, and the cable as it is laid.
-fn begin(ask: &Ask) -> Result<(Flood<'_>, Simulation), Error> {
-    let still = unmanned(&stilled(&ask.scene, ask.now.as_deref()))?;
-    let cable = still.cables.get(ask.cable).ok_or_else(|| unsupported("a cable that is not there"))?;
-    let start = cable.supports.get(ask.support).and_then(|s| s.at_m);
+fn begin(query: &Query) -> Result<(Exploration<'_>, Simulation), Error> {
+    let still = unmanned(&stilled(&query.scene, query.now.as_deref()))?;
+    let cable = still.cables.get(query.cable).ok_or_else(|| unsupported("a cable that is not there"))?;
+    let start = cable.supports.get(query.support).and_then(|s| s.at_m);
     let start = vec2(start.ok_or_else(|| unsupported("a support without a place"))?);
-    if !(ask.spacing_m > 0.0 && ask.corners_m.iter().flatten().all(|v| v.is_finite())) {
+    if !(query.spacing_m > 0.0 && query.corners_m.iter().flatten().all(|v| v.is_finite())) {
         return Err(unsupported("a grid without places"));
     }
     // The start is a place of the grid.
-    let before = [0, 1].map(|k| ((start[k] - ask.corners_m[0][k]) / ask.spacing_m).floor().max(0.0));
-    let after = [0, 1].map(|k| ((ask.corners_m[1][k] - start[k]) / ask.spacing_m).floor().max(0.0));
+    let before = [0, 1].map(|k| ((start[k] - query.corners_m[0][k]) / query.spacing_m).floor().max(0.0));
+    let after = [0, 1].map(|k| ((query.corners_m[1][k] - start[k]) / query.spacing_m).floor().max(0.0));
     let [columns, rows] = [0, 1].map(|k| (before[k] + after[k]) as usize + 1);
-    if columns.saturating_mul(rows) > MOST_PLACES {
+    if columns.saturating_mul(rows) > MAX_PLACES {
         return Err(unsupported("a grid of so many places"));
     }
     let found = Area {
-        origin_m: [0, 1].map(|k| start[k] - before[k] * ask.spacing_m),
-        spacing_m: ask.spacing_m,
+        origin_m: [0, 1].map(|k| start[k] - before[k] * query.spacing_m),
+        spacing_m: query.spacing_m,
         columns,
         most_n: vec![f64::NAN; columns * rows],
         guessed: vec![false; columns * rows],
         start_m: [start.x, start.y],
-        service_n: least(&ask.scene, &[ask.cable], |c| c.service_tension_n),
-        breaking_n: least(&ask.scene, &[ask.cable], |c| c.breaking_tension_n),
+        service_n: least(&query.scene, &[query.cable], |c| c.service_tension_n),
+        breaking_n: least(&query.scene, &[query.cable], |c| c.breaking_tension_n),
     };
-    let held = cable.supports.iter().enumerate().filter(|(k, _)| *k != ask.support);
+    let held = cable.supports.iter().enumerate().filter(|(k, _)| *k != query.support);
     let radius_m = 0.5 * cable.diameter_m;
-    let flood = Flood {
-        ask,
+    let exploration = Exploration {
+        query,
         world: World::new(&still.obstacles, cable.friction, radius_m),
         holds: held.filter_map(|(_, s)| s.at_m.map(vec2)).collect(),
-        far_m: cable.length_m * STRETCHED,
+        far_m: cable.length_m * REACH_FACTOR,
         first: before[1] as usize * columns + before[0] as usize,
         free: Vec::new(),
         known: vec![false; found.most_n.len()],
@@ -153,11 +153,11 @@ fn begin(ask: &Ask) -> Result<(Flood<'_>, Simulation), Error> {
         found,
     };
     let question = Question::History(Inertia::QuasiStatic);
-    let bars = still.cables.iter().map(|c| (c.length_m / BAR_M).ceil()).fold(1.0, larger);
-    let settings = Settings { segments: Some(ask.settings.segments.unwrap_or(bars as usize)), ..ask.settings };
+    let bars = still.cables.iter().map(|c| (c.length_m / SLACK_ELEMENT_M).ceil()).fold(1.0, larger);
+    let settings = Settings { segments: Some(query.settings.segments.unwrap_or(bars as usize)), ..query.settings };
     let mut laid = Simulation::for_question(still.clone(), Model::Auto, settings, question)?;
-    lay(&mut laid, ask.now.as_deref())?;
-    Ok((flood, laid))
+    lay(&mut laid, query.now.as_deref())?;
+    Ok((exploration, laid))
 }
 
 /// Without its robot: where its cable hangs on it, it is held.

@@ -18,11 +18,11 @@ use crate::scene::{Scene, SupportKind, View};
 use crate::solution::{CableSolution, Node, Solution};
 
 /// Places nearer than this share of the cable's length are the same.
-const SAME_PLACE: f64 = 1e-9;
+const PLACE_TOLERANCE: f64 = 1e-9;
 
 /// Which end of the cable (of the piece of it that holds the place) the sum begins at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum From {
+pub enum StartEnd {
     /// The one with less tension.
     #[default]
     Slacker,
@@ -53,7 +53,7 @@ pub enum Cause {
 
 /// One term of the sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Term {
+pub struct Contribution {
     /// What it is of.
     pub cause: Cause,
     /// What it adds, N; below 0 it takes away.
@@ -63,21 +63,21 @@ pub struct Term {
     pub factor: Option<f64>,
 }
 
-/// A tension and its terms, in the order they are met on the way from the end; weight, wind and rest follow.
+/// A tension and its contributions, in the order they are met on the way from the end; weight, wind and rest follow.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Origin {
+pub struct TensionBudget {
     /// Where, m of arc length.
     pub arc_length_m: f64,
-    /// Tension there, N: the sum of the terms.
+    /// Tension there, N: the sum of the contributions.
     pub tension_n: f64,
     /// Where the sum begins, m of arc length.
     pub from_m: f64,
-    /// The terms.
-    pub terms: Vec<Term>,
+    /// The contributions.
+    pub contributions: Vec<Contribution>,
 }
 
 /// Something that changes the tension at a place.
-struct Seat {
+struct LocalSource {
     cause: Cause,
     /// Where it begins and ends, m.
     extent: [f64; 2],
@@ -91,7 +91,7 @@ struct Seat {
 }
 
 /// What is spread along a cable.
-struct Spread {
+struct DistributedLoad {
     weight: Vec2,
     wind: Vec2,
     thermal_stretch: f64,
@@ -99,10 +99,15 @@ struct Spread {
 
 /// Where the tension of a cable (by index) at an arc length (m) comes from. None without an answer there.
 #[must_use]
-pub fn origin(scene: &Scene, solution: &Solution, (cable, arc_length_m): (usize, f64), from: From) -> Option<Origin> {
+pub fn tension_budget(
+    scene: &Scene,
+    solution: &Solution,
+    (cable, arc_length_m): (usize, f64),
+    from: StartEnd,
+) -> Option<TensionBudget> {
     let solved = solution.cables.get(cable)?;
-    let spread = spread(scene, cable, solution.time_s)?;
-    let mut seats = seats(scene, cable, solved);
+    let load = distributed_load(scene, cable, solution.time_s)?;
+    let mut sources = sources(scene, cable, solved);
     let path = path(solved, arc_length_m, from)?;
     let (first, last) = (path.first()?, path.last()?);
     let whole = solved.nodes.last().map_or(0.0, |n| n.arc_length_m);
@@ -110,49 +115,49 @@ pub fn origin(scene: &Scene, solution: &Solution, (cable, arc_length_m): (usize,
     for pair in path.windows(2) {
         let (a, b) = (&pair[0], &pair[1]);
         let dx = Vec2::new(b.x_m - a.x_m, b.y_m - a.y_m);
-        let stretch = spread.thermal_stretch * (1.0 + 0.5 * (a.strain + b.strain));
-        let (by_weight, by_wind) = (-spread.weight.dot(&dx) / stretch, -spread.wind.dot(&dx) / stretch);
+        let stretch = load.thermal_stretch * (1.0 + 0.5 * (a.strain + b.strain));
+        let (by_weight, by_wind) = (-load.weight.dot(&dx) / stretch, -load.wind.dot(&dx) / stretch);
         weight += by_weight;
         wind += by_wind;
         let left = (b.tension_n - a.tension_n) - by_weight - by_wind;
-        match on(&mut seats, [a.arc_length_m, b.arc_length_m], SAME_PLACE * whole) {
-            Some(seat) => {
-                seat.sum += left;
-                let before = seat.passed.map_or(a.tension_n, |[before, _]| before);
-                seat.passed = Some([before, b.tension_n]);
+        match source_under(&mut sources, [a.arc_length_m, b.arc_length_m], PLACE_TOLERANCE * whole) {
+            Some(source) => {
+                source.sum += left;
+                let before = source.passed.map_or(a.tension_n, |[before, _]| before);
+                source.passed = Some([before, b.tension_n]);
             }
             None => rest += left,
         }
     }
-    let plain = |cause, tension_n| Term { cause, tension_n, factor: None };
-    let mut terms = vec![plain(Cause::End, first.tension_n)];
+    let plain = |cause, tension_n| Contribution { cause, tension_n, factor: None };
+    let mut contributions = vec![plain(Cause::End, first.tension_n)];
     let forward = first.arc_length_m <= last.arc_length_m;
     let [low, high] = if forward { [first, last] } else { [last, first] }.map(|n| n.arc_length_m);
     if !forward {
-        seats.reverse();
+        sources.reverse();
     }
-    for seat in seats {
-        let Some([before, after]) = seat.passed else { continue };
+    for source in sources {
+        let Some([before, after]) = source.passed else { continue };
         // Of one that is passed whole the answer knows better than the nodes nearest to its ends.
-        let whole = seat.extent.iter().all(|s| (low..=high).contains(s));
-        let [before, after] = match seat.sides.filter(|_| whole) {
+        let whole = source.extent.iter().all(|s| (low..=high).contains(s));
+        let [before, after] = match source.sides.filter(|_| whole) {
             Some([a, b]) if forward => [a, b],
             Some([a, b]) => [b, a],
             None => [before, after],
         };
         let factor = (before > 0.0).then(|| after / before);
-        terms.push(Term { cause: seat.cause, tension_n: seat.sum, factor });
+        contributions.push(Contribution { cause: source.cause, tension_n: source.sum, factor });
     }
-    terms.extend([plain(Cause::Weight, weight), plain(Cause::Wind, wind), plain(Cause::Rest, rest)]);
-    Some(Origin {
+    contributions.extend([plain(Cause::Weight, weight), plain(Cause::Wind, wind), plain(Cause::Rest, rest)]);
+    Some(TensionBudget {
         arc_length_m: last.arc_length_m,
-        tension_n: terms.iter().map(|t| t.tension_n).sum(),
+        tension_n: contributions.iter().map(|t| t.tension_n).sum(),
         from_m: first.arc_length_m,
-        terms,
+        contributions,
     })
 }
 
-fn spread(scene: &Scene, cable: usize, time_s: f64) -> Option<Spread> {
+fn distributed_load(scene: &Scene, cable: usize, time_s: f64) -> Option<DistributedLoad> {
     let (c, e) = (scene.cables.get(cable)?, &scene.environment);
     let weight = match scene.view {
         View::Elevation => Vec2::new(0.0, -c.linear_density_kg_per_m * e.gravity_m_per_s2),
@@ -162,17 +167,17 @@ fn spread(scene: &Scene, cable: usize, time_s: f64) -> Option<Spread> {
         0 => Vec2::new(e.wind_n_per_m[0], e.wind_n_per_m[1]),
         n => Series::new(&e.wind_times_s[..n], &e.winds_n_per_m[..n]).at(time_s),
     };
-    Some(Spread { weight, wind, thermal_stretch: 1.0 + c.thermal_expansion_per_k * e.temperature_change_k })
+    Some(DistributedLoad { weight, wind, thermal_stretch: 1.0 + c.thermal_expansion_per_k * e.temperature_change_k })
 }
 
 /// All that changes tension at a place, in order of arc length.
-fn seats(scene: &Scene, cable: usize, solved: &CableSolution) -> Vec<Seat> {
-    let seat = |cause, extent, jump, sides| Seat { cause, extent, jump, sides, sum: 0.0, passed: None };
+fn sources(scene: &Scene, cable: usize, solved: &CableSolution) -> Vec<LocalSource> {
+    let source = |cause, extent, jump, sides| LocalSource { cause, extent, jump, sides, sum: 0.0, passed: None };
     let contacts = solved.contacts.iter().enumerate().map(|(k, c)| {
         let [before, after] = [c.tension_before_n, c.tension_after_n];
-        seat(Cause::Contact(k), c.extent_m(), (after - before).abs(), Some([before, after]))
+        source(Cause::Contact(k), c.extent_m(), (after - before).abs(), Some([before, after]))
     });
-    let mut out: Vec<Seat> = contacts.collect();
+    let mut out: Vec<LocalSource> = contacts.collect();
     let ends = solved.supports.len().saturating_sub(1);
     let supports = scene.cables.get(cable).map_or(&[][..], |c| &c.supports);
     for (k, (r, s)) in solved.supports.iter().zip(supports).enumerate() {
@@ -186,31 +191,31 @@ fn seats(scene: &Scene, cable: usize, solved: &CableSolution) -> Vec<Seat> {
         };
         let sides = r.tension_before_n.zip(r.tension_after_n).map(|(before, after)| [before, after]);
         let jump = sides.map_or(r.reaction_x_n.hypot(r.reaction_y_n), |[before, after]| (after - before).abs());
-        out.push(seat(Cause::Support(k), [r.arc_length_m - lap, r.arc_length_m + lap], jump, sides));
+        out.push(source(Cause::Support(k), [r.arc_length_m - lap, r.arc_length_m + lap], jump, sides));
     }
     let name = scene.cables.get(cable).map_or("", |c| &c.name);
     for (k, load) in scene.loads.iter().enumerate().filter(|(_, l)| l.cable == name) {
         let force = load.force_n.or_else(|| load.forces_n.first().copied()).unwrap_or_default();
-        out.push(seat(Cause::Load(k), [load.arc_length_m; 2], force[0].hypot(force[1]), None));
+        out.push(source(Cause::Load(k), [load.arc_length_m; 2], force[0].hypot(force[1]), None));
     }
     out.sort_by(|a, b| (a.extent[0] + a.extent[1]).total_cmp(&(b.extent[0] + b.extent[1])));
     out
 }
 
-/// The seat that a piece between two arc lengths lies on: the one it shares most of its length with, of several it only touches
+/// The source that a piece between two arc lengths lies on: the one it shares most of its length with, of several it only touches
 /// the one that changes the tension most.
-fn on(seats: &mut [Seat], piece: [f64; 2], near: f64) -> Option<&mut Seat> {
+fn source_under(sources: &mut [LocalSource], piece: [f64; 2], near: f64) -> Option<&mut LocalSource> {
     let [low, high] = if piece[0] <= piece[1] { piece } else { [piece[1], piece[0]] };
-    let shared = |s: &Seat| high.min(s.extent[1]) - low.max(s.extent[0]);
-    let rank = |s: &Seat| if shared(s) > near { [shared(s), 0.0] } else { [0.0, s.jump] };
-    seats.iter_mut().filter(|s| shared(s) >= -near).max_by(|a, b| {
+    let shared = |s: &LocalSource| high.min(s.extent[1]) - low.max(s.extent[0]);
+    let rank = |s: &LocalSource| if shared(s) > near { [shared(s), 0.0] } else { [0.0, s.jump] };
+    sources.iter_mut().filter(|s| shared(s) >= -near).max_by(|a, b| {
         let (a, b) = (rank(a), rank(b));
         a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
     })
 }
 
 /// The nodes from the end the sum begins at to the place, which is the last of them.
-fn path(solved: &CableSolution, arc_length_m: f64, from: From) -> Option<Vec<Node>> {
+fn path(solved: &CableSolution, arc_length_m: f64, from: StartEnd) -> Option<Vec<Node>> {
     let piece = solved.pieces().filter(|p| p.len() >= 2).min_by(|a, b| {
         let off = |p: &[Node]| {
             let ends = [p[0].arc_length_m, p[p.len() - 1].arc_length_m];
@@ -221,9 +226,9 @@ fn path(solved: &CableSolution, arc_length_m: f64, from: From) -> Option<Vec<Nod
     let (first, last) = (piece.first()?, piece.last()?);
     let at = arc_length_m.clamp(first.arc_length_m, last.arc_length_m);
     let forward = match from {
-        From::Slacker => first.tension_n <= last.tension_n,
-        From::Start => true,
-        From::End => false,
+        StartEnd::Slacker => first.tension_n <= last.tension_n,
+        StartEnd::Start => true,
+        StartEnd::End => false,
     };
     let mut nodes: Vec<Node> = piece.to_vec();
     if !forward {

@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::rc::Rc;
 
-use super::super::{HOPELESS, STEP_S, at_rest};
-use super::{Area, Ask};
+use super::super::{STEP_S, UNREACHABLE_FACTOR, at_rest};
+use super::{Area, Query};
 use crate::contact::World;
 use crate::math::{Vec2, larger, vec2};
 use crate::model::Model;
@@ -22,7 +22,7 @@ use crate::simulation::Simulation;
 const STEP_M: f64 = 0.25;
 
 /// A step without an answer is taken again in so many parts. Fewer: white spots where a slack cable falls over an edge.
-const PARTS: usize = 4;
+const RETRY_PARTS: usize = 4;
 
 /// Costs of a way to a neighbour beside and across: 7/5 is near enough to √2, and whole numbers have no ties that rounding breaks.
 const COSTS: [u64; 2] = [5, 7];
@@ -31,29 +31,29 @@ const COSTS: [u64; 2] = [5, 7];
 const NEIGHBOURS: [[i64; 2]; 8] = [[1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [-1, 1], [1, -1], [-1, -1]];
 
 /// Shortest look along a way, m. Longer: what is thinner than a cable is passed; shorter: ways along the ground take longer to look at.
-const CREEP_M: f64 = 2e-3;
+const MIN_PROBE_STEP_M: f64 = 2e-3;
 
 /// Places side by side on the coarsest grid at least. Fewer: nothing can be told from it; more: it takes longer.
-const COARSEST: usize = 6;
+const MIN_PLACES_ACROSS: usize = 6;
 
 /// Most places whose cables are kept for the next grid. More: memory (half a megabyte each); fewer: finer grids begin farther back.
-const MOST_KEPT: usize = 600;
+const MAX_KEPT_CABLES: usize = 600;
 
 /// Four places whose tensions lie closer than this part of the service tension agree. More: a snag between them is not seen; less:
 /// slack parts of the map, which take longest, are looked at all over.
-const AGREE: f64 = 0.02;
+const AGREEMENT_FRACTION: f64 = 0.02;
 
 /// A tension that finite elements say has grown by this factor in one step is not believed at once: nodes catch on corners. The cable
 /// is laid anew as it last was, and the lesser tension counts. Less: laid anew more often, which forgets friction; more: false spots on
 /// the map, and all places behind them false (on the tank 68 kN and 233 N for 106 N).
-const CAUGHT: f64 = 2.0;
+const SNAG_GROWTH: f64 = 2.0;
 
 /// Tensions below this part of the service tension are not asked for again: nothing depends on them.
-const SMALL: f64 = 0.1;
+const NEGLIGIBLE_FRACTION: f64 = 0.1;
 
 /// Nearer than this part of the farthest that is tried a cable that stops short is held by something: other ways there are tried as
 /// well. More: each place at the edge of the map is tried from all sides; less: false spots near obstacles.
-const NEAR: f64 = 0.8;
+const RETRY_DISTANCE_FRACTION: f64 = 0.8;
 
 /// The end at a place, and the cable there.
 struct Reached {
@@ -66,8 +66,8 @@ struct Reached {
 }
 
 /// A search in progress.
-pub(super) struct Flood<'a> {
-    pub ask: &'a Ask,
+pub(super) struct Exploration<'a> {
+    pub query: &'a Query,
     pub world: World,
     /// The other supports of the cable, m.
     pub holds: Vec<Vec2>,
@@ -89,11 +89,11 @@ pub(super) struct Flood<'a> {
 }
 
 /// What is heard of it.
-type Heard<'a> = &'a mut dyn FnMut(&Area, f64) -> ControlFlow<()>;
+type Progress<'a> = &'a mut dyn FnMut(&Area, f64) -> ControlFlow<()>;
 
-impl Flood<'_> {
+impl Exploration<'_> {
     /// Goes outwards from the start, grid after grid; what is only guessed from coarser grids is not there in the end.
-    pub fn spread(&mut self, laid: Simulation, heard: Heard<'_>) {
+    pub fn spread(&mut self, laid: Simulation, progress: Progress<'_>) {
         self.free = (0..self.found.most_n.len()).map(|k| self.may(k)).collect();
         let most_n = self.tension_n(&laid);
         self.found.most_n[self.first] = most_n;
@@ -108,8 +108,8 @@ impl Flood<'_> {
         let parts: Vec<[f64; 2]> = (0..strides.len()).map(|k| [new(k), steps(strides[k]) / total]).collect();
         let mut before = 0.0;
         for (stride, [new, one]) in strides.into_iter().zip(parts) {
-            let mut heard = |area: &Area, count: usize| heard(area, (before + one * count as f64).min(1.0));
-            if self.grid(stride, &mut kept, &mut heard).is_break() {
+            let mut progress = |area: &Area, count: usize| progress(area, (before + one * count as f64).min(1.0));
+            if self.grid(stride, &mut kept, &mut progress).is_break() {
                 break;
             }
             before += one * new;
@@ -179,22 +179,22 @@ impl Flood<'_> {
             return false;
         }
         let corners = self.corners(low, stride);
-        if !corners.iter().all(|k| self.is_told(*k)) {
+        if !corners.iter().all(|k| self.is_decided(*k)) {
             return false;
         }
         let values = corners.map(|k| self.found.most_n[k]);
         let (low_n, high_n) =
             values.into_iter().fold((f64::INFINITY, 0.0), |(a, b), v| (if v < a { v } else { a }, larger(b, v)));
-        high_n - low_n <= AGREE * self.found.service_n
+        high_n - low_n <= AGREEMENT_FRACTION * self.found.service_n
     }
 
     /// Every how manieth place each grid has, the coarsest first. All but the last are small enough that their cables can be kept.
     fn strides(&self) -> Vec<usize> {
         let columns = self.found.columns;
         let rows = self.found.most_n.len() / columns.max(1);
-        let coarsest = (columns.max(rows) / COARSEST).max(1).ilog2();
+        let coarsest = (columns.max(rows) / MIN_PLACES_ACROSS).max(1).ilog2();
         let all = (0..=coarsest).rev().map(|k| 1_usize << k);
-        all.filter(|stride| *stride == 1 || self.places(*stride).count() <= MOST_KEPT).collect()
+        all.filter(|stride| *stride == 1 || self.places(*stride).count() <= MAX_KEPT_CABLES).collect()
     }
 
     /// The free places of a grid.
@@ -211,7 +211,7 @@ impl Flood<'_> {
         &mut self,
         stride: usize,
         kept: &mut Vec<Rc<Reached>>,
-        heard: &mut dyn FnMut(&Area, usize) -> ControlFlow<()>,
+        progress: &mut dyn FnMut(&Area, usize) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         // By cost and place; by from where as well: where one way has no answer another one of the same length may.
         let mut open = BTreeMap::new();
@@ -223,7 +223,7 @@ impl Flood<'_> {
             if self.known[place] {
                 continue;
             }
-            heard(&self.found, count)?;
+            progress(&self.found, count)?;
             let mut simulation = from.simulation.clone();
             let before_n = from.most_n;
             drop(from);
@@ -239,7 +239,7 @@ impl Flood<'_> {
             self.found.most_n[place] = most_n;
             if most_n.is_finite() {
                 self.parents[place] = Some(parent);
-                self.found.most_n[place] = if self.ask.back {
+                self.found.most_n[place] = if self.query.back {
                     self.back(&mut simulation.clone(), place).map_or(f64::NAN, |back_n| larger(most_n, back_n))
                 } else {
                     self.tension_n(&simulation)
@@ -274,7 +274,7 @@ impl Flood<'_> {
     fn guess(&mut self, place: usize, stride: usize) {
         let around: Vec<usize> = self.neighbours(place, stride).map(|(k, _)| k).chain([place]).collect();
         for low in around.iter().copied() {
-            let told = |k: &usize| around.contains(k) && self.is_told(*k);
+            let told = |k: &usize| around.contains(k) && self.is_decided(*k);
             if self.corners(low, stride).iter().all(told) && self.is_empty(low, stride) {
                 self.fill(low, stride);
             }
@@ -282,7 +282,7 @@ impl Flood<'_> {
     }
 
     /// Whether the tension of a place is known, or taken from others for good.
-    fn is_told(&self, place: usize) -> bool {
+    fn is_decided(&self, place: usize) -> bool {
         let [known, settled] = [&self.known, &self.settled].map(|l| l.get(place) == Some(&true));
         (known || settled) && self.found.most_n[place].is_finite()
     }
@@ -313,7 +313,7 @@ impl Flood<'_> {
 
     /// Whether a cable that nothing holds would reach a place by far.
     fn near(&self, place: usize) -> bool {
-        self.holds.iter().all(|h| (self.at(place) - h).norm() <= NEAR * self.far_m)
+        self.holds.iter().all(|h| (self.at(place) - h).norm() <= RETRY_DISTANCE_FRACTION * self.far_m)
     }
 
     fn is_free(&self, p: Vec2) -> bool {
@@ -330,7 +330,7 @@ impl Flood<'_> {
                 return false;
             }
             before = gap.gap_m;
-            gone += larger(gap.gap_m, CREEP_M);
+            gone += larger(gap.gap_m, MIN_PROBE_STEP_M);
         }
         true
     }
@@ -364,8 +364,8 @@ impl Flood<'_> {
         let mut most = self.tension_n(simulation);
         for k in 1..=steps as usize {
             let ends = [k - 1, k].map(|k| from + (to - from) * (k as f64 / steps));
-            most = larger(most, self.doubted(simulation, ends)?);
-            if !(most <= HOPELESS * self.found.breaking_n) {
+            most = larger(most, self.go_with_retries(simulation, ends)?);
+            if !(most <= UNREACHABLE_FACTOR * self.found.breaking_n) {
                 return Some(f64::INFINITY);
             }
         }
@@ -373,15 +373,15 @@ impl Flood<'_> {
     }
 
     /// A step; where it has no answer, or one that is not believed, it is taken in parts and with the cable laid anew.
-    fn doubted(&self, simulation: &mut Simulation, ends: [Vec2; 2]) -> Option<f64> {
+    fn go_with_retries(&self, simulation: &mut Simulation, ends: [Vec2; 2]) -> Option<f64> {
         let before = simulation.clone();
         let before_n = self.tension_n(&before);
         let good = |simulation: &Simulation, n: Option<f64>| {
-            let caught = |n: f64| n > SMALL * self.found.service_n && n > CAUGHT * before_n;
+            let caught = |n: f64| n > NEGLIGIBLE_FRACTION * self.found.service_n && n > SNAG_GROWTH * before_n;
             n.is_some_and(|n| simulation.model() != Model::Fem || !caught(n))
         };
         let mut found_n = self.step(simulation, ends, 1);
-        for (parts, anew) in [(PARTS, false), (1, true), (PARTS, true)] {
+        for (parts, anew) in [(RETRY_PARTS, false), (1, true), (RETRY_PARTS, true)] {
             if good(simulation, found_n) {
                 break;
             }
@@ -399,14 +399,18 @@ impl Flood<'_> {
     }
 
     fn tension_n(&self, simulation: &Simulation) -> f64 {
-        simulation.largest_n([self.ask.cable])
+        simulation.largest_n([self.query.cable])
     }
 
     /// A step in so many parts; the largest tension in it, None without an answer.
     fn step(&self, simulation: &mut Simulation, [from, to]: [Vec2; 2], parts: usize) -> Option<f64> {
         let mut most = 0.0;
         for k in 1..=parts {
-            simulation.drag_support(self.ask.cable, self.ask.support, from + (to - from) * (k as f64 / parts as f64));
+            simulation.drag_support(
+                self.query.cable,
+                self.query.support,
+                from + (to - from) * (k as f64 / parts as f64),
+            );
             simulation.step_quasi_static(STEP_S).ok()?;
             most = larger(most, self.tension_n(simulation));
         }

@@ -4,17 +4,19 @@
 
 use std::ops::ControlFlow;
 
+use cable_core::analysis::friction_range::{
+    Action, ActionKind, FrictionRange, Query, friction_range, with_scaled_friction,
+};
 use cable_core::scene::catalog;
-use cable_core::spread::{Ask, Hand, Handled, Spread, scaled, spread};
 use cable_core::{Model, Settings, Simulation};
 
-fn ask(model: Model, span_s: f64) -> Ask {
+fn ask(model: Model, span_s: f64) -> Query {
     let settings = Settings::default();
-    Ask { scene: catalog::draped_slipping(), model, settings, factors: [0.5, 1.5], span_s, hands: Vec::new() }
+    Query { scene: catalog::draped_slipping(), model, settings, factors: [0.5, 1.5], span_s, hands: Vec::new() }
 }
 
-fn find(ask: &Ask) -> Spread {
-    spread(ask, |_| ControlFlow::Continue(())).expect("three answers")
+fn find(ask: &Query) -> FrictionRange {
+    friction_range(ask, |_| ControlFlow::Continue(())).expect("three answers")
 }
 
 /// Drawn down over half a turn of a pipe with μ = 0.15, 0.3 and 0.45. With θ from the top, N = T/r + w cos θ and
@@ -78,7 +80,7 @@ fn what_a_hand_did_is_repeated() {
     let still = one.largest_n([0]);
     for k in 1..=60 {
         let (time_s, to_m) = (f64::from(k) / 60.0, [from[0], y(f64::from(k) / 60.0)]);
-        ask.hands.push(Hand { time_s, what: Handled::Support { cable: 0, support, to_m } });
+        ask.hands.push(Action { time_s, what: ActionKind::Support { cable: 0, support, to_m } });
         one.drag_support(0, support, cable_core::math::vec2(to_m));
         one.step_quasi_static(1.0 / 60.0).unwrap();
     }
@@ -90,7 +92,7 @@ fn what_a_hand_did_is_repeated() {
     assert!(pulled > 1.05 * still && (high - low).abs() > 0.01 * still, "{pulled} {still} {:?}", found.most_n);
     // Where a hand had moved it before, it begins there.
     ask.hands =
-        vec![Hand { time_s: 0.0, what: Handled::Support { cable: 0, support, to_m: [from[0], from[1] - 0.2] } }];
+        vec![Action { time_s: 0.0, what: ActionKind::Support { cable: 0, support, to_m: [from[0], from[1] - 0.2] } }];
     ask.span_s = 0.0;
     let mut there = ask.scene.clone();
     there.cables[0].supports[support].at_m = Some([from[0], from[1] - 0.2]);
@@ -102,7 +104,7 @@ fn what_a_hand_did_is_repeated() {
 #[test]
 fn without_friction_anywhere_there_is_no_ribbon() {
     let mut ask = ask(Model::Spans, 0.0);
-    ask.scene = scaled(&ask.scene, 0.0);
+    ask.scene = with_scaled_friction(&ask.scene, 0.0);
     let found = find(&ask);
     let most = found.most_n[1];
     assert!(found.along[0].iter().all(|b| (b.high_n - b.low_n).abs() <= 1e-9 * most));
@@ -111,18 +113,18 @@ fn without_friction_anywhere_there_is_no_ribbon() {
 #[test]
 fn every_coefficient_is_scaled_and_nothing_else() {
     let scene = catalog::pulley_waypoints();
-    let half = scaled(&scene, 0.5);
+    let half = with_scaled_friction(&scene, 0.5);
     assert_eq!(half.cables[0].friction, 0.5 * scene.cables[0].friction);
     let pulleys = half.cables[0].supports.iter().zip(&scene.cables[0].supports);
     assert!(pulleys.clone().all(|(a, b)| a.friction == b.friction.map(|f| 0.5 * f)));
     assert!(pulleys.clone().any(|(a, b)| a.friction != b.friction));
-    assert_eq!(scaled(&scene, 1.0), scene);
+    assert_eq!(with_scaled_friction(&scene, 1.0), scene);
 }
 
 #[test]
 fn it_ends_when_it_is_told_to() {
     let mut heard = 0;
-    let found = spread(&ask(Model::Spans, 5.0), |_| {
+    let found = friction_range(&ask(Model::Spans, 5.0), |_| {
         heard += 1;
         if heard > 10 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
