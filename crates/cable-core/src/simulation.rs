@@ -10,7 +10,7 @@ use crate::estimates::ErrorEstimates;
 use crate::kinematics::{self, AlongCable};
 use crate::math::{Vec2, larger};
 use crate::model::auto::{self, Question};
-use crate::model::lay::least_sliding;
+use crate::model::initial_equilibrium::initial_equilibrium;
 use crate::model::{Inertia, LEAST_TOLERANCE, Model, Settings, StepReport};
 use crate::problem::problems;
 use crate::robot::Vehicle;
@@ -175,7 +175,7 @@ impl Simulation {
         let Some(at) = self.vehicle.as_ref().map(|v| v.pose().placement()) else { return };
         for (cable, answer) in self.cables.iter().zip(&self.answers) {
             let problem = cable.problem();
-            let Some(outline) = problem.outline.as_ref().filter(|_| cable.outline().is_none()) else { continue };
+            let Some(outline) = problem.outline.as_ref().filter(|_| cable.robot_contact().is_none()) else { continue };
             if !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius) {
                 let message =
                     format!("`{}` lies through the robot: {} knows nothing of it", answer.name, cable.model());
@@ -312,7 +312,7 @@ impl Simulation {
         let Ok(next) = fem.collect::<Result<Vec<_>, SolveError>>() else { return false };
         self.reason = format!("{} gave no sound answer: {why}", self.model);
         (self.cables, self.built, self.model) = (next, Model::Fem, Model::Fem);
-        self.lead_outline();
+        self.set_robot_pose();
         true
     }
 
@@ -325,7 +325,8 @@ impl Simulation {
             if !problem.rubs(answer) || self.warnings.iter().any(said) {
                 continue;
             }
-            let seek = || least_sliding(&Arc::new(problem.clone()), Settings::default(), (&[], None)).ok().flatten();
+            let seek =
+                || initial_equilibrium(&Arc::new(problem.clone()), Settings::default(), (&[], None)).ok().flatten();
             let known = if self.settings.histories { seek() } else { None };
             let mut known: Vec<Warning> = known.map(|lay| lay.warnings).unwrap_or_default();
             known.retain(said);
@@ -575,7 +576,7 @@ impl Simulation {
         if let (Some(new), Some(old), true) = (&mut self.vehicle, &old.vehicle, old.time_s() > 0.0) {
             new.carry(old);
         }
-        self.lead_outline();
+        self.set_robot_pose();
         for (new, old) in self.cables.iter_mut().zip(&old.cables) {
             new.carry(old)?;
         }
@@ -587,9 +588,9 @@ impl Simulation {
     ///
     /// # Errors
     /// When a state does not fit its cable, or the cable broke.
-    pub fn adopt(&mut self, states: &[State]) -> Result<(), SolveError> {
+    pub fn set_states(&mut self, states: &[State]) -> Result<(), SolveError> {
         for (c, s) in self.cables.iter_mut().zip(states) {
-            c.adopt(s)?;
+            c.set_state(s)?;
         }
         self.look(false);
         Ok(())
@@ -600,14 +601,14 @@ impl Simulation {
     /// again.
     ///
     /// # Errors
-    /// As [`Self::adopt`].
+    /// As [`Self::set_states`].
     pub fn resume(&mut self, answer: &Solution) -> Result<(), SolveError> {
         let states: Vec<State> = answer.cables.iter().map(|c| State::of_nodes(&c.nodes, answer.time_s)).collect();
         if let (Some(vehicle), Some(then)) = (&mut self.vehicle, &answer.robot) {
             vehicle.resume(then);
         }
-        self.lead_outline();
-        self.adopt(&states)
+        self.set_robot_pose();
+        self.set_states(&states)
     }
 }
 

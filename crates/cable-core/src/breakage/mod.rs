@@ -15,12 +15,12 @@ use std::sync::Arc;
 
 use partition::{CablePart, Cut};
 
-use crate::contact::outline::Placement;
+use crate::contact::outline::RigidPose;
 use crate::error::SolveError;
 use crate::math::{Vec2, larger, smaller};
-use crate::model::drive::hand_stiffness;
 use crate::model::gauge::{Limit, TensionGauge};
-use crate::model::{self, Inertia, Mechanics, Model, OutlineReport, Own, Settings, StepReport};
+use crate::model::input_filter::default_hand_stiffness;
+use crate::model::{self, Inertia, Mechanics, Model, Own, RobotContact, Settings, StepReport};
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost, MomentumAccount, TensionPeak, TensionPeaks};
@@ -84,7 +84,7 @@ pub(crate) struct BreakableCable {
     /// Which of them a hand holds by a spring.
     pulled: Vec<bool>,
     /// Where the outline of the robot was led.
-    robot_pose: Option<Placement>,
+    robot_pose: Option<RigidPose>,
     /// The greatest tensions since they were last forgotten, in motion.
     peaks: Option<TensionPeaks>,
     /// When that was, s.
@@ -119,7 +119,7 @@ impl BreakableCable {
     /// Builds the model of a whole cable.
     pub fn new(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
         // A hand's spring is that of the whole cable, whatever breaks off.
-        let stiffness = settings.hand_stiffness_n_per_m.unwrap_or_else(|| hand_stiffness(&problem));
+        let stiffness = settings.hand_stiffness_n_per_m.unwrap_or_else(|| default_hand_stiffness(&problem));
         let settings = Settings { hand_stiffness_n_per_m: Some(stiffness), ..settings };
         let mechanics = model::build(model, problem.clone(), settings)?;
         let gauge = TensionGauge::over(problem.cable.breaking_time_s);
@@ -314,9 +314,9 @@ impl BreakableCable {
             }
         }
         if let Some(pose) = self.robot_pose {
-            mechanics.lead_outline(pose);
+            mechanics.set_robot_pose(pose);
         }
-        mechanics.adopt(state)?;
+        mechanics.set_state(state)?;
         Ok(Piece::new(mechanics, part, TensionGauge::over(self.problem.cable.breaking_time_s)))
     }
 
@@ -370,10 +370,10 @@ impl BreakableCable {
     }
 
     /// Leads the outline of the robot: it goes there in the next advance.
-    pub fn lead_outline(&mut self, to: Placement) {
+    pub fn set_robot_pose(&mut self, to: RigidPose) {
         self.robot_pose = Some(to);
         for piece in &mut self.pieces {
-            piece.mechanics.lead_outline(to);
+            piece.mechanics.set_robot_pose(to);
         }
     }
 
@@ -386,11 +386,11 @@ impl BreakableCable {
     }
 
     /// What the cable does to the outline of the robot, all pieces together; None where no model knows of it.
-    pub fn outline(&self) -> Option<OutlineReport> {
+    pub fn robot_contact(&self) -> Option<RobotContact> {
         self.pieces
             .iter()
-            .filter_map(|p| p.mechanics.outline())
-            .reduce(|a, b| OutlineReport { force_n: a.force_n + b.force_n, ..if b.left_m > a.left_m { b } else { a } })
+            .filter_map(|p| p.mechanics.robot_contact())
+            .reduce(|a, b| RobotContact { force_n: a.force_n + b.force_n, ..if b.left_m > a.left_m { b } else { a } })
     }
 
     /// Longest inner step of the next step with inertia, s.
@@ -422,10 +422,10 @@ impl BreakableCable {
     }
 
     /// Takes over a state of the whole cable.
-    pub fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+    pub fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         match self.pieces.as_mut_slice() {
             [whole] if self.breaks.is_empty() => {
-                whole.mechanics.adopt(state)?;
+                whole.mechanics.set_state(state)?;
                 whole.gauge.forget();
                 whole.refresh_answer();
                 self.peaks = None;
@@ -443,7 +443,7 @@ impl BreakableCable {
     pub fn carry(&mut self, old: &Self) -> Result<(), SolveError> {
         let (Some(own), Some(first)) = (self.pieces.first(), old.pieces.first()) else { return Ok(()) };
         if old.breaks.is_empty() {
-            self.adopt(&first.mechanics.state())?;
+            self.set_state(&first.mechanics.state())?;
             let same = |p: &Problem| (p.length, p.cable.breaking_time_s);
             if let (Some(own), true) = (self.pieces.first_mut(), same(&self.problem) == same(&old.problem)) {
                 own.gauge.clone_from(&first.gauge);

@@ -8,14 +8,14 @@ use crate::math::{Vec2, cross, larger};
 
 /// Where a rigid body is and how it is turned.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Placement {
+pub struct RigidPose {
     /// Its own origin, m.
     pub at: Vec2,
     /// Its turn, rad, anticlockwise.
     pub angle: f64,
 }
 
-impl Placement {
+impl RigidPose {
     /// From the body's own axes to the plane, m.
     #[must_use]
     pub fn place(&self, p: Vec2) -> Vec2 {
@@ -25,7 +25,7 @@ impl Placement {
 
     /// From the plane to the body's own axes, m.
     #[must_use]
-    pub fn own(&self, p: Vec2) -> Vec2 {
+    pub fn to_local(&self, p: Vec2) -> Vec2 {
         let (sin, cos) = self.angle.sin_cos();
         let d = p - self.at;
         Vec2::new(cos * d.x + sin * d.y, cos * d.y - sin * d.x)
@@ -34,7 +34,7 @@ impl Placement {
     /// Where a point of the body goes when it moves from here to `to`, m.
     #[must_use]
     pub fn carried(&self, to: &Self, p: Vec2) -> Vec2 {
-        to.place(self.own(p))
+        to.place(self.to_local(p))
     }
 
     /// The placement at a part of the way to another (0 to 1); exactly that one at 1.
@@ -52,7 +52,7 @@ impl Placement {
 pub struct Outline {
     corners: Vec<Vec2>,
     /// Where it is at the start.
-    pub placement: Placement,
+    pub placement: RigidPose,
     /// Coulomb friction coefficient with the cable.
     pub friction: f64,
     /// Where the cable hangs on it, in its own axes, m.
@@ -64,7 +64,7 @@ pub struct Outline {
 impl Outline {
     /// An outline by its corners and its hitch in its own axes, m; None if they enclose nothing.
     #[must_use]
-    pub fn new((corners, hitch): (&[Vec2], Vec2), placement: Placement, friction: f64, name: String) -> Option<Self> {
+    pub fn new((corners, hitch): (&[Vec2], Vec2), placement: RigidPose, friction: f64, name: String) -> Option<Self> {
         let mut kept: Vec<Vec2> = Vec::with_capacity(corners.len());
         for c in corners.iter().filter(|c| c.iter().all(|v| v.is_finite())) {
             if kept.last() != Some(c) {
@@ -86,14 +86,14 @@ impl Outline {
     }
 
     /// Its edges at a placement, clockwise, m.
-    pub fn edges(&self, placement: Placement) -> impl Iterator<Item = [Vec2; 2]> {
+    pub fn edges(&self, placement: RigidPose) -> impl Iterator<Item = [Vec2; 2]> {
         let n = self.corners.len();
         (0..n).map(move |k| [self.corners[k], self.corners[(k + 1) % n]].map(|p| placement.place(p)))
     }
 
     /// Whether a chain of points (m) stays farther away than `least` (m) from the outline at a placement.
     #[must_use]
-    pub fn is_clear(&self, placement: Placement, chain: impl Iterator<Item = Vec2>, least: f64) -> bool {
+    pub fn is_clear(&self, placement: RigidPose, chain: impl Iterator<Item = Vec2>, least: f64) -> bool {
         let far = self.corners.iter().map(|c| c.norm()).fold(0.0, larger) + least;
         let mut before: Option<Vec2> = None;
         for p in chain {
@@ -108,7 +108,7 @@ impl Outline {
 
     /// The longest way that a point of it goes between two placements, m.
     #[must_use]
-    pub fn way(&self, from: &Placement, to: &Placement) -> f64 {
+    pub fn max_displacement(&self, from: &RigidPose, to: &RigidPose) -> f64 {
         let ways = self.corners.iter().map(|c| (to.place(*c) - from.place(*c)).norm());
         ways.fold(0.0, larger)
     }
@@ -121,9 +121,9 @@ mod tests {
     #[test]
     fn it_comes_back_to_where_it_was() {
         let (a, b) =
-            (Placement { at: Vec2::new(3.0, -1.0), angle: 0.4 }, Placement { at: Vec2::new(3.5, -1.2), angle: -0.1 });
+            (RigidPose { at: Vec2::new(3.0, -1.0), angle: 0.4 }, RigidPose { at: Vec2::new(3.5, -1.2), angle: -0.1 });
         let p = Vec2::new(0.7, 2.0);
-        assert!((a.own(a.place(p)) - p).norm() < 1e-15);
+        assert!((a.to_local(a.place(p)) - p).norm() < 1e-15);
         assert!((b.carried(&a, a.carried(&b, p)) - p).norm() < 1e-14);
         assert_eq!(a.towards(&b, 1.0), b);
         assert_eq!(a.towards(&b, 0.0), a);
@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn what_encloses_nothing_is_no_outline() {
         let line = [Vec2::zeros(), Vec2::x(), Vec2::x() * 2.0];
-        assert_eq!(Outline::new((&line, Vec2::zeros()), Placement::default(), 0.5, String::new()), None);
-        assert_eq!(Outline::new((&[], Vec2::zeros()), Placement::default(), 0.5, String::new()), None);
+        assert_eq!(Outline::new((&line, Vec2::zeros()), RigidPose::default(), 0.5, String::new()), None);
+        assert_eq!(Outline::new((&[], Vec2::zeros()), RigidPose::default(), 0.5, String::new()), None);
     }
 }

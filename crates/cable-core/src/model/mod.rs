@@ -8,14 +8,14 @@ mod arc_nodes;
 pub mod auto;
 pub mod catenary;
 pub mod conformance;
-pub mod drive;
 pub mod fem;
 pub mod gauge;
-pub mod lay;
+pub mod initial_equilibrium;
+pub mod input_filter;
 pub mod mass_spring;
-pub mod relay;
 pub mod similar;
 pub mod spans;
+pub mod switching;
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 
 use self::gauge::TensionGauge;
 use self::mass_spring::Stepping;
-use crate::contact::outline::Placement;
+use crate::contact::outline::RigidPose;
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::problem::Problem;
@@ -92,7 +92,7 @@ pub struct Settings {
     /// Fastest a support follows the hand that drags it while masses move, m/s.
     #[serde(default = "hand_speed")]
     pub hand_speed_m_per_s: f64,
-    /// Stiffness of the spring by which a hand holds a support while masses move, N/m; None: that of [`drive::hand_stiffness`].
+    /// Stiffness of the spring by which a hand holds a support while masses move, N/m; None: that of [`input_filter::default_hand_stiffness`].
     #[serde(default)]
     pub hand_stiffness_n_per_m: Option<f64>,
     /// Whether a rest that friction makes one of many is told with what other histories would have left in it: `spans` lays the cable anew for
@@ -106,7 +106,7 @@ fn yes() -> bool {
 }
 
 fn hand_speed() -> f64 {
-    drive::HAND_SPEED
+    input_filter::HAND_SPEED
 }
 
 impl Default for Settings {
@@ -145,11 +145,11 @@ impl Settings {
         if let Some(value) = self.inner_step_s.filter(|step| !INNER_STEPS_S.contains(step)) {
             return Err(SolveError::Setting { name: "inner_step_s", value, allowed: "1e-9 to 1 s" });
         }
-        if !(LEAST_HAND_SPEED..=drive::MAX_SPEED).contains(&self.hand_speed_m_per_s) {
+        if !(LEAST_HAND_SPEED..=input_filter::MAX_SPEED).contains(&self.hand_speed_m_per_s) {
             let (name, allowed) = ("hand speed", "0.01 to 20 m/s");
             return Err(SolveError::Setting { name, value: self.hand_speed_m_per_s, allowed });
         }
-        if let Some(value) = self.hand_stiffness_n_per_m.filter(|k| !drive::HAND_STIFFNESSES.contains(k)) {
+        if let Some(value) = self.hand_stiffness_n_per_m.filter(|k| !input_filter::HAND_STIFFNESSES.contains(k)) {
             return Err(SolveError::Setting { name: "hand stiffness", value, allowed: "0.001 to 1e9 N/m" });
         }
         match self.segments {
@@ -183,11 +183,11 @@ pub struct StepReport {
 
 /// What a cable does to the outline of the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OutlineReport {
+pub struct RobotContact {
     /// Its force on it, N.
     pub force_n: Vec2,
     /// Where it is: where it was led unless the cable was in its way.
-    pub placement: Placement,
+    pub placement: RigidPose,
     /// How far that is from where it was led, m.
     pub left_m: f64,
 }
@@ -253,33 +253,33 @@ pub trait Mechanics: Send {
     ///
     /// # Errors
     /// When a number is not finite or the state does not fit the cable; `Buried` when the model cannot go on from inside an obstacle.
-    fn adopt(&mut self, state: &State) -> Result<(), SolveError>;
+    fn set_state(&mut self, state: &State) -> Result<(), SolveError>;
 
-    /// Goes on from an answer of the same cable, by this model or another: as [`Self::adopt`], and where the model can,
+    /// Goes on from an answer of the same cable, by this model or another: as [`Self::set_state`], and where the model can,
     /// what friction held is still held.
     ///
     /// # Errors
-    /// As [`Self::adopt`].
-    fn take_over(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
-        self.adopt(&State::of_nodes(&answer.nodes, time_s))
+    /// As [`Self::set_state`].
+    fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+        self.set_state(&State::of_nodes(&answer.nodes, time_s))
     }
 
     /// From now on a support follows `target_m` (smoothly and no faster than [`Settings::hand_speed_m_per_s`] in `Dynamic` steps; at the
     /// next `settle` or quasi-static step it is there) instead of its `motion`. One of a robot goes there evenly in the next step, whatever that takes.
     fn drag_support(&mut self, support: usize, target_m: Vec2);
 
-    /// From now on a hand at `hand_m` (m) holds a support by a spring ([`drive::Hand`]) in `Dynamic` steps, its free end no faster than
+    /// From now on a hand at `hand_m` (m) holds a support by a spring ([`input_filter::Hand`]) in `Dynamic` steps, its free end no faster than
     /// [`Settings::hand_speed_m_per_s`]; else as [`Self::drag_support`], which ends it. A support without a node of its own (a pulley), and one of a robot, is dragged.
     fn pull_support(&mut self, support: usize, hand_m: Vec2) {
         self.drag_support(support, hand_m);
     }
 
-    /// The outline of the robot goes there in the next advance; what is put somewhere ([`Self::adopt`]) finds it there at once.
+    /// The outline of the robot goes there in the next advance; what is put somewhere ([`Self::set_state`]) finds it there at once.
     /// Models that know nothing of it leave it out.
-    fn lead_outline(&mut self, _to: Placement) {}
+    fn set_robot_pose(&mut self, _to: RigidPose) {}
 
     /// What the cable does to the outline of the robot; None where the model leaves it out, or there is none.
-    fn outline(&self) -> Option<OutlineReport> {
+    fn robot_contact(&self) -> Option<RobotContact> {
         None
     }
 
@@ -332,7 +332,7 @@ fn refuse_mobilised(model: Model, problem: &Problem) -> Result<(), SolveError> {
 }
 
 /// Builds the mechanics of one cable. `Auto` is resolved for rest (see [`auto::choose`]); where it chooses `spans`, `fem`
-/// stands behind it ([`relay::Relay`]).
+/// stands behind it ([`switching::SwitchingModel`]).
 ///
 /// # Errors
 /// `Setting` when the settings are out of range, `Unsupported` when the model lacks what the scene needs.
@@ -359,7 +359,7 @@ fn built(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Box<
             Ok(Box::new(mass_spring::MassSpringModel::new(Problem::without_outline(problem), settings)?))
         }
         Model::Auto => match auto::choose(&problem, auto::Question::Rest).0 {
-            Model::Spans => Ok(Box::new(relay::Relay::new(problem, settings)?)),
+            Model::Spans => Ok(Box::new(switching::SwitchingModel::new(problem, settings)?)),
             chosen => built(chosen, problem, settings),
         },
     }

@@ -264,16 +264,16 @@ impl Mechanics for Similar {
         self.inner.time_s() / self.by.time
     }
 
-    fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+    fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         let to = self.state_to(state);
-        let done = self.inner.adopt(&to);
+        let done = self.inner.set_state(&to);
         self.listen();
         done.map_err(|e| self.error(e))
     }
 
-    fn take_over(&mut self, given: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+    fn warm_start(&mut self, given: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         let to = answer(given.clone(), self.by.length, self.by.time, |p| self.by.place(p));
-        let done = self.inner.take_over(&to, time_s * self.by.time);
+        let done = self.inner.warm_start(&to, time_s * self.by.time);
         self.listen();
         done.map_err(|e| self.error(e))
     }

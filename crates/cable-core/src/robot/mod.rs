@@ -33,7 +33,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::outline::Placement;
+use crate::contact::outline::RigidPose;
 use crate::math::{Vec2, bounded, larger, smaller, vec2};
 use crate::scene::ground::Ground;
 use crate::scene::preset::{RobotPreset, robot_preset};
@@ -312,7 +312,7 @@ impl Vehicle {
     }
 
     /// It came only there in its last step: the cable was in its way.
-    pub fn hold_back(&mut self, placement: Placement) {
+    pub fn hold_back(&mut self, placement: RigidPose) {
         self.pose = Pose { at_m: [placement.at.x, placement.at.y], pitch: placement.angle, ..self.pose };
         self.report.work.impact_j -= self.kinetic_j();
         (self.speed, self.tipping) = (0.0, 0.0);

@@ -5,10 +5,10 @@
 
 pub mod cable;
 pub mod catalog;
-mod crossing;
 pub mod file;
 pub mod ground;
 pub mod import;
+mod length_check;
 pub mod load;
 pub mod motion;
 pub mod obstacle;
@@ -19,11 +19,11 @@ mod read;
 pub mod robot;
 pub mod scaled;
 pub mod schema;
+mod self_touch;
 pub mod support;
 mod support_rules;
 pub mod survey;
 pub mod validate;
-mod way;
 
 pub use cable::{BREAKING_TIME_S, Cable, FrictionMobilised};
 pub use load::Load;

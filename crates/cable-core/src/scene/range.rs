@@ -52,4 +52,4 @@ pub(super) const ROBOT_SPEED: Range = Range::new(1e-6, 20.0, "1e-6 to 20 m/s");
 /// How much a temperature may change a length: beyond, expansion or temperature is surely mistyped.
 pub(super) const THERMAL_FACTOR: (f64, f64) = (0.5, 2.0);
 /// Least time between two knots, s: much less, and velocities over it lose all digits.
-pub(super) const LEAST_INTERVAL_S: f64 = 1e-9;
+pub(super) const MIN_INTERVAL_S: f64 = 1e-9;

@@ -136,14 +136,14 @@ fn plain(expected: &dyn Expected) -> String {
 pub(super) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
     // Jaro–Winkler similarity below which a hint is noise: 0.95 misses `lenght` for `length_m`, 0.75 offers
     // `name` for `a`.
-    const SIMILAR_ENOUGH: f64 = 0.8;
+    const MIN_SIMILARITY: f64 = 0.8;
     // A hostile key of megabytes would be compared in quadratic time.
-    const LONGEST_NAME: usize = 200;
-    if name.len() > LONGEST_NAME {
+    const MAX_NAME_CHARS: usize = 200;
+    if name.len() > MAX_NAME_CHARS {
         return None;
     }
     let (score, best) = known.map(|k| (strsim::jaro_winkler(name, k), k)).max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (score >= SIMILAR_ENOUGH).then(|| best.to_owned())
+    (score >= MIN_SIMILARITY).then(|| best.to_owned())
 }
 
 /// A deserialiser over a whole document.

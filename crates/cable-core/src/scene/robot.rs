@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::ground::Ground;
 use super::preset::{RobotPreset, robot_preset};
 use super::{Scene, View};
-use crate::contact::outline::{Outline, Placement};
+use crate::contact::outline::{Outline, RigidPose};
 use crate::math::{Point, Vec2, vec2};
 
 /// A tracked vehicle standing on the terrain.
@@ -148,8 +148,8 @@ const BELOW_GROUND_M: f64 = 0.2;
 impl Pose {
     /// The same as a place and a turn.
     #[must_use]
-    pub fn placement(&self) -> Placement {
-        Placement { at: vec2(self.at_m), angle: self.pitch }
+    pub fn placement(&self) -> RigidPose {
+        RigidPose { at: vec2(self.at_m), angle: self.pitch }
     }
 }
 

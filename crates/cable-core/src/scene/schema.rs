@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::{Scene, preset};
 
 /// What a cable's file must give even with a preset.
-const ALWAYS: [&str; 3] = ["name", "length_m", "supports"];
+const REQUIRED_KEYS: [&str; 3] = ["name", "length_m", "supports"];
 
 impl Scene {
     /// The JSON Schema of a scene file, derived from the types that hold it: unknown keys are refused, and what
@@ -15,7 +15,7 @@ impl Scene {
         let mut schema = schemars::schema_for!(Self).to_value();
         if let Some(cable) = schema.pointer_mut("/$defs/Cable").and_then(Value::as_object_mut) {
             let needed = cable.get("required").cloned().unwrap_or_default();
-            cable.insert("required".to_owned(), json!(ALWAYS));
+            cable.insert("required".to_owned(), json!(REQUIRED_KEYS));
             cable.insert("anyOf".to_owned(), json!([{ "required": ["preset"] }, { "required": needed }]));
         }
         let ids: [(&str, Vec<&str>); 2] = [

@@ -2,10 +2,12 @@
 //!
 //! The ranges are wide: they keep out what is surely a slip or would hurt the program, not what is unusual.
 
-use super::crossing::{Crossing, first_crossing};
 use super::path::Path;
 use super::range::{self, Range};
-use super::{Cable, Load, Motion, Obstacle, Robot, RobotTask, Scene, Shape, VERSION, preset, support_rules, way};
+use super::self_touch::{SelfTouch, first_self_touch};
+use super::{
+    Cable, Load, Motion, Obstacle, Robot, RobotTask, Scene, Shape, VERSION, length_check, preset, support_rules,
+};
 use crate::error::{SceneError, SceneFault};
 use crate::math::Point;
 
@@ -64,8 +66,8 @@ impl Scene {
             check_robot(robot, &root.key("robot"))?;
         }
         for (i, cable) in self.cables.iter().enumerate() {
-            way::lines_exist(self, cable, &root.key("cables").index(i))?;
-            way::long_enough(self, cable, &root.key("cables").index(i).key("length_m"))?;
+            length_check::lines_exist(self, cable, &root.key("cables").index(i))?;
+            length_check::long_enough(self, cable, &root.key("cables").index(i).key("length_m"))?;
         }
         Ok(())
     }
@@ -163,9 +165,9 @@ pub(super) fn force(at: &Path<'_>, constant: Option<Point>, times: &[f64], force
 pub(super) fn motion(at: &Path<'_>, motion: &Motion, start: Point) -> Checked {
     series(&at.key("times_s"), &at.key("points_m"), &motion.times_s, &motion.points_m, range::COORDINATE)?;
     /// Further apart than this the first instant would be a jump, m.
-    const SAME_PLACE: f64 = 1e-6;
+    const PLACE_TOLERANCE: f64 = 1e-6;
     let p = motion.at(0.0).0;
-    if (p.x - start[0]).hypot(p.y - start[1]) <= SAME_PLACE {
+    if (p.x - start[0]).hypot(p.y - start[1]) <= PLACE_TOLERANCE {
         Ok(())
     } else {
         Err(at.key("points_m").shape(format!(
@@ -188,7 +190,7 @@ fn series(times_at: &Path<'_>, values_at: &Path<'_>, times: &[f64], values: &[Po
     }
     for (i, pair) in times.windows(2).enumerate() {
         // Closer knots than this make velocities overflow.
-        if !(pair[1] - pair[0] >= range::LEAST_INTERVAL_S) {
+        if !(pair[1] - pair[0] >= range::MIN_INTERVAL_S) {
             let what = format!("times must increase: {} s after {} s", pair[1], pair[0]);
             return Err(times_at.index(i + 1).shape(what));
         }
@@ -239,9 +241,9 @@ fn check_obstacle(obstacle: &Obstacle, at: &Path<'_>) -> Result<usize, SceneErro
 
 /// A line with an inside must not cross or touch itself.
 fn not_crossing(at: &Path<'_>, line: &[Point], closed: bool) -> Checked {
-    match first_crossing(line, closed) {
+    match first_self_touch(line, closed) {
         None => Ok(()),
-        Some(Crossing::Edges(i, j)) => {
+        Some(SelfTouch::Edges(i, j)) => {
             let end = |k: usize| line.get(k + 1).or(line.first()).copied().unwrap_or_default();
             let (a, b, c, d) = (line[i], end(i), line[j], end(j));
             Err(at.index(j).shape(format!(
@@ -249,7 +251,7 @@ fn not_crossing(at: &Path<'_>, line: &[Point], closed: bool) -> Checked {
                 c[0], c[1], d[0], d[1], a[0], a[1], b[0], b[1]
             )))
         }
-        Some(Crossing::Tangled) => Err(at.shape(
+        Some(SelfTouch::Tangled) => Err(at.shape(
             "so many edges lie side by side that crossings cannot be ruled out in a second: give it fewer or shorter ones",
         )),
     }

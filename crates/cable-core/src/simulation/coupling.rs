@@ -17,7 +17,7 @@
 
 use super::Simulation;
 use crate::breakage::BreakableCable;
-use crate::contact::outline::Placement;
+use crate::contact::outline::RigidPose;
 use crate::error::SolveError;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::Inertia;
@@ -212,12 +212,12 @@ impl Simulation {
     }
 
     /// Tells the cables where the hitch of the robot, and its outline, will be.
-    fn lead(&mut self, (hitch, to): (Vec2, Placement), hitches: &[(usize, usize)]) {
+    fn lead(&mut self, (hitch, to): (Vec2, RigidPose), hitches: &[(usize, usize)]) {
         for &(cable, support) in hitches {
             self.drag_support(cable, support, hitch);
         }
         for cable in &mut self.cables {
-            cable.lead_outline(to);
+            cable.set_robot_pose(to);
         }
     }
 
@@ -228,15 +228,15 @@ impl Simulation {
         };
         Pulls {
             hitch: hitches.iter().map(pull).sum(),
-            outline: self.cables.iter().filter_map(BreakableCable::outline).map(|o| o.force_n).sum(),
+            outline: self.cables.iter().filter_map(BreakableCable::robot_contact).map(|o| o.force_n).sum(),
         }
     }
 
     /// Tells the cables where the robot stands.
-    pub(super) fn lead_outline(&mut self) {
+    pub(super) fn set_robot_pose(&mut self) {
         let Some(to) = self.vehicle.as_ref().map(|v| v.pose().placement()) else { return };
         for cable in &mut self.cables {
-            cable.lead_outline(to);
+            cable.set_robot_pose(to);
         }
     }
 
@@ -278,13 +278,13 @@ impl Simulation {
 
     /// How far the outline that came least far is from where it was led, m.
     fn left_m(&self) -> f64 {
-        self.cables.iter().filter_map(BreakableCable::outline).map(|o| o.left_m).fold(0.0, larger)
+        self.cables.iter().filter_map(BreakableCable::robot_contact).map(|o| o.left_m).fold(0.0, larger)
     }
 
     /// The vehicle is where the outline came that came least far; how far that is from where it was
     /// led, m.
     fn hold_vehicle(&mut self) -> f64 {
-        let outlines = self.cables.iter().filter_map(BreakableCable::outline);
+        let outlines = self.cables.iter().filter_map(BreakableCable::robot_contact);
         let last = outlines.reduce(|a, b| if b.left_m > a.left_m { b } else { a }).filter(|o| o.left_m > 0.0);
         if let (Some(vehicle), Some(last)) = (&mut self.vehicle, last) {
             vehicle.hold_back(last.placement);

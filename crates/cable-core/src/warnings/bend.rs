@@ -224,7 +224,7 @@ pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Gu
     problem
         .world
         .geometry()
-        .round_near(&chain, CONTACT_GAP)
+        .nearest_wrap_body(&chain, CONTACT_GAP)
         .map_or(Guide::Free, |b| if b.center.is_some() { Guide::Round(b.offset) } else { Guide::Corner(b.offset) })
 }
 

@@ -594,7 +594,7 @@ fn a_model_that_gains_speed_from_nowhere_is_told() {
                 let strand = &mut sim.cables_mut()[0];
                 let mut state = strand.state();
                 state.velocity_m_per_s.iter_mut().for_each(|v| *v *= gain);
-                strand.adopt(&state).unwrap();
+                strand.set_state(&state).unwrap();
             }
             None
         };

@@ -16,7 +16,7 @@ use std::sync::Arc;
 use super::dynamics::Dynamics;
 use crate::estimates::ErrorEstimates;
 use crate::math::Vec2;
-use crate::model::lay::Lay;
+use crate::model::initial_equilibrium::InitialEquilibrium;
 use crate::model::spans::SpansModel;
 use crate::model::{Inertia, Mechanics, Settings};
 use crate::problem::Problem;
@@ -45,7 +45,7 @@ impl TwoMeshes {
         &mut self,
         problem: &Arc<Problem>,
         (settings, refines): (Settings, bool),
-        (fine, exact): (&mut Dynamics, Option<Lay>),
+        (fine, exact): (&mut Dynamics, Option<InitialEquilibrium>),
         dragged: &[Option<Vec2>],
     ) {
         *self = Self::default();
@@ -168,7 +168,7 @@ fn laid_over(
 ) -> Option<Dynamics> {
     let mut other = Dynamics::new(problem.clone(), Settings { segments: Some(bars), ..settings }).ok()?;
     other.slides = like.slides;
-    other.take_over(answer, like.time(), dragged).ok()?;
+    other.warm_start(answer, like.time(), dragged).ok()?;
     if !other.rested {
         other.settle(dragged).ok()?;
     }

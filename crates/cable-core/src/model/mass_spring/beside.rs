@@ -7,7 +7,7 @@
 use super::{MassSpringModel, mesh};
 use crate::estimates::ErrorEstimates;
 use crate::model::fem::FemModel;
-use crate::model::lay::least_sliding;
+use crate::model::initial_equilibrium::initial_equilibrium;
 use crate::model::spans::SpansModel;
 use crate::model::{Inertia, Mechanics, Settings};
 use crate::solution::CableSolution;
@@ -38,7 +38,7 @@ impl MassSpringModel {
         let flexible = self.problem.bending_stiffness == 0.0;
         if first
             && flexible
-            && let Ok(Some(lay)) = least_sliding(&self.problem, self.settings, (&self.drag, None))
+            && let Ok(Some(lay)) = initial_equilibrium(&self.problem, self.settings, (&self.drag, None))
         {
             self.errors = self.apart(&lay.answer);
             self.beside = Beside::Exact(lay.spans);

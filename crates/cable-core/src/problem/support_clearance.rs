@@ -13,19 +13,19 @@ use crate::scene::path::Path;
 use crate::solution::{Warning, WarningKind};
 
 /// How far inside a surface a point that was meant to be on it may be, of the radius: rounding of coordinates and slopes.
-const ON: f64 = 1e-3;
+const ON_SURFACE_FRACTION: f64 = 1e-3;
 /// The same in parts of the coordinates, for cables much thinner than their scene.
-const ROUNDING: f64 = 1e-9;
+const COORDINATE_ROUNDING: f64 = 1e-9;
 /// The same of a place that is clear: some roundings.
-const CLEAR: f64 = 1e-14;
+const CLEAR_ROUNDING: f64 = 1e-14;
 /// Times a support is pushed out of one obstacle and into the next; in a corner of 30° twenty leave a millionth of the way.
-const MOST_PUSHES: usize = 40;
+const MAX_PUSHES: usize = 40;
 
 /// Puts the supports of a cable where their surfaces let them be, and says so.
 ///
 /// # Errors
 /// A support inside an obstacle, with the nearest place outside.
-pub(super) fn seat(problem: &mut Problem) -> Result<(), SceneError> {
+pub(super) fn clear_supports(problem: &mut Problem) -> Result<(), SceneError> {
     if problem.world.is_empty() {
         return Ok(());
     }
@@ -37,7 +37,7 @@ pub(super) fn seat(problem: &mut Problem) -> Result<(), SceneError> {
         }
         let Some(at) = support.at else { continue };
         let Some((depth, obstacle)) = depth(problem, at) else { continue };
-        let most = ON * problem.radius + ROUNDING * at.amax();
+        let most = ON_SURFACE_FRACTION * problem.radius + COORDINATE_ROUNDING * at.amax();
         let out = pushed_out(problem, at);
         let path =
             || Path::Root.key("cables").index(problem.cable_index).key("supports").index(k).key("at_m").to_string();
@@ -94,9 +94,9 @@ fn depth(problem: &Problem, at: Vec2) -> Option<(f64, String)> {
 /// The nearest place found where the centre line touches nothing, m.
 fn pushed_out(problem: &Problem, from: Vec2) -> Option<Vec2> {
     let mut at = from;
-    for _ in 0..MOST_PUSHES {
+    for _ in 0..MAX_PUSHES {
         match problem.world.signed_gap(at, f64::INFINITY) {
-            Some(gap) if gap.gap_m < -CLEAR * (problem.radius + at.amax()) => at -= gap.normal * gap.gap_m,
+            Some(gap) if gap.gap_m < -CLEAR_ROUNDING * (problem.radius + at.amax()) => at -= gap.normal * gap.gap_m,
             _ => return Some(at),
         }
     }

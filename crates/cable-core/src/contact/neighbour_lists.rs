@@ -21,12 +21,12 @@ struct Entry {
 
 /// The lists of all segments of a chain, by their number.
 #[derive(Clone, Debug, Default)]
-pub struct Near {
+pub struct NeighbourLists {
     entries: Vec<Entry>,
     parts: Vec<Part>,
 }
 
-impl Near {
+impl NeighbourLists {
     /// Forgets all lists.
     pub fn clear(&mut self) {
         self.entries.clear();
@@ -104,7 +104,7 @@ mod tests {
             let moves = moves.map(|(x, y)| Vec2::new(x, y));
             let a = Vec2::new(at.0, at.1);
             let ends = [a, a + Vec2::new(length.0, length.1)];
-            let mut near = Near::default();
+            let mut near = NeighbourLists::default();
             near.push(&geometry, ends, within);
             let now = [ends[0] + moves[0], ends[1] + moves[1]];
             let then = [now[0] + moves[2], now[1] + moves[3]];
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn what_moved_too_far_is_not_answered() {
-        let mut near = Near::default();
+        let mut near = NeighbourLists::default();
         near.push(&world(), [Vec2::new(1.0, 2.0), Vec2::new(1.5, 2.0)], 0.3);
         let moved = |by: f64| [Vec2::new(1.0, 2.0 + by), Vec2::new(1.5, 2.0)];
         assert!(near.of(0, [moved(0.19)], 0.1).is_some());

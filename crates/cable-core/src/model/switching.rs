@@ -1,17 +1,17 @@
 //! What `auto` builds where a cable can touch something: `spans` while it is taut and slow, `fem` while it is not.
 //!
 //! `spans` goes first. Where it loses the tension, meets what it cannot lay, or finds no answer, `fem` goes on from the last
-//! state, with the friction that acts there ([`Mechanics::take_over`]); with inertia it is always `fem`. From time to time an
+//! state, with the friction that acts there ([`Mechanics::warm_start`]); with inertia it is always `fem`. From time to time an
 //! answer of `fem` without inertia is offered back; `spans` takes it where its own answer there is the same to the eye.
 
 use std::sync::Arc;
 
 use super::fem::FemModel;
 use super::gauge::TensionGauge;
-use super::lay::{is_buried, meets_outline, slid_first, slides_on, work};
+use super::initial_equilibrium::{is_buried, meets_outline, slid_first, slides_on, work};
 use super::spans::SpansModel;
-use super::{Inertia, Mechanics, Model, OutlineReport, Own, Settings, StepReport, refuse_mobilised};
-use crate::contact::outline::Placement;
+use super::{Inertia, Mechanics, Model, Own, RobotContact, Settings, StepReport, refuse_mobilised};
+use crate::contact::outline::RigidPose;
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::problem::Problem;
@@ -19,21 +19,21 @@ use crate::solution::{CableSolution, Node};
 use crate::state::State;
 
 /// Greatest move of the cable when it is handed back, m, or part of its length, whichever is more: not seen.
-const SEEN: (f64, f64) = (1e-3, 1e-4);
+const MAX_MOVE: (f64, f64) = (1e-3, 1e-4);
 /// Greatest change of tension when it is handed back, of the greatest tension.
-const FELT: f64 = 1e-2;
+const MAX_TENSION_CHANGE: f64 = 1e-2;
 /// Answers of `fem` between two offers at first; each offer doubles it …
-const FIRST_WAIT: usize = 1;
+const FIRST_INTERVAL: usize = 1;
 /// … up to this.
-const LONGEST_WAIT: usize = 8;
+const MAX_INTERVAL: usize = 8;
 /// Why it is then the other model.
-const BURIED: &str = "the cable was not found clear of the ground without a mesh";
+const REASON_BURIED: &str = "the cable was not found clear of the ground without a mesh";
 /// Why it is then that model.
-const TOUCHES: &str = "the cable touches the robot, which moves";
+const REASON_TOUCHES_ROBOT: &str = "the cable touches the robot, which moves";
 
 /// Two models of one cable, one at a time.
 #[derive(Clone, Debug)]
-pub struct Relay {
+pub struct SwitchingModel {
     settings: Settings,
     /// With the outline of the robot, of which `spans` knows nothing.
     problem: Arc<Problem>,
@@ -46,15 +46,15 @@ pub struct Relay {
     /// Which of them a hand holds by a spring.
     pulled: Vec<bool>,
     /// Where the outline of the robot was led.
-    led: Option<Placement>,
+    robot_pose: Option<RigidPose>,
     reason: Option<String>,
     /// Why `spans` has no rest, where `fem` found one.
     refusal: Option<SolveError>,
     /// Answers until the next offer, and after that.
-    wait: [usize; 2],
+    interval: [usize; 2],
 }
 
-impl Relay {
+impl SwitchingModel {
     /// Builds it at the route.
     ///
     /// # Errors
@@ -64,7 +64,7 @@ impl Relay {
         let spans = SpansModel::new(Problem::without_outline(problem.clone()), settings)?;
         Ok(Self {
             settings,
-            led: problem.outline.as_ref().map(|o| o.placement),
+            robot_pose: problem.outline.as_ref().map(|o| o.placement),
             problem,
             spans,
             fem: None,
@@ -73,7 +73,7 @@ impl Relay {
             dragged,
             reason: None,
             refusal: None,
-            wait: [FIRST_WAIT; 2],
+            interval: [FIRST_INTERVAL; 2],
         })
     }
 
@@ -84,7 +84,7 @@ impl Relay {
             None => {
                 let fem = self.handed_over()?;
                 self.reason = Some(why);
-                self.wait[0] = self.wait[1];
+                self.interval[0] = self.interval[1];
                 fem
             }
         };
@@ -97,15 +97,15 @@ impl Relay {
         if self.meets_robot(&answer) || (self.spans.time_s() == 0.0 && is_buried(&self.problem, &answer)) {
             // Found without knowing of the robot, or no answer: laid anew.
         } else if let Some(state) = &self.adopted {
-            fem.adopt(state)?;
+            fem.set_state(state)?;
         } else if self.spans.stands() {
             // Dragged supports are where they came to, not yet where they are drawn.
             for (k, at) in answer.supports.iter().enumerate().filter(|(k, _)| self.is_dragged(*k)) {
                 fem.drag_support(k, Vec2::new(at.x_m, at.y_m));
             }
-            fem.take_over(&answer, self.spans.time_s())?;
+            fem.warm_start(&answer, self.spans.time_s())?;
         } else if self.spans.time_s() > 0.0 {
-            fem.adopt(&self.spans.state())?;
+            fem.set_state(&self.spans.state())?;
         }
         self.draw_supports(&mut fem);
         Ok(fem)
@@ -115,8 +115,8 @@ impl Relay {
     fn new_fem(&self) -> Result<FemModel, SolveError> {
         refuse_mobilised(Model::Fem, &self.problem)?;
         let mut fem = FemModel::new(self.problem.clone(), self.settings)?.laid_alone();
-        if let Some(led) = self.led {
-            fem.lead_outline(led);
+        if let Some(robot_pose) = self.robot_pose {
+            fem.set_robot_pose(robot_pose);
         }
         Ok(fem)
     }
@@ -125,7 +125,7 @@ impl Relay {
     fn new_fem_with_hands(&self) -> Result<FemModel, SolveError> {
         let mut fem = self.new_fem()?;
         if let Some(state) = &self.adopted {
-            fem.adopt(state)?;
+            fem.set_state(state)?;
         }
         self.draw_supports(&mut fem);
         Ok(fem)
@@ -133,7 +133,7 @@ impl Relay {
 
     /// Whether the cable is in touch with the robot, or in its place.
     fn meets_robot(&self, answer: &CableSolution) -> bool {
-        meets_outline(&self.problem, self.led, answer)
+        meets_outline(&self.problem, self.robot_pose, answer)
     }
 
     /// Tells `fem` where supports are drawn to, and by what.
@@ -152,34 +152,34 @@ impl Relay {
     }
 
     /// Offers an answer of `fem` to `spans`.
-    fn offer(&mut self) {
+    fn try_switch_back(&mut self) {
         let Some(fem) = &self.fem else { return };
-        self.wait[0] = self.wait[0].saturating_sub(1);
-        if self.wait[0] > 0 {
+        self.interval[0] = self.interval[0].saturating_sub(1);
+        if self.interval[0] > 0 {
             return;
         }
         let answer = fem.solution();
         if self.meets_robot(&answer) {
-            self.wait[0] = self.wait[1];
+            self.interval[0] = self.interval[1];
             return;
         }
         let before = self.spans.clone();
-        let taken = self.spans.take_over(&answer, fem.time_s()).is_ok();
-        if taken && alike(self.spans.problem(), &answer, &self.spans.solution()) {
+        let taken = self.spans.warm_start(&answer, fem.time_s()).is_ok();
+        if taken && indistinguishable(self.spans.problem(), &answer, &self.spans.solution()) {
             self.fem = None;
             self.reason = None;
-            self.wait[1] = (2 * self.wait[1]).min(LONGEST_WAIT);
+            self.interval[1] = (2 * self.interval[1]).min(MAX_INTERVAL);
         } else {
             self.spans = before;
-            self.wait = [self.wait[1], (2 * self.wait[1]).min(LONGEST_WAIT)];
+            self.interval = [self.interval[1], (2 * self.interval[1]).min(MAX_INTERVAL)];
         }
     }
 }
 
 /// Whether two answers of a cable are the same to the eye.
-fn alike(problem: &Problem, a: &CableSolution, b: &CableSolution) -> bool {
+fn indistinguishable(problem: &Problem, a: &CableSolution, b: &CableSolution) -> bool {
     let greatest = a.nodes.iter().map(|n| n.tension_n).fold(0.0, |m, t| if t > m { t } else { m });
-    let seen = SEEN.0.max(SEEN.1 * problem.length);
+    let seen = MAX_MOVE.0.max(MAX_MOVE.1 * problem.length);
     let same = |n: &Node| {
         let k = b.nodes.partition_point(|m| m.arc_length_m < n.arc_length_m).clamp(1, b.nodes.len().max(2) - 1);
         let (Some(p), Some(q)) = (b.nodes.get(k - 1), b.nodes.get(k)) else { return false };
@@ -190,12 +190,12 @@ fn alike(problem: &Problem, a: &CableSolution, b: &CableSolution) -> bool {
         // At a corner a chain of bars has one tension before it and one after.
         let (low, high) = (p.tension_n.min(q.tension_n), p.tension_n.max(q.tension_n));
         let off = if n.tension_n < low { low - n.tension_n } else { n.tension_n - high };
-        far <= seen + sag && off <= FELT * greatest
+        far <= seen + sag && off <= MAX_TENSION_CHANGE * greatest
     };
     a.nodes.iter().all(same)
 }
 
-impl Mechanics for Relay {
+impl Mechanics for SwitchingModel {
     fn model(&self) -> Model {
         if self.fem.is_some() { Model::Fem } else { Model::Spans }
     }
@@ -213,8 +213,8 @@ impl Mechanics for Relay {
         self.refusal = None;
         if self.fem.is_none() {
             match self.spans.settle() {
-                Ok(_) if self.meets_robot(&self.spans.solution()) => TOUCHES.clone_into(&mut why),
-                Ok(_) if is_buried(&self.problem, &self.spans.solution()) => BURIED.clone_into(&mut why),
+                Ok(_) if self.meets_robot(&self.spans.solution()) => REASON_TOUCHES_ROBOT.clone_into(&mut why),
+                Ok(_) if is_buried(&self.problem, &self.spans.solution()) => REASON_BURIED.clone_into(&mut why),
                 Ok(report) => {
                     self.adopted = None;
                     return Ok(report);
@@ -250,7 +250,7 @@ impl Mechanics for Relay {
         match &found {
             Ok(_) => {
                 self.adopted = None;
-                self.offer();
+                self.try_switch_back();
             }
             Err(_) if first => {
                 self.fem = None;
@@ -276,10 +276,10 @@ impl Mechanics for Relay {
         let end_s = self.time_s() + dt_s;
         let mut why = String::new();
         if self.fem.is_none() {
-            let before = self.led.map(|_| self.spans.clone());
+            let before = self.robot_pose.map(|_| self.spans.clone());
             match self.spans.advance(dt_s, inertia) {
                 Ok(_) if self.meets_robot(&self.spans.solution()) => {
-                    TOUCHES.clone_into(&mut why);
+                    REASON_TOUCHES_ROBOT.clone_into(&mut why);
                     self.spans = before.unwrap_or_else(|| self.spans.clone());
                 }
                 Ok(report) => {
@@ -294,7 +294,7 @@ impl Mechanics for Relay {
         let rest_s = end_s - fem.time_s();
         let report = if rest_s > 0.0 { fem.advance(rest_s, inertia)? } else { StepReport::default() };
         self.adopted = None;
-        self.offer();
+        self.try_switch_back();
         Ok(report)
     }
 
@@ -306,8 +306,8 @@ impl Mechanics for Relay {
         self.fem.as_ref().map_or_else(|| self.spans.time_s(), Mechanics::time_s)
     }
 
-    fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
-        self.spans.adopt(state)?;
+    fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
+        self.spans.set_state(state)?;
         let moves = state.velocity_m_per_s.iter().any(|v| v.norm() > 0.0);
         self.adopted = Some(state.clone());
         self.fem = None;
@@ -318,18 +318,18 @@ impl Mechanics for Relay {
         Ok(())
     }
 
-    fn take_over(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+    fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         self.adopted = None;
         self.fem = None;
         self.reason = None;
         let taken = match self.meets_robot(answer) {
-            true => Err(TOUCHES.to_owned()),
-            false => self.spans.take_over(answer, time_s).map_err(|e| e.to_string()),
+            true => Err(REASON_TOUCHES_ROBOT.to_owned()),
+            false => self.spans.warm_start(answer, time_s).map_err(|e| e.to_string()),
         };
         if let Err(why) = taken {
             let mut fem = self.new_fem()?;
             self.draw_supports(&mut fem);
-            fem.take_over(answer, time_s)?;
+            fem.warm_start(answer, time_s)?;
             self.reason = Some(why);
             self.fem = Some(fem);
         }
@@ -356,10 +356,10 @@ impl Mechanics for Relay {
         }
     }
 
-    fn lead_outline(&mut self, to: Placement) {
-        self.led = self.led.map(|_| to);
+    fn set_robot_pose(&mut self, to: RigidPose) {
+        self.robot_pose = self.robot_pose.map(|_| to);
         if let Some(fem) = &mut self.fem {
-            fem.lead_outline(to);
+            fem.set_robot_pose(to);
         }
     }
 
@@ -374,8 +374,8 @@ impl Mechanics for Relay {
         }
     }
 
-    fn outline(&self) -> Option<OutlineReport> {
-        self.fem.as_ref().and_then(Mechanics::outline)
+    fn robot_contact(&self) -> Option<RobotContact> {
+        self.fem.as_ref().and_then(Mechanics::robot_contact)
     }
 
     fn solution(&self) -> CableSolution {
@@ -399,10 +399,10 @@ impl Mechanics for Relay {
             adopted: self.adopted.clone(),
             dragged: self.dragged.clone(),
             pulled: self.pulled.clone(),
-            led: self.led,
+            robot_pose: self.robot_pose,
             reason: self.reason.clone(),
             refusal: self.refusal.clone(),
-            wait: self.wait,
+            interval: self.interval,
         })
     }
 

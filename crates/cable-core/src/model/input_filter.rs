@@ -21,11 +21,11 @@ use crate::solution::{HandReport, Warning, WarningKind};
 
 /// Time constant of each lag, s. Smaller: the cable feels the steps of the hand; larger: the support trails the
 /// hand by 3τ. Chosen so that the trailing (45 ms) is under three frames.
-const LAG: f64 = 0.015;
+const LAG_S: f64 = 0.015;
 
 /// How long a support trails a target that moves evenly, s.
 #[cfg(test)]
-const TRAILING_S: f64 = 3.0 * LAG;
+const TRAILING_S: f64 = 3.0 * LAG_S;
 
 /// Fastest a hand draws a support unless asked otherwise, m/s: that of an arm. Faster: a flick of the mouse over metres of scene, which no
 /// hand could do there, breaks the cable; slower: the support trails a hand that means it.
@@ -37,7 +37,7 @@ pub const MAX_SPEED: f64 = 20.0;
 
 /// Part of the cable's length that a hand is ahead of a support where it carries the whole cable, unless its stiffness is asked for. Smaller: a hand that is
 /// put a little beyond the cable's length breaks it at once; larger: what is drawn hangs far below the pointer.
-const HAND_GIVE: f64 = 0.01;
+const HAND_GIVE_FRACTION: f64 = 0.01;
 
 /// Damping ratio of the whole cable on a hand's spring; of half of it, which a hand carries, it is 0.35. Less: a cable that was lifted goes on bobbing; more: a hand
 /// that starts at its greatest speed pushes the cable by more than that weighs.
@@ -47,7 +47,7 @@ const HAND_DAMPING_RATIO: f64 = 0.25;
 pub const HAND_STIFFNESSES: std::ops::RangeInclusive<f64> = 1e-3..=1e9;
 
 /// Below this distance (m) from the target the support is put on it.
-const ARRIVED: f64 = 1e-9;
+const ARRIVED_M: f64 = 1e-9;
 
 /// Whether a support is a robot's: it is where the robot is, and does not follow it.
 #[must_use]
@@ -57,7 +57,12 @@ pub fn is_led(problem: &Problem, support: usize) -> bool {
 
 /// Says that a support is behind the hand that draws it.
 #[must_use]
-pub fn held_warning(problem: &Problem, support: usize, arc_length_m: f64, (f, fastest): (&Follower, f64)) -> Warning {
+pub fn held_warning(
+    problem: &Problem,
+    support: usize,
+    arc_length_m: f64,
+    (f, fastest): (&SmoothedTarget, f64),
+) -> Warning {
     let name = problem.supports.get(support).map_or("", |s| s.name.as_str());
     let behind = f.behind_m();
     let message =
@@ -69,16 +74,16 @@ pub fn held_warning(problem: &Problem, support: usize, arc_length_m: f64, (f, fa
 /// Stiffness of a hand's spring unless asked otherwise, N/m: with the whole load on a cable (weight, wind, loads, what a floor rubs) it is a hundredth of the
 /// cable's length ahead, whatever the cable.
 #[must_use]
-pub fn hand_stiffness(problem: &Problem) -> f64 {
+pub fn default_hand_stiffness(problem: &Problem) -> f64 {
     let floor = problem.floor_friction.map_or(0.0, |(friction, normal)| friction * normal * problem.length);
-    let stiffness = larger(problem.force_scale(), floor) / (HAND_GIVE * problem.length);
+    let stiffness = larger(problem.force_scale(), floor) / (HAND_GIVE_FRACTION * problem.length);
     stiffness.clamp(*HAND_STIFFNESSES.start(), *HAND_STIFFNESSES.end())
 }
 
 /// A hand that holds a support by a spring with a damper beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hand {
-    end: Follower,
+    end: SmoothedTarget,
     /// N/m.
     stiffness: f64,
     /// N s/m.
@@ -87,13 +92,13 @@ pub struct Hand {
 
 impl Hand {
     /// Takes hold of a support at `at` (m) with the force (N, on the cable) that has held it so far, so nothing jerks; `stiffness` N/m, by default that of
-    /// [`hand_stiffness`].
+    /// [`default_hand_stiffness`].
     #[must_use]
     pub fn grip(problem: &Problem, stiffness: Option<f64>, (at, force): (Vec2, Vec2)) -> Self {
-        let stiffness = stiffness.unwrap_or_else(|| hand_stiffness(problem));
+        let stiffness = stiffness.unwrap_or_else(|| default_hand_stiffness(problem));
         let mass = problem.linear_density * problem.length + problem.supports.iter().map(|s| s.mass).sum::<f64>();
         let damping = 2.0 * HAND_DAMPING_RATIO * (stiffness * mass).sqrt();
-        Self { end: Follower::at_rest(at + force / stiffness), stiffness, damping }
+        Self { end: SmoothedTarget::at_rest(at + force / stiffness), stiffness, damping }
     }
 
     /// The free end moves towards `target` (m) for `dt_s`, at most at `fastest` (m/s).
@@ -103,7 +108,7 @@ impl Hand {
 
     /// The free end.
     #[must_use]
-    pub fn end(&self) -> &Follower {
+    pub fn end(&self) -> &SmoothedTarget {
         &self.end
     }
 
@@ -142,7 +147,7 @@ impl Hand {
         let name = problem.supports.get(support).map_or("", |s| s.name.as_str());
         let (slow, behind) = (self.end.behind_m(), (self.end.position() - at).norm());
         let (k, pulls) = (self.stiffness, force.norm());
-        let held = behind > HAND_GIVE * problem.length;
+        let held = behind > HAND_GIVE_FRACTION * problem.length;
         let mut told = Vec::new();
         if held {
             told.push(format!(
@@ -164,14 +169,14 @@ impl Hand {
 
 /// The follower.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Follower {
+pub struct SmoothedTarget {
     stages: [Vec2; 4],
     velocity: Vec2,
     /// How far from its target it was left because it may be no faster, m.
     behind_m: f64,
 }
 
-impl Follower {
+impl SmoothedTarget {
     /// At rest at a point, m.
     #[must_use]
     pub fn at_rest(at: Vec2) -> Self {
@@ -181,7 +186,7 @@ impl Follower {
     /// At a point (m), moving evenly (m/s): it goes on, and slows down.
     #[must_use]
     pub fn moving(at: Vec2, velocity: Vec2) -> Self {
-        let stages = [3.0, 2.0, 1.0, 0.0].map(|lags| at + velocity * (lags * LAG));
+        let stages = [3.0, 2.0, 1.0, 0.0].map(|lags| at + velocity * (lags * LAG_S));
         Self { stages, velocity, behind_m: 0.0 }
     }
 
@@ -210,12 +215,12 @@ impl Follower {
         let (distance, most) = (way.norm(), fastest * dt_s);
         let capped = distance > most;
         self.stages[0] = if capped { self.stages[0] + way * (most / distance) } else { target };
-        let share = 1.0 - (-dt_s / LAG).exp();
+        let share = 1.0 - (-dt_s / LAG_S).exp();
         for k in 1..4 {
             let step = (self.stages[k - 1] - self.stages[k]) * share;
             self.stages[k] += step;
         }
-        if self.stages.iter().all(|s| (s - target).norm() < ARRIVED) {
+        if self.stages.iter().all(|s| (s - target).norm() < ARRIVED_M) {
             self.stages = [target; 4];
         }
         self.velocity = (self.position() - before) / dt_s;
@@ -242,14 +247,14 @@ mod tests {
     #[test]
     fn it_arrives_smoothly_and_never_too_fast() {
         let (target, dt) = (Vec2::new(10.0, 0.0), 1.0 / 240.0);
-        let mut f = Follower::at_rest(Vec2::zeros());
+        let mut f = SmoothedTarget::at_rest(Vec2::zeros());
         let (mut v, mut capped) = (Vec2::zeros(), 0);
         for _ in 0..300 {
             f.follow(target, dt, MAX_SPEED);
             capped += usize::from(f.behind_m() > 0.0);
             assert!(f.velocity().norm() <= MAX_SPEED * (1.0 + 1e-12));
             // The acceleration of three lags of a 20 m/s ramp stays below 20/(e·τ).
-            assert!((f.velocity() - v).norm() / dt < MAX_SPEED / LAG);
+            assert!((f.velocity() - v).norm() / dt < MAX_SPEED / LAG_S);
             v = f.velocity();
         }
         assert_eq!(f.position(), target);
@@ -258,7 +263,7 @@ mod tests {
 
     #[test]
     fn a_hand_is_as_fast_as_it_may_be() {
-        let mut f = Follower::at_rest(Vec2::zeros());
+        let mut f = SmoothedTarget::at_rest(Vec2::zeros());
         for _ in 0..240 {
             f.follow(Vec2::new(10.0, 0.0), 1.0 / 240.0, HAND_SPEED);
             assert!(f.velocity().norm() <= HAND_SPEED * (1.0 + 1e-12));

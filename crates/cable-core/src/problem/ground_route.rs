@@ -2,42 +2,42 @@
 //!
 //! Ground is solid below its line, and of its line there is one outside only. A part of a route that is inside says that the cable
 //! lies on the ground there: it is led along the surface from where it goes in to where it comes out. Beams and posts have two
-//! sides; what leads through them is refused ([`super::route`]).
+//! sides; what leads through them is refused ([`super::route_check`]).
 
 use super::Problem;
-use super::route::shallow;
+use super::route_check::allowed_depth;
 use crate::contact::geometry::Body;
 use crate::math::{Vec2, cross};
 use crate::solution::{Warning, WarningKind};
 
 /// Bodies of ground that a route is lifted over one after the other: each lift may lead into the next.
-const MOST_GROUNDS: usize = 100;
+const MAX_GROUNDS: usize = 100;
 
 /// A place where a leg of the route crosses the surface: part of the leg, and coordinate of the surface (edge + part of it).
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Crossing {
+struct SurfaceCrossing {
     part: f64,
     along: f64,
 }
 
 /// A stretch of the route inside a ground: the leg and part of it where it begins and ends, and where on the surface.
 #[derive(Clone, Copy, Debug)]
-struct Buried {
-    from: (usize, Crossing),
-    to: (usize, Crossing),
+struct BuriedStretch {
+    from: (usize, SurfaceCrossing),
+    to: (usize, SurfaceCrossing),
     depth: f64,
     deepest: Vec2,
 }
 
 /// Lifts a route that is drawn below the ground, and says so.
-pub(super) fn lift(problem: &mut Problem) {
+pub(super) fn lift_route(problem: &mut Problem) {
     if problem.route.len() < 2 {
         return;
     }
     let geometry = problem.world.geometry().clone();
-    for body in geometry.bodies().iter().filter(|b| b.is_ground()).take(MOST_GROUNDS) {
-        let stretches: Vec<Buried> =
-            buried(&problem.route, body).into_iter().filter(|b| b.depth > shallow(problem)).collect();
+    for body in geometry.bodies().iter().filter(|b| b.is_ground()).take(MAX_GROUNDS) {
+        let stretches: Vec<BuriedStretch> =
+            buried(&problem.route, body).into_iter().filter(|b| b.depth > allowed_depth(problem)).collect();
         let Some(worst) = stretches.iter().copied().reduce(|a, b| if b.depth > a.depth { b } else { a }) else {
             continue;
         };
@@ -56,21 +56,21 @@ pub(super) fn lift(problem: &mut Problem) {
 #[must_use]
 pub fn above_ground(problem: &Problem, way: Vec<Vec2>) -> Vec<Vec2> {
     let geometry = problem.world.geometry();
-    geometry.bodies().iter().filter(|b| b.is_ground()).take(MOST_GROUNDS).fold(way, |way, body| {
+    geometry.bodies().iter().filter(|b| b.is_ground()).take(MAX_GROUNDS).fold(way, |way, body| {
         let stretches = buried(&way, body);
         if stretches.is_empty() { way } else { led_along(&way, &stretches, body) }
     })
 }
 
 /// The stretches of a route inside a ground, in order.
-fn buried(route: &[Vec2], body: &Body) -> Vec<Buried> {
+fn buried(route: &[Vec2], body: &Body) -> Vec<BuriedStretch> {
     let inside = |p: Vec2| body.signed_gap(p, f64::INFINITY).is_some_and(|g| g.gap_m + body.offset < 0.0);
-    let mut out: Vec<Buried> = Vec::new();
-    let mut open: Option<Buried> = None;
+    let mut out: Vec<BuriedStretch> = Vec::new();
+    let mut open: Option<BuriedStretch> = None;
     for (leg, w) in route.windows(2).enumerate() {
         let mut stops = crossings(body, w[0], w[1]);
-        stops.insert(0, Crossing { part: 0.0, along: nearest(body, w[0]) });
-        stops.push(Crossing { part: 1.0, along: nearest(body, w[1]) });
+        stops.insert(0, SurfaceCrossing { part: 0.0, along: nearest(body, w[0]) });
+        stops.push(SurfaceCrossing { part: 1.0, along: nearest(body, w[1]) });
         for pair in stops.windows(2) {
             let at = |part: f64| w[0] + (w[1] - w[0]) * part;
             let is_inside = pair[1].part > pair[0].part && inside(at(0.5 * (pair[0].part + pair[1].part)));
@@ -80,7 +80,7 @@ fn buried(route: &[Vec2], body: &Body) -> Vec<Buried> {
                 }
                 continue;
             }
-            let mut now = open.take().unwrap_or(Buried {
+            let mut now = open.take().unwrap_or(BuriedStretch {
                 from: (leg, pair[0]),
                 to: (leg, pair[1]),
                 depth: 0.0,
@@ -102,9 +102,9 @@ fn buried(route: &[Vec2], body: &Body) -> Vec<Buried> {
 }
 
 /// Where the straight line from `a` to `b` crosses the surface, in order along it.
-fn crossings(body: &Body, a: Vec2, b: Vec2) -> Vec<Crossing> {
+fn crossings(body: &Body, a: Vec2, b: Vec2) -> Vec<SurfaceCrossing> {
     let d = b - a;
-    let mut out: Vec<Crossing> = body
+    let mut out: Vec<SurfaceCrossing> = body
         .candidates(a.inf(&b), a.sup(&b))
         .filter_map(|k| {
             let e = body.edges.get(k)?;
@@ -112,7 +112,7 @@ fn crossings(body: &Body, a: Vec2, b: Vec2) -> Vec<Crossing> {
             let turn = cross(d, f);
             let (part, along) = (cross(e.p - a, f) / turn, cross(e.p - a, d) / turn);
             let meets = (0.0..=1.0).contains(&part) && (0.0..=1.0).contains(&along);
-            meets.then_some(Crossing { part, along: k as f64 + along })
+            meets.then_some(SurfaceCrossing { part, along: k as f64 + along })
         })
         .collect();
     out.sort_by(|x, y| x.part.total_cmp(&y.part));
@@ -131,7 +131,7 @@ fn nearest(body: &Body, p: Vec2) -> f64 {
 }
 
 /// The route with its buried stretches led along the surface, the centre line's distance off it.
-fn led_along(route: &[Vec2], stretches: &[Buried], body: &Body) -> Vec<Vec2> {
+fn led_along(route: &[Vec2], stretches: &[BuriedStretch], body: &Body) -> Vec<Vec2> {
     let mut out: Vec<Vec2> = Vec::with_capacity(route.len());
     let mut put = |p: Vec2| {
         if out.last() != Some(&p) {
@@ -140,7 +140,7 @@ fn led_along(route: &[Vec2], stretches: &[Buried], body: &Body) -> Vec<Vec2> {
     };
     let mut next = 0;
     for b in stretches {
-        let point = |(leg, c): (usize, Crossing)| route[leg] + (route[leg + 1] - route[leg]) * c.part;
+        let point = |(leg, c): (usize, SurfaceCrossing)| route[leg] + (route[leg + 1] - route[leg]) * c.part;
         let starts_inside = b.from.1.part == 0.0 && b.from.0 == 0;
         for p in route.get(next..=b.from.0).unwrap_or_default() {
             put(*p);

@@ -3,10 +3,10 @@
 //! Arc lengths are unstretched at rest temperature; temperature enters as the factor `thermal_stretch` on
 //! unstretched lengths: strain = length/(thermal_stretch·ds) − 1. Weight and wind are per metre of arc length.
 
-pub(crate) mod lift;
-mod place;
-mod route;
-mod seat;
+mod describe_place;
+pub(crate) mod ground_route;
+mod route_check;
+mod support_clearance;
 
 use std::sync::Arc;
 
@@ -60,7 +60,7 @@ pub struct Problem {
 }
 
 /// Times nearer than this are the same, s: sums of steps come as near to a time as rounding lets them.
-const SAME_TIME: f64 = 1e-9;
+const TIME_TOLERANCE_S: f64 = 1e-9;
 
 /// A support, resolved.
 #[derive(Clone, Debug)]
@@ -104,13 +104,13 @@ impl SupportPoint {
     /// Whether it holds the cable in a step that begins at a time, s.
     #[must_use]
     pub fn holds_from(&self, time_s: f64) -> bool {
-        self.release.is_none_or(|r| time_s < r - SAME_TIME)
+        self.release.is_none_or(|r| time_s < r - TIME_TOLERANCE_S)
     }
 
     /// Whether it lets go after `from` and before `to` (s), and when.
     #[must_use]
     pub fn release_between(&self, from: f64, to: f64) -> Option<f64> {
-        self.release.filter(|&r| r > from + SAME_TIME && r < to - SAME_TIME)
+        self.release.filter(|&r| r > from + TIME_TOLERANCE_S && r < to - TIME_TOLERANCE_S)
     }
 
     /// Position and velocity at a time, m and m/s, whether it holds the cable then or not.
@@ -171,8 +171,8 @@ impl Series {
 
 /// The first of `times` between two others (s, not either of them) at which what goes through `values` turns back or stops.
 fn turn_between<V>(times: &[f64], values: &[V], from: f64, to: f64, of: impl Fn(&V) -> Vec2) -> Option<f64> {
-    let first = times.partition_point(|&t| t <= from + SAME_TIME);
-    let last = times.partition_point(|&t| t < to - SAME_TIME);
+    let first = times.partition_point(|&t| t <= from + TIME_TOLERANCE_S);
+    let last = times.partition_point(|&t| t < to - TIME_TOLERANCE_S);
     (first.max(1)..last).find_map(|k| {
         let [a, b, c] = [values.get(k - 1)?, values.get(k)?, values.get(k + 1)?].map(&of);
         (!((b - a).dot(&(c - b)) > 0.0)).then_some(times[k])
@@ -212,7 +212,7 @@ pub fn problems(scene: &Scene) -> Result<Vec<Arc<Problem>>, SceneError> {
     let mut out = Vec::with_capacity(scene.cables.len());
     for (index, cable) in scene.cables.iter().enumerate() {
         let problem = placed(scene, index, cable)?;
-        route::clear(&problem)?;
+        route_check::check_route(&problem)?;
         out.push(Arc::new(problem));
     }
     Ok(out)
@@ -221,8 +221,8 @@ pub fn problems(scene: &Scene) -> Result<Vec<Arc<Problem>>, SceneError> {
 /// A cable with its supports and route clear of what is solid, and its similar copy where it needs one.
 fn placed(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneError> {
     let mut this = problem(scene, index, cable)?;
-    seat::seat(&mut this)?;
-    lift::lift(&mut this);
+    support_clearance::clear_supports(&mut this)?;
+    ground_route::lift_route(&mut this);
     let origin = this.supports.iter().find_map(|s| s.at).or(this.route.first().copied()).unwrap_or_else(Vec2::zeros);
     if scene.robot.is_none()
         && let Some(by) = Similarity::to_natural(cable.length_m, origin)
@@ -230,8 +230,8 @@ fn placed(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneEr
         let scaled = scene.scaled(&by);
         if let Some(cable) = scaled.cables.get(index) {
             let mut copy = problem(&scaled, index, cable)?;
-            seat::seat(&mut copy)?;
-            lift::lift(&mut copy);
+            support_clearance::clear_supports(&mut copy)?;
+            ground_route::lift_route(&mut copy);
             this.similar = Some((by, Arc::new(copy)));
         }
     }

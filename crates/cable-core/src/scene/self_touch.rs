@@ -6,14 +6,14 @@
 use crate::math::Point;
 
 /// Edges in a leaf. Fewer: more boxes. More: more pairs of edges to look at.
-const LEAF: usize = 4;
+const LEAF_EDGES: usize = 4;
 /// Pairs of boxes looked at before a line is given up as too tangled, about a second's work. A million points of rough
 /// ground take 1e7.
-const MOST_PAIRS: usize = 60_000_000;
+const MAX_PAIRS: usize = 60_000_000;
 
 /// What a line does to itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Crossing {
+pub(super) enum SelfTouch {
     /// These edges cross, touch or lie on each other; edge k goes from point k to the next.
     Edges(usize, usize),
     /// Too many edges lie too close together to tell.
@@ -32,7 +32,7 @@ struct Line<'a> {
 }
 
 /// The first crossing found, if there is one. A closed line has an edge from its last point to its first.
-pub(super) fn first_crossing(points: &[Point], closed: bool) -> Option<Crossing> {
+pub(super) fn first_self_touch(points: &[Point], closed: bool) -> Option<SelfTouch> {
     let rises = |axis: usize| points.windows(2).all(|w| w[1][axis] > w[0][axis]);
     if !closed && (rises(0) || rises(1)) {
         return None;
@@ -43,11 +43,11 @@ pub(super) fn first_crossing(points: &[Point], closed: bool) -> Option<Crossing>
 impl<'a> Line<'a> {
     fn new(points: &'a [Point], closed: bool) -> Self {
         let edges = if closed { points.len() } else { points.len().saturating_sub(1) };
-        let leaves = edges.div_ceil(LEAF).next_power_of_two();
+        let leaves = edges.div_ceil(LEAF_EDGES).next_power_of_two();
         let mut line = Self { points, edges, closed, boxes: vec![[[f64::INFINITY, f64::NEG_INFINITY]; 4]; 2 * leaves] };
         for edge in 0..edges {
             let (from, to) = line.edge(edge);
-            let sides = &mut line.boxes[leaves + edge / LEAF];
+            let sides = &mut line.boxes[leaves + edge / LEAF_EDGES];
             for [x, y] in [from, to] {
                 for (side, value) in sides.iter_mut().zip([x, y, x + y, x - y]) {
                     *side =
@@ -71,14 +71,14 @@ impl<'a> Line<'a> {
         (self.points[k], self.points[if k + 1 < self.points.len() { k + 1 } else { 0 }])
     }
 
-    fn search(&self) -> Option<Crossing> {
+    fn search(&self) -> Option<SelfTouch> {
         let leaves = self.boxes.len() / 2;
         let mut pairs = vec![(1, 1)];
         let mut seen = 0;
         while let Some((a, b)) = pairs.pop() {
             seen += 1;
-            if seen > MOST_PAIRS {
-                return Some(Crossing::Tangled);
+            if seen > MAX_PAIRS {
+                return Some(SelfTouch::Tangled);
             }
             let apart =
                 |i: usize| self.boxes[a][i][1] < self.boxes[b][i][0] || self.boxes[b][i][1] < self.boxes[a][i][0];
@@ -97,11 +97,11 @@ impl<'a> Line<'a> {
         None
     }
 
-    fn leaves_meet(&self, a: usize, b: usize) -> Option<Crossing> {
-        for i in a * LEAF..self.edges.min((a + 1) * LEAF) {
-            for j in (b * LEAF).max(i + 1)..self.edges.min((b + 1) * LEAF) {
+    fn leaves_meet(&self, a: usize, b: usize) -> Option<SelfTouch> {
+        for i in a * LEAF_EDGES..self.edges.min((a + 1) * LEAF_EDGES) {
+            for j in (b * LEAF_EDGES).max(i + 1)..self.edges.min((b + 1) * LEAF_EDGES) {
                 if self.edges_meet(i, j) {
-                    return Some(Crossing::Edges(i, j));
+                    return Some(SelfTouch::Edges(i, j));
                 }
             }
         }
@@ -151,33 +151,33 @@ mod tests {
     #[test]
     fn crossings_touches_and_folds_are_found() {
         let bow: &[Point] = &[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]];
-        assert_eq!(first_crossing(bow, true), Some(Crossing::Edges(0, 2)));
-        assert_eq!(first_crossing(bow, false), Some(Crossing::Edges(0, 2)));
+        assert_eq!(first_self_touch(bow, true), Some(SelfTouch::Edges(0, 2)));
+        assert_eq!(first_self_touch(bow, false), Some(SelfTouch::Edges(0, 2)));
         // Through a corner, onto an edge, back on itself, back on itself where it closes, along another edge.
         let through = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 1.0], [2.0, -1.0], [1.0, 0.0], [0.5, -1.0]];
-        assert!(first_crossing(&through, true).is_some());
+        assert!(first_self_touch(&through, true).is_some());
         let onto = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.0], [0.0, 2.0]];
-        assert_eq!(first_crossing(&onto, true), Some(Crossing::Edges(0, 2)));
-        assert_eq!(first_crossing(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]], false), Some(Crossing::Edges(0, 1)));
+        assert_eq!(first_self_touch(&onto, true), Some(SelfTouch::Edges(0, 2)));
+        assert_eq!(first_self_touch(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]], false), Some(SelfTouch::Edges(0, 1)));
         let at_close = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.0]];
-        assert!(first_crossing(&at_close, true).is_some());
+        assert!(first_self_touch(&at_close, true).is_some());
         let along = [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [3.0, 1.0], [3.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
-        assert!(first_crossing(&along, false).is_some());
+        assert!(first_self_touch(&along, false).is_some());
     }
 
     #[test]
     fn overhangs_steps_slots_and_straight_runs_are_not_crossings() {
         let overhang = [[0.0, 0.0], [4.0, 0.0], [3.0, 1.0], [6.0, 1.0], [5.0, 0.0], [9.0, 0.0]];
-        assert_eq!(first_crossing(&overhang, false), None);
+        assert_eq!(first_self_touch(&overhang, false), None);
         let slot = [[0.0, 0.0], [1.0, 0.0], [1.0, -5.0], [1.0 + 1e-9, -5.0], [1.0 + 1e-9, 0.0], [2.0, 0.0]];
-        assert_eq!(first_crossing(&slot, false), None);
+        assert_eq!(first_self_touch(&slot, false), None);
         let spike = [[0.0, 0.0], [1.0, 0.0], [1.0 + 1e-12, 9.0], [1.0 + 2e-12, 0.0], [2.0, 0.0]];
-        assert_eq!(first_crossing(&spike, false), None);
+        assert_eq!(first_self_touch(&spike, false), None);
         let straight = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]];
-        assert_eq!(first_crossing(&straight, true), None);
-        assert_eq!(first_crossing(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], true), None);
+        assert_eq!(first_self_touch(&straight, true), None);
+        assert_eq!(first_self_touch(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], true), None);
         for few in [&[][..], &[[0.0, 0.0]][..], &[[0.0, 0.0], [1.0, 0.0]][..]] {
-            assert_eq!(first_crossing(few, false), None);
+            assert_eq!(first_self_touch(few, false), None);
         }
     }
 
@@ -203,9 +203,9 @@ mod tests {
             for closed in [false, true] {
                 let line = Line::new(&points, closed);
                 let any = (0..line.edges).any(|i| (i + 1..line.edges).any(|j| line.edges_meet(i, j)));
-                let found = first_crossing(&points, closed);
+                let found = first_self_touch(&points, closed);
                 assert_eq!(found.is_some(), any, "{points:?}");
-                if let Some(Crossing::Edges(i, j)) = found {
+                if let Some(SelfTouch::Edges(i, j)) = found {
                     assert!(line.edges_meet(i, j));
                 }
                 crossed += usize::from(any);
@@ -224,7 +224,9 @@ mod tests {
                     [x + slant * y, y]
                 })
                 .collect();
-            assert!(!matches!(first_crossing(&comb, true), Some(Crossing::Edges(i, j)) if j + 1 < comb.len() && i > 0));
+            assert!(
+                !matches!(first_self_touch(&comb, true), Some(SelfTouch::Edges(i, j)) if j + 1 < comb.len() && i > 0)
+            );
         }
     }
 }

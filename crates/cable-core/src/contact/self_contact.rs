@@ -13,14 +13,14 @@ use crate::math::Vec2;
 
 /// Arc length (diameters) along the cable within which it cannot touch itself: a half-turn of the radius d/2 takes 1.57, and
 /// segments need some room beside that.
-const APART: f64 = 2.4;
+const MIN_ARC_DIAMETERS: f64 = 2.4;
 
 /// Distances are trusted to this many units in the last place of the coordinates.
-const ULPS: f64 = 16.0;
+const ROUNDING_ULPS: f64 = 16.0;
 
 /// A node near a segment of the same cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OwnPair {
+pub struct SelfPair {
     /// The node.
     pub node: usize,
     /// First node of the segment.
@@ -35,7 +35,7 @@ pub struct OwnPair {
     pub weight: f64,
 }
 
-impl OwnPair {
+impl SelfPair {
     /// The nodes it acts on and their parts of the gap's slope.
     #[must_use]
     pub fn shares(&self) -> [(usize, f64); 3] {
@@ -57,16 +57,16 @@ impl OwnPair {
 
 /// The cable as an obstacle to itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct OwnShape {
+pub struct SelfContact {
     /// Diameter of the cable, m; 0 = it can pass itself.
     pub diameter: f64,
 }
 
 /// Nodes by x, kept from search to search: what is nearly sorted is sorted quickly.
 #[derive(Clone, Debug, Default)]
-pub struct Order(Vec<usize>);
+pub struct SortedNodes(Vec<usize>);
 
-impl Order {
+impl SortedNodes {
     fn sort(&mut self, x: &[Vec2]) {
         if self.0.len() != x.len() {
             self.0 = (0..x.len()).collect();
@@ -82,7 +82,7 @@ impl Order {
     }
 }
 
-impl OwnShape {
+impl SelfContact {
     /// Whether the cable meets itself at all.
     #[must_use]
     pub fn is_on(&self) -> bool {
@@ -92,11 +92,11 @@ impl OwnShape {
     /// Whether the node `p` may touch segment `e` of a cable with nodes at these arc lengths, m.
     fn apart(&self, arc: &[f64], p: usize, e: usize) -> bool {
         let between = if p <= e { arc[e] - arc[p] } else { arc[p] - arc[e + 1] };
-        between >= APART * self.diameter
+        between >= MIN_ARC_DIAMETERS * self.diameter
     }
 
     /// All pairs nearer than `reach` (m) at positions `x` with arc lengths `arc` (m), in a fixed order.
-    pub fn pairs(&self, (x, arc): (&[Vec2], &[f64]), reach: f64, order: &mut Order, out: &mut Vec<OwnPair>) {
+    pub fn pairs(&self, (x, arc): (&[Vec2], &[f64]), reach: f64, order: &mut SortedNodes, out: &mut Vec<SelfPair>) {
         out.clear();
         if !self.is_on() || x.len() < 3 {
             return;
@@ -150,13 +150,13 @@ impl OwnShape {
         x: &[Vec2],
         (node, segment, fraction, weight): (usize, usize, f64, f64),
         reach: f64,
-        out: &mut Vec<OwnPair>,
+        out: &mut Vec<SelfPair>,
     ) {
         let away = x[node] - (x[segment] * (1.0 - fraction) + x[segment + 1] * fraction);
         let distance = away.norm();
         if distance > 0.0 && distance - self.diameter < reach {
             let (normal, gap_m) = (away / distance, distance - self.diameter);
-            out.push(OwnPair { node, segment, fraction, normal, gap_m, weight });
+            out.push(SelfPair { node, segment, fraction, normal, gap_m, weight });
         }
     }
 
@@ -167,7 +167,7 @@ impl OwnShape {
         (x, arc): (&[Vec2], &[f64]),
         step: &dyn Fn(usize) -> Vec2,
         [keep, most, limit]: [f64; 3],
-        order: &mut Order,
+        order: &mut SortedNodes,
     ) -> f64 {
         if !self.is_on() || x.len() < 3 {
             return limit;
@@ -180,7 +180,7 @@ impl OwnShape {
             widest = if far > widest { far } else { widest };
             size = if large > size { large } else { size };
         }
-        let noise = ULPS * f64::EPSILON * (size + widest);
+        let noise = ROUNDING_ULPS * f64::EPSILON * (size + widest);
         for e in 0..x.len() - 1 {
             let [a, b] = [step(e), step(e + 1)];
             let (low, high) = (x[e].inf(&x[e + 1]), x[e].sup(&x[e + 1]));
@@ -203,7 +203,7 @@ impl OwnShape {
     /// The smallest gap (m) and the node that has it, searched within `within` (m); None if nothing is so near.
     pub fn smallest_gap(&self, x: &[Vec2], arc: &[f64], within: f64) -> Option<(f64, usize)> {
         let mut pairs = Vec::new();
-        self.pairs((x, arc), within, &mut Order::default(), &mut pairs);
+        self.pairs((x, arc), within, &mut SortedNodes::default(), &mut pairs);
         pairs.iter().filter(|p| p.weight > 0.0).map(|p| (p.gap_m, p.node)).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 }
@@ -223,9 +223,9 @@ mod tests {
     }
 
     /// Barrier energy of the last node, J.
-    fn energy(shape: OwnShape, barrier: &Barrier, x: &[Vec2], s: &[f64]) -> f64 {
+    fn energy(shape: SelfContact, barrier: &Barrier, x: &[Vec2], s: &[f64]) -> f64 {
         let mut pairs = Vec::new();
-        shape.pairs((x, s), barrier.reach, &mut Order::default(), &mut pairs);
+        shape.pairs((x, s), barrier.reach, &mut SortedNodes::default(), &mut pairs);
         // Seen from the last node: what the nodes it passes feel of it comes on top where it is over one of them.
         pairs.iter().filter(|p| p.node + 1 == x.len()).map(|p| p.weight * barrier.at(p.gap_m).value).sum()
     }
@@ -240,7 +240,7 @@ mod tests {
 
     #[test]
     fn a_node_drawn_along_a_straight_stretch_feels_no_joint() {
-        let (shape, barrier) = (OwnShape { diameter: 0.02 }, Barrier { reach: 1e-3, stiffness: 5.0 });
+        let (shape, barrier) = (SelfContact { diameter: 0.02 }, Barrier { reach: 1e-3, stiffness: 5.0 });
         let s = arc(&bight(0.0205, 1.0));
         let at = |end: f64| energy(shape, &barrier, &bight(0.0205, end), &s);
         let first = at(0.95);
@@ -253,22 +253,23 @@ mod tests {
 
     #[test]
     fn neighbours_along_the_cable_are_no_contact() {
-        let shape = OwnShape { diameter: 0.02 };
+        let shape = SelfContact { diameter: 0.02 };
         let x: Vec<Vec2> = (0..50).map(|k| Vec2::new(0.005 * f64::from(k), 0.0)).collect();
         assert_eq!(shape.smallest_gap(&x, &arc(&x), 0.1).map(|g| g.0 > 0.02), Some(true));
         let mut pairs = Vec::new();
-        shape.pairs((&x, &arc(&x)), 0.01, &mut Order::default(), &mut pairs);
+        shape.pairs((&x, &arc(&x)), 0.01, &mut SortedNodes::default(), &mut pairs);
         assert!(pairs.is_empty());
-        assert!(!OwnShape::default().is_on());
+        assert!(!SelfContact::default().is_on());
     }
 
     #[test]
     fn strands_that_move_together_or_along_each_other_do_not_stop_each_other() {
-        let shape = OwnShape { diameter: 0.02 };
+        let shape = SelfContact { diameter: 0.02 };
         let x = bight(0.02 + 1e-6, 1.0);
         let s = arc(&x);
-        let free =
-            |step: &dyn Fn(usize) -> Vec2| shape.free_fraction((&x, &s), step, [0.5, 5e-7, 1.0], &mut Order::default());
+        let free = |step: &dyn Fn(usize) -> Vec2| {
+            shape.free_fraction((&x, &s), step, [0.5, 5e-7, 1.0], &mut SortedNodes::default())
+        };
         assert_eq!(free(&|_| Vec2::new(0.3, -0.4)), 1.0);
         // The strand below slides along.
         assert_eq!(free(&|k| if k <= 20 { Vec2::new(-0.04, 0.0) } else { Vec2::zeros() }), 1.0);
@@ -284,11 +285,11 @@ mod tests {
         ) {
             let x: Vec<Vec2> = points.iter().map(|p| Vec2::new(p.0, p.1)).collect();
             let s: Vec<f64> = (0..x.len()).map(|k| k as f64).collect();
-            let shape = OwnShape { diameter: 0.01 };
+            let shape = SelfContact { diameter: 0.01 };
             let before = shape.smallest_gap(&x, &s, 1.0).map_or(1.0, |g| g.0);
             prop_assume!(before > 1e-6);
             let step = |k: usize| Vec2::new(moves[k].0, moves[k].1);
-            let free = shape.free_fraction((&x, &s), &step, [0.2, f64::INFINITY, 1.0], &mut Order::default());
+            let free = shape.free_fraction((&x, &s), &step, [0.2, f64::INFINITY, 1.0], &mut SortedNodes::default());
             prop_assert!((0.0..=1.0).contains(&free));
             for part in 1..=20 {
                 let t = free * f64::from(part) / 20.0;
@@ -302,7 +303,7 @@ mod tests {
         fn every_near_pair_is_found(points in prop::collection::vec((0.0_f64..1.0, 0.0_f64..1.0), 4..16)) {
             let x: Vec<Vec2> = points.iter().map(|p| Vec2::new(p.0, p.1)).collect();
             let s: Vec<f64> = (0..x.len()).map(|k| k as f64).collect();
-            let shape = OwnShape { diameter: 0.01 };
+            let shape = SelfContact { diameter: 0.01 };
             let found = shape.smallest_gap(&x, &s, 2.0).map(|g| g.0);
             let mut least = f64::INFINITY;
             for p in 0..x.len() {

@@ -7,7 +7,7 @@ use crate::math::{Vec2, smaller};
 impl Geometry {
     /// The body whose convex corner or circle is nearest to a chain of nodes; None where the gap is not below `reach` (m).
     #[must_use]
-    pub fn round_near(&self, chain: &[Vec2], reach: f64) -> Option<&Body> {
+    pub fn nearest_wrap_body(&self, chain: &[Vec2], reach: f64) -> Option<&Body> {
         let first = *chain.first()?;
         let (low, high) = chain.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
         let distance = |v: Vec2| match chain {

@@ -45,7 +45,7 @@ pub(super) fn long_enough(scene: &Scene, cable: &Cable, at: &Path<'_>) -> Checke
 
 /// Part of the cable's length by which two supports beside each other on it must be clear of each other where one slides or turns.
 /// Smaller: what lies between them is lost in rounding. Larger: eyes set close together are refused.
-const LEAST_APART: f64 = 1e-9;
+const MIN_SEPARATION_FRACTION: f64 = 1e-9;
 
 /// Refuses neighbours along the cable without a straight line that touches both: a support inside the wheel beside it, a wheel inside
 /// the next one, an eye in the very place of what it stands beside.
@@ -55,7 +55,7 @@ pub(super) fn lines_exist(scene: &Scene, cable: &Cable, at: &Path<'_>) -> Checke
         let slides = from.kind == SupportKind::Pulley || to.kind == SupportKind::Pulley;
         let (Some(a), Some(b)) = (Waypoint::of(scene, cable, from), Waypoint::of(scene, cable, to)) else { continue };
         let apart_m = (b.at - a.at).norm();
-        if !slides || apart_m - (a.radius - b.radius).abs() > LEAST_APART * cable.length_m {
+        if !slides || apart_m - (a.radius - b.radius).abs() > MIN_SEPARATION_FRACTION * cable.length_m {
             continue;
         }
         let (inner, outer) = if a.radius < b.radius { (from, to) } else { (to, from) };

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::spans::SpansModel;
 use super::{Mechanics, Settings};
-use crate::contact::outline::Placement;
+use crate::contact::outline::RigidPose;
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::problem::{Problem, SupportPoint};
@@ -12,16 +12,16 @@ use crate::solution::{CableSolution, Node, Warning, WarningKind};
 use crate::state::State;
 
 /// A cable this near to the robot is answered by the model that knows of it, m. Less: a step passes it unseen.
-const ROOM_M: f64 = 0.02;
+const ROBOT_CLEARANCE_M: f64 = 0.02;
 /// An answer of `spans` at rest that is this deep in an obstacle is none, m. Less: chords across round things are; more: a slack
 /// cable that hangs in the ground is shown.
-const BURIED_M: f64 = 0.02;
+const MAX_BURIAL_M: f64 = 0.02;
 /// How deep is looked, m: what is deeper came in somewhere.
-const DEEPEST_M: f64 = 0.5;
+const BURIAL_SEARCH_M: f64 = 0.5;
 
 /// A first rest.
 #[derive(Clone, Debug)]
-pub struct Lay {
+pub struct InitialEquilibrium {
     /// The cable there.
     pub answer: CableSolution,
     /// What there is to say of it.
@@ -35,12 +35,12 @@ pub struct Lay {
 ///
 /// # Errors
 /// That it slides from where it is laid.
-pub fn least_sliding(
+pub fn initial_equilibrium(
     problem: &Arc<Problem>,
     settings: Settings,
-    (dragged, led): (&[Option<Vec2>], Option<Placement>),
-) -> Result<Option<Lay>, SolveError> {
-    let Ok(mut spans) = SpansModel::new(laid_flexible(problem), settings) else { return Ok(None) };
+    (dragged, robot_pose): (&[Option<Vec2>], Option<RigidPose>),
+) -> Result<Option<InitialEquilibrium>, SolveError> {
+    let Ok(mut spans) = SpansModel::new(as_flexible(problem), settings) else { return Ok(None) };
     for (k, at) in dragged.iter().enumerate() {
         if let Some(at) = at {
             spans.drag_support(k, *at);
@@ -59,8 +59,8 @@ pub fn least_sliding(
         warnings.iter_mut().filter(|w| w.kind == WarningKind::NotUnique).for_each(of_flexible);
     }
     let answer = spans.solution();
-    let clear = !meets_outline(problem, led, &answer) && !is_buried(problem, &answer);
-    Ok(clear.then(|| Lay { answer, warnings, spans: Box::new(spans) }))
+    let clear = !meets_outline(problem, robot_pose, &answer) && !is_buried(problem, &answer);
+    Ok(clear.then(|| InitialEquilibrium { answer, warnings, spans: Box::new(spans) }))
 }
 
 /// Says of which cable the histories are that are known.
@@ -76,7 +76,7 @@ fn of_flexible(warning: &mut Warning) {
 pub fn slides_on(problem: &Arc<Problem>, settings: Settings, answer: &CableSolution) -> bool {
     let route = answer.nodes.iter().map(Node::at).collect();
     let there = Arc::new(Problem { route, ..Problem::clone(&Problem::without_outline(problem.clone())) });
-    let slides = least_sliding(&there, settings, (&[], None));
+    let slides = initial_equilibrium(&there, settings, (&[], None));
     problem.bending_stiffness == 0.0 && matches!(slides, Err(SolveError::NoRestingPlace { .. }))
 }
 
@@ -109,7 +109,7 @@ pub fn slid_first(problem: &Problem, slides: &SolveError) -> Warning {
 
 /// The cable as `spans` can lay it: without the robot, which moves; a stiff one as a flexible one, it bends from there; and supports that
 /// let go later hold it.
-fn laid_flexible(problem: &Arc<Problem>) -> Arc<Problem> {
+fn as_flexible(problem: &Arc<Problem>) -> Arc<Problem> {
     let plain = Problem::without_outline(problem.clone());
     let lets_go = |s: &SupportPoint| s.release.is_some_and(|t| t > 0.0);
     if plain.bending_stiffness == 0.0 && !plain.supports.iter().any(lets_go) {
@@ -124,14 +124,14 @@ fn laid_flexible(problem: &Arc<Problem>) -> Arc<Problem> {
 
 /// Whether the cable is in touch with the robot, or in its place.
 #[must_use]
-pub fn meets_outline(problem: &Problem, led: Option<Placement>, answer: &CableSolution) -> bool {
-    let (Some(outline), Some(at)) = (&problem.outline, led) else { return false };
-    !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius + ROOM_M)
+pub fn meets_outline(problem: &Problem, robot_pose: Option<RigidPose>, answer: &CableSolution) -> bool {
+    let (Some(outline), Some(at)) = (&problem.outline, robot_pose) else { return false };
+    !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius + ROBOT_CLEARANCE_M)
 }
 
 /// Whether it lies in an obstacle, deeper than what the models disagree by.
 #[must_use]
 pub fn is_buried(problem: &Problem, answer: &CableSolution) -> bool {
-    let gap = |n: &Node| problem.world.signed_gap(n.at(), DEEPEST_M).map(|g| g.gap_m);
-    answer.nodes.iter().any(|n| gap(n).is_some_and(|g| g < -BURIED_M))
+    let gap = |n: &Node| problem.world.signed_gap(n.at(), BURIAL_SEARCH_M).map(|g| g.gap_m);
+    answer.nodes.iter().any(|n| gap(n).is_some_and(|g| g < -MAX_BURIAL_M))
 }

@@ -7,30 +7,30 @@ use crate::scene::path::Path;
 
 /// How deep a route may cut into a beam besides the cable's diameter, m: drawn along a surface by a few points it cuts corners
 /// off. Smaller: such routes are refused. Larger: more of those that lead through something are not noticed.
-const CUT: f64 = 0.05;
+const MAX_CUT: f64 = 0.05;
 /// The same of small scenes, of the cable's length: where a metre of cable is drawn, routes cut a centimetre.
-const CUT_OF_LENGTH: f64 = 0.01;
+const MAX_CUT_FRACTION: f64 = 0.01;
 /// Part of the radius of a post that a route may cut into it: drawn round it as a polygon of four points it cuts in 0.3.
-const CUT_POST: f64 = 0.5;
+const MAX_POST_CUT_FRACTION: f64 = 0.5;
 /// Distance of the points of a route that are looked at, m, and how many at most: of longer ones they are farther apart.
-const STEP: f64 = 0.05;
-const MOST: f64 = 20_000.0;
+const SAMPLE_SPACING: f64 = 0.05;
+const MAX_SAMPLES: f64 = 20_000.0;
 
 /// How deep a route may cut into something before that is not its coarseness, m: at small scenes a part of the cable.
-pub(super) fn shallow(problem: &Problem) -> f64 {
-    let cut = CUT_OF_LENGTH * problem.length;
-    (if cut < CUT { cut } else { CUT }) + 2.0 * problem.radius
+pub(super) fn allowed_depth(problem: &Problem) -> f64 {
+    let cut = MAX_CUT_FRACTION * problem.length;
+    (if cut < MAX_CUT { cut } else { MAX_CUT }) + 2.0 * problem.radius
 }
 
 /// Refuses a route of which a point is deep inside a beam or a post.
-pub(super) fn clear(problem: &Problem) -> Result<(), SceneError> {
+pub(super) fn check_route(problem: &Problem) -> Result<(), SceneError> {
     let world = problem.world.geometry();
     let length: f64 = problem.route.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
     // What the scene draws no route for is laid past everything.
     if problem.cable.route_m.is_empty() || world.is_empty() || !length.is_finite() {
         return Ok(());
     }
-    let step = STEP.max(length / MOST);
+    let step = SAMPLE_SPACING.max(length / MAX_SAMPLES);
     for (leg, w) in problem.route.windows(2).enumerate() {
         let points = ((w[1] - w[0]).norm() / step).ceil();
         let mut deepest: Option<(f64, SceneFault)> = None;
@@ -40,8 +40,8 @@ pub(super) fn clear(problem: &Problem) -> Result<(), SceneError> {
             for body in world.bodies().iter().filter(|b| !b.is_ground()) {
                 let Some(gap) = body.signed_gap(at, f64::INFINITY) else { continue };
                 let (depth_m, allowed) = match body.center {
-                    Some(_) => (-gap.gap_m, CUT_POST * body.offset),
-                    None => (-gap.gap_m - body.offset, shallow(problem)),
+                    Some(_) => (-gap.gap_m, MAX_POST_CUT_FRACTION * body.offset),
+                    None => (-gap.gap_m - body.offset, allowed_depth(problem)),
                 };
                 if depth_m > allowed && deepest.as_ref().is_none_or(|d| depth_m > d.0) {
                     let obstacle = body.name.clone();
