@@ -4,44 +4,47 @@ mod coupling;
 
 use std::sync::Arc;
 
+use crate::any_error::Error;
 use crate::breakage::BreakableCable;
-use crate::error::{Error, SolveError};
-use crate::estimates::ErrorEstimates;
+use crate::error::SolveError;
 use crate::kinematics::{self, AlongCable};
 use crate::math::{Vec2, larger};
 use crate::model::auto::{self, Question};
 use crate::model::initial_equilibrium::initial_equilibrium;
-use crate::model::{Inertia, LEAST_TOLERANCE, Model, Settings, StepReport};
-use crate::problem::problems;
+use crate::model::{Inertia, MIN_TOLERANCE, Mechanics, Model, ModelSource, Settings, StepReport};
+use crate::problem::{Problem, problems};
 use crate::robot::Vehicle;
 use crate::scene::Scene;
+use crate::solution::ErrorEstimates;
 use crate::solution::{CableSolution, Cost, Energy, MaxTension, Node, Solution, Warning, WarningKind};
 use crate::state::State;
-use crate::timeline::STEP_S;
 use crate::verify::{Depth, Verification, Verifier};
 use crate::warnings::{Bends, Observed, WarningMonitor};
+
+/// Step with inertia, s: the inner step of `fem`.
+pub const STEP_S: f64 = 1.0 / 240.0;
 
 /// Longest step a display frame takes, s: longer makes one slow frame cause the next, shorter slows time at 10 Hz.
 pub const MAX_FRAME_S: f64 = 0.1;
 
 /// Longest step with inertia, s: a quarter of a million inner steps. Longer: a slip of the pen computes for hours without a word.
-const LONGEST_STEP_S: f64 = 1e3;
+const MAX_STEP_S: f64 = 1e3;
 
 /// The same without inertia, s.
-const LONGEST_SLOW_STEP_S: f64 = 1e6;
+const MAX_QUASI_STATIC_STEP_S: f64 = 1e6;
 
 /// Fewer elements than this say nothing of how wrong others are.
-const LEAST_ELEMENTS: usize = 4;
+const MIN_ELEMENTS: usize = 4;
 
 /// A scene being solved.
 #[derive(Clone)]
 pub struct Simulation {
     scene: Scene,
     /// What the user asked for.
-    asked: Model,
+    requested: Model,
     /// As it was built: `Auto` where two models may take turns.
-    built: Model,
-    /// The one in use: of several cables the highest rung.
+    source: ModelSource,
+    /// The one in use: of several cables the one that takes on most.
     model: Model,
     reason: String,
     settings: Settings,
@@ -84,38 +87,64 @@ impl Simulation {
     /// As [`Self::new`].
     pub fn for_question(scene: Scene, model: Model, settings: Settings, question: Question) -> Result<Self, Error> {
         let problems = problems(&scene)?;
-        let build_all = |m: Model| {
-            problems.iter().map(|p| BreakableCable::new(m, p.clone(), settings)).collect::<Result<Vec<_>, SolveError>>()
+        if model != Model::Auto {
+            let reason = "asked for".to_owned();
+            return Self::from_source(scene, &problems, settings, (model, ModelSource::Registered(model), reason));
+        }
+        let (chosen, reason) = auto::choose_for_all(&problems, question);
+        let source = ModelSource::Registered(auto::built_for(chosen));
+        let built = Self::from_source(scene.clone(), &problems, settings, (chosen, source, reason));
+        let mut this = match built {
+            Err(Error::Solve(SolveError::Unsupported { feature, .. })) if chosen != Model::MOST_CAPABLE => {
+                let reason = format!("{chosen} cannot answer this scene: {feature}");
+                let source = ModelSource::Registered(Model::MOST_CAPABLE);
+                Self::from_source(scene, &problems, settings, (Model::MOST_CAPABLE, source, reason))?
+            }
+            built => built?,
         };
-        let (mut chosen, mut reason) = (model, "asked for".to_owned());
-        if model == Model::Auto {
-            (chosen, reason) = problems
-                .iter()
-                .map(|p| auto::choose(p, question))
-                .max_by_key(|(m, _)| rung(*m))
-                .unwrap_or((Model::Catenary, String::new()));
+        this.requested = Model::Auto;
+        Ok(this)
+    }
+
+    /// As [`Self::with_settings`], by a model of the program's own: `constructor` is called for each cable, and for each piece
+    /// that one breaks into.
+    ///
+    /// # Errors
+    /// As [`Self::new`], or what the constructor says.
+    pub fn with_mechanics<F>(scene: Scene, settings: Settings, constructor: F) -> Result<Self, Error>
+    where
+        F: Fn(Arc<Problem>, Settings) -> Result<Box<dyn Mechanics>, SolveError> + Send + Sync + 'static,
+    {
+        Self::by_source(scene, settings, ModelSource::External(Arc::new(constructor)))
+    }
+
+    /// As [`Self::with_settings`], by a model wherever it comes from.
+    fn by_source(scene: Scene, settings: Settings, source: ModelSource) -> Result<Self, Error> {
+        if let ModelSource::Registered(model) = source {
+            return Self::with_settings(scene, model, settings);
         }
-        let mut built = if model == Model::Auto && chosen == Model::Spans { Model::Auto } else { chosen };
-        let mut cables = build_all(built);
-        if model == Model::Auto
-            && chosen != Model::Fem
-            && let Err(SolveError::Unsupported { feature, .. }) = &cables
-        {
-            reason = format!("{chosen} cannot answer this scene: {feature}");
-            chosen = Model::Fem;
-            built = Model::Fem;
-            cables = build_all(built);
-        }
-        let cables = cables?;
+        let problems = problems(&scene)?;
+        Self::from_source(scene, &problems, settings, (source.model(), source, "asked for".to_owned()))
+    }
+
+    /// Builds every cable by one source, said to be that model for that reason.
+    fn from_source(
+        scene: Scene,
+        problems: &[Arc<Problem>],
+        settings: Settings,
+        (model, source, reason): (Model, ModelSource, String),
+    ) -> Result<Self, Error> {
+        let cables = problems.iter().map(|p| BreakableCable::new(source.clone(), p.clone(), settings));
+        let cables = cables.collect::<Result<Vec<_>, SolveError>>()?;
         let answers = cables.iter().map(BreakableCable::answer).collect();
         Ok(Self {
             vehicle: Vehicle::of(&scene),
             verifier: Arc::new(Verifier::new(&scene)),
             verification: Verification::default(),
             scene,
-            asked: model,
-            built,
-            model: chosen,
+            requested: model,
+            source,
+            model,
             reason,
             settings,
             cables,
@@ -138,7 +167,7 @@ impl Simulation {
         for (answer, first) in self.answers.iter_mut().zip(&self.first) {
             kinematics::displace(&mut answer.nodes, first);
         }
-        self.model = self.cables.iter().map(BreakableCable::model).max_by_key(|m| rung(*m)).unwrap_or(self.model);
+        self.model = self.cables.iter().map(BreakableCable::model).max_by_key(|m| m.rank()).unwrap_or(self.model);
         let mut bends = Vec::with_capacity(self.cables.len());
         for (cable, answer) in self.cables.iter().zip(&mut self.answers) {
             let found = Bends::of(cable.problem(), answer);
@@ -289,7 +318,8 @@ impl Simulation {
     fn sound(&self) -> Result<(), SolveError> {
         // Masses and springs are a quick look and a second opinion, asked for by name: their coarse meshes are told, not refused. A
         // cable that broke at rest is where it was when it broke.
-        let told = self.asked == Model::MassSpring || self.cables.iter().any(|c| !c.breaks().is_empty());
+        let told =
+            self.requested.capabilities().findings_are_told || self.cables.iter().any(|c| !c.breaks().is_empty());
         match self.verification.worst().filter(|_| !told) {
             None => Ok(()),
             Some(finding) => Err(SolveError::Unsound { model: self.model, finding: Box::new(finding.clone()) }),
@@ -298,20 +328,21 @@ impl Simulation {
 
     /// Gives the scene to the next model, where the user left the choice; returns whether there was one.
     fn next_model(&mut self, why: &str) -> bool {
-        if self.asked != Model::Auto {
+        if self.requested != Model::Auto {
             return false;
         }
         let mut other = false;
         for cable in &mut self.cables {
             other |= cable.fall_back(why);
         }
-        if other || self.built == Model::Fem {
+        if other || self.source.model() == Model::MOST_CAPABLE {
             return other;
         }
-        let fem = self.cables.iter().map(|c| c.by_model(Model::Fem));
-        let Ok(next) = fem.collect::<Result<Vec<_>, SolveError>>() else { return false };
+        let source = ModelSource::Registered(Model::MOST_CAPABLE);
+        let others = self.cables.iter().map(|c| c.rebuilt(source.clone()));
+        let Ok(next) = others.collect::<Result<Vec<_>, SolveError>>() else { return false };
         self.reason = format!("{} gave no sound answer: {why}", self.model);
-        (self.cables, self.built, self.model) = (next, Model::Fem, Model::Fem);
+        (self.cables, self.source, self.model) = (next, source, Model::MOST_CAPABLE);
         self.set_robot_pose();
         true
     }
@@ -346,7 +377,10 @@ impl Simulation {
     /// What other histories would have left in a cable, in words: in plan view, where a floor that rubs everywhere chose the rest and
     /// `spans` has no answer; None where none was sought or found.
     fn histories(&self, k: usize) -> Option<String> {
-        let cable = self.cables.get(k).filter(|c| c.problem().floor_friction.is_some() && c.model() == Model::Fem)?;
+        let cable = self
+            .cables
+            .get(k)
+            .filter(|c| c.problem().floor_friction.is_some() && c.model().capabilities().explores_histories)?;
         cable.histories(|other| {
             let mut answers = self.answers.clone();
             answers[k].clone_from(other);
@@ -372,8 +406,8 @@ impl Simulation {
 
     fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
         let (longest, allowed) = match inertia {
-            Inertia::Dynamic => (LONGEST_STEP_S, "more than 0 and at most 1000 s"),
-            Inertia::QuasiStatic => (LONGEST_SLOW_STEP_S, "more than 0 and at most 1e6 s"),
+            Inertia::Dynamic => (MAX_STEP_S, "more than 0 and at most 1000 s"),
+            Inertia::QuasiStatic => (MAX_QUASI_STATIC_STEP_S, "more than 0 and at most 1e6 s"),
         };
         if !(dt_s > 0.0 && dt_s <= longest) {
             return Err(SolveError::TimeStep { dt_s, allowed });
@@ -430,20 +464,24 @@ impl Simulation {
         let mut scene = self.scene.clone();
         for (cable, answer) in scene.cables.iter_mut().zip(&self.answers) {
             let elements = (answer.nodes.len().saturating_sub(1) as f64 * times).floor() as usize;
-            if elements < LEAST_ELEMENTS {
+            if elements < MIN_ELEMENTS {
                 return Ok(None);
             }
             cable.segments = Some(elements);
         }
         let settings = Settings {
             // Steps of a taut cable follow its frequency, as the square root of it.
-            tolerance: larger(self.settings.tolerance / (times * times), LEAST_TOLERANCE),
+            tolerance: larger(self.settings.tolerance / (times * times), MIN_TOLERANCE),
             segments: None,
             inner_step_s: Some(self.settings.inner_step_s.unwrap_or(STEP_S) / times),
             histories: false,
             ..self.settings
         };
-        let mut next = Self::with_settings(scene, self.model, settings)?;
+        let source = match &self.source {
+            ModelSource::Registered(_) => ModelSource::Registered(self.model),
+            external @ ModelSource::External(_) => external.clone(),
+        };
+        let mut next = Self::by_source(scene, settings, source)?;
         next.reason.clone_from(&self.reason);
         Ok(Some(next))
     }
@@ -454,7 +492,7 @@ impl Simulation {
     /// # Errors
     /// What is wrong with the new scene; the old simulation is untouched.
     pub fn with_scene(&self, scene: Scene, settings: Settings) -> Result<Self, Error> {
-        let mut next = Self::with_settings(scene, self.built, settings)?;
+        let mut next = Self::by_source(scene, settings, self.source.clone())?;
         next.reason.clone_from(&self.reason);
         next.carry(self)?;
         Ok(next)
@@ -610,11 +648,6 @@ impl Simulation {
         self.set_robot_pose();
         self.set_states(&states)
     }
-}
-
-/// How much a model takes on.
-fn rung(model: Model) -> usize {
-    Model::SOLVERS.iter().position(|m| *m == model).unwrap_or(0)
 }
 
 impl std::fmt::Debug for Simulation {

@@ -4,7 +4,7 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic, missing_docs)] // a failing test is meant to panic
 
 use cable_core::contact::distance::cross_properly;
-use cable_core::contact::outline::RigidPose;
+use cable_core::math::RigidPose;
 use cable_core::record::Fingerprint;
 use cable_core::scene::{Shape, SupportKind, catalog, preset};
 use cable_core::{Model, Robot, Scene, Simulation, Vec2};

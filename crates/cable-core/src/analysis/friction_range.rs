@@ -7,7 +7,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::error::Error;
+use crate::any_error::Error;
 use crate::math::{Point, vec2};
 use crate::model::auto::Question;
 use crate::model::{Inertia, Model, Settings};
@@ -128,7 +128,7 @@ pub fn friction_range(query: &Query, mut progress: impl FnMut(f64) -> ControlFlo
     let [low, high] = query.factors;
     let motion = query.span_s > 0.0;
     // Models without inertia let time run without it, as the window does.
-    let slow = matches!(query.model, Model::Catenary | Model::Spans);
+    let slow = !query.model.capabilities().inertia;
     let inertia = if slow { Inertia::QuasiStatic } else { Inertia::Dynamic };
     let question = if motion { Question::History(inertia) } else { Question::Rest };
     let mut runs = Vec::with_capacity(3);

@@ -15,12 +15,12 @@ use std::sync::Arc;
 
 use partition::{CablePart, Cut};
 
-use crate::contact::outline::RigidPose;
 use crate::error::SolveError;
+use crate::math::RigidPose;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::gauge::{Limit, TensionGauge};
 use crate::model::input_filter::default_hand_stiffness;
-use crate::model::{self, Inertia, Mechanics, Model, Own, RobotContact, Settings, StepReport};
+use crate::model::{Inertia, Mechanics, Model, ModelSource, OwnedResources, RobotContact, Settings, StepReport};
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost, MomentumAccount, TensionPeak, TensionPeaks};
@@ -75,8 +75,8 @@ pub(crate) struct Break {
 /// One cable of a scene.
 pub(crate) struct BreakableCable {
     problem: Arc<Problem>,
-    /// What was asked for: pieces of a broken cable are built by it.
-    requested: Model,
+    /// Builds the whole cable, and the pieces it breaks into.
+    source: ModelSource,
     settings: Settings,
     pieces: Vec<Piece>,
     breaks: Vec<Break>,
@@ -117,11 +117,11 @@ enum StepOutcome {
 
 impl BreakableCable {
     /// Builds the model of a whole cable.
-    pub fn new(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
+    pub fn new(source: ModelSource, problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
         // A hand's spring is that of the whole cable, whatever breaks off.
         let stiffness = settings.hand_stiffness_n_per_m.unwrap_or_else(|| default_hand_stiffness(&problem));
         let settings = Settings { hand_stiffness_n_per_m: Some(stiffness), ..settings };
-        let mechanics = model::build(model, problem.clone(), settings)?;
+        let mechanics = source.build(problem.clone(), settings)?;
         let gauge = TensionGauge::over(problem.cable.breaking_time_s);
         let piece = Piece::new(mechanics, CablePart::whole(&problem), gauge);
         let dragged = vec![None; problem.supports.len()];
@@ -129,7 +129,7 @@ impl BreakableCable {
         Ok(Self {
             too_fast,
             problem,
-            requested: model,
+            source,
             settings,
             pieces: vec![piece],
             breaks: Vec::new(),
@@ -142,8 +142,8 @@ impl BreakableCable {
     }
 
     /// The same cable by another model: where it is, or at its route where it has not begun.
-    pub fn by_model(&self, model: Model) -> Result<Self, SolveError> {
-        let mut next = Self::new(model, self.problem.clone(), self.settings)?;
+    pub fn rebuilt(&self, source: ModelSource) -> Result<Self, SolveError> {
+        let mut next = Self::new(source, self.problem.clone(), self.settings)?;
         if self.time_s() > 0.0 {
             next.carry(self)?;
         }
@@ -159,7 +159,7 @@ impl BreakableCable {
 
     /// The model in use: of several pieces that of the first.
     pub fn model(&self) -> Model {
-        self.pieces.first().map_or(self.requested, |p| p.mechanics.model())
+        self.pieces.first().map_or(self.source.model(), |p| p.mechanics.model())
     }
 
     /// Why it is that model, where that changed on the way.
@@ -304,7 +304,7 @@ impl BreakableCable {
     /// A piece from where it is; `state` in its own arc lengths.
     fn build(&self, part: CablePart, state: &State) -> Result<Piece, SolveError> {
         let problem = Arc::new(part.problem(&self.problem, state));
-        let mut mechanics = model::build(self.requested, problem, Settings { segments: None, ..self.settings })?;
+        let mut mechanics = self.source.build(problem, Settings { segments: None, ..self.settings })?;
         for (own, k) in part.supports.iter().enumerate() {
             let drawn = k.and_then(|k| Some((self.dragged.get(k).copied().flatten()?, self.pulled[k])));
             match drawn {
@@ -411,7 +411,7 @@ impl BreakableCable {
 
     /// Becomes what it was when `kept` was copied from it.
     pub fn restore(&mut self, kept: &Self) {
-        let mut own: Vec<Option<Own>> = self.pieces.iter_mut().map(|p| p.mechanics.lend()).collect();
+        let mut own: Vec<Option<OwnedResources>> = self.pieces.iter_mut().map(|p| p.mechanics.lend()).collect();
         own.resize_with(kept.pieces.len(), || None);
         // What broke since has nothing of the whole.
         let same = self.breaks.len() == kept.breaks.len();
@@ -722,7 +722,7 @@ impl BreakableCable {
     fn with(&self, pieces: Vec<Piece>) -> Self {
         Self {
             problem: self.problem.clone(),
-            requested: self.requested,
+            source: self.source.clone(),
             settings: self.settings,
             pieces,
             breaks: self.breaks.clone(),

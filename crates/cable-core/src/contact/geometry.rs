@@ -18,8 +18,8 @@ use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 
 use super::Gap;
 use super::distance::nearest_fraction;
-use super::outline::{Outline, RigidPose};
-use crate::math::{Point, Vec2, cross, perp, vec2};
+use super::outline::Outline;
+use crate::math::{Point, RigidPose, Vec2, cross, perp, vec2};
 use crate::scene::{Obstacle, Shape};
 
 /// Edges that turn by less (rad) are one edge: a corner the cable cannot feel would only cost time.

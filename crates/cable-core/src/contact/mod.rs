@@ -19,7 +19,7 @@ pub mod swept_corners;
 #[cfg(test)]
 mod tests;
 
-use crate::math::Vec2;
+use crate::math::{RigidPose, Vec2};
 use crate::scene::Obstacle;
 
 /// One obstacle feature and where the cable is nearest to it.
@@ -64,7 +64,7 @@ impl World {
     }
 
     /// Puts the outline where it is now.
-    pub fn place_outline(&mut self, outline: &outline::Outline, placement: outline::RigidPose) {
+    pub fn place_outline(&mut self, outline: &outline::Outline, placement: RigidPose) {
         self.geometry.place_outline(outline, placement);
     }
 

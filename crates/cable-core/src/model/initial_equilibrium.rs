@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::spans::SpansModel;
 use super::{Mechanics, Settings};
-use crate::contact::outline::RigidPose;
 use crate::error::SolveError;
+use crate::math::RigidPose;
 use crate::math::Vec2;
 use crate::problem::{Problem, SupportPoint};
 use crate::solution::{CableSolution, Node, Warning, WarningKind};

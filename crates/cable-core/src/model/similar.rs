@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::gauge::TensionGauge;
-use super::{Inertia, Mechanics, Model, Own, StepReport};
+use super::{Inertia, Mechanics, Model, OwnedResources, StepReport};
 use crate::error::{Place, SolveError};
 use crate::math::Vec2;
 use crate::problem::Problem;
@@ -308,11 +308,11 @@ impl Mechanics for Similar {
         self.around(self.inner.copy_to_keep())
     }
 
-    fn lend(&mut self) -> Option<Own> {
+    fn lend(&mut self) -> Option<OwnedResources> {
         self.inner.lend()
     }
 
-    fn borrow(&mut self, own: Option<Own>) {
+    fn borrow(&mut self, own: Option<OwnedResources>) {
         self.inner.borrow(own);
     }
 

@@ -10,9 +10,9 @@ use super::fem::FemModel;
 use super::gauge::TensionGauge;
 use super::initial_equilibrium::{is_buried, meets_outline, slid_first, slides_on, work};
 use super::spans::SpansModel;
-use super::{Inertia, Mechanics, Model, Own, RobotContact, Settings, StepReport, refuse_mobilised};
-use crate::contact::outline::RigidPose;
+use super::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport, refuse_mobilised};
 use crate::error::SolveError;
+use crate::math::RigidPose;
 use crate::math::Vec2;
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Node};
@@ -406,11 +406,11 @@ impl Mechanics for SwitchingModel {
         })
     }
 
-    fn lend(&mut self) -> Option<Own> {
+    fn lend(&mut self) -> Option<OwnedResources> {
         self.fem.as_mut().and_then(Mechanics::lend)
     }
 
-    fn borrow(&mut self, own: Option<Own>) {
+    fn borrow(&mut self, own: Option<OwnedResources>) {
         if let Some(fem) = &mut self.fem {
             fem.borrow(own);
         }

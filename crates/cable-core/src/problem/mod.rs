@@ -5,6 +5,8 @@
 
 mod describe_place;
 pub(crate) mod ground_route;
+mod robot_outline;
+mod rounding_error;
 mod route_check;
 mod support_clearance;
 

@@ -17,8 +17,8 @@
 
 use super::Simulation;
 use crate::breakage::BreakableCable;
-use crate::contact::outline::RigidPose;
 use crate::error::SolveError;
+use crate::math::RigidPose;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::Inertia;
 use crate::robot::{self, Drive, Going, Pulls, Vehicle};

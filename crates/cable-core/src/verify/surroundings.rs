@@ -2,7 +2,8 @@
 //!
 //! Edges are sorted by their left end, so that those in a box are found without looking at all; nothing else is clever.
 
-use crate::contact::outline::{Outline, RigidPose};
+use crate::contact::outline::Outline;
+use crate::math::RigidPose;
 use crate::math::{Vec2, cross, vec2};
 use crate::robot::RobotReport;
 use crate::scene::{Obstacle, Scene, Shape};

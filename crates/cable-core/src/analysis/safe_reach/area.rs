@@ -12,8 +12,8 @@ use std::sync::Arc;
 use exploration::Exploration;
 
 use super::{lay, least, stilled, unsupported};
+use crate::any_error::Error;
 use crate::contact::World;
-use crate::error::Error;
 use crate::math::{Point, larger, vec2};
 use crate::model::auto::Question;
 use crate::model::{Inertia, Model, Settings};

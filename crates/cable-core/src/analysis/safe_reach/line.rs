@@ -6,7 +6,7 @@
 use std::ops::ControlFlow;
 
 use super::{STEP_S, UNREACHABLE_FACTOR, lay, least, stilled, unsupported};
-use crate::error::Error;
+use crate::any_error::Error;
 use crate::math::{Point, larger};
 use crate::model::auto::Question;
 use crate::model::{Inertia, Model, Settings};

@@ -7,7 +7,8 @@
 pub mod area;
 pub mod line;
 
-use crate::error::{Error, SolveError};
+use crate::any_error::Error;
+use crate::error::SolveError;
 use crate::model::Model;
 use crate::scene::{Cable, Scene, SupportKind};
 use crate::simulation::Simulation;

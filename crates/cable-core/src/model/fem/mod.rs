@@ -64,13 +64,13 @@ use std::sync::Arc;
 use self::two_meshes::TwoMeshes;
 use super::gauge::TensionGauge;
 use super::initial_equilibrium::{InitialEquilibrium, initial_equilibrium, slid_first, slides_on, work};
-use super::{Inertia, Mechanics, Model, Own, RobotContact, Settings, StepReport};
-use crate::contact::outline::RigidPose;
+use super::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
 use crate::error::SolveError;
-use crate::estimates::ErrorEstimates;
+use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
+use crate::solution::ErrorEstimates;
 use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
 use crate::state::State;
 use elastica::Elastica;
@@ -557,13 +557,18 @@ impl Mechanics for FemModel {
         Box::new(self.kept())
     }
 
-    fn lend(&mut self) -> Option<Own> {
-        Some(Own { memory: self.dynamics.memory.0.take(), problem: self.dynamics.problem.clone() })
+    fn lend(&mut self) -> Option<OwnedResources> {
+        Some(OwnedResources {
+            memory: self.dynamics.memory.0.take().map(|memory| memory as Box<dyn std::any::Any + Send>),
+            problem: self.dynamics.problem.clone(),
+        })
     }
 
-    fn borrow(&mut self, own: Option<Own>) {
-        let own = own.unwrap_or_else(|| Own { memory: None, problem: carry::with_outline(self.problem.clone()) });
-        (self.dynamics.memory.0, self.dynamics.problem) = (own.memory, own.problem);
+    fn borrow(&mut self, own: Option<OwnedResources>) {
+        let own =
+            own.unwrap_or_else(|| OwnedResources { memory: None, problem: carry::with_outline(self.problem.clone()) });
+        self.dynamics.memory.0 = own.memory.and_then(|memory| memory.downcast().ok());
+        self.dynamics.problem = own.problem;
         self.dynamics.place_outline();
     }
 

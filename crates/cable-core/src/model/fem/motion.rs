@@ -4,7 +4,7 @@ use super::assembly::Mesh;
 use super::contact_set::ContactSet;
 use super::dynamics::Dynamics;
 use super::momentum::Account;
-use crate::contact::outline::RigidPose;
+use crate::math::RigidPose;
 use crate::math::{Vec2, cross, perp};
 use crate::model::input_filter::{Hand, SmoothedTarget};
 

@@ -12,12 +12,12 @@ use super::estimate;
 use super::layout::{Hold, Layout, place};
 use super::network::{Failure, Network};
 use crate::error::{Place, SolveError};
-use crate::estimates::ErrorEstimates;
 use crate::math::{Vec2, larger};
 use crate::model::initial_equilibrium::initial_equilibrium;
 use crate::model::{Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
+use crate::solution::ErrorEstimates;
 use crate::solution::{Assumptions, CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
 

@@ -14,13 +14,13 @@
 use std::sync::Arc;
 
 use super::dynamics::Dynamics;
-use crate::estimates::ErrorEstimates;
 use crate::math::Vec2;
 use crate::model::initial_equilibrium::InitialEquilibrium;
 use crate::model::spans::SpansModel;
 use crate::model::{Inertia, Mechanics, Settings};
 use crate::problem::Problem;
 use crate::solution::CableSolution;
+use crate::solution::ErrorEstimates;
 
 /// Fewer bars than this have no half of use.
 const LEAST_BARS: usize = 8;

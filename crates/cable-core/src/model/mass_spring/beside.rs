@@ -5,12 +5,12 @@
 //! contact are, and what is said is the same (`fem/two_meshes`).
 
 use super::{MassSpringModel, mesh};
-use crate::estimates::ErrorEstimates;
 use crate::model::fem::FemModel;
 use crate::model::initial_equilibrium::initial_equilibrium;
 use crate::model::spans::SpansModel;
 use crate::model::{Inertia, Mechanics, Settings};
 use crate::solution::CableSolution;
+use crate::solution::ErrorEstimates;
 
 /// Fewer elements than this have no half of use.
 const LEAST_ELEMENTS: usize = 8;

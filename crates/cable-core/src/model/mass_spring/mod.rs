@@ -37,16 +37,16 @@ use super::input_filter::{Hand, SmoothedTarget, held_warning};
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::contact::Gap;
 use crate::error::SolveError;
-use crate::estimates::ErrorEstimates;
 use crate::math::Vec2;
+pub use crate::model::settings::Stepping;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
+use crate::solution::ErrorEstimates;
 use crate::solution::{CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
 use beside::Beside;
 use kept::Kept;
 use pulley::Pulley;
-pub use stepping::Stepping;
 
 /// The model's mechanics of one cable.
 #[derive(Clone, Debug)]

@@ -15,7 +15,6 @@ use super::super::{STEP_S, UNREACHABLE_FACTOR, at_rest};
 use super::{Area, Query};
 use crate::contact::World;
 use crate::math::{Vec2, larger, vec2};
-use crate::model::Model;
 use crate::simulation::Simulation;
 
 /// Longest way between two answers, m. Longer: an edge that the cable slips over is passed unseen; shorter: more answers.
@@ -378,7 +377,7 @@ impl Exploration<'_> {
         let before_n = self.tension_n(&before);
         let good = |simulation: &Simulation, n: Option<f64>| {
             let caught = |n: f64| n > NEGLIGIBLE_FRACTION * self.found.service_n && n > SNAG_GROWTH * before_n;
-            n.is_some_and(|n| simulation.model() != Model::Fem || !caught(n))
+            n.is_some_and(|n| !simulation.model().capabilities().nodes_catch || !caught(n))
         };
         let mut found_n = self.step(simulation, ends, 1);
         for (parts, anew) in [(RETRY_PARTS, false), (1, true), (RETRY_PARTS, true)] {

@@ -27,9 +27,9 @@ mod relax;
 mod start;
 
 use crate::contact::swept_corners;
-use crate::estimates::ErrorEstimates;
 use crate::math::{Vec2, perp};
 use crate::problem::Problem;
+use crate::solution::ErrorEstimates;
 use crate::solution::{CableSolution, Cost, Node};
 use band::Band;
 use relax::{Chain, LetGo};

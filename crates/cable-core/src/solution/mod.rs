@@ -1,12 +1,24 @@
-//! What an answer holds, whichever model gave it.
+//! The answer to a question about a scene: plain data, whichever model gave it.
+//!
+//! | room | data |
+//! |---|---|
+//! | `mod.rs` | [`Solution`], [`CableSolution`]: nodes, supports, contacts, warnings |
+//! | `error_estimates.rs` | [`ErrorEstimates`]: how wrong each figure is |
+//! | `robot_report.rs` | [`robot_report::RobotReport`]: the vehicle at the same instant |
+//! | `verification.rs` | [`verification::Verification`]: the verdict of the laws of mechanics |
+
+pub mod error_estimates;
+pub mod robot_report;
+pub mod verification;
 
 use serde::{Deserialize, Serialize};
 
-use crate::estimates::ErrorEstimates;
 use crate::math::{Vec2, larger};
-use crate::model::Model;
-use crate::robot::RobotReport;
-use crate::verify::Verification;
+use crate::model_id::Model;
+
+pub use self::error_estimates::ErrorEstimates;
+use self::robot_report::RobotReport;
+use self::verification::Verification;
 
 /// The answer of a model at an instant, all cables of the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,18 +1,13 @@
-//! How wrong the figures of an answer are: what a better answer to the same question says of each, and what rounding leaves.
+//! The estimated errors of an answer's figures, and how they are read off a better answer to the same question.
 
 use serde::{Deserialize, Serialize};
 
-use crate::math::{Mat2, Vec2, larger, perp};
-use crate::problem::Problem;
-use crate::solution::{CableSolution, Node};
-
-/// Relative rounding of a length that is added up from many pieces, in units in the last place. Measured against the closed form: up to 5,
-/// of two answers. Less: rounding shows as an error that nobody told of; more: stiff taut cables seem worse than they are.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+use super::{CableSolution, Node};
+use crate::math::{Vec2, larger, perp};
 
 /// By how much more is said than what two answers differ by: the better one's figures are read at its nodes. Less: one in twenty errors of
 /// cables in the air, known to be small, is 0.1 % more than is said; more: nothing is gained.
-const READ: f64 = 1.01;
+const READING_FACTOR: f64 = 1.01;
 
 /// Estimated errors of an answer for one cable; None = not known, or there is nothing of which it could be.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -42,7 +37,7 @@ impl ErrorEstimates {
             contact_force_n: touched.into_iter().reduce(larger),
             position_m: Some(moved.fold(0.0, larger)),
         };
-        apart.times(READ)
+        apart.times(READING_FACTOR)
     }
 
     /// Forces known to a part of the greatest tension; of the shape nothing is.
@@ -52,28 +47,6 @@ impl ErrorEstimates {
         let touches = !answer.contacts.is_empty();
         let contact_force_n = force.filter(|_| touches);
         Self { max_tension_n: force, support_force_n: force, contact_force_n, position_m: None }
-    }
-
-    /// What rounding leaves of an answer that has no error of a mesh: a length is off by units in the last place, and forces by the
-    /// stiffness of the stiffest stretch between two supports or contacts times that,
-    /// ```text
-    /// δF = C⁻¹ δL,     C = ∫ (t tᵀ/EA + (I − t tᵀ)/T) ds
-    /// ```
-    /// C being how far its end moves under a force (H. M. Irvine, *Cable Structures*, MIT Press 1981, for shallow ones).
-    #[must_use]
-    pub fn rounding(answer: &CableSolution, problem: &Problem) -> Self {
-        let far = answer.nodes.iter().map(|n| n.at().amax()).fold(problem.length, larger);
-        let mut stops: Vec<f64> = answer.supports.iter().map(|s| s.arc_length_m).collect();
-        stops.extend(answer.contacts.iter().flat_map(|c| c.extent_m()));
-        stops.sort_by(f64::total_cmp);
-        let stretches = stops.windows(2).filter_map(|w| stiffness(between_stops(&answer.nodes, w), problem));
-        let force = ROUNDING * (far * stretches.fold(0.0, larger) + greatest(answer));
-        Self {
-            max_tension_n: Some(force),
-            support_force_n: Some(force),
-            contact_force_n: (!answer.contacts.is_empty()).then_some(force),
-            position_m: Some(ROUNDING * far),
-        }
     }
 
     /// The error of forces, of the greatest tension and of any support, in parts of what the greatest tension is at least.
@@ -131,12 +104,6 @@ impl ErrorEstimates {
 }
 
 impl CableSolution {
-    /// The same, known to its rounding.
-    pub(crate) fn rounded(self, problem: &Problem) -> Self {
-        let errors = ErrorEstimates::rounding(&self, problem);
-        self.known_to(errors)
-    }
-
     /// The same with its errors.
     pub(crate) fn known_to(mut self, errors: ErrorEstimates) -> Self {
         (self.error_estimate, self.errors) = (errors.relative(&self), errors);
@@ -145,11 +112,11 @@ impl CableSolution {
 }
 
 /// Most that the curve between two nodes turns for its place to be read from their curvatures, rad: beyond, it is a corner or a fold.
-const MOST_TURN: f64 = 1.0;
+const MAX_TURN: f64 = 1.0;
 
 /// Curvatures of two neighbours on one curve differ by no more than this factor. Less: catenaries on few nodes are read as straighter than they
 /// are; more: what leaves a round is bent.
-const ONE_CURVE: f64 = 3.0;
+const MAX_CURVATURE_RATIO: f64 = 3.0;
 
 /// Where the cable is at an arc length, m: between two nodes on the curve that has their mean curvature and leaves both symmetrically, which
 /// is a circle's to the fourth order in the distance of the nodes; a straight line between them is of the second.
@@ -162,7 +129,7 @@ pub fn place(nodes: &[Node], arc_length_m: f64) -> Option<Vec2> {
     let (ds, chord) = (b.arc_length_m - a.arc_length_m, b.at() - a.at());
     let f = (arc_length_m - a.arc_length_m) / ds;
     let half = 0.5 * ds * between_curvatures(a.curvature_per_m, b.curvature_per_m);
-    if !(half.abs() <= 0.5 * MOST_TURN) {
+    if !(half.abs() <= 0.5 * MAX_TURN) {
         return Some(a.at() + chord * f);
     }
     let speed = if half == 0.0 { 1.0 } else { half / half.sin() };
@@ -181,13 +148,13 @@ pub fn place(nodes: &[Node], arc_length_m: f64) -> Option<Vec2> {
 fn between_curvatures(a: f64, b: f64) -> f64 {
     let (least, most) = if a.abs() < b.abs() { (a, b) } else { (b, a) };
     match least * most > 0.0 {
-        true if most.abs() <= ONE_CURVE * least.abs() => 0.5 * (a + b),
+        true if most.abs() <= MAX_CURVATURE_RATIO * least.abs() => 0.5 * (a + b),
         true => least,
         false => 0.0,
     }
 }
 
-fn greatest(c: &CableSolution) -> f64 {
+pub(crate) fn greatest(c: &CableSolution) -> f64 {
     c.nodes.iter().map(|n| n.tension_n).fold(0.0, larger)
 }
 
@@ -202,30 +169,6 @@ fn obstacles<'a>(a: &'a CableSolution, b: &'a CableSolution) -> impl Iterator<It
 fn force_of(c: &CableSolution, obstacle: &str) -> Vec2 {
     let its = c.contacts.iter().filter(|k| k.obstacle == obstacle);
     its.map(|k| Vec2::new(k.force_n[0], k.force_n[1])).sum()
-}
-
-fn between_stops<'a>(nodes: &'a [Node], stops: &[f64]) -> &'a [Node] {
-    let (Some(from), Some(to)) = (stops.first(), stops.last()) else { return &[] };
-    let first = nodes.partition_point(|n| n.arc_length_m < *from);
-    let last = nodes.partition_point(|n| n.arc_length_m <= *to);
-    nodes.get(first..last).unwrap_or(&[])
-}
-
-/// Greatest force by which an end of a stretch answers a unit of displacement, N/m; None where it has no length.
-fn stiffness(nodes: &[Node], problem: &Problem) -> Option<f64> {
-    let mut compliance = Mat2::zeros();
-    for w in nodes.windows(2) {
-        let (chord, ds) = (w[1].at() - w[0].at(), w[1].arc_length_m - w[0].arc_length_m);
-        let Some(t) = chord.try_normalize(0.0).filter(|_| ds > 0.0) else { continue };
-        let along = t * t.transpose();
-        let tension = larger(0.5 * (w[0].tension_n + w[1].tension_n), f64::MIN_POSITIVE);
-        compliance += along * (ds / problem.axial_stiffness) + (Mat2::identity() - along) * (ds / tension);
-    }
-    let [a, b, d] = [compliance[(0, 0)], compliance[(0, 1)], compliance[(1, 1)]];
-    let (mean, spread) = (0.5 * (a + d), (0.5 * (a - d)).hypot(b));
-    // The least eigenvalue, by the determinant: the difference of two large ones says nothing.
-    let least = (a * d - b * b) / (mean + spread);
-    (least > 0.0 && least.is_finite()).then(|| least.recip())
 }
 
 #[cfg(test)]
@@ -261,9 +204,9 @@ mod tests {
         let off = ErrorEstimates::between(&one, &two);
         assert_eq!(
             (off.max_tension_n, off.position_m, off.contact_force_n),
-            (Some(0.5 * READ), Some(0.5 * READ), None)
+            (Some(0.5 * READING_FACTOR), Some(0.5 * READING_FACTOR), None)
         );
-        assert_eq!(off.or_larger(&off.times(3.0)).max_tension_n, Some(1.5 * READ));
+        assert_eq!(off.or_larger(&off.times(3.0)).max_tension_n, Some(1.5 * READING_FACTOR));
         assert_eq!(off.or_larger(&ErrorEstimates::default()).max_tension_n, None);
     }
 }

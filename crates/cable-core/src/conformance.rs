@@ -1,8 +1,8 @@
 //! The suite every model must pass: identities that hold whatever the method, each with the figure reached.
 
-use super::Model;
-use crate::error::Error;
+use crate::any_error::Error;
 use crate::math::{Vec2, larger};
+use crate::model_id::Model;
 use crate::scene::{Obstacle, Scene, Shape, Support, SupportKind, catalog};
 use crate::simulation::Simulation;
 use crate::solution::{Solution, SupportReaction};
@@ -35,7 +35,7 @@ pub fn run(model: Model) -> Result<Vec<Check>, Error> {
     let (shape, equilibrium) = match model {
         Model::Catenary | Model::Spans => (1e-9, 1e-9),
         Model::MassSpring => (1e-3, 2e-5),
-        Model::Fem | Model::Auto => (1e-5, 1e-6),
+        Model::Fem | Model::Auto | Model::External => (1e-5, 1e-6),
     };
     let base = span([0.0, 5.0], [10.0, 4.0]);
     let settled = settle(&base, model)?;
