@@ -9,7 +9,7 @@ use super::Problem;
 use crate::error::{SceneError, SceneFault};
 use crate::math::Vec2;
 use crate::scene::SupportKind;
-use crate::scene::path::Path;
+use crate::scene::read::path::Path;
 use crate::solution::{Warning, WarningKind};
 
 /// How far inside a surface a point that was meant to be on it may be, of the radius: rounding of coordinates and slopes.

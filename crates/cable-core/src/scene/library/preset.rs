@@ -4,10 +4,10 @@ use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
-use super::Obstacle;
-use super::read::nearest;
 use crate::error::SceneFault;
 use crate::math::Point;
+use crate::scene::Obstacle;
+use crate::scene::read::deserialize::nearest;
 
 /// How well a number is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -95,7 +95,7 @@ impl CablePreset {
         ]
     }
 
-    pub(super) fn values(&self) -> Vec<(&'static str, f64)> {
+    pub(in crate::scene) fn values(&self) -> Vec<(&'static str, f64)> {
         self.figures().into_iter().map(|(key, figure)| (key, figure.value)).collect()
     }
 }
@@ -168,7 +168,7 @@ pub struct MapPreset {
 
 macro_rules! embedded {
     ($folder:literal: $($id:literal),+ $(,)?) => {
-        &[$(($id, include_str!(concat!("../../../../assets/", $folder, "/", $id, ".toml")))),+]
+        &[$(($id, include_str!(concat!("../../../../../assets/", $folder, "/", $id, ".toml")))),+]
     };
 }
 
@@ -227,7 +227,7 @@ pub fn map_preset(id: &str) -> Option<&'static MapPreset> {
 }
 
 /// There is no such preset.
-pub(super) fn unknown<'a>(what: &'static str, id: &str, known: impl Iterator<Item = &'a str>) -> SceneFault {
+pub(in crate::scene) fn unknown<'a>(what: &'static str, id: &str, known: impl Iterator<Item = &'a str>) -> SceneFault {
     SceneFault::UnknownName { what, name: id.chars().take(60).collect(), nearest: nearest(id, known) }
 }
 

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Scene, preset};
+use crate::scene::{Scene, preset};
 
 /// What a cable's file must give even with a preset.
 const REQUIRED_KEYS: [&str; 3] = ["name", "length_m", "supports"];
@@ -29,7 +29,7 @@ impl Scene {
             }
         }
         if let Some(Value::Object(version)) = schema.pointer_mut("/properties/version") {
-            version.insert("const".to_owned(), json!(super::VERSION));
+            version.insert("const".to_owned(), json!(crate::scene::VERSION));
         }
         schema
     }

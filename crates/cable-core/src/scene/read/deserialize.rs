@@ -14,8 +14,8 @@ use serde::de::{
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::preset;
 use crate::error::SceneFault;
+use crate::scene::preset;
 
 type Node<'a> = Spanned<DeValue<'a>>;
 
@@ -133,7 +133,7 @@ fn plain(expected: &dyn Expected) -> String {
 }
 
 /// The known name nearest to a mistyped one, if any is near enough to be meant.
-pub(super) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
+pub(in crate::scene) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
     // Jaro–Winkler similarity below which a hint is noise: 0.95 misses `lenght` for `length_m`, 0.75 offers
     // `name` for `a`.
     const MIN_SIMILARITY: f64 = 0.8;

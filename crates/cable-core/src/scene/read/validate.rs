@@ -5,11 +5,10 @@
 use super::path::Path;
 use super::range::{self, Range};
 use super::self_touch::{SelfTouch, first_self_touch};
-use super::{
-    Cable, Load, Motion, Obstacle, Robot, RobotTask, Scene, Shape, VERSION, length_check, preset, support_rules,
-};
+use super::{length_check, support_rules};
 use crate::error::{SceneError, SceneFault};
 use crate::math::Point;
+use crate::scene::{Cable, Load, Motion, Obstacle, Robot, RobotTask, Scene, Shape, VERSION, preset};
 
 /// Most cables. More would be solved, slowly; a file with more is surely a slip.
 const MAX_CABLES: usize = 1000;

@@ -1,6 +1,6 @@
 //! Named scenes from `assets/scenes/`, used by tests, benches, examples and the viewer alike.
 
-use super::{Environment, Motion, Scene, Support, VERSION, View};
+use crate::scene::{Environment, Motion, Scene, Support, VERSION, View};
 
 macro_rules! scenes {
     ($($(#[$doc:meta])* $name:ident = $id:literal;)+) => {
@@ -8,7 +8,7 @@ macro_rules! scenes {
             $(#[$doc])*
             #[must_use]
             pub fn $name() -> Scene {
-                read(include_str!(concat!("../../../../assets/scenes/", $id, ".toml")))
+                read(include_str!(concat!("../../../../../assets/scenes/", $id, ".toml")))
             }
         )+
 
@@ -20,7 +20,7 @@ macro_rules! scenes {
 
         /// The text of every catalogue scene, with its comments: short id, text.
         pub const TEXTS: &[(&str, &str)] =
-            &[$(($id, include_str!(concat!("../../../../assets/scenes/", $id, ".toml")))),+];
+            &[$(($id, include_str!(concat!("../../../../../assets/scenes/", $id, ".toml")))),+];
     };
 }
 

@@ -1,8 +1,9 @@
 //! Which keys belong to which kind of support, and where along the cable each kind may sit.
 
 use super::path::Path;
+use super::range;
 use super::validate::{Checked, MAX_POINTS_ON_CABLE, at_most, force, motion, number, point, unique};
-use super::{Cable, Scene, Support, SupportKind, range};
+use crate::scene::{Cable, Scene, Support, SupportKind};
 
 use SupportKind::{Clamped, Fixed, Free, Load, Pulley, Robot};
 

@@ -4,10 +4,10 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::deserialize::{Document, Refusal};
 use super::path::Path;
-use super::read::{Document, Refusal};
-use super::{Scene, VERSION, preset};
 use crate::error::{SceneError, SceneFault, TextPosition};
+use crate::scene::{Scene, VERSION, preset};
 
 /// Longest scene text, bytes: about 240 000 terrain points. A hostile one takes a hundred times its size in
 /// memory while it is read (measured: 800 MB for 8 MiB of `1,1,1,…`), an honest one fifty times.

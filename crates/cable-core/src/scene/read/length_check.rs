@@ -2,9 +2,9 @@
 
 use super::path::Path;
 use super::validate::Checked;
-use super::{Cable, Scene, Support, SupportKind};
 use crate::error::SceneFault;
 use crate::math::{Vec2, vec2};
+use crate::scene::{Cable, Scene, Support, SupportKind};
 
 /// Refuses a cable that would have to break to reach its supports. Each stretch between two supports that grip
 /// it is looked at by itself; obstacles only make the way longer.
