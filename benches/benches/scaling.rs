@@ -59,7 +59,7 @@ fn horizontal_chain() -> FemModel {
     let along: Vec<Vec2> = state.arc_length_m.iter().map(|&s| Vec2::new(s, 0.0)).collect();
     // As good as at rest: a state that moves is taken over as it is.
     let speed = vec![Vec2::new(0.0, -1e-12); along.len()];
-    chain.adopt(&State { position_m: along, velocity_m_per_s: speed, ..state }).expect("a state");
+    chain.set_state(&State { position_m: along, velocity_m_per_s: speed, ..state }).expect("a state");
     chain
 }
 

@@ -75,7 +75,7 @@ impl Run {
             // As good as at rest: a state that moves is taken over as it is.
             state.velocity_m_per_s = vec![Vec2::new(0.0, -1e-12); state.position_m.len()];
         }
-        self.sim.adopt(&states)
+        self.sim.set_states(&states)
     }
 
     /// Follows it to `end_s` (s), and looks at it after each step.
@@ -227,7 +227,7 @@ pub fn motions() -> [Motion; 9] {
                         state.velocity_m_per_s[k] = Vec2::new(0.0, -speed * s / 10.0);
                     }
                 }
-                run.sim.adopt(&states)?;
+                run.sim.set_states(&states)?;
                 let (mut last, mut greatest) = ([0.0; 3], 0.0f64);
                 run.follow(1.0, |sim, _| {
                     // A parabola through three pulls: the greatest lies between two steps.

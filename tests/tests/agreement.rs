@@ -1,6 +1,6 @@
 //! Two models that share no solver, over random scenes: what `fem` says with ever more elements tends to what `spans` says.
 //!
-//! Both begin with the same rest and the same friction in it ([`Mechanics::take_over`]), then an end is drawn about without
+//! Both begin with the same rest and the same friction in it ([`Mechanics::warm_start`]), then an end is drawn about without
 //! inertia. `AGREE_CASES=200 cargo test -p cable-tests --test agreement -- --nocapture` prints how far apart the forces on the
 //! supports are after that, of the greatest tension; CI looks at a few.
 
@@ -120,7 +120,7 @@ fn fem_with_more_elements_tends_to_spans() {
         let off: Vec<f64> = (ELEMENTS.iter())
             .filter_map(|&n| {
                 let mut fem = model(&problem, Model::Fem, Some(n));
-                fem.take_over(&start, 0.0).ok()?;
+                fem.warm_start(&start, 0.0).ok()?;
                 Some(apart(&exact, &drawn(fem.as_mut(), &dice.5, from)?))
             })
             .collect();

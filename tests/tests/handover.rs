@@ -66,7 +66,7 @@ fn spans_go_on_from_their_own_answer_as_if_nothing_had_been() {
     for ((name, scene), steps) in scenes().iter().flat_map(|s| STEPS.map(|n| (s, n))) {
         let Some(old) = on_the_way(scene, steps).filter(|m| greatest(&m.solution()) > 0.0) else { continue };
         let mut new = model(scene, Model::Spans, None).unwrap();
-        new.take_over(&old.solution(), old.time_s()).unwrap_or_else(|e| panic!("{name}: {e}"));
+        new.warm_start(&old.solution(), old.time_s()).unwrap_or_else(|e| panic!("{name}: {e}"));
         let (shape, force) = apart(&old.solution(), &new.solution());
         // Their nodes lie elsewhere on the curve, and between nodes it is a chord. Of the cone 1e-5 is left unused.
         assert!(shape < 1e-3 && force < 2e-5, "{name}: {shape:.1e} m, {force:.1e}");
@@ -83,10 +83,10 @@ fn friction_holds_on_when_fem_goes_on_from_spans_and_back() {
         let Some(old) = on_the_way(scene, steps).filter(|m| greatest(&m.solution()) > 0.0) else { continue };
         let before = old.solution();
         let mut fem = model(scene, Model::Fem, None).unwrap();
-        fem.take_over(&before, old.time_s()).unwrap_or_else(|e| panic!("{name}: {e}"));
+        fem.warm_start(&before, old.time_s()).unwrap_or_else(|e| panic!("{name}: {e}"));
         let there = apart(&before, &fem.solution());
         let mut back = model(scene, Model::Spans, None).unwrap();
-        if let Err(e) = back.take_over(&fem.solution(), fem.time_s()) {
+        if let Err(e) = back.warm_start(&fem.solution(), fem.time_s()) {
             println!("{name}: refused: {e}");
             refused += 1;
             continue;

@@ -1,25 +1,10 @@
-//! Errors by operation, with the numbers in them.
+//! The errors of a scene and of a solve, by operation, with the numbers in them.
 
 use thiserror::Error;
 
-use crate::files::FileError;
 use crate::math::Vec2;
-use crate::model::Model;
-use crate::verify::Finding;
-
-/// Anything the three-line user can meet.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum Error {
-    /// The scene cannot be read or is not a scene that can be solved.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// The model has no answer.
-    #[error(transparent)]
-    Solve(#[from] SolveError),
-    /// A file cannot be read or written.
-    #[error(transparent)]
-    File(#[from] FileError),
-}
+use crate::model_id::Model;
+use crate::solution::verification::Finding;
 
 /// Why a scene is refused.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -190,11 +175,11 @@ fn metres(length_m: f64) -> String {
 }
 
 /// A force that no cable bears, N: left over it says that a search ran away, not how much is missing.
-const BEYOND_ALL_N: f64 = 1e9;
+const MAX_CREDIBLE_FORCE_N: f64 = 1e9;
 
 /// A force that is left over, where a solver knows one: a figure that is not finite, or beyond all measure, says nothing to anybody.
 fn left_over(residual_n: f64) -> String {
-    if residual_n.abs() < BEYOND_ALL_N {
+    if residual_n.abs() < MAX_CREDIBLE_FORCE_N {
         format!("{residual_n:.3e} N stay unbalanced")
     } else {
         "no balance of forces was reached".to_owned()

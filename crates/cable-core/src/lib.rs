@@ -20,40 +20,42 @@
 //! | angle in files | ° |
 //! | time | s |
 //!
-//! Dependencies point one way: `math, error → scene → (catenary, energy, contact) → model → simulation → record`.
+//! Dependencies between the modules point one way, without a loop:
+//! `math, model_id → solution → error → scene → contact, catenary, energy → problem → state → model → breakage, warnings, verify →
+//! simulation → timeline, analysis, summary, conformance`, and `record → files → any_error` beside them.
 
+pub mod analysis;
+pub mod any_error;
+mod breakage;
 pub mod catenary;
+pub mod conformance;
 pub mod contact;
 pub mod energy;
 pub mod error;
-pub mod estimates;
 pub mod files;
 mod kinematics;
 pub mod math;
 pub mod model;
-pub mod origin;
+pub mod model_id;
 pub mod problem;
-pub mod reach;
 pub mod record;
 pub mod robot;
 pub mod scene;
 pub mod simulation;
 pub mod solution;
-pub mod spread;
 pub mod state;
-mod strand;
 pub mod summary;
 pub mod timeline;
 pub mod verify;
-mod watch;
+mod warnings;
 
+pub use any_error::Error;
 pub use cable_linalg as linalg;
-pub use error::{Error, SceneError, SolveError};
-pub use estimates::ErrorEstimates;
+pub use error::{SceneError, SolveError};
 pub use files::FileError;
 pub use math::{Mat2, Vec2};
 pub use model::{Model, Settings};
 pub use scene::{Cable, Load, Obstacle, Robot, Scene, Support};
 pub use simulation::Simulation;
-pub use solution::{Solution, Warning};
+pub use solution::{ErrorEstimates, Solution, Warning};
 pub use state::State;

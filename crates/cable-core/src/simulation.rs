@@ -4,55 +4,58 @@ mod coupling;
 
 use std::sync::Arc;
 
-use crate::error::{Error, SolveError};
-use crate::estimates::ErrorEstimates;
+use crate::any_error::Error;
+use crate::breakage::BreakableCable;
+use crate::error::SolveError;
 use crate::kinematics::{self, AlongCable};
 use crate::math::{Vec2, larger};
 use crate::model::auto::{self, Question};
-use crate::model::lay::least_sliding;
-use crate::model::{Inertia, LEAST_TOLERANCE, Model, Settings, StepReport};
-use crate::problem::problems;
+use crate::model::initial_equilibrium::initial_equilibrium;
+use crate::model::{Inertia, MIN_TOLERANCE, Mechanics, Model, ModelSource, Settings, StepReport};
+use crate::problem::{Problem, problems};
 use crate::robot::Vehicle;
 use crate::scene::Scene;
+use crate::solution::ErrorEstimates;
 use crate::solution::{CableSolution, Cost, Energy, MaxTension, Node, Solution, Warning, WarningKind};
 use crate::state::State;
-use crate::strand::Strand;
-use crate::timeline::STEP_S;
 use crate::verify::{Depth, Verification, Verifier};
-use crate::watch::{Bends, Subject, Watch};
+use crate::warnings::{Bends, Observed, WarningMonitor};
+
+/// Step with inertia, s: the inner step of `fem`.
+pub const STEP_S: f64 = 1.0 / 240.0;
 
 /// Longest step a display frame takes, s: longer makes one slow frame cause the next, shorter slows time at 10 Hz.
 pub const MAX_FRAME_S: f64 = 0.1;
 
 /// Longest step with inertia, s: a quarter of a million inner steps. Longer: a slip of the pen computes for hours without a word.
-const LONGEST_STEP_S: f64 = 1e3;
+const MAX_STEP_S: f64 = 1e3;
 
 /// The same without inertia, s.
-const LONGEST_SLOW_STEP_S: f64 = 1e6;
+const MAX_QUASI_STATIC_STEP_S: f64 = 1e6;
 
 /// Fewer elements than this say nothing of how wrong others are.
-const LEAST_ELEMENTS: usize = 4;
+const MIN_ELEMENTS: usize = 4;
 
 /// A scene being solved.
 #[derive(Clone)]
 pub struct Simulation {
     scene: Scene,
     /// What the user asked for.
-    asked: Model,
+    requested: Model,
     /// As it was built: `Auto` where two models may take turns.
-    built: Model,
-    /// The one in use: of several cables the highest rung.
+    source: ModelSource,
+    /// The one in use: of several cables the one that takes on most.
     model: Model,
     reason: String,
     settings: Settings,
-    cables: Vec<Strand>,
-    start: Option<Vec<Strand>>,
+    cables: Vec<BreakableCable>,
+    start: Option<Vec<BreakableCable>>,
     vehicle: Option<Vehicle>,
     /// The answers of the cables at the present instant.
     answers: Vec<CableSolution>,
     /// Where the cables were when the run began.
     first: Vec<AlongCable>,
-    watch: Watch,
+    warning_monitor: WarningMonitor,
     energy: Energy,
     cost: Cost,
     warnings: Vec<Warning>,
@@ -84,45 +87,71 @@ impl Simulation {
     /// As [`Self::new`].
     pub fn for_question(scene: Scene, model: Model, settings: Settings, question: Question) -> Result<Self, Error> {
         let problems = problems(&scene)?;
-        let build_all = |m: Model| {
-            problems.iter().map(|p| Strand::new(m, p.clone(), settings)).collect::<Result<Vec<_>, SolveError>>()
+        if model != Model::Auto {
+            let reason = "asked for".to_owned();
+            return Self::from_source(scene, &problems, settings, (model, ModelSource::Registered(model), reason));
+        }
+        let (chosen, reason) = auto::choose_for_all(&problems, question);
+        let source = ModelSource::Registered(auto::built_for(chosen));
+        let built = Self::from_source(scene.clone(), &problems, settings, (chosen, source, reason));
+        let mut this = match built {
+            Err(Error::Solve(SolveError::Unsupported { feature, .. })) if chosen != Model::MOST_CAPABLE => {
+                let reason = format!("{chosen} cannot answer this scene: {feature}");
+                let source = ModelSource::Registered(Model::MOST_CAPABLE);
+                Self::from_source(scene, &problems, settings, (Model::MOST_CAPABLE, source, reason))?
+            }
+            built => built?,
         };
-        let (mut chosen, mut reason) = (model, "asked for".to_owned());
-        if model == Model::Auto {
-            (chosen, reason) = problems
-                .iter()
-                .map(|p| auto::choose(p, question))
-                .max_by_key(|(m, _)| rung(*m))
-                .unwrap_or((Model::Catenary, String::new()));
+        this.requested = Model::Auto;
+        Ok(this)
+    }
+
+    /// As [`Self::with_settings`], by a model of the program's own: `constructor` is called for each cable, and for each piece
+    /// that one breaks into.
+    ///
+    /// # Errors
+    /// As [`Self::new`], or what the constructor says.
+    pub fn with_mechanics<F>(scene: Scene, settings: Settings, constructor: F) -> Result<Self, Error>
+    where
+        F: Fn(Arc<Problem>, Settings) -> Result<Box<dyn Mechanics>, SolveError> + Send + Sync + 'static,
+    {
+        Self::by_source(scene, settings, ModelSource::External(Arc::new(constructor)))
+    }
+
+    /// As [`Self::with_settings`], by a model wherever it comes from.
+    fn by_source(scene: Scene, settings: Settings, source: ModelSource) -> Result<Self, Error> {
+        if let ModelSource::Registered(model) = source {
+            return Self::with_settings(scene, model, settings);
         }
-        let mut built = if model == Model::Auto && chosen == Model::Spans { Model::Auto } else { chosen };
-        let mut cables = build_all(built);
-        if model == Model::Auto
-            && chosen != Model::Fem
-            && let Err(SolveError::Unsupported { feature, .. }) = &cables
-        {
-            reason = format!("{chosen} cannot answer this scene: {feature}");
-            chosen = Model::Fem;
-            built = Model::Fem;
-            cables = build_all(built);
-        }
-        let cables = cables?;
-        let answers = cables.iter().map(Strand::answer).collect();
+        let problems = problems(&scene)?;
+        Self::from_source(scene, &problems, settings, (source.model(), source, "asked for".to_owned()))
+    }
+
+    /// Builds every cable by one source, said to be that model for that reason.
+    fn from_source(
+        scene: Scene,
+        problems: &[Arc<Problem>],
+        settings: Settings,
+        (model, source, reason): (Model, ModelSource, String),
+    ) -> Result<Self, Error> {
+        let cables = problems.iter().map(|p| BreakableCable::new(source.clone(), p.clone(), settings));
+        let cables = cables.collect::<Result<Vec<_>, SolveError>>()?;
+        let answers = cables.iter().map(BreakableCable::answer).collect();
         Ok(Self {
             vehicle: Vehicle::of(&scene),
             verifier: Arc::new(Verifier::new(&scene)),
             verification: Verification::default(),
             scene,
-            asked: model,
-            built,
-            model: chosen,
+            requested: model,
+            source,
+            model,
             reason,
             settings,
             cables,
             start: None,
             answers,
             first: Vec::new(),
-            watch: Watch::default(),
+            warning_monitor: WarningMonitor::default(),
             energy: Energy::default(),
             cost: Cost::default(),
             warnings: Vec::new(),
@@ -131,33 +160,33 @@ impl Simulation {
 
     /// Reads the present instant: answers, and what is to be said of them.
     fn look(&mut self, moving: bool) {
-        self.answers = self.cables.iter().map(Strand::answer).collect();
+        self.answers = self.cables.iter().map(BreakableCable::answer).collect();
         if !moving {
             self.first = self.answers.iter().map(|a| AlongCable::places(&a.nodes)).collect();
         }
         for (answer, first) in self.answers.iter_mut().zip(&self.first) {
             kinematics::displace(&mut answer.nodes, first);
         }
-        self.model = self.cables.iter().map(Strand::model).max_by_key(|m| rung(*m)).unwrap_or(self.model);
+        self.model = self.cables.iter().map(BreakableCable::model).max_by_key(|m| m.rank()).unwrap_or(self.model);
         let mut bends = Vec::with_capacity(self.cables.len());
-        for (strand, answer) in self.cables.iter().zip(&mut self.answers) {
-            let found = Bends::of(strand.problem(), answer);
+        for (cable, answer) in self.cables.iter().zip(&mut self.answers) {
+            let found = Bends::of(cable.problem(), answer);
             (answer.tightest_bend, answer.sidewall_pressure) = (found.tightest(), found.pressure);
             (answer.free_bend, answer.judged_bend) = (found.free(), found.judged());
             bends.push(found);
         }
         let time_s = self.time_s();
-        let subjects: Vec<Subject<'_>> = (self.cables.iter().zip(&self.answers).zip(bends))
+        let observed: Vec<Observed<'_>> = (self.cables.iter().zip(&self.answers).zip(bends))
             .map(|((c, answer), bends)| {
                 let energy = Energy::of(c.problem(), answer);
-                Subject { problem: c.problem(), answer, energy, bends, breaks: c.breaks() }
+                Observed { problem: c.problem(), answer, energy, bends, breaks: c.breaks() }
             })
             .collect();
-        self.energy = subjects.iter().map(|s| s.energy).sum();
+        self.energy = observed.iter().map(|s| s.energy).sum();
         if moving {
-            self.watch.moving(&subjects, time_s)
+            self.warning_monitor.moving(&observed, time_s)
         } else {
-            self.watch.at_rest(&subjects, time_s)
+            self.warning_monitor.at_rest(&observed, time_s)
         }
         self.look_for_robot();
         self.verification = self.verify(&self.answers);
@@ -173,12 +202,12 @@ impl Simulation {
     fn look_for_robot(&mut self) {
         self.warnings.retain(|w| w.kind != WarningKind::ThroughRobot);
         let Some(at) = self.vehicle.as_ref().map(|v| v.pose().placement()) else { return };
-        for (strand, answer) in self.cables.iter().zip(&self.answers) {
-            let problem = strand.problem();
-            let Some(outline) = problem.outline.as_ref().filter(|_| strand.outline().is_none()) else { continue };
+        for (cable, answer) in self.cables.iter().zip(&self.answers) {
+            let problem = cable.problem();
+            let Some(outline) = problem.outline.as_ref().filter(|_| cable.robot_contact().is_none()) else { continue };
             if !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius) {
                 let message =
-                    format!("`{}` lies through the robot: {} knows nothing of it", answer.name, strand.model());
+                    format!("`{}` lies through the robot: {} knows nothing of it", answer.name, cable.model());
                 let kind = WarningKind::ThroughRobot;
                 self.warnings.push(Warning::new(kind, &answer.name, problem.length, [0.0, 0.0], message));
             }
@@ -186,12 +215,12 @@ impl Simulation {
     }
 
     #[cfg(test)]
-    pub(crate) fn cables(&self) -> &[Strand] {
+    pub(crate) fn cables(&self) -> &[BreakableCable] {
         &self.cables
     }
 
     #[cfg(test)]
-    pub(crate) fn cables_mut(&mut self) -> &mut [Strand] {
+    pub(crate) fn cables_mut(&mut self) -> &mut [BreakableCable] {
         &mut self.cables
     }
 
@@ -229,13 +258,13 @@ impl Simulation {
     /// Why that model.
     #[must_use]
     pub fn reason(&self) -> &str {
-        self.cables.iter().find_map(Strand::reason).unwrap_or(&self.reason)
+        self.cables.iter().find_map(BreakableCable::reason).unwrap_or(&self.reason)
     }
 
     /// Time reached, s.
     #[must_use]
     pub fn time_s(&self) -> f64 {
-        self.cables.first().map_or(0.0, Strand::time_s)
+        self.cables.first().map_or(0.0, BreakableCable::time_s)
     }
 
     /// Finds where everything rests. The first answer is kept as the start that [`Self::reset`] returns to.
@@ -261,12 +290,12 @@ impl Simulation {
     fn settle_soundly(&mut self) -> Result<(), SolveError> {
         let mut first: Option<SolveError> = None;
         loop {
-            let found = self.each(Strand::settle).and_then(|()| {
+            let found = self.each(BreakableCable::settle).and_then(|()| {
                 self.look(false);
                 self.sound()
             });
             let Err(error) = found else { return Ok(()) };
-            let error = match self.cables.iter().find_map(Strand::refusal) {
+            let error = match self.cables.iter().find_map(BreakableCable::refusal) {
                 Some(refusal) if matches!(error, SolveError::Unsound { .. }) => {
                     SolveError::clearer(refusal.clone(), error)
                 }
@@ -289,7 +318,8 @@ impl Simulation {
     fn sound(&self) -> Result<(), SolveError> {
         // Masses and springs are a quick look and a second opinion, asked for by name: their coarse meshes are told, not refused. A
         // cable that broke at rest is where it was when it broke.
-        let told = self.asked == Model::MassSpring || self.cables.iter().any(|c| !c.breaks().is_empty());
+        let told =
+            self.requested.capabilities().findings_are_told || self.cables.iter().any(|c| !c.breaks().is_empty());
         match self.verification.worst().filter(|_| !told) {
             None => Ok(()),
             Some(finding) => Err(SolveError::Unsound { model: self.model, finding: Box::new(finding.clone()) }),
@@ -298,34 +328,36 @@ impl Simulation {
 
     /// Gives the scene to the next model, where the user left the choice; returns whether there was one.
     fn next_model(&mut self, why: &str) -> bool {
-        if self.asked != Model::Auto {
+        if self.requested != Model::Auto {
             return false;
         }
         let mut other = false;
         for cable in &mut self.cables {
             other |= cable.fall_back(why);
         }
-        if other || self.built == Model::Fem {
+        if other || self.source.model() == Model::MOST_CAPABLE {
             return other;
         }
-        let fem = self.cables.iter().map(|c| c.by_model(Model::Fem));
-        let Ok(next) = fem.collect::<Result<Vec<_>, SolveError>>() else { return false };
+        let source = ModelSource::Registered(Model::MOST_CAPABLE);
+        let others = self.cables.iter().map(|c| c.rebuilt(source.clone()));
+        let Ok(next) = others.collect::<Result<Vec<_>, SolveError>>() else { return false };
         self.reason = format!("{} gave no sound answer: {why}", self.model);
-        (self.cables, self.built, self.model) = (next, Model::Fem, Model::Fem);
-        self.lead_outline();
+        (self.cables, self.source, self.model) = (next, source, Model::MOST_CAPABLE);
+        self.set_robot_pose();
         true
     }
 
     /// With friction a resting place is one of many: said of every cable that rubs where it rests, whichever model answered, with what
     /// other histories would have left in it where `spans` knows.
     fn say_where_friction_chose(&mut self) {
-        for (k, (strand, answer)) in self.cables.iter().zip(&self.answers).enumerate() {
-            let problem = strand.problem();
+        for (k, (cable, answer)) in self.cables.iter().zip(&self.answers).enumerate() {
+            let problem = cable.problem();
             let said = |w: &Warning| w.kind == WarningKind::NotUnique && w.cable == problem.cable.name;
             if !problem.rubs(answer) || self.warnings.iter().any(said) {
                 continue;
             }
-            let seek = || least_sliding(&Arc::new(problem.clone()), Settings::default(), (&[], None)).ok().flatten();
+            let seek =
+                || initial_equilibrium(&Arc::new(problem.clone()), Settings::default(), (&[], None)).ok().flatten();
             let known = if self.settings.histories { seek() } else { None };
             let mut known: Vec<Warning> = known.map(|lay| lay.warnings).unwrap_or_default();
             known.retain(said);
@@ -345,8 +377,11 @@ impl Simulation {
     /// What other histories would have left in a cable, in words: in plan view, where a floor that rubs everywhere chose the rest and
     /// `spans` has no answer; None where none was sought or found.
     fn histories(&self, k: usize) -> Option<String> {
-        let strand = self.cables.get(k).filter(|c| c.problem().floor_friction.is_some() && c.model() == Model::Fem)?;
-        strand.histories(|other| {
+        let cable = self
+            .cables
+            .get(k)
+            .filter(|c| c.problem().floor_friction.is_some() && c.model().capabilities().explores_histories)?;
+        cable.histories(|other| {
             let mut answers = self.answers.clone();
             answers[k].clone_from(other);
             self.verify(&answers).is_sound()
@@ -371,13 +406,13 @@ impl Simulation {
 
     fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
         let (longest, allowed) = match inertia {
-            Inertia::Dynamic => (LONGEST_STEP_S, "more than 0 and at most 1000 s"),
-            Inertia::QuasiStatic => (LONGEST_SLOW_STEP_S, "more than 0 and at most 1e6 s"),
+            Inertia::Dynamic => (MAX_STEP_S, "more than 0 and at most 1000 s"),
+            Inertia::QuasiStatic => (MAX_QUASI_STATIC_STEP_S, "more than 0 and at most 1e6 s"),
         };
         if !(dt_s > 0.0 && dt_s <= longest) {
             return Err(SolveError::TimeStep { dt_s, allowed });
         }
-        self.cables.iter_mut().for_each(Strand::forget_peaks);
+        self.cables.iter_mut().for_each(BreakableCable::forget_peaks);
         let velocities: Vec<_> = self.answers.iter().map(|a| AlongCable::velocities(&a.nodes)).collect();
         let done = match self.vehicle.is_some() {
             true => self.advance_with_robot(dt_s, inertia),
@@ -429,20 +464,24 @@ impl Simulation {
         let mut scene = self.scene.clone();
         for (cable, answer) in scene.cables.iter_mut().zip(&self.answers) {
             let elements = (answer.nodes.len().saturating_sub(1) as f64 * times).floor() as usize;
-            if elements < LEAST_ELEMENTS {
+            if elements < MIN_ELEMENTS {
                 return Ok(None);
             }
             cable.segments = Some(elements);
         }
         let settings = Settings {
             // Steps of a taut cable follow its frequency, as the square root of it.
-            tolerance: larger(self.settings.tolerance / (times * times), LEAST_TOLERANCE),
+            tolerance: larger(self.settings.tolerance / (times * times), MIN_TOLERANCE),
             segments: None,
             inner_step_s: Some(self.settings.inner_step_s.unwrap_or(STEP_S) / times),
             histories: false,
             ..self.settings
         };
-        let mut next = Self::with_settings(scene, self.model, settings)?;
+        let source = match &self.source {
+            ModelSource::Registered(_) => ModelSource::Registered(self.model),
+            external @ ModelSource::External(_) => external.clone(),
+        };
+        let mut next = Self::by_source(scene, settings, source)?;
         next.reason.clone_from(&self.reason);
         Ok(Some(next))
     }
@@ -453,7 +492,7 @@ impl Simulation {
     /// # Errors
     /// What is wrong with the new scene; the old simulation is untouched.
     pub fn with_scene(&self, scene: Scene, settings: Settings) -> Result<Self, Error> {
-        let mut next = Self::with_settings(scene, self.built, settings)?;
+        let mut next = Self::by_source(scene, settings, self.source.clone())?;
         next.reason.clone_from(&self.reason);
         next.carry(self)?;
         Ok(next)
@@ -461,7 +500,10 @@ impl Simulation {
 
     /// Asks every cable the same. Where one of several fails, all are as before: never some of them a step ahead. (A
     /// cable alone stays where it came, see [`Mechanics::advance`](crate::model::Mechanics::advance).)
-    fn each(&mut self, mut f: impl FnMut(&mut Strand) -> Result<StepReport, SolveError>) -> Result<(), SolveError> {
+    fn each(
+        &mut self,
+        mut f: impl FnMut(&mut BreakableCable) -> Result<StepReport, SolveError>,
+    ) -> Result<(), SolveError> {
         let (mut cost, mut warnings) = (Cost::default(), Vec::new());
         let several = self.cables.len() > 1;
         let mut before = Vec::with_capacity(if several { self.cables.len() } else { 0 });
@@ -504,7 +546,7 @@ impl Simulation {
 
     /// What is to be said of this instant.
     pub fn warnings(&self) -> impl Iterator<Item = &Warning> {
-        self.warnings.iter().chain(self.watch.warnings())
+        self.warnings.iter().chain(self.warning_monitor.warnings())
     }
 
     /// The answer at this instant, with what the cables cannot stand among its warnings.
@@ -561,7 +603,7 @@ impl Simulation {
     /// Where each cable is. Where one broke, its state has two nodes of the same arc length.
     #[must_use]
     pub fn states(&self) -> Vec<State> {
-        self.cables.iter().map(Strand::state).collect()
+        self.cables.iter().map(BreakableCable::state).collect()
     }
 
     /// Goes on where `old`, a simulation of the same cables, is: broken where that one broke.
@@ -572,7 +614,7 @@ impl Simulation {
         if let (Some(new), Some(old), true) = (&mut self.vehicle, &old.vehicle, old.time_s() > 0.0) {
             new.carry(old);
         }
-        self.lead_outline();
+        self.set_robot_pose();
         for (new, old) in self.cables.iter_mut().zip(&old.cables) {
             new.carry(old)?;
         }
@@ -584,9 +626,9 @@ impl Simulation {
     ///
     /// # Errors
     /// When a state does not fit its cable, or the cable broke.
-    pub fn adopt(&mut self, states: &[State]) -> Result<(), SolveError> {
+    pub fn set_states(&mut self, states: &[State]) -> Result<(), SolveError> {
         for (c, s) in self.cables.iter_mut().zip(states) {
-            c.adopt(s)?;
+            c.set_state(s)?;
         }
         self.look(false);
         Ok(())
@@ -597,20 +639,15 @@ impl Simulation {
     /// again.
     ///
     /// # Errors
-    /// As [`Self::adopt`].
+    /// As [`Self::set_states`].
     pub fn resume(&mut self, answer: &Solution) -> Result<(), SolveError> {
         let states: Vec<State> = answer.cables.iter().map(|c| State::of_nodes(&c.nodes, answer.time_s)).collect();
         if let (Some(vehicle), Some(then)) = (&mut self.vehicle, &answer.robot) {
             vehicle.resume(then);
         }
-        self.lead_outline();
-        self.adopt(&states)
+        self.set_robot_pose();
+        self.set_states(&states)
     }
-}
-
-/// How much a model takes on.
-fn rung(model: Model) -> usize {
-    Model::SOLVERS.iter().position(|m| *m == model).unwrap_or(0)
 }
 
 impl std::fmt::Debug for Simulation {

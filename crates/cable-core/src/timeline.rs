@@ -11,14 +11,12 @@ pub use self::monitor::RunMonitor;
 
 use crate::error::SolveError;
 use crate::model::Inertia;
+pub use crate::simulation::STEP_S;
 use crate::simulation::Simulation;
 use crate::solution::{Solution, TensionPeaks};
 
 /// Ticks in a second: the least common multiple of nanoseconds and of thirds of them, so that 1/60, 1/240 and 1/3840 s are whole.
 const TICKS_PER_S: f64 = 3e9;
-
-/// Step with inertia, s: the inner step of `fem`.
-pub const STEP_S: f64 = 1.0 / 240.0;
 
 /// Step without inertia, s: that of a display.
 pub const QUASI_STATIC_STEP_S: f64 = 1.0 / 60.0;

@@ -3,7 +3,7 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use cable_core::Model;
-use cable_core::model::conformance;
+use cable_core::conformance;
 
 fn passes(model: Model) {
     for check in conformance::run(model).unwrap() {

@@ -15,8 +15,8 @@ mod dice;
 
 use std::fmt::Write as _;
 
-use cable_core::estimates::place;
 use cable_core::scene::{Obstacle, PulleySide, Scene, Shape, Support, SupportKind, catalog};
+use cable_core::solution::error_estimates::place;
 use cable_core::solution::{CableSolution, ContactReport, Node, SupportReaction};
 use cable_core::{Error, Load, Model, Settings, Simulation, SolveError, Vec2};
 

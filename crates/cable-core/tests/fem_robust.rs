@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 use cable_core::contact::World;
-use cable_core::contact::own::OwnShape;
+use cable_core::contact::self_contact::SelfContact;
 use cable_core::math::Vec2;
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, catalog};
 use cable_core::{Model, Settings, Simulation, SolveError};
@@ -85,7 +85,7 @@ fn throw_about(scenes: impl IntoIterator<Item = usize>, frames: usize, dt: f64, 
         let mut scene = random_scene(&mut dice);
         scene.cables[0].self_contact = self_contact;
         let c = &scene.cables[0];
-        let own = OwnShape { diameter: if self_contact { c.diameter_m } else { 0.0 } };
+        let own = SelfContact { diameter: if self_contact { c.diameter_m } else { 0.0 } };
         let world = World::new(&scene.obstacles, c.friction, c.diameter_m / 2.0);
         // Hands ten times as fast as an arm.
         let settings = Settings { hand_speed_m_per_s: 20.0, ..Settings::default() };
@@ -123,7 +123,7 @@ fn throw_about(scenes: impl IntoIterator<Item = usize>, frames: usize, dt: f64, 
 }
 
 /// Smallest distance of the cable's surface from itself, m.
-fn smallest_own_gap(own: OwnShape, sim: &Simulation) -> f64 {
+fn smallest_own_gap(own: SelfContact, sim: &Simulation) -> f64 {
     let nodes = &sim.solution().cables[0].nodes;
     let x: Vec<Vec2> = nodes.iter().map(|n| Vec2::new(n.x_m, n.y_m)).collect();
     let s: Vec<f64> = nodes.iter().map(|n| n.arc_length_m).collect();
@@ -262,10 +262,10 @@ fn a_state_inside_an_obstacle_is_refused() {
         states
     };
     // A millimetre deep it is pushed out, deeper than it reaches it is refused, and is where it was.
-    sim.adopt(&lowered(1e-3)).unwrap();
+    sim.set_states(&lowered(1e-3)).unwrap();
     sim.step(1.0 / 60.0).unwrap();
-    sim.adopt(&before).unwrap();
-    let refused = sim.adopt(&lowered(4.0)).unwrap_err();
+    sim.set_states(&before).unwrap();
+    let refused = sim.set_states(&lowered(4.0)).unwrap_err();
     println!("{refused}");
     assert!(
         matches!(refused, SolveError::Buried { ref obstacle, depth_m, .. } if obstacle == "ground" && depth_m > 0.5)

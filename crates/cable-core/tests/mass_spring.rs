@@ -456,16 +456,16 @@ fn a_state_inside_an_obstacle_is_refused() {
         }
         states
     };
-    sim.adopt(&before).unwrap();
+    sim.set_states(&before).unwrap();
     // Not as deep as its radius it is pushed out.
-    sim.adopt(&lowered(0.8 * radius)).unwrap();
+    sim.set_states(&lowered(0.8 * radius)).unwrap();
     sim.step(0.1).unwrap();
     let lowest = sim.states()[0].position_m.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
     assert!(lowest > -3.0 + 0.99 * radius, "{lowest}");
     // Deeper it would be held in: refused, and where it was.
-    sim.adopt(&before).unwrap();
+    sim.set_states(&before).unwrap();
     for depth in [1.2 * radius, 0.5, 40.0] {
-        let refused = sim.adopt(&lowered(depth)).unwrap_err();
+        let refused = sim.set_states(&lowered(depth)).unwrap_err();
         let named = matches!(&refused, SolveError::Buried { obstacle, depth_m, .. }
             if obstacle == "ground" && (depth_m - depth).abs() < 1e-9);
         assert!(named, "{refused}");

@@ -225,7 +225,7 @@ fn what_runs_away_is_held_back_and_said_with_place_and_time() {
         sim.settle().unwrap();
         let mut states = sim.states();
         states[0].velocity_m_per_s[17] = Vec2::new(0.0, 1e4);
-        sim.adopt(&states).unwrap();
+        sim.set_states(&states).unwrap();
         sim.step(0.02).unwrap();
         let s = sim.solution();
         let said: Vec<_> = s.warnings.iter().filter(|w| w.kind == WarningKind::Stabilised).collect();

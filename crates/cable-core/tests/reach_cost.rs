@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use cable_core::Settings;
-use cable_core::reach::area::{Ask, area};
+use cable_core::analysis::safe_reach::area::{Query, area};
 use cable_core::scene::catalog;
 
 /// CPU time of this thread so far, s; 0 where it is not known. Linux only.
@@ -21,19 +21,24 @@ fn cpu_s() -> f64 {
 fn cost_of_a_robot() {
     let scene = catalog::robot_drive();
     let (began, cpu, mut told) = (Instant::now(), cpu_s(), -1.0);
-    let map = cable_core::reach::line::reach((&scene, None), Settings::default(), ([-2.0, 20.0], 41), |map, share| {
-        if share > told + 0.1 {
-            told = share;
-            let back = map.places.iter().filter(|p| !p.there_and_back_n.is_nan()).count();
-            println!(
-                "{:5.1} s of CPU: {:3.0} %, {} places, back from {back}",
-                cpu_s() - cpu,
-                100.0 * share,
-                map.places.len()
-            );
-        }
-        ControlFlow::Continue(())
-    })
+    let map = cable_core::analysis::safe_reach::line::robot_reach(
+        (&scene, None),
+        Settings::default(),
+        ([-2.0, 20.0], 41),
+        |map, share| {
+            if share > told + 0.1 {
+                told = share;
+                let back = map.places.iter().filter(|p| !p.there_and_back_n.is_nan()).count();
+                println!(
+                    "{:5.1} s of CPU: {:3.0} %, {} places, back from {back}",
+                    cpu_s() - cpu,
+                    100.0 * share,
+                    map.places.len()
+                );
+            }
+            ControlFlow::Continue(())
+        },
+    )
     .unwrap();
     println!("{:5.1} s of CPU, {:.1} s", cpu_s() - cpu, began.elapsed().as_secs_f64());
     for p in &map.places {
@@ -52,7 +57,7 @@ fn cost_of_a_robot() {
 fn cost_on_the_tank() {
     let across: usize = std::env::var("ACROSS").ok().and_then(|v| v.parse().ok()).unwrap_or(16);
     let (low, high) = ([-14.0, -2.0], [14.0, 12.0]);
-    let ask = Ask {
+    let ask = Query {
         scene: catalog::tank(),
         now: None,
         settings: Settings::default(),

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use cable_core::contact::distance::cross_properly;
-use cable_core::contact::own::OwnShape;
+use cable_core::contact::self_contact::SelfContact;
 use cable_core::math::Vec2;
 use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};
 use cable_core::{Model, Settings, Simulation};
@@ -31,7 +31,7 @@ fn own_gap(sim: &Simulation) -> f64 {
     let x: Vec<Vec2> = nodes.iter().map(|n| Vec2::new(n.x_m, n.y_m)).collect();
     let s: Vec<f64> = nodes.iter().map(|n| n.arc_length_m).collect();
     assert!(x.iter().all(|p| p.x.is_finite() && p.y.is_finite()));
-    OwnShape { diameter: sim.scene().cables[0].diameter_m }.smallest_gap(&x, &s, 1.0).map_or(1.0, |g| g.0)
+    SelfContact { diameter: sim.scene().cables[0].diameter_m }.smallest_gap(&x, &s, 1.0).map_or(1.0, |g| g.0)
 }
 
 fn top(sim: &Simulation) -> f64 {
@@ -96,7 +96,7 @@ fn legs_thrown_together(self_contact: bool, speed: f64) -> (usize, f64) {
     for (v, s) in state.velocity_m_per_s.iter_mut().zip(&state.arc_length_m) {
         *v = Vec2::new(speed * (std::f64::consts::TAU * s / 6.0).sin(), 0.0);
     }
-    sim.adopt(&states).unwrap();
+    sim.set_states(&states).unwrap();
     let (mut crossed, mut least) = (0, f64::INFINITY);
     for _ in 0..24 {
         sim.step(1.0 / 240.0).unwrap();

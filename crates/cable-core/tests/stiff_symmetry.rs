@@ -9,8 +9,8 @@
 
 mod dice;
 
-use cable_core::estimates::{ErrorEstimates, place};
 use cable_core::scene::{Obstacle, Scene, Shape, Support, SupportKind, catalog};
+use cable_core::solution::error_estimates::{ErrorEstimates, place};
 use cable_core::solution::{CableSolution, Node};
 use cable_core::{Model, Simulation};
 

@@ -3,9 +3,9 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use cable_core::analysis::safe_reach::area::{self, Area};
+use cable_core::analysis::safe_reach::line::{self, ReachMap};
 use cable_core::math::Point;
-use cable_core::reach::area::{self, Area};
-use cable_core::reach::line::{self, Map};
 use cable_core::scene::SupportKind;
 use cable_core::{Scene, Settings, Solution};
 
@@ -86,7 +86,7 @@ pub struct Order {
 #[derive(Clone, Debug)]
 pub enum Maps {
     /// Of a robot.
-    Line(Arc<Map>),
+    Line(Arc<ReachMap>),
     /// Of an end: the places, and the way there and back, once it is begun.
     Area(Arc<Area>, Option<Arc<Area>>),
 }
@@ -140,8 +140,8 @@ fn find(order: Order, heard: background::Heard<'_, Found>) -> Result<Found, Stri
     let maps = match order.moved {
         Moved::Robot => {
             let ends_m = order.corners_m.map(|p| p[0]);
-            let told = |map: &Map, share: f64| tell(share, &|| Maps::Line(Arc::new(map.clone())));
-            let map = line::reach((&scene, order.now.as_deref()), order.settings, (ends_m, PLACES), told)
+            let told = |map: &ReachMap, share: f64| tell(share, &|| Maps::Line(Arc::new(map.clone())));
+            let map = line::robot_reach((&scene, order.now.as_deref()), order.settings, (ends_m, PLACES), told)
                 .map_err(|e| e.to_string())?;
             Maps::Line(Arc::new(map))
         }
@@ -149,11 +149,19 @@ fn find(order: Order, heard: background::Heard<'_, Found>) -> Result<Found, Stri
             let [low, high] = order.corners_m;
             let spacing_m = (high[0] - low[0]) / order.across.clamp(ACROSS[0], ACROSS[1]) as f64;
             let (now, settings, corners_m) = (order.now, order.settings, order.corners_m);
-            let ask =
-                area::Ask { scene: (*scene).clone(), now, settings, cable, support, corners_m, spacing_m, back: false };
+            let ask = area::Query {
+                scene: (*scene).clone(),
+                now,
+                settings,
+                cable,
+                support,
+                corners_m,
+                spacing_m,
+                back: false,
+            };
             let told = |area: &Area, share: f64| tell(0.5 * share, &|| Maps::Area(Arc::new(area.clone()), None));
             let there = Arc::new(area::area(&ask, told).map_err(|e| e.to_string())?);
-            let ask = area::Ask { spacing_m: COARSER * spacing_m, back: true, ..ask };
+            let ask = area::Query { spacing_m: COARSER * spacing_m, back: true, ..ask };
             let told = |area: &Area, share: f64| {
                 tell(0.5 + 0.5 * share, &|| Maps::Area(Arc::clone(&there), Some(Arc::new(area.clone()))))
             };

@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
+use cable_core::analysis::friction_range::{self, Action, ActionKind, FrictionRange, Query};
 use cable_core::scene::SupportKind;
-use cable_core::spread::{self, Ask, Hand, Handled, Spread};
 use cable_core::{Scene, Solution};
 
 use crate::background;
 use crate::state::AppState;
 
 /// What was found, and what was asked.
-pub type Found = (Arc<Spread>, Arc<Ask>);
+pub type Found = (Arc<FrictionRange>, Arc<Query>);
 /// How far it is.
 pub type Progress = background::Progress<Found>;
 
@@ -39,17 +39,17 @@ impl Default for View {
 #[derive(Debug)]
 pub struct Job {
     job: background::Job<Found>,
-    ask: Arc<Ask>,
+    ask: Arc<Query>,
 }
 
 impl Job {
     /// Starts one; `shown` is called whenever there is something new to show.
     #[must_use]
-    pub fn start(ask: Ask, shown: impl Fn() + Send + 'static) -> Self {
+    pub fn start(ask: Query, shown: impl Fn() + Send + 'static) -> Self {
         let ask = Arc::new(ask);
         let theirs = Arc::clone(&ask);
         let work = move |heard: background::Heard<'_, Found>| {
-            let found = spread::spread(&theirs, |share| heard(share, None));
+            let found = friction_range::friction_range(&theirs, |share| heard(share, None));
             found.map(|s| (Arc::new(s), theirs)).map_err(|e| e.to_string())
         };
         Self { job: background::Job::start("friction range", work, shown), ask }
@@ -57,7 +57,7 @@ impl Job {
 
     /// What was asked.
     #[must_use]
-    pub fn ask(&self) -> &Ask {
+    pub fn ask(&self) -> &Query {
         &self.ask
     }
 
@@ -70,7 +70,7 @@ impl Job {
 
 /// Whether an ask is the one that what is on screen asks.
 #[must_use]
-pub fn fits(state: &AppState, ask: &Ask) -> bool {
+pub fn fits(state: &AppState, ask: &Query) -> bool {
     ask.span_s == span_s(state)
         && ask.factors == state.spread.factors
         && ask.model == state.model
@@ -80,10 +80,10 @@ pub fn fits(state: &AppState, ask: &Ask) -> bool {
 
 /// What is on screen asks; None while it moves or has no answer.
 #[must_use]
-pub fn asked(state: &AppState) -> Option<Ask> {
+pub fn asked(state: &AppState) -> Option<Query> {
     let still = state.playback.paused && state.grabbed.is_none() && state.scene_fault.is_none();
     let answered = state.snapshot.solution.is_some() && state.snapshot.error.is_none() && !state.snapshot.draft;
-    (state.spread.on && still && answered).then(|| Ask {
+    (state.spread.on && still && answered).then(|| Query {
         scene: scene(state).clone(),
         model: state.model,
         settings: state.settings,
@@ -98,7 +98,7 @@ const MOVED_M: f64 = 1e-9;
 
 /// What hands did in a run: where supports that move by nothing else went, and what the robot was told.
 #[must_use]
-pub fn hands(scene: &Scene, answers: &[Solution]) -> Vec<Hand> {
+pub fn hands(scene: &Scene, answers: &[Solution]) -> Vec<Action> {
     let by_hand = scene.cables.iter().enumerate().flat_map(|(cable, c)| {
         let held = |s: &cable_core::Support| {
             s.at_m.is_some() && s.motion.is_none() && !matches!(s.kind, SupportKind::Pulley | SupportKind::Robot)
@@ -113,7 +113,7 @@ pub fn hands(scene: &Scene, answers: &[Solution]) -> Vec<Hand> {
     let Some(first) = answers.first() else { return hands };
     for &(cable, support) in &by_hand {
         if let Some(to_m) = at(first, (cable, support)) {
-            hands.push(Hand { time_s: 0.0, what: Handled::Support { cable, support, to_m } });
+            hands.push(Action { time_s: 0.0, what: ActionKind::Support { cable, support, to_m } });
         }
     }
     let mut told = None;
@@ -124,12 +124,12 @@ pub fn hands(scene: &Scene, answers: &[Solution]) -> Vec<Hand> {
                 continue;
             };
             if (to_m[0] - from_m[0]).hypot(to_m[1] - from_m[1]) > MOVED_M {
-                hands.push(Hand { time_s: now.time_s, what: Handled::Support { cable, support, to_m } });
+                hands.push(Action { time_s: now.time_s, what: ActionKind::Support { cable, support, to_m } });
             }
         }
         let order = now.robot.map(|r| r.leg.is_none().then_some(r.commanded_m_per_s));
         if let Some(order) = order.filter(|o| told != Some(*o)) {
-            hands.push(Hand { time_s: now.time_s, what: Handled::Robot(order) });
+            hands.push(Action { time_s: now.time_s, what: ActionKind::Robot(order) });
             told = Some(order);
         }
     }

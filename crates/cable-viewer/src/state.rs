@@ -159,7 +159,7 @@ pub struct Probe {
     /// Where on it, m.
     pub arc_length_m: f64,
     /// The end the sum begins at.
-    pub from: cable_core::origin::From,
+    pub from: cable_core::analysis::tension_budget::StartEnd,
 }
 
 /// A thing being dragged.

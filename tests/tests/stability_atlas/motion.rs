@@ -55,7 +55,7 @@ fn swing(model: Model, ea: f64, dt: f64, steps: usize) -> Result<Verdict, SolveE
     let mut states = sim.states();
     let straight = states[0].arc_length_m.iter().map(|s| Vec2::new(*s, 0.0)).collect();
     states[0].position_m = straight;
-    sim.adopt(&states)?;
+    sim.set_states(&states)?;
     gained(sim, dt, steps)
 }
 
@@ -79,7 +79,7 @@ fn snap(model: Model) -> Result<Verdict, SolveError> {
     for p in &mut states[0].position_m {
         p.y = -p.y;
     }
-    sim.adopt(&states)?;
+    sim.set_states(&states)?;
     gained(sim, 1.0 / 60.0, 240)
 }
 

@@ -18,8 +18,8 @@ use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 
 use super::Gap;
 use super::distance::nearest_fraction;
-use super::outline::{Outline, Placement};
-use crate::math::{Point, Vec2, cross, perp, vec2};
+use super::outline::Outline;
+use crate::math::{Point, RigidPose, Vec2, cross, perp, vec2};
 use crate::scene::{Obstacle, Shape};
 
 /// Edges that turn by less (rad) are one edge: a corner the cable cannot feel would only cost time.
@@ -352,7 +352,7 @@ impl Geometry {
     }
 
     /// Puts the outline that was added last where it is now.
-    pub fn place_outline(&mut self, outline: &Outline, placement: Placement) {
+    pub fn place_outline(&mut self, outline: &Outline, placement: RigidPose) {
         let Some(body) = self.bodies.last_mut().filter(|b| b.moves()) else { return };
         for (edge, [p, q]) in Arc::make_mut(&mut body.edges).iter_mut().zip(outline.edges(placement)) {
             *edge = Edge::between(p, q);

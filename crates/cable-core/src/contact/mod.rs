@@ -8,17 +8,18 @@ pub mod barrier;
 pub mod distance;
 pub mod friction;
 pub mod geometry;
-pub mod near;
+pub mod nearest_corner;
+pub mod neighbour_lists;
 pub mod outline;
-pub mod own;
 pub mod pairs;
-pub mod passed;
-pub mod round;
+pub mod self_contact;
+pub mod self_crossings;
 pub mod sweep;
+pub mod swept_corners;
 #[cfg(test)]
 mod tests;
 
-use crate::math::Vec2;
+use crate::math::{RigidPose, Vec2};
 use crate::scene::Obstacle;
 
 /// One obstacle feature and where the cable is nearest to it.
@@ -63,7 +64,7 @@ impl World {
     }
 
     /// Puts the outline where it is now.
-    pub fn place_outline(&mut self, outline: &outline::Outline, placement: outline::Placement) {
+    pub fn place_outline(&mut self, outline: &outline::Outline, placement: RigidPose) {
         self.geometry.place_outline(outline, placement);
     }
 

@@ -19,15 +19,15 @@ use crate::math::{Vec2, cross, larger, smaller};
 const MAX_ADVANCES: usize = 48;
 
 /// Advancement ends when what is left to advance is this part of the gap: smaller costs steps, larger gives away free way.
-const CLOSE_ENOUGH: f64 = 0.02;
+const CONVERGED_FRACTION: f64 = 0.02;
 
 /// Distances are trusted to this many units in the last place of the coordinates.
-const ULPS: f64 = 16.0;
+const ROUNDING_ULPS: f64 = 16.0;
 
 /// A gap below this (m) counts as touching: only the centre line is then kept from crossing. Supports are drawn
 /// right on the ground, with a gap of a rounding error; keeping a part of that would hold them for ever. The
 /// barrier never lets a free node come so near.
-const TOUCHING: f64 = 1e-9;
+const TOUCHING_GAP: f64 = 1e-9;
 
 /// Largest part of a gap that can be asked to stay.
 const MAX_KEEP: f64 = 0.9;
@@ -120,7 +120,7 @@ impl Sweep {
         let squares = [go[0].norm_squared(), go[1].norm_squared()];
         let speed = if squares[0] > squares[1] { squares[0].sqrt() } else { squares[1].sqrt() };
         let (low, high) = (a.inf(&b).inf(&to[0]).inf(&to[1]), a.sup(&b).sup(&to[0]).sup(&to[1]));
-        let noise = ULPS * f64::EPSILON * (low.abs().max() + high.abs().max());
+        let noise = ROUNDING_ULPS * f64::EPSILON * (low.abs().max() + high.abs().max());
         Self {
             from,
             go,
@@ -145,7 +145,7 @@ impl Sweep {
 impl Sweep {
     /// The gap (m) beyond which the part `limit` of the way is free whatever the direction.
     fn clear(&self, limit: f64) -> f64 {
-        let way = self.speed * limit + 2.0 * self.noise + TOUCHING;
+        let way = self.speed * limit + 2.0 * self.noise + TOUCHING_GAP;
         smaller(way / (1.0 - self.keep), way + self.most)
     }
 }
@@ -209,10 +209,10 @@ pub(super) fn advance(
     if d <= 0.0 {
         return limit;
     }
-    let surface = if d - offset > noise + TOUCHING { offset } else { 0.0 };
+    let surface = if d - offset > noise + TOUCHING_GAP { offset } else { 0.0 };
     let gap = d - surface;
     let floor = surface + if keep * gap > most { most } else { keep * gap } + noise;
-    let close = CLOSE_ENOUGH * gap;
+    let close = CONVERGED_FRACTION * gap;
     let mut t = 0.0;
     for _ in 0..MAX_ADVANCES {
         let room = d - floor;

@@ -1,5 +1,7 @@
 //! Chooses the cheapest model that can answer, and says why.
 
+use std::sync::Arc;
+
 use super::{Inertia, Model};
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
@@ -42,4 +44,17 @@ pub fn choose(problem: &Problem, question: Question) -> (Model, String) {
     } else {
         (Model::Catenary, "supports only: the elastic catenary has no discretisation error".to_owned())
     }
+}
+
+/// The model for all cables of a scene, the one that takes on most of those chosen, and the reason in one sentence.
+#[must_use]
+pub fn choose_for_all(problems: &[Arc<Problem>], question: Question) -> (Model, String) {
+    let chosen = problems.iter().map(|p| choose(p, question));
+    chosen.max_by_key(|(model, _)| model.rank()).unwrap_or((Model::Catenary, String::new()))
+}
+
+/// What is built where a model was chosen: `spans` and `fem` take turns.
+#[must_use]
+pub fn built_for(chosen: Model) -> Model {
+    if chosen == Model::Spans { Model::Auto } else { chosen }
 }

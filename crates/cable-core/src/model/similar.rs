@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::gauge::TensionGauge;
-use super::{Inertia, Mechanics, Model, Own, StepReport};
+use super::{Inertia, Mechanics, Model, OwnedResources, StepReport};
 use crate::error::{Place, SolveError};
 use crate::math::Vec2;
 use crate::problem::Problem;
@@ -264,16 +264,16 @@ impl Mechanics for Similar {
         self.inner.time_s() / self.by.time
     }
 
-    fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+    fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         let to = self.state_to(state);
-        let done = self.inner.adopt(&to);
+        let done = self.inner.set_state(&to);
         self.listen();
         done.map_err(|e| self.error(e))
     }
 
-    fn take_over(&mut self, given: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+    fn warm_start(&mut self, given: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         let to = answer(given.clone(), self.by.length, self.by.time, |p| self.by.place(p));
-        let done = self.inner.take_over(&to, time_s * self.by.time);
+        let done = self.inner.warm_start(&to, time_s * self.by.time);
         self.listen();
         done.map_err(|e| self.error(e))
     }
@@ -308,11 +308,11 @@ impl Mechanics for Similar {
         self.around(self.inner.copy_to_keep())
     }
 
-    fn lend(&mut self) -> Option<Own> {
+    fn lend(&mut self) -> Option<OwnedResources> {
         self.inner.lend()
     }
 
-    fn borrow(&mut self, own: Option<Own>) {
+    fn borrow(&mut self, own: Option<OwnedResources>) {
         self.inner.borrow(own);
     }
 

@@ -31,14 +31,12 @@
 
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
-
-use crate::contact::outline::Placement;
-use crate::math::{Vec2, bounded, larger, smaller, vec2};
+use crate::math::{RigidPose, Vec2, bounded, larger, smaller, vec2};
 use crate::scene::ground::Ground;
 use crate::scene::preset::{RobotPreset, robot_preset};
 use crate::scene::robot::{Pose, ROLLING_RESISTANCE, TRACK_FRICTION};
 use crate::scene::{Robot, RobotTask, Scene, View};
+pub use crate::solution::robot_report::{Going, RobotReport, Work};
 
 /// Longest step of the vehicle, s: that of the cable. The taut spring of 10 m of a 2 MN cable and 1
 /// t swing at 14 rad/s, 17 times slower.
@@ -73,112 +71,6 @@ const BALANCED: f64 = 5e-3;
 
 /// Slower than this it stands, m/s.
 const STANDS_M_PER_S: f64 = 1e-4;
-
-/// What its motion is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Going {
-    /// Nothing is asked of it and it stands.
-    #[default]
-    Standing,
-    /// As fast as commanded, or on the way there.
-    Driving,
-    /// Slower than commanded: what it pulls costs it speed.
-    Slowed,
-    /// What it would have to pull is more than its drive can.
-    Stalled,
-    /// What it would have to pull is more than its tracks can hold on the ground.
-    Slipping,
-    /// The cable draws it over the ground against its will.
-    Dragged,
-    /// The ground ends or is too steep.
-    Blocked,
-    /// Its own cable is in its way and cannot get out of it.
-    Jammed,
-}
-
-impl Going {
-    /// In words.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Standing => "standing",
-            Self::Driving => "driving",
-            Self::Slowed => "slowed by its load",
-            Self::Stalled => "stalled: the drive is too weak",
-            Self::Slipping => "slipping: the tracks find no hold",
-            Self::Dragged => "dragged by the cable",
-            Self::Blocked => "blocked: too steep, or the ground ends",
-            Self::Jammed => "jammed: the cable is in its way",
-        }
-    }
-}
-
-/// Work of each force on the vehicle, force times way, J.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Work {
-    /// Of its tracks while they hold: the drive, less what it brakes.
-    pub drive_j: f64,
-    /// Of its tracks while they slip.
-    pub slip_j: f64,
-    /// Of rolling resistance.
-    pub rolling_j: f64,
-    /// Of its weight, by how high it stands.
-    pub weight_j: f64,
-    /// Of the cable, on its hitch by how that goes, and on its outline along the ground.
-    pub cable_j: f64,
-    /// Of the ground where it tips the vehicle over corners: that takes nothing from its speed.
-    pub ground_j: f64,
-    /// What is lost where the ground or a cable squeezed against a wall stops it.
-    pub impact_j: f64,
-}
-
-impl Work {
-    /// Of all forces: the change of its kinetic energy.
-    #[must_use]
-    pub fn total_j(&self) -> f64 {
-        self.drive_j + self.slip_j + self.rolling_j + self.weight_j + self.cable_j + self.ground_j + self.impact_j
-    }
-}
-
-/// How it is at an instant.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct RobotReport {
-    /// Middle of its tracks on the ground, m.
-    pub x_m: f64,
-    /// Middle of its tracks on the ground, m.
-    pub y_m: f64,
-    /// Slope it stands on, °, positive where it climbs to the right.
-    pub pitch_deg: f64,
-    /// Speed along the ground, positive to the right, m/s.
-    pub speed_m_per_s: f64,
-    /// Speed it is asked for, m/s.
-    pub commanded_m_per_s: f64,
-    /// Force of its tracks along the ground, N.
-    pub thrust_n: f64,
-    /// Force of the ground on it, across it, N.
-    pub normal_n: f64,
-    /// Most force its tracks could transmit now, N.
-    pub traction_n: f64,
-    /// Force of the cable on its hitch, N.
-    pub hitch_x_n: f64,
-    /// Force of the cable on its hitch, N.
-    pub hitch_y_n: f64,
-    /// Force of the cable on its outline, N.
-    #[serde(default)]
-    pub push_x_n: f64,
-    /// Force of the cable on its outline, N.
-    #[serde(default)]
-    pub push_y_n: f64,
-    /// What the forces on it have done since it began.
-    #[serde(default)]
-    pub work: Work,
-    /// Why it is as fast as it is.
-    pub going: Going,
-    /// The leg of its path it is on; None by hand or at the end.
-    pub leg: Option<usize>,
-}
 
 /// The vehicle.
 #[derive(Clone, Debug, PartialEq)]
@@ -312,7 +204,7 @@ impl Vehicle {
     }
 
     /// It came only there in its last step: the cable was in its way.
-    pub fn hold_back(&mut self, placement: Placement) {
+    pub fn hold_back(&mut self, placement: RigidPose) {
         self.pose = Pose { at_m: [placement.at.x, placement.at.y], pitch: placement.angle, ..self.pose };
         self.report.work.impact_j -= self.kinetic_j();
         (self.speed, self.tipping) = (0.0, 0.0);

@@ -24,7 +24,7 @@ struct Columns {
 
 /// Most columns for each stretch that a list may hold over all: ground that folds back over itself many times would fill
 /// the memory with fine ones.
-const MOST_ITEMS: usize = 4;
+const MAX_STACK: usize = 4;
 
 impl Columns {
     fn of(stretches: &[[Point; 2]]) -> Self {
@@ -42,7 +42,7 @@ impl Columns {
                 return columns;
             }
             let total: usize = stretches.iter().map(|s| columns.range(s).count()).sum();
-            if total > MOST_ITEMS * stretches.len() && count > 1 {
+            if total > MAX_STACK * stretches.len() && count > 1 {
                 count /= 2;
                 continue;
             }

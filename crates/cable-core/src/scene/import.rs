@@ -9,7 +9,7 @@ use crate::math::Point;
 /// Most points of an import: as many as a scene may have.
 const MAX_POINTS: usize = 1_000_000;
 /// Points nearer than this to the one before are one, m: ten thousand times finer than any survey.
-const SAME_M: f64 = 1e-6;
+const POINT_TOLERANCE_M: f64 = 1e-6;
 /// Straight pieces a curve of an SVG path is drawn with: a quarter circle of 1 m is then off by 0.3 mm.
 const CURVE_PIECES: u32 = 16;
 
@@ -119,9 +119,9 @@ fn tidy(line: &mut Line, metres_per_unit: f64, report: &mut Vec<String>) -> Resu
     for p in &mut line.points_m {
         *p = p.map(|v| v * metres_per_unit);
     }
-    line.points_m.dedup_by(|b, a| (b[0] - a[0]).hypot(b[1] - a[1]) < SAME_M);
+    line.points_m.dedup_by(|b, a| (b[0] - a[0]).hypot(b[1] - a[1]) < POINT_TOLERANCE_M);
     if let (true, [first, .., last]) = (line.closed, line.points_m.as_slice())
-        && (first[0] - last[0]).hypot(first[1] - last[1]) < SAME_M
+        && (first[0] - last[0]).hypot(first[1] - last[1]) < POINT_TOLERANCE_M
     {
         line.points_m.pop();
     }

@@ -6,8 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::ground::Ground;
 use super::preset::{RobotPreset, robot_preset};
 use super::{Scene, View};
-use crate::contact::outline::{Outline, Placement};
-use crate::math::{Point, Vec2, vec2};
+use crate::math::{Point, RigidPose, Vec2, vec2};
 
 /// A tracked vehicle standing on the terrain.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -148,8 +147,8 @@ const BELOW_GROUND_M: f64 = 0.2;
 impl Pose {
     /// The same as a place and a turn.
     #[must_use]
-    pub fn placement(&self) -> Placement {
-        Placement { at: vec2(self.at_m), angle: self.pitch }
+    pub fn placement(&self) -> RigidPose {
+        RigidPose { at: vec2(self.at_m), angle: self.pitch }
     }
 }
 
@@ -175,17 +174,6 @@ impl RobotPreset {
 }
 
 impl Scene {
-    /// The outline of the robot that a cable of this friction meets; None where there is no robot, and in a plan view.
-    #[must_use]
-    pub fn robot_outline(&self, cable_friction: f64) -> Option<Outline> {
-        let (robot, pose) = (self.robot.as_ref()?, self.robot_pose()?);
-        let preset = robot_preset(&robot.preset)?;
-        let corners = preset.meets_cable_m(robot.heading);
-        let hitch = vec2(Pose { heading: robot.heading, ..Pose::default() }.hitch_m(preset));
-        let outline = Outline::new((&corners, hitch), pose.placement(), cable_friction, "robot".to_owned());
-        outline.filter(|_| self.view == View::Elevation)
-    }
-
     /// How the robot stands at the start: on the ground in a side view, as it was put where there is none and in a plan view.
     #[must_use]
     pub fn robot_pose(&self) -> Option<Pose> {

@@ -25,7 +25,7 @@ const NATURAL_M: [f64; 2] = [2.0, 1000.0];
 /// Length of a copied cable at least, m; at most it is four times that.
 const COPY_M: f64 = 8.0;
 /// Distance of a cable from (0, 0) in its lengths from which its copy is made at (0, 0): there coordinates have lost two digits.
-const FAR: f64 = 100.0;
+const MAX_ORIGIN_DISTANCE: f64 = 100.0;
 
 impl Similarity {
     /// The similarity that brings a cable of a length (m), one end of which is near `origin` (m), to the scale that solvers are made
@@ -33,7 +33,7 @@ impl Similarity {
     #[must_use]
     pub fn to_natural(length_m: f64, origin: Vec2) -> Option<Self> {
         let natural = (NATURAL_M[0]..=NATURAL_M[1]).contains(&length_m);
-        if natural && origin.amax() <= FAR * length_m {
+        if natural && origin.amax() <= MAX_ORIGIN_DISTANCE * length_m {
             return None;
         }
         let mut time = 1.0f64;

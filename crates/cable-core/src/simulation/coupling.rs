@@ -16,14 +16,14 @@
 //! that either of them knows.
 
 use super::Simulation;
-use crate::contact::outline::Placement;
+use crate::breakage::BreakableCable;
 use crate::error::SolveError;
+use crate::math::RigidPose;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::Inertia;
 use crate::robot::{self, Drive, Going, Pulls, Vehicle};
 use crate::scene::{Cable, SupportKind};
 use crate::solution::Cost;
-use crate::strand::Strand;
 
 /// Trials of a step. Fewer: a robot that squeezes its cable against a wall is stopped a little
 /// early; more: that takes longer.
@@ -113,7 +113,7 @@ impl Simulation {
         let mut left = dt_s;
         while left > 0.0 {
             let longest = match inertia {
-                Inertia::Dynamic => self.cables.iter().map(Strand::inner_step_s).fold(robot::STEP_S, smaller),
+                Inertia::Dynamic => self.cables.iter().map(BreakableCable::inner_step_s).fold(robot::STEP_S, smaller),
                 Inertia::QuasiStatic => SLOW_STEP_S,
             };
             let pieces = (left / longest - 1e-9).ceil().max(1.0);
@@ -138,7 +138,7 @@ impl Simulation {
         let Some(vehicle) = &mut self.vehicle else { return Ok(0) };
         let drive = vehicle.begin(step.h, begun);
         let start = vehicle.clone();
-        let kept: Vec<Strand> = self.cables.iter().map(Strand::kept).collect();
+        let kept: Vec<BreakableCable> = self.cables.iter().map(BreakableCable::checkpoint).collect();
         let (mut speed, mut search, mut iterations) = (start.foreseen(drive), Search::new(), 0);
         loop {
             self.cost = Cost::default();
@@ -205,19 +205,19 @@ impl Simulation {
     }
 
     /// The cables are as they were before.
-    fn go_back(&mut self, before: &[Strand]) {
+    fn go_back(&mut self, before: &[BreakableCable]) {
         for (cable, before) in self.cables.iter_mut().zip(before) {
-            cable.go_back(before);
+            cable.restore(before);
         }
     }
 
     /// Tells the cables where the hitch of the robot, and its outline, will be.
-    fn lead(&mut self, (hitch, to): (Vec2, Placement), hitches: &[(usize, usize)]) {
+    fn lead(&mut self, (hitch, to): (Vec2, RigidPose), hitches: &[(usize, usize)]) {
         for &(cable, support) in hitches {
             self.drag_support(cable, support, hitch);
         }
         for cable in &mut self.cables {
-            cable.lead_outline(to);
+            cable.set_robot_pose(to);
         }
     }
 
@@ -228,15 +228,15 @@ impl Simulation {
         };
         Pulls {
             hitch: hitches.iter().map(pull).sum(),
-            outline: self.cables.iter().filter_map(Strand::outline).map(|o| o.force_n).sum(),
+            outline: self.cables.iter().filter_map(BreakableCable::robot_contact).map(|o| o.force_n).sum(),
         }
     }
 
     /// Tells the cables where the robot stands.
-    pub(super) fn lead_outline(&mut self) {
+    pub(super) fn set_robot_pose(&mut self) {
         let Some(to) = self.vehicle.as_ref().map(|v| v.pose().placement()) else { return };
         for cable in &mut self.cables {
-            cable.lead_outline(to);
+            cable.set_robot_pose(to);
         }
     }
 
@@ -269,7 +269,7 @@ impl Simulation {
         let Some(hitch) = vehicle.put(x_m) else { return Ok(None) };
         let to = vehicle.pose().placement();
         self.lead((hitch, to), &self.hitches());
-        self.cables.iter_mut().for_each(Strand::forget_peaks);
+        self.cables.iter_mut().for_each(BreakableCable::forget_peaks);
         let done = self.each(|c| c.advance(dt_s, inertia));
         let left_m = self.hold_vehicle();
         self.look(true);
@@ -278,13 +278,13 @@ impl Simulation {
 
     /// How far the outline that came least far is from where it was led, m.
     fn left_m(&self) -> f64 {
-        self.cables.iter().filter_map(Strand::outline).map(|o| o.left_m).fold(0.0, larger)
+        self.cables.iter().filter_map(BreakableCable::robot_contact).map(|o| o.left_m).fold(0.0, larger)
     }
 
     /// The vehicle is where the outline came that came least far; how far that is from where it was
     /// led, m.
     fn hold_vehicle(&mut self) -> f64 {
-        let outlines = self.cables.iter().filter_map(Strand::outline);
+        let outlines = self.cables.iter().filter_map(BreakableCable::robot_contact);
         let last = outlines.reduce(|a, b| if b.left_m > a.left_m { b } else { a }).filter(|o| o.left_m > 0.0);
         if let (Some(vehicle), Some(last)) = (&mut self.vehicle, last) {
             vehicle.hold_back(last.placement);

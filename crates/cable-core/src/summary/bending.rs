@@ -10,13 +10,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::Error;
-use crate::estimates::ErrorEstimates;
+use crate::any_error::Error;
 use crate::math::larger;
 use crate::model::{Model, Settings};
 use crate::scene::Scene;
 use crate::scene::preset::cable_preset;
 use crate::simulation::Simulation;
+use crate::solution::ErrorEstimates;
 use crate::solution::{CableSolution, Solution, WarningKind};
 
 /// What an answer at rest without bending stiffness left out, for one cable.

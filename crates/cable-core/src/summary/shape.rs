@@ -5,7 +5,7 @@ use crate::scene::{Cable, SupportKind, View};
 use crate::solution::{CableSolution, ContactReport, Node};
 
 /// Places nearer than this part of the cable's length are the same.
-const SAME_PLACE: f64 = 1e-9;
+const PLACE_TOLERANCE: f64 = 1e-9;
 
 /// Sag: the greatest distance of the cable from the straight line between neighbouring supports that hold it (a dead load hangs: it
 /// holds nothing), downwards in a side view, square to the line in a plan view. None where no two of them are apart.
@@ -82,7 +82,7 @@ pub(super) fn lying_m(cable: &Cable, answer: &CableSolution) -> f64 {
 
 /// Where contacts begin and end, but for the ends of the cable that lie; one place where two meet.
 pub(super) fn touchdowns(cable: &Cable, answer: &CableSolution) -> Vec<Touchdown> {
-    let same = SAME_PLACE * cable.length_m;
+    let same = PLACE_TOLERANCE * cable.length_m;
     let mut contacts: Vec<&ContactReport> = answer.contacts.iter().filter(|c| lies_on_something(cable, c)).collect();
     contacts.sort_by(|a, b| a.extent_m()[0].total_cmp(&b.extent_m()[0]));
     let mut out = Vec::new();

@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::Error;
+use crate::any_error::Error;
 use crate::math::{Point, Vec2, larger, vec2};
 use crate::model::auto::Question;
 use crate::model::{Inertia, Model, Settings};

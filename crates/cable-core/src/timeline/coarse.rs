@@ -7,10 +7,10 @@
 //! would a finer one: what is known is then only what they have in common. They cost a quarter and a ninth of the run.
 
 use super::{TensionRanges, advance};
-use crate::estimates::ErrorEstimates;
 use crate::math::{larger, smaller};
 use crate::model::Inertia;
 use crate::simulation::Simulation;
+use crate::solution::ErrorEstimates;
 
 /// How many times as long elements and steps are.
 const TIMES: [u64; 2] = [2, 3];

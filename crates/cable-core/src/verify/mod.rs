@@ -2,7 +2,7 @@
 //!
 //! | room | what is in it |
 //! |---|---|
-//! | `mod.rs` | [`Verifier`], [`Verification`]: which laws were asked, what was found |
+//! | `mod.rs` | [`Verifier`]: asks the laws of an answer; which and what was found is a [`Verification`] |
 //! | `laws.rs` | one function a law, over one cable |
 //! | `surroundings.rs` | obstacles and the robot as the checker sees them: distances by brute force, normals, friction |
 //! | `stability.rs` | whether a stiff cable holds what it pushes with |
@@ -28,136 +28,10 @@ pub mod tolerance;
 use serde::{Deserialize, Serialize};
 
 use self::surroundings::Obstacles;
-use crate::robot::RobotReport;
 use crate::scene::Scene;
+use crate::solution::robot_report::RobotReport;
+pub use crate::solution::verification::{Balance, Finding, Law, Verification};
 use crate::solution::{CableSolution, Solution};
-
-/// A law that an answer must obey.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum Law {
-    /// Every number is finite.
-    Finite,
-    /// Arc length grows from 0 to the cable's length.
-    Material,
-    /// Supports, contacts, loads and weight add up to nothing, of the whole cable and of every piece, its free ends with it.
-    Balance,
-    /// The stiff cable's moments balance its shear.
-    Moment,
-    /// The cable is where its supports hold it.
-    Support,
-    /// The tension of a flexible cable is the size of the force in it.
-    Tension,
-    /// A flexible cable does not push.
-    Compression,
-    /// A stiff cable pushes with no more than what would bend it aside.
-    Stability,
-    /// Tension is strain times axial stiffness, and the nodes' way is the stretched material.
-    Length,
-    /// Nothing is inside an obstacle.
-    Penetration,
-    /// A contact pushes.
-    Push,
-    /// Friction lies within its cone.
-    Friction,
-    /// The cable does not run through itself.
-    SelfContact,
-    /// In motion: what a step changes of the momentum is what weight, loads, supports and contacts gave.
-    Momentum,
-}
-
-impl Law {
-    /// Its name in a sentence.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Finite => "finite numbers",
-            Self::Material => "material from end to end",
-            Self::Balance => "balance of forces",
-            Self::Moment => "balance of moments",
-            Self::Support => "held by its supports",
-            Self::Tension => "tension is the force",
-            Self::Compression => "no compression",
-            Self::Stability => "stability",
-            Self::Length => "length",
-            Self::Penetration => "nothing inside obstacles",
-            Self::Push => "contacts push",
-            Self::Friction => "friction within its cone",
-            Self::SelfContact => "nothing through itself",
-            Self::Momentum => "momentum",
-        }
-    }
-
-    /// The law in words, as it is broken.
-    #[must_use]
-    pub fn broken(self) -> &'static str {
-        match self {
-            Self::Finite => "a number is not finite",
-            Self::Material => "the nodes do not run from one end of the material to the other",
-            Self::Balance => "forces are out of balance",
-            Self::Moment => "moments are out of balance",
-            Self::Support => "the cable is not where it is held",
-            Self::Tension => "tension is not the force in the cable",
-            Self::Compression => "a flexible cable pushes",
-            Self::Stability => "a stiff cable pushes with more than would bend it aside",
-            Self::Length => "the way drawn is not as long as the cable",
-            Self::Penetration => "the cable lies inside an obstacle",
-            Self::Push => "a contact pulls",
-            Self::Friction => "friction exceeds its cone",
-            Self::SelfContact => "the cable runs through itself",
-            Self::Momentum => "the change of momentum is not the impulse of what acts",
-        }
-    }
-
-    /// Unit of what is measured.
-    #[must_use]
-    pub fn unit(self) -> &'static str {
-        match self {
-            Self::Finite => "",
-            Self::Material | Self::Support | Self::Length | Self::Penetration | Self::SelfContact => "m",
-            Self::Moment => "N m",
-            Self::Momentum => "N s",
-            Self::Balance | Self::Tension | Self::Compression | Self::Stability | Self::Push | Self::Friction => "N",
-        }
-    }
-}
-
-/// A broken law with its place: the worst of its kind.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Finding {
-    /// The law.
-    pub law: Law,
-    /// Name of the cable.
-    pub cable: String,
-    /// Arc length, m.
-    pub arc_length_m: f64,
-    /// Place, m.
-    pub at_m: [f64; 2],
-    /// What touches or holds there; empty where nothing does.
-    pub with: String,
-    /// By how much, in [`Law::unit`].
-    pub value: f64,
-    /// How much is let pass.
-    pub limit: f64,
-}
-
-impl std::fmt::Display for Finding {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}", self.law.broken())?;
-        if !self.law.unit().is_empty() {
-            write!(f, " by {:.3e} {} ({:.1e} allowed)", self.value, self.law.unit(), self.limit)?;
-        }
-        if !self.with.is_empty() {
-            write!(f, " at `{}`", self.with)?;
-        }
-        let [x, y] = self.at_m;
-        if x.is_finite() && y.is_finite() && self.arc_length_m.is_finite() {
-            write!(f, ", {:.3} m along `{}` at ({x:.3} m, {y:.3} m)", self.arc_length_m, self.cable)?;
-        }
-        Ok(())
-    }
-}
 
 /// How much is asked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -168,83 +42,6 @@ pub enum Depth {
     Always,
     /// On request: the cable against itself as well. Time grows with the square of the number of nodes.
     Full,
-}
-
-/// The forces on all cables.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Balance {
-    /// Weight, wind and loads, N.
-    pub loads_n: [f64; 2],
-    /// Supports on the cable, N.
-    pub supports_n: [f64; 2],
-    /// Obstacles and the floor of a plan view on the cable, N, as the cable's own forces ask for it.
-    pub contacts_n: [f64; 2],
-    /// What is left of the worst piece, N.
-    pub residual_n: f64,
-    /// The force that residuals are compared with, N: the greatest tension or load.
-    pub scale_n: f64,
-}
-
-/// What a check found.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Verification {
-    /// Broken laws, the worst first; empty = sound.
-    pub findings: Vec<Finding>,
-    /// Laws that were asked.
-    pub checked: Vec<Law>,
-    /// What was not asked, and why.
-    pub not_checked: Vec<String>,
-    /// Forces on all cables.
-    pub balance: Balance,
-    /// Material beyond the way of the nodes, m: cable that lies in folds or layers, which a plane cannot show.
-    pub folded_m: f64,
-}
-
-impl Verification {
-    /// Whether no law is broken.
-    #[must_use]
-    pub fn is_sound(&self) -> bool {
-        self.findings.is_empty()
-    }
-
-    /// The worst broken law.
-    #[must_use]
-    pub fn worst(&self) -> Option<&Finding> {
-        self.findings.first()
-    }
-
-    /// The verdict in a line: sound or not, the balance, and what was not asked.
-    #[must_use]
-    pub fn summary(&self) -> String {
-        let share = if self.balance.scale_n > 0.0 { self.balance.residual_n / self.balance.scale_n } else { 0.0 };
-        let mut line = match self.worst() {
-            None => format!("sound, forces balance within {share:.0e} of {:.4} N", self.balance.scale_n),
-            Some(worst) => format!("NOT SOUND: {worst}"),
-        };
-        for what in &self.not_checked {
-            line.push_str("; not checked: ");
-            line.push_str(what);
-        }
-        line
-    }
-
-    fn ask(&mut self, law: Law) {
-        if !self.checked.contains(&law) {
-            self.checked.push(law);
-        }
-    }
-
-    /// Of several findings of one law on one cable the worst is kept.
-    fn report(&mut self, finding: Finding) {
-        // A value that is no number is the worst.
-        let excess = |f: &Finding| if f.value.is_finite() { f.value / f.limit } else { f64::INFINITY };
-        match self.findings.iter_mut().find(|f| f.law == finding.law && f.cable == finding.cable) {
-            Some(known) if excess(known) >= excess(&finding) => {}
-            Some(known) => *known = finding,
-            None => self.findings.push(finding),
-        }
-        self.findings.sort_by(|a, b| excess(b).total_cmp(&excess(a)));
-    }
 }
 
 /// Checks answers of one scene.

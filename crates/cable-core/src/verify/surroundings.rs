@@ -2,7 +2,8 @@
 //!
 //! Edges are sorted by their left end, so that those in a box are found without looking at all; nothing else is clever.
 
-use crate::contact::outline::{Outline, Placement};
+use crate::contact::outline::Outline;
+use crate::math::RigidPose;
 use crate::math::{Vec2, cross, vec2};
 use crate::robot::RobotReport;
 use crate::scene::{Obstacle, Scene, Shape};
@@ -160,7 +161,7 @@ impl Obstacles {
 
     /// With the robot as it is reported; where it is not, as the scene puts it.
     pub fn at(&self, robot: Option<&RobotReport>) -> Surroundings<'_> {
-        let reported = robot.map(|r| Placement { at: Vec2::new(r.x_m, r.y_m), angle: r.pitch_deg.to_radians() });
+        let reported = robot.map(|r| RigidPose { at: Vec2::new(r.x_m, r.y_m), angle: r.pitch_deg.to_radians() });
         let edges = self.outline.iter().flat_map(|outline| {
             let body = self.bodies.len() - 1;
             let edges = outline.edges(reported.unwrap_or(outline.placement));

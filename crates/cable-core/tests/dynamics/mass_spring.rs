@@ -29,7 +29,7 @@ pub fn started(scene: &Scene, change: impl FnOnce(&mut State)) -> Simulation {
     let mut states = sim.states();
     states[0].velocity_m_per_s.fill(Vec2::zeros());
     change(&mut states[0]);
-    sim.adopt(&states).unwrap();
+    sim.set_states(&states).unwrap();
     sim
 }
 

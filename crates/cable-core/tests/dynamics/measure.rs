@@ -50,7 +50,7 @@ pub fn started_within(tolerance: f64, scene: &Scene, change: impl FnOnce(&mut St
     states[0].time_s = 0.0;
     states[0].velocity_m_per_s.fill(Vec2::zeros());
     change(&mut states[0]);
-    sim.adopt(&states).unwrap();
+    sim.set_states(&states).unwrap();
     sim
 }
 

@@ -2,9 +2,9 @@
 //! plane, with the lines of service and breaking tension; of a robot: what it passes over above the ground. What the cable may
 //! not bear is hatched, so that its colour is not all that tells it; where nothing is known, and where it does not reach, nothing is drawn.
 
+use cable_core::analysis::safe_reach::area::Area;
+use cable_core::analysis::safe_reach::line::{ReachMap, ReachPlace};
 use cable_core::math::Point;
-use cable_core::reach::area::Area;
-use cable_core::reach::line::{Map, Place};
 use cable_core::scene::preset::robot_preset;
 use egui::{Align2, Color32, Mesh, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
 
@@ -107,7 +107,7 @@ pub fn line(view: &View<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, 
     let back = state.reach.choice.back;
     let preset = state.scene.robot.as_ref().and_then(|r| robot_preset(&r.preset));
     let height = view.points(preset.map_or(HEIGHT_M, |p| p.height_m.value)).max(9.0);
-    let value = |p: &Place| if back { p.there_and_back_n } else { p.there_n };
+    let value = |p: &ReachPlace| if back { p.there_and_back_n } else { p.there_n };
     let mut mesh = Mesh::default();
     for pair in map.places.windows(2) {
         let [a, b] = [0, 1].map(|k| (view.at(pair[k].at_m), value(&pair[k])));
@@ -142,7 +142,7 @@ fn hatch(view: &View<'_>, [a, b]: [Pos2; 2], height: f32) {
 }
 
 /// Marks from where to where the service tension is not passed.
-fn ends(view: &View<'_>, (map, back): (&Map, bool), height: f32, figures: &mut Vec<(Pos2, String, Color32)>) {
+fn ends(view: &View<'_>, (map, back): (&ReachMap, bool), height: f32, figures: &mut Vec<(Pos2, String, Color32)>) {
     let Some(ends) = map.safe_m(map.service_n, back) else { return };
     for (x, name) in ends.into_iter().zip(["safe from", "safe to"]) {
         let Some(place) = map.places.iter().find(|p| p.at_m[0] >= x) else { continue };

@@ -1,6 +1,6 @@
 //! Where the tension at a place comes from: a bar of what adds to it and what takes from it, and the same as figures.
 
-use cable_core::origin::{Cause, From, Origin, Term, origin};
+use cable_core::analysis::tension_budget::{Cause, Contribution, StartEnd, TensionBudget, tension_budget};
 use cable_core::scene::View;
 use cable_core::{Scene, Solution};
 use egui::{Color32, Grid, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
@@ -48,7 +48,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.weak("Click on the cable: where does its tension come from?");
         return;
     };
-    let Some(found) = origin(scene, answer, (probe.cable, probe.arc_length_m), probe.from) else {
+    let Some(found) = tension_budget(scene, answer, (probe.cable, probe.arc_length_m), probe.from) else {
         ui.weak("This cable is not solved");
         return;
     };
@@ -81,9 +81,9 @@ fn place(ui: &mut Ui, scene: &Scene, probe: Probe, commands: &mut Vec<Command>) 
         ui.weak("From").on_hover_text("The end at which the sum begins");
         let name = |end: Option<&cable_core::Support>, other: &str| end.map_or(other.to_owned(), |s| s.name.clone());
         let ends = [
-            (From::Slacker, "the slacker end".to_owned()),
-            (From::Start, name(cable.supports.first(), "start")),
-            (From::End, name(cable.supports.last(), "end")),
+            (StartEnd::Slacker, "the slacker end".to_owned()),
+            (StartEnd::Start, name(cable.supports.first(), "start")),
+            (StartEnd::End, name(cable.supports.last(), "end")),
         ];
         for (from, name) in ends {
             let chosen = ui.selectable_label(probe.from == from, &name);
@@ -96,12 +96,12 @@ fn place(ui: &mut Ui, scene: &Scene, probe: Probe, commands: &mut Vec<Command>) 
 }
 
 /// The terms worth a line.
-fn listed(found: &Origin) -> Vec<Term> {
-    let greatest = found.terms.iter().map(|t| t.tension_n.abs()).fold(0.0, f64::max);
-    found.terms.iter().filter(|t| t.tension_n.abs() > NOTHING * greatest).copied().collect()
+fn listed(found: &TensionBudget) -> Vec<Contribution> {
+    let greatest = found.contributions.iter().map(|t| t.tension_n.abs()).fold(0.0, f64::max);
+    found.contributions.iter().filter(|t| t.tension_n.abs() > NOTHING * greatest).copied().collect()
 }
 
-fn title(scene: &Scene, answer: &Solution, cable: usize, term: &Term) -> String {
+fn title(scene: &Scene, answer: &Solution, cable: usize, term: &Contribution) -> String {
     let support = |k: usize| {
         let s = scene.cables.get(cable).and_then(|c| c.supports.get(k));
         s.map_or_else(|| "a support".to_owned(), |s| s.name.clone())
@@ -122,14 +122,14 @@ fn title(scene: &Scene, answer: &Solution, cable: usize, term: &Term) -> String 
 }
 
 /// By what factor, and over what turn.
-fn how(answer: &Solution, cable: usize, term: &Term) -> String {
+fn how(answer: &Solution, cable: usize, term: &Contribution) -> String {
     let factor = term.factor.map_or_else(String::new, |f| format!("× {}", unit::significant(f, 3)));
     let Cause::Contact(k) = term.cause else { return factor };
     let turn = answer.cables.get(cable).and_then(|c| c.contacts.get(k)).map_or(0.0, |c| c.turn_deg.abs());
     if turn >= 0.5 { format!("{factor} over {turn:.0}°") } else { factor }
 }
 
-fn colour(term: &Term) -> Color32 {
+fn colour(term: &Contribution) -> Color32 {
     match term.cause {
         Cause::End => END,
         Cause::Weight => WEIGHT,
@@ -142,7 +142,7 @@ fn colour(term: &Term) -> Color32 {
 }
 
 /// What adds, from left to right; below it what takes away, from there back to the tension.
-fn bar(ui: &mut Ui, found: &Origin, listed: &[Term], title: &dyn Fn(&Term) -> String) {
+fn bar(ui: &mut Ui, found: &TensionBudget, listed: &[Contribution], title: &dyn Fn(&Contribution) -> String) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 2.0 * ROW + 2.0), Sense::hover());
     let words: Vec<String> = listed.iter().map(|t| format!("{} {}", title(t), unit::force(t.tension_n))).collect();
     let spoken = format!("{} = {}", unit::force(found.tension_n), words.join(" + "));
@@ -156,7 +156,7 @@ fn bar(ui: &mut Ui, found: &Origin, listed: &[Term], title: &dyn Fn(&Term) -> St
     let painter = ui.painter();
     painter.rect_filled(rect, 2.0, ui.visuals().faint_bg_color);
     let gap = Stroke::new(1.0, ui.visuals().panel_fill);
-    let piece = |from: f64, to: f64, row: f32, term: &Term| {
+    let piece = |from: f64, to: f64, row: f32, term: &Contribution| {
         let top = rect.top() + row * (ROW + 2.0);
         let piece = Rect::from_x_y_ranges(x(from.min(to))..=x(from.max(to)), top..=top + ROW);
         painter.rect(piece, 0.0, colour(term), gap, egui::StrokeKind::Inside);
@@ -176,7 +176,12 @@ fn bar(ui: &mut Ui, found: &Origin, listed: &[Term], title: &dyn Fn(&Term) -> St
     response.on_hover_text("Above: what adds. Below: what takes away, from the right. The line: the tension");
 }
 
-fn figures(ui: &mut Ui, listed: &[Term], title: &dyn Fn(&Term) -> String, how: &dyn Fn(&Term) -> String) {
+fn figures(
+    ui: &mut Ui,
+    listed: &[Contribution],
+    title: &dyn Fn(&Contribution) -> String,
+    how: &dyn Fn(&Contribution) -> String,
+) {
     Grid::new("origin").num_columns(4).min_col_width(0.0).spacing([7.0, 3.0]).show(ui, |ui| {
         for t in listed {
             let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());

@@ -1,7 +1,7 @@
 //! Where the robot or an end can be taken without passing the service tension, and where its cable would snag: asked for, and read off.
 
-use cable_core::reach::area::Area;
-use cable_core::reach::line::Map;
+use cable_core::analysis::safe_reach::area::Area;
+use cable_core::analysis::safe_reach::line::ReachMap;
 use egui::{ComboBox, ProgressBar, Slider, Ui};
 
 use super::field;
@@ -126,7 +126,7 @@ fn to(x: f64) -> String {
     Unit { decimals: Some(2), ..Unit::M }.text(x)
 }
 
-fn of_line(map: &Map, back: bool, (name, tension_n): (&str, f64)) -> String {
+fn of_line(map: &ReachMap, back: bool, (name, tension_n): (&str, f64)) -> String {
     let Some([left, right]) = map.safe_m(tension_n, back) else {
         return format!("Above {name} {} where it stands", unit::force(tension_n));
     };

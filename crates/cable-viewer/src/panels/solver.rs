@@ -1,6 +1,6 @@
 //! Solver panel: the model, its mesh and accuracy, what it did.
 
-use cable_core::model::drive;
+use cable_core::model::input_filter;
 use cable_core::problem::problems;
 use cable_core::{Model, Settings, Solution};
 use egui::{Grid, Ui};
@@ -110,7 +110,7 @@ fn mesh(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let hand_speed_m_per_s = speed.clamp(0.01, 20.0);
         commands.push(Command::SetSettings(Settings { hand_speed_m_per_s, ..state.settings }));
     }
-    hand_stiffness(ui, state, commands);
+    default_hand_stiffness(ui, state, commands);
     let mut fixed = segments.is_some();
     let help = "Off: the cable's own number, else by the tolerance";
     if ui.checkbox(&mut fixed, "Same number of segments for every cable").on_hover_text(help).changed() {
@@ -126,19 +126,22 @@ fn mesh(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-fn hand_stiffness(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+fn default_hand_stiffness(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let stiffness = state.settings.hand_stiffness_n_per_m;
     let set = |hand_stiffness_n_per_m| Command::SetSettings(Settings { hand_stiffness_n_per_m, ..state.settings });
     let mut stated = stiffness.is_some();
     let help = "Off: a hand that carries the whole of a cable is a hundredth of its length ahead of the support";
     if ui.checkbox(&mut stated, "Same stiffness of the hand for every cable").on_hover_text(help).changed() {
         // That of the present cable, which is as wide a choice as any.
-        let of_cable = problems(&state.scene).ok().and_then(|all| all.first().map(|p| drive::hand_stiffness(p)));
+        let of_cable =
+            problems(&state.scene).ok().and_then(|all| all.first().map(|p| input_filter::default_hand_stiffness(p)));
         commands.push(set(stated.then(|| of_cable.unwrap_or(FIRST_STIFFNESS))));
     }
     let Some(value) = stiffness else { return };
     if let Some(value) = row(ui, &HAND_STIFFNESS, &Known { value, ..Known::default() }).value {
-        commands.push(set(Some(value.clamp(*drive::HAND_STIFFNESSES.start(), *drive::HAND_STIFFNESSES.end()))));
+        commands.push(set(Some(
+            value.clamp(*input_filter::HAND_STIFFNESSES.start(), *input_filter::HAND_STIFFNESSES.end()),
+        )));
     }
 }
 

@@ -1,8 +1,8 @@
 //! A quantity along the cable.
 
 use cable_core::Cable;
+use cable_core::analysis::friction_range::TensionRange;
 use cable_core::solution::CableSolution;
-use cable_core::spread::Band;
 use egui::Ui;
 
 use crate::panels::unit::Unit;
@@ -15,7 +15,13 @@ use super::{Graph, Touched, View, limits, per_newton, show};
 pub const GROUP: &str = "along";
 
 /// Draws it.
-pub fn ui(ui: &mut Ui, cable: &Cable, (solved, ribbon): (&CableSolution, &[Band]), view: View, height: f32) -> Touched {
+pub fn ui(
+    ui: &mut Ui,
+    cable: &Cable,
+    (solved, ribbon): (&CableSolution, &[TensionRange]),
+    view: View,
+    height: f32,
+) -> Touched {
     let (quantity, follow) = (view.measure.quantity(), view.follow);
     let columns = ui.available_width().max(1.0) as usize;
     let all = || solved.nodes.iter().map(|n| [n.arc_length_m, quantity.of(n)]);

@@ -58,7 +58,7 @@ pub fn pass(draft: &mut Simulation) -> Result<(), SolveError> {
             *v *= KEEP;
         }
     }
-    draft.adopt(&states)
+    draft.set_states(&states)
 }
 
 /// A draft by rest: the scene of an edit with few segments and the model that answered it.
@@ -104,13 +104,13 @@ pub fn moving(edit: &Edit, old: &Simulation, coarse: bool) -> Option<Simulation>
 /// The state of a draft as one at rest, for the answer to begin from.
 ///
 /// # Errors
-/// As [`Simulation::adopt`].
+/// As [`Simulation::set_states`].
 pub fn still(draft: &mut Simulation) -> Result<(), Error> {
     let mut states = draft.states();
     for v in states.iter_mut().flat_map(|s| &mut s.velocity_m_per_s) {
         *v *= 0.0;
     }
-    Ok(draft.adopt(&states)?)
+    Ok(draft.set_states(&states)?)
 }
 
 fn carry(draft: &mut Simulation, old: &Simulation) -> Result<(), SolveError> {
@@ -118,7 +118,7 @@ fn carry(draft: &mut Simulation, old: &Simulation) -> Result<(), SolveError> {
     for v in states.iter_mut().filter_map(|s| s.velocity_m_per_s.first_mut()) {
         v.x += WAKE_M_PER_S;
     }
-    draft.adopt(&states)
+    draft.set_states(&states)
 }
 
 /// How far round a point obstacles are asked for, m: what lies deeper than this inside something is in a scene out of all size.

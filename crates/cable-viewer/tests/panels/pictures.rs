@@ -171,7 +171,7 @@ fn warnings() {
 fn origin() {
     let probed = || {
         let mut state = wrapped();
-        let from = cable_core::origin::From::Start;
+        let from = cable_core::analysis::tension_budget::StartEnd::Start;
         state.probe = Some(cable_viewer::state::Probe { cable: 0, arc_length_m: 12.0, from });
         state
     };

@@ -70,7 +70,7 @@ fn loads_and_wind_light() {
 fn slip_front_and_place_light() {
     let mut state = solved_with(catalog::draped_slipping(), Model::Spans);
     state.scene.obstacles.truncate(1);
-    let from = cable_core::origin::From::Slacker;
+    let from = cable_core::analysis::tension_budget::StartEnd::Slacker;
     state.probe = Some(cable_viewer::state::Probe { cable: 0, arc_length_m: 6.0, from });
     compare("slip_front_and_place_light", state, Theme::Light);
 }
@@ -158,16 +158,16 @@ fn robot_light() {
 
 #[test]
 fn safe_reach_and_path_dark() {
-    use cable_core::reach::line::{Map, Place};
+    use cable_core::analysis::safe_reach::line::{ReachMap, ReachPlace};
     let mut state = solved(catalog::robot_drive());
     // By hand: what a search would find depends on the solver.
     let place = |k: u32| {
         let x = 2.0 + 0.4 * f64::from(k);
         let mound = 0.12 * (1.0 - ((x - 12.0) / 0.9).powi(2)).max(0.0);
         let there_and_back_n = if x > 14.2 { f64::INFINITY } else { 60.0 + 20.0 * ((x - 8.0) / 1.5).powi(4).min(60.0) };
-        Place { at_m: [x, mound], there_n: there_and_back_n, there_and_back_n, jammed: false }
+        ReachPlace { at_m: [x, mound], there_n: there_and_back_n, there_and_back_n, jammed: false }
     };
-    let map = Map { places: (0..41).map(place).collect(), start_x_m: 10.0, service_n: 800.0, breaking_n: 1e4 };
+    let map = ReachMap { places: (0..41).map(place).collect(), start_x_m: 10.0, service_n: 800.0, breaking_n: 1e4 };
     let scene = std::sync::Arc::new(state.scene.clone());
     let maps = cable_viewer::reach::Maps::Line(std::sync::Arc::new(map));
     state.reach.progress = cable_viewer::reach::Progress::Done((maps, scene));
@@ -217,7 +217,7 @@ fn robot_pushes_its_cable_dark() {
 
 /// A span with the map of its right end: by hand, as a search would depend on the solver.
 fn end_reached() -> AppState {
-    use cable_core::reach::area::Area;
+    use cable_core::analysis::safe_reach::area::Area;
     let mut state = solved(catalog::over_beam());
     let mut area = Area {
         origin_m: [-1.0, 0.5],

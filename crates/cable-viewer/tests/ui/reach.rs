@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use cable_core::reach::line::Map;
+use cable_core::analysis::safe_reach::line::ReachMap;
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, ViewCommand};
@@ -68,7 +68,7 @@ fn safe_reach_of_a_robot_is_found_beside_the_window_and_can_be_ended() {
     let (maps, of) = found.unwrap();
     assert_eq!(*of, scene);
     let Maps::Line(map) = maps else { panic!("{maps:?}") };
-    let map: &Map = &map;
+    let map: &ReachMap = &map;
     assert_eq!(map.places.len(), PLACES);
     assert!(map.safe_m(map.service_n, true).is_some());
 }

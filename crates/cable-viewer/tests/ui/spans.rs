@@ -1,6 +1,6 @@
 //! The `spans` model in the window: contacts as stretches, slip fronts, where a tension comes from, drags without a sawtooth.
 
-use cable_core::origin::{Cause, From, origin};
+use cable_core::analysis::tension_budget::{Cause, StartEnd, tension_budget};
 use cable_core::scene::{Obstacle, Shape, Support, SupportKind, catalog};
 use cable_core::solution::ContactState;
 use cable_core::{Model, Scene};
@@ -91,10 +91,11 @@ fn a_click_on_the_cable_shows_where_its_tension_comes_from() {
     harness.run_steps(2);
     let probe = state(&harness).probe.expect("a place");
     assert!((probe.arc_length_m - near_hand.arc_length_m).abs() < 0.1, "{probe:?}");
-    let found = origin(&state(&harness).scene, &answer(&harness), (0, probe.arc_length_m), probe.from).unwrap();
-    let sum: f64 = found.terms.iter().map(|t| t.tension_n).sum();
+    let found = tension_budget(&state(&harness).scene, &answer(&harness), (0, probe.arc_length_m), probe.from).unwrap();
+    let sum: f64 = found.contributions.iter().map(|t| t.tension_n).sum();
     assert!((sum - found.tension_n).abs() < 1e-6);
-    let contact = found.terms.iter().find(|t| matches!(t.cause, Cause::Contact(_))).expect("the beam's friction");
+    let contact =
+        found.contributions.iter().find(|t| matches!(t.cause, Cause::Contact(_))).expect("the beam's friction");
     assert!(contact.tension_n.abs() > 1.0 && contact.factor.is_some(), "{contact:?}");
     let words = |h: &egui_kittest::Harness<'_, cable_viewer::ViewerApp>| {
         let figure = h.get_by_role_and_label(Role::Figure, "Where the tension comes from");
@@ -106,7 +107,7 @@ fn a_click_on_the_cable_shows_where_its_tension_comes_from() {
     harness.get_by_label("Friction on beam");
     // The other end, and another place, without the pointer on the canvas.
     click(&mut harness, "From hand");
-    assert_eq!(state(&harness).probe.map(|p| p.from), Some(From::Start));
+    assert_eq!(state(&harness).probe.map(|p| p.from), Some(StartEnd::Start));
     assert!(!words(&harness).contains("Friction on beam"), "the beam is not between the hand and the place");
     click(&mut harness, "At the largest");
     let most = answer(&harness).max_tension();
@@ -158,7 +159,7 @@ fn a_recorded_drag_over_a_right_angle_has_no_sawtooth() {
 /// The ribbon, once it is there.
 fn ribbon(
     harness: &mut egui_kittest::Harness<'_, cable_viewer::ViewerApp>,
-) -> std::sync::Arc<cable_core::spread::Spread> {
+) -> std::sync::Arc<cable_core::analysis::friction_range::FrictionRange> {
     use cable_viewer::background::Progress;
     for _ in 0..6000 {
         harness.run_steps(1);

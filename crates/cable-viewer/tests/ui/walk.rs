@@ -98,7 +98,11 @@ fn walk_a_span() {
     cable.length_m *= 1.15;
     walk.does(Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
     walk.look("a05-held-and-changed");
-    walk.view(ViewCommand::Probe(Some(Probe { cable: 0, arc_length_m: 4.0, from: cable_core::origin::From::Start })));
+    walk.view(ViewCommand::Probe(Some(Probe {
+        cable: 0,
+        arc_length_m: 4.0,
+        from: cable_core::analysis::tension_budget::StartEnd::Start,
+    })));
     walk.look("a06-probe");
     for (k, menu) in ["File", "Edit", "View", "Scenes", "Learn"].into_iter().enumerate() {
         walk.click(menu);

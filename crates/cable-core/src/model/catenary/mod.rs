@@ -323,7 +323,7 @@ impl Mechanics for CatenaryModel {
         State::of_nodes(&self.nodes, self.time_s)
     }
 
-    fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+    fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         if let Some(e) = state.refuse_non_finite() {
             return Err(e);
         }

@@ -21,11 +21,12 @@ use super::dynamics::Dynamics;
 use super::prepare::clear_way;
 use crate::contact::distance::segment_segment;
 use crate::contact::geometry::{Geometry, Part};
-use crate::contact::outline::{Outline, Placement};
-use crate::contact::own::Order;
+use crate::contact::outline::Outline;
+use crate::contact::self_contact::SortedNodes;
 use crate::contact::sweep::Sweep;
+use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
-use crate::model::OutlineReport;
+use crate::model::RobotContact;
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 
@@ -73,10 +74,10 @@ pub(super) struct Rider {
     /// Its number among the obstacles.
     pub(super) obstacle: usize,
     /// Where it was when the way began, and where it is led to, with times in s.
-    from: (f64, Placement),
-    to: (f64, Placement),
+    from: (f64, RigidPose),
+    to: (f64, RigidPose),
     /// Where it was led before.
-    led_before: Placement,
+    led_before: RigidPose,
     /// Whether it stays where it is until the end of this advance.
     waits: bool,
 }
@@ -87,9 +88,9 @@ pub struct Carriage {
     /// Its number among the obstacles.
     pub obstacle: usize,
     /// From where.
-    pub from: Placement,
+    pub from: RigidPose,
     /// To where.
-    pub to: Placement,
+    pub to: RigidPose,
 }
 
 impl Carriage {
@@ -123,7 +124,7 @@ impl Rider {
     }
 
     /// Where it is to be at a time, s.
-    fn goal(&self, time: f64) -> Placement {
+    fn goal(&self, time: f64) -> RigidPose {
         let (whole, left) = (self.to.0 - self.from.0, self.to.0 - time);
         // Sums of steps come as near to their end as rounding lets them.
         if left > ARRIVED * whole { self.from.1.towards(&self.to.1, 1.0 - left / whole) } else { self.to.1 }
@@ -131,13 +132,13 @@ impl Rider {
 
     /// How many steps without inertia its way takes at least.
     pub(super) fn pieces(&self) -> f64 {
-        self.shape.way(&self.from.1, &self.to.1) / LONGEST_WAY_M
+        self.shape.max_displacement(&self.from.1, &self.to.1) / LONGEST_WAY_M
     }
 }
 
 impl Dynamics {
     /// Leads the outline: it goes there in the next advance.
-    pub(super) fn lead_outline(&mut self, to: Placement) {
+    pub(super) fn set_robot_pose(&mut self, to: RigidPose) {
         if let Some(rider) = &mut self.rider
             && to.at.iter().all(|c| c.is_finite())
             && to.angle.is_finite()
@@ -195,7 +196,7 @@ impl Dynamics {
         self.prepare_step(times, dragged);
         let (Some(rider), Some(from)) = (&self.rider, self.motion.placement) else { return };
         let (goal, obstacle) = (rider.goal(times[1]), rider.obstacle);
-        if rider.waits || !(rider.shape.way(&from, &goal) > STANDS_M) {
+        if rider.waits || !(rider.shape.max_displacement(&from, &goal) > STANDS_M) {
             self.hitch_on(&Carriage { obstacle, from, to: from });
             return;
         }
@@ -251,7 +252,7 @@ impl Dynamics {
     /// Where the nodes go out of the way of the outline; `ends` are those of the bars before it moved. None where they cannot.
     fn laid(&self, carriage: &Carriage, ends: &[[Vec2; 2]]) -> Option<Vec<Vec2>> {
         let Some(rider) = &self.rider else { return Some(Vec::new()) };
-        let way = rider.shape.way(&carriage.from, &carriage.to);
+        let way = rider.shape.max_displacement(&carriage.from, &carriage.to);
         let near: Vec<bool> =
             ends.iter().map(|e| self.is_near(e.map(|p| carriage.carried(p)), GOES_ALONG_M + 4.0 * way)).collect();
         if !near.contains(&true) {
@@ -337,18 +338,18 @@ impl Dynamics {
         });
         let step = |k: usize| x[k] - self.task.start[k];
         let arc = mesh.arc_length.as_slice();
-        let own_way = |order: &mut Order| {
+        let own_way = |order: &mut SortedNodes| {
             self.contacts.own.shape.free_fraction((&self.task.start, arc), &step, [KEEP[1], f64::INFINITY, 1.0], order)
         };
-        clear && own_way(&mut Order::default()) >= 1.0
+        clear && own_way(&mut SortedNodes::default()) >= 1.0
     }
 
     /// What the cable does to the outline, and how far that came of the way it was led.
-    pub(super) fn outline_report(&self) -> Option<OutlineReport> {
+    pub(super) fn outline_report(&self) -> Option<RobotContact> {
         let (rider, at) = (self.rider.as_ref()?, self.motion.placement?);
-        let left = rider.shape.way(&at, &rider.to.1);
+        let left = rider.shape.max_displacement(&at, &rider.to.1);
         let left_m = if left > STANDS_M { left } else { 0.0 };
-        Some(OutlineReport { force_n: self.force_on(rider.obstacle), placement: at, left_m })
+        Some(RobotContact { force_n: self.force_on(rider.obstacle), placement: at, left_m })
     }
 
     /// Force of the cable on an obstacle, N.

@@ -5,7 +5,7 @@ use super::carry::Carriage;
 use super::own::Own;
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
-use crate::contact::near::Near;
+use crate::contact::neighbour_lists::NeighbourLists;
 use crate::contact::pairs::Pair;
 use crate::math::{Vec2, bounded, larger};
 use crate::problem::Problem;
@@ -158,7 +158,7 @@ pub struct ContactSet {
     spare: Vec<Memory>,
     scratch: Vec<Touch>,
     /// What each bar can come near to in this step.
-    pub near: Near,
+    pub near: NeighbourLists,
     /// Plan view: sliding of each node remembered, m.
     pub floor_slid: Vec<Vec2>,
     /// Contacts of the cable with itself.
@@ -179,7 +179,7 @@ impl ContactSet {
             memory: Vec::with_capacity(2 * nodes),
             spare: Vec::with_capacity(2 * nodes),
             scratch: Vec::with_capacity(nodes),
-            near: Near::default(),
+            near: NeighbourLists::default(),
             floor_slid: vec![Vec2::zeros(); nodes],
             own: Own::default(),
             carriage: None,

@@ -4,7 +4,7 @@ use super::assembly::Mesh;
 use crate::contact::Gap;
 use crate::math::{Vec2, cross};
 use crate::problem::Problem;
-use crate::problem::lift::above_ground;
+use crate::problem::ground_route::above_ground;
 use crate::scene::SupportKind;
 
 /// Passes of pushing the first lay out of obstacles. Ten are enough for routes drawn within a diameter.

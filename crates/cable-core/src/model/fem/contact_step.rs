@@ -16,7 +16,7 @@ use super::task::{Done, Failure, Pose, Task};
 use super::touch::{add_floor, add_rubs, add_touch};
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
-use crate::contact::own::{Order, OwnPair};
+use crate::contact::self_contact::{SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger, smaller};
@@ -106,8 +106,8 @@ pub struct Workspace {
     pub(super) rounding: Rounding,
     /// Where held nodes go: their targets, or where they had to stop, m.
     pub(super) goal: Vec<Vec2>,
-    own_pairs: Vec<OwnPair>,
-    pub(super) order: Order,
+    own_pairs: Vec<SelfPair>,
+    pub(super) order: SortedNodes,
     /// Entries of the Hessian outside its band, from contacts of the cable with itself.
     pub(super) coupling: Coupling,
     pub(super) ahead: Ahead,
@@ -142,7 +142,7 @@ impl Workspace {
             rounding: Rounding::default(),
             goal: Vec::new(),
             own_pairs: Vec::new(),
-            order: Order::default(),
+            order: SortedNodes::default(),
             coupling: Coupling::new(),
             ahead: Ahead::new(mesh.nodes()),
             carried: Vec::with_capacity(mesh.nodes()),

@@ -22,7 +22,7 @@ use super::free_way::longest;
 use super::own::Coupling;
 use super::stop::Stop;
 use super::task::Pose;
-use crate::contact::own::{Order, OwnPair};
+use crate::contact::self_contact::{SelfPair, SortedNodes};
 use crate::linalg::{BandFactor, solve_coupled};
 use crate::math::Vec2;
 use crate::problem::Problem;
@@ -48,8 +48,8 @@ const CLOSER: f64 = 0.45;
 pub struct Ahead {
     touches: Vec<Touch>,
     stops: Vec<Stop>,
-    pairs: Vec<OwnPair>,
-    order: Order,
+    pairs: Vec<SelfPair>,
+    order: SortedNodes,
     right: Vec<f64>,
     step: Vec<f64>,
 }
@@ -62,7 +62,7 @@ impl Ahead {
             touches: Vec::with_capacity(nodes),
             stops: Vec::with_capacity(nodes),
             pairs: Vec::new(),
-            order: Order::default(),
+            order: SortedNodes::default(),
             right: Vec::with_capacity(2 * nodes),
             step: Vec::with_capacity(2 * nodes),
         }

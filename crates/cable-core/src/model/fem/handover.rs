@@ -52,7 +52,7 @@ impl Dynamics {
     ///
     /// # Errors
     /// When a number is not finite, and `Buried` when it is so far inside an obstacle that nodes cannot be pushed out.
-    pub fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+    pub fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         if let Some(e) = state.refuse_non_finite() {
             return Err(e);
         }

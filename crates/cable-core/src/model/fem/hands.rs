@@ -4,7 +4,7 @@ use super::dynamics::Dynamics;
 use super::task::Pose;
 use super::weight;
 use crate::math::Vec2;
-use crate::model::drive::{Follower, Hand, is_led};
+use crate::model::input_filter::{Hand, SmoothedTarget, is_led};
 use crate::solution::Warning;
 
 impl Dynamics {
@@ -15,7 +15,7 @@ impl Dynamics {
             let fastest = self.hand_speed;
             if is_led(&self.problem, k) {
                 let left = self.due - self.motion.time;
-                let f = self.motion.followers[k].get_or_insert(Follower::at_rest(at));
+                let f = self.motion.followers[k].get_or_insert(SmoothedTarget::at_rest(at));
                 f.lead(target, if left > h { h / left } else { 1.0 }, h);
                 continue;
             }
@@ -29,7 +29,9 @@ impl Dynamics {
                 (self.motion.hands[k], self.motion.followers[k]) = (Some(hand), None);
             } else {
                 let let_go = self.motion.hands[k].take().and(node);
-                let begins = || let_go.map_or(Follower::at_rest(at), |node| Follower::moving(at, self.motion.v[node]));
+                let begins = || {
+                    let_go.map_or(SmoothedTarget::at_rest(at), |node| SmoothedTarget::moving(at, self.motion.v[node]))
+                };
                 let mut f = self.motion.followers[k].unwrap_or_else(begins);
                 f.follow(target, h, fastest);
                 self.motion.followers[k] = Some(f);

@@ -63,14 +63,14 @@ use std::sync::Arc;
 
 use self::two_meshes::TwoMeshes;
 use super::gauge::TensionGauge;
-use super::lay::{Lay, least_sliding, slid_first, slides_on, work};
-use super::{Inertia, Mechanics, Model, OutlineReport, Own, Settings, StepReport};
-use crate::contact::outline::Placement;
+use super::initial_equilibrium::{InitialEquilibrium, initial_equilibrium, slid_first, slides_on, work};
+use super::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
 use crate::error::SolveError;
-use crate::estimates::ErrorEstimates;
+use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
+use crate::solution::ErrorEstimates;
 use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
 use crate::state::State;
 use elastica::Elastica;
@@ -127,7 +127,7 @@ pub struct FemModel {
     /// What another mesh says of the error in contact.
     meshes: TwoMeshes,
     /// Where the outline of the robot was led.
-    led: Option<Placement>,
+    led: Option<RigidPose>,
     /// The rest of a stiff cable in contact, until something moves.
     bent: Option<CableSolution>,
     /// What the mesh's rest of a stiff cable may be off by, in parts of the greatest tension, until something moves.
@@ -170,13 +170,13 @@ impl FemModel {
     ///
     /// # Errors
     /// That it slides from where it is laid.
-    fn lay(&mut self) -> Result<(Laid, Option<Lay>), SolveError> {
-        let laid = least_sliding(&self.problem, self.settings, (&self.dragged, self.led))?;
+    fn lay(&mut self) -> Result<(Laid, Option<InitialEquilibrium>), SolveError> {
+        let laid = initial_equilibrium(&self.problem, self.settings, (&self.dragged, self.led))?;
         let Some(lay) = laid else { return Ok((Laid::Unknown, None)) };
         // A stiff cable is laid as a flexible one: that is where it begins, not how it lies.
         let flexible = self.problem.bending_stiffness == 0.0;
         let before = self.dynamics.clone();
-        let taken = self.dynamics.take_over(&lay.answer, before.time(), &self.dragged).is_ok() && self.dynamics.rested;
+        let taken = self.dynamics.warm_start(&lay.answer, before.time(), &self.dragged).is_ok() && self.dynamics.rested;
         let greatest = lay.answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
         let found = self.dynamics.solution();
         let pairs = lay.answer.supports.iter().zip(&found.supports);
@@ -289,14 +289,14 @@ impl FemModel {
         let Ok(coarse) = Self::new(self.problem.clone(), settings) else { return };
         let mut coarse = Self { dragged: self.dragged.clone(), ..coarse.laid_alone() };
         if let Some(to) = self.led {
-            coarse.lead_outline(to);
+            coarse.set_robot_pose(to);
         }
         if coarse.settle().is_err() {
             return;
         }
         let before = self.dynamics.clone();
         let time_s = before.time();
-        if self.dynamics.take_over(&coarse.solution(), time_s, &self.dragged).is_err() {
+        if self.dynamics.warm_start(&coarse.solution(), time_s, &self.dragged).is_err() {
             self.dynamics = before;
         }
     }
@@ -306,7 +306,7 @@ impl FemModel {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let lay = least_sliding(&self.problem, self.settings, (&self.dragged, self.led)).ok()?;
+        let lay = initial_equilibrium(&self.problem, self.settings, (&self.dragged, self.led)).ok()?;
         let at = (self.dynamics.time(), self.dragged.as_slice());
         let (answer, cost) =
             elastica::rest(&self.problem, at, lay.as_ref().map(|l| &l.answer), SAFETY * self.settings.tolerance)?;
@@ -373,7 +373,7 @@ impl FemModel {
 
     /// Looks at the cable in contact beside an answer without a mesh, or on another one, and makes its own finer where the scene
     /// leaves that open.
-    fn compare_meshes(&mut self, exact: Option<Lay>) {
+    fn compare_meshes(&mut self, exact: Option<InitialEquilibrium>) {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
         self.meshes.compare(&self.problem, (self.settings, !given), (&mut self.dynamics, exact), &self.dragged);
     }
@@ -394,9 +394,9 @@ impl FemModel {
     fn ask(&mut self, part: Part) -> Result<(), SolveError> {
         if self.present != part {
             match part {
-                Part::Statics => self.statics.adopt(&self.dynamics.state())?,
+                Part::Statics => self.statics.set_state(&self.dynamics.state())?,
                 Part::Dynamics => {
-                    self.dynamics.adopt(&self.statics.state())?;
+                    self.dynamics.set_state(&self.statics.state())?;
                     self.dynamics.come_to_rest(&self.dragged);
                 }
             }
@@ -451,7 +451,7 @@ impl Mechanics for FemModel {
             self.ask(Part::Dynamics)?;
             self.unbent = None;
             if let Some(answer) = self.bent.take() {
-                self.dynamics.take_over(&answer, self.dynamics.time(), &self.dragged)?;
+                self.dynamics.warm_start(&answer, self.dynamics.time(), &self.dragged)?;
             }
             let mut report = self.dynamics.advance_gauged((dt_s, inertia), &self.dragged, gauge)?;
             self.meshes.follow((&self.problem, self.settings), &self.dynamics, dt_s, inertia, &self.dragged);
@@ -475,30 +475,30 @@ impl Mechanics for FemModel {
         }
     }
 
-    fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+    fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         self.meshes = TwoMeshes::default();
         self.bent = None;
         self.unbent = None;
         // Statics has no velocities: what moves is taken over by the part that can move.
         if self.present == Part::Statics && state.velocity_m_per_s.iter().any(|v| v.norm() > 0.0) {
-            self.dynamics.adopt(state)?;
+            self.dynamics.set_state(state)?;
             self.present = Part::Dynamics;
             return Ok(());
         }
         match self.present {
-            Part::Statics => self.statics.adopt(state),
-            Part::Dynamics => self.dynamics.adopt(state),
+            Part::Statics => self.statics.set_state(state),
+            Part::Dynamics => self.dynamics.set_state(state),
         }
     }
 
-    fn take_over(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+    fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         self.bent = None;
         self.unbent = None;
         match self.present {
-            Part::Statics => self.adopt(&State::of_nodes(&answer.nodes, time_s)),
+            Part::Statics => self.set_state(&State::of_nodes(&answer.nodes, time_s)),
             Part::Dynamics => {
                 self.meshes = TwoMeshes::default();
-                self.dynamics.take_over(answer, time_s, &self.dragged)
+                self.dynamics.warm_start(answer, time_s, &self.dragged)
             }
         }
     }
@@ -517,12 +517,12 @@ impl Mechanics for FemModel {
         }
     }
 
-    fn lead_outline(&mut self, to: Placement) {
+    fn set_robot_pose(&mut self, to: RigidPose) {
         self.led = Some(to);
-        self.dynamics.lead_outline(to);
+        self.dynamics.set_robot_pose(to);
     }
 
-    fn outline(&self) -> Option<OutlineReport> {
+    fn robot_contact(&self) -> Option<RobotContact> {
         self.dynamics.outline_report()
     }
 
@@ -557,13 +557,18 @@ impl Mechanics for FemModel {
         Box::new(self.kept())
     }
 
-    fn lend(&mut self) -> Option<Own> {
-        Some(Own { memory: self.dynamics.memory.0.take(), problem: self.dynamics.problem.clone() })
+    fn lend(&mut self) -> Option<OwnedResources> {
+        Some(OwnedResources {
+            memory: self.dynamics.memory.0.take().map(|memory| memory as Box<dyn std::any::Any + Send>),
+            problem: self.dynamics.problem.clone(),
+        })
     }
 
-    fn borrow(&mut self, own: Option<Own>) {
-        let own = own.unwrap_or_else(|| Own { memory: None, problem: carry::with_outline(self.problem.clone()) });
-        (self.dynamics.memory.0, self.dynamics.problem) = (own.memory, own.problem);
+    fn borrow(&mut self, own: Option<OwnedResources>) {
+        let own =
+            own.unwrap_or_else(|| OwnedResources { memory: None, problem: carry::with_outline(self.problem.clone()) });
+        self.dynamics.memory.0 = own.memory.and_then(|memory| memory.downcast().ok());
+        self.dynamics.problem = own.problem;
         self.dynamics.place_outline();
     }
 

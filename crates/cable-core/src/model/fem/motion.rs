@@ -4,9 +4,9 @@ use super::assembly::Mesh;
 use super::contact_set::ContactSet;
 use super::dynamics::Dynamics;
 use super::momentum::Account;
-use crate::contact::outline::Placement;
+use crate::math::RigidPose;
 use crate::math::{Vec2, cross, perp};
-use crate::model::drive::{Follower, Hand};
+use crate::model::input_filter::{Hand, SmoothedTarget};
 
 /// What a step may change, kept to go back to.
 #[derive(Clone, Debug, Default)]
@@ -27,12 +27,12 @@ pub(super) struct Motion {
     pub(super) step_before: f64,
     /// Steps as long as the last, one after the other, after each of which all bars pulled.
     pub(super) even_steps: usize,
-    pub(super) followers: Vec<Option<Follower>>,
+    pub(super) followers: Vec<Option<SmoothedTarget>>,
     /// Hands that hold supports by springs.
     pub(super) hands: Vec<Option<Hand>>,
     pub(super) time: f64,
     /// Where the outline of the robot is, if there is one.
-    pub(super) placement: Option<Placement>,
+    pub(super) placement: Option<RigidPose>,
     /// What became of the momentum since the caller's step began.
     pub(super) account: Account,
 }

@@ -9,7 +9,7 @@ use super::integrate::{carried_on, plastic};
 use super::momentum::mass_with;
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
-use crate::contact::own::{Order, OwnPair, OwnShape};
+use crate::contact::self_contact::{SelfContact, SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 use crate::solution::{ContactReport, ContactSample, ContactState};
@@ -18,7 +18,7 @@ use crate::solution::{ContactReport, ContactSample, ContactState};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OwnRub {
     /// The contact.
-    pub pair: OwnPair,
+    pub pair: SelfPair,
     /// Largest friction force μN, N.
     pub limit: f64,
     /// Sliding remembered at the start of the step, m.
@@ -39,14 +39,14 @@ impl OwnRub {
 #[derive(Clone, Debug, Default)]
 pub struct Own {
     /// The cable as an obstacle.
-    pub shape: OwnShape,
+    pub shape: SelfContact,
     /// Coulomb friction of the cable on itself.
     pub friction: f64,
     /// Friction of the present step.
     pub rubs: Vec<OwnRub>,
     memory: Vec<(usize, usize, f64)>,
-    scratch: Vec<OwnPair>,
-    order: Order,
+    scratch: Vec<SelfPair>,
+    order: SortedNodes,
 }
 
 impl Own {
@@ -111,7 +111,7 @@ pub type Coupling = Vec<(usize, usize, f64)>;
 pub fn add(
     (s, coupling): (&mut System, &mut Coupling),
     contacts: &ContactSet,
-    (pairs, x): (&[OwnPair], &[Vec2]),
+    (pairs, x): (&[SelfPair], &[Vec2]),
     curvature: Curvature,
 ) -> (f64, f64) {
     let (own, exact) = (&contacts.own, curvature == Curvature::Exact);

@@ -7,7 +7,7 @@ use super::sliding::Seat;
 use super::task::{Done, Failure, Pose};
 use super::weight;
 use crate::math::Vec2;
-use crate::model::drive::MAX_SPEED;
+use crate::model::input_filter::MAX_SPEED;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 

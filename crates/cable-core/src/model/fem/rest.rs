@@ -529,7 +529,7 @@ impl Dynamics {
 
     /// Whether two bars of the cable cross.
     fn crosses_itself(&self) -> bool {
-        !crate::watch::crossings(&self.motion.x, |_| true).is_empty()
+        !crate::contact::self_crossings::crossings(&self.motion.x, |_| true).is_empty()
     }
 
     /// Steps without inertia that keep every support's move below half an element.

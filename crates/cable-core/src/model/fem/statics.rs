@@ -12,12 +12,12 @@ use super::estimate;
 use super::layout::{Hold, Layout, place};
 use super::network::{Failure, Network};
 use crate::error::{Place, SolveError};
-use crate::estimates::ErrorEstimates;
 use crate::math::{Vec2, larger};
-use crate::model::lay::least_sliding;
+use crate::model::initial_equilibrium::initial_equilibrium;
 use crate::model::{Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
+use crate::solution::ErrorEstimates;
 use crate::solution::{Assumptions, CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
 
@@ -272,7 +272,7 @@ impl Statics {
         }
         if self.time == 0.0
             && !self.adopted
-            && let Ok(Some(lay)) = least_sliding(&self.problem, self.settings, (dragged, None))
+            && let Ok(Some(lay)) = initial_equilibrium(&self.problem, self.settings, (dragged, None))
         {
             let mut laid = network.clone();
             if laid.remember_answer(&lay.answer) && laid.rub().is_ok() {
@@ -472,7 +472,7 @@ impl Statics {
     ///
     /// # Errors
     /// When a number is not finite or the state does not fit the cable.
-    pub fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+    pub fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         if let Some(e) = state.refuse_non_finite() {
             return Err(e);
         }

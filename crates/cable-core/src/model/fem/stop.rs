@@ -3,7 +3,7 @@
 use super::assembly::{Mesh, System};
 use super::contact_set::Touch;
 use super::own::{Coupling, couple};
-use crate::contact::own::OwnPair;
+use crate::contact::self_contact::SelfPair;
 use crate::math::{Vec2, cross, larger};
 
 /// Stiffness of a constraint in units of the largest stiffness at its nodes. Softer: nodes still run into the barrier; much
@@ -59,7 +59,7 @@ impl Stop {
     }
 
     /// A contact of the cable with itself.
-    pub fn of_own(pair: &OwnPair, system: &System, least: f64) -> Self {
+    pub fn of_own(pair: &SelfPair, system: &System, least: f64) -> Self {
         let inside = pair.fraction > 0.0 && pair.fraction < 1.0;
         let shares = pair.shares();
         Self {
@@ -153,7 +153,7 @@ fn stiffness(system: &System, shares: &[(usize, f64)]) -> f64 {
 mod tests {
     use super::super::dynamics::Dynamics;
     use super::*;
-    use crate::contact::own::{Order, OwnShape};
+    use crate::contact::self_contact::{SelfContact, SortedNodes};
     use crate::model::Settings;
     use crate::problem::problems;
     use crate::scene::{Obstacle, Shape, catalog};
@@ -199,7 +199,7 @@ mod tests {
             let arc = [0.0, 1.0, 2.0, 3.0, 4.0];
             let pair = |x: &[Vec2]| {
                 let mut found = Vec::new();
-                OwnShape { diameter: 0.01 }.pairs((x, &arc), 0.2, &mut Order::default(), &mut found);
+                SelfContact { diameter: 0.01 }.pairs((x, &arc), 0.2, &mut SortedNodes::default(), &mut found);
                 found.into_iter().find(|p| (p.node, p.segment) == (4, 0)).unwrap()
             };
             let (before, after) = (pair(&x), pair(&then));

@@ -98,8 +98,8 @@ impl Dynamics {
     /// Goes on from an answer of the same cable at rest, holding what friction held there.
     ///
     /// # Errors
-    /// As [`Self::adopt`].
-    pub fn take_over(
+    /// As [`Self::set_state`].
+    pub fn warm_start(
         &mut self,
         answer: &CableSolution,
         time_s: f64,
@@ -107,7 +107,7 @@ impl Dynamics {
     ) -> Result<(), SolveError> {
         let told = Told(&answer.nodes);
         let state = self.as_told(&told, &State::of_nodes(&answer.nodes, time_s));
-        self.adopt(&state)?;
+        self.set_state(&state)?;
         let moves = answer.nodes.iter().any(|n| n.vx_m_per_s != 0.0 || n.vy_m_per_s != 0.0);
         let touches = !self.problem.world.is_empty() || self.problem.floor_friction.is_some();
         if moves || !touches || self.contacts.own.shape.is_on() {

@@ -14,13 +14,13 @@
 use std::sync::Arc;
 
 use super::dynamics::Dynamics;
-use crate::estimates::ErrorEstimates;
 use crate::math::Vec2;
-use crate::model::lay::Lay;
+use crate::model::initial_equilibrium::InitialEquilibrium;
 use crate::model::spans::SpansModel;
 use crate::model::{Inertia, Mechanics, Settings};
 use crate::problem::Problem;
 use crate::solution::CableSolution;
+use crate::solution::ErrorEstimates;
 
 /// Fewer bars than this have no half of use.
 const LEAST_BARS: usize = 8;
@@ -45,7 +45,7 @@ impl TwoMeshes {
         &mut self,
         problem: &Arc<Problem>,
         (settings, refines): (Settings, bool),
-        (fine, exact): (&mut Dynamics, Option<Lay>),
+        (fine, exact): (&mut Dynamics, Option<InitialEquilibrium>),
         dragged: &[Option<Vec2>],
     ) {
         *self = Self::default();
@@ -168,7 +168,7 @@ fn laid_over(
 ) -> Option<Dynamics> {
     let mut other = Dynamics::new(problem.clone(), Settings { segments: Some(bars), ..settings }).ok()?;
     other.slides = like.slides;
-    other.take_over(answer, like.time(), dragged).ok()?;
+    other.warm_start(answer, like.time(), dragged).ok()?;
     if !other.rested {
         other.settle(dragged).ok()?;
     }

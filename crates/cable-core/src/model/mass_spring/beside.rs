@@ -5,12 +5,12 @@
 //! contact are, and what is said is the same (`fem/two_meshes`).
 
 use super::{MassSpringModel, mesh};
-use crate::estimates::ErrorEstimates;
 use crate::model::fem::FemModel;
-use crate::model::lay::least_sliding;
+use crate::model::initial_equilibrium::initial_equilibrium;
 use crate::model::spans::SpansModel;
 use crate::model::{Inertia, Mechanics, Settings};
 use crate::solution::CableSolution;
+use crate::solution::ErrorEstimates;
 
 /// Fewer elements than this have no half of use.
 const LEAST_ELEMENTS: usize = 8;
@@ -38,7 +38,7 @@ impl MassSpringModel {
         let flexible = self.problem.bending_stiffness == 0.0;
         if first
             && flexible
-            && let Ok(Some(lay)) = least_sliding(&self.problem, self.settings, (&self.drag, None))
+            && let Ok(Some(lay)) = initial_equilibrium(&self.problem, self.settings, (&self.drag, None))
         {
             self.errors = self.apart(&lay.answer);
             self.beside = Beside::Exact(lay.spans);

@@ -4,7 +4,7 @@
 use super::MassSpringModel;
 use super::chain::Chain;
 use crate::math::Vec2;
-use crate::model::drive::Hand;
+use crate::model::input_filter::Hand;
 
 impl MassSpringModel {
     /// The free end of a hand that holds a support goes on for `h` (s).

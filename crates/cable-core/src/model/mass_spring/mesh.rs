@@ -108,7 +108,7 @@ impl MassSpringModel {
             kept: super::Kept::default(),
             beside: super::Beside::default(),
             account: super::momentum::Account::default(),
-            errors: crate::estimates::ErrorEstimates::default(),
+            errors: crate::solution::ErrorEstimates::default(),
             problem,
             s,
             rest,

@@ -31,22 +31,22 @@ mod stepping;
 
 use std::sync::Arc;
 
-use super::drive::{Follower, Hand, held_warning};
 use super::fem::FemModel;
 use super::gauge::TensionGauge;
+use super::input_filter::{Hand, SmoothedTarget, held_warning};
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::contact::Gap;
 use crate::error::SolveError;
-use crate::estimates::ErrorEstimates;
 use crate::math::Vec2;
+pub use crate::model::settings::Stepping;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
+use crate::solution::ErrorEstimates;
 use crate::solution::{CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
 use beside::Beside;
 use kept::Kept;
 use pulley::Pulley;
-pub use stepping::Stepping;
 
 /// The model's mechanics of one cable.
 #[derive(Clone, Debug)]
@@ -92,7 +92,7 @@ pub struct MassSpringModel {
     /// Whether it has left the route for a shape found by a solve, a step or another model.
     laid: bool,
     /// Followers of dragged supports.
-    followers: Vec<Option<Follower>>,
+    followers: Vec<Option<SmoothedTarget>>,
     /// Which of the dragged supports a hand holds by a spring, and those hands.
     pulled: Vec<bool>,
     hands: Vec<Option<Hand>>,
@@ -333,7 +333,7 @@ impl Mechanics for MassSpringModel {
         self.present()
     }
 
-    fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+    fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         if let Some(e) = state.refuse_non_finite() {
             return Err(e);
         }

@@ -12,10 +12,11 @@
 
 use super::MassSpringModel;
 use super::chain::Chain;
-use super::stepping::{MOST_SUB_STEPS, Stepping};
+use super::stepping::MOST_SUB_STEPS;
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::gauge::TensionGauge;
+use crate::model::settings::Stepping;
 use crate::solution::{Warning, WarningKind};
 
 /// Longest sub-step, s. Longer damps motion and softens contacts visibly, shorter costs in proportion.

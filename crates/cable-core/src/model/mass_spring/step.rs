@@ -1,11 +1,11 @@
 //! Forces, contacts and one sub-step; nothing here allocates once the buffers have grown.
 
 use super::pulley::NONE;
-use super::{Follower, MassSpringModel};
+use super::{MassSpringModel, SmoothedTarget};
 use crate::error::SolveError;
 use crate::math::{Vec2, smaller};
-use crate::model::drive::is_led;
 use crate::model::gauge::TensionGauge;
+use crate::model::input_filter::is_led;
 
 /// Fraction of the stable sub-step that is used: more is unstable as elements stretch, less is slower.
 const STEP_SAFETY: f64 = 0.8;
@@ -258,8 +258,8 @@ impl MassSpringModel {
                 None => at,
                 Some(target) => {
                     let begins = match self.hands[k].take() {
-                        Some(_) => Follower::moving(self.x[node], self.v[node]),
-                        None => Follower::at_rest(self.x[node]),
+                        Some(_) => SmoothedTarget::moving(self.x[node], self.v[node]),
+                        None => SmoothedTarget::at_rest(self.x[node]),
                     };
                     let follower = self.followers[k].get_or_insert(begins);
                     if is_led(&self.problem, k) {

@@ -18,7 +18,7 @@ use super::taut::{RINGS, Ring};
 use super::tight;
 use super::trouble::Trouble;
 use super::weight;
-use crate::contact::passed;
+use crate::contact::swept_corners;
 use crate::math::{Vec2, larger};
 use crate::solution::Node;
 
@@ -441,7 +441,7 @@ impl Network {
             let [old, new] = &mut work.shapes;
             pass::shape(start, &self.course, old);
             pass::shape(&self.strands[k], &self.course, new);
-            if let Some(corner) = passed::through(&layout.corners, old, new, &mut work.turns) {
+            if let Some(corner) = swept_corners::through(&layout.corners, old, new, &mut work.turns) {
                 return Err(Trouble::Passed { at: corner.at });
             }
         }

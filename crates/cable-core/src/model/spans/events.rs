@@ -17,7 +17,7 @@ use super::strand::{Contact, Course, Strand, Tie};
 use super::trouble::Trouble;
 use super::wedge;
 use super::weight;
-use crate::contact::passed::{self, Corner};
+use crate::contact::swept_corners::{self, Corner};
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, perp, smaller};
 
@@ -263,7 +263,7 @@ fn passed(
 ) -> Result<bool, Trouble> {
     let mut shape = Vec::new();
     pass::shape(strand, course, &mut shape);
-    let Some(corner) = passed::through(corners, came, &shape, &mut work.turns) else { return Ok(false) };
+    let Some(corner) = swept_corners::through(corners, came, &shape, &mut work.turns) else { return Ok(false) };
     let mut best: Option<(f64, usize, f64, Vec2, Vec2)> = None;
     for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
         seek::shapes(strand, course, k, |s0, at, c| {

@@ -7,7 +7,7 @@ use super::law::Law;
 use super::strand::{Course, Strand, Tie};
 use super::trouble::Trouble;
 use crate::catenary::PointForce;
-use crate::contact::passed::{self, Corner};
+use crate::contact::swept_corners::{self, Corner};
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::Model;
@@ -133,7 +133,7 @@ impl Layout {
             return Err(SolveError::NoRestingPlace { why: "nothing holds the cable".to_owned() });
         }
         loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
-        let corners = passed::corners(&problem.world).into();
+        let corners = swept_corners::corners(&problem.world).into();
         let mut layout = Self { problem: problem.clone(), turned, loads, corners, strands };
         layout.face_wheels();
         Ok(layout)

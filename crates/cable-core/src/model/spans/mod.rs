@@ -453,7 +453,7 @@ impl Mechanics for SpansModel {
         State::of_nodes(&self.look().nodes, self.time_s)
     }
 
-    fn adopt(&mut self, state: &State) -> Result<(), SolveError> {
+    fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         if let Some(e) = state.refuse_non_finite() {
             return Err(e);
         }
@@ -463,7 +463,7 @@ impl Mechanics for SpansModel {
         Ok(())
     }
 
-    fn take_over(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+    fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         let mut instant = Instant::default();
         self.layout.instant(&self.dragged, time_s, &mut instant);
         let mut work = std::mem::take(&mut self.work);

@@ -2,7 +2,7 @@
 
 use super::seek;
 use super::strand::{Contact, Course, Strand};
-use crate::contact::passed::Corner;
+use crate::contact::swept_corners::Corner;
 use crate::math::{Vec2, cross, larger, smaller};
 
 /// Points of each catenary and contact.

@@ -6,7 +6,7 @@
 //! side that is sought, not the place.
 
 use crate::contact::World;
-use crate::contact::passed::Corner;
+use crate::contact::swept_corners::Corner;
 use crate::math::{Vec2, cross};
 
 /// Points that stand for a post.

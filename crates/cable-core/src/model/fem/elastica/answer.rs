@@ -1,9 +1,9 @@
 //! From a solved elastica to an answer.
 
 use super::{ANGLE, ARC, Elastica, End, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, place, tangent, tension};
-use crate::estimates::ErrorEstimates;
 use crate::math::{Vec2, larger, perp};
 use crate::problem::Problem;
+use crate::solution::ErrorEstimates;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
 /// Most nodes of a piece in an answer.

@@ -26,10 +26,10 @@ mod chain_answer;
 mod relax;
 mod start;
 
-use crate::contact::passed;
-use crate::estimates::ErrorEstimates;
+use crate::contact::swept_corners;
 use crate::math::{Vec2, perp};
 use crate::problem::Problem;
+use crate::solution::ErrorEstimates;
 use crate::solution::{CableSolution, Cost, Node};
 use band::Band;
 use relax::{Chain, LetGo};
@@ -241,7 +241,7 @@ pub fn rest(
 /// stiffness would have to pull it is let go, and what springs off a post may come to rest on its other side.
 fn keeps_sides(problem: &Problem, from: &[Node], to: &CableSolution) -> bool {
     let [old, new] = [from, &to.nodes].map(|nodes| nodes.iter().map(Node::at).collect::<Vec<Vec2>>());
-    passed::through(&passed::corners(&problem.world), &old, &new, &mut Vec::new()).is_none()
+    swept_corners::through(&swept_corners::corners(&problem.world), &old, &new, &mut Vec::new()).is_none()
 }
 
 impl Elastica {

@@ -1,0 +1,176 @@
+//! Where an end of a cable can be taken by a hand or a crane: everywhere in the plane that a way through free space leads to.
+//!
+//! From where it is the end is taken outwards from place to place of a grid (`exploration.rs`), each on the shortest way that passes
+//! no obstacle, a coarse grid first and finer ones from its places. Each place goes on from the cable as it was at the one before:
+//! with the friction and the wraps of the way there. The way back is the same way.
+
+mod exploration;
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use exploration::Exploration;
+
+use super::{lay, least, stilled, unsupported};
+use crate::any_error::Error;
+use crate::contact::World;
+use crate::math::{Point, larger, vec2};
+use crate::model::auto::Question;
+use crate::model::{Inertia, Model, Settings};
+use crate::scene::{Scene, Support, SupportKind};
+use crate::simulation::Simulation;
+use crate::solution::Solution;
+
+/// Length of a bar where the cable hangs slack and finite elements answer, m. Longer: nodes catch on rough ground and pull by
+/// thousands of newtons that no cable feels (0.6 m over ground of 0.23 m: 800 kN), and the cable is laid anew more often; shorter:
+/// each step of a heap of slack takes longer (0.2 m on the tank: 2.5 times as long).
+const SLACK_ELEMENT_M: f64 = 0.4;
+
+/// Most places that are looked at: more is a slip of the unit.
+const MAX_PLACES: usize = 100_000;
+
+/// How much farther than its length a cable is tried, of its length: more than any cable stretches before it breaks.
+const REACH_FACTOR: f64 = 1.1;
+
+/// What is asked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Query {
+    /// The scene.
+    pub scene: Scene,
+    /// How its cables lie now; None: as the scene lays them.
+    pub now: Option<Arc<Solution>>,
+    /// Mesh and accuracy.
+    pub settings: Settings,
+    /// The cable whose support is moved.
+    pub cable: usize,
+    /// The support that is moved.
+    pub support: usize,
+    /// Lower left and upper right corner of what is looked at, m.
+    pub corners_m: [Point; 2],
+    /// Side of a place, m.
+    pub spacing_m: f64,
+    /// Asks for the way there and back instead of the place itself: by the number of places on a way as much work again.
+    pub back: bool,
+}
+
+/// What there is to know of every place.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Area {
+    /// The middle of the first place, m.
+    pub origin_m: Point,
+    /// Between neighbours, m.
+    pub spacing_m: f64,
+    /// Places side by side.
+    pub columns: usize,
+    /// Largest tension with the end there, or on the way there and back, N, row by row from below. Not a number: nothing is known
+    /// of it, no free way leads there or no answer was found; infinite: the cable does not reach.
+    pub most_n: Vec<f64>,
+    /// Of each place: its tension is taken from four round it that agree, or, while the map is not done, from the nearest of a coarser
+    /// grid.
+    pub guessed: Vec<bool>,
+    /// Where the end starts, m.
+    pub start_m: Point,
+    /// Service tension of the cable, N.
+    pub service_n: f64,
+    /// Breaking tension of the cable, N.
+    pub breaking_n: f64,
+}
+
+impl Area {
+    /// The middle of a place, m.
+    #[must_use]
+    pub fn at(&self, place: usize) -> Point {
+        let columns = self.columns.max(1);
+        let [column, row] = [(place % columns) as f64, (place / columns) as f64];
+        [self.origin_m[0] + column * self.spacing_m, self.origin_m[1] + row * self.spacing_m]
+    }
+
+    /// How much of the plane is below a tension (N), m², and the corners of the rectangle round it, m; None where nothing is.
+    #[must_use]
+    pub fn below(&self, tension_n: f64) -> Option<(f64, [Point; 2])> {
+        let within = self.most_n.iter().enumerate().filter(|(_, t)| **t <= tension_n).map(|(k, _)| self.at(k));
+        let (mut count, mut low, mut high) = (0_u32, [f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for p in within {
+            count += 1;
+            for k in 0..2 {
+                (low[k], high[k]) = (low[k].min(p[k]), high[k].max(p[k]));
+            }
+        }
+        (count > 0).then(|| (f64::from(count) * self.spacing_m * self.spacing_m, [low, high]))
+    }
+}
+
+/// Looks at all places; `progress` hears what is known so far and the share done (0 to 1), and can end it.
+///
+/// # Errors
+/// The scene is wrong, the support is none that has a place, or its start has no answer.
+pub fn area(query: &Query, mut progress: impl FnMut(&Area, f64) -> ControlFlow<()>) -> Result<Area, Error> {
+    let (mut exploration, laid) = begin(query)?;
+    // Ended early, what is known so far is the answer.
+    exploration.spread(laid, &mut progress);
+    Ok(exploration.found)
+}
+
+/// The search before its first step, and the cable as it is laid.
+fn begin(query: &Query) -> Result<(Exploration<'_>, Simulation), Error> {
+    let still = unmanned(&stilled(&query.scene, query.now.as_deref()))?;
+    let cable = still.cables.get(query.cable).ok_or_else(|| unsupported("a cable that is not there"))?;
+    let start = cable.supports.get(query.support).and_then(|s| s.at_m);
+    let start = vec2(start.ok_or_else(|| unsupported("a support without a place"))?);
+    if !(query.spacing_m > 0.0 && query.corners_m.iter().flatten().all(|v| v.is_finite())) {
+        return Err(unsupported("a grid without places"));
+    }
+    // The start is a place of the grid.
+    let before = [0, 1].map(|k| ((start[k] - query.corners_m[0][k]) / query.spacing_m).floor().max(0.0));
+    let after = [0, 1].map(|k| ((query.corners_m[1][k] - start[k]) / query.spacing_m).floor().max(0.0));
+    let [columns, rows] = [0, 1].map(|k| (before[k] + after[k]) as usize + 1);
+    if columns.saturating_mul(rows) > MAX_PLACES {
+        return Err(unsupported("a grid of so many places"));
+    }
+    let found = Area {
+        origin_m: [0, 1].map(|k| start[k] - before[k] * query.spacing_m),
+        spacing_m: query.spacing_m,
+        columns,
+        most_n: vec![f64::NAN; columns * rows],
+        guessed: vec![false; columns * rows],
+        start_m: [start.x, start.y],
+        service_n: least(&query.scene, &[query.cable], |c| c.service_tension_n),
+        breaking_n: least(&query.scene, &[query.cable], |c| c.breaking_tension_n),
+    };
+    let held = cable.supports.iter().enumerate().filter(|(k, _)| *k != query.support);
+    let radius_m = 0.5 * cable.diameter_m;
+    let exploration = Exploration {
+        query,
+        world: World::new(&still.obstacles, cable.friction, radius_m),
+        holds: held.filter_map(|(_, s)| s.at_m.map(vec2)).collect(),
+        far_m: cable.length_m * REACH_FACTOR,
+        first: before[1] as usize * columns + before[0] as usize,
+        free: Vec::new(),
+        known: vec![false; found.most_n.len()],
+        settled: vec![false; found.most_n.len()],
+        beyond: vec![false; found.most_n.len()],
+        parents: vec![None; found.most_n.len()],
+        found,
+    };
+    let question = Question::History(Inertia::QuasiStatic);
+    let bars = still.cables.iter().map(|c| (c.length_m / SLACK_ELEMENT_M).ceil()).fold(1.0, larger);
+    let settings = Settings { segments: Some(query.settings.segments.unwrap_or(bars as usize)), ..query.settings };
+    let mut laid = Simulation::for_question(still.clone(), Model::Auto, settings, question)?;
+    lay(&mut laid, query.now.as_deref())?;
+    Ok((exploration, laid))
+}
+
+/// Without its robot: where its cable hangs on it, it is held.
+fn unmanned(scene: &Scene) -> Result<Scene, Error> {
+    let mut scene = scene.clone();
+    let hitch = scene.hitch_m();
+    for support in scene.cables.iter_mut().flat_map(|c| &mut c.supports).filter(|s| s.kind == SupportKind::Robot) {
+        let at = hitch.ok_or_else(|| unsupported("a cable on a robot that is not there"))?;
+        *support = Support { arc_length_m: support.arc_length_m, ..Support::fixed(support.name.clone(), at) };
+    }
+    scene.robot = None;
+    Ok(scene)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,335 @@
+//! Where a robot can go along its ground.
+//!
+//! It is put where its tracks stand, place after place; its outline is an obstacle for its cable. No drive, slope or traction
+//! limits it here: [`crate::robot::Vehicle`] answers whether the robot could pull so hard.
+
+use std::ops::ControlFlow;
+
+use super::{STEP_S, UNREACHABLE_FACTOR, lay, least, stilled, unsupported};
+use crate::any_error::Error;
+use crate::math::{Point, larger};
+use crate::model::auto::Question;
+use crate::model::{Inertia, Model, Settings};
+use crate::robot;
+use crate::scene::ground::Ground;
+use crate::scene::preset::robot_preset;
+use crate::scene::{Scene, SupportKind};
+use crate::simulation::Simulation;
+use crate::solution::Solution;
+
+/// Longest way between two answers, m. Longer: an edge that the cable slips over is passed unseen; shorter: more answers.
+const STEP_M: f64 = 0.05;
+
+/// What the cable may leave of a step, m: a robot that it holds back by a hair has not been stopped.
+const MAX_SHORTFALL_M: f64 = 1e-3;
+
+/// Where a heap of slack cable has no rest to be pushed to it is thrown over: such a step is taken with inertia, at this speed, m/s.
+/// Faster: its swing shows in the tension; slower: longer.
+const PUSH_SPEED_M_PER_S: f64 = 0.3;
+
+/// Every how manieth way back is looked at, one after the other. Begun with less: longer until the first picture; with more: of no use.
+const RETURN_STRIDES: [usize; 4] = [8, 4, 2, 1];
+
+/// Two places whose tensions lie closer than this part of the service tension agree: between them the larger counts. More: a snag
+/// between them is not seen; less: more ways back.
+const AGREEMENT_FRACTION: f64 = 0.02;
+
+/// A place of the map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReachPlace {
+    /// Where the tracks' middle is, m.
+    pub at_m: Point,
+    /// Largest tension with the robot there, N; infinite where the cable does not reach, not a number where no answer was found.
+    pub there_n: f64,
+    /// Largest tension on the way there and back, N; infinite where the cable does not reach, not a number where no answer was found
+    /// or none is known yet. Between neighbours that agree it is the larger of theirs.
+    pub there_and_back_n: f64,
+    /// The cable lies in the robot's way there or back and cannot get out of it.
+    pub jammed: bool,
+}
+
+/// What there is to know of every place.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ReachMap {
+    /// In order of x.
+    pub places: Vec<ReachPlace>,
+    /// Where the robot started, m.
+    pub start_x_m: f64,
+    /// Service tension, N: the least of all cables that hang on it.
+    pub service_n: f64,
+    /// Breaking tension, N: the least of all cables that hang on it.
+    pub breaking_n: f64,
+}
+
+impl ReachMap {
+    /// From where to where the robot can go without passing a tension (N), and with `back` also come back; None if not even at
+    /// its start.
+    #[must_use]
+    pub fn safe_m(&self, tension_n: f64, back: bool) -> Option<[f64; 2]> {
+        let fits = |p: &ReachPlace| (if back { p.there_and_back_n } else { p.there_n }) <= tension_n;
+        let start = self.places.iter().position(|p| p.at_m[0] >= self.start_x_m)?;
+        self.places.get(start).filter(|p| fits(p))?;
+        let right = self.places.iter().skip(start).take_while(|p| fits(p)).last()?;
+        let left = self.places.iter().take(start + 1).rev().take_while(|p| fits(p)).last()?;
+        Some([left.at_m[0], right.at_m[0]])
+    }
+}
+
+/// Looks at so many places between two, m, from where an answer of the scene has robot and cable now, if there is one; `progress` hears the map so far and the share done (0 to 1), and can end it.
+///
+/// # Errors
+/// The scene is wrong or has no robot with a cable on ground in a side view, or its start has no answer.
+pub fn robot_reach(
+    (scene, now): (&Scene, Option<&Solution>),
+    settings: Settings,
+    ([from_m, to_m], count): ([f64; 2], usize),
+    mut progress: impl FnMut(&ReachMap, f64) -> ControlFlow<()>,
+) -> Result<ReachMap, Error> {
+    let still = stilled(scene, now);
+    let vehicle = still.robot.as_ref().ok_or_else(|| unsupported("a scene without a robot"))?;
+    let preset = robot_preset(&vehicle.preset).ok_or_else(|| unsupported("a robot of no known kind"))?;
+    let hangs = |k: &usize| scene.cables[*k].supports.iter().any(|s| s.kind == SupportKind::Robot);
+    let cables: Vec<usize> = (0..scene.cables.len()).filter(hangs).collect();
+    if cables.is_empty() {
+        return Err(unsupported("a robot that no cable hangs on"));
+    }
+    let ground = Ground::of(scene);
+    let start_x_m = vehicle.at_m[0];
+    let mut map = ReachMap {
+        start_x_m,
+        service_n: least(scene, &cables, |c| c.service_tension_n),
+        breaking_n: least(scene, &cables, |c| c.breaking_tension_n),
+        ..ReachMap::default()
+    };
+    let question = Question::History(Inertia::QuasiStatic);
+    let mut start = Simulation::for_question(still.clone(), Model::Auto, settings, question)?;
+    lay(&mut start, now)?;
+    let walk = Traverse { cables: &cables, limit_n: UNREACHABLE_FACTOR * map.breaking_n };
+    let step = (to_m - from_m) / count.saturating_sub(1).max(1) as f64;
+    let xs: Vec<f64> = (0..count).map(|k| from_m + step * k as f64).collect();
+    let right: Vec<f64> = xs.iter().copied().filter(|x| *x >= start_x_m).collect();
+    let left: Vec<f64> = xs.iter().rev().copied().filter(|x| *x < start_x_m).collect();
+    // The way there is gone once; the ways back are as long for every place.
+    let out_m = right.last().map_or(0.0, |x| x - start_x_m) + left.last().map_or(0.0, |x| start_x_m - x);
+    let back_m: f64 = xs.iter().map(|x| (x - start_x_m).abs()).sum();
+    let mut gone_m = 0.0;
+    let mut progress = |map: &ReachMap, more_m: f64| {
+        gone_m += more_m;
+        progress(map, (gone_m / (out_m + back_m).max(STEP_M)).min(1.0))
+    };
+    let stands = |x: f64| vehicle.pose_on(&ground, preset, x).map(|stand| stand.at_m);
+    let mut sides = Vec::with_capacity(2);
+    for xs in [right, left] {
+        match walk.out(&start, (&xs, stands), &mut map, &mut progress) {
+            ControlFlow::Continue(side) => sides.push(side),
+            ControlFlow::Break(()) => return Ok(map),
+        }
+    }
+    // Coarsely first.
+    for stride in RETURN_STRIDES {
+        for side in &mut sides {
+            if walk.back(side, stride, &mut map, &mut progress).is_break() {
+                return Ok(map);
+            }
+        }
+    }
+    Ok(map)
+}
+
+/// Why it got no farther.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Obstruction {
+    /// The cable cannot bear it.
+    Taut,
+    /// The cable lies in its way.
+    Jammed,
+    /// No answer was found.
+    NoAnswer,
+}
+
+/// A place on one side of the start, and robot and cable there.
+struct VisitedPlace {
+    /// Where its tracks' middle is, m.
+    at_m: Point,
+    /// Which place it was led to, m.
+    x_m: f64,
+    /// There, if it got there.
+    simulation: Option<Simulation>,
+    /// Largest tension on the way there.
+    most: Result<f64, Obstruction>,
+    /// The way back from it is known.
+    known: bool,
+}
+
+fn value(found: Result<f64, Obstruction>) -> f64 {
+    match found {
+        Ok(n) => n,
+        Err(Obstruction::NoAnswer) => f64::NAN,
+        Err(Obstruction::Taut | Obstruction::Jammed) => f64::INFINITY,
+    }
+}
+
+/// How the robot is moved.
+struct Traverse<'a> {
+    cables: &'a [usize],
+    limit_n: f64,
+}
+
+/// What is heard of the map, and how much farther it went, m.
+type Progress<'a> = &'a mut dyn FnMut(&ReachMap, f64) -> ControlFlow<()>;
+
+impl Traverse<'_> {
+    /// Goes from place to place away from the start; stays ready at each for the way back.
+    fn out(
+        &self,
+        start: &Simulation,
+        (xs, stands): (&[f64], impl Fn(f64) -> Option<Point>),
+        map: &mut ReachMap,
+        progress: Progress<'_>,
+    ) -> ControlFlow<(), Vec<VisitedPlace>> {
+        let (mut there, mut at) = (start.clone(), map.start_x_m);
+        let mut most = Ok(there.largest_n(self.cables.iter().copied()));
+        let mut side = Vec::with_capacity(xs.len());
+        for &x in xs {
+            progress(map, (x - at).abs())?;
+            let Some(at_m) = stands(x) else { continue };
+            most = most.and_then(|m| self.go(&mut there, [at, x]).map(|out| larger(m, out)));
+            at = x;
+            let place = ReachPlace {
+                at_m,
+                there_n: value(most.map(|_| there.largest_n(self.cables.iter().copied()))),
+                there_and_back_n: f64::NAN,
+                jammed: most == Err(Obstruction::Jammed),
+            };
+            let after = map.places.partition_point(|p| p.at_m[0] < at_m[0]);
+            map.places.insert(after, place);
+            let simulation = most.is_ok().then(|| there.clone());
+            side.push(VisitedPlace { at_m, x_m: x, simulation, most, known: false });
+        }
+        ControlFlow::Continue(side)
+    }
+
+    /// Goes back from every so manieth place that is not known yet; one between two that agree is not gone back from.
+    fn back(
+        &self,
+        side: &mut [VisitedPlace],
+        stride: usize,
+        map: &mut ReachMap,
+        progress: Progress<'_>,
+    ) -> ControlFlow<()> {
+        let place = |map: &ReachMap, s: &VisitedPlace| map.places.iter().position(|p| p.at_m == s.at_m);
+        // Counted from the farthest one: its way back leads past all others.
+        for k in (0..side.len()).rev().step_by(stride) {
+            if side[k].known {
+                continue;
+            }
+            let (start_m, x) = (map.start_x_m, side[k].x_m);
+            progress(map, (x - start_m).abs())?;
+            let beside = |j: Option<usize>| {
+                let s = j.and_then(|j| side.get(j)).filter(|s| s.known)?;
+                Some(map.places[place(map, s)?])
+            };
+            let agreed = match (beside(k.checked_sub(stride)), beside(Some(k + stride))) {
+                (Some(a), Some(b)) if a.jammed == b.jammed => {
+                    let [a_n, b_n] = [a.there_and_back_n, b.there_and_back_n];
+                    (a_n == b_n || (a_n - b_n).abs() <= AGREEMENT_FRACTION * map.service_n)
+                        .then(|| (larger(a_n, b_n), a.jammed))
+                }
+                _ => None,
+            };
+            let (most_n, jammed) = agreed.unwrap_or_else(|| {
+                let most = side[k].most;
+                let back = match &side[k].simulation {
+                    Some(there) => self.go(&mut there.clone(), [x, start_m]),
+                    None => most,
+                };
+                (larger(value(most), value(back)), most == Err(Obstruction::Jammed) || back == Err(Obstruction::Jammed))
+            });
+            if let Some(p) = place(map, &side[k]).and_then(|j| map.places.get_mut(j)) {
+                (p.there_and_back_n, p.jammed) = (most_n, jammed);
+            }
+            side[k].known = true;
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Moves the robot from one place to another; the largest tension on the way.
+    fn go(&self, simulation: &mut Simulation, [from, to]: [f64; 2]) -> Result<f64, Obstruction> {
+        let steps = ((to - from).abs() / STEP_M).ceil();
+        let mut most = simulation.largest_n(self.cables.iter().copied());
+        for k in 1..=steps as usize {
+            let x = from + (to - from) * (k as f64 / steps);
+            // Where it cannot stand the cable is led past.
+            let left_m = simulation.lead_robot(x, (STEP_S, Inertia::QuasiStatic)).map_err(|_| Obstruction::NoAnswer)?;
+            most = larger(most, simulation.largest_n(self.cables.iter().copied()));
+            if left_m.is_some_and(|m| m > MAX_SHORTFALL_M) {
+                self.shove(simulation, [x - (to - from) / steps, x])?;
+                most = larger(most, simulation.largest_n(self.cables.iter().copied()));
+            }
+            if !(most <= self.limit_n) {
+                return Err(Obstruction::Taut);
+            }
+        }
+        Ok(most)
+    }
+
+    /// A step with inertia, against the heap of cable before the robot. What swings on the way is not looked at: with what
+    /// speed a robot does this is not asked.
+    fn shove(&self, simulation: &mut Simulation, [from, to]: [f64; 2]) -> Result<(), Obstruction> {
+        let parts = ((to - from).abs() / (PUSH_SPEED_M_PER_S * robot::STEP_S)).ceil();
+        let mut left_m = None;
+        for k in 1..=parts as usize {
+            let x = from + (to - from) * (k as f64 / parts);
+            left_m = simulation.lead_robot(x, (robot::STEP_S, Inertia::Dynamic)).map_err(|_| Obstruction::NoAnswer)?;
+        }
+        // What it threw over has come down.
+        let rests =
+            simulation.lead_robot(to, (STEP_S, Inertia::QuasiStatic)).map_err(|_| Obstruction::NoAnswer)?.or(left_m);
+        if rests.is_some_and(|m| m > MAX_SHORTFALL_M) { Err(Obstruction::Jammed) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::catalog;
+
+    fn map(change: impl FnOnce(&mut Scene), ends: [f64; 2], count: usize) -> ReachMap {
+        let mut scene = catalog::robot_drive();
+        change(&mut scene);
+        robot_reach((&scene, None), Settings::default(), (ends, count), |_, _| ControlFlow::Continue(())).unwrap()
+    }
+
+    #[test]
+    fn farther_than_its_length_it_does_not_reach_and_nearer_it_does() {
+        let map = map(|_| {}, [8.0, 18.0], 12);
+        assert_eq!(map.places.len(), 12);
+        let first = map.places.first().unwrap();
+        assert!(first.there_n < map.service_n && first.there_and_back_n >= first.there_n, "{first:?}");
+        assert_eq!(map.places.last().unwrap().there_n, f64::INFINITY);
+        let [left, right] = map.safe_m(map.service_n, true).unwrap();
+        assert!(left <= 10.0 && (10.0..20.0).contains(&right), "{left} {right}");
+        // What may bear more reaches at least as far.
+        let [_, farther] = map.safe_m(map.breaking_n, true).unwrap();
+        assert!(farther >= right);
+    }
+
+    #[test]
+    fn it_ends_when_it_is_told_to() {
+        let scene = catalog::robot_drive();
+        let mut progress = 0;
+        let map = robot_reach((&scene, None), Settings::default(), ([8.0, 12.0], 9), |_, _| {
+            progress += 1;
+            if progress < 3 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
+        assert_eq!((map.unwrap().places.len(), progress), (2, 3));
+    }
+
+    #[test]
+    fn what_has_no_robot_is_refused_in_words() {
+        let error = robot_reach((&catalog::tank(), None), Settings::default(), ([0.0, 1.0], 3), |_, _| {
+            ControlFlow::Continue(())
+        });
+        assert!(error.unwrap_err().to_string().contains("robot"));
+    }
+}

@@ -1,0 +1,100 @@
+//! Where the end of a cable can be taken: what the cable pulls there, and on the way there and back.
+//!
+//! Histories without inertia, with friction: a robot is led along its ground ([`mod@line`]), an end that a hand or a crane moves
+//! through the free plane ([`mod@area`]). From each place it goes back to where it started: a cable that was drawn round an edge on
+//! the way out may hold there on the way back. Nothing limits what moves it: the question is what the cable would have to bear.
+
+pub mod area;
+pub mod line;
+
+use crate::any_error::Error;
+use crate::error::SolveError;
+use crate::model::Model;
+use crate::scene::{Cable, Scene, SupportKind};
+use crate::simulation::Simulation;
+use crate::solution::Solution;
+
+/// Time of a step, s: no inertia acts, so it only says how far a support trails what draws it. Less: by a part of the step, and a taut cable
+/// shows a tenth of a millimetre; more: nothing.
+const STEP_S: f64 = 0.5;
+
+/// A cable that would have to bear this many times its breaking tension will not get any farther.
+const UNREACHABLE_FACTOR: f64 = 2.0;
+
+/// Breaking tension while looking, N: the map says where it would break and goes on.
+const UNBREAKABLE_N: f64 = 1e15;
+
+/// The scene as it is at the start, for good: nothing moves by itself, lets go or breaks. Supports and robot stand where an answer
+/// has them, if there is one.
+fn stilled(scene: &Scene, now: Option<&Solution>) -> Scene {
+    let mut still = scene.clone();
+    let environment = &mut still.environment;
+    if let Some(&wind) = environment.winds_n_per_m.first() {
+        environment.wind_n_per_m = wind;
+    }
+    environment.winds_n_per_m.clear();
+    environment.wind_times_s.clear();
+    for load in &mut still.loads {
+        load.force_n = load.forces_n.first().copied().or(load.force_n);
+        load.forces_n.clear();
+        load.times_s.clear();
+    }
+    for cable in &mut still.cables {
+        cable.breaking_tension_n = UNBREAKABLE_N;
+        for support in &mut cable.supports {
+            if let Some(&from) = support.motion.as_ref().and_then(|m| m.points_m.first()) {
+                support.at_m = Some(from);
+            }
+            support.motion = None;
+            support.release_s = None;
+            support.force_n = support.forces_n.first().copied().or(support.force_n);
+            support.forces_n.clear();
+            support.times_s.clear();
+        }
+    }
+    if let Some(robot) = &mut still.robot {
+        robot.path.clear();
+        if let Some(now) = now.and_then(|n| n.robot) {
+            robot.at_m = [now.x_m, now.y_m];
+        }
+    }
+    for (cable, now) in still.cables.iter_mut().zip(now.iter().flat_map(|n| &n.cables)) {
+        for (support, now) in cable.supports.iter_mut().zip(&now.supports) {
+            if support.at_m.is_some() && support.kind != SupportKind::Pulley {
+                support.at_m = Some([now.x_m, now.y_m]);
+            }
+        }
+    }
+    still
+}
+
+/// Lays the cables: at rest as an answer has them, else as the scene does.
+fn lay(simulation: &mut Simulation, now: Option<&Solution>) -> Result<(), Error> {
+    if let Some(now) = now {
+        if now.cables.iter().any(|c| !c.breaks.is_empty()) {
+            return Err(unsupported("a cable that has broken"));
+        }
+        simulation.resume(&at_rest(now))?;
+    }
+    simulation.settle()?;
+    Ok(())
+}
+
+/// An answer in which nothing moves.
+fn at_rest(answer: &Solution) -> Solution {
+    let mut still = answer.clone();
+    for node in still.cables.iter_mut().flat_map(|c| &mut c.nodes) {
+        (node.vx_m_per_s, node.vy_m_per_s) = (0.0, 0.0);
+    }
+    still
+}
+
+/// The least of a quantity of some cables.
+fn least(scene: &Scene, cables: &[usize], of: fn(&Cable) -> f64) -> f64 {
+    let values = cables.iter().filter_map(|k| scene.cables.get(*k)).map(of);
+    values.fold(f64::INFINITY, |a, b| if b < a { b } else { a })
+}
+
+fn unsupported(feature: &str) -> Error {
+    Error::from(SolveError::Unsupported { model: Model::Auto, feature: feature.to_owned() })
+}

@@ -1,0 +1,20 @@
+//! [`Error`] joins the errors of the operations that a program calls one after the other: reading a scene, solving it, keeping files.
+
+use thiserror::Error;
+
+use crate::error::{SceneError, SolveError};
+use crate::files::FileError;
+
+/// Anything the three-line user can meet.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Error {
+    /// The scene cannot be read or is not a scene that can be solved.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The model has no answer.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+}

@@ -1,0 +1,79 @@
+//! Where other histories would have left a cable that the floor of a plan view holds.
+//!
+//! What friction holds is what was drawn into it. So each end of the cable is drawn out by a little and put back, and let in and put back, without
+//! inertia, each time from the rest found. What that leaves is a
+//! range that was found: other histories may leave more.
+
+use crate::math::{Vec2, larger, smaller};
+use crate::model::Inertia;
+use crate::solution::CableSolution;
+
+use super::BreakableCable;
+
+/// Way of an end, of the cable's length. Less: what is held in the middle of a long cable is never reached; more: a cable that is nearly taut is torn
+/// rather than drawn, and it takes longer.
+const END_TRAVEL_FRACTION: f64 = 0.01;
+
+/// Time in which an end moves, s: none that counts for what else moves.
+const MOVE_TIME_S: f64 = 1e-6;
+
+/// What a history left.
+struct HistoryResult {
+    words: String,
+    /// Tension at the start, at the end and the greatest, N.
+    tension: [f64; 3],
+}
+
+impl BreakableCable {
+    /// What other histories would have left in the cable, in words; `sound` judges each as if it were the answer.
+    pub(crate) fn histories(&self, sound: impl Fn(&CableSolution) -> bool) -> Option<String> {
+        let laid = self.answer();
+        let way = END_TRAVEL_FRACTION * self.problem().length;
+        let mut found = Vec::new();
+        let last = self.problem().supports.len().checked_sub(1)?;
+        for k in [0, last] {
+            let (support, reaction) = (self.problem().supports.get(k)?, laid.supports.get(k)?);
+            let pull = Vec2::new(reaction.reaction_x_n, reaction.reaction_y_n);
+            let at = Vec2::new(reaction.x_m, reaction.y_m);
+            let Some(out) = pull.try_normalize(0.0).filter(|_| support.at.is_some()) else { continue };
+            for (sign, what) in [(-1.0, "drawn out"), (1.0, "let in")] {
+                let there = self.after(k, [at + out * (sign * way), at]).filter(|a| sound(a));
+                let words = format!("`{}` {what} by {way:.3} m and put back", support.name);
+                found.extend(there.map(|a| HistoryResult { words, tension: tensions(&a) }));
+            }
+        }
+        let laid = tensions(&laid);
+        let range = |k: usize| {
+            let (low, high) =
+                found.iter().fold((laid[k], laid[k]), |(a, b), l| (smaller(a, l.tension[k]), larger(b, l.tension[k])));
+            format!("{low:.2} to {high:.2} N")
+        };
+        let each: Vec<String> = found.iter().map(|l| format!("with {}: {:.2} N", l.words, l.tension[2])).collect();
+        (!found.is_empty()).then(|| {
+            format!(
+                ". The greatest tension is {:.2} N as laid; {}. Among these histories the tension is {} at the start and {} at the end, and the greatest {}",
+                laid[2],
+                each.join("; "),
+                range(0),
+                range(1),
+                range(2),
+            )
+        })
+    }
+
+    /// The answer after a support has been to some places (m), one after the other.
+    fn after(&self, support: usize, places: [Vec2; 2]) -> Option<CableSolution> {
+        let mut other = self.clone();
+        for place in places {
+            other.drag_support(support, place);
+            other.advance(MOVE_TIME_S, Inertia::QuasiStatic).ok()?;
+        }
+        other.breaks().is_empty().then(|| other.answer())
+    }
+}
+
+fn tensions(answer: &CableSolution) -> [f64; 3] {
+    let at = |n: Option<&crate::solution::Node>| n.map_or(f64::NAN, |n| n.tension_n);
+    let most = answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
+    [at(answer.nodes.first()), at(answer.nodes.last()), most]
+}

@@ -1,0 +1,737 @@
+//! One cable of a scene over time: whole, or the pieces it broke into.
+//!
+//! A model knows one unbroken cable. Where tension reaches the breaking tension, [`BreakableCable`] stops the model there, distributes
+//! what hangs on the cable over two shorter [`Problem`]s with free ends, and goes on with a model for each, from the
+//! positions and velocities of the moment. Every model breaks, and none knows that it can.
+
+mod answer;
+mod histories;
+mod partition;
+mod rupture;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use partition::{CablePart, Cut};
+
+use crate::error::SolveError;
+use crate::math::RigidPose;
+use crate::math::{Vec2, larger, smaller};
+use crate::model::gauge::{Limit, TensionGauge};
+use crate::model::input_filter::default_hand_stiffness;
+use crate::model::{Inertia, Mechanics, Model, ModelSource, OwnedResources, RobotContact, Settings, StepReport};
+use crate::problem::{Problem, SupportPoint};
+use crate::scene::SupportKind;
+use crate::solution::{CableSolution, Cost, MomentumAccount, TensionPeak, TensionPeaks};
+use crate::state::State;
+
+/// Longest step that a cable which breaks in it takes from its last place before, s. Longer: the place of the break is blurred; shorter:
+/// more steps for each break. It is the inner step of `fem`.
+const BREAK_SEARCH_STEP_S: f64 = 1.0 / 240.0;
+
+/// Looks in a step without inertia that ends beyond the breaking tension. The moment of the break is interpolated between
+/// two of them: with 16 the end of a cable pulled from slack to taut in one step is found to 1e-2 of the step.
+const QUASI_STATIC_SUBSTEPS: f64 = 16.0;
+
+/// Steps after a break in which a piece is not watched: the models start with a first-order step, and the free end is met
+/// by a wave of its own. Fewer: false breaks beside the first; more: true ones are late. In motion it is also not watched
+/// until that wave, at c = √(EA/ρ), has crossed it there and back (once is too short: a mesh blurs its front): where the break is not felt yet, a cable of exactly even strength that
+/// was pulled evenly would break everywhere at once, which no cable does.
+const UNWATCHED_STEPS: u32 = 2;
+
+/// A rest of a step shorter than this part of it is left out: at a millionth of a step the forces of inertia are rounding.
+const MIN_STEP_REMAINDER: f64 = 0.1;
+
+/// Most pieces of one cable. More are no longer a cable that breaks but a step that fails.
+const MAX_PIECES: usize = 32;
+
+/// A pulley is off the cable when a new end is this near, in elements. Smaller: the end runs into the pulley, where there is
+/// no element left on one side; larger: it drops off visibly early. 2 leaves a moving node beside the pulley.
+const PULLEY_RELEASE_ELEMENTS: f64 = 2.0;
+
+/// Fastest motion of a support that is followed while masses move, m/s. Slower: motions are refused that every model follows; faster:
+/// `mass-spring` cuts velocities, and air, which no model has, would rule.
+const MAX_SUPPORT_SPEED: f64 = 300.0;
+
+/// A velocity that changes nothing, m/s, and tells a model that a piece which broke at rest is not at rest any more.
+const WAKE_VELOCITY: f64 = 1e-100;
+
+/// A break.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Break {
+    /// When, s.
+    pub time_s: f64,
+    /// Where on the cable, m.
+    pub arc_length_m: f64,
+    /// Where in the plane, m.
+    pub at: Vec2,
+    /// The support it tore off, if it did.
+    pub detached_from: Option<String>,
+    /// The time over which its mean tension reached the breaking tension, s; 0 = at once.
+    pub over_s: f64,
+}
+
+/// One cable of a scene.
+pub(crate) struct BreakableCable {
+    problem: Arc<Problem>,
+    /// Builds the whole cable, and the pieces it breaks into.
+    source: ModelSource,
+    settings: Settings,
+    pieces: Vec<Piece>,
+    breaks: Vec<Break>,
+    dragged: Vec<Option<Vec2>>,
+    /// Which of them a hand holds by a spring.
+    pulled: Vec<bool>,
+    /// Where the outline of the robot was led.
+    robot_pose: Option<RigidPose>,
+    /// The greatest tensions since they were last forgotten, in motion.
+    peaks: Option<TensionPeaks>,
+    /// When that was, s.
+    since_s: f64,
+    /// A motion that is too fast for masses that move, in words.
+    too_fast: Option<String>,
+}
+
+/// A part of the cable that holds together.
+struct Piece {
+    mechanics: Box<dyn Mechanics>,
+    part: CablePart,
+    /// The answer at its present instant, in its own arc lengths.
+    answer: CableSolution,
+    unwatched_steps: u32,
+    /// Not watched before, s.
+    unwatched_until_s: f64,
+    /// Its tension in the inner steps of its model, in its own arc lengths.
+    gauge: TensionGauge,
+    /// Its momentum since the caller's step began, as far as there is an account of it.
+    account: Option<MomentumAccount>,
+}
+
+/// What became of a piece in a step.
+enum StepOutcome {
+    Intact,
+    /// When (s), and where it then is.
+    Broke(Box<(f64, State, rupture::Rupture)>),
+}
+
+impl BreakableCable {
+    /// Builds the model of a whole cable.
+    pub fn new(source: ModelSource, problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
+        // A hand's spring is that of the whole cable, whatever breaks off.
+        let stiffness = settings.hand_stiffness_n_per_m.unwrap_or_else(|| default_hand_stiffness(&problem));
+        let settings = Settings { hand_stiffness_n_per_m: Some(stiffness), ..settings };
+        let mechanics = source.build(problem.clone(), settings)?;
+        let gauge = TensionGauge::over(problem.cable.breaking_time_s);
+        let piece = Piece::new(mechanics, CablePart::whole(&problem), gauge);
+        let dragged = vec![None; problem.supports.len()];
+        let too_fast = problem.supports.iter().find_map(too_fast);
+        Ok(Self {
+            too_fast,
+            problem,
+            source,
+            settings,
+            pieces: vec![piece],
+            breaks: Vec::new(),
+            pulled: vec![false; dragged.len()],
+            dragged,
+            robot_pose: None,
+            peaks: None,
+            since_s: 0.0,
+        })
+    }
+
+    /// The same cable by another model: where it is, or at its route where it has not begun.
+    pub fn rebuilt(&self, source: ModelSource) -> Result<Self, SolveError> {
+        let mut next = Self::new(source, self.problem.clone(), self.settings)?;
+        if self.time_s() > 0.0 {
+            next.carry(self)?;
+        }
+        for (k, target) in self.dragged.iter().enumerate() {
+            match target {
+                Some(target) if self.pulled[k] => next.pull_support(k, *target),
+                Some(target) => next.drag_support(k, *target),
+                None => {}
+            }
+        }
+        Ok(next)
+    }
+
+    /// The model in use: of several pieces that of the first.
+    pub fn model(&self) -> Model {
+        self.pieces.first().map_or(self.source.model(), |p| p.mechanics.model())
+    }
+
+    /// Why it is that model, where that changed on the way.
+    pub fn reason(&self) -> Option<&str> {
+        self.pieces.iter().find_map(|p| p.mechanics.reason())
+    }
+
+    /// Why the model that was asked first has no answer, where another one gave the present one.
+    pub fn refusal(&self) -> Option<&SolveError> {
+        self.pieces.iter().find_map(|p| p.mechanics.refusal())
+    }
+
+    /// The whole cable's problem.
+    pub fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
+    /// Where and when it broke, oldest first.
+    pub fn breaks(&self) -> &[Break] {
+        &self.breaks
+    }
+
+    /// Time reached, s: that of the piece that is least far.
+    pub fn time_s(&self) -> f64 {
+        self.pieces.iter().map(|p| p.mechanics.time_s()).fold(f64::INFINITY, |a, b| if b < a { b } else { a })
+    }
+
+    /// Finds where it rests: nothing breaks at rest, see `crate::warnings`.
+    pub fn settle(&mut self) -> Result<StepReport, SolveError> {
+        let mut sum = StepReport::default();
+        self.peaks = None;
+        for piece in &mut self.pieces {
+            piece.gauge.forget();
+            add(&mut sum, piece.mechanics.settle()?);
+            piece.refresh_answer();
+        }
+        sum.warnings.extend(self.problem.notes.iter().cloned());
+        Ok(sum)
+    }
+
+    /// A new step of the caller begins: the greatest tensions and the account of momentum are those of it from now on.
+    pub fn forget_peaks(&mut self) {
+        self.peaks = None;
+        self.since_s = self.time_s();
+        self.pieces.iter_mut().for_each(|p| p.account = None);
+    }
+
+    /// Advances time by exactly `dt_s`, breaking on the way where it must. Without inertia it stops where something turns
+    /// back: one step from before a reversal to after it would be another history.
+    pub fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+        if let (Inertia::Dynamic, Some(feature)) = (inertia, &self.too_fast) {
+            return Err(SolveError::Unsupported { model: self.model(), feature: feature.clone() });
+        }
+        let mut sum = StepReport::default();
+        let (mut left, end_s) = (dt_s, self.time_s() + dt_s);
+        while inertia == Inertia::QuasiStatic
+            && let Some(at) = self.problem.turn_between(self.time_s(), end_s)
+        {
+            add(&mut sum, self.advance_on(at - self.time_s(), inertia)?);
+            left = end_s - self.time_s();
+        }
+        add(&mut sum, self.advance_on(left, inertia)?);
+        Ok(sum)
+    }
+
+    fn advance_on(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+        let mut sum = StepReport::default();
+        self.slip_off_pulleys(inertia)?;
+        let Some(end_s) = self.pieces.first().map(|p| p.mechanics.time_s() + dt_s) else { return Ok(sum) };
+        let breaking_n = self.problem.cable.breaking_tension_n;
+        let mut k = 0;
+        while k < self.pieces.len() {
+            let may_break = self.pieces.len() < MAX_PIECES;
+            let Some(piece) = self.pieces.get_mut(k) else { break };
+            // A whole cable takes the very step it was asked for.
+            let rest_s = if self.breaks.is_empty() { dt_s } else { end_s - piece.mechanics.time_s() };
+            if !self.breaks.is_empty() && rest_s <= 1e-9 * dt_s {
+                k += 1;
+                continue;
+            }
+            let done = piece.advance(rest_s, inertia, may_break.then_some(breaking_n), &mut sum)?;
+            self.peaks = match (self.peaks, piece.peaks()) {
+                (Some(a), Some(b)) => Some(a.with(b)),
+                (a, b) => b.or(a),
+            };
+            match done {
+                StepOutcome::Intact => k += 1,
+                StepOutcome::Broke(at) => self.split(k, &at, inertia)?,
+            }
+        }
+        Ok(sum)
+    }
+
+    /// Replaces a piece by those it breaks into.
+    fn split(
+        &mut self,
+        k: usize,
+        (time_s, state, at): &(f64, State, rupture::Rupture),
+        inertia: Inertia,
+    ) -> Result<(), SolveError> {
+        let support_arc_lengths = self.support_arc_lengths();
+        let Some(piece) = self.pieces.get(k) else { return Ok(()) };
+        let nodes = &piece.answer.nodes;
+        let Some(node) = nodes.get(at.node) else { return Ok(()) };
+        let tension = |i: Option<usize>| i.and_then(|i| nodes.get(i)).map_or(0.0, |n| n.tension_n);
+        let cut = Cut {
+            at: piece.part.from + node.arc_length_m,
+            near: 0.5 * piece.element(),
+            after: tension(Some(at.node + 1)) > tension(at.node.checked_sub(1)),
+            support_arc_lengths: &support_arc_lengths,
+        };
+        let parts = piece.part.cut(&self.problem, &cut);
+        let end =
+            if cut.at - piece.part.from <= cut.near { piece.part.supports.first() } else { piece.part.supports.last() };
+        let detached = (parts.len() == 1).then(|| end.copied().flatten()).flatten();
+        let event = Break {
+            time_s: *time_s,
+            arc_length_m: cut.at,
+            at: state.position_at(node.arc_length_m).unwrap_or_default(),
+            over_s: if inertia == Inertia::Dynamic { self.problem.cable.breaking_time_s } else { 0.0 },
+            detached_from: detached.and_then(|k| self.problem.supports.get(k)).map(|s| s.name.clone()),
+        };
+        let from = piece.part.from;
+        let mut new_pieces = Vec::with_capacity(2);
+        for part in parts {
+            let mut own = rupture::section(state, part.from - from, part.to - from);
+            if inertia == Inertia::Dynamic {
+                mark_moving(&mut own);
+            }
+            let there_and_back_s =
+                2.0 * part.length() * (self.problem.linear_density / self.problem.axial_stiffness).sqrt();
+            let mut new_piece = self.build(part, &own)?;
+            new_piece.unwatched_steps = UNWATCHED_STEPS;
+            new_piece.unwatched_until_s = time_s + there_and_back_s;
+            new_pieces.push(new_piece);
+        }
+        self.pieces.splice(k..=k, new_pieces);
+        self.breaks.push(event);
+        Ok(())
+    }
+
+    /// A piece from where it is; `state` in its own arc lengths.
+    fn build(&self, part: CablePart, state: &State) -> Result<Piece, SolveError> {
+        let problem = Arc::new(part.problem(&self.problem, state));
+        let mut mechanics = self.source.build(problem, Settings { segments: None, ..self.settings })?;
+        for (own, k) in part.supports.iter().enumerate() {
+            let drawn = k.and_then(|k| Some((self.dragged.get(k).copied().flatten()?, self.pulled[k])));
+            match drawn {
+                Some((target, true)) => mechanics.pull_support(own, target),
+                Some((target, false)) => mechanics.drag_support(own, target),
+                None => {}
+            }
+        }
+        if let Some(pose) = self.robot_pose {
+            mechanics.set_robot_pose(pose);
+        }
+        mechanics.set_state(state)?;
+        Ok(Piece::new(mechanics, part, TensionGauge::over(self.problem.cable.breaking_time_s)))
+    }
+
+    /// A piece whose new end has come to a pulley is off it.
+    fn slip_off_pulleys(&mut self, inertia: Inertia) -> Result<(), SolveError> {
+        if self.breaks.is_empty() {
+            return Ok(());
+        }
+        for k in 0..self.pieces.len() {
+            while let Some(piece) = self.pieces.get(k)
+                && let Some(support) = piece.pulley_at_new_end(&self.problem)
+            {
+                let mut state = piece.mechanics.state();
+                if inertia == Inertia::Dynamic {
+                    mark_moving(&mut state);
+                }
+                let next = self.build(piece.part.without(support), &state)?;
+                if let Some(piece) = self.pieces.get_mut(k) {
+                    *piece = next;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// From now on a support follows what leads it.
+    pub fn drag_support(&mut self, support: usize, target_m: Vec2) {
+        self.draw_support(support, (target_m, false));
+    }
+
+    /// From now on a hand holds a support by a spring.
+    pub fn pull_support(&mut self, support: usize, hand_m: Vec2) {
+        self.draw_support(support, (hand_m, true));
+    }
+
+    fn draw_support(&mut self, support: usize, (to, by_spring): (Vec2, bool)) {
+        if !to.iter().all(|c| c.is_finite()) {
+            return;
+        }
+        if let (Some(d), Some(pulled)) = (self.dragged.get_mut(support), self.pulled.get_mut(support)) {
+            (*d, *pulled) = (Some(to), by_spring);
+        }
+        for piece in &mut self.pieces {
+            let own = piece.part.supports.iter().position(|k| *k == Some(support));
+            match own {
+                Some(own) if by_spring => piece.mechanics.pull_support(own, to),
+                Some(own) => piece.mechanics.drag_support(own, to),
+                None => {}
+            }
+        }
+    }
+
+    /// Leads the outline of the robot: it goes there in the next advance.
+    pub fn set_robot_pose(&mut self, to: RigidPose) {
+        self.robot_pose = Some(to);
+        for piece in &mut self.pieces {
+            piece.mechanics.set_robot_pose(to);
+        }
+    }
+
+    /// Gives the whole cable to the next model: see [`Mechanics::fall_back`](crate::model::Mechanics::fall_back).
+    pub fn fall_back(&mut self, why: &str) -> bool {
+        match self.pieces.as_mut_slice() {
+            [whole] if self.breaks.is_empty() => whole.mechanics.fall_back(why),
+            _ => false,
+        }
+    }
+
+    /// What the cable does to the outline of the robot, all pieces together; None where no model knows of it.
+    pub fn robot_contact(&self) -> Option<RobotContact> {
+        self.pieces
+            .iter()
+            .filter_map(|p| p.mechanics.robot_contact())
+            .reduce(|a, b| RobotContact { force_n: a.force_n + b.force_n, ..if b.left_m > a.left_m { b } else { a } })
+    }
+
+    /// Longest inner step of the next step with inertia, s.
+    pub fn inner_step_s(&self) -> f64 {
+        self.pieces.iter().map(|p| p.mechanics.inner_step_s()).fold(f64::INFINITY, smaller)
+    }
+
+    /// What it does to a support now, N.
+    pub fn pull_on(&self, support: usize) -> Vec2 {
+        let r = self.reaction(support);
+        Vec2::new(r.reaction_x_n, r.reaction_y_n)
+    }
+
+    /// A copy to go back to.
+    pub fn checkpoint(&self) -> Self {
+        self.with(self.pieces.iter().map(Piece::checkpoint).collect())
+    }
+
+    /// Becomes what it was when `kept` was copied from it.
+    pub fn restore(&mut self, kept: &Self) {
+        let mut own: Vec<Option<OwnedResources>> = self.pieces.iter_mut().map(|p| p.mechanics.lend()).collect();
+        own.resize_with(kept.pieces.len(), || None);
+        // What broke since has nothing of the whole.
+        let same = self.breaks.len() == kept.breaks.len();
+        *self = kept.checkpoint();
+        for (piece, own) in self.pieces.iter_mut().zip(own) {
+            piece.mechanics.borrow(own.filter(|_| same));
+        }
+    }
+
+    /// Takes over a state of the whole cable.
+    pub fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
+        match self.pieces.as_mut_slice() {
+            [whole] if self.breaks.is_empty() => {
+                whole.mechanics.set_state(state)?;
+                whole.gauge.forget();
+                whole.refresh_answer();
+                self.peaks = None;
+                Ok(())
+            }
+            pieces => {
+                let model = pieces.first().map_or(Model::Auto, |p| p.mechanics.model());
+                let feature = "the state of a whole cable for one that broke (reset first)".to_owned();
+                Err(SolveError::Unsupported { model, feature })
+            }
+        }
+    }
+
+    /// Goes on where `old`, the same cable before an edit, is: broken where that one broke.
+    pub fn carry(&mut self, old: &Self) -> Result<(), SolveError> {
+        let (Some(own), Some(first)) = (self.pieces.first(), old.pieces.first()) else { return Ok(()) };
+        if old.breaks.is_empty() {
+            self.set_state(&first.mechanics.state())?;
+            let same = |p: &Problem| (p.length, p.cable.breaking_time_s);
+            if let (Some(own), true) = (self.pieces.first_mut(), same(&self.problem) == same(&old.problem)) {
+                own.gauge.clone_from(&first.gauge);
+            }
+            return Ok(());
+        }
+        let model = own.mechanics.model();
+        let names = |s: &Self| s.problem.supports.iter().map(|s| s.name.clone()).collect::<Vec<_>>();
+        if names(self) != names(old)
+            || self.problem.length != old.problem.length
+            || self.problem.loads.len() != old.problem.loads.len()
+        {
+            let feature = "another length, other supports or loads for a cable that broke (reset first)".to_owned();
+            return Err(SolveError::Unsupported { model, feature });
+        }
+        self.dragged.clone_from(&old.dragged);
+        self.pulled.clone_from(&old.pulled);
+        let mut pieces = Vec::with_capacity(old.pieces.len());
+        for p in &old.pieces {
+            pieces.push(self.build(p.part.clone(), &p.mechanics.state())?);
+        }
+        self.pieces = pieces;
+        self.breaks.clone_from(&old.breaks);
+        Ok(())
+    }
+}
+
+impl Piece {
+    fn new(mechanics: Box<dyn Mechanics>, part: CablePart, gauge: TensionGauge) -> Self {
+        let answer = mechanics.solution();
+        Self { answer, mechanics, part, unwatched_steps: 0, unwatched_until_s: f64::NEG_INFINITY, gauge, account: None }
+    }
+
+    fn refresh_answer(&mut self) {
+        self.answer = self.mechanics.solution();
+    }
+
+    /// Adds the account of the step just made.
+    fn accumulate_momentum(&mut self) {
+        self.account = match (self.account, self.answer.momentum) {
+            (Some(before), Some(now)) => Some(before.then(&now)),
+            (before, now) => now.or(before),
+        };
+    }
+
+    /// Mean length of an element, m.
+    fn element(&self) -> f64 {
+        self.part.length() / self.answer.nodes.len().saturating_sub(1).max(1) as f64
+    }
+
+    /// Advances until it breaks, at most by `dt_s`.
+    fn advance(
+        &mut self,
+        dt_s: f64,
+        inertia: Inertia,
+        breaking_n: Option<f64>,
+        sum: &mut StepReport,
+    ) -> Result<StepOutcome, SolveError> {
+        match (inertia, breaking_n) {
+            (Inertia::Dynamic, breaking_n) => self.advance_dynamic(dt_s, breaking_n.unwrap_or(f64::INFINITY), sum),
+            (Inertia::QuasiStatic, Some(breaking_n)) => self.advance_quasi_static(dt_s, breaking_n, sum),
+            (Inertia::QuasiStatic, None) => {
+                self.gauge.forget();
+                add(sum, self.mechanics.advance(dt_s, inertia)?);
+                self.refresh_answer();
+                Ok(StepOutcome::Intact)
+            }
+        }
+    }
+
+    /// With inertia: it breaks where the gauge says so, which sees the inner steps. A step in which that happens is taken again in
+    /// parts, to have the cable where it breaks.
+    fn advance_dynamic(&mut self, dt_s: f64, breaking_n: f64, sum: &mut StepReport) -> Result<StepOutcome, SolveError> {
+        let looks = (dt_s / BREAK_SEARCH_STEP_S - 1e-9).ceil().max(1.0);
+        if looks > 1.0 && self.unwatched_steps == 0 {
+            let before = (self.mechanics.boxed_clone(), self.gauge.clone());
+            let report = self.gauged_step(dt_s, breaking_n)?;
+            if self.gauge.reached().is_none() {
+                self.refresh_answer();
+                self.accumulate_momentum();
+                add(sum, report);
+                return Ok(StepOutcome::Intact);
+            }
+            (self.mechanics, self.gauge) = before;
+        }
+        let (mut left_s, h) = (dt_s, dt_s / looks);
+        let mut peaks: Option<TensionPeaks> = None;
+        for _ in 0..looks as usize {
+            let state = self.mechanics.state();
+            let step_s = if left_s < 1.5 * h { left_s } else { h };
+            let breaking_n = if self.unwatched_steps > 0 { f64::INFINITY } else { breaking_n };
+            let done = self.gauged_step(step_s, breaking_n);
+            self.refresh_answer();
+            self.accumulate_momentum();
+            add(sum, done?);
+            self.gauge.add_peaks(peaks);
+            peaks = self.gauge.peaks();
+            left_s -= step_s;
+            self.unwatched_steps = self.unwatched_steps.saturating_sub(1);
+            if let Some(reached) = self.gauge.reached() {
+                let now = self.mechanics.state();
+                let fraction = ((reached.time_s - state.time_s) / (now.time_s - state.time_s)).clamp(0.0, 1.0);
+                let at =
+                    rupture::Rupture { node: rupture::nearest(&self.answer.nodes, reached.arc_length_m), fraction };
+                let state =
+                    if 1.0 - fraction < MIN_STEP_REMAINDER { now } else { rupture::between(&state, &now, fraction) };
+                return Ok(StepOutcome::Broke(Box::new((reached.time_s, state, at))));
+            }
+        }
+        Ok(StepOutcome::Intact)
+    }
+
+    /// A step with inertia in which a mean of so much is looked for, N.
+    fn gauged_step(&mut self, dt_s: f64, breaking_n: f64) -> Result<StepReport, SolveError> {
+        let limit = Limit { tension_n: breaking_n, from_s: self.unwatched_until_s, within_m: self.may_break_within() };
+        self.gauge.watch(limit);
+        self.mechanics.advance_gauged(dt_s, Inertia::Dynamic, &mut self.gauge)
+    }
+
+    /// Without inertia it breaks at once.
+    fn advance_quasi_static(
+        &mut self,
+        dt_s: f64,
+        breaking_n: f64,
+        sum: &mut StepReport,
+    ) -> Result<StepOutcome, SolveError> {
+        let inertia = Inertia::QuasiStatic;
+        self.gauge.forget();
+        if rupture::greatest(&self.answer.nodes) < breaking_n {
+            let before = (self.mechanics.boxed_clone(), std::mem::take(&mut self.answer));
+            let report = match self.mechanics.advance(dt_s, inertia) {
+                Ok(report) => report,
+                Err(error) => {
+                    self.answer = before.1;
+                    return Err(error);
+                }
+            };
+            self.refresh_answer();
+            if rupture::greatest(&self.answer.nodes) < breaking_n {
+                self.unwatched_steps = self.unwatched_steps.saturating_sub(QUASI_STATIC_SUBSTEPS as u32);
+                add(sum, report);
+                return Ok(StepOutcome::Intact);
+            }
+            (self.mechanics, self.answer) = before;
+        }
+        let (mut left_s, h) = (dt_s, dt_s / QUASI_STATIC_SUBSTEPS);
+        for _ in 0..QUASI_STATIC_SUBSTEPS as usize {
+            let (state, nodes) = (self.mechanics.state(), std::mem::take(&mut self.answer.nodes));
+            let step_s = if left_s < 1.5 * h { left_s } else { h };
+            let done = self.mechanics.advance(step_s, inertia);
+            self.refresh_answer();
+            add(sum, done?);
+            left_s -= step_s;
+            let now = self.mechanics.state();
+            let awake = self.unwatched_steps == 0;
+            self.unwatched_steps = self.unwatched_steps.saturating_sub(1);
+            let [low, high] = self.may_break_within();
+            if awake && let Some(at) = rupture::first(&nodes, &self.answer.nodes, breaking_n, |s| low <= s && s <= high)
+            {
+                let time_s = state.time_s + (now.time_s - state.time_s) * at.fraction;
+                let rest = 1.0 - at.fraction;
+                let state = if rest < MIN_STEP_REMAINDER { now } else { rupture::between(&state, &now, at.fraction) };
+                return Ok(StepOutcome::Broke(Box::new((time_s, state, at))));
+            }
+        }
+        Ok(StepOutcome::Intact)
+    }
+
+    /// The arc lengths (its own, m) between which it may break: not at an end that is free since a break.
+    fn may_break_within(&self) -> [f64; 2] {
+        let least = 0.5 * self.element();
+        let new = |end: Option<&Option<usize>>| end == Some(&None);
+        let low = if new(self.part.supports.first()) { least } else { f64::NEG_INFINITY };
+        let high = if new(self.part.supports.last()) { self.part.length() - least } else { f64::INFINITY };
+        [low, high]
+    }
+
+    /// The greatest tensions of the last advance, with the nodes at its end where it did not break, in arc lengths of the whole cable.
+    fn peaks(&self) -> Option<TensionPeaks> {
+        let mut peaks = self.gauge.peaks()?;
+        if self.gauge.reached().is_none() {
+            let time_s = self.mechanics.time_s();
+            for n in &self.answer.nodes {
+                if n.tension_n > peaks.greatest.tension_n {
+                    peaks.greatest = TensionPeak { tension_n: n.tension_n, arc_length_m: n.arc_length_m, time_s };
+                }
+            }
+        }
+        peaks.greatest.arc_length_m += self.part.from;
+        peaks.held.arc_length_m += self.part.from;
+        Some(peaks)
+    }
+
+    /// A pulley that a new end has come to.
+    fn pulley_at_new_end(&self, whole: &Problem) -> Option<usize> {
+        let supports = &self.part.supports;
+        let [start, end] = [supports.first(), supports.last()].map(|s| s == Some(&None));
+        let near = PULLEY_RELEASE_ELEMENTS * self.element();
+        supports.iter().zip(&self.answer.supports).find_map(|(k, r)| {
+            let k = (*k)?;
+            let pulley = whole.supports.get(k)?.kind == SupportKind::Pulley;
+            let off = (start && r.arc_length_m <= near) || (end && self.part.length() - r.arc_length_m <= near);
+            (pulley && off).then_some(k)
+        })
+    }
+}
+
+/// What is to be said of a motion that is too fast.
+fn too_fast(support: &SupportPoint) -> Option<String> {
+    let (speed, time_s) = support.motion.as_ref()?.fastest();
+    (speed > MAX_SUPPORT_SPEED).then(|| {
+        format!(
+            "the motion of support `{}`, which reaches {speed:.1} m/s at {time_s:.4} s: with inertia one is followed up to {MAX_SUPPORT_SPEED} m/s",
+            support.name
+        )
+    })
+}
+
+fn mark_moving(state: &mut State) {
+    if state.velocity_m_per_s.iter().all(|v| v.norm() == 0.0)
+        && let Some(v) = state.velocity_m_per_s.first_mut()
+    {
+        v.x = WAKE_VELOCITY;
+    }
+}
+
+fn add(sum: &mut StepReport, more: StepReport) {
+    let Cost { iterations, halved_steps, residual_n, inner_step_s } = more.cost;
+    sum.cost.iterations += iterations;
+    sum.cost.halved_steps += halved_steps;
+    // Not `max`: what is not a number must show.
+    sum.cost.residual_n = larger(sum.cost.residual_n, residual_n);
+    if inner_step_s > sum.cost.inner_step_s {
+        sum.cost.inner_step_s = inner_step_s;
+    }
+    for warning in more.warnings {
+        // Of the parts of a step each says the same again.
+        sum.warnings.retain(|w| w.kind != warning.kind || w.message != warning.message);
+        sum.warnings.push(warning);
+    }
+}
+
+impl Piece {
+    fn checkpoint(&self) -> Self {
+        self.with(self.mechanics.copy_to_keep())
+    }
+
+    /// A copy with a copy of its mechanics.
+    fn with(&self, mechanics: Box<dyn Mechanics>) -> Self {
+        Self {
+            mechanics,
+            part: self.part.clone(),
+            answer: self.answer.clone(),
+            unwatched_steps: self.unwatched_steps,
+            unwatched_until_s: self.unwatched_until_s,
+            gauge: self.gauge.clone(),
+            account: self.account,
+        }
+    }
+}
+
+impl Clone for Piece {
+    fn clone(&self) -> Self {
+        self.with(self.mechanics.boxed_clone())
+    }
+}
+
+impl Clone for BreakableCable {
+    fn clone(&self) -> Self {
+        self.with(self.pieces.clone())
+    }
+}
+
+impl BreakableCable {
+    /// A copy with copies of its pieces.
+    fn with(&self, pieces: Vec<Piece>) -> Self {
+        Self {
+            problem: self.problem.clone(),
+            source: self.source.clone(),
+            settings: self.settings,
+            pieces,
+            breaks: self.breaks.clone(),
+            dragged: self.dragged.clone(),
+            pulled: self.pulled.clone(),
+            robot_pose: self.robot_pose,
+            peaks: self.peaks,
+            since_s: self.since_s,
+            too_fast: self.too_fast.clone(),
+        }
+    }
+}

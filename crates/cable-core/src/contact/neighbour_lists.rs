@@ -1,0 +1,139 @@
+//! What each segment of a chain can come near to, remembered while the chain stays about where it was.
+//!
+//! A search of the trees for every segment, in every iteration of a step, costs more than the step's equations. So each
+//! segment keeps a list: all parts within R of the box of its ends a₀, b₀. A segment (a, b) whose query reaches r is
+//! answered by the list as long as
+//! ```text
+//! max(|a − a₀|, |b − b₀|) + r ≤ R
+//! ```
+//! since every point of it is then within R − r of the box. Else the trees are asked: the list never decides what is found.
+
+use super::geometry::{Geometry, Part};
+use crate::math::Vec2;
+
+/// The list of one segment.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    ends: [Vec2; 2],
+    within: f64,
+    first: usize,
+}
+
+/// The lists of all segments of a chain, by their number.
+#[derive(Clone, Debug, Default)]
+pub struct NeighbourLists {
+    entries: Vec<Entry>,
+    parts: Vec<Part>,
+}
+
+impl NeighbourLists {
+    /// Forgets all lists.
+    pub fn clear(&mut self) {
+        self.entries.clear();
+        self.parts.clear();
+    }
+
+    /// Makes room for so many lists of one part each.
+    pub fn reserve(&mut self, lists: usize) {
+        self.entries.reserve(lists);
+        self.parts.reserve(lists);
+    }
+
+    /// Number of lists.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Whether there is no list.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// Appends the list of the next segment: all parts within `within` (m) of the box of its ends.
+    pub fn push(&mut self, geometry: &Geometry, ends: [Vec2; 2], within: f64) {
+        self.entries.push(Entry { ends, within, first: self.parts.len() });
+        let [a, b] = ends;
+        self.parts.extend(geometry.parts(a.inf(&b), a.sup(&b), within));
+    }
+
+    /// The list of segment `e` if it holds all that its ends, at each of the places `at` (m), can be within `reach` (m) of.
+    #[must_use]
+    pub fn of<const N: usize>(&self, e: usize, at: [[Vec2; 2]; N], reach: f64) -> Option<&[Part]> {
+        let entry = self.entries.get(e)?;
+        let room = entry.within - reach;
+        let inside = |p: Vec2, from: Vec2| room > 0.0 && (p - from).norm_squared() <= room * room;
+        let all = at.iter().all(|ends| inside(ends[0], entry.ends[0]) && inside(ends[1], entry.ends[1]));
+        let end = self.entries.get(e + 1).map_or(self.parts.len(), |next| next.first);
+        if all { self.parts.get(entry.first..end) } else { None }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::pairs::Pair;
+    use super::*;
+    use crate::scene::{Obstacle, Shape};
+    use proptest::prelude::*;
+
+    fn world() -> Geometry {
+        let shapes = [
+            Shape::Terrain { points_m: (0..40).map(|k| [0.25 * f64::from(k), 0.3 * f64::from(k * 7 % 5)]).collect() },
+            Shape::Circle { center_m: [4.0, 2.0], radius_m: 0.4 },
+            Shape::Polyline { points_m: vec![[2.0, 3.0], [5.0, 3.2], [6.0, 2.4]], thickness_m: 0.05 },
+        ];
+        let obstacles: Vec<Obstacle> =
+            shapes.map(|shape| Obstacle { name: "o".to_owned(), shape, friction: None }).into();
+        Geometry::new(&obstacles, 0.5, 0.01)
+    }
+
+    fn sorted(mut pairs: Vec<Pair>) -> Vec<(usize, u64, u64)> {
+        pairs.sort_by_key(|p| (p.gap.feature, p.gap.gap_m.to_bits()));
+        pairs.iter().map(|p| (p.gap.feature, p.gap.gap_m.to_bits(), p.weight.to_bits())).collect()
+    }
+
+    proptest! {
+        /// Whatever a list answers is what the trees answer: pairs of nodes and segments, and free ways.
+        #[test]
+        fn lists_find_what_the_trees_find(
+            at in (0.0f64..9.0, 0.5f64..4.0), length in (-0.6f64..0.6, -0.6f64..0.6),
+            moves in prop::array::uniform4((-0.4f64..0.4, -0.4f64..0.4)), within in 0.05f64..0.8, reach in 0.01f64..0.3,
+        ) {
+            let geometry = world();
+            let moves = moves.map(|(x, y)| Vec2::new(x, y));
+            let a = Vec2::new(at.0, at.1);
+            let ends = [a, a + Vec2::new(length.0, length.1)];
+            let mut near = NeighbourLists::default();
+            near.push(&geometry, ends, within);
+            let now = [ends[0] + moves[0], ends[1] + moves[1]];
+            let then = [now[0] + moves[2], now[1] + moves[3]];
+            if let Some(parts) = near.of(0, [now], reach) {
+                let (mut listed, mut found) = (Vec::new(), Vec::new());
+                let chain = [None, Some(now[0]), Some(now[1])];
+                geometry.node_pairs_among(parts.iter().copied(), chain, reach, &mut |p| listed.push(p));
+                geometry.segment_pairs_among(parts.iter().copied(), now, reach, &mut |p| listed.push(p));
+                geometry.node_pairs(None, now[0], Some(now[1]), reach, &mut |p| found.push(p));
+                geometry.segment_pairs(now[0], now[1], reach, &mut |p| found.push(p));
+                prop_assert_eq!(sorted(listed), sorted(found));
+            }
+            let sweep = super::super::sweep::Sweep::new(now, then, 0.2);
+            if let Some(parts) = near.of(0, [now, then], sweep.margin) {
+                let listed = geometry.free_fraction_among(parts.iter().copied(), &sweep, [None; 2]);
+                prop_assert!((listed - geometry.free_fraction(now, then, 0.2)).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn what_moved_too_far_is_not_answered() {
+        let mut near = NeighbourLists::default();
+        near.push(&world(), [Vec2::new(1.0, 2.0), Vec2::new(1.5, 2.0)], 0.3);
+        let moved = |by: f64| [Vec2::new(1.0, 2.0 + by), Vec2::new(1.5, 2.0)];
+        assert!(near.of(0, [moved(0.19)], 0.1).is_some());
+        assert!(near.of(0, [moved(0.21)], 0.1).is_none());
+        assert!(near.of(0, [moved(0.1), moved(0.25)], 0.1).is_none());
+        assert!(near.of(0, [moved(f64::NAN)], 0.1).is_none());
+        assert!(near.of(1, [moved(0.0)], 0.1).is_none());
+    }
+}

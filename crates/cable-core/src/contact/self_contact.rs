@@ -1,0 +1,318 @@
+//! Contact of a cable with itself: its nodes against its own segments.
+//!
+//! A line in the plane can only cross itself where a node passes a segment, so pairs of nodes and segments are all
+//! that is needed. As with obstacles, nodes where two segments meet enter by inclusion and exclusion (see `pairs`),
+//! so that the sum is once the barrier along a straight stretch and continuous round a bend.
+//!
+//! Gaps are distances of centre lines less one diameter. What lies nearer along the cable than the cable can be bent back
+//! is no contact: two legs of a bend of the diameter d touch after π d/2 of arc length.
+
+use super::distance::{from_segment, nearest_fraction};
+use super::sweep::advance;
+use crate::math::Vec2;
+
+/// Arc length (diameters) along the cable within which it cannot touch itself: a half-turn of the radius d/2 takes 1.57, and
+/// segments need some room beside that.
+const MIN_ARC_DIAMETERS: f64 = 2.4;
+
+/// Distances are trusted to this many units in the last place of the coordinates.
+const ROUNDING_ULPS: f64 = 16.0;
+
+/// A node near a segment of the same cable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SelfPair {
+    /// The node.
+    pub node: usize,
+    /// First node of the segment.
+    pub segment: usize,
+    /// Where on the segment the nearest point is, 0 to 1.
+    pub fraction: f64,
+    /// Unit vector from the segment to the node.
+    pub normal: Vec2,
+    /// Distance of the surfaces, m.
+    pub gap_m: f64,
+    /// +1 or −1.
+    pub weight: f64,
+}
+
+impl SelfPair {
+    /// The nodes it acts on and their parts of the gap's slope.
+    #[must_use]
+    pub fn shares(&self) -> [(usize, f64); 3] {
+        [(self.node, 1.0), (self.segment, self.fraction - 1.0), (self.segment + 1, -self.fraction)]
+    }
+
+    /// A field's value at the node less that at the nearest point of the segment.
+    #[must_use]
+    pub fn difference(&self, field: &[Vec2]) -> Vec2 {
+        self.shares().iter().fold(Vec2::zeros(), |sum, (k, part)| sum + field[*k] * *part)
+    }
+
+    /// Direction in which friction acts on the node: the normal turned clockwise.
+    #[must_use]
+    pub fn tangent(&self) -> Vec2 {
+        Vec2::new(self.normal.y, -self.normal.x)
+    }
+}
+
+/// The cable as an obstacle to itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SelfContact {
+    /// Diameter of the cable, m; 0 = it can pass itself.
+    pub diameter: f64,
+}
+
+/// Nodes by x, kept from search to search: what is nearly sorted is sorted quickly.
+#[derive(Clone, Debug, Default)]
+pub struct SortedNodes(Vec<usize>);
+
+impl SortedNodes {
+    fn sort(&mut self, x: &[Vec2]) {
+        if self.0.len() != x.len() {
+            self.0 = (0..x.len()).collect();
+        }
+        self.0.sort_by(|a, b| x[*a].x.total_cmp(&x[*b].x));
+    }
+
+    /// The nodes whose x lies between two values.
+    fn between(&self, x: &[Vec2], low: f64, high: f64) -> impl Iterator<Item = usize> {
+        let first = self.0.partition_point(|&k| x[k].x < low);
+        let last = self.0.partition_point(|&k| x[k].x <= high);
+        self.0[first..last.max(first)].iter().copied()
+    }
+}
+
+impl SelfContact {
+    /// Whether the cable meets itself at all.
+    #[must_use]
+    pub fn is_on(&self) -> bool {
+        self.diameter > 0.0
+    }
+
+    /// Whether the node `p` may touch segment `e` of a cable with nodes at these arc lengths, m.
+    fn apart(&self, arc: &[f64], p: usize, e: usize) -> bool {
+        let between = if p <= e { arc[e] - arc[p] } else { arc[p] - arc[e + 1] };
+        between >= MIN_ARC_DIAMETERS * self.diameter
+    }
+
+    /// All pairs nearer than `reach` (m) at positions `x` with arc lengths `arc` (m), in a fixed order.
+    pub fn pairs(&self, (x, arc): (&[Vec2], &[f64]), reach: f64, order: &mut SortedNodes, out: &mut Vec<SelfPair>) {
+        out.clear();
+        if !self.is_on() || x.len() < 3 {
+            return;
+        }
+        order.sort(x);
+        let near = self.diameter + reach;
+        let last = x.len() - 2;
+        for e in 0..=last {
+            let (low, high) = (x[e].inf(&x[e + 1]), x[e].sup(&x[e + 1]));
+            for p in order.between(x, low.x - near, high.x + near) {
+                if x[p].y < low.y - near || x[p].y > high.y + near || !self.apart(arc, p, e) {
+                    continue;
+                }
+                let fraction = nearest_fraction(x[p], x[e], x[e + 1]);
+                if fraction > 0.0 && fraction < 1.0 {
+                    self.push(x, (p, e, fraction, 1.0), reach, out);
+                }
+                // Each segment answers for the joint at its end, the first one for its start too.
+                let joints = [(e == 0).then_some(0), Some(e + 1)];
+                for v in joints.into_iter().flatten() {
+                    let weight = self.joint_weight(x, arc, p, v);
+                    if weight != 0.0 {
+                        self.push(x, (p, e, if v == e { 0.0 } else { 1.0 }, weight), reach, out);
+                    }
+                }
+                // A joint whose later segment alone is far enough along the cable has nobody else to answer for it.
+                if e > 0 && !self.apart(arc, p, e - 1) {
+                    let weight = self.joint_weight(x, arc, p, e);
+                    if weight != 0.0 {
+                        self.push(x, (p, e, 0.0, weight), reach, out);
+                    }
+                }
+            }
+        }
+        out.sort_by_key(|pair| (pair.node, pair.segment));
+    }
+
+    /// What inclusion and exclusion leave of joint `v` for node `p`.
+    fn joint_weight(&self, x: &[Vec2], arc: &[f64], p: usize, v: usize) -> f64 {
+        let clamped = |e: usize, end: f64| {
+            (e + 1 < x.len() && self.apart(arc, p, e)).then(|| nearest_fraction(x[p], x[e], x[e + 1]) == end)
+        };
+        let before = if v > 0 { clamped(v - 1, 1.0) } else { None };
+        let after = clamped(v, 0.0);
+        let count = f64::from(u8::from(before == Some(true)) + u8::from(after == Some(true)));
+        if before.is_some() && after.is_some() { count - 1.0 } else { count }
+    }
+
+    fn push(
+        &self,
+        x: &[Vec2],
+        (node, segment, fraction, weight): (usize, usize, f64, f64),
+        reach: f64,
+        out: &mut Vec<SelfPair>,
+    ) {
+        let away = x[node] - (x[segment] * (1.0 - fraction) + x[segment + 1] * fraction);
+        let distance = away.norm();
+        if distance > 0.0 && distance - self.diameter < reach {
+            let (normal, gap_m) = (away / distance, distance - self.diameter);
+            out.push(SelfPair { node, segment, fraction, normal, gap_m, weight });
+        }
+    }
+
+    /// The largest part (at most `limit`) of the move from `x` to `x` + `step` (m) that leaves `keep` of every gap, or `most` (m) where
+    /// that is less.
+    pub fn free_fraction(
+        &self,
+        (x, arc): (&[Vec2], &[f64]),
+        step: &dyn Fn(usize) -> Vec2,
+        [keep, most, limit]: [f64; 3],
+        order: &mut SortedNodes,
+    ) -> f64 {
+        if !self.is_on() || x.len() < 3 {
+            return limit;
+        }
+        order.sort(x);
+        let mut free = limit;
+        let (mut widest, mut size) = (0.0, 0.0);
+        for (k, at) in x.iter().enumerate() {
+            let (far, large) = (step(k).norm(), at.abs().max());
+            widest = if far > widest { far } else { widest };
+            size = if large > size { large } else { size };
+        }
+        let noise = ROUNDING_ULPS * f64::EPSILON * (size + widest);
+        for e in 0..x.len() - 1 {
+            let [a, b] = [step(e), step(e + 1)];
+            let (low, high) = (x[e].inf(&x[e + 1]), x[e].sup(&x[e + 1]));
+            // Nothing farther than this can come too near: both may move the widest step, and keep its part of the gap.
+            let near = self.diameter + 2.0 * widest * limit / (1.0 - keep) + noise;
+            for p in order.between(x, low.x - near, high.x + near) {
+                if x[p].y < low.y - near || x[p].y > high.y + near || !self.apart(arc, p, e) {
+                    continue;
+                }
+                // Seen from the node, which stands still then, the segment moves.
+                let c = step(p);
+                let moving = [(x[e] - x[p], a - c), (x[e + 1] - x[p], b - c)];
+                let way = |[a, b]: [Vec2; 2]| -from_segment(Vec2::zeros(), a, b);
+                free = advance(moving, (way, [Vec2::zeros(); 2]), self.diameter, [keep, most, noise], free);
+            }
+        }
+        free
+    }
+
+    /// The smallest gap (m) and the node that has it, searched within `within` (m); None if nothing is so near.
+    pub fn smallest_gap(&self, x: &[Vec2], arc: &[f64], within: f64) -> Option<(f64, usize)> {
+        let mut pairs = Vec::new();
+        self.pairs((x, arc), within, &mut SortedNodes::default(), &mut pairs);
+        pairs.iter().filter(|p| p.weight > 0.0).map(|p| (p.gap_m, p.node)).min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::barrier::Barrier;
+    use proptest::prelude::*;
+
+    fn arc(x: &[Vec2]) -> Vec<f64> {
+        let mut s = vec![0.0];
+        for pair in x.windows(2) {
+            s.push(s[s.len() - 1] + (pair[1] - pair[0]).norm());
+        }
+        s
+    }
+
+    /// Barrier energy of the last node, J.
+    fn energy(shape: SelfContact, barrier: &Barrier, x: &[Vec2], s: &[f64]) -> f64 {
+        let mut pairs = Vec::new();
+        shape.pairs((x, s), barrier.reach, &mut SortedNodes::default(), &mut pairs);
+        // Seen from the last node: what the nodes it passes feel of it comes on top where it is over one of them.
+        pairs.iter().filter(|p| p.node + 1 == x.len()).map(|p| p.weight * barrier.at(p.gap_m).value).sum()
+    }
+
+    /// A cable that comes back above itself at the height `h` (m), its end at `end` (m).
+    fn bight(h: f64, end: f64) -> Vec<Vec2> {
+        let mut x: Vec<Vec2> = (0..=20).map(|k| Vec2::new(0.1 * f64::from(k), 0.0)).collect();
+        x.extend([Vec2::new(2.1, 0.3), Vec2::new(2.0, 0.5), Vec2::new(1.5, 0.4)]);
+        x.push(Vec2::new(end, h));
+        x
+    }
+
+    #[test]
+    fn a_node_drawn_along_a_straight_stretch_feels_no_joint() {
+        let (shape, barrier) = (SelfContact { diameter: 0.02 }, Barrier { reach: 1e-3, stiffness: 5.0 });
+        let s = arc(&bight(0.0205, 1.0));
+        let at = |end: f64| energy(shape, &barrier, &bight(0.0205, end), &s);
+        let first = at(0.95);
+        assert!(first > 0.0);
+        for k in 0..=200 {
+            let there = at(0.95 + 1e-3 * f64::from(k));
+            assert!((there - first).abs() < 1e-9 * first, "{k}: {there} {first}");
+        }
+    }
+
+    #[test]
+    fn neighbours_along_the_cable_are_no_contact() {
+        let shape = SelfContact { diameter: 0.02 };
+        let x: Vec<Vec2> = (0..50).map(|k| Vec2::new(0.005 * f64::from(k), 0.0)).collect();
+        assert_eq!(shape.smallest_gap(&x, &arc(&x), 0.1).map(|g| g.0 > 0.02), Some(true));
+        let mut pairs = Vec::new();
+        shape.pairs((&x, &arc(&x)), 0.01, &mut SortedNodes::default(), &mut pairs);
+        assert!(pairs.is_empty());
+        assert!(!SelfContact::default().is_on());
+    }
+
+    #[test]
+    fn strands_that_move_together_or_along_each_other_do_not_stop_each_other() {
+        let shape = SelfContact { diameter: 0.02 };
+        let x = bight(0.02 + 1e-6, 1.0);
+        let s = arc(&x);
+        let free = |step: &dyn Fn(usize) -> Vec2| {
+            shape.free_fraction((&x, &s), step, [0.5, 5e-7, 1.0], &mut SortedNodes::default())
+        };
+        assert_eq!(free(&|_| Vec2::new(0.3, -0.4)), 1.0);
+        // The strand below slides along.
+        assert_eq!(free(&|k| if k <= 20 { Vec2::new(-0.04, 0.0) } else { Vec2::zeros() }), 1.0);
+        let towards = free(&|k| if k <= 20 { Vec2::new(-0.04, 1e-6) } else { Vec2::zeros() });
+        assert!((towards - 0.5).abs() < 1e-6, "{towards}");
+    }
+
+    proptest! {
+        #[test]
+        fn no_move_within_the_free_way_crosses(
+            points in prop::collection::vec((0.0_f64..1.0, 0.0_f64..1.0), 8..20),
+            moves in prop::collection::vec((-1.0_f64..1.0, -1.0_f64..1.0), 20),
+        ) {
+            let x: Vec<Vec2> = points.iter().map(|p| Vec2::new(p.0, p.1)).collect();
+            let s: Vec<f64> = (0..x.len()).map(|k| k as f64).collect();
+            let shape = SelfContact { diameter: 0.01 };
+            let before = shape.smallest_gap(&x, &s, 1.0).map_or(1.0, |g| g.0);
+            prop_assume!(before > 1e-6);
+            let step = |k: usize| Vec2::new(moves[k].0, moves[k].1);
+            let free = shape.free_fraction((&x, &s), &step, [0.2, f64::INFINITY, 1.0], &mut SortedNodes::default());
+            prop_assert!((0.0..=1.0).contains(&free));
+            for part in 1..=20 {
+                let t = free * f64::from(part) / 20.0;
+                let there: Vec<Vec2> = x.iter().enumerate().map(|(k, p)| p + step(k) * t).collect();
+                let gap = shape.smallest_gap(&there, &s, 1.0).map_or(1.0, |g| g.0);
+                prop_assert!(gap > 0.1 * before, "{gap} of {before} at {t} of {free}");
+            }
+        }
+
+        #[test]
+        fn every_near_pair_is_found(points in prop::collection::vec((0.0_f64..1.0, 0.0_f64..1.0), 4..16)) {
+            let x: Vec<Vec2> = points.iter().map(|p| Vec2::new(p.0, p.1)).collect();
+            let s: Vec<f64> = (0..x.len()).map(|k| k as f64).collect();
+            let shape = SelfContact { diameter: 0.01 };
+            let found = shape.smallest_gap(&x, &s, 2.0).map(|g| g.0);
+            let mut least = f64::INFINITY;
+            for p in 0..x.len() {
+                for e in (0..x.len() - 1).filter(|&e| e != p && e + 1 != p) {
+                    let d = crate::contact::distance::point_segment(x[p], x[e], x[e + 1]) - 0.01;
+                    least = if d < least { d } else { least };
+                }
+            }
+            prop_assert!(found.is_some_and(|f| (f - least).abs() < 1e-12), "{found:?} {least}");
+        }
+    }
+}

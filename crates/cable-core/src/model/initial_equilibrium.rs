@@ -1,0 +1,137 @@
+//! How a cable is first laid: as `spans` lays it, with the least sliding, whoever goes on from there.
+
+use std::sync::Arc;
+
+use super::spans::SpansModel;
+use super::{Mechanics, Settings};
+use crate::error::SolveError;
+use crate::math::RigidPose;
+use crate::math::Vec2;
+use crate::problem::{Problem, SupportPoint};
+use crate::solution::{CableSolution, Node, Warning, WarningKind};
+use crate::state::State;
+
+/// A cable this near to the robot is answered by the model that knows of it, m. Less: a step passes it unseen.
+const ROBOT_CLEARANCE_M: f64 = 0.02;
+/// An answer of `spans` at rest that is this deep in an obstacle is none, m. Less: chords across round things are; more: a slack
+/// cable that hangs in the ground is shown.
+const MAX_BURIAL_M: f64 = 0.02;
+/// How deep is looked, m: what is deeper came in somewhere.
+const BURIAL_SEARCH_M: f64 = 0.5;
+
+/// A first rest.
+#[derive(Clone, Debug)]
+pub struct InitialEquilibrium {
+    /// The cable there.
+    pub answer: CableSolution,
+    /// What there is to say of it.
+    pub warnings: Vec<Warning>,
+    /// The model that has it, to go on from there.
+    pub spans: Box<SpansModel>,
+}
+
+/// Where the cable comes to lie with the least sliding, supports `dragged` (m) and the robot led to where it is; None where `spans`
+/// does not know.
+///
+/// # Errors
+/// That it slides from where it is laid.
+pub fn initial_equilibrium(
+    problem: &Arc<Problem>,
+    settings: Settings,
+    (dragged, robot_pose): (&[Option<Vec2>], Option<RigidPose>),
+) -> Result<Option<InitialEquilibrium>, SolveError> {
+    let Ok(mut spans) = SpansModel::new(as_flexible(problem), settings) else { return Ok(None) };
+    for (k, at) in dragged.iter().enumerate() {
+        if let Some(at) = at {
+            spans.drag_support(k, *at);
+        }
+    }
+    let mut warnings = match spans.settle() {
+        Ok(report) => report.warnings,
+        Err(slides @ SolveError::NoRestingPlace { .. }) => return Err(slides),
+        Err(_) => return Ok(None),
+    };
+    if problem.bending_stiffness > 0.0 {
+        // What lies loose tells a stiff one nothing: no tension draws it straight.
+        if spans.lies_loose() {
+            return Ok(None);
+        }
+        warnings.iter_mut().filter(|w| w.kind == WarningKind::NotUnique).for_each(of_flexible);
+    }
+    let answer = spans.solution();
+    let clear = !meets_outline(problem, robot_pose, &answer) && !is_buried(problem, &answer);
+    Ok(clear.then(|| InitialEquilibrium { answer, warnings, spans: Box::new(spans) }))
+}
+
+/// Says of which cable the histories are that are known.
+fn of_flexible(warning: &mut Warning) {
+    let figures = warning.message.split_once(". ").map_or("", |(_, figures)| figures);
+    warning.message = format!(
+        "With friction the resting place depends on how the cable was laid: this is the one found from its way. Of a flexible cable in its place: {figures}"
+    );
+}
+
+/// Whether a flexible cable that slid from where it was laid slides on from where it is said to rest: that was no rest then.
+#[must_use]
+pub fn slides_on(problem: &Arc<Problem>, settings: Settings, answer: &CableSolution) -> bool {
+    let route = answer.nodes.iter().map(Node::at).collect();
+    let there = Arc::new(Problem { route, ..Problem::clone(&Problem::without_outline(problem.clone())) });
+    let slides = initial_equilibrium(&there, settings, (&[], None));
+    problem.bending_stiffness == 0.0 && matches!(slides, Err(SolveError::NoRestingPlace { .. }))
+}
+
+/// Work of the weight and the dead loads of a cable on its way from one shape to another, J. What slides away to where it rests comes
+/// down: friction only takes.
+#[must_use]
+pub fn work(problem: &Problem, from: &State, to: &CableSolution, time_s: f64) -> f64 {
+    let moved = |n: &Node| from.position_at(n.arc_length_m).map_or_else(Vec2::zeros, |before| n.at() - before);
+    let at = |s: f64| {
+        let k = to.nodes.partition_point(|n| n.arc_length_m < s);
+        to.nodes.get(k).or(to.nodes.last()).map_or_else(Vec2::zeros, moved)
+    };
+    let body = problem.body_force(time_s);
+    let pieces = to.nodes.windows(2);
+    let weight: f64 =
+        pieces.map(|p| body.dot(&(moved(&p[0]) + moved(&p[1]))) * 0.5 * (p[1].arc_length_m - p[0].arc_length_m)).sum();
+    let loads: f64 = problem.loads.iter().map(|l| l.force.at(time_s).dot(&at(l.arc_length))).sum();
+    let gravity = if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
+    let ends = problem.supports.iter().filter(|s| s.at.is_none());
+    let hung: f64 = ends.map(|s| (s.force.at(time_s) + gravity * s.mass).dot(&at(s.arc_length.unwrap_or(0.0)))).sum();
+    weight + loads + hung
+}
+
+/// What there is to say of a rest that was found where a cable slid to.
+#[must_use]
+pub fn slid_first(problem: &Problem, slides: &SolveError) -> Warning {
+    let message = format!("This is not where the cable was laid: from there {slides}. How it moved there is not shown");
+    Warning::new(WarningKind::Stabilised, &problem.cable.name, 0.0, [0.0; 2], message)
+}
+
+/// The cable as `spans` can lay it: without the robot, which moves; a stiff one as a flexible one, it bends from there; and supports that
+/// let go later hold it.
+fn as_flexible(problem: &Arc<Problem>) -> Arc<Problem> {
+    let plain = Problem::without_outline(problem.clone());
+    let lets_go = |s: &SupportPoint| s.release.is_some_and(|t| t > 0.0);
+    if plain.bending_stiffness == 0.0 && !plain.supports.iter().any(lets_go) {
+        return plain;
+    }
+    let mut flexible = Problem { bending_stiffness: 0.0, ..Problem::clone(&plain) };
+    for support in flexible.supports.iter_mut().filter(|s| lets_go(s)) {
+        support.release = None;
+    }
+    Arc::new(flexible)
+}
+
+/// Whether the cable is in touch with the robot, or in its place.
+#[must_use]
+pub fn meets_outline(problem: &Problem, robot_pose: Option<RigidPose>, answer: &CableSolution) -> bool {
+    let (Some(outline), Some(at)) = (&problem.outline, robot_pose) else { return false };
+    !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius + ROBOT_CLEARANCE_M)
+}
+
+/// Whether it lies in an obstacle, deeper than what the models disagree by.
+#[must_use]
+pub fn is_buried(problem: &Problem, answer: &CableSolution) -> bool {
+    let gap = |n: &Node| problem.world.signed_gap(n.at(), BURIAL_SEARCH_M).map(|g| g.gap_m);
+    answer.nodes.iter().any(|n| gap(n).is_some_and(|g| g < -MAX_BURIAL_M))
+}

@@ -1,0 +1,168 @@
+//! [`Mechanics`] is the trait that every model implements, with the reports that go through it.
+
+use std::any::Any;
+use std::sync::Arc;
+
+use super::gauge::TensionGauge;
+use crate::error::SolveError;
+use crate::math::{RigidPose, Vec2};
+use crate::model_id::Model;
+use crate::problem::Problem;
+use crate::solution::{CableSolution, Cost, Warning};
+use crate::state::State;
+
+/// Whether inertia takes part in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Inertia {
+    /// Masses accelerate.
+    Dynamic,
+    /// Supports move infinitely slowly: friction remembers, masses do not.
+    QuasiStatic,
+}
+
+/// What a step did.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StepReport {
+    /// What it took.
+    pub cost: Cost,
+    /// What the user should know about this step (velocity capped, support held …).
+    pub warnings: Vec<Warning>,
+}
+
+/// What a cable does to the outline of the robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RobotContact {
+    /// Its force on it, N.
+    pub force_n: Vec2,
+    /// Where it is: where it was led unless the cable was in its way.
+    pub placement: RigidPose,
+    /// How far that is from where it was led, m.
+    pub left_m: f64,
+}
+
+/// What a model has for itself alone: the memory it works in, and its obstacles, among which it moves the outline of the robot.
+#[derive(Debug)]
+pub struct OwnedResources {
+    /// Its working memory, of a type that it alone knows.
+    pub(super) memory: Option<Box<dyn Any + Send>>,
+    /// The cable, with obstacles that the model moves.
+    pub(super) problem: Arc<Problem>,
+}
+
+/// What every model does. One cable; time and positions in SI units.
+pub trait Mechanics: Send {
+    /// Which model this is.
+    fn model(&self) -> Model;
+
+    /// Why it is this model, where that changed on the way.
+    fn reason(&self) -> Option<&str> {
+        None
+    }
+
+    /// Why the model that was asked first has no answer, where another one gave the present one.
+    fn refusal(&self) -> Option<&SolveError> {
+        None
+    }
+
+    /// Finds the resting place at the present time from the present state (after `new`: from the route)
+    /// and sets velocities to zero.
+    ///
+    /// # Errors
+    /// A typed reason when there is none, or none was found.
+    fn settle(&mut self) -> Result<StepReport, SolveError>;
+
+    /// Advances time by exactly `dt_s` (sub-stepping inside as the model needs). On an error the state is
+    /// the last good one, its time says how far it came.
+    ///
+    /// # Errors
+    /// `TimeStep` for a step that is zero, negative, not finite or too large; `StepFailed` otherwise.
+    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
+        self.advance_gauged(dt_s, inertia, &mut TensionGauge::off())
+    }
+
+    /// The same; every inner step with inertia tells `gauge` the tension along the cable.
+    ///
+    /// # Errors
+    /// As [`Self::advance`].
+    fn advance_gauged(
+        &mut self,
+        dt_s: f64,
+        inertia: Inertia,
+        gauge: &mut TensionGauge,
+    ) -> Result<StepReport, SolveError>;
+
+    /// Where the cable is.
+    fn state(&self) -> State;
+
+    /// Time reached, s.
+    fn time_s(&self) -> f64 {
+        self.state().time_s
+    }
+
+    /// Takes over a state of the same cable, resampled on this model's mesh (after an edit, or from another model).
+    ///
+    /// # Errors
+    /// When a number is not finite or the state does not fit the cable; `Buried` when the model cannot go on from inside an obstacle.
+    fn set_state(&mut self, state: &State) -> Result<(), SolveError>;
+
+    /// Goes on from an answer of the same cable, by this model or another: as [`Self::set_state`], and where the model can,
+    /// what friction held is still held.
+    ///
+    /// # Errors
+    /// As [`Self::set_state`].
+    fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+        self.set_state(&State::of_nodes(&answer.nodes, time_s))
+    }
+
+    /// From now on a support follows `target_m` (smoothly and no faster than [`super::Settings::hand_speed_m_per_s`] in `Dynamic` steps; at the
+    /// next `settle` or quasi-static step it is there) instead of its `motion`. One of a robot goes there evenly in the next step, whatever that takes.
+    fn drag_support(&mut self, support: usize, target_m: Vec2);
+
+    /// From now on a hand at `hand_m` (m) holds a support by a spring ([`super::input_filter::Hand`]) in `Dynamic` steps, its free end no faster than
+    /// [`super::Settings::hand_speed_m_per_s`]; else as [`Self::drag_support`], which ends it. A support without a node of its own (a pulley), and one of a robot, is dragged.
+    fn pull_support(&mut self, support: usize, hand_m: Vec2) {
+        self.drag_support(support, hand_m);
+    }
+
+    /// The outline of the robot goes there in the next advance; what is put somewhere ([`Self::set_state`]) finds it there at once.
+    /// Models that know nothing of it leave it out.
+    fn set_robot_pose(&mut self, _to: RigidPose) {}
+
+    /// What the cable does to the outline of the robot; None where the model leaves it out, or there is none.
+    fn robot_contact(&self) -> Option<RobotContact> {
+        None
+    }
+
+    /// Gives the cable to the next model, where there is one behind this one, because of what the laws say of its answer; the next
+    /// [`Self::settle`] is that model's. Returns whether there was one.
+    fn fall_back(&mut self, _why: &str) -> bool {
+        false
+    }
+
+    /// The answer at this instant.
+    fn solution(&self) -> CableSolution;
+
+    /// The problem it solves.
+    fn problem(&self) -> &Arc<Problem>;
+
+    /// Longest inner step that the next step with inertia is made of, s; infinite where there is none to speak of.
+    fn inner_step_s(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// A copy to go back to, which does not hold what the model can have for itself alone.
+    fn copy_to_keep(&self) -> Box<dyn Mechanics> {
+        self.boxed_clone()
+    }
+
+    /// Gives away what it has for itself alone and what holds nothing of its state.
+    fn lend(&mut self) -> Option<OwnedResources> {
+        None
+    }
+
+    /// A copy that was kept goes on with what the model that it was copied from has lent, or with its own.
+    fn borrow(&mut self, _own: Option<OwnedResources>) {}
+
+    /// A copy with all its history, for reset and compare.
+    fn boxed_clone(&self) -> Box<dyn Mechanics>;
+}

@@ -1,0 +1,220 @@
+//! The registry has one entry for each model: its name, what it can do, and how it is built. Nothing outside this folder asks which
+//! model it has, only what that one can do.
+
+use std::sync::Arc;
+
+use super::auto::{self, Question};
+use super::mechanics::Mechanics;
+use super::settings::Settings;
+use super::switching::SwitchingModel;
+use super::{catenary, fem, mass_spring, similar, spans};
+use crate::error::SolveError;
+use crate::model_id::Model;
+use crate::problem::Problem;
+
+/// What a model can do, as far as anybody else must know.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "independent abilities, each asked for by itself")]
+pub struct Capabilities {
+    /// Its masses can accelerate.
+    pub inertia: bool,
+    /// It meets the outline of the robot; another model is given the cable without it.
+    pub robot_contact: bool,
+    /// It answers friction that is fully mobilised towards one end.
+    pub mobilised_friction: bool,
+    /// Its nodes can catch on corners, so that a sudden rise of tension is to be doubted.
+    pub nodes_catch: bool,
+    /// It is asked what other histories would have left where a floor rubs everywhere.
+    pub explores_histories: bool,
+    /// It is a second opinion on a coarse mesh: laws that its answers break are told, and the answers not refused.
+    pub findings_are_told: bool,
+}
+
+/// No ability at all; each entry names those it has.
+const NO_CAPABILITIES: Capabilities = Capabilities {
+    inertia: false,
+    robot_contact: false,
+    mobilised_friction: false,
+    nodes_catch: false,
+    explores_histories: false,
+    findings_are_told: false,
+};
+
+/// A result of building a model.
+type Built = Result<Box<dyn Mechanics>, SolveError>;
+
+/// An entry of the registry.
+#[derive(Clone, Copy, Debug)]
+pub struct ModelInfo {
+    /// Its name.
+    pub model: Model,
+    /// What it is, in one line.
+    pub summary: &'static str,
+    /// What it can do.
+    pub capabilities: Capabilities,
+    construct: fn(Arc<Problem>, Settings) -> Built,
+}
+
+/// The models that solve by themselves, in the order of how much they take on.
+const SOLVERS: [ModelInfo; 4] = [
+    ModelInfo {
+        model: Model::Catenary,
+        summary: "elastic catenaries between supports: no contact, no motion, no discretisation error",
+        capabilities: NO_CAPABILITIES,
+        construct: |problem, settings| Ok(Box::new(catenary::CatenaryModel::new(problem, settings)?)),
+    },
+    ModelInfo {
+        model: Model::Spans,
+        summary: "exact catenaries between contacts that are intervals of a boundary: friction without a mesh, no motion",
+        capabilities: Capabilities { mobilised_friction: true, ..NO_CAPABILITIES },
+        construct: |problem, settings| Ok(Box::new(spans::SpansModel::new(problem, settings)?)),
+    },
+    ModelInfo {
+        model: Model::Fem,
+        summary: "finite elements with contact, friction, bending and dynamics",
+        capabilities: Capabilities {
+            inertia: true,
+            robot_contact: true,
+            nodes_catch: true,
+            explores_histories: true,
+            ..NO_CAPABILITIES
+        },
+        construct: |problem, settings| Ok(Box::new(fem::FemModel::new(problem, settings)?)),
+    },
+    ModelInfo {
+        model: Model::MassSpring,
+        summary: "lumped masses and springs, explicit in time",
+        capabilities: Capabilities { inertia: true, findings_are_told: true, ..NO_CAPABILITIES },
+        construct: |problem, settings| Ok(Box::new(mass_spring::MassSpringModel::new(problem, settings)?)),
+    },
+];
+
+/// The chooser: one of the others, or two that take turns.
+const AUTO: ModelInfo = ModelInfo {
+    model: Model::Auto,
+    summary: "the cheapest model that can answer",
+    capabilities: Capabilities { inertia: true, robot_contact: true, mobilised_friction: true, ..NO_CAPABILITIES },
+    construct: |problem, settings| match auto::choose(&problem, Question::Rest).0 {
+        Model::Spans => Ok(Box::new(SwitchingModel::new(problem, settings)?)),
+        chosen => construct(chosen, problem, settings),
+    },
+};
+
+/// A model of the program's own, which [`ModelSource::External`] builds.
+const EXTERNAL: ModelInfo = ModelInfo {
+    model: Model::External,
+    summary: "a model that the program brings along",
+    capabilities: Capabilities { inertia: true, ..NO_CAPABILITIES },
+    construct: |_, _| {
+        let feature = "it is built by the program that brings it along".to_owned();
+        Err(SolveError::Unsupported { model: Model::External, feature })
+    },
+};
+
+impl Model {
+    /// The model that takes on what all others refuse.
+    pub const MOST_CAPABLE: Self = Self::Fem;
+
+    /// Its entry in the registry.
+    #[must_use]
+    pub fn info(self) -> ModelInfo {
+        match self {
+            Self::Auto => AUTO,
+            Self::External => EXTERNAL,
+            _ => SOLVERS.into_iter().find(|info| info.model == self).unwrap_or(AUTO),
+        }
+    }
+
+    /// What it can do.
+    #[must_use]
+    pub fn capabilities(self) -> Capabilities {
+        self.info().capabilities
+    }
+
+    /// How much it takes on: its place in the registry.
+    #[must_use]
+    pub fn rank(self) -> usize {
+        SOLVERS.iter().position(|info| info.model == self).unwrap_or(0)
+    }
+}
+
+/// A function that builds a model of the program's own.
+pub type Constructor = dyn Fn(Arc<Problem>, Settings) -> Built + Send + Sync;
+
+/// Where the mechanics of a cable, and of each piece it breaks into, come from.
+#[derive(Clone)]
+pub enum ModelSource {
+    /// A model of the registry.
+    Registered(Model),
+    /// A model of the program's own.
+    External(Arc<Constructor>),
+}
+
+impl ModelSource {
+    /// Its name.
+    #[must_use]
+    pub fn model(&self) -> Model {
+        match self {
+            Self::Registered(model) => *model,
+            Self::External(_) => Model::External,
+        }
+    }
+
+    /// Builds the mechanics of one cable.
+    ///
+    /// # Errors
+    /// As [`build`], or what the program's own constructor says.
+    pub fn build(&self, problem: Arc<Problem>, settings: Settings) -> Built {
+        match self {
+            Self::Registered(model) => build(*model, problem, settings),
+            Self::External(constructor) => {
+                settings.validate()?;
+                at_natural_scale(problem, settings, &|problem, settings| constructor(problem, settings))
+            }
+        }
+    }
+}
+
+/// Refuses friction that is fully mobilised towards one end for a model that finds its own.
+///
+/// # Errors
+/// `Unsupported`.
+pub(super) fn refuse_mobilised(model: Model, problem: &Problem) -> Result<(), SolveError> {
+    let mobilised = problem.cable.friction_mobilised;
+    if mobilised.is_default() || model.capabilities().mobilised_friction {
+        return Ok(());
+    }
+    let feature =
+        format!("friction mobilised {} (only spans answers that, of a flexible cable at rest)", mobilised.name());
+    Err(SolveError::Unsupported { model, feature })
+}
+
+/// Builds the mechanics of one cable. `Auto` is resolved for rest (see [`auto::choose`]); where it chooses `spans`, `fem`
+/// stands behind it ([`SwitchingModel`]).
+///
+/// # Errors
+/// `Setting` when the settings are out of range, `Unsupported` when the model lacks what the scene needs.
+pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Box<dyn Mechanics>, SolveError> {
+    settings.validate()?;
+    at_natural_scale(problem, settings, &|problem, settings| construct(model, problem, settings))
+}
+
+/// Builds a model of the cable, or of its similar copy at the scale that models are made for.
+fn at_natural_scale(
+    problem: Arc<Problem>,
+    settings: Settings,
+    construct: &dyn Fn(Arc<Problem>, Settings) -> Built,
+) -> Built {
+    let Some((by, copy)) = problem.similar.clone() else { return construct(problem, settings) };
+    let hand_speed_m_per_s = settings.hand_speed_m_per_s * by.length / by.time;
+    let hand_stiffness_n_per_m = settings.hand_stiffness_n_per_m.map(|k| k / by.length);
+    let inner = construct(copy, Settings { hand_speed_m_per_s, hand_stiffness_n_per_m, ..settings })?;
+    Ok(Box::new(similar::Similar::new(problem, by, inner)))
+}
+
+fn construct(model: Model, problem: Arc<Problem>, settings: Settings) -> Built {
+    let info = model.info();
+    refuse_mobilised(model, &problem)?;
+    let problem = if info.capabilities.robot_contact { problem } else { Problem::without_outline(problem) };
+    (info.construct)(problem, settings)
+}

@@ -1,0 +1,119 @@
+//! The settings of a model: how finely and how exactly it works, checked before it is built.
+
+use serde::{Deserialize, Serialize};
+
+use super::input_filter;
+use crate::error::SolveError;
+
+/// How finely and how exactly a model works.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Settings {
+    /// Relative accuracy asked of the tension; models choose their mesh by it where the scene does not.
+    pub tolerance: f64,
+    /// Elements per cable; overrides the scene's `segments`.
+    pub segments: Option<usize>,
+    /// How `mass-spring` takes dynamic steps.
+    #[serde(default)]
+    pub stepping: Stepping,
+    /// Longest inner step of `fem` with inertia, s, 1e-9 to 1, of the cable at the scale at which it is solved; None = 1/240 s.
+    #[serde(default)]
+    pub inner_step_s: Option<f64>,
+    /// Fastest a support follows the hand that drags it while masses move, m/s.
+    #[serde(default = "hand_speed")]
+    pub hand_speed_m_per_s: f64,
+    /// Stiffness of the spring by which a hand holds a support while masses move, N/m; None: that of [`input_filter::default_hand_stiffness`].
+    #[serde(default)]
+    pub hand_stiffness_n_per_m: Option<f64>,
+    /// Whether a rest that friction makes one of many is told with what other histories would have left in it: `spans` lays the cable anew for
+    /// each, which takes some times as long as the rest. No figure of the answer hangs on it.
+    #[serde(default = "yes")]
+    pub histories: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn hand_speed() -> f64 {
+    input_filter::HAND_SPEED
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-3,
+            segments: None,
+            stepping: Stepping::Auto,
+            inner_step_s: None,
+            hand_speed_m_per_s: hand_speed(),
+            hand_stiffness_n_per_m: None,
+            histories: true,
+        }
+    }
+}
+
+/// Least tolerance that makes sense: below, rounding is more than is asked for. From 1 on nothing is asked, which a test of one mesh may want.
+pub(crate) const MIN_TOLERANCE: f64 = 1e-14;
+/// Slowest hand, m/s: slower is none that means to move anything.
+const MIN_HAND_SPEED: f64 = 0.01;
+/// Segments, as a scene's own.
+const SEGMENT_RANGE: (usize, usize) = (1, 100_000);
+/// Inner steps, s: below, a second of motion takes longer than anyone waits; above, nothing that moves is seen.
+const INNER_STEP_RANGE_S: std::ops::RangeInclusive<f64> = 1e-9..=1.0;
+
+impl Settings {
+    /// Refuses what no model can work by.
+    ///
+    /// # Errors
+    /// `Setting`, with the value and what is allowed.
+    pub fn validate(&self) -> Result<(), SolveError> {
+        if !(self.tolerance >= MIN_TOLERANCE && self.tolerance.is_finite()) {
+            let (name, allowed) = ("tolerance", "1e-14 or more, and finite");
+            return Err(SolveError::Setting { name, value: self.tolerance, allowed });
+        }
+        if let Some(value) = self.inner_step_s.filter(|step| !INNER_STEP_RANGE_S.contains(step)) {
+            return Err(SolveError::Setting { name: "inner_step_s", value, allowed: "1e-9 to 1 s" });
+        }
+        if !(MIN_HAND_SPEED..=input_filter::MAX_SPEED).contains(&self.hand_speed_m_per_s) {
+            let (name, allowed) = ("hand speed", "0.01 to 20 m/s");
+            return Err(SolveError::Setting { name, value: self.hand_speed_m_per_s, allowed });
+        }
+        if let Some(value) = self.hand_stiffness_n_per_m.filter(|k| !input_filter::HAND_STIFFNESSES.contains(k)) {
+            return Err(SolveError::Setting { name: "hand stiffness", value, allowed: "0.001 to 1e9 N/m" });
+        }
+        match self.segments {
+            Some(n) if !(SEGMENT_RANGE.0..=SEGMENT_RANGE.1).contains(&n) => {
+                let (name, allowed) = ("segments", "1 to 100000");
+                #[expect(clippy::cast_precision_loss, reason = "only shown")]
+                Err(SolveError::Setting { name, value: n as f64, allowed })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// How mass-spring takes dynamic steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Stepping {
+    /// Explicit, or a preview where that would take more than 1000 sub-steps in 1/60 s.
+    #[default]
+    Auto,
+    /// Always explicit.
+    Explicit,
+    /// Always a preview (cables with bending stiffness excepted).
+    Preview,
+}
+
+impl Stepping {
+    /// The ways of a name on the command line.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        match name {
+            "auto" => Some(Self::Auto),
+            "explicit" => Some(Self::Explicit),
+            "preview" => Some(Self::Preview),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,422 @@
+//! What `auto` builds where a cable can touch something: `spans` while it is taut and slow, `fem` while it is not.
+//!
+//! `spans` goes first. Where it loses the tension, meets what it cannot lay, or finds no answer, `fem` goes on from the last
+//! state, with the friction that acts there ([`Mechanics::warm_start`]); with inertia it is always `fem`. From time to time an
+//! answer of `fem` without inertia is offered back; `spans` takes it where its own answer there is the same to the eye.
+
+use std::sync::Arc;
+
+use super::fem::FemModel;
+use super::gauge::TensionGauge;
+use super::initial_equilibrium::{is_buried, meets_outline, slid_first, slides_on, work};
+use super::spans::SpansModel;
+use super::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport, refuse_mobilised};
+use crate::error::SolveError;
+use crate::math::RigidPose;
+use crate::math::Vec2;
+use crate::problem::Problem;
+use crate::solution::{CableSolution, Node};
+use crate::state::State;
+
+/// Greatest move of the cable when it is handed back, m, or part of its length, whichever is more: not seen.
+const MAX_MOVE: (f64, f64) = (1e-3, 1e-4);
+/// Greatest change of tension when it is handed back, of the greatest tension.
+const MAX_TENSION_CHANGE: f64 = 1e-2;
+/// Answers of `fem` between two offers at first; each offer doubles it …
+const FIRST_INTERVAL: usize = 1;
+/// … up to this.
+const MAX_INTERVAL: usize = 8;
+/// Why it is then the other model.
+const REASON_BURIED: &str = "the cable was not found clear of the ground without a mesh";
+/// Why it is then that model.
+const REASON_TOUCHES_ROBOT: &str = "the cable touches the robot, which moves";
+
+/// Two models of one cable, one at a time.
+#[derive(Clone, Debug)]
+pub struct SwitchingModel {
+    settings: Settings,
+    /// With the outline of the robot, of which `spans` knows nothing.
+    problem: Arc<Problem>,
+    spans: SpansModel,
+    /// Holds the present state where it is there.
+    fem: Option<FemModel>,
+    /// Where the cable was put, until it is known to rest or to move.
+    adopted: Option<State>,
+    dragged: Vec<Option<Vec2>>,
+    /// Which of them a hand holds by a spring.
+    pulled: Vec<bool>,
+    /// Where the outline of the robot was led.
+    robot_pose: Option<RigidPose>,
+    reason: Option<String>,
+    /// Why `spans` has no rest, where `fem` found one.
+    refusal: Option<SolveError>,
+    /// Answers until the next offer, and after that.
+    interval: [usize; 2],
+}
+
+impl SwitchingModel {
+    /// Builds it at the route.
+    ///
+    /// # Errors
+    /// `Unsupported` when the scene needs what `spans` never has.
+    pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
+        let dragged = vec![None; problem.supports.len()];
+        let spans = SpansModel::new(Problem::without_outline(problem.clone()), settings)?;
+        Ok(Self {
+            settings,
+            robot_pose: problem.outline.as_ref().map(|o| o.placement),
+            problem,
+            spans,
+            fem: None,
+            adopted: None,
+            pulled: vec![false; dragged.len()],
+            dragged,
+            reason: None,
+            refusal: None,
+            interval: [FIRST_INTERVAL; 2],
+        })
+    }
+
+    /// `fem`, which holds the present state from now on.
+    fn fem(&mut self, why: String) -> Result<&mut FemModel, SolveError> {
+        let fem = match self.fem.take() {
+            Some(fem) => fem,
+            None => {
+                let fem = self.handed_over()?;
+                self.reason = Some(why);
+                self.interval[0] = self.interval[1];
+                fem
+            }
+        };
+        Ok(self.fem.insert(fem))
+    }
+
+    fn handed_over(&self) -> Result<FemModel, SolveError> {
+        let mut fem = self.new_fem()?;
+        let answer = self.spans.solution();
+        if self.meets_robot(&answer) || (self.spans.time_s() == 0.0 && is_buried(&self.problem, &answer)) {
+            // Found without knowing of the robot, or no answer: laid anew.
+        } else if let Some(state) = &self.adopted {
+            fem.set_state(state)?;
+        } else if self.spans.stands() {
+            // Dragged supports are where they came to, not yet where they are drawn.
+            for (k, at) in answer.supports.iter().enumerate().filter(|(k, _)| self.is_dragged(*k)) {
+                fem.drag_support(k, Vec2::new(at.x_m, at.y_m));
+            }
+            fem.warm_start(&answer, self.spans.time_s())?;
+        } else if self.spans.time_s() > 0.0 {
+            fem.set_state(&self.spans.state())?;
+        }
+        self.draw_supports(&mut fem);
+        Ok(fem)
+    }
+
+    /// `fem` at the route, the robot where it is.
+    fn new_fem(&self) -> Result<FemModel, SolveError> {
+        refuse_mobilised(Model::Fem, &self.problem)?;
+        let mut fem = FemModel::new(self.problem.clone(), self.settings)?.laid_alone();
+        if let Some(robot_pose) = self.robot_pose {
+            fem.set_robot_pose(robot_pose);
+        }
+        Ok(fem)
+    }
+
+    /// The same, supports drawn to where they are to be, and the cable put where it was adopted.
+    fn new_fem_with_hands(&self) -> Result<FemModel, SolveError> {
+        let mut fem = self.new_fem()?;
+        if let Some(state) = &self.adopted {
+            fem.set_state(state)?;
+        }
+        self.draw_supports(&mut fem);
+        Ok(fem)
+    }
+
+    /// Whether the cable is in touch with the robot, or in its place.
+    fn meets_robot(&self, answer: &CableSolution) -> bool {
+        meets_outline(&self.problem, self.robot_pose, answer)
+    }
+
+    /// Tells `fem` where supports are drawn to, and by what.
+    fn draw_supports(&self, fem: &mut FemModel) {
+        for (k, (target, pulled)) in self.dragged.iter().zip(&self.pulled).enumerate() {
+            match target {
+                Some(target) if *pulled => fem.pull_support(k, *target),
+                Some(target) => fem.drag_support(k, *target),
+                None => {}
+            }
+        }
+    }
+
+    fn is_dragged(&self, support: usize) -> bool {
+        self.dragged.get(support).is_some_and(Option::is_some)
+    }
+
+    /// Offers an answer of `fem` to `spans`.
+    fn try_switch_back(&mut self) {
+        let Some(fem) = &self.fem else { return };
+        self.interval[0] = self.interval[0].saturating_sub(1);
+        if self.interval[0] > 0 {
+            return;
+        }
+        let answer = fem.solution();
+        if self.meets_robot(&answer) {
+            self.interval[0] = self.interval[1];
+            return;
+        }
+        let before = self.spans.clone();
+        let taken = self.spans.warm_start(&answer, fem.time_s()).is_ok();
+        if taken && indistinguishable(self.spans.problem(), &answer, &self.spans.solution()) {
+            self.fem = None;
+            self.reason = None;
+            self.interval[1] = (2 * self.interval[1]).min(MAX_INTERVAL);
+        } else {
+            self.spans = before;
+            self.interval = [self.interval[1], (2 * self.interval[1]).min(MAX_INTERVAL)];
+        }
+    }
+}
+
+/// Whether two answers of a cable are the same to the eye.
+fn indistinguishable(problem: &Problem, a: &CableSolution, b: &CableSolution) -> bool {
+    let greatest = a.nodes.iter().map(|n| n.tension_n).fold(0.0, |m, t| if t > m { t } else { m });
+    let seen = MAX_MOVE.0.max(MAX_MOVE.1 * problem.length);
+    let same = |n: &Node| {
+        let k = b.nodes.partition_point(|m| m.arc_length_m < n.arc_length_m).clamp(1, b.nodes.len().max(2) - 1);
+        let (Some(p), Some(q)) = (b.nodes.get(k - 1), b.nodes.get(k)) else { return false };
+        let d = q.arc_length_m - p.arc_length_m;
+        let f = if d > 0.0 { (n.arc_length_m - p.arc_length_m) / d } else { 0.0 };
+        let sag = 0.125 * d * d * p.curvature_per_m.abs().max(q.curvature_per_m.abs());
+        let far = (p.at() + (q.at() - p.at()) * f - n.at()).norm();
+        // At a corner a chain of bars has one tension before it and one after.
+        let (low, high) = (p.tension_n.min(q.tension_n), p.tension_n.max(q.tension_n));
+        let off = if n.tension_n < low { low - n.tension_n } else { n.tension_n - high };
+        far <= seen + sag && off <= MAX_TENSION_CHANGE * greatest
+    };
+    a.nodes.iter().all(same)
+}
+
+impl Mechanics for SwitchingModel {
+    fn model(&self) -> Model {
+        if self.fem.is_some() { Model::Fem } else { Model::Spans }
+    }
+
+    fn reason(&self) -> Option<&str> {
+        self.reason.as_deref().or_else(|| self.fem.is_none().then(|| self.spans.reason()).flatten())
+    }
+
+    fn refusal(&self) -> Option<&SolveError> {
+        self.refusal.as_ref().filter(|_| self.fem.is_some())
+    }
+
+    fn settle(&mut self) -> Result<StepReport, SolveError> {
+        let (mut why, mut slides, mut refused) = (String::new(), None, None);
+        self.refusal = None;
+        if self.fem.is_none() {
+            match self.spans.settle() {
+                Ok(_) if self.meets_robot(&self.spans.solution()) => REASON_TOUCHES_ROBOT.clone_into(&mut why),
+                Ok(_) if is_buried(&self.problem, &self.spans.solution()) => REASON_BURIED.clone_into(&mut why),
+                Ok(report) => {
+                    self.adopted = None;
+                    return Ok(report);
+                }
+                Err(error) if !self.problem.cable.friction_mobilised.is_default() => return Err(error),
+                Err(error) => {
+                    why = error.to_string();
+                    slides = Some(error.clone()).filter(|e| matches!(e, SolveError::NoRestingPlace { .. }));
+                    refused = Some(error);
+                }
+            }
+        }
+        let first = self.fem.is_none();
+        let laid = self.fem(why.clone())?.state();
+        self.refusal.clone_from(&refused);
+        let mut found = match (self.fem(why)?.settle(), refused) {
+            (Err(error), Some(before)) => Err(SolveError::clearer(before, error)),
+            (found, _) => found,
+        };
+        // What slides from where it is laid may come to rest elsewhere.
+        if let (Some(slides), Some(fem)) = (slides, &self.fem) {
+            let (problem, settings) = (&self.problem, self.settings);
+            found = found
+                .ok()
+                .filter(|_| work(problem, &laid, &fem.solution(), fem.time_s()) > 0.0)
+                .filter(|_| !slides_on(problem, settings, &fem.solution()))
+                .map(|mut report| {
+                    report.warnings.push(slid_first(problem, &slides));
+                    report
+                })
+                .ok_or(slides);
+        }
+        match &found {
+            Ok(_) => {
+                self.adopted = None;
+                self.try_switch_back();
+            }
+            Err(_) if first => {
+                self.fem = None;
+                self.reason = None;
+            }
+            Err(_) => {}
+        }
+        found
+    }
+
+    fn advance_gauged(
+        &mut self,
+        dt_s: f64,
+        inertia: Inertia,
+        gauge: &mut TensionGauge,
+    ) -> Result<StepReport, SolveError> {
+        if !(dt_s > 0.0 && dt_s.is_finite()) {
+            return Err(SolveError::TimeStep { dt_s, allowed: "more than 0 s" });
+        }
+        if inertia == Inertia::Dynamic {
+            return self.fem("masses move".to_owned())?.advance_gauged(dt_s, inertia, gauge);
+        }
+        let end_s = self.time_s() + dt_s;
+        let mut why = String::new();
+        if self.fem.is_none() {
+            let before = self.robot_pose.map(|_| self.spans.clone());
+            match self.spans.advance(dt_s, inertia) {
+                Ok(_) if self.meets_robot(&self.spans.solution()) => {
+                    REASON_TOUCHES_ROBOT.clone_into(&mut why);
+                    self.spans = before.unwrap_or_else(|| self.spans.clone());
+                }
+                Ok(report) => {
+                    self.adopted = None;
+                    return Ok(report);
+                }
+                Err(error @ SolveError::TimeStep { .. }) => return Err(error),
+                Err(error) => why = error.to_string(),
+            }
+        }
+        let fem = self.fem(why)?;
+        let rest_s = end_s - fem.time_s();
+        let report = if rest_s > 0.0 { fem.advance(rest_s, inertia)? } else { StepReport::default() };
+        self.adopted = None;
+        self.try_switch_back();
+        Ok(report)
+    }
+
+    fn state(&self) -> State {
+        self.fem.as_ref().map_or_else(|| self.spans.state(), Mechanics::state)
+    }
+
+    fn time_s(&self) -> f64 {
+        self.fem.as_ref().map_or_else(|| self.spans.time_s(), Mechanics::time_s)
+    }
+
+    fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
+        self.spans.set_state(state)?;
+        let moves = state.velocity_m_per_s.iter().any(|v| v.norm() > 0.0);
+        self.adopted = Some(state.clone());
+        self.fem = None;
+        self.reason = None;
+        if moves {
+            self.fem("masses move".to_owned())?;
+        }
+        Ok(())
+    }
+
+    fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+        self.adopted = None;
+        self.fem = None;
+        self.reason = None;
+        let taken = match self.meets_robot(answer) {
+            true => Err(REASON_TOUCHES_ROBOT.to_owned()),
+            false => self.spans.warm_start(answer, time_s).map_err(|e| e.to_string()),
+        };
+        if let Err(why) = taken {
+            let mut fem = self.new_fem()?;
+            self.draw_supports(&mut fem);
+            fem.warm_start(answer, time_s)?;
+            self.reason = Some(why);
+            self.fem = Some(fem);
+        }
+        Ok(())
+    }
+
+    fn drag_support(&mut self, support: usize, target_m: Vec2) {
+        if let (Some(d), Some(pulled)) = (self.dragged.get_mut(support), self.pulled.get_mut(support)) {
+            (*d, *pulled) = (Some(target_m), false);
+        }
+        self.spans.drag_support(support, target_m);
+        if let Some(fem) = &mut self.fem {
+            fem.drag_support(support, target_m);
+        }
+    }
+
+    fn pull_support(&mut self, support: usize, hand_m: Vec2) {
+        self.drag_support(support, hand_m);
+        if let Some(pulled) = self.pulled.get_mut(support) {
+            *pulled = true;
+        }
+        if let Some(fem) = &mut self.fem {
+            fem.pull_support(support, hand_m);
+        }
+    }
+
+    fn set_robot_pose(&mut self, to: RigidPose) {
+        self.robot_pose = self.robot_pose.map(|_| to);
+        if let Some(fem) = &mut self.fem {
+            fem.set_robot_pose(to);
+        }
+    }
+
+    fn fall_back(&mut self, why: &str) -> bool {
+        // Refused as it is, the answer is no place to go on from: the cable is laid anew where it was, or where it was put.
+        self.fem.is_none() && {
+            let time_s = self.spans.time_s();
+            let fresh = if time_s > 0.0 { self.handed_over() } else { self.new_fem_with_hands() };
+            self.fem = fresh.ok();
+            self.reason = self.fem.is_some().then(|| format!("the answer of spans is not sound: {why}"));
+            self.fem.is_some()
+        }
+    }
+
+    fn robot_contact(&self) -> Option<RobotContact> {
+        self.fem.as_ref().and_then(Mechanics::robot_contact)
+    }
+
+    fn solution(&self) -> CableSolution {
+        self.fem.as_ref().map_or_else(|| self.spans.solution(), Mechanics::solution)
+    }
+
+    fn problem(&self) -> &Arc<Problem> {
+        &self.problem
+    }
+
+    fn inner_step_s(&self) -> f64 {
+        self.fem.as_ref().map_or(f64::INFINITY, Mechanics::inner_step_s)
+    }
+
+    fn copy_to_keep(&self) -> Box<dyn Mechanics> {
+        Box::new(Self {
+            settings: self.settings,
+            problem: self.problem.clone(),
+            spans: self.spans.clone(),
+            fem: self.fem.as_ref().map(FemModel::kept),
+            adopted: self.adopted.clone(),
+            dragged: self.dragged.clone(),
+            pulled: self.pulled.clone(),
+            robot_pose: self.robot_pose,
+            reason: self.reason.clone(),
+            refusal: self.refusal.clone(),
+            interval: self.interval,
+        })
+    }
+
+    fn lend(&mut self) -> Option<OwnedResources> {
+        self.fem.as_mut().and_then(Mechanics::lend)
+    }
+
+    fn borrow(&mut self, own: Option<OwnedResources>) {
+        if let Some(fem) = &mut self.fem {
+            fem.borrow(own);
+        }
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Mechanics> {
+        Box::new(self.clone())
+    }
+}

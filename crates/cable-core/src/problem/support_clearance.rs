@@ -1,0 +1,104 @@
+//! Where supports hold the cable: one that a scene puts onto a surface holds the centre line a radius off it, one inside something
+//! solid holds nothing.
+//!
+//! The centre line runs one cable radius off every obstacle. A point on the surface of one, or up to a radius above it, is where a
+//! cable that lies there touches it: the centre line at that support is a radius off. A point further in is a slip of the scene, as
+//! nobody can tell on which side of the obstacle the cable was meant to be.
+
+use super::Problem;
+use crate::error::{SceneError, SceneFault};
+use crate::math::Vec2;
+use crate::scene::SupportKind;
+use crate::scene::read::path::Path;
+use crate::solution::{Warning, WarningKind};
+
+/// How far inside a surface a point that was meant to be on it may be, of the radius: rounding of coordinates and slopes.
+const ON_SURFACE_FRACTION: f64 = 1e-3;
+/// The same in parts of the coordinates, for cables much thinner than their scene.
+const COORDINATE_ROUNDING: f64 = 1e-9;
+/// The same of a place that is clear: some roundings.
+const CLEAR_ROUNDING: f64 = 1e-14;
+/// Times a support is pushed out of one obstacle and into the next; in a corner of 30° twenty leave a millionth of the way.
+const MAX_PUSHES: usize = 40;
+
+/// Puts the supports of a cable where their surfaces let them be, and says so.
+///
+/// # Errors
+/// A support inside an obstacle, with the nearest place outside.
+pub(super) fn clear_supports(problem: &mut Problem) -> Result<(), SceneError> {
+    if problem.world.is_empty() {
+        return Ok(());
+    }
+    for k in 0..problem.supports.len() {
+        let support = &problem.supports[k];
+        // A wheel may be mounted on what it stands in; the hitch goes with the robot.
+        if support.wheel_radius > 0.0 || support.kind == SupportKind::Robot {
+            continue;
+        }
+        let Some(at) = support.at else { continue };
+        let Some((depth, obstacle)) = depth(problem, at) else { continue };
+        let most = ON_SURFACE_FRACTION * problem.radius + COORDINATE_ROUNDING * at.amax();
+        let out = pushed_out(problem, at);
+        let path =
+            || Path::Root.key("cables").index(problem.cable_index).key("supports").index(k).key("at_m").to_string();
+        if depth > most {
+            let clear_m = out.map(|p| [p.x, p.y]);
+            let fault = SceneFault::SupportInside {
+                name: support.name.as_str().into(),
+                obstacle: obstacle.into(),
+                depth_m: depth,
+                clear_m,
+            };
+            return Err(SceneError { path: path(), fault, at: None });
+        }
+        let Some(out) = out else {
+            let what =
+                format!("support `{}` sits where obstacles leave no room for the cable's diameter", support.name);
+            return Err(SceneError { path: path(), fault: SceneFault::Shape { what }, at: None });
+        };
+        let by = out - at;
+        // Rounding is put right without a word.
+        let told = by.norm() > most;
+        let message = format!(
+            "Support `{}` is on the surface of `{obstacle}`: the cable's centre line is held {:.4} m off it, at ({:.4} m, {:.4} m)",
+            support.name,
+            by.norm(),
+            out.x,
+            out.y
+        );
+        let s = support.arc_length.unwrap_or(0.0);
+        let value = [by.norm(), problem.radius];
+        let note = Warning::new(WarningKind::InitialPenetration, &problem.cable.name, s, value, message);
+        problem.notes.extend(told.then_some(note));
+        if let Some(support) = problem.supports.get_mut(k) {
+            support.at = Some(out);
+            if let Some(motion) = &mut support.motion {
+                motion.shift(by);
+            }
+        }
+        // A route that ends at the support ends there still.
+        if let Some(end) = problem.route.iter_mut().find(|p| (**p - at).norm() <= most) {
+            *end = out;
+        }
+    }
+    Ok(())
+}
+
+/// How far a point is inside the surface of the obstacle that it is deepest in (m, negative outside but nearer than the cable's
+/// radius), and that obstacle; none where the centre line has room.
+fn depth(problem: &Problem, at: Vec2) -> Option<(f64, String)> {
+    let gap = problem.world.signed_gap(at, f64::INFINITY).filter(|g| g.gap_m < 0.0)?;
+    Some((-gap.gap_m - problem.radius, problem.world.obstacle_name(gap.obstacle).to_owned()))
+}
+
+/// The nearest place found where the centre line touches nothing, m.
+fn pushed_out(problem: &Problem, from: Vec2) -> Option<Vec2> {
+    let mut at = from;
+    for _ in 0..MAX_PUSHES {
+        match problem.world.signed_gap(at, f64::INFINITY) {
+            Some(gap) if gap.gap_m < -CLEAR_ROUNDING * (problem.radius + at.amax()) => at -= gap.normal * gap.gap_m,
+            _ => return Some(at),
+        }
+    }
+    None
+}

@@ -1,0 +1,349 @@
+//! Turns a parsed TOML tree into a scene, keeping the path and the place in the text of whatever is wrong.
+//!
+//! A serde deserialiser of its own: the one of the `toml` crate names neither the path nor the nearest known
+//! key, and cannot fill what a file leaves out from a preset.
+
+use std::fmt;
+use std::ops::Range;
+
+use serde::de::value::StrDeserializer;
+use serde::de::{
+    DeserializeSeed, Deserializer, EnumAccess, Error as _, Expected, IntoDeserializer, MapAccess, SeqAccess,
+    Unexpected, VariantAccess, Visitor,
+};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::error::SceneFault;
+use crate::scene::preset;
+
+type Node<'a> = Spanned<DeValue<'a>>;
+
+/// A fault on its way up the tree, gathering its path.
+#[derive(Debug)]
+pub(super) struct Refusal {
+    /// What is wrong.
+    pub(super) fault: SceneFault,
+    /// Bytes of the text it is about.
+    pub(super) span: Option<Range<usize>>,
+    /// Path, innermost first.
+    steps: Vec<Step>,
+}
+
+#[derive(Debug)]
+enum Step {
+    Key(String),
+    Index(usize),
+}
+
+impl Refusal {
+    fn new(fault: SceneFault) -> Self {
+        Self { fault, span: None, steps: Vec::new() }
+    }
+
+    fn inside(mut self, step: Step, span: Range<usize>) -> Self {
+        self.steps.push(step);
+        self.spanned(span)
+    }
+
+    fn spanned(mut self, span: Range<usize>) -> Self {
+        self.span.get_or_insert(span);
+        self
+    }
+
+    /// The path as text, for example `cables[0].length_m`.
+    pub(super) fn path(&self) -> String {
+        let mut path = String::new();
+        for step in self.steps.iter().rev() {
+            match step {
+                Step::Key(key) if path.is_empty() => path.push_str(key),
+                Step::Key(key) => {
+                    path.push('.');
+                    path.push_str(key);
+                }
+                Step::Index(index) => path.push_str(&format!("[{index}]")),
+            }
+        }
+        path
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.path(), self.fault)
+    }
+}
+
+impl std::error::Error for Refusal {}
+
+impl serde::de::Error for Refusal {
+    fn custom<T: fmt::Display>(message: T) -> Self {
+        Self::new(SceneFault::Shape { what: message.to_string() })
+    }
+
+    fn invalid_type(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
+        Self::new(SceneFault::Syntax { message: format!("{found} where {} is needed", plain(expected)) })
+    }
+
+    fn invalid_value(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
+        Self::invalid_type(found, expected)
+    }
+
+    fn invalid_length(found: usize, expected: &dyn Expected) -> Self {
+        Self::new(SceneFault::Syntax { message: format!("{found} elements where {} is needed", plain(expected)) })
+    }
+
+    fn unknown_field(field: &str, known: &'static [&'static str]) -> Self {
+        Self::new(SceneFault::UnknownKey { nearest: nearest(field, known.iter().copied()) })
+    }
+
+    fn unknown_variant(variant: &str, known: &'static [&'static str]) -> Self {
+        let mut what = String::new();
+        for (i, name) in known.iter().enumerate() {
+            what.push_str(match i {
+                0 => "",
+                _ if i + 1 == known.len() => " or ",
+                _ => ", ",
+            });
+            what.push('`');
+            what.push_str(name);
+            what.push('`');
+        }
+        let hint =
+            nearest(variant, known.iter().copied()).map(|n| format!(", did you mean `{n}`?")).unwrap_or_default();
+        Self::new(SceneFault::Shape { what: format!("`{variant}` is not one of {what}{hint}") })
+    }
+
+    fn missing_field(field: &'static str) -> Self {
+        let mut refusal = Self::new(SceneFault::Shape { what: "is missing".to_owned() });
+        refusal.steps.push(Step::Key(field.to_owned()));
+        refusal
+    }
+}
+
+/// Rust's names of types in a reader's words.
+fn plain(expected: &dyn Expected) -> String {
+    match expected.to_string().as_str() {
+        "f64" => "a number".to_owned(),
+        "u32" | "usize" => "a whole number, 0 or more,".to_owned(),
+        other if other.starts_with("struct ") => "a table".to_owned(),
+        "a sequence" => "a list".to_owned(),
+        other => other.to_owned(),
+    }
+}
+
+/// The known name nearest to a mistyped one, if any is near enough to be meant.
+pub(in crate::scene) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
+    // Jaro–Winkler similarity below which a hint is noise: 0.95 misses `lenght` for `length_m`, 0.75 offers
+    // `name` for `a`.
+    const MIN_SIMILARITY: f64 = 0.8;
+    // A hostile key of megabytes would be compared in quadratic time.
+    const MAX_NAME_CHARS: usize = 200;
+    if name.len() > MAX_NAME_CHARS {
+        return None;
+    }
+    let (score, best) = known.map(|k| (strsim::jaro_winkler(name, k), k)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (score >= MIN_SIMILARITY).then(|| best.to_owned())
+}
+
+/// A deserialiser over a whole document.
+pub(super) struct Document<'a>(pub(super) &'a DeTable<'a>, pub(super) Range<usize>);
+
+impl<'de> Deserializer<'de> for Document<'de> {
+    type Error = Refusal;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Refusal> {
+        visitor.visit_map(Entries::new(self.0, Vec::new())).map_err(|e| e.spanned(self.1))
+    }
+
+    serde::forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option unit
+        unit_struct newtype_struct seq tuple tuple_struct map struct enum identifier ignored_any
+    }
+}
+
+/// A deserialiser over one value.
+struct Value<'a>(&'a Node<'a>);
+
+impl<'de> Deserializer<'de> for Value<'de> {
+    type Error = Refusal;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Refusal> {
+        let span = self.0.span();
+        match self.0.get_ref() {
+            DeValue::String(s) => visitor.visit_str(s),
+            DeValue::Integer(i) => match i64::from_str_radix(i.as_str(), i.radix()) {
+                Ok(value) => visitor.visit_i64(value),
+                // Beyond 64 bits: good enough for the range check to name it.
+                Err(_) => visitor.visit_f64(i.as_str().parse().unwrap_or(f64::INFINITY)),
+            },
+            DeValue::Float(x) => visitor.visit_f64(x.as_str().parse().unwrap_or(f64::NAN)),
+            DeValue::Boolean(b) => visitor.visit_bool(*b),
+            DeValue::Datetime(_) => Err(Refusal::invalid_type(Unexpected::Other("a date"), &visitor)),
+            DeValue::Array(items) => {
+                let mut seq = Items { items, next: 0 };
+                visitor.visit_seq(&mut seq).and_then(|value| {
+                    if seq.next == items.len() {
+                        Ok(value)
+                    } else {
+                        let message = format!("{} elements where {} are needed", items.len(), seq.next);
+                        Err(Refusal::new(SceneFault::Syntax { message }))
+                    }
+                })
+            }
+            DeValue::Table(table) => visitor.visit_map(Entries::new(table, Vec::new())),
+        }
+        .map_err(|e| e.spanned(span))
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Refusal> {
+        visitor.visit_some(self)
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(self, _: &'static str, visitor: V) -> Result<V::Value, Refusal> {
+        visitor.visit_newtype_struct(self)
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Refusal> {
+        match self.0.get_ref() {
+            DeValue::String(s) => visitor.visit_enum(Word(s)).map_err(|e| e.spanned(self.0.span())),
+            _ => self.deserialize_any(visitor),
+        }
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        name: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Refusal> {
+        match self.0.get_ref() {
+            DeValue::Table(table) if name == "Cable" => {
+                let defaults = cable_defaults(table)?;
+                visitor.visit_map(Entries::new(table, defaults)).map_err(|e| e.spanned(self.0.span()))
+            }
+            _ => self.deserialize_any(visitor),
+        }
+    }
+
+    serde::forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit
+        unit_struct seq tuple tuple_struct map identifier ignored_any
+    }
+}
+
+/// The numbers of a cable's preset that its table leaves out.
+fn cable_defaults(table: &DeTable<'_>) -> Result<Vec<(&'static str, f64)>, Refusal> {
+    let Some(value) = table.get("preset") else { return Ok(Vec::new()) };
+    let DeValue::String(id) = value.get_ref() else { return Ok(Vec::new()) };
+    let Some(preset) = preset::cable_preset(id) else {
+        let fault = preset::unknown("cable preset", id, preset::cable_presets().iter().map(|p| p.id));
+        return Err(Refusal::new(fault).inside(Step::Key("preset".to_owned()), value.span()));
+    };
+    Ok(preset.values().into_iter().filter(|(key, _)| table.get(*key).is_none()).collect())
+}
+
+/// The name of an enum's variant.
+struct Word<'a>(&'a str);
+
+impl<'de> EnumAccess<'de> for Word<'_> {
+    type Error = Refusal;
+    type Variant = Self;
+
+    fn variant_seed<V: DeserializeSeed<'de>>(self, seed: V) -> Result<(V::Value, Self), Refusal> {
+        let name: StrDeserializer<'_, Refusal> = self.0.into_deserializer();
+        Ok((seed.deserialize(name)?, self))
+    }
+}
+
+impl<'de> VariantAccess<'de> for Word<'_> {
+    type Error = Refusal;
+
+    fn unit_variant(self) -> Result<(), Refusal> {
+        Ok(())
+    }
+
+    fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, _: T) -> Result<T::Value, Refusal> {
+        Err(Refusal::invalid_type(Unexpected::Str(self.0), &"a table"))
+    }
+
+    fn tuple_variant<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Refusal> {
+        Err(Refusal::invalid_type(Unexpected::Str(self.0), &visitor))
+    }
+
+    fn struct_variant<V: Visitor<'de>>(self, _: &'static [&'static str], visitor: V) -> Result<V::Value, Refusal> {
+        Err(Refusal::invalid_type(Unexpected::Str(self.0), &visitor))
+    }
+}
+
+struct Items<'a> {
+    items: &'a [Node<'a>],
+    next: usize,
+}
+
+impl<'de> SeqAccess<'de> for &mut Items<'de> {
+    type Error = Refusal;
+
+    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Refusal> {
+        let Some(item) = self.items.get(self.next) else { return Ok(None) };
+        let index = self.next;
+        self.next += 1;
+        seed.deserialize(Value(item)).map(Some).map_err(|e| e.inside(Step::Index(index), item.span()))
+    }
+
+    fn size_hint(&self) -> Option<usize> {
+        Some(self.items.len() - self.next)
+    }
+}
+
+/// The entries of a table, then what a preset adds.
+struct Entries<'a, I> {
+    entries: I,
+    value: Option<(&'a str, &'a Node<'a>)>,
+    defaults: std::vec::IntoIter<(&'static str, f64)>,
+    default: f64,
+}
+
+impl<'a> Entries<'a, ()> {
+    fn new(
+        table: &'a DeTable<'a>,
+        defaults: Vec<(&'static str, f64)>,
+    ) -> Entries<'a, impl Iterator<Item = (&'a Spanned<std::borrow::Cow<'a, str>>, &'a Node<'a>)>> {
+        Entries { entries: table.iter(), value: None, defaults: defaults.into_iter(), default: 0.0 }
+    }
+}
+
+impl<'de, I> MapAccess<'de> for Entries<'de, I>
+where
+    I: Iterator<Item = (&'de Spanned<std::borrow::Cow<'de, str>>, &'de Node<'de>)>,
+{
+    type Error = Refusal;
+
+    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Refusal> {
+        if let Some((key, value)) = self.entries.next() {
+            let name: &'de str = key.get_ref();
+            self.value = Some((name, value));
+            let word: StrDeserializer<'_, Refusal> = name.into_deserializer();
+            return seed.deserialize(word).map(Some).map_err(|e| e.inside(Step::Key(name.to_owned()), key.span()));
+        }
+        let Some((name, value)) = self.defaults.next() else { return Ok(None) };
+        self.value = None;
+        self.default = value;
+        let word: StrDeserializer<'_, Refusal> = name.into_deserializer();
+        seed.deserialize(word).map(Some)
+    }
+
+    fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Refusal> {
+        match self.value.take() {
+            Some((key, value)) => {
+                seed.deserialize(Value(value)).map_err(|e| e.inside(Step::Key(key.to_owned()), value.span()))
+            }
+            None => seed.deserialize(self.default.into_deserializer()),
+        }
+    }
+}

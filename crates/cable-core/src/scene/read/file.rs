@@ -1,0 +1,133 @@
+//! Scene files: TOML in and out.
+
+use serde::Deserialize;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::deserialize::{Document, Refusal};
+use super::path::Path;
+use crate::error::{SceneError, SceneFault, TextPosition};
+use crate::scene::{Scene, VERSION, preset};
+
+/// Longest scene text, bytes: about 240 000 terrain points. A hostile one takes a hundred times its size in
+/// memory while it is read (measured: 800 MB for 8 MiB of `1,1,1,…`), an honest one fifty times.
+pub const MAX_TEXT_BYTES: usize = 4 << 20;
+
+impl Scene {
+    /// Reads and validates a scene. A byte order mark and CRLF line ends are accepted.
+    ///
+    /// # Errors
+    /// The first thing wrong, with path, value, allowed range, line and column.
+    pub fn from_toml(text: &str) -> Result<Self, SceneError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if text.len() > MAX_TEXT_BYTES {
+            let what = format!("the text has {} bytes, more than the {MAX_TEXT_BYTES} a scene may have", text.len());
+            return Err(Path::Root.shape(what));
+        }
+        if text.trim().is_empty() {
+            return Err(Path::Root.shape("the text is empty: a scene begins with `version = 1`"));
+        }
+        let document = DeTable::parse(text).map_err(|e| SceneError {
+            path: String::new(),
+            fault: SceneFault::Syntax { message: e.message().to_owned() },
+            at: e.span().map(|s| position(text, s.start)),
+        })?;
+        let refused = |e: Refusal| SceneError {
+            path: e.path(),
+            at: e.span.as_ref().map(|s| position(text, s.start)),
+            fault: e.fault,
+        };
+        let table = document.get_ref();
+        check_version(table).map_err(|e| placed(e, text, table))?;
+        let scene = Self::deserialize(Document(table, document.span())).map_err(refused)?;
+        scene.validate().map_err(|e| placed(e, text, table))?;
+        Ok(scene)
+    }
+
+    /// As [`Self::from_toml`], for bytes that may not be text.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`], and when the bytes are not UTF-8.
+    pub fn from_toml_bytes(bytes: &[u8]) -> Result<Self, SceneError> {
+        if bytes.len() > MAX_TEXT_BYTES + 3 {
+            let what = format!("{} bytes are more than the {MAX_TEXT_BYTES} a scene may have", bytes.len());
+            return Err(Path::Root.shape(what));
+        }
+        match std::str::from_utf8(bytes) {
+            Ok(text) => Self::from_toml(text),
+            Err(e) => {
+                let good = std::str::from_utf8(&bytes[..e.valid_up_to()]).unwrap_or_default();
+                let utf16 = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
+                let hint = if utf16 { ", it looks like UTF-16: save it as UTF-8" } else { "" };
+                Err(SceneError {
+                    path: String::new(),
+                    fault: SceneFault::Syntax { message: format!("this is not UTF-8 text{hint}") },
+                    at: Some(position(good, good.len())),
+                })
+            }
+        }
+    }
+
+    /// Writes the scene. Of a cable with a preset only what differs from it is written.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        let Ok(mut table) = toml::Table::try_from(self) else { return String::new() };
+        let cables = table.get_mut("cables").and_then(toml::Value::as_array_mut);
+        for cable in cables.into_iter().flatten().filter_map(toml::Value::as_table_mut) {
+            let Some(preset) = cable.get("preset").and_then(toml::Value::as_str).and_then(preset::cable_preset) else {
+                continue;
+            };
+            let values = preset.values();
+            cable.retain(|key, value| {
+                let same = |(k, v): &(&str, f64)| *k == key && value.as_float().map(f64::to_bits) == Some(v.to_bits());
+                !values.iter().any(same)
+            });
+        }
+        toml::to_string(&table).unwrap_or_default()
+    }
+}
+
+/// Another version is said first: all else would only be confusing.
+fn check_version(table: &DeTable<'_>) -> Result<(), SceneError> {
+    let at = Path::Root.key("version");
+    match table.get("version").map(Spanned::get_ref) {
+        Some(DeValue::Integer(i)) if i.as_str().parse::<u32>() != Ok(VERSION) => Err(at.fault(SceneFault::Range {
+            value: i.as_str().parse().unwrap_or(f64::NAN),
+            allowed: "1, the only version this program reads",
+        })),
+        _ => Ok(()),
+    }
+}
+
+/// Adds where in the text the path of a fault is, or the nearest place above it.
+fn placed(mut error: SceneError, text: &str, table: &DeTable<'_>) -> SceneError {
+    error.at = locate(table, &error.path).map(|offset| position(text, offset));
+    error
+}
+
+fn locate(table: &DeTable<'_>, path: &str) -> Option<usize> {
+    let mut found: Option<&Spanned<DeValue<'_>>> = None;
+    for step in path.split(['.', '[']) {
+        let next = match (step.strip_suffix(']'), found.map(Spanned::get_ref)) {
+            (Some(index), Some(DeValue::Array(items))) => index.parse().ok().and_then(|i: usize| items.get(i)),
+            (None, None) => table.get(step),
+            (None, Some(DeValue::Table(table))) => table.get(step),
+            _ => None,
+        };
+        match next {
+            Some(node) => found = Some(node),
+            None => break,
+        }
+    }
+    found.map(|node| node.span().start)
+}
+
+/// Line and column of a byte, both from 1.
+pub(super) fn position(text: &str, offset: usize) -> TextPosition {
+    let before = text.get(..offset).unwrap_or(text);
+    let line_start = before.rfind('\n').map_or(0, |i| i + 1);
+    TextPosition {
+        line: before.bytes().filter(|&b| b == b'\n').count() + 1,
+        column: before[line_start..].chars().count() + 1,
+    }
+}

@@ -1,0 +1,21 @@
+//! A scene file is read in three steps: parse, deserialize, validate; whatever is wrong is told with its path and its place in the text.
+//!
+//! | room | content |
+//! |---|---|
+//! | `file.rs` | TOML in and out |
+//! | `deserialize.rs` | from the parsed tree to a [`Scene`](super::Scene), unknown keys refused with the nearest known one |
+//! | `validate.rs`, `support_rules.rs` | every number in range, every name known, every key where it belongs |
+//! | `length_check.rs` | is the cable long enough for the way between its supports? |
+//! | `self_touch.rs` | does the line of a terrain or beam cross or touch itself? |
+//! | `path.rs`, `range.rs` | the name of a place in a scene; the allowed range of each number |
+//! | `schema.rs` | the JSON Schema of a scene file |
+
+pub mod deserialize;
+pub mod file;
+mod length_check;
+pub(crate) mod path;
+mod range;
+pub mod schema;
+mod self_touch;
+mod support_rules;
+pub mod validate;

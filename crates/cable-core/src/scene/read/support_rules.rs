@@ -1,0 +1,121 @@
+//! Which keys belong to which kind of support, and where along the cable each kind may sit.
+
+use super::path::Path;
+use super::range;
+use super::validate::{Checked, MAX_POINTS_ON_CABLE, at_most, force, motion, number, point, unique};
+use crate::scene::{Cable, Scene, Support, SupportKind};
+
+use SupportKind::{Clamped, Fixed, Free, Load, Pulley, Robot};
+
+/// Checks the supports of a cable.
+pub(super) fn check(scene: &Scene, cable: &Cable, cable_at: &Path<'_>) -> Checked {
+    let at = cable_at.key("supports");
+    let supports = &cable.supports;
+    at_most(&at, supports.len(), MAX_POINTS_ON_CABLE)?;
+    if supports.len() < 2 {
+        return Err(at.shape("a cable needs two supports, its start and its end (kind = \"free\" for a loose end)"));
+    }
+    unique(&at, supports.iter().map(|s| s.name.as_str()))?;
+    let (mut before, last) = (0.0, supports.len() - 1);
+    for (i, support) in supports.iter().enumerate() {
+        let here = at.index(i);
+        let is_end = i == 0 || i == last;
+        check_keys(support, &here)?;
+        check_numbers(support, &here)?;
+        if support.kind == Robot && scene.robot.is_none() {
+            return Err(here.key("kind").shape("hangs on the robot, but the scene has no [robot]"));
+        }
+        match (is_end, support.kind, support.arc_length_m) {
+            (true, Pulley, _) => {
+                return Err(here.key("kind").shape("a pulley cannot hold an end of the cable: it slides through"));
+            }
+            (false, Free, _) => return Err(here.key("kind").shape("only an end of the cable can be free")),
+            (true, _, Some(_)) => {
+                return Err(here.key("arc_length_m").shape("leave it out: the first and last support sit at the ends"));
+            }
+            (false, Fixed | Clamped | Load | Robot, None) => {
+                return Err(here.key("arc_length_m").shape("is missing: where on the cable does it sit?"));
+            }
+            (false, _, Some(s)) => {
+                if !(s > before && s < cable.length_m) {
+                    let what = format!("{s} m must lie between {before} m and {} m, in order", cable.length_m);
+                    return Err(here.key("arc_length_m").shape(what));
+                }
+                before = s;
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Keys that a kind must have, and must not.
+fn check_keys(s: &Support, at: &Path<'_>) -> Checked {
+    let kind = s.kind;
+    let held = matches!(kind, Fixed | Clamped | Pulley);
+    let forced = s.force_n.is_some() || !s.times_s.is_empty() || !s.forces_n.is_empty();
+    let force_key = match (&s.force_n, s.times_s.is_empty()) {
+        (Some(_), _) => "force_n",
+        (None, false) => "times_s",
+        _ => "forces_n",
+    };
+    let rules = [
+        ("at_m", s.at_m.is_some(), held, held),
+        ("angle_deg", s.angle_deg.is_some(), kind == Clamped, kind == Clamped),
+        ("arc_length_m", s.arc_length_m.is_some(), kind != Pulley, false),
+        ("radius_m", s.radius_m.is_some(), kind == Pulley, false),
+        ("side", s.side.is_some(), kind == Pulley, false),
+        ("friction", s.friction.is_some(), kind == Pulley, false),
+        (force_key, forced, kind == Load, false),
+        ("mass_kg", s.mass_kg.is_some(), matches!(kind, Load | Free), false),
+        ("motion", s.motion.is_some(), held, false),
+        ("release_s", s.release_s.is_some(), held || kind == Robot, false),
+    ];
+    for (key, given, allowed, needed) in rules {
+        if given && !allowed {
+            return Err(at.key(key).shape(format!("does not belong to a {} support", name(kind))));
+        }
+        if needed && !given {
+            return Err(at.key(key).shape(format!("is missing: a {} support needs it", name(kind))));
+        }
+    }
+    Ok(())
+}
+
+fn check_numbers(s: &Support, at: &Path<'_>) -> Checked {
+    let numbers = [
+        ("arc_length_m", s.arc_length_m, range::ARC_LENGTH),
+        ("angle_deg", s.angle_deg, range::ANGLE),
+        ("radius_m", s.radius_m, range::WHEEL_RADIUS),
+        ("friction", s.friction, range::FRICTION),
+        ("mass_kg", s.mass_kg, range::MASS),
+        ("release_s", s.release_s, range::DURATION),
+    ];
+    for (key, value, range) in numbers {
+        if let Some(value) = value {
+            number(&at.key(key), value, range)?;
+        }
+    }
+    if let Some(p) = s.at_m {
+        point(&at.key("at_m"), p, range::COORDINATE)?;
+    }
+    if s.kind == Load {
+        force(at, s.force_n, &s.times_s, &s.forces_n)?;
+    }
+    match (&s.motion, s.at_m) {
+        (Some(m), Some(p)) => motion(&at.key("motion"), m, p),
+        _ => Ok(()),
+    }
+}
+
+/// The name of a kind as a file writes it.
+fn name(kind: SupportKind) -> &'static str {
+    match kind {
+        Fixed => "fixed",
+        Clamped => "clamped",
+        Pulley => "pulley",
+        Load => "load",
+        Robot => "robot",
+        Free => "free",
+    }
+}

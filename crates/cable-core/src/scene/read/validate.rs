@@ -1,0 +1,334 @@
+//! Whether a scene can be solved: every number finite and in range, every name known, every key where it belongs.
+//!
+//! The ranges are wide: they keep out what is surely a slip or would hurt the program, not what is unusual.
+
+use super::path::Path;
+use super::range::{self, Range};
+use super::self_touch::{SelfTouch, first_self_touch};
+use super::{length_check, support_rules};
+use crate::error::{SceneError, SceneFault};
+use crate::math::Point;
+use crate::scene::{Cable, Load, Motion, Obstacle, Robot, RobotTask, Scene, Shape, VERSION, preset};
+
+/// Most cables. More would be solved, slowly; a file with more is surely a slip.
+const MAX_CABLES: usize = 1000;
+/// Most supports of a cable, and most loads of a scene.
+pub(super) const MAX_POINTS_ON_CABLE: usize = 10_000;
+/// Most corner points of all obstacles together: more than the longest text can hold.
+const MAX_OBSTACLE_POINTS: usize = 1_000_000;
+/// Most knots of a route, motion, series or robot path.
+const MAX_KNOTS: usize = 100_000;
+/// Longest name, bytes.
+const MAX_NAME: usize = 200;
+/// Longest name of a scene, bytes.
+const MAX_TITLE: usize = 1000;
+
+pub(super) type Checked = Result<(), SceneError>;
+
+impl Scene {
+    /// Checks every number and name.
+    ///
+    /// # Errors
+    /// The first thing wrong.
+    pub fn validate(&self) -> Result<(), SceneError> {
+        let root = Path::Root;
+        if self.version != VERSION {
+            let allowed = "1, the only version this program reads";
+            return Err(root.key("version").fault(SceneFault::Range { value: f64::from(self.version), allowed }));
+        }
+        if self.name.len() > MAX_TITLE {
+            return Err(root.key("name").shape(format!("a name has at most {MAX_TITLE} bytes")));
+        }
+        self.check_environment()?;
+        let at = root.key("cables");
+        if self.cables.is_empty() {
+            return Err(at.shape("a scene needs at least one cable"));
+        }
+        at_most(&at, self.cables.len(), MAX_CABLES)?;
+        unique(&at, self.cables.iter().map(|c| c.name.as_str()))?;
+        for (i, cable) in self.cables.iter().enumerate() {
+            self.check_cable(cable, &at.index(i))?;
+        }
+        let at = root.key("obstacles");
+        unique(&at, self.obstacles.iter().map(|o| o.name.as_str()))?;
+        let mut points = 0;
+        for (i, obstacle) in self.obstacles.iter().enumerate() {
+            points += check_obstacle(obstacle, &at.index(i))?;
+        }
+        at_most(&at, points, MAX_OBSTACLE_POINTS)?;
+        let at = root.key("loads");
+        at_most(&at, self.loads.len(), MAX_POINTS_ON_CABLE)?;
+        for (i, load) in self.loads.iter().enumerate() {
+            self.check_load(load, &at.index(i))?;
+        }
+        if let Some(robot) = &self.robot {
+            check_robot(robot, &root.key("robot"))?;
+        }
+        for (i, cable) in self.cables.iter().enumerate() {
+            length_check::lines_exist(self, cable, &root.key("cables").index(i))?;
+            length_check::long_enough(self, cable, &root.key("cables").index(i).key("length_m"))?;
+        }
+        Ok(())
+    }
+
+    fn check_environment(&self) -> Checked {
+        let (root, env) = (Path::Root, &self.environment);
+        let at = root.key("environment");
+        number(&at.key("gravity_m_per_s2"), env.gravity_m_per_s2, range::GRAVITY)?;
+        number(&at.key("temperature_change_k"), env.temperature_change_k, range::TEMPERATURE)?;
+        point(&at.key("wind_n_per_m"), env.wind_n_per_m, range::WIND)?;
+        if env.wind_times_s.is_empty() && env.winds_n_per_m.is_empty() {
+            return Ok(());
+        }
+        series(&at.key("wind_times_s"), &at.key("winds_n_per_m"), &env.wind_times_s, &env.winds_n_per_m, range::WIND)
+    }
+
+    fn check_cable(&self, cable: &Cable, at: &Path<'_>) -> Checked {
+        let numbers = [
+            ("length_m", cable.length_m, range::LENGTH),
+            ("linear_density_kg_per_m", cable.linear_density_kg_per_m, range::DENSITY),
+            ("axial_stiffness_n", cable.axial_stiffness_n, range::AXIAL_STIFFNESS),
+            ("bending_stiffness_n_m2", cable.bending_stiffness_n_m2, range::BENDING_STIFFNESS),
+            ("diameter_m", cable.diameter_m, range::DIAMETER),
+            ("damping_ratio", cable.damping_ratio, range::DAMPING),
+            ("thermal_expansion_per_k", cable.thermal_expansion_per_k, range::THERMAL),
+            ("service_tension_n", cable.service_tension_n, range::TENSION),
+            ("breaking_tension_n", cable.breaking_tension_n, range::TENSION),
+            ("breaking_time_s", cable.breaking_time_s, range::BREAKING_TIME),
+            ("min_bend_radius_m", cable.min_bend_radius_m, range::BEND_RADIUS),
+            ("friction", cable.friction, range::FRICTION),
+        ];
+        for (key, value, range) in numbers {
+            number(&at.key(key), value, range)?;
+        }
+        if let Some(limit) = cable.sidewall_limit_n_per_m {
+            number(&at.key("sidewall_limit_n_per_m"), limit, range::SIDEWALL)?;
+        }
+        if let Some(id) = &cable.preset
+            && preset::cable_preset(id).is_none()
+        {
+            let known = preset::cable_presets().iter().map(|p| p.id);
+            return Err(at.key("preset").fault(preset::unknown("cable preset", id, known)));
+        }
+        if cable.service_tension_n > cable.breaking_tension_n {
+            return Err(at.key("service_tension_n").shape(format!(
+                "{} N is above breaking_tension_n ({} N): a warning after the break warns nobody",
+                cable.service_tension_n, cable.breaking_tension_n
+            )));
+        }
+        let factor = 1.0 + cable.thermal_expansion_per_k * self.environment.temperature_change_k;
+        if !(range::THERMAL_FACTOR.0..=range::THERMAL_FACTOR.1).contains(&factor) {
+            let what = format!("with temperature_change_k the length changes by a factor {factor}, beyond 0.5 to 2");
+            return Err(at.key("thermal_expansion_per_k").shape(what));
+        }
+        if let Some(n) = cable.segments {
+            #[expect(clippy::cast_precision_loss, reason = "only shown")]
+            number(&at.key("segments"), n as f64, range::SEGMENTS)?;
+        }
+        let route = at.key("route_m");
+        at_most(&route, cable.route_m.len(), MAX_KNOTS)?;
+        if cable.route_m.len() == 1 {
+            return Err(route.shape("a route needs two points or more"));
+        }
+        points(&route, &cable.route_m, range::COORDINATE)?;
+        apart(&route, &cable.route_m)?;
+        support_rules::check(self, cable, at)
+    }
+
+    fn check_load(&self, load: &Load, at: &Path<'_>) -> Checked {
+        let Some(cable) = self.cables.iter().find(|c| c.name == load.cable) else {
+            let known = self.cables.iter().map(|c| c.name.as_str());
+            return Err(at.key("cable").fault(preset::unknown("cable", &load.cable, known)));
+        };
+        number(&at.key("arc_length_m"), load.arc_length_m, range::ARC_LENGTH)?;
+        if load.arc_length_m > cable.length_m {
+            let what = format!("{} m is beyond the cable's end at {} m", load.arc_length_m, cable.length_m);
+            return Err(at.key("arc_length_m").shape(what));
+        }
+        force(at, load.force_n, &load.times_s, &load.forces_n)
+    }
+}
+
+/// Either a constant force or a series.
+pub(super) fn force(at: &Path<'_>, constant: Option<Point>, times: &[f64], forces: &[Point]) -> Checked {
+    let given = !times.is_empty() || !forces.is_empty();
+    match constant {
+        Some(_) if given => Err(at.key("force_n").shape("give either force_n, or times_s and forces_n")),
+        Some(f) => point(&at.key("force_n"), f, range::FORCE),
+        None if given => series(&at.key("times_s"), &at.key("forces_n"), times, forces, range::FORCE),
+        None => Err(at.key("force_n").shape("is missing: give force_n, or times_s and forces_n")),
+    }
+}
+
+/// A motion and that it starts where its support is.
+pub(super) fn motion(at: &Path<'_>, motion: &Motion, start: Point) -> Checked {
+    series(&at.key("times_s"), &at.key("points_m"), &motion.times_s, &motion.points_m, range::COORDINATE)?;
+    /// Further apart than this the first instant would be a jump, m.
+    const PLACE_TOLERANCE: f64 = 1e-6;
+    let p = motion.at(0.0).0;
+    if (p.x - start[0]).hypot(p.y - start[1]) <= PLACE_TOLERANCE {
+        Ok(())
+    } else {
+        Err(at.key("points_m").shape(format!(
+            "at 0 s it is at [{}, {}], its support's at_m is [{}, {}]: they must agree",
+            p.x, p.y, start[0], start[1]
+        )))
+    }
+}
+
+fn series(times_at: &Path<'_>, values_at: &Path<'_>, times: &[f64], values: &[Point], range: Range) -> Checked {
+    at_most(times_at, times.len(), MAX_KNOTS)?;
+    if times.is_empty() {
+        return Err(times_at.shape("needs at least one time"));
+    }
+    if times.len() != values.len() {
+        return Err(values_at.shape(format!("{} values for {} times", values.len(), times.len())));
+    }
+    for (i, &t) in times.iter().enumerate() {
+        number(&times_at.index(i), t, range::TIME)?;
+    }
+    for (i, pair) in times.windows(2).enumerate() {
+        // Closer knots than this make velocities overflow.
+        if !(pair[1] - pair[0] >= range::MIN_INTERVAL_S) {
+            let what = format!("times must increase: {} s after {} s", pair[1], pair[0]);
+            return Err(times_at.index(i + 1).shape(what));
+        }
+    }
+    points(values_at, values, range)
+}
+
+fn check_obstacle(obstacle: &Obstacle, at: &Path<'_>) -> Result<usize, SceneError> {
+    if let Some(mu) = obstacle.friction {
+        number(&at.key("friction"), mu, range::FRICTION)?;
+    }
+    let line = at.key("points_m");
+    let (corners, least) = match &obstacle.shape {
+        Shape::Terrain { points_m } => (points_m, 2),
+        Shape::Polygon { points_m } => (points_m, 3),
+        Shape::Polyline { points_m, thickness_m } => {
+            number(&at.key("thickness_m"), *thickness_m, range::THICKNESS)?;
+            (points_m, 2)
+        }
+        Shape::Circle { center_m, radius_m } => {
+            point(&at.key("center_m"), *center_m, range::COORDINATE)?;
+            number(&at.key("radius_m"), *radius_m, range::RADIUS)?;
+            return Ok(1);
+        }
+    };
+    at_most(&line, corners.len(), MAX_OBSTACLE_POINTS)?;
+    if corners.len() < least {
+        return Err(line.shape(format!("{} points where at least {least} are needed", corners.len())));
+    }
+    points(&line, corners, range::COORDINATE)?;
+    apart(&line, corners)?;
+    match (&obstacle.shape, corners.first(), corners.last()) {
+        (Shape::Terrain { .. }, Some(first), Some(last)) if !(last[0] > first[0]) => {
+            Err(line.shape("terrain goes from left to right, solid below: its last point must lie right of its first"))
+        }
+        (Shape::Polygon { .. }, Some(first), Some(last)) if first == last => {
+            Err(line.index(corners.len() - 1).shape("repeats the first point: a polygon closes by itself"))
+        }
+        (Shape::Polygon { .. }, _, _) if !(area(corners).abs() > 0.0) => {
+            Err(line.shape("a polygon needs an area: these points lie on a line or cross it back"))
+        }
+        (Shape::Terrain { .. }, _, _) => not_crossing(&line, corners, false),
+        (Shape::Polygon { .. }, _, _) => not_crossing(&line, corners, true),
+        _ => Ok(()),
+    }?;
+    Ok(corners.len())
+}
+
+/// A line with an inside must not cross or touch itself.
+fn not_crossing(at: &Path<'_>, line: &[Point], closed: bool) -> Checked {
+    match first_self_touch(line, closed) {
+        None => Ok(()),
+        Some(SelfTouch::Edges(i, j)) => {
+            let end = |k: usize| line.get(k + 1).or(line.first()).copied().unwrap_or_default();
+            let (a, b, c, d) = (line[i], end(i), line[j], end(j));
+            Err(at.index(j).shape(format!(
+                "the edge from here, [{}, {}] to [{}, {}], crosses or touches the edge from point {i}, [{}, {}] to [{}, {}]: move a point of one, or leave it out",
+                c[0], c[1], d[0], d[1], a[0], a[1], b[0], b[1]
+            )))
+        }
+        Some(SelfTouch::Tangled) => Err(at.shape(
+            "so many edges lie side by side that crossings cannot be ruled out in a second: give it fewer or shorter ones",
+        )),
+    }
+}
+
+/// Signed area by the shoelace formula about the first point, m².
+fn area(corners: &[Point]) -> f64 {
+    let Some(o) = corners.first() else { return 0.0 };
+    corners.windows(2).map(|w| ((w[0][0] - o[0]) * (w[1][1] - o[1]) - (w[1][0] - o[0]) * (w[0][1] - o[1])) / 2.0).sum()
+}
+
+fn check_robot(robot: &Robot, at: &Path<'_>) -> Checked {
+    if preset::robot_preset(&robot.preset).is_none() {
+        let known = preset::robot_presets().iter().map(|p| p.id);
+        return Err(at.key("preset").fault(preset::unknown("robot preset", &robot.preset, known)));
+    }
+    point(&at.key("at_m"), robot.at_m, range::COORDINATE)?;
+    if let Some(friction) = robot.track_friction {
+        number(&at.key("track_friction"), friction, range::FRICTION)?;
+    }
+    if let Some(rolling) = robot.rolling_resistance {
+        number(&at.key("rolling_resistance"), rolling, range::ROLLING)?;
+    }
+    let path = at.key("path");
+    at_most(&path, robot.path.len(), MAX_KNOTS)?;
+    for (i, task) in robot.path.iter().enumerate() {
+        let leg = path.index(i);
+        match *task {
+            RobotTask::Drive { to_x_m, speed_m_per_s } => {
+                number(&leg.key("to_x_m"), to_x_m, range::COORDINATE)?;
+                number(&leg.key("speed_m_per_s"), speed_m_per_s, range::ROBOT_SPEED)?;
+            }
+            RobotTask::Wait { wait_s } => number(&leg.key("wait_s"), wait_s, range::DURATION)?,
+        }
+    }
+    Ok(())
+}
+
+/// A finite number in its range.
+pub(super) fn number(at: &Path<'_>, value: f64, range: Range) -> Checked {
+    if range.holds(value) { Ok(()) } else { Err(at.fault(SceneFault::Range { value, allowed: range.text })) }
+}
+
+pub(super) fn point(at: &Path<'_>, value: Point, range: Range) -> Checked {
+    number(&at.index(0), value[0], range)?;
+    number(&at.index(1), value[1], range)
+}
+
+fn points(at: &Path<'_>, values: &[Point], range: Range) -> Checked {
+    values.iter().enumerate().try_for_each(|(i, p)| point(&at.index(i), *p, range))
+}
+
+/// No two neighbours in the same place.
+fn apart(at: &Path<'_>, line: &[Point]) -> Checked {
+    match line.windows(2).position(|w| w[0] == w[1]) {
+        Some(i) => Err(at.index(i + 1).shape("is the same point as the one before it: leave one out")),
+        None => Ok(()),
+    }
+}
+
+pub(super) fn at_most(at: &Path<'_>, count: usize, most: usize) -> Checked {
+    if count <= most { Ok(()) } else { Err(at.shape(format!("{count} are more than the {most} allowed"))) }
+}
+
+/// Names that are there, short enough and each used once.
+pub(super) fn unique<'a>(at: &Path<'_>, names: impl Iterator<Item = &'a str>) -> Checked {
+    let mut seen = std::collections::BTreeSet::new();
+    for (i, name) in names.enumerate() {
+        let place = at.index(i);
+        if name.trim().is_empty() {
+            return Err(place.key("name").shape("a name must not be empty"));
+        }
+        if name.len() > MAX_NAME {
+            return Err(place.key("name").shape(format!("a name has at most {MAX_NAME} bytes")));
+        }
+        if !seen.insert(name) {
+            return Err(place.key("name").shape(format!("`{name}` is already taken: names are unique")));
+        }
+    }
+    Ok(())
+}

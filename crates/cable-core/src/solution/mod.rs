@@ -1,0 +1,653 @@
+//! The answer to a question about a scene: plain data, whichever model gave it.
+//!
+//! | room | data |
+//! |---|---|
+//! | `mod.rs` | [`Solution`], [`CableSolution`]: nodes, supports, contacts, warnings |
+//! | `error_estimates.rs` | [`ErrorEstimates`]: how wrong each figure is |
+//! | `robot_report.rs` | [`robot_report::RobotReport`]: the vehicle at the same instant |
+//! | `verification.rs` | [`verification::Verification`]: the verdict of the laws of mechanics |
+
+pub mod error_estimates;
+pub mod robot_report;
+pub mod verification;
+
+use serde::{Deserialize, Serialize};
+
+use crate::math::{Vec2, larger};
+use crate::model_id::Model;
+
+pub use self::error_estimates::ErrorEstimates;
+use self::robot_report::RobotReport;
+use self::verification::Verification;
+
+/// The answer of a model at an instant, all cables of the scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Solution {
+    /// Time, s.
+    pub time_s: f64,
+    /// The model that gave it.
+    pub model: Model,
+    /// Why that model.
+    pub reason: String,
+    /// One a cable, in the scene's order.
+    pub cables: Vec<CableSolution>,
+    /// What the user should know.
+    pub warnings: Vec<Warning>,
+    /// What the last solve or step took.
+    pub cost: Cost,
+    /// Energy of all cables.
+    #[serde(default)]
+    pub energy: Energy,
+    /// What the laws say of it; None where nobody asked (a model's own answer, a run read from files).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub verification: Option<Verification>,
+    /// The robot, where the scene has one that can move.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub robot: Option<RobotReport>,
+}
+
+/// Energy in its forms.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Energy {
+    /// Of motion, J.
+    pub kinetic_j: f64,
+    /// Of height above y = 0, J.
+    pub gravity_j: f64,
+    /// Of stretch, J.
+    pub stretch_j: f64,
+    /// Of bending, J.
+    pub bending_j: f64,
+}
+
+/// The answer for one cable.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CableSolution {
+    /// The cable's name.
+    pub name: String,
+    /// Nodes in order of arc length.
+    pub nodes: Vec<Node>,
+    /// Supports in the scene's order.
+    pub supports: Vec<SupportReaction>,
+    /// Contacts in order of arc length.
+    pub contacts: Vec<ContactReport>,
+    /// Estimated relative error of the largest tension; None = not estimated.
+    pub error_estimate: Option<f64>,
+    /// Estimated errors of its figures, each in its own unit.
+    #[serde(default)]
+    pub errors: ErrorEstimates,
+    /// The sharpest bend of its line: the cable's own curve where it is free, the round it is led by elsewhere; None = nearly straight.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tightest_bend: Option<Bend>,
+    /// Its sharpest bend where nothing leads it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub free_bend: Option<Bend>,
+    /// Its sharpest bend where something leads it, at a sharp corner as its bending stiffness lets it: what is warned of.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub judged_bend: Option<JudgedBend>,
+    /// Where it is pressed hardest against what leads it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sidewall_pressure: Option<Pressure>,
+    /// Index of the first node of each further piece, where the cable has broken; empty while it is whole. The last
+    /// node of one piece and the first of the next are the same point of the cable, at two places. 0 and the number of nodes where it tore off
+    /// what held it at its start and at its end.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub breaks: Vec<usize>,
+    /// What the answer took into account.
+    #[serde(default)]
+    pub assumptions: Assumptions,
+    /// The greatest tensions of the last step, whose inner steps pull harder than its end; None at rest and without inertia.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peaks: Option<TensionPeaks>,
+    /// Its momentum before and after the last step, and the impulses between; None at rest, without inertia, and where the model keeps no
+    /// account of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub momentum: Option<MomentumAccount>,
+}
+
+/// What became of a cable's momentum in a step: what it had, and what each kind of force gave it, added up over the inner steps from the very
+/// forces that moved it there. Before and impulses add up to after.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MomentumAccount {
+    /// The time it is of, s.
+    pub over_s: f64,
+    /// Momentum of cable and lumped masses as the step began, kg·m/s: that of the answer before.
+    pub before_kg_m_per_s: [f64; 2],
+    /// The same as it ended, kg·m/s.
+    pub after_kg_m_per_s: [f64; 2],
+    /// Impulse of the weight of cable and lumped masses, N·s.
+    pub weight_n_s: [f64; 2],
+    /// Impulse of wind, current and loads, N·s.
+    pub loads_n_s: [f64; 2],
+    /// Impulse of the supports, pulleys among them, on the cable, N·s.
+    pub supports_n_s: [f64; 2],
+    /// Impulse of obstacles and floor on the cable, friction and impacts included, N·s.
+    pub contacts_n_s: [f64; 2],
+}
+
+impl MomentumAccount {
+    /// The impulses in the order of the fields, N·s.
+    #[must_use]
+    pub fn impulses_n_s(&self) -> [[f64; 2]; 4] {
+        [self.weight_n_s, self.loads_n_s, self.supports_n_s, self.contacts_n_s]
+    }
+
+    /// The same of a similar copy whose times are so many times as long, forces as great.
+    pub(crate) fn scale_times(&mut self, by: f64) {
+        let Self { over_s, before_kg_m_per_s, after_kg_m_per_s, weight_n_s, loads_n_s, supports_n_s, contacts_n_s } =
+            self;
+        *over_s *= by;
+        let vectors = [before_kg_m_per_s, after_kg_m_per_s, weight_n_s, loads_n_s, supports_n_s, contacts_n_s];
+        vectors.into_iter().flatten().for_each(|c| *c *= by);
+    }
+
+    /// The account of two pieces of a cable.
+    #[must_use]
+    pub(crate) fn with(&self, other: &Self) -> Self {
+        let sum = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
+        Self {
+            before_kg_m_per_s: sum(self.before_kg_m_per_s, other.before_kg_m_per_s),
+            after_kg_m_per_s: sum(self.after_kg_m_per_s, other.after_kg_m_per_s),
+            over_s: self.over_s,
+            ..self.then(other)
+        }
+    }
+
+    /// The account of this step and the one `after` it.
+    #[must_use]
+    pub fn then(&self, after: &Self) -> Self {
+        let sum = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
+        Self {
+            over_s: self.over_s + after.over_s,
+            before_kg_m_per_s: self.before_kg_m_per_s,
+            after_kg_m_per_s: after.after_kg_m_per_s,
+            weight_n_s: sum(self.weight_n_s, after.weight_n_s),
+            loads_n_s: sum(self.loads_n_s, after.loads_n_s),
+            supports_n_s: sum(self.supports_n_s, after.supports_n_s),
+            contacts_n_s: sum(self.contacts_n_s, after.contacts_n_s),
+        }
+    }
+}
+
+/// The greatest tensions of a while in motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TensionPeaks {
+    /// The greatest tension of any inner step, not averaged.
+    pub greatest: TensionPeak,
+    /// The greatest mean over `over_s` at a point of the cable, and when that time ended: where it reaches the breaking tension the
+    /// cable breaks.
+    pub held: TensionPeak,
+    /// The time that means are taken over, s.
+    pub over_s: f64,
+}
+
+impl TensionPeaks {
+    /// The greater of each; `other` of the same cable.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        let larger = |a: TensionPeak, b: TensionPeak| if b.tension_n > a.tension_n { b } else { a };
+        Self { greatest: larger(self.greatest, other.greatest), held: larger(self.held, other.held), ..other }
+    }
+}
+
+/// A tension, where on the cable and when.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TensionPeak {
+    /// Tension, N.
+    pub tension_n: f64,
+    /// Where on the cable, m.
+    pub arc_length_m: f64,
+    /// When, s.
+    pub time_s: f64,
+}
+
+/// What an answer took into account of its cable. What it left out is an error of the model, not an unbalanced force.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Assumptions {
+    /// Bending stiffness EI, N·m²; 0 = perfectly flexible.
+    pub bending_stiffness_n_m2: f64,
+    /// Whether the cable is an obstacle to itself.
+    pub self_contact: bool,
+    /// Whether masses accelerate: forces on a piece of cable then do not add up to nothing.
+    pub inertia: bool,
+}
+
+impl CableSolution {
+    /// The greatest tensions of the step that ended at a time (s): of one without inner steps that are gauged, and at rest, the greatest
+    /// of the nodes, which is held.
+    #[must_use]
+    pub fn peaks_at(&self, time_s: f64) -> TensionPeaks {
+        self.peaks.unwrap_or_else(|| {
+            let top = MaxTension::of(std::slice::from_ref(self));
+            let now = TensionPeak { tension_n: larger(top.tension_n, 0.0), arc_length_m: top.arc_length_m, time_s };
+            TensionPeaks { greatest: now, held: now, over_s: 0.0 }
+        })
+    }
+
+    /// The nodes of each piece, in order of arc length: one piece while the cable is whole.
+    pub fn pieces(&self) -> impl Iterator<Item = &[Node]> {
+        let starts = std::iter::once(0).chain(self.breaks.iter().copied());
+        let ends = self.breaks.iter().copied().chain(std::iter::once(self.nodes.len()));
+        starts.zip(ends).filter_map(|(a, b)| self.nodes.get(a..b))
+    }
+}
+
+/// A bend.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Bend {
+    /// Radius of the centre line, m.
+    pub radius_m: f64,
+    /// Where on the cable, m.
+    pub arc_length_m: f64,
+    /// Where it is, m.
+    pub x_m: f64,
+    /// Where it is, m.
+    pub y_m: f64,
+}
+
+/// A bend as the cable has it with its bending stiffness.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct JudgedBend {
+    /// Where and how sharp.
+    #[serde(flatten)]
+    pub bend: Bend,
+    /// The bending stiffness by which corners are judged, N·m²: the cable's own, of one taken as flexible that which its preset is likely
+    /// to have; 0 = none is known, and corners bend it to the radius of their own arc.
+    pub bending_stiffness_n_m2: f64,
+}
+
+/// Normal force per metre on what leads the cable.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Pressure {
+    /// Tension over radius, N/m.
+    pub pressure_n_per_m: f64,
+    /// Where on the cable, m.
+    pub arc_length_m: f64,
+    /// Where it is, m.
+    pub x_m: f64,
+    /// Where it is, m.
+    pub y_m: f64,
+}
+
+/// One point of the cable.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Node {
+    /// Unstretched arc length at rest temperature, m.
+    pub arc_length_m: f64,
+    /// Position, m.
+    pub x_m: f64,
+    /// Position, m.
+    pub y_m: f64,
+    /// Velocity, m/s.
+    pub vx_m_per_s: f64,
+    /// Velocity, m/s.
+    pub vy_m_per_s: f64,
+    /// Tension at this point (not the mean of an element), N.
+    pub tension_n: f64,
+    /// Engineering strain.
+    pub strain: f64,
+    /// Tension over the full round cross-section, Pa.
+    pub stress_pa: f64,
+    /// d(angle)/d(unstretched length), 1/m.
+    pub curvature_per_m: f64,
+    /// Internal force just beyond this node (at the last one just before it), N: what the cable of greater arc length does to the
+    /// cable before it. Its size is the tension of a flexible cable; a stiff one has shear as well.
+    #[serde(default)]
+    pub force_n: [f64; 2],
+    /// How far its material is from where it was when the run began, m.
+    #[serde(default)]
+    pub displacement_m: [f64; 2],
+    /// Mean acceleration of its material over the last step with inertia, m/s²; 0 at rest and without inertia.
+    #[serde(default)]
+    pub acceleration_m_per_s2: [f64; 2],
+}
+
+impl Node {
+    /// Position, m.
+    #[must_use]
+    pub fn at(&self) -> Vec2 {
+        Vec2::new(self.x_m, self.y_m)
+    }
+
+    /// Internal force, N.
+    #[must_use]
+    pub fn force(&self) -> Vec2 {
+        Vec2::new(self.force_n[0], self.force_n[1])
+    }
+}
+
+/// What the cable does to a support.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SupportReaction {
+    /// The support's name.
+    pub name: String,
+    /// Where it is, m.
+    pub x_m: f64,
+    /// Where it is, m.
+    pub y_m: f64,
+    /// Force of the cable on the support, N.
+    pub reaction_x_n: f64,
+    /// Force of the cable on the support, N.
+    pub reaction_y_n: f64,
+    /// Where on the cable it sits now, m.
+    pub arc_length_m: f64,
+    /// Pulley: tension on the side of smaller arc length, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tension_before_n: Option<f64>,
+    /// Pulley: tension on the side of greater arc length, N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tension_after_n: Option<f64>,
+    /// The hand that holds it by a spring, if one does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hand: Option<HandReport>,
+}
+
+/// A hand that holds a support by a linear spring, with a damper beside it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct HandReport {
+    /// The spring's free end, m.
+    pub x_m: f64,
+    /// The spring's free end, m.
+    pub y_m: f64,
+    /// Of the spring, N/m.
+    pub stiffness_n_per_m: f64,
+    /// Force of the hand on the cable, N.
+    pub force_x_n: f64,
+    /// Force of the hand on the cable, N.
+    pub force_y_n: f64,
+}
+
+impl HandReport {
+    /// Size of its force, N.
+    #[must_use]
+    pub fn force_n(&self) -> f64 {
+        self.force_x_n.hypot(self.force_y_n)
+    }
+}
+
+/// Whether a contact holds or slides.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ContactState {
+    /// Held by friction.
+    #[default]
+    Stick,
+    /// Sliding.
+    Slip,
+}
+
+/// One contact of the cable with an obstacle: a point, or a stretch (a lay or a wrap).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContactReport {
+    /// The obstacle's name.
+    pub obstacle: String,
+    /// Middle of the contact, m.
+    pub x_m: f64,
+    /// Middle of the contact, m.
+    pub y_m: f64,
+    /// Arc length of its middle, m.
+    pub arc_length_m: f64,
+    /// Outward normal (obstacle to cable), unit vector.
+    pub normal: [f64; 2],
+    /// Normal force integrated over the contact, N.
+    pub normal_n: f64,
+    /// Friction force on the cable along growing arc length, integrated over the contact, N.
+    pub friction_n: f64,
+    /// Holds or slides.
+    pub state: ContactState,
+    /// Wrap: how far the cable turns on its way along growing arc length, °: positive anticlockwise (to the left), negative
+    /// clockwise, whole turns counted. A cable that goes over a post to the right and down on its far side has about −180.
+    pub turn_deg: f64,
+    /// Tension before the contact (smaller arc length), N.
+    pub tension_before_n: f64,
+    /// Tension after the contact (greater arc length), N.
+    pub tension_after_n: f64,
+    /// Arc length where it begins, m; its middle for a point.
+    #[serde(default)]
+    pub begins_m: f64,
+    /// Arc length where it ends, m; its middle for a point.
+    #[serde(default)]
+    pub ends_m: f64,
+    /// Its stretches where one holds while another has slid, in order: slip fronts are where they meet. Empty where all of it
+    /// does what `state` says, and where the model does not know.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parts: Vec<ContactPart>,
+    /// Whole force of the obstacle on the cable, N: normal force and friction. Of a contact of the cable with itself it is nothing.
+    #[serde(default)]
+    pub force_n: [f64; 2],
+    /// The same along the contact, in order of arc length: it adds up to `force_n`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub samples: Vec<ContactSample>,
+}
+
+/// Force of an obstacle on a short stretch of the cable.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContactSample {
+    /// Arc length of its middle, m.
+    pub arc_length_m: f64,
+    /// Force on the cable, N.
+    pub force_n: [f64; 2],
+}
+
+impl ContactSample {
+    /// A force (N) at an arc length (m).
+    #[must_use]
+    pub fn new(arc_length_m: f64, force: Vec2) -> Self {
+        Self { arc_length_m, force_n: [force.x, force.y] }
+    }
+}
+
+/// A stretch of a contact that holds or has slid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContactPart {
+    /// Arc length where it begins, m.
+    pub begins_m: f64,
+    /// Arc length where it ends, m.
+    pub ends_m: f64,
+    /// Slip: friction is at its limit there, and a little more pull moves it on.
+    pub state: ContactState,
+}
+
+impl ContactReport {
+    /// Sets the forces along the contact and their sum.
+    pub(crate) fn set_samples(&mut self, samples: Vec<ContactSample>) {
+        self.force_n = samples.iter().fold([0.0; 2], |sum, s| [sum[0] + s.force_n[0], sum[1] + s.force_n[1]]);
+        self.samples = samples;
+    }
+
+    /// Where on the cable it begins and ends, m: never empty of its middle.
+    #[must_use]
+    pub fn extent_m(&self) -> [f64; 2] {
+        let middle = self.arc_length_m;
+        if self.begins_m <= middle && middle <= self.ends_m { [self.begins_m, self.ends_m] } else { [middle; 2] }
+    }
+}
+
+/// What a solve or step took. The core has no clock: wall time is the caller's to measure.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Cost {
+    /// Newton iterations, or explicit sub-steps.
+    pub iterations: usize,
+    /// Steps that had to be halved.
+    pub halved_steps: usize,
+    /// Largest unbalanced force left, N.
+    pub residual_n: f64,
+    /// Inner time step, s; 0 for statics.
+    pub inner_step_s: f64,
+}
+
+/// Something the user should know, with its place.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Warning {
+    /// What kind.
+    pub kind: WarningKind,
+    /// The cable's name.
+    pub cable: String,
+    /// Where on the cable, m.
+    pub arc_length_m: f64,
+    /// Where in the plane, m; None = at the cable's point of that arc length.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_m: Option<[f64; 2]>,
+    /// Since when, s; None = it is about the last step alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub since_s: Option<f64>,
+    /// The quantity's value, in its own unit (N, 1/m, m …).
+    pub value: f64,
+    /// Its limit, same unit.
+    pub limit: f64,
+    /// What, where, why and what it does to the result, with figures and units.
+    pub message: String,
+}
+
+impl Warning {
+    /// A warning about the last step, or about an answer at rest.
+    #[must_use]
+    pub fn new(kind: WarningKind, cable: &str, arc_length_m: f64, [value, limit]: [f64; 2], message: String) -> Self {
+        Self { kind, cable: cable.to_owned(), arc_length_m, at_m: None, since_s: None, value, limit, message }
+    }
+}
+
+/// The kinds of warning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WarningKind {
+    /// Tension above the service tension.
+    ServiceTension,
+    /// Tension above the breaking tension.
+    BreakingTension,
+    /// It broke here; value and limit are the breaking tension.
+    Broken,
+    /// Whether it breaks is open: the run is not fine enough to say, or no mesh is.
+    MayBreak,
+    /// Led round something narrower than the smallest bend radius allowed.
+    BendRadius,
+    /// Bent too sharply where nothing leads it.
+    Kink,
+    /// Pressed too hard sideways by what it is led round.
+    SidewallPressure,
+    /// A long part without tension.
+    Slack,
+    /// It crosses itself, or another part of itself lies across it.
+    Loop,
+    /// It curls up: a free part turns most of the way round.
+    Curl,
+    /// It goes round an obstacle once or more.
+    Wrapped,
+    /// An obstacle holds it fast while it is pulled harder and harder.
+    Snag,
+    /// With friction a resting place is not unique.
+    NotUnique,
+    /// A support was stopped by an obstacle, or its speed was capped.
+    SupportHeld,
+    /// The scene puts a support or the route into an obstacle: it was put outside.
+    InitialPenetration,
+    /// It lies through the robot, of which the model knows nothing.
+    ThroughRobot,
+    /// Damping or velocity was raised to keep the motion stable.
+    Stabilised,
+    /// It has more energy than what moves it can have given; value and limit in J.
+    EnergyGrows,
+    /// The mesh is too coarse for the asked accuracy.
+    Accuracy,
+}
+
+impl WarningKind {
+    /// Every kind.
+    pub const ALL: [Self; 19] = [
+        Self::ServiceTension,
+        Self::BreakingTension,
+        Self::Broken,
+        Self::MayBreak,
+        Self::BendRadius,
+        Self::Kink,
+        Self::SidewallPressure,
+        Self::Slack,
+        Self::Loop,
+        Self::Curl,
+        Self::Wrapped,
+        Self::Snag,
+        Self::NotUnique,
+        Self::SupportHeld,
+        Self::InitialPenetration,
+        Self::ThroughRobot,
+        Self::Stabilised,
+        Self::EnergyGrows,
+        Self::Accuracy,
+    ];
+
+    /// The name used in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ServiceTension => "service-tension",
+            Self::BreakingTension => "breaking-tension",
+            Self::Broken => "broken",
+            Self::MayBreak => "may-break",
+            Self::BendRadius => "bend-radius",
+            Self::Kink => "kink",
+            Self::SidewallPressure => "sidewall-pressure",
+            Self::Slack => "slack",
+            Self::Loop => "loop",
+            Self::Curl => "curl",
+            Self::Wrapped => "wrapped",
+            Self::Snag => "snag",
+            Self::NotUnique => "not-unique",
+            Self::SupportHeld => "support-held",
+            Self::InitialPenetration => "initial-penetration",
+            Self::ThroughRobot => "through-robot",
+            Self::Stabilised => "stabilised",
+            Self::EnergyGrows => "energy-grows",
+            Self::Accuracy => "accuracy",
+        }
+    }
+
+    /// The kind of a name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|k| k.name() == name)
+    }
+}
+
+/// The largest tension and where.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MaxTension {
+    /// Tension, N.
+    pub tension_n: f64,
+    /// Index of the cable.
+    pub cable: usize,
+    /// Arc length, m.
+    pub arc_length_m: f64,
+}
+
+impl MaxTension {
+    /// That of some cables (NaN propagates).
+    #[must_use]
+    pub fn of(cables: &[CableSolution]) -> Self {
+        let mut best = Self { tension_n: f64::NEG_INFINITY, ..Self::default() };
+        for (cable, c) in cables.iter().enumerate() {
+            for n in &c.nodes {
+                if n.tension_n > best.tension_n || n.tension_n.is_nan() {
+                    best = Self { tension_n: n.tension_n, cable, arc_length_m: n.arc_length_m };
+                }
+                if n.tension_n.is_nan() {
+                    return best;
+                }
+            }
+        }
+        best
+    }
+}
+
+impl Solution {
+    /// The largest tension over all cables (NaN propagates).
+    #[must_use]
+    pub fn max_tension(&self) -> MaxTension {
+        MaxTension::of(&self.cables)
+    }
+
+    /// The greatest tensions of the step that ended here, over all cables.
+    #[must_use]
+    pub fn peaks(&self) -> TensionPeaks {
+        let all = self.cables.iter().map(|c| c.peaks_at(self.time_s));
+        all.reduce(TensionPeaks::with).unwrap_or_default()
+    }
+}

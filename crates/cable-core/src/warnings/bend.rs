@@ -1,0 +1,271 @@
+//! Bends: how sharp, where, and what leads the cable there.
+//!
+//! The tightest bend of an answer is the greatest curvature anywhere on its line, free or led. Where the cable is led round a wheel
+//! or a post its line has the radius of that, round a sharp corner its own radius (the corner's turn per element says only how
+//! fine a mesh is). Pressure on the round is q = T/R per metre.
+//!
+//! What bends a cable at a sharp corner is judged by its bending stiffness EI, known or estimated, also where the answer is that
+//! of a flexible line. Weightless beside the corner, with φ the angle to the direction in which it leaves far away and T the tension
+//! there, moments balance by EI φ'' = T sin φ. Times φ' and integrated from far away, where φ = φ' = 0:
+//!
+//! ```text
+//! EI φ'²/2 = T (1 − cos φ)    so    κ = φ' = 2 √(T/EI) sin(φ/2)
+//! ```
+//!
+//! and along the line the tension is T cos φ, so that T cos φ + EI κ²/2 = T holds everywhere (the first integral of Euler's elastica;
+//! A. E. H. Love, A Treatise on the Mathematical Theory of Elasticity, 4th ed., 1927, art. 262). A corner that turns the cable by θ
+//! pushes at the point where φ = θ/2 from both sides: there the bend is sharpest, with the radius ρ = ½ √(EI/T) / sin(θ/4). Where ρ
+//! is less than that of the corner's own arc, the cable lies on that arc.
+
+use super::tangle::turns;
+use crate::math::{Vec2, larger};
+use crate::problem::Problem;
+use crate::scene::SupportKind;
+use crate::solution::{Bend, CableSolution, ContactReport, JudgedBend, Node, Pressure, Warning, WarningKind};
+
+/// Gap (m) within which an obstacle leads the cable. Smaller: a contact that a model holds a barrier's width off is missed;
+/// larger: what passes close by leads it. The models keep up to 1 mm.
+const CONTACT_GAP: f64 = 3e-3;
+
+/// Least turn at a sharp corner that bends a cable of unknown bending stiffness to the corner's radius, rad: 15°. Less is spread by the
+/// stiffness that every cable has; more lets sharp bends pass. Over 15° a cable of diameter d leaves the corner within d/4 of its line.
+const CORNER_TURN: f64 = 0.26;
+
+/// A stiff cable whose line has no more than this times the radius of a corner's own arc was given no moment there: its mesh follows
+/// the corner. Closer to 1: rounding passes for a moment; further: bends that are as sharp are judged by the formula, which
+/// says the same.
+const CORNER_ARC_RATIO: f64 = 1.05;
+
+/// Least turn between two elements of a flexible cable that is a bend, rad. Less is a radius of a hundred elements.
+const MIN_TURN: f64 = 0.01;
+
+/// Radius of a free bend that is a kink where the cable states no smallest radius, in diameters: a round cable bent to less
+/// than its own width flattens.
+const KINK_DIAMETERS: f64 = 1.0;
+
+/// What leads the cable at a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Guide {
+    /// Nothing.
+    Free,
+    /// Something round: radius of the centre line, m.
+    Round(f64),
+    /// A sharp corner: radius of the arc on which the centre line can pass it, m.
+    Corner(f64),
+    /// A point that holds it, or pulls at it: a flexible cable has a corner there by its nature.
+    Held,
+}
+
+/// The sharpest bends of an answer, and the greatest pressure.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Bends {
+    /// The sharpest of the answer's line where nothing leads it.
+    free: Option<Bend>,
+    /// The sharpest of the answer's line where something leads it.
+    led: Option<Bend>,
+    /// The sharpest led one that the cable has with its bending stiffness.
+    judged: Option<Bend>,
+    /// The bending stiffness by which it is judged, N·m²; 0 = none is known.
+    bending_stiffness: f64,
+    /// The greatest pressure.
+    pub pressure: Option<Pressure>,
+}
+
+impl Bends {
+    /// Looks for them.
+    pub fn of(problem: &Problem, answer: &CableSolution) -> Self {
+        let bending_stiffness = problem.cable.likely_bending_stiffness_n_m2();
+        let mut this = Self { bending_stiffness, ..Self::default() };
+        let led = !answer.contacts.is_empty() || problem.supports.iter().any(|s| s.wheel_radius > 0.0);
+        let (mut sharpest, mut start) = (0.0, 0);
+        for piece in answer.pieces() {
+            let turns = turns(piece);
+            for (k, n) in piece.iter().enumerate() {
+                let turn = |k: Option<usize>| k.and_then(|k| turns.get(k)).copied().unwrap_or(0.0);
+                let (own, curvature) = (turn(Some(k)), n.curvature_per_m.abs());
+                // What leads a node costs a search: it is asked where the answer can change what was found so far.
+                let presses = led && curvature * n.tension_n > this.pressure.map_or(0.0, |p| p.pressure_n_per_m);
+                if own.abs() < MIN_TURN && !(curvature > sharpest) && !presses && problem.bending_stiffness == 0.0 {
+                    continue;
+                }
+                // A corner between two nodes is shared by them, a round by all that lie on it.
+                let pair = (own + turn(k.checked_sub(1))).abs().max((own + turn(Some(k + 1))).abs());
+                let lead = lead(problem, answer, start + k);
+                let shared = match lead {
+                    Guide::Round(radius) | Guide::Corner(radius) => larger(pair, round(piece, &turns, k, radius)),
+                    _ => pair,
+                };
+                if lead == Guide::Free && curvature > sharpest {
+                    sharpest = curvature;
+                }
+                this.add(problem, n, lead, shared);
+            }
+            start += piece.len();
+        }
+        this
+    }
+
+    /// The sharpest of the answer's line.
+    pub fn tightest(&self) -> Option<Bend> {
+        match (self.free, self.led) {
+            (Some(a), Some(b)) => Some(if b.radius_m < a.radius_m { b } else { a }),
+            (a, b) => a.or(b),
+        }
+    }
+
+    /// The sharpest led bend that the cable has with its bending stiffness.
+    pub fn judged(&self) -> Option<JudgedBend> {
+        self.judged.map(|bend| JudgedBend { bend, bending_stiffness_n_m2: self.bending_stiffness })
+    }
+
+    /// The sharpest of the answer's line where nothing leads it.
+    pub fn free(&self) -> Option<Bend> {
+        self.free
+    }
+
+    fn add(&mut self, problem: &Problem, n: &Node, lead: Guide, turn: f64) {
+        let stiff = problem.bending_stiffness > 0.0;
+        let own = 1.0 / n.curvature_per_m.abs();
+        let line = match lead {
+            Guide::Free => own,
+            Guide::Held if !stiff => return,
+            Guide::Round(_) if !stiff && turn < MIN_TURN => return,
+            Guide::Round(radius) if !stiff => radius,
+            Guide::Corner(radius) if !stiff && turn >= CORNER_TURN && radius < own => radius,
+            _ => own,
+        };
+        let bend = |radius_m: f64| Bend { radius_m, arc_length_m: n.arc_length_m, x_m: n.x_m, y_m: n.y_m };
+        let keep = |kept: &mut Option<Bend>, radius_m: f64| {
+            if radius_m.is_finite() && radius_m > 0.0 && kept.is_none_or(|b| radius_m < b.radius_m) {
+                *kept = Some(bend(radius_m));
+            }
+        };
+        if lead == Guide::Free {
+            keep(&mut self.free, line);
+            return;
+        }
+        keep(&mut self.led, line);
+        let judged = match lead {
+            Guide::Corner(radius) if stiff && own > CORNER_ARC_RATIO * radius => own,
+            Guide::Corner(radius) if self.bending_stiffness > 0.0 => {
+                larger(radius, corner_radius(self.bending_stiffness, n.tension_n, turn))
+            }
+            Guide::Corner(_) if turn < CORNER_TURN => f64::INFINITY,
+            _ => line,
+        };
+        keep(&mut self.judged, judged);
+        let round = match lead {
+            Guide::Round(radius) => Some(radius),
+            Guide::Corner(radius) if turn >= CORNER_TURN => Some(radius),
+            _ => None,
+        };
+        let Some(radius_m) = round.map(|radius| if stiff { own } else { radius }).filter(|r| r.is_finite() && *r > 0.0)
+        else {
+            return;
+        };
+        let newtons_per_m = n.tension_n / radius_m;
+        if self.pressure.is_none_or(|p| newtons_per_m > p.pressure_n_per_m) {
+            self.pressure = Some(Pressure {
+                pressure_n_per_m: newtons_per_m,
+                arc_length_m: n.arc_length_m,
+                x_m: n.x_m,
+                y_m: n.y_m,
+            });
+        }
+    }
+}
+
+/// Radius (m) of the sharpest bend of a cable with a bending stiffness (N·m²) and a tension (N) at a sharp corner that turns it by
+/// `turn` (rad), see the head of this file: infinite where it is not pulled.
+pub(super) fn corner_radius(bending_stiffness: f64, tension: f64, turn: f64) -> f64 {
+    let (pull, sine) = (larger(tension, 0.0), (0.25 * turn).sin().abs());
+    0.5 * (bending_stiffness / pull).sqrt() / sine
+}
+
+/// How far the nodes beside node `k` turn that are within a quarter of a round of a radius (m), rad.
+fn round(piece: &[Node], turns: &[f64], k: usize, radius: f64) -> f64 {
+    let far = std::f64::consts::FRAC_PI_2 * radius;
+    let near = |n: &Node| piece.get(k).is_some_and(|at| (n.arc_length_m - at.arc_length_m).abs() <= far);
+    let first = piece[..k].iter().rposition(|n| !near(n)).map_or(0, |i| i + 1);
+    let count = piece[first..].iter().take_while(|n| near(n)).count();
+    turns.get(first..first + count).unwrap_or_default().iter().sum::<f64>().abs()
+}
+
+/// What leads the cable at a node of its answer.
+pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Guide {
+    let Some(n) = answer.nodes.get(node) else { return Guide::Free };
+    let at = |k: usize| answer.nodes.get(k).map(|n| Vec2::new(n.x_m, n.y_m));
+    let here = Vec2::new(n.x_m, n.y_m);
+    for (s, r) in problem.supports.iter().zip(&answer.supports) {
+        let off = (here - Vec2::new(r.x_m, r.y_m)).norm();
+        // On a wheel, give or take its chords.
+        if off <= 1.05 * s.wheel_radius + 1e-6
+            && (s.wheel_radius > 0.0 || (r.arc_length_m - n.arc_length_m).abs() < 1e-3)
+        {
+            return match s.kind {
+                SupportKind::Pulley if s.wheel_radius > 0.0 => Guide::Round(s.wheel_radius),
+                SupportKind::Pulley => Guide::Corner(problem.radius),
+                _ => Guide::Held,
+            };
+        }
+    }
+    if problem.loads.iter().any(|l| (l.arc_length - n.arc_length_m).abs() < 1e-6 * problem.length) {
+        return Guide::Held;
+    }
+    if on_outline(problem, answer, node) {
+        return Guide::Corner(problem.radius);
+    }
+    if problem.world.is_empty() {
+        return Guide::Free;
+    }
+    // A flat edge leads nobody round: only corners and circles do.
+    let chain = [node.checked_sub(1), Some(node), Some(node + 1)].map(|k| k.and_then(at));
+    let chain = chain.map(|p| p.unwrap_or(here));
+    problem
+        .world
+        .geometry()
+        .nearest_wrap_body(&chain, CONTACT_GAP)
+        .map_or(Guide::Free, |b| if b.center.is_some() { Guide::Round(b.offset) } else { Guide::Corner(b.offset) })
+}
+
+/// Whether the cable lies on the outline of the robot at a node or beside it: that moves, and is not among the obstacles.
+fn on_outline(problem: &Problem, answer: &CableSolution, node: usize) -> bool {
+    let Some(outline) = &problem.outline else { return false };
+    let arc = |k: usize| answer.nodes.get(k).or(answer.nodes.last()).map_or(f64::NAN, |n| n.arc_length_m);
+    let (before, after) = (arc(node.saturating_sub(1)), arc(node + 1));
+    let lies = |c: &ContactReport| c.ends_m.max(c.arc_length_m) >= before && c.begins_m.min(c.arc_length_m) <= after;
+    answer.contacts.iter().any(|c| c.obstacle == outline.name && lies(c))
+}
+
+/// Appends bends sharper than the cable stands, free and led, and pressure beyond its limit.
+pub(super) fn warn(problem: &Problem, bends: &Bends, out: &mut Vec<Warning>) {
+    let cable = &problem.cable;
+    let stated = cable.min_bend_radius_m;
+    let kink = if stated > 0.0 { stated } else { KINK_DIAMETERS * cable.diameter_m };
+    let mut say = |kind, b: Bend, limit: f64, what: &str| {
+        let message = format!(
+            "`{}` is bent to a radius of {:.4} m at {:.3} m ({:.3} m, {:.3} m), below {limit} m: {what}",
+            cable.name, b.radius_m, b.arc_length_m, b.x_m, b.y_m
+        );
+        let warning = Warning::new(kind, &cable.name, b.arc_length_m, [b.radius_m, limit], message);
+        out.push(Warning { at_m: Some([b.x_m, b.y_m]), ..warning });
+    };
+    if let Some(b) = bends.judged.filter(|b| b.radius_m < stated) {
+        say(WarningKind::BendRadius, b, stated, "its strands are overstretched there; lead it round something wider");
+    }
+    if let Some(b) = bends.free.filter(|b| b.radius_m < kink) {
+        say(WarningKind::Kink, b, kink, "it kinks there and stays bent; give it more way to turn, or a guide");
+    }
+    let limit = cable.sidewall_limit_n_per_m;
+    if let (Some(p), Some(limit)) = (bends.pressure, limit)
+        && p.pressure_n_per_m > limit
+    {
+        let message = format!(
+            "`{}` is pressed with {:.0} N/m against what leads it at {:.3} m ({:.3} m, {:.3} m), above the {limit} N/m it stands: its insulation is crushed; pull less, or lead it round something wider",
+            cable.name, p.pressure_n_per_m, p.arc_length_m, p.x_m, p.y_m
+        );
+        let values = [p.pressure_n_per_m, limit];
+        let warning = Warning::new(WarningKind::SidewallPressure, &cable.name, p.arc_length_m, values, message);
+        out.push(Warning { at_m: Some([p.x_m, p.y_m]), ..warning });
+    }
+}

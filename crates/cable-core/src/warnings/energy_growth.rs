@@ -1,0 +1,232 @@
+//! Energy that grows from nowhere: more of it than what moves the cable can have given.
+//!
+//! With E the kinetic, potential and elastic energy of a cable and W the work of what moves it, friction, impacts and loss only take, so that
+//! E − W never rises. E is read from an answer, and from two of them what W can have been at most between them:
+//!
+//! | what moves it | work at most |
+//! |---|---|
+//! | a support that is led, or held by a hand | greatest tension of the step, or its reaction if that is greater, times its way |
+//! | a load, wind, current | mean force of both ends of the step times the way, and half of how much it changed times the size of that |
+//! | the outline of a robot | its force before and after and the impulse of all contacts, at the greatest speed of the cable |
+//!
+//! So what is led by a support is not told before it has more than the support can have given, and what is led by none at once. An integrator
+//! that is unstable multiplies energy without end, and work only grows with the tension, the root of it: it is told in both. E is a figure of an
+//! answer and not added up over steps, so what it is wrong by does not grow with time either.
+
+use std::collections::VecDeque;
+
+use super::Observed;
+use crate::math::{Vec2, larger};
+use crate::scene::SupportKind;
+use crate::solution::{CableSolution, Energy, Warning, WarningKind};
+
+/// EnergyGrowth that is told, of the energy that goes to and fro meanwhile. Smaller: what the nodes of an answer are wrong by is told; larger: an
+/// unstable motion is shown for longer before it is.
+const GROWTH_LIMIT: f64 = 0.25;
+
+/// EnergyGrowth that is none, of what the cable's weight and loads would give over its length. Bars that sag are drawn straight in E, so that an edit of
+/// the mesh changes it; what violent scenes grow by comes to half of the limit. Smaller: that is told; larger: small motions of long cables may grow unseen.
+const MIN_GROWTH_FRACTION: f64 = 3e-4;
+
+/// What is least is the greatest of so long a time, s, and of [`RECENT_INSTANTS`] instants. Shorter: a velocity that an integrator swings beyond its
+/// own for a few steps after an impact and back is growth; longer: growth is told later.
+const RECENT_S: f64 = 0.05;
+
+/// See [`RECENT_S`].
+const RECENT_INSTANTS: usize = 3;
+
+/// What one cable had, and what it has been given since.
+#[derive(Clone, Debug, Default)]
+pub(super) struct EnergyGrowth {
+    before: Option<Snapshot>,
+    /// Work done since the motion began at most, J.
+    work_j: f64,
+    /// When, s, and energy less work, J, lately.
+    recent: VecDeque<[f64; 2]>,
+    least: EnergyMinimum,
+}
+
+/// The least energy less work of a motion.
+#[derive(Clone, Copy, Debug, Default)]
+struct EnergyMinimum {
+    /// Itself, J.
+    energy_j: f64,
+    /// When it was, s.
+    time_s: f64,
+    /// Work that had been done, J.
+    work_j: f64,
+    /// EnergyMinimum and greatest of each form of energy since then, J.
+    ranges: [[f64; 2]; 4],
+}
+
+/// What is known of a cable at an instant.
+#[derive(Clone, Debug)]
+struct Snapshot {
+    time_s: f64,
+    energy_j: f64,
+    breaks: usize,
+    /// Of each support: place, m; its own speed, m/s; size of what it pulls with, N; whether it holds.
+    supports: Vec<(Vec2, f64, f64, bool)>,
+    /// Where each load is, those at supports first, m.
+    loads: Vec<Vec2>,
+    /// Force times way of wind and current if it were from the origin: the place integrated over the cable, m².
+    moment: Vec2,
+    /// Size of what the robot's outline pushes with, N.
+    pushed: f64,
+    /// Greatest speed of a node, m/s.
+    fastest: f64,
+}
+
+impl EnergyGrowth {
+    /// Follows the energy, and appends a warning where it has grown from nowhere.
+    pub fn update(&mut self, observed: &Observed<'_>, time_s: f64, out: &mut Vec<Warning>) {
+        let (now, forms) = Snapshot::of(observed, time_s);
+        let before = self.before.replace(now);
+        let Some(now) = &self.before else { return };
+        // Without inertia, and where a support let go or the cable broke, it begins anew.
+        let goes_on = |b: &Snapshot| {
+            let holds = |m: &Snapshot| m.supports.iter().filter(|s| s.3).count();
+            observed.answer.peaks.is_some() && b.time_s < time_s && b.breaks == now.breaks && holds(b) == holds(now)
+        };
+        match before.filter(goes_on) {
+            Some(before) => self.work_j += work(observed, &before, now),
+            None => {
+                (self.work_j, self.least) = (0.0, EnergyMinimum { energy_j: f64::INFINITY, ..EnergyMinimum::default() })
+            }
+        }
+        if self.least.energy_j == f64::INFINITY {
+            self.recent.clear();
+        }
+        let left_j = now.energy_j - self.work_j;
+        self.recent.push_back([time_s, left_j]);
+        while self.recent.len() > RECENT_INSTANTS && self.recent.front().is_some_and(|[t, _]| time_s - t > RECENT_S) {
+            self.recent.pop_front();
+        }
+        let lately = self.recent.iter().fold(f64::NEG_INFINITY, |most, [_, e]| larger(most, *e));
+        if lately < self.least.energy_j {
+            self.least = EnergyMinimum { energy_j: lately, time_s, work_j: self.work_j, ranges: forms.map(|e| [e; 2]) };
+            return;
+        }
+        for (range, e) in self.least.ranges.iter_mut().zip(forms) {
+            *range = [if e < range[0] { e } else { range[0] }, larger(range[1], e)];
+        }
+        let grown = left_j - self.least.energy_j;
+        let [kinetic, rest @ ..] = self.least.ranges;
+        let moved = kinetic[1] + rest.iter().map(|[least, most]| most - least).sum::<f64>();
+        let problem = observed.problem;
+        let limit = GROWTH_LIMIT * moved + MIN_GROWTH_FRACTION * problem.force_scale() * problem.length;
+        if grown > limit || grown.is_nan() {
+            out.push(self.warning(observed, grown, limit));
+        }
+    }
+
+    fn warning(&self, observed: &Observed<'_>, grown: f64, limit: f64) -> Warning {
+        let (name, nodes) = (&observed.problem.cable.name, &observed.answer.nodes);
+        let speed = |k: usize| nodes.get(k).map_or(0.0, |n| n.vx_m_per_s.hypot(n.vy_m_per_s));
+        let fastest = (0..nodes.len()).max_by(|a, b| speed(*a).total_cmp(&speed(*b))).unwrap_or(0);
+        let at = nodes.get(fastest).copied().unwrap_or_default();
+        let message = format!(
+            "`{name}` has {grown:.3e} J more energy than at {:.4} s that came from nowhere: what moves it can have given {:.3e} J at most since then, and rounding is below {limit:.3e} J. It is fastest at {:.3} m ({:.3} m, {:.3} m) with {:.1} m/s. The motion from then on is not to be believed; use fem, shorter steps, or damping",
+            self.least.time_s,
+            self.work_j - self.least.work_j,
+            at.arc_length_m,
+            at.x_m,
+            at.y_m,
+            speed(fastest)
+        );
+        let warning = Warning::new(WarningKind::EnergyGrows, name, at.arc_length_m, [grown, limit], message);
+        Warning { at_m: Some([at.x_m, at.y_m]), ..warning }
+    }
+}
+
+impl Snapshot {
+    /// Of an answer, with the forms of its energy (J): of motion first.
+    fn of(observed: &Observed<'_>, time_s: f64) -> (Self, [f64; 4]) {
+        let Observed { problem, answer, energy, breaks, .. } = *observed;
+        let Energy { mut kinetic_j, mut gravity_j, stretch_j, bending_j } = energy;
+        let gravity =
+            if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
+        let mut supports = Vec::with_capacity(problem.supports.len());
+        let mut loads = Vec::new();
+        for (s, r) in problem.supports.iter().zip(&answer.supports) {
+            let at = Vec2::new(r.x_m, r.y_m);
+            let holds = !matches!(s.kind, SupportKind::Load | SupportKind::Free) && s.holds_from(time_s);
+            let (_, v) = along(answer, r.arc_length_m);
+            if holds {
+                let led = s.place_at(time_s).map_or(0.0, |(_, v)| v.norm());
+                let own = if r.hand.is_some() { v.norm() } else { led };
+                let hand = r.hand.map_or(0.0, |h| h.force_n());
+                supports.push((at, own, larger(hand, r.reaction_x_n.hypot(r.reaction_y_n)), true));
+            } else {
+                kinetic_j += 0.5 * s.mass * v.norm_squared();
+                gravity_j -= s.mass * gravity.dot(&at);
+                supports.push((at, 0.0, 0.0, false));
+                loads.push(at);
+            }
+        }
+        loads.extend(problem.loads.iter().map(|l| along(answer, l.arc_length).0));
+        let mut moment = Vec2::zeros();
+        if problem.wind != crate::problem::Series::constant(Vec2::zeros()) {
+            for pair in answer.pieces().flat_map(|p| p.windows(2)) {
+                let [a, b] = pair else { continue };
+                moment += (a.at() + b.at()) * (0.5 * (b.arc_length_m - a.arc_length_m));
+            }
+        }
+        let (mut pushed, mut fastest) = (0.0, 0.0);
+        if let Some(outline) = &problem.outline {
+            let by = answer.contacts.iter().filter(|c| c.obstacle == outline.name);
+            pushed = by.map(|c| c.normal_n.abs() + c.friction_n.abs()).sum();
+            fastest = answer.nodes.iter().map(|n| n.vx_m_per_s.hypot(n.vy_m_per_s)).fold(0.0, larger);
+        }
+        let forms = [kinetic_j, gravity_j, stretch_j, bending_j];
+        let energy_j = forms.iter().sum();
+        let breaks = breaks.len();
+        (Self { time_s, energy_j, breaks, supports, loads, moment, pushed, fastest }, forms)
+    }
+}
+
+/// Place (m) and velocity (m/s) of a point of the cable.
+fn along(answer: &CableSolution, s: f64) -> (Vec2, Vec2) {
+    let nodes = &answer.nodes;
+    let v = |k: usize| nodes.get(k).map_or(Vec2::zeros(), |n| Vec2::new(n.vx_m_per_s, n.vy_m_per_s));
+    let x = |k: usize| nodes.get(k).map_or(Vec2::zeros(), |n| n.at());
+    let k = nodes.partition_point(|n| n.arc_length_m < s).min(nodes.len().saturating_sub(1));
+    let Some(j) = k.checked_sub(1) else { return (x(k), v(k)) };
+    let arc = |k: usize| nodes.get(k).map_or(0.0, |n| n.arc_length_m);
+    let (from, ds) = (arc(j), arc(k) - arc(j));
+    let f = if ds > 0.0 { ((s - from) / ds).clamp(0.0, 1.0) } else { 1.0 };
+    (x(j) + (x(k) - x(j)) * f, v(j) + (v(k) - v(j)) * f)
+}
+
+/// What was done between two instants at most, J.
+fn work(observed: &Observed<'_>, before: &Snapshot, now: &Snapshot) -> f64 {
+    let Observed { problem, answer, .. } = *observed;
+    let (from, to) = (before.time_s, now.time_s);
+    let dt = to - from;
+    let greatest = super::tension::greatest(answer);
+    let mut sum = 0.0;
+    for (s, (a, b)) in problem.supports.iter().zip(before.supports.iter().zip(&now.supports)) {
+        if !(a.3 && b.3) {
+            continue;
+        }
+        let way = larger((b.0 - a.0).norm(), larger(a.1, b.1) * dt);
+        let sides = if s.kind == SupportKind::Pulley { 2.0 } else { 1.0 };
+        sum += larger(sides * greatest, larger(a.2, b.2)) * way;
+    }
+    let free = problem.supports.iter().zip(&now.supports).filter(|(_, s)| !s.3).map(|(s, _)| &s.force);
+    let forces = free.chain(problem.loads.iter().map(|l| &l.force));
+    for (force, (a, b)) in forces.zip(before.loads.iter().zip(&now.loads)) {
+        sum += given([force.at(from), force.at(to)], b - a);
+    }
+    sum += given([problem.wind.at(from), problem.wind.at(to)], now.moment - before.moment);
+    if before.pushed > 0.0 || now.pushed > 0.0 {
+        let impulse = answer.momentum.map_or(0.0, |m| m.contacts_n_s[0].hypot(m.contacts_n_s[1]));
+        sum += (larger(before.pushed, now.pushed) * dt + impulse) * larger(before.fastest, now.fastest);
+    }
+    sum
+}
+
+/// Work (J) of a force (N) that was one and became another over a way (m), at most.
+fn given([first, last]: [Vec2; 2], way: Vec2) -> f64 {
+    0.5 * ((first + last).dot(&way) + (last - first).norm() * way.norm())
+}

@@ -1,0 +1,147 @@
+//! What becomes of a cable beyond its shape: limits it exceeds, breaks, bends, slack, tangles, snags, energy from nowhere.
+//!
+//! Each part looks at one answer of one cable ([`CableSolution`]) and says what it finds; [`WarningMonitor`] adds time: since when,
+//! and no flicker. Models know nothing of it, so all of them get it.
+
+mod bend;
+mod energy_growth;
+mod snag;
+mod tangle;
+mod tension;
+#[cfg(test)]
+mod tests;
+
+use crate::breakage::Break;
+use crate::problem::Problem;
+use crate::solution::{CableSolution, Energy, Warning, WarningKind};
+use energy_growth::EnergyGrowth;
+use snag::SnagDetector;
+
+pub(crate) use bend::Bends;
+
+/// A warning stays for this long (s) after its last cause. Shorter: a cable that swings about its service tension makes the
+/// warning flicker, and `events.csv` long; longer: it stands when all is well again. With it no warning comes and goes more
+/// than once a second.
+const HOLD_TIME_S: f64 = 1.0;
+
+/// A tension warning that stands is held by tensions above this part of its limit. Closer to 1: noise of the tension ends
+/// and begins it; further: the warning does not believe that the load was lightened. Axial noise of a drag is under 5 %.
+const RELEASE_FRACTION: f64 = 0.95;
+
+/// One cable, what it is said to do now, and where it broke.
+#[derive(Clone, Copy)]
+pub(crate) struct Observed<'a> {
+    /// The whole cable.
+    pub problem: &'a Problem,
+    /// Its answer.
+    pub answer: &'a CableSolution,
+    /// Its energy.
+    pub energy: Energy,
+    /// Its bends.
+    pub bends: Bends,
+    /// Its breaks.
+    pub breaks: &'a [Break],
+}
+
+/// What was seen of all cables of a scene, over time.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct WarningMonitor {
+    active: Vec<ActiveWarning>,
+    snags: Vec<SnagDetector>,
+    energy_growth: Vec<EnergyGrowth>,
+    last_s: Option<f64>,
+}
+
+/// A warning that stands.
+#[derive(Clone, Debug)]
+struct ActiveWarning {
+    cable: usize,
+    /// Which of its kind on its cable.
+    number: usize,
+    last_seen_s: f64,
+    warning: Warning,
+}
+
+impl WarningMonitor {
+    /// What is to be said of an answer at rest: the past does not count.
+    pub fn at_rest(&mut self, observed: &[Observed<'_>], time_s: f64) {
+        *self = Self::default();
+        self.update(observed, time_s, None);
+    }
+
+    /// What is to be said at an instant of a motion.
+    pub fn moving(&mut self, observed: &[Observed<'_>], time_s: f64) {
+        if self.last_s.is_some_and(|last| time_s < last) {
+            *self = Self::default();
+        }
+        self.update(observed, time_s, Some(time_s));
+    }
+
+    /// The warnings that stand, those of the first cable first.
+    pub fn warnings(&self) -> impl Iterator<Item = &Warning> {
+        self.active.iter().map(|s| &s.warning)
+    }
+
+    fn update(&mut self, observed: &[Observed<'_>], time_s: f64, since_s: Option<f64>) {
+        self.snags.resize_with(observed.len(), SnagDetector::default);
+        self.energy_growth.resize_with(observed.len(), EnergyGrowth::default);
+        for (cable, observed) in observed.iter().enumerate() {
+            let mut found = instantaneous(observed);
+            if let Some(growth) = self.energy_growth.get_mut(cable) {
+                growth.update(observed, time_s, &mut found);
+            }
+            if since_s.is_some()
+                && let Some(snags) = self.snags.get_mut(cable)
+            {
+                snags.update(observed, time_s, &mut found);
+            }
+            self.hold_tension(cable, observed, time_s);
+            for (k, warning) in found.iter().enumerate() {
+                let number = found[..k].iter().filter(|w| w.kind == warning.kind).count();
+                self.raise((cable, number), warning, time_s, since_s);
+            }
+        }
+        let holds =
+            |s: &ActiveWarning| s.last_seen_s >= time_s || since_s.is_some() && time_s - s.last_seen_s < HOLD_TIME_S;
+        self.active.retain(holds);
+        self.active.sort_by_key(|s| s.cable);
+        self.last_s = Some(time_s);
+    }
+
+    fn raise(&mut self, (cable, number): (usize, usize), warning: &Warning, time_s: f64, since_s: Option<f64>) {
+        let same = |s: &&mut ActiveWarning| (s.cable, s.number, s.warning.kind) == (cable, number, warning.kind);
+        if let Some(active) = self.active.iter_mut().find(same) {
+            let since_s = warning.since_s.or(active.warning.since_s);
+            active.warning = Warning { since_s, ..warning.clone() };
+            active.last_seen_s = time_s;
+        } else {
+            let warning = Warning { since_s: warning.since_s.or(since_s), ..warning.clone() };
+            self.active.push(ActiveWarning { cable, number, last_seen_s: time_s, warning });
+        }
+    }
+
+    /// A tension warning that stands stays while tension is just below its limit; after a break there is no such tension.
+    fn hold_tension(&mut self, cable: usize, observed: &Observed<'_>, time_s: f64) {
+        let broke = |s: &ActiveWarning| s.warning.kind == WarningKind::BreakingTension && !observed.breaks.is_empty();
+        self.active.retain(|s| s.cable != cable || !broke(s));
+        let top = tension::greatest(observed.answer);
+        for s in self.active.iter_mut().filter(|s| s.cable == cable) {
+            let of_tension = matches!(s.warning.kind, WarningKind::ServiceTension | WarningKind::BreakingTension);
+            if of_tension && top > RELEASE_FRACTION * s.warning.limit {
+                s.last_seen_s = time_s;
+            }
+        }
+    }
+}
+
+/// What one answer shows by itself.
+fn instantaneous(observed: &Observed<'_>) -> Vec<Warning> {
+    let Observed { problem, answer, bends, breaks, .. } = *observed;
+    let mut out = Vec::new();
+    tension::broken(&problem.cable, breaks, &mut out);
+    tension::limits(&problem.cable, answer, &mut out);
+    bend::warn(problem, &bends, &mut out);
+    tension::slack(problem, answer, &mut out);
+    tangle::warn(problem, answer, &mut out);
+    out
+}

@@ -1,0 +1,85 @@
+//! SnagDetector: an obstacle that holds the cable fast while it is pulled harder and harder.
+
+use super::Observed;
+use crate::solution::{ContactReport, ContactState, Warning, WarningKind};
+
+/// Growth of the ratio of tensions across a contact that is a snag. Smaller: every contact that takes up load is one; larger:
+/// it is named when the cable is already near its limit. Half as much again, because a wrap of a quarter turn at μ = 0.3
+/// comes to a ratio of 1.6 from nothing.
+const RATIO_GROWTH: f64 = 1.5;
+
+/// Growth of the pull itself that goes with it: a ratio that rises because the slack side empties is no snag.
+const PULL_GROWTH: f64 = 1.2;
+
+/// Time it must have held, s. Shorter: a cable that lands is snagged; longer: the warning comes late.
+const MIN_STICKING_S: f64 = 0.3;
+
+/// Greatest ratio counted: beyond it the slack side has no tension left to measure.
+const MAX_RATIO: f64 = 1e3;
+
+/// How far (in diameters) the middle of a contact that holds may move along the cable and still be the same.
+const MATCH_DIAMETERS: f64 = 10.0;
+
+/// The contacts of a cable that hold, and since when.
+#[derive(Clone, Debug, Default)]
+pub(super) struct SnagDetector {
+    sticking: Vec<StickingContact>,
+}
+
+#[derive(Clone, Debug)]
+struct StickingContact {
+    obstacle: String,
+    arc_length: f64,
+    since_s: f64,
+    /// The least ratio since then, and the pull at that time, N.
+    ratio: f64,
+    pull: f64,
+}
+
+impl SnagDetector {
+    /// Follows the contacts, and appends those that have become snags.
+    pub fn update(&mut self, observed: &Observed<'_>, time_s: f64, out: &mut Vec<Warning>) {
+        let near = MATCH_DIAMETERS * observed.problem.cable.diameter_m;
+        let mut next = Vec::with_capacity(self.sticking.len());
+        for c in observed.answer.contacts.iter().filter(|c| c.state == ContactState::Stick) {
+            let (ratio, pull) = tension_ratio(c);
+            let same = |h: &&StickingContact| h.obstacle == c.obstacle && (h.arc_length - c.arc_length_m).abs() <= near;
+            let mut held = self.sticking.iter().find(same).cloned().unwrap_or_else(|| StickingContact {
+                obstacle: c.obstacle.clone(),
+                arc_length: c.arc_length_m,
+                since_s: time_s,
+                ratio,
+                pull,
+            });
+            held.arc_length = c.arc_length_m;
+            if ratio < held.ratio {
+                (held.ratio, held.pull) = (ratio, pull);
+            }
+            if ratio > RATIO_GROWTH * held.ratio
+                && pull > PULL_GROWTH * held.pull
+                && time_s - held.since_s >= MIN_STICKING_S
+            {
+                out.push(warning(observed, c, ratio, held.ratio));
+            }
+            next.push(held);
+        }
+        self.sticking = next;
+    }
+}
+
+/// Ratio of the tensions beside a contact, and the larger, N.
+fn tension_ratio(c: &ContactReport) -> (f64, f64) {
+    let (a, b) = (c.tension_before_n, c.tension_after_n);
+    let (low, high) = if a < b { (a, b) } else { (b, a) };
+    (if low * MAX_RATIO > high { high / low } else { MAX_RATIO }, high)
+}
+
+fn warning(observed: &Observed<'_>, c: &ContactReport, ratio: f64, first: f64) -> Warning {
+    let name = &observed.problem.cable.name;
+    let message = format!(
+        "`{name}` is caught by `{}` at {:.3} m ({:.3} m, {:.3} m): it does not slip there while the tension across it has grown from {first:.2} to {ratio:.2} times; the pull goes into the obstacle, not along the cable; stop, drive back, and lead it past",
+        c.obstacle, c.arc_length_m, c.x_m, c.y_m
+    );
+    let warning = Warning::new(WarningKind::Snag, name, c.arc_length_m, [ratio, RATIO_GROWTH * first], message);
+    Warning { at_m: Some([c.x_m, c.y_m]), ..warning }
+}
