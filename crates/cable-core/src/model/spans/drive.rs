@@ -115,6 +115,11 @@ impl Network {
     /// # Errors
     /// Why none was found, and how far the cable was let out where that stopped the search.
     pub fn rest(layout: &Layout, instant: &Instant, work: &mut Work) -> Result<(Self, Taken), Unfound> {
+        Self::rest_of(layout, instant, true, work)
+    }
+
+    /// The same, `eased`: whether it may begin without friction.
+    pub fn rest_of(layout: &Layout, instant: &Instant, eased: bool, work: &mut Work) -> Result<(Self, Taken), Unfound> {
         let curves = layout.curves();
         let course = layout.course(curves, instant);
         // As it is laid; else where it needs no friction; either may have to begin taut.
@@ -122,7 +127,7 @@ impl Network {
         let ways =
             [(instant, None), (&smooth, None), (&smooth, Some(TAUT)), (instant, Some(TAUT)), (&smooth, Some(TAUTER))];
         // What is not held at both ends would run to where it needs no friction.
-        let held = layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
+        let held = eased && layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
         let seen = ways.map(|(begin, cooled)| (begin, Seen { cooled, ..Seen::default() }));
         let nearer = Self::seen(layout).into_iter().skip(1).map(|seen| (instant, seen));
         let (mut first, mut stopped) = (None, None);
@@ -436,10 +441,21 @@ impl Network {
         }
         check::sound(&self.strands[k], &self.course)?;
         gaps::clear(&self.strands[k], &self.course, world)?;
-        let clear = || pass::clear(start, &self.strands[k], &self.course, &layout.corners);
+        // What it hung by before is not what it hangs by now where it was let out or loaded in this step: seen with today's load and lengths
+        // its spans would end beside where they did.
+        let was = &work.instants[0];
+        let other =
+            was.load != self.instant.load || was.thermal != self.instant.thermal || was.forces != self.instant.forces;
+        let clear = || !other && pass::clear(start, &self.strands[k], &self.course, &layout.corners);
         if !world.is_empty() && came.is_none() && !clear() {
             let [old, new] = &mut work.shapes;
+            if other {
+                layout.give(&mut self.course, &work.instants[0]);
+            }
             pass::shape(start, &self.course, old);
+            if other {
+                layout.give(&mut self.course, &self.instant);
+            }
             pass::shape(&self.strands[k], &self.course, new);
             if let Some(corner) = swept_corners::through(&layout.corners, old, new, &mut work.turns) {
                 return Err(Trouble::Passed { at: corner.at });

@@ -206,7 +206,9 @@ impl SpansModel {
     }
 
     /// What other histories would have left in the cable, in words: as it was laid, and drawn towards either end.
-    fn histories(&self, work: &mut Work) -> String {
+    ///
+    /// `eased`: whether it rests where it does without friction. Laid so again it would come to the place that it is drawn from here.
+    fn histories(&self, eased: bool, work: &mut Work) -> String {
         let Some(network) = &self.network else { return String::new() };
         let turned = self.layout.turned;
         let tensions = |network: &Network| {
@@ -217,7 +219,7 @@ impl SpansModel {
         let drawn = [FrictionMobilised::TowardsStart, FrictionMobilised::TowardsEnd].map(|drawn| {
             let drawn = if turned { turned::mobilised(drawn) } else { drawn };
             let found = network.drawn(&self.layout, drawn.way(), work);
-            found.or_else(|| self.laid_anew(drawn, work)).map(|n| tensions(&n))
+            found.or_else(|| self.laid_anew(drawn, eased, work)).map(|n| tensions(&n))
         });
         let all = || std::iter::once(laid).chain(drawn.into_iter().flatten());
         let range = |k: usize| {
@@ -242,11 +244,11 @@ impl SpansModel {
     }
 
     /// The cable laid anew along its way while it is drawn.
-    fn laid_anew(&self, drawn: FrictionMobilised, work: &mut Work) -> Option<Network> {
+    fn laid_anew(&self, drawn: FrictionMobilised, eased: bool, work: &mut Work) -> Option<Network> {
         let mut layout = self.layout.clone();
         Arc::make_mut(&mut layout.problem).cable.friction_mobilised = drawn;
         let instant = self.network.as_ref()?.instant.clone();
-        Network::rest(&layout, &instant, work).ok().map(|n| n.0).filter(|n| n.loose().is_none())
+        Network::rest_of(&layout, &instant, !eased, work).ok().map(|n| n.0).filter(|n| n.loose().is_none())
     }
 
     /// Whether some of the cable is held by nothing but friction.
@@ -339,7 +341,8 @@ impl Mechanics for SpansModel {
         let needed = if slides { Network::friction_needed(&self.layout, &instant, &mut work) } else { None };
         let loose = self.network.as_ref().and_then(Network::loose);
         let seeks = self.histories && found.is_ok() && loose.is_none() && self.rubs();
-        let range = if seeks { self.histories(&mut work) } else { String::new() };
+        let eased = found.as_ref().is_ok_and(|taken| taken.eased);
+        let range = if seeks { self.histories(eased, &mut work) } else { String::new() };
         self.work = work;
         if let Some(part) = needed {
             return Err(slides_away(part));
