@@ -2,20 +2,20 @@
 
 use std::sync::Arc;
 
-use super::assembly::Mesh;
-use super::carry::Rider;
-use super::contact_set::{ContactSet, SLIDE, Touch, slip_at_rest};
-use super::contact_start::{lay, push_out, way};
-use super::contact_step::Workspace;
-use super::free_step::FreeStep;
-use super::integrate::PULLED;
-use super::motion::{Motion, Saved};
-use super::pace::Pace;
-use super::prepare::{load_scale, tolerance};
-use super::sleep::Sleep;
-use super::sliding::Seat;
-use super::task::{Done, Failure, Pose, Task};
-use super::touches_nothing;
+use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::obstacle::moving_outline::Rider;
+use crate::model::fem::system::friction_state::{ContactSet, SLIDE, Touch, slip_at_rest};
+use crate::model::fem::equilibrium::initial_guess::{lay, push_out, way};
+use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::newton::mixed_free::FreeStep;
+use crate::model::fem::time::bdf2::PULLED;
+use crate::model::fem::time::history::{Motion, Saved};
+use crate::model::fem::time::step_size::Pace;
+use crate::model::fem::newton::step_setup::{load_scale, tolerance};
+use crate::model::fem::time::sleeping::Sleep;
+use crate::model::fem::mesh::sliding_node::Seat;
+use crate::model::fem::newton::step_input::{Done, Failure, Pose, Task};
+use crate::model::fem::touches_nothing;
 use crate::contact::barrier::Barrier;
 use crate::error::{Place, SolveError};
 use crate::math::{Vec2, bounded};
@@ -560,7 +560,7 @@ impl Dynamics {
 
     /// The same, with the mesh as it is.
     pub(super) fn solution_now(&self) -> CableSolution {
-        super::contact_report::solution(self, &self.motion.x, &self.motion.v)
+        crate::model::fem::results::solution(self, &self.motion.x, &self.motion.v)
     }
 
     /// Smallest gap of any free node or segment, m (infinite if nothing is near).

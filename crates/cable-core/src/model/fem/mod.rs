@@ -5,66 +5,39 @@
 //!
 //! [`FemModel`] decides which part is asked, and hands the state over when the question changes.
 
-mod answer;
-pub mod assembly;
-mod bar;
-mod beam;
-mod beam_answer;
-mod beam_mesh;
-mod carry;
-mod clear;
-pub mod contact_report;
-pub mod contact_set;
-pub mod contact_start;
-pub mod contact_step;
+mod transfer;
+
+mod time;
+
 #[cfg(test)]
-mod contact_tests;
+mod tests;
+
+pub mod system;
+
+mod obstacle;
+
+pub mod newton;
+
+mod mesh;
+
+pub mod free;
+
+pub mod equilibrium;
+
+mod beam;
+
+mod mesh_comparison;
+pub mod results;
+
 pub mod dynamics;
 mod elastica;
-pub mod element;
-mod estimate;
-mod floor;
-mod foresee;
-mod free_step;
-mod free_way;
-mod handover;
-mod hands;
-mod integrate;
-mod layout;
-mod marks;
-pub mod mass;
-mod mesh_edit;
-mod momentum;
-mod motion;
-mod network;
-mod own;
-mod pace;
-mod path;
-mod prepare;
-mod remesh;
-mod rest;
-mod rubbing;
-mod rush;
-mod sleep;
-mod sliding;
-#[cfg(test)]
-mod sliding_tests;
-mod span;
-pub mod statics;
-mod stop;
-mod take_over;
-mod task;
-mod touch;
-mod two_meshes;
-mod weight;
-mod wheel;
 
 use std::sync::Arc;
 
-use self::two_meshes::TwoMeshes;
-use super::gauge::TensionGauge;
-use super::initial_equilibrium::{InitialEquilibrium, initial_equilibrium, slid_first, slides_on, work};
-use super::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
+use crate::model::fem::mesh_comparison::TwoMeshes;
+use crate::model::gauge::TensionGauge;
+use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium, slid_first, slides_on, work};
+use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
 use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
@@ -118,7 +91,7 @@ pub struct FemModel {
     problem: Arc<Problem>,
     /// Where a support was dragged to by hand, m.
     dragged: Vec<Option<Vec2>>,
-    statics: statics::Statics,
+    statics: free::statics::Statics,
     dynamics: dynamics::Dynamics,
     present: Part,
     /// Whether a first rest with contact goes on from that of `spans`, where there is one.
@@ -140,7 +113,7 @@ impl FemModel {
     /// # Errors
     /// `Unsupported` when the scene needs what the model lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
-        let statics = statics::Statics::new(problem.clone(), settings)?;
+        let statics = free::statics::Statics::new(problem.clone(), settings)?;
         let dynamics = dynamics::Dynamics::new(problem.clone(), settings)?;
         let present = if touches_nothing(&problem) { Part::Statics } else { Part::Dynamics };
         Ok(Self {
@@ -429,7 +402,7 @@ impl Mechanics for FemModel {
         if let Some(report) = self.bend() {
             return Ok(report);
         }
-        self.dynamics.work_left = rest::REST_WORK;
+        self.dynamics.work_left = equilibrium::quasi_static::REST_WORK;
         let found = self.rest_in_touch();
         self.dynamics.work_left = usize::MAX;
         found
@@ -566,7 +539,7 @@ impl Mechanics for FemModel {
 
     fn borrow(&mut self, own: Option<OwnedResources>) {
         let own =
-            own.unwrap_or_else(|| OwnedResources { memory: None, problem: carry::with_outline(self.problem.clone()) });
+            own.unwrap_or_else(|| OwnedResources { memory: None, problem: obstacle::moving_outline::with_outline(self.problem.clone()) });
         self.dynamics.memory.0 = own.memory.and_then(|memory| memory.downcast().ok());
         self.dynamics.problem = own.problem;
         self.dynamics.place_outline();

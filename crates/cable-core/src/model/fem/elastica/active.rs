@@ -1,9 +1,7 @@
 //! Which contacts there are, and which of them are a point and which a stretch.
 
-use super::start::contact_at;
-use super::{
-    ANGLE, ARC, Contact, Elastica, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, place, tangent,
-};
+use crate::model::fem::elastica::start::contact_at;
+use crate::model::fem::elastica::{ANGLE, ARC, Contact, Elastica, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, place, tangent};
 use crate::math::{Vec2, perp};
 use crate::problem::Problem;
 

@@ -1,6 +1,6 @@
 //! From a solved elastica to an answer.
 
-use super::{ANGLE, ARC, Elastica, End, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, place, tangent, tension};
+use crate::model::fem::elastica::{ANGLE, ARC, Elastica, End, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, place, tangent, tension};
 use crate::math::{Vec2, larger, perp};
 use crate::problem::Problem;
 use crate::solution::ErrorEstimates;

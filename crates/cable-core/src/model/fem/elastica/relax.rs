@@ -11,10 +11,10 @@
 //! quadratic programme; each mobilises the friction that it is given. Material that the first lay has no room for is paid out on the way.
 //! At the end the second derivative of E on the active set is positive definite: what was found is stable.
 
-use super::super::contact_start::{leaning_way, push_chain_out};
-use super::super::layout::place as support_place;
-use super::band::Band;
-use super::start::{Curve, mobilised};
+use crate::model::fem::equilibrium::initial_guess::{leaning_way, push_chain_out};
+use crate::model::fem::free::stations::place as support_place;
+use crate::model::fem::elastica::band::Band;
+use crate::model::fem::elastica::start::{Curve, mobilised};
 use crate::contact::Gap;
 use crate::contact::pairs::Pair;
 use crate::energy::bending::{Bend, ClampBend, turn};

@@ -1,12 +1,10 @@
 //! From the answer for a flexible cable to the first guess of a stiff one, and up in its stiffness.
 
-use super::super::beam_mesh::places;
-use super::super::layout::place as support_place;
-use super::super::sliding::round_of;
-use super::relax::{Chain, Touch};
-use super::{
-    ANGLE, ARC, Contact, Elastica, End, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, tangent,
-};
+use crate::model::fem::beam::mesh::places;
+use crate::model::fem::free::stations::place as support_place;
+use crate::model::fem::mesh::sliding_node::round_of;
+use crate::model::fem::elastica::relax::{Chain, Touch};
+use crate::model::fem::elastica::{ANGLE, ARC, Contact, Elastica, End, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, tangent};
 use crate::contact::Gap;
 use crate::math::{Vec2, cross, perp};
 use crate::problem::Problem;
@@ -97,7 +95,7 @@ impl<'a> Curve<'a> {
             .map(|p| {
                 let d = p[1].at() - p[0].at();
                 let raw = if d.norm() > 0.0 { d.y.atan2(d.x) } else { last.unwrap_or(0.0) };
-                let angle = last.map_or(raw, |l| super::super::beam::nearest_turn(raw, l));
+                let angle = last.map_or(raw, |l| crate::model::fem::beam::equilibrium::nearest_turn(raw, l));
                 last = Some(angle);
                 angle
             })
@@ -315,7 +313,7 @@ impl Elastica {
 
     /// Gives all nodes the bends and forces of the answer of a mesh.
     fn bend_as(&mut self, curve: &Curve<'_>) -> Option<()> {
-        use super::super::beam::nearest_turn;
+        use crate::model::fem::beam::equilibrium::nearest_turn;
         for (which, u) in
             [(0, self.pieces.first()?.nodes.first()?[ANGLE]), (1, self.pieces.last()?.nodes.last()?[ANGLE])]
         {
@@ -576,7 +574,7 @@ impl Elastica {
 
     /// Adds the layers at the ends of free pieces, θ ∓ Δ e^{−s/λ}, and counts the angles of clamps on from their neighbours.
     fn bend_layers(&mut self) -> Option<()> {
-        use super::super::beam::nearest_turn;
+        use crate::model::fem::beam::equilibrium::nearest_turn;
         let count = self.pieces.len();
         let end = |p: &Piece, which: usize| if which == 0 { p.nodes.first() } else { p.nodes.last() }.copied();
         let mut turns = vec![[0.0; 2]; count];

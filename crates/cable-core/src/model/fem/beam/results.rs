@@ -1,0 +1,139 @@
+//! From a solved stiff cable to its nodes: places, tensions, moments and curvatures.
+
+use crate::model::fem::free::results::Point;
+use crate::model::fem::beam::equilibrium::{BEND, Beam, GAUSS, dot};
+use crate::model::fem::free::stations::Stop;
+use crate::math::{Vec2, larger};
+
+/// Between two points the cable leaves a straight line by no more than this part of its length. More: places read between
+/// points are off by as much, with the nodes alone by 1e-3 of a span; less: thousands of points.
+const FLATNESS: f64 = 1e-5;
+/// Parts of a bar at most. Fewer: a bar of a coarse given mesh shows corners; more: points that nobody can tell apart.
+const MOST_PARTS: f64 = 32.0;
+
+impl Beam {
+    /// Moments at both nodes of bar `e`, N·m: those that balance it.
+    fn moments(&self, e: usize, starts: &[Vec2]) -> [f64; 2] {
+        let stiff = self.bending / (3.0 * self.rest(e));
+        let mut pull = [0, 2].map(|r| stiff * dot(&BEND[r], &self.angles[2 * e..2 * e + 3]));
+        for p in self.samples(e, starts) {
+            for (pull, shape) in pull.iter_mut().zip([p.shapes[0], p.shapes[2]]) {
+                *pull -= p.length * p.across * (1.0 + p.tau) * shape;
+            }
+        }
+        [-pull[0], pull[1]]
+    }
+
+    /// Curvature at node `v`, 1/m: at a stop from the moment that balances the bar beside it (the greater at a clamp between
+    /// two), else the slope of the curve of fourth degree through the angles of both bars.
+    fn curvature(&self, v: usize, starts: &[Vec2]) -> f64 {
+        let (before, after) = (v.checked_sub(1).and_then(|e| self.bars.get(e)), self.bars.get(v));
+        if let (Some(a), Some(b)) = (before, after)
+            && a.stretch == b.stretch
+        {
+            let places = [-a.ds, -0.5 * a.ds, 0.0, 0.5 * b.ds, b.ds];
+            return slope_at_zero(&places, &self.angles[2 * v - 2..2 * v + 3]);
+        }
+        let per_moment = self.material.thermal_stretch / self.bending;
+        let left = if before.is_some() { self.moments(v - 1, starts)[1] } else { 0.0 };
+        let right = if after.is_some() { self.moments(v, starts)[0] } else { 0.0 };
+        per_moment * if left.abs() > right.abs() { left } else { right }
+    }
+
+    /// All nodes; `smooth`, as many points between them as it takes to draw the cable with straight lines.
+    #[must_use]
+    pub fn points(&self, smooth: bool) -> Vec<Point> {
+        let n = self.bars.len();
+        let (starts, forces) = (self.stretch_starts(), self.stop_forces());
+        let curvatures: Vec<f64> = (0..=n).map(|v| self.curvature(v, &starts)).collect();
+        let chord = |e: usize| self.samples(e, &starts).iter().map(|p| p.t * (p.length * (1.0 + p.tau))).sum::<Vec2>();
+        let first = self.layout.stops.iter().position(Stop::anchors).unwrap_or(0);
+        let anchor = self.layout.stops[first].point(0).unwrap_or_default();
+        let mut at = (0..n).filter(|&e| self.bars[e].stretch < first).fold(anchor, |p, e| p - chord(e));
+        let mut out = Vec::with_capacity(n + 1);
+        for v in 0..=n {
+            let t = self.tangent(self.angles[2 * v]);
+            let stretch = self.bars.get(v).map_or(self.layout.stops.len() - 1, |b| b.stretch);
+            let at_stop = v == n || v == 0 || self.bars[v - 1].stretch != stretch;
+            let inside = self.bars.get(v).map_or(Vec2::zeros(), |b| self.force(b, 0.0, &starts));
+            let [before, after] = if at_stop { forces[stretch] } else { [inside; 2] };
+            let arc_length = self.bars.get(v).map_or(self.layout.length, |b| b.start);
+            if at_stop && let Some(p) = self.layout.stops[stretch].point(0) {
+                at = p;
+            }
+            // Nothing pulls beyond an end.
+            let tension = if v == 0 {
+                after.dot(&t)
+            } else if v == n {
+                before.dot(&t)
+            } else {
+                larger(before.dot(&t), after.dot(&t))
+            };
+            let force = if v == n { before } else { after };
+            out.push(Point { arc_length, at, tension, curvature: curvatures[v], force });
+            if v < n {
+                if smooth {
+                    self.between(v, at, [curvatures[v], curvatures[v + 1]], &starts, &mut out);
+                }
+                at += chord(v);
+            }
+        }
+        out
+    }
+
+    /// The points inside bar `e`, which begins at `at`: between two the cable leaves a straight line by `FLATNESS` at most.
+    fn between(&self, e: usize, mut at: Vec2, curvatures: [f64; 2], starts: &[Vec2], out: &mut Vec<Point>) {
+        let (bar, angles) = (&self.bars[e], &self.angles[2 * e..2 * e + 3]);
+        let half_turn = larger((angles[1] - angles[0]).abs(), (angles[2] - angles[1]).abs());
+        // A sagitta κl²/8 with κ of the half that turns more.
+        let off = 0.25 * half_turn * bar.ds;
+        let parts = (off / (FLATNESS * self.layout.length)).sqrt().ceil().clamp(1.0, MOST_PARTS);
+        let step = 1.0 / parts;
+        for k in 1..parts as usize {
+            let (from, x) = ((k - 1) as f64 * step, k as f64 * step);
+            for (part, weight) in GAUSS {
+                let x = from + part * step;
+                let t = self.tangent(self.angle(e, x));
+                let stretched = 1.0 + self.force(bar, x, starts).dot(&t) / self.material.axial_stiffness;
+                at += t * (weight * step * self.rest(e) * stretched);
+            }
+            let force = self.force(bar, x, starts);
+            out.push(Point {
+                arc_length: bar.start + x * bar.ds,
+                at,
+                force,
+                tension: force.dot(&self.tangent(self.angle(e, x))),
+                curvature: curvatures[0] + x * (curvatures[1] - curvatures[0]),
+            });
+        }
+    }
+
+    fn tangent(&self, angle: f64) -> Vec2 {
+        Vec2::new(angle.cos(), angle.sin())
+    }
+}
+
+/// The slope at 0 of the polynomial through `values` at `places`, of which one is 0.
+fn slope_at_zero(places: &[f64; 5], values: &[f64]) -> f64 {
+    let zero = places.iter().position(|&x| x == 0.0).unwrap_or(0);
+    let here = values.get(zero).copied().unwrap_or(f64::NAN);
+    let mut slope = 0.0;
+    for (i, (&x, &y)) in places.iter().zip(values).enumerate().filter(|(i, _)| *i != zero) {
+        // Lagrange: φᵢ'(0) = (1/xᵢ) Π (0 − xⱼ)/(xᵢ − xⱼ) over the others, which sum to 0 with that of 0 itself.
+        let others = places.iter().enumerate().filter(|(j, _)| *j != i && *j != zero);
+        slope += (y - here) / x * others.map(|(_, &z)| z / (z - x)).product::<f64>();
+    }
+    slope
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_slope_of_a_quartic_is_exact() {
+        let f = |x: f64| 3.0 + x * (2.0 - x * (1.0 + x * (4.0 - 5.0 * x)));
+        let places = [-0.7, -0.35, 0.0, 0.2, 0.4];
+        assert!((slope_at_zero(&places, &places.map(f)) - 2.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,251 @@
+//! Where a cable is first laid: its material spread along a route that goes round what is in the way.
+
+use crate::model::fem::system::assembly::Mesh;
+use crate::contact::Gap;
+use crate::math::{Vec2, cross};
+use crate::problem::Problem;
+use crate::problem::ground_route::above_ground;
+use crate::scene::SupportKind;
+
+/// Passes of pushing the first lay out of obstacles. Ten are enough for routes drawn within a diameter.
+const MAX_PASSES: usize = 60;
+
+/// How deep (m) inside an obstacle a first lay is found and pushed out.
+const DEEPEST: f64 = 0.5;
+
+/// Steps in which an end is leaned until it is clear of what is below it, rad, and how many to either side: a half turn. Smaller: the same at
+/// more cost; larger: it begins higher than it needs to.
+const LEAN: f64 = std::f64::consts::PI / 36.0;
+/// See `LEAN`.
+const MOST_LEANS: i32 = 36;
+
+/// Corners of the way of a cable with the arc length at each, m.
+#[must_use]
+pub fn way(problem: &Problem) -> Vec<(f64, Vec2)> {
+    let points = if problem.route.len() >= 2 {
+        problem.route.clone()
+    } else {
+        above_ground(problem, lifted(problem, &straight(problem)))
+    };
+    let mut along = vec![0.0; points.len()];
+    for k in 1..points.len() {
+        along[k] = along[k - 1] + (points[k] - points[k - 1]).norm();
+    }
+    let total = along.last().copied().unwrap_or(0.0);
+    // Arc length as a function of the way: straight between supports that sit at a known arc length.
+    let mut knots = vec![(0.0, 0.0)];
+    for s in &problem.supports {
+        if let (Some(arc), Some(at)) = (s.arc_length, s.at)
+            && arc > 0.0
+            && arc < problem.length
+        {
+            let w = nearest_way(&points, &along, at);
+            if knots.last().is_some_and(|k| w > k.0 && arc > k.1) && w < total {
+                knots.push((w, arc));
+            }
+        }
+    }
+    knots.push((total, problem.length));
+    let arc_at = |w: f64| {
+        let k = knots.partition_point(|k| k.0 <= w).clamp(1, knots.len() - 1);
+        let (a, b) = (knots[k - 1], knots[k]);
+        if b.0 > a.0 { a.1 + (b.1 - a.1) * (w - a.0) / (b.0 - a.0) } else { a.1 }
+    };
+    points.iter().zip(&along).map(|(p, &w)| (arc_at(w), *p)).collect()
+}
+
+/// The same of a stiff cable: an end that nothing holds, and that would hang into something solid, is turned about the support it hangs
+/// from until its tip is clear. A flexible cable comes down in a heap there, a stiff one leans.
+#[must_use]
+pub fn leaning_way(problem: &Problem) -> Vec<(f64, Vec2)> {
+    let mut points = way(problem);
+    let last = problem.supports.len().saturating_sub(1);
+    if problem.route.len() >= 2 {
+        return points;
+    }
+    for (end, from) in [(0, 1), (last, last.saturating_sub(1))] {
+        let (Some(tip), Some(hinge)) = (problem.supports.get(end), problem.supports.get(from)) else { continue };
+        let (Some(at), Some(hinged), Some(s)) = (hinge.at, hinge.arc_length, tip.arc_length) else { continue };
+        if !matches!(tip.kind, SupportKind::Free | SupportKind::Load) {
+            continue;
+        }
+        let reach = s - hinged;
+        let pull = tip.force.at(0.0) + problem.body_force(0.0) * (0.5 * problem.length);
+        let down = pull.try_normalize(0.0).unwrap_or_else(|| -Vec2::y());
+        // A clamp says to which side it leans.
+        let aside = hinge.angle.map_or(1.0, f64::cos) * reach;
+        let lean = if cross(down, Vec2::new(aside, 0.0)) < 0.0 { -LEAN } else { LEAN };
+        let leaned = |k: i32| {
+            let (sin, cos) = (lean * f64::from(k)).sin_cos();
+            at + Vec2::new(cos * down.x - sin * down.y, sin * down.x + cos * down.y) * reach.abs()
+        };
+        let clear = |k: &i32| problem.world.signed_gap(leaned(*k), problem.length).is_none_or(|g| g.gap_m >= 0.0);
+        let both = (1..=MOST_LEANS).flat_map(|k| [k, -k]);
+        let Some(k) = std::iter::once(0).chain(both).find(clear).filter(|k| *k != 0) else { continue };
+        let leg = [(hinged, at), (s, leaned(k))];
+        if reach < 0.0 {
+            points.retain(|p| p.0 > hinged);
+            points.splice(0..0, [leg[1], leg[0]]);
+        } else {
+            points.retain(|p| p.0 < hinged);
+            points.extend(leg);
+        }
+    }
+    points
+}
+
+fn nearest_way(points: &[Vec2], along: &[f64], at: Vec2) -> f64 {
+    let mut best = (f64::INFINITY, 0.0);
+    for k in 1..points.len() {
+        let f = crate::contact::distance::nearest_fraction(at, points[k - 1], points[k]);
+        let d = (points[k - 1] + (points[k] - points[k - 1]) * f - at).norm();
+        if d < best.0 {
+            best = (d, along[k - 1] + f * (along[k] - along[k - 1]));
+        }
+    }
+    best.1
+}
+
+/// From support to support; an end that nothing holds hangs from the nearest one along its load, or down.
+fn straight(problem: &Problem) -> Vec<Vec2> {
+    let mut points: Vec<Vec2> = problem.supports.iter().filter_map(|s| s.position_at(0.0).map(|p| p.0)).collect();
+    let used: f64 = points.windows(2).map(|p| (p[1] - p[0]).norm()).sum();
+    let rest = problem.length - used;
+    let loose = |s: Option<&crate::problem::SupportPoint>| {
+        s.filter(|s| matches!(s.kind, SupportKind::Free | SupportKind::Load)).map(|s| {
+            let pull = s.force.at(0.0) + problem.body_force(0.0) * (0.5 * problem.length);
+            if pull.norm() > 0.0 { pull.normalize() } else { Vec2::new(0.0, -1.0) }
+        })
+    };
+    let (start, end) = (loose(problem.supports.first()), loose(problem.supports.last()));
+    let share = if start.is_some() && end.is_some() { 0.5 * rest } else { rest };
+    if share > 0.0 {
+        if let (Some(d), Some(&p)) = (start, points.first()) {
+            points.insert(0, p + d * share);
+        }
+        if let (Some(d), Some(&p)) = (end, points.last()) {
+            points.push(p + d * share);
+        }
+    }
+    points
+}
+
+/// Each leg that meets an obstacle is replaced by the upper hull of its ends and the obstacle corners between.
+fn lifted(problem: &Problem, points: &[Vec2]) -> Vec<Vec2> {
+    let mut out: Vec<Vec2> = points.first().copied().into_iter().collect();
+    for leg in points.windows(2) {
+        let (a, b) = (leg[0], leg[1]);
+        let blocked = !problem.world.is_empty() && (problem.world.free_fraction([a, a], [b, b], 0.0) < 1.0);
+        if blocked && (b.x - a.x).abs() > 1e-9 {
+            let (low, high) = (a.x.min(b.x), a.x.max(b.x));
+            let mut corners: Vec<Vec2> =
+                obstacle_tops(problem).into_iter().filter(|p| p.x > low && p.x < high).collect();
+            corners.push(a);
+            corners.push(b);
+            corners.sort_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
+            let mut hull: Vec<Vec2> = Vec::new();
+            for p in corners {
+                while let [.., u, v] = hull[..] {
+                    if cross(v - u, p - u) < 0.0 {
+                        break;
+                    }
+                    hull.pop();
+                }
+                hull.push(p);
+            }
+            if a.x > b.x {
+                hull.reverse();
+            }
+            out.extend(hull.iter().skip(1));
+        } else {
+            out.push(b);
+        }
+    }
+    out
+}
+
+/// Points just clear of the top of every corner and circle.
+fn obstacle_tops(problem: &Problem) -> Vec<Vec2> {
+    let mut out = Vec::new();
+    for body in problem.world.geometry().bodies() {
+        let clear = 1.05 * body.offset + 2e-3;
+        for k in 0..=body.edges.len() {
+            if let Some(c) = body.corner(k) {
+                out.extend([-clear, 0.0, clear].map(|dx| c.at + Vec2::new(dx, clear)));
+            }
+        }
+        if let Some(c) = body.center {
+            out.extend((0..=16).map(|k| {
+                let angle = std::f64::consts::PI * f64::from(k) / 16.0;
+                c + Vec2::new(angle.cos(), angle.sin()) * (1.02 * clear)
+            }));
+        }
+    }
+    out
+}
+
+/// Positions of the nodes of a mesh along a way, m.
+#[must_use]
+pub fn lay(mesh: &Mesh, way: &[(f64, Vec2)]) -> Vec<Vec2> {
+    let at = |s: f64| {
+        let k = way.partition_point(|w| w.0 <= s).clamp(1, way.len().max(2) - 1);
+        match (way.get(k - 1), way.get(k)) {
+            (Some(a), Some(b)) if b.0 > a.0 => a.1 + (b.1 - a.1) * ((s - a.0) / (b.0 - a.0)),
+            (Some(a), _) => a.1,
+            _ => Vec2::zeros(),
+        }
+    };
+    mesh.arc_length.iter().map(|&s| at(s)).collect()
+}
+
+/// Pushes free nodes and segments out of obstacles until every gap is at least half of `clear` (m) or it gives up.
+pub fn push_out(problem: &Problem, mesh: &Mesh, x: &mut [Vec2], clear: f64) {
+    push_chain_out(problem, (&mesh.held, &|e, feature| mesh.rounds(e).contains(&Some(feature))), x, clear);
+}
+
+/// The same of a chain of which nodes are held, and bars lie on rounds.
+pub fn push_chain_out(
+    problem: &Problem,
+    (held, lies_on): (&[bool], &dyn Fn(usize, usize) -> bool),
+    x: &mut [Vec2],
+    clear: f64,
+) {
+    let mut gaps: Vec<Gap> = Vec::new();
+    for _ in 0..MAX_PASSES {
+        let mut moved = false;
+        for k in (0..x.len()).filter(|&k| !held[k]) {
+            if let Some(g) = problem.world.signed_gap(x[k], DEEPEST)
+                && g.gap_m < 0.5 * clear
+            {
+                x[k] += g.normal * (clear - g.gap_m);
+                moved = true;
+            }
+        }
+        for e in 0..x.len().saturating_sub(1) {
+            gaps.clear();
+            problem.world.segment_gaps(x[e], x[e + 1], clear, &mut gaps);
+            let inside = |g: &&Gap| g.fraction > 0.0 && g.fraction < 1.0 && !lies_on(e, g.feature);
+            for g in gaps.iter().filter(inside) {
+                let inside = problem.world.geometry().outward_of(g).is_some_and(|o| o.dot(&g.normal) < 0.0);
+                let distance = (x[e] + (x[e + 1] - x[e]) * g.fraction - g.point).norm();
+                // A segment that has cut a corner off is nearest to it from inside.
+                let (way, lack) =
+                    if inside { (-g.normal, clear - g.gap_m + 2.0 * distance) } else { (g.normal, clear - g.gap_m) };
+                if lack > 0.5 * clear {
+                    let shares = [1.0 - g.fraction, g.fraction];
+                    let free = [0, 1].map(|j| if held[e + j] { 0.0 } else { shares[j] });
+                    let sum = free[0] * shares[0] + free[1] * shares[1];
+                    if sum > 0.01 {
+                        x[e] += way * (lack * free[0] / sum);
+                        x[e + 1] += way * (lack * free[1] / sum);
+                        moved = true;
+                        break;
+                    }
+                }
+            }
+        }
+        if !moved {
+            return;
+        }
+    }
+}

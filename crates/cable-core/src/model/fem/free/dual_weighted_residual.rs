@@ -1,0 +1,220 @@
+//! How wrong the forces are: the dual-weighted residual.
+//!
+//! Each element's chord lacks δ to the chord of the exact catenary under the same force. The span then closes with
+//! another start force, and pulleys slide a little to keep their balance:
+//! ```text
+//! δF₀ = −C⁻¹ Σδ(F₀ + δF₀),     C = ∂reach/∂F₀
+//! ```
+//! (R. Becker and R. Rannacher, *An optimal control approach to a posteriori error estimation in finite element methods*,
+//! Acta Numerica 2001: the residual weighted by the inverse Hessian, here 2×2.) The lack is taken at the force it leads to,
+//! in a few rounds: one is enough for a taut span; in a slack one, whose horizontal force is a small part of its tension,
+//! what is left after one is no longer small beside that.
+//!
+//! What is estimated is the error of the whole force vector beside every stop, in parts of the greatest tension: a slack span
+//! may have its greatest tension right to many digits and its horizontal force wrong in the third.
+
+use crate::model::fem::free::results::Point;
+use crate::model::fem::beam::equilibrium::Beam;
+use crate::model::fem::free::element::Material;
+use crate::model::fem::free::stations::Layout;
+use crate::model::fem::free::pulley_balance::Network;
+use crate::model::fem::free::span;
+use crate::model::fem::free::span::{Span, elements};
+use crate::math::{Vec2, larger};
+
+/// Rounds of the correction, and the part of it below which another round changes nothing that shows.
+const ROUNDS: usize = 8;
+const SETTLED: f64 = 0.01;
+/// By how much finer elements are made where the lack of the present ones says nothing, and how often at most: 4⁵ = 1024 times.
+const FINER: usize = 4;
+const MOST_FINER: usize = 5;
+/// Most elements of a span that is only solved for its error: some milliseconds.
+const MOST_CELLS: usize = 1 << 15;
+/// Rounding errors of a span's closure, in units of the last place of its length. Measured against the closed form: up to 5,
+/// of two answers.
+const ROUNDING: f64 = 8.0;
+
+/// Part of the greatest tension to which friction is known that remembers many steps: where rounding stops Newton a balance is
+/// accepted at 1e-8, and what that leaves adds up. Less: one in ten histories of stiff cables is farther from that of `spans`
+/// (up to 8e-8 in 300); more: nobody asks for less.
+const MEMORY: f64 = 1e-7;
+
+/// Arc lengths that differ by less are those of one node of two meshes, m.
+const SAME_PLACE: f64 = 1e-9;
+
+/// The same without friction: tensions of stiff cables beside pulleys agree to that.
+const BALANCE: f64 = 1e-10;
+
+/// Estimated error of the force vector on any stop, in parts of the greatest tension.
+#[must_use]
+pub fn relative_error(network: &mut Network) -> f64 {
+    let (mut largest, mut error) = (0.0, 0.0);
+    let changes = force_errors(network);
+    for (forces, change) in network.forces.iter().zip(&changes) {
+        for (force, d) in forces.iter().zip(change) {
+            largest = larger(largest, force.norm());
+            error = larger(error, d.norm());
+        }
+        // On a pulley both pull.
+        error = larger(error, (change[1] - change[0]).norm());
+    }
+    let memory = match (network.pulleys().is_empty(), network.rubs()) {
+        (true, _) => 0.0,
+        (false, false) => BALANCE * largest,
+        (false, true) => MEMORY * largest,
+    };
+    let error = error + rounding(network) + memory;
+    // In parts of what the greatest tension is at least.
+    let least = if error < 0.5 * largest { largest - error } else { largest };
+    let share = if least > 0.0 { error / least } else { error };
+    share * (1.0 + SETTLED)
+}
+
+/// Estimated error of the shape, m: what the chords up to a node lack in all, and what the force that closes the span moves its end.
+#[must_use]
+pub fn position_error(network: &mut Network) -> f64 {
+    let changes = force_errors(network);
+    let (mut most, layout) = (0.0, &network.layout);
+    for (&ends, span) in network.ends.iter().zip(&network.spans) {
+        let mut lack = 0.0;
+        elements(&network.material, layout, ends, span.force, |ds, f| {
+            lack += network.material.chord_error(ds, f).norm();
+        });
+        let closing = changes.get(ends.0).map_or(0.0, |c| (span.walk.compliance * c[1]).norm());
+        most = larger(most, lack + closing);
+    }
+    most + ROUNDING * f64::EPSILON * layout.length
+}
+
+/// Greatest distance of points of one mesh from those of the same arc length on another, m.
+#[must_use]
+pub fn apart(some: &[Point], others: &[Point]) -> f64 {
+    let mut most = 0.0;
+    for p in some {
+        let k = others.partition_point(|o| o.arc_length < p.arc_length - SAME_PLACE);
+        if let Some(o) = others.get(k).filter(|o| (o.arc_length - p.arc_length).abs() <= SAME_PLACE) {
+            most = larger(most, (o.at - p.at).norm());
+        }
+    }
+    most
+}
+
+/// What rounding of lengths does to the stiffest span, N.
+fn rounding(network: &Network) -> f64 {
+    let mut most = 0.0;
+    for (&(first, last), span) in network.ends.iter().zip(&network.spans) {
+        let length = network.layout.stops[last].arc_length - network.layout.stops[first].leaves();
+        let stiffness = span.walk.compliance.try_inverse().map_or(0.0, |k| k.norm());
+        most = larger(most, stiffness * length * ROUNDING * f64::EPSILON);
+    }
+    most
+}
+
+/// Estimated error of the tension force before and after each stop, N.
+fn force_errors(network: &mut Network) -> Vec<[Vec2; 2]> {
+    let mut errors = vec![[Vec2::zeros(); 2]; network.layout.stops.len()];
+    for (&ends, span) in network.ends.iter().zip(&network.spans) {
+        let off = closing_force(network, ends, span);
+        errors[ends.0][1] = off;
+        errors[ends.1][0] = off;
+    }
+    if network.rubbing.is_empty() {
+        let_pulleys_follow(network, &mut errors);
+    } else {
+        network.let_rubbing_follow(&mut errors);
+    }
+    errors
+}
+
+/// By how much more force at its start the exact catenary would close a span, N. Where a fold lies in one element its lack says
+/// nothing about the force: the span is solved on finer elements until it does.
+fn closing_force(network: &Network, ends: (usize, usize), span: &Span) -> Vec2 {
+    let (material, goal) = (&network.material, span.walk.reach);
+    if let Some(off) = correction(material, &network.layout, ends, (span.force, goal)) {
+        return off;
+    }
+    let mut layout = network.layout.clone();
+    let mut force = span.force;
+    for _ in 0..MOST_FINER {
+        layout.stops[ends.0..ends.1].iter_mut().for_each(|s| s.cells *= FINER);
+        if layout.stops[ends.0..ends.1].iter().map(|s| s.cells).sum::<usize>() > MOST_CELLS {
+            break;
+        }
+        let guess = span::first_guess(material, &layout, ends, goal);
+        let solve = |start| span::solve(material, &layout, ends, goal, start);
+        let Some(fine) = solve(force).or_else(|| solve(guess)) else { continue };
+        force = fine.force;
+        if let Some(off) = correction(material, &layout, ends, (force, goal)) {
+            return (force + off - span.force) * (1.0 + SETTLED);
+        }
+    }
+    // What is known is how far the finest is from it.
+    (force - span.force) * 2.0
+}
+
+/// The same by rounds of the correction; None where they do not settle.
+fn correction(material: &Material, layout: &Layout, ends: (usize, usize), (force, goal): (Vec2, Vec2)) -> Option<Vec2> {
+    let (mut off, mut before) = (Vec2::zeros(), f64::INFINITY);
+    for _ in 0..ROUNDS {
+        let mut lack = Vec2::zeros();
+        let walk = span::walk(material, layout, ends, force + off);
+        elements(material, layout, ends, force + off, |ds, f| lack += material.chord_error(ds, f));
+        let change = -(walk.compliance.try_inverse()? * (walk.reach + lack - goal));
+        off += change;
+        if !(change.norm() < before) {
+            return None;
+        }
+        before = change.norm();
+        if before <= SETTLED * off.norm() {
+            return Some(off * (1.0 + SETTLED));
+        }
+    }
+    None
+}
+
+/// Greatest difference of a force on a stop between a network and the same on half as long bars, in parts of the greatest tension,
+/// for an error of fourth order: sixteen fifteenths of it is the error of the coarser.
+#[must_use]
+pub fn difference(coarse: &Network, fine: &Network) -> f64 {
+    let (mut largest, mut off) = (0.0, 0.0);
+    for (a, b) in coarse.forces.iter().zip(&fine.forces) {
+        let d = [a[0] - b[0], a[1] - b[1]];
+        largest = larger(larger(largest, b[0].norm()), b[1].norm());
+        off = larger(larger(off, d[0].norm()), larger(d[1].norm(), (d[1] - d[0]).norm()));
+    }
+    if largest > 0.0 { off / (0.9375 * largest) } else { off }
+}
+
+/// Adds what frictionless pulleys do to small changes of the forces beside the stops: they slide until the tensions
+/// agree again.
+fn let_pulleys_follow(network: &Network, changes: &mut [[Vec2; 2]]) {
+    let pulleys = network.pulleys();
+    let faults: Vec<Option<f64>> = pulleys
+        .iter()
+        .map(|&k| {
+            let (wheel, [before, after]) = (network.wheel(k)?, network.forces[k]);
+            network.fault(k, &wheel)?;
+            Some(network.fault_rate(&wheel, 0.0, [before, after], changes[k]))
+        })
+        .collect();
+    let (slides, _) = network.newton_step(&pulleys, &faults);
+    for (&of, slide) in pulleys.iter().zip(slides) {
+        for (k, change) in changes.iter_mut().enumerate() {
+            let rates = network.rates_at(k, of);
+            change[0] += rates[0] * slide;
+            change[1] += rates[1] * slide;
+        }
+    }
+}
+
+/// Estimated relative error of the largest tension on the finer of two meshes, fourth order: a fifteenth of the change.
+#[must_use]
+pub fn halving_error(coarse: &Beam, fine: &Beam) -> f64 {
+    let (mut largest, mut change) = (fine.bending_force(), 0.0);
+    for (a, b) in coarse.stop_forces().iter().flatten().zip(fine.stop_forces().iter().flatten()) {
+        let (size, off) = (b.norm(), (b - a).norm());
+        largest = larger(largest, size);
+        change = larger(change, off);
+    }
+    if largest > 0.0 { change / (15.0 * largest) } else { change }
+}

@@ -1,0 +1,527 @@
+//! Pulleys that rub: the balance of all pulleys together, with what friction remembers of each.
+//!
+//! What is unknown at a wheel are the angles p₁, p₂ at which the cable meets and leaves it and the material s₁, s₂ there; at a point
+//! only the material. The spans between follow from these (`span`), so the equations are few:
+//!
+//! ```text
+//! wheel    t(p₁) × F₁ = 0,  t(p₂) × F₂ = 0,  and the two of the friction on it (`spans::wheel_friction`)
+//! point    holds: s = s_old,    slides with m: ln(T₂/T₁) = m·turn
+//! ```
+//!
+//! Slip is complementary to friction: a pulley that holds lies within its cone, one that slides has moved against its friction since the
+//! last step *at points fixed to the wheel*. The middle of the arc is no such point: it wanders by half the radius times what the
+//! directions turn, which is more than a stiff cable gives by, so that friction could be found the other way round.
+//! Newton with a line search for one set of modes, then the modes are asked.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::model::fem::free::element::turn_between;
+use crate::model::fem::free::stations::{Hold, Stop};
+use crate::model::fem::free::pulley_balance::{Failure, Network};
+use crate::math::{Vec2, cross, larger, perp};
+use crate::model::spans::wheel_friction::{OnWheel, WheelEnds, WheelFriction};
+use crate::solution::CableSolution;
+
+/// Newton steps for one set of modes. Measured: 2 to 8.
+const MAX_STEPS: usize = 40;
+/// Halvings of one step.
+const MAX_HALVINGS: usize = 14;
+/// Sets of modes for each pulley.
+const MAX_MODES: usize = 12;
+/// The equations are solved when none is off by more than this part: of a tension, an angle, and of [`MATERIAL`] of the cable.
+const BALANCED: f64 = 1e-13;
+/// The same where no step makes it smaller, as in `network`.
+const BALANCED_AT_LEAST: f64 = 1e-8;
+/// Part of the cable's length that weighs as much as the whole tension. More: steps are judged by tension alone; less: by material.
+const MATERIAL: f64 = 0.01;
+/// Farthest that an end may go round its wheel in a step, rad: more comes out on the other side.
+const MOST_TURN: f64 = 0.5;
+/// Part of what lies between two stops that a step may take.
+const ROOM: f64 = 0.4;
+/// Part of the cone or the length by which a mode is left: how many roundings.
+const PATIENCE: f64 = 30.0;
+/// A point pulley's cone (in ln T) and the part of the cable that is no slip: rounding.
+const CONE: f64 = 1e-12;
+const STILL: f64 = 1e-13;
+/// A node of an answer that is no farther than this from a wheel, of its radius, lies on it.
+const ON_WHEEL: f64 = 1e-9;
+
+/// How a point pulley stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Point {
+    Holds,
+    Slides(f64),
+}
+
+/// What friction does at a pulley.
+#[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant)] // A handful of them in a scene.
+enum Law {
+    /// Of a wheel.
+    Wheel(WheelFriction),
+    /// Of a point: μ, how it stands and the material it held last, m.
+    Point { friction: f64, stands: Point, held: f64 },
+}
+
+/// A pulley and its memory.
+#[derive(Clone, Debug)]
+pub struct Rubbing {
+    support: Option<usize>,
+    law: Law,
+    p: [f64; 2],
+    s: [f64; 2],
+}
+
+/// What can be varied at a pulley: the angle and the material at its side 0 or 1; the material of a point at both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Unknown {
+    Angle(usize),
+    Material(usize),
+    Both,
+}
+
+/// Entries that a pulley changes: two indices and a force each.
+type Touched = Vec<(usize, usize, Vec2)>;
+
+impl Rubbing {
+    fn unknowns(&self) -> &'static [Unknown] {
+        use Unknown::{Angle, Both, Material};
+        match self.law {
+            Law::Wheel(_) => &[Angle(0), Material(0), Angle(1), Material(1)],
+            Law::Point { .. } => &[Both],
+        }
+    }
+
+    /// Tension and normal where its cable was at an angle in the last step; None for a point.
+    pub fn tension_at(&self, network: &Network, fraction: f64) -> Option<(f64, Vec2)> {
+        let Law::Wheel(w) = &self.law else { return None };
+        let p = self.p[0] + (self.p[1] - self.p[0]) * fraction;
+        Some((w.at(&network.on_wheel(), p).0, w.directions(p)[1]))
+    }
+
+    /// Material at a fraction of its arc, m.
+    pub fn material_at(&self, network: &Network, fraction: f64) -> Option<f64> {
+        let Law::Wheel(w) = &self.law else { return None };
+        let p = self.p[0] + (self.p[1] - self.p[0]) * fraction;
+        Some(w.at(&network.on_wheel(), p).1)
+    }
+}
+
+/// The equations of all pulleys at a state.
+struct Equations {
+    residual: DVector<f64>,
+    /// By the unknowns, with the forces frozen.
+    own: DMatrix<f64>,
+    /// By the force beside a stop: row, stop, side, slope.
+    by_force: Vec<(usize, usize, usize, Vec2)>,
+}
+
+impl Network {
+    fn on_wheel(&self) -> OnWheel {
+        let m = &self.material;
+        OnWheel { load: m.body, thermal: m.thermal_stretch, stiffness: m.axial_stiffness }
+    }
+
+    /// Whether friction at a pulley remembers.
+    pub fn rubs(&self) -> bool {
+        self.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.friction > 0.0))
+    }
+
+    /// Begins the memory of every pulley with the balance found; on each wheel friction is shared evenly.
+    pub fn remember(&mut self) {
+        let on = self.on_wheel();
+        self.rubbing = Vec::new();
+        for k in self.pulleys() {
+            let Some(mut pulley) = self.blank(k) else { continue };
+            let [before, after] = self.forces[k];
+            if let Law::Wheel(w) = &mut pulley.law {
+                let first = w.angle(before, 0.0);
+                let last = w.angle(after, first);
+                let last = if last < first - 1e-6 { last + std::f64::consts::TAU } else { larger(last, first) };
+                pulley.p = [first, last];
+                let ends = [[first, pulley.s[0], before.norm()], [last, pulley.s[1], after.norm()]];
+                w.begin(&on, &ends);
+            }
+            self.rubbing.push(pulley);
+        }
+    }
+
+    /// Begins the memory of every pulley with an answer of another model; false where that does not say enough.
+    pub fn remember_answer(&mut self, answer: &CableSolution) -> bool {
+        let on = self.on_wheel();
+        let mut found = Vec::new();
+        for k in self.pulleys() {
+            let (Some(mut pulley), Some(wheel)) = (self.blank(k), self.wheel(k)) else { return false };
+            let Some(said) = pulley.support.and_then(|i| answer.supports.get(i)) else { return false };
+            match &mut pulley.law {
+                Law::Wheel(w) => {
+                    let mut points: Vec<[f64; 3]> = Vec::new();
+                    for node in &answer.nodes {
+                        let out = node.at() - wheel.center;
+                        let near = (out.norm() - wheel.radius).abs() <= ON_WHEEL * wheel.radius;
+                        let along = perp(out) * -self.clockwise_at(k, &wheel);
+                        let last = points.last().map_or(w.angle(along, 0.0), |p| p[0]);
+                        if near && node.tension_n > 0.0 {
+                            points.push([w.angle(along, last), node.arc_length_m, node.tension_n]);
+                        }
+                    }
+                    let (Some(a), Some(b)) = (points.first().copied(), points.last().copied()) else { return false };
+                    if b[0] < a[0] {
+                        return false;
+                    }
+                    w.begin(&on, &points);
+                    (pulley.p, pulley.s) = ([a[0], b[0]], [a[1], b[1]]);
+                }
+                Law::Point { held, .. } => {
+                    *held = said.arc_length_m;
+                    pulley.s = [*held; 2];
+                }
+            }
+            found.push(pulley);
+        }
+        self.rubbing = found;
+        true
+    }
+
+    /// A pulley that remembers nothing yet, where the layout has it.
+    fn blank(&self, k: usize) -> Option<Rubbing> {
+        let wheel = self.wheel(k)?;
+        let stop = &self.layout.stops[k];
+        let law = if wheel.radius > 0.0 {
+            Law::Wheel(WheelFriction::new(wheel.radius, wheel.friction, self.clockwise_at(k, &wheel)))
+        } else {
+            let stands = if wheel.friction > 0.0 { Point::Holds } else { Point::Slides(0.0) };
+            Law::Point { friction: wheel.friction, stands, held: stop.arc_length }
+        };
+        Some(Rubbing { support: stop.support, law, p: [0.0; 2], s: [stop.arc_length, stop.leaves()] })
+    }
+
+    /// Whether another network has the same pulleys; then their memory is taken over.
+    pub fn remember_from(&mut self, other: &Self) -> bool {
+        let support = |n: &Self, k: usize| n.layout.stops[k].support;
+        let own: Vec<Option<usize>> = self.pulleys().into_iter().map(|k| support(self, k)).collect();
+        let same = own.len() == other.rubbing.len() && own.iter().zip(&other.rubbing).all(|(a, b)| *a == b.support);
+        if same {
+            self.rubbing.clone_from(&other.rubbing);
+        }
+        same
+    }
+
+    /// Finds the balance of all pulleys from what they remember; the memory itself stays.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn rub(&mut self) -> Result<(), Failure> {
+        self.steps = 0;
+        let pulleys = self.pulleys();
+        self.take_unknowns(&pulleys)?;
+        let most = MAX_MODES * pulleys.len();
+        for round in 0..most {
+            let solved = self.newton_on_pulleys(&pulleys);
+            // One at a time after a while: together they may change in circles.
+            let changed = self.change_modes(&pulleys, round >= most / 2);
+            match (solved, changed) {
+                (Ok(()), false) => {
+                    for (&k, r) in pulleys.iter().zip(&self.rubbing) {
+                        if matches!(r.law, Law::Wheel(_)) && r.p[1] < r.p[0] {
+                            return Err(Failure::LeavesWheel(k));
+                        }
+                    }
+                    self.warm_now();
+                    return Ok(());
+                }
+                (Err(failure), false) => return Err(failure),
+                (_, true) => {}
+            }
+        }
+        Err(Failure::Unbalanced(pulleys.first().copied().unwrap_or(0), self.residual))
+    }
+
+    /// What came of a step becomes what friction remembers.
+    pub fn commit_friction(&mut self) {
+        let on = self.on_wheel();
+        let mut rubbing = std::mem::take(&mut self.rubbing);
+        for (k, r) in self.pulleys().into_iter().zip(&mut rubbing) {
+            let ends = self.ends_at(k, r);
+            match &mut r.law {
+                Law::Wheel(w) => w.commit(&on, &ends),
+                Law::Point { held, .. } => *held = r.s[0],
+            }
+        }
+        self.rubbing = rubbing;
+    }
+
+    fn ends_at(&self, k: usize, r: &Rubbing) -> WheelEnds {
+        WheelEnds { p: r.p, s: r.s, t: self.forces[k].map(|f| f.norm()) }
+    }
+
+    /// Lays the stops where the unknowns are and solves the spans between.
+    fn take_unknowns(&mut self, pulleys: &[usize]) -> Result<(), Failure> {
+        for (&k, r) in pulleys.iter().zip(&self.rubbing) {
+            let stop: &mut Stop = &mut self.layout.stops[k];
+            (stop.arc_length, stop.lap) = (r.s[0], r.s[1] - r.s[0]);
+            if let (Hold::Pulley(wheel), Law::Wheel(w)) = (&mut stop.hold, &r.law) {
+                wheel.contact = r.p.map(|p| w.directions(p)[1]);
+            }
+        }
+        let stops = &self.layout.stops;
+        let runs_out = (1..stops.len()).find(|&k| !(stops[k].arc_length > stops[k - 1].leaves()));
+        if let Some(k) = runs_out {
+            return Err(Failure::RunsOut(if stops[k].support.is_some() && self.wheel(k).is_some() {
+                k
+            } else {
+                k - 1
+            }));
+        }
+        self.solve_spans()
+    }
+
+    fn equations(&mut self, pulleys: &[usize]) -> Equations {
+        let on = self.on_wheel();
+        let count: usize = self.rubbing.iter().map(|r| r.unknowns().len()).sum();
+        let mut e = Equations {
+            residual: DVector::zeros(count),
+            own: DMatrix::zeros(count, count),
+            by_force: Vec::with_capacity(4 * count),
+        };
+        let unit = 1.0 / (MATERIAL * self.layout.length);
+        let mut rubbing = std::mem::take(&mut self.rubbing);
+        let mut row = 0;
+        for (&k, r) in pulleys.iter().zip(&mut rubbing) {
+            let [before, after] = self.forces[k];
+            let ends = self.ends_at(k, r);
+            let unit_vectors = [before / before.norm(), after / after.norm()];
+            match &mut r.law {
+                Law::Wheel(w) => {
+                    // Rows and unknowns in the order of `Unknown`.
+                    for side in 0..2 {
+                        let ([t, n], u) = (w.directions(r.p[side]), unit_vectors[side]);
+                        let (i, off) = (row + 2 * side, cross(t, u));
+                        e.residual[i] = off;
+                        e.own[(i, i)] = -cross(n, u);
+                        let slope = (perp(t) - u * off) / ends.t[side];
+                        e.by_force.push((i, k, side, slope));
+                    }
+                    let rows = w.rows(&on, &ends);
+                    for j in 0..2 {
+                        let i = row + 2 * j + 1;
+                        let scale = if rows.of_tension[j] { 1.0 / larger(ends.t[0], ends.t[1]) } else { unit };
+                        e.residual[i] = rows.residual[j] * scale;
+                        for side in 0..2 {
+                            e.own[(i, row + 2 * side)] = rows.by[j][3 * side] * scale;
+                            e.own[(i, row + 2 * side + 1)] = rows.by[j][3 * side + 1] * scale;
+                            let slope = unit_vectors[side] * (rows.by[j][3 * side + 2] * scale);
+                            e.by_force.push((i, k, side, slope));
+                        }
+                    }
+                }
+                Law::Point { stands: Point::Holds, held, .. } => {
+                    e.residual[row] = (r.s[0] - *held) * unit;
+                    e.own[(row, row)] = unit;
+                }
+                Law::Point { stands: Point::Slides(m), .. } => {
+                    let turn = turn_between(before, after);
+                    e.residual[row] = (ends.t[1] / ends.t[0]).ln() - *m * turn.abs();
+                    for (side, sign) in [(0, -1.0), (1, 1.0)] {
+                        let (u, t) = (unit_vectors[side], ends.t[side]);
+                        let slope = (u - perp(u) * (*m * turn.signum())) * (sign / t);
+                        e.by_force.push((row, k, side, slope));
+                    }
+                }
+            }
+            row += r.unknowns().len();
+        }
+        self.rubbing = rubbing;
+        e
+    }
+
+    /// How the forces beside the stops change with an unknown of pulley `k`: stop, side, slope.
+    fn force_slopes(&self, k: usize, r: &Rubbing, unknown: Unknown) -> Vec<(usize, usize, Vec2)> {
+        let mut out = Vec::with_capacity(4);
+        let both = unknown == Unknown::Both;
+        for side in 0..2 {
+            let span = self.ends.iter().position(|e| if side == 0 { e.1 == k } else { e.0 == k });
+            let material = both || unknown == Unknown::Material(side);
+            let Some(i) = span else {
+                if material && (if side == 0 { k > 0 } else { k + 1 < self.layout.stops.len() }) {
+                    out.push((k, side, -self.material.body));
+                }
+                continue;
+            };
+            let ends = self.ends[i];
+            let slopes = if material {
+                self.spans[i].force_rates(&self.material, &self.layout, ends, side == 0)
+            } else if unknown == Unknown::Angle(side)
+                && let (Law::Wheel(w), Some(wheel)) = (&r.law, self.wheel(k))
+            {
+                // The end of the span goes along the cable, dx/dp = R t.
+                let moved = w.directions(r.p[side])[0] * wheel.radius * if side == 0 { 1.0 } else { -1.0 };
+                let stiffness = self.spans[i].walk.compliance.try_inverse();
+                [stiffness.map_or(Vec2::repeat(f64::NAN), |s| s * moved); 2]
+            } else {
+                continue;
+            };
+            out.push((ends.0, 1, slopes[0]));
+            out.push((ends.1, 0, slopes[1]));
+        }
+        out
+    }
+
+    /// The whole derivative of the equations, and the slopes of the forces by each unknown.
+    fn tangent(&self, pulleys: &[usize], e: &Equations) -> (DMatrix<f64>, Vec<Touched>) {
+        let mut matrix = e.own.clone();
+        let mut slopes = Vec::with_capacity(matrix.ncols());
+        for (&k, r) in pulleys.iter().zip(&self.rubbing) {
+            for &unknown in r.unknowns() {
+                let column = slopes.len();
+                let of = self.force_slopes(k, r, unknown);
+                for &(row, stop, side, by) in &e.by_force {
+                    for &(_, _, d) in of.iter().filter(|s| s.0 == stop && s.1 == side) {
+                        matrix[(row, column)] += by.dot(&d);
+                    }
+                }
+                slopes.push(of);
+            }
+        }
+        (matrix, slopes)
+    }
+
+    fn newton_on_pulleys(&mut self, pulleys: &[usize]) -> Result<(), Failure> {
+        let first = pulleys.first().copied().unwrap_or(0);
+        let mut e = self.equations(pulleys);
+        for _ in 0..MAX_STEPS {
+            let worst = e.residual.amax();
+            let tension = self.forces.iter().flatten().fold(0.0, |m, f| larger(m, f.norm()));
+            self.residual = larger(self.residual, worst * tension);
+            if worst <= BALANCED {
+                return Ok(());
+            }
+            let failure = Failure::Unbalanced(first, worst * tension);
+            let (matrix, _) = self.tangent(pulleys, &e);
+            let step = matrix.lu().solve(&-&e.residual).filter(|s| s.iter().all(|v| v.is_finite()));
+            let Some(step) = step else { return Err(failure) };
+            let (from, norm) = (self.rubbing.clone(), e.residual.norm_squared());
+            let mut alpha = self.longest_step(pulleys, &step);
+            let mut better = false;
+            for _ in 0..MAX_HALVINGS {
+                self.move_unknowns(&from, &step, alpha);
+                self.steps += 1;
+                if self.take_unknowns(pulleys).is_ok() {
+                    let next = self.equations(pulleys);
+                    if next.residual.norm_squared() <= (1.0 - 1e-4 * alpha) * norm {
+                        (e, better) = (next, true);
+                        break;
+                    }
+                }
+                alpha *= 0.5;
+            }
+            if !better {
+                self.move_unknowns(&from, &step, 0.0);
+                self.take_unknowns(pulleys)?;
+                return if worst <= BALANCED_AT_LEAST { Ok(()) } else { Err(failure) };
+            }
+        }
+        let worst = e.residual.amax();
+        if worst <= BALANCED_AT_LEAST { Ok(()) } else { Err(Failure::Unbalanced(first, worst)) }
+    }
+
+    /// The longest part of a step that keeps the order of the stops and the side of the wheels.
+    fn longest_step(&self, pulleys: &[usize], step: &DVector<f64>) -> f64 {
+        let (mut alpha, mut column) = (1.0, 0);
+        let stops = &self.layout.stops;
+        let mut limit = |by: f64, most: f64| {
+            if by > most {
+                alpha = if most / by < alpha { most / by } else { alpha };
+            }
+        };
+        for (&k, r) in pulleys.iter().zip(&self.rubbing) {
+            for &unknown in r.unknowns() {
+                let by = step[column];
+                column += 1;
+                let room = |side: usize| match side {
+                    0 if k > 0 => ROOM * (stops[k].arc_length - stops[k - 1].leaves()),
+                    1 if k + 1 < stops.len() => ROOM * (stops[k + 1].arc_length - stops[k].leaves()),
+                    _ => f64::INFINITY,
+                };
+                match unknown {
+                    Unknown::Angle(_) => limit(by.abs(), MOST_TURN),
+                    Unknown::Material(side) => limit(if side == 0 { -by } else { by }, room(side)),
+                    Unknown::Both => {
+                        limit(-by, room(0));
+                        limit(by, room(1));
+                    }
+                }
+            }
+        }
+        alpha
+    }
+
+    fn move_unknowns(&mut self, from: &[Rubbing], step: &DVector<f64>, alpha: f64) {
+        let mut column = 0;
+        for (r, old) in self.rubbing.iter_mut().zip(from) {
+            for &unknown in old.unknowns() {
+                let by = alpha * step[column];
+                column += 1;
+                match unknown {
+                    Unknown::Angle(side) => r.p[side] = old.p[side] + by,
+                    Unknown::Material(side) => r.s[side] = old.s[side] + by,
+                    Unknown::Both => r.s = [old.s[0] + by; 2],
+                }
+            }
+        }
+    }
+
+    /// Asks every pulley whether it holds or slides; true where one changed.
+    fn change_modes(&mut self, pulleys: &[usize], one: bool) -> bool {
+        let on = self.on_wheel();
+        let mut changed = false;
+        let mut rubbing = std::mem::take(&mut self.rubbing);
+        for (&k, r) in pulleys.iter().zip(&mut rubbing) {
+            if changed && one {
+                break;
+            }
+            let ends = self.ends_at(k, r);
+            let [before, after] = self.forces[k];
+            changed |= match &mut r.law {
+                Law::Wheel(w) => w.change_mode(&on, &ends, PATIENCE),
+                Law::Point { friction, stands, held } if *friction > 0.0 => {
+                    let ratio = (ends.t[1] / ends.t[0]).ln();
+                    let over = ratio.abs() - *friction * turn_between(before, after).abs();
+                    let slid = r.s[0] - *held;
+                    let next = match *stands {
+                        Point::Holds if over > CONE => Point::Slides(*friction * ratio.signum()),
+                        // With m = +μ material goes on to the side after: less of it lies before.
+                        Point::Slides(m) if m * slid > 0.0 && slid.abs() > STILL * self.layout.length => Point::Holds,
+                        same => same,
+                    };
+                    let differs = next != *stands;
+                    *stands = next;
+                    differs
+                }
+                Law::Point { .. } => false,
+            };
+        }
+        self.rubbing = rubbing;
+        changed
+    }
+
+    /// Adds to small changes of the forces beside the stops what the pulleys do about them.
+    pub fn let_rubbing_follow(&mut self, changes: &mut [[Vec2; 2]]) {
+        let pulleys = self.pulleys();
+        let e = self.equations(&pulleys);
+        let mut right = DVector::zeros(e.residual.len());
+        for &(row, stop, side, by) in &e.by_force {
+            right[row] -= by.dot(&changes[stop][side]);
+        }
+        let (matrix, slopes) = self.tangent(&pulleys, &e);
+        let Some(moves) = matrix.lu().solve(&right) else {
+            changes.iter_mut().flatten().for_each(|c| *c = Vec2::repeat(f64::NAN));
+            return;
+        };
+        for (of, by) in slopes.iter().zip(moves.iter()) {
+            for &(stop, side, slope) in of {
+                changes[stop][side] += slope * *by;
+            }
+        }
+    }
+}

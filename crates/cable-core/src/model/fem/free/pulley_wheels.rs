@@ -1,0 +1,179 @@
+//! A cable round the wheels of its pulleys.
+//!
+//! The cable runs from where it meets a wheel to where it leaves it, tangent at both; these contact points follow the
+//! forces of the spans beside (a few rounds, each gains the ratio of radius to span). Along the arc, with t the direction
+//! and n the outward normal, dT = −q·t ds ± μ (T dα − q·n ds): the capstan with the weight on the wheel.
+
+use crate::model::fem::free::element::{Material, turn_between};
+use crate::model::fem::free::stations::{Hold, Wheel};
+use crate::model::fem::free::pulley_balance::{Failure, Network};
+use crate::math::{Vec2, cross, larger, perp};
+use crate::scene::PulleySide;
+
+/// Steps of the integration round a wheel.
+const WHEEL_STEPS: usize = 16;
+/// Rounds to find where a cable meets and leaves its wheels; each gains the ratio of radius to span.
+const WHEEL_ROUNDS: usize = 80;
+/// Rounds of wheels end when no contact point moves by more than this angle, rad.
+const WHEEL_STILL: f64 = 1e-12;
+/// As above where round-off allows no better.
+const WHEEL_STILL_AT_LEAST: f64 = 1e-8;
+
+impl Network {
+    /// ln(T_after/T_before) round a wheel, passed `clockwise` (+1) or the other way (−1), with friction pulling along (`sign` +1) or against.
+    pub(in crate::model::fem) fn round_wheel(&self, wheel: &Wheel, (before, clockwise): (Vec2, f64), sign: f64) -> f64 {
+        let m = &self.material;
+        let [meets, leaves] = wheel.contact;
+        let turn = arc(meets, leaves, clockwise);
+        let start = meets.y.atan2(meets.x);
+        let slope = |alpha: f64, tension: f64| {
+            let angle = start - clockwise * alpha;
+            let n = Vec2::new(angle.cos(), angle.sin());
+            let t = perp(n) * -clockwise;
+            let ds = wheel.radius / (m.thermal_stretch * (1.0 + tension / m.axial_stiffness));
+            -m.body.dot(&t) * ds + sign * wheel.friction * (tension - m.body.dot(&n) * ds)
+        };
+        let (first, h) = (before.norm(), turn / WHEEL_STEPS as f64);
+        let mut tension = first;
+        for k in 0..WHEEL_STEPS {
+            let a = h * k as f64;
+            let k1 = slope(a, tension);
+            let k2 = slope(a + 0.5 * h, tension + 0.5 * h * k1);
+            let k3 = slope(a + 0.5 * h, tension + 0.5 * h * k2);
+            let k4 = slope(a + h, tension + h * k3);
+            tension += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+        }
+        (tension / first).ln()
+    }
+
+    /// +1 where the cable runs clockwise round the wheel, −1 the other way.
+    fn clockwise(&self, wheel: &Wheel, travel: Vec2) -> f64 {
+        let right = if travel.x < 0.0 { -1.0 } else { 1.0 };
+        match wheel.side {
+            PulleySide::Over => right,
+            PulleySide::Under => -right,
+        }
+    }
+
+    /// The same at a stop, by the anchors before and after it.
+    pub(in crate::model::fem) fn clockwise_at(&self, stop: usize, wheel: &Wheel) -> f64 {
+        self.clockwise(wheel, self.passing(stop))
+    }
+
+    /// The way the cable passes a stop, from the anchor before to the anchor after.
+    fn passing(&self, stop: usize) -> Vec2 {
+        let near = |k: usize| match self.layout.stops[k].hold {
+            Hold::Free => None,
+            Hold::Fixed(p) => Some(p),
+            Hold::Pulley(w) => Some(w.center),
+        };
+        let here = near(stop).unwrap_or_default();
+        let before = (0..stop).rev().find_map(near).unwrap_or(here);
+        let after = (stop + 1..self.layout.stops.len()).find_map(near).unwrap_or(here);
+        after - before
+    }
+
+    /// Contact points for straight cables, to start with.
+    pub(in crate::model::fem) fn meet_wheels_straight(&mut self) {
+        for k in self.pulleys() {
+            let Some(mut wheel) = self.wheel(k) else { continue };
+            if wheel.radius > 0.0 {
+                let clockwise = self.clockwise(&wheel, self.passing(k));
+                let up = Vec2::new(0.0, if wheel.side == PulleySide::Over { 1.0 } else { -1.0 });
+                let tilt = perp(up) * clockwise * if wheel.side == PulleySide::Over { 0.05 } else { -0.05 };
+                wheel.contact = [(up + tilt).normalize(), (up - tilt).normalize()];
+                self.layout.stops[k].hold = Hold::Pulley(wheel);
+            }
+        }
+    }
+
+    /// Balances with contact points and forces in agreement.
+    pub(in crate::model::fem) fn balance_on_wheels(&mut self) -> Result<(), Failure> {
+        for round in 1..=WHEEL_ROUNDS {
+            self.balance()?;
+            let (moved, lifted) = self.meet_wheels();
+            match lifted {
+                Some(k) if moved <= WHEEL_STILL || round == WHEEL_ROUNDS => return Err(Failure::LeavesWheel(k)),
+                None if moved <= WHEEL_STILL => break,
+                None if round == WHEEL_ROUNDS && !(moved <= WHEEL_STILL_AT_LEAST) => {
+                    return Err(Failure::Unbalanced(self.pulleys().first().copied().unwrap_or(0), self.residual));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves the contact points to where the forces say; returns the largest move, rad, and a wheel the cable would
+    /// leave at these forces. On the way to an answer that may pass (a span too slack yet hangs clear of the wheel's
+    /// side): it is left touching in one point between the two directions.
+    fn meet_wheels(&mut self) -> (f64, Option<usize>) {
+        let (mut largest, mut lifted) = (0.0, None);
+        for k in self.pulleys() {
+            let Some(mut wheel) = self.wheel(k).filter(|w| w.radius > 0.0) else { continue };
+            let [before, after] = self.forces[k];
+            let clockwise = self.clockwise(&wheel, self.passing(k));
+            let mut contact = [perp(before) * (clockwise / before.norm()), perp(after) * (clockwise / after.norm())];
+            let mut turn = arc(contact[0], contact[1], clockwise);
+            if turn > 1.5 * std::f64::consts::PI {
+                let between = contact[0] + contact[1];
+                contact = [between / between.norm(); 2];
+                (turn, lifted) = (0.0, Some(k));
+            }
+            let moved = (0..2).map(|i| (contact[i] - wheel.contact[i]).norm()).sum::<f64>();
+            largest = larger(largest, moved);
+            wheel.contact = contact;
+            // Simpson's mean over the arc.
+            let tension = [0.0, 0.5, 1.0].map(|f| tension(&wheel, &self.material, [before, after], f));
+            let tension = (tension[0] + 4.0 * tension[1] + tension[2]) / 6.0;
+            let lap =
+                wheel.radius * turn / (self.material.thermal_stretch * (1.0 + tension / self.material.axial_stiffness));
+            let stop = &mut self.layout.stops[k];
+            stop.arc_length -= 0.5 * (lap - stop.lap);
+            stop.lap = lap;
+            stop.hold = Hold::Pulley(wheel);
+        }
+        (largest, lifted)
+    }
+}
+
+/// The angle the cable turns through on a wheel between two contact directions, 0 to 2π.
+fn arc(meets: Vec2, leaves: Vec2, clockwise: f64) -> f64 {
+    let turn = -clockwise * turn_between(meets, leaves);
+    if turn < -1e-9 { turn + std::f64::consts::TAU } else { turn }
+}
+
+/// The angle through which the contact point goes round a wheel, positive counter-clockwise, rad.
+#[must_use]
+pub fn turn(wheel: &Wheel, before: Vec2) -> f64 {
+    let [meets, leaves] = wheel.contact;
+    let clockwise = cross(meets, before) < 0.0;
+    let turn = turn_between(meets, leaves);
+    if clockwise && turn > 1e-9 {
+        turn - std::f64::consts::TAU
+    } else if !clockwise && turn < -1e-9 {
+        turn + std::f64::consts::TAU
+    } else {
+        turn
+    }
+}
+
+/// Friction over a wheel that adds less than this part of the tension adds evenly: the difference is its square, and the quotient of two
+/// small numbers is not formed.
+const EVEN: f64 = 1e-6;
+
+/// Tension at a fraction of the arc, N: weight and wind along the way from the first contact, and what friction adds.
+#[must_use]
+pub fn tension(wheel: &Wheel, material: &Material, [before, after]: [Vec2; 2], fraction: f64) -> f64 {
+    let (first, last) = (before.norm(), after.norm());
+    let stretch = material.thermal_stretch * (1.0 + 0.5 * (first + last) / material.axial_stiffness);
+    let start = wheel.contact[0].y.atan2(wheel.contact[0].x);
+    let angle = start + fraction * turn(wheel, before);
+    let carried = |n: Vec2| material.body.dot(&(n - wheel.contact[0])) * wheel.radius / stretch;
+    let rubbed = last - first + carried(wheel.contact[1]);
+    // Coulomb friction adds in proportion to what the tension is already: T e^{mφ}.
+    let whole = (first + rubbed) / first;
+    let even = !(whole > 0.0 && whole.is_finite() && (whole - 1.0).abs() > EVEN);
+    let share = if even { fraction } else { (whole.powf(fraction) - 1.0) / (whole - 1.0) };
+    first - carried(Vec2::new(angle.cos(), angle.sin())) + share * rubbed
+}

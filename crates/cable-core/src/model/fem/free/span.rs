@@ -1,0 +1,234 @@
+//! A span: the elements between two anchors, solved for the force at its start.
+//!
+//! Node by node the tension force is known once it is known at the start: F drops by q Δs along an element and by
+//! the load at a stop. What is left are two unknowns however many elements there are, and their equation is the
+//! minimum of a convex function (the dual of the potential energy):
+//! ```text
+//! minimise  D(F₀) = Σ Ψₑ(Fₑ) − F₀·d,     ∇D = Σ chordₑ − d,     ∇²D = Σ ∂chordₑ/∂Fₑ
+//! ```
+//! Every minimum is an equilibrium in tension: compression and unstable states have no place in it. Newton with a
+//! line search; accepted on the gradient where D itself has no digits left.
+
+use crate::model::fem::free::element::Material;
+use crate::model::fem::free::stations::Layout;
+use crate::math::{Mat2, Vec2};
+
+/// Newton steps a span may take. Measured: 3 to 14, up to 40 for a span folded on itself.
+const MAX_STEPS: usize = 200;
+/// Halvings of a Newton step.
+const MAX_HALVINGS: usize = 40;
+/// Fraction of the promised decrease a step must give (Armijo). Any small number will do.
+const ARMIJO: f64 = 1e-4;
+/// A span is closed when the gap is this part of its length; a few rounding errors of a sum over its elements.
+const CLOSED: f64 = 4e-16;
+/// Gap, in parts of the length, that is still taken for closed when Newton no longer halves it: the gap of taut stiff
+/// spans stops at about 1e-13. Newton is quadratic here, so a step that does not halve it meets rounding.
+const CLOSED_AT_LEAST: f64 = 1e-10;
+/// A step this small, in parts of the force, changes nothing any more.
+const SAME_FORCE: f64 = 1e-15;
+
+/// What a span looks like under a start force.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Walk {
+    /// From its first to its last node, m.
+    pub reach: Vec2,
+    /// ∂reach/∂F₀, m/N.
+    pub compliance: Mat2,
+    /// Σ Ψ, J.
+    pub energy: f64,
+    /// Tension force just before the last node, N.
+    pub end_force: Vec2,
+}
+
+/// A solved span.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Span {
+    /// Tension force just after its first node, N.
+    pub force: Vec2,
+    /// What it looks like.
+    pub walk: Walk,
+    /// Newton steps taken.
+    pub steps: usize,
+    /// Unbalanced force that its gap stands for, N.
+    pub residual: f64,
+}
+
+impl Span {
+    /// How the forces at both ends change with the arc length at an end (`by_end`: the last stop, else the first).
+    #[must_use]
+    pub fn force_rates(&self, material: &Material, layout: &Layout, ends: (usize, usize), by_end: bool) -> [Vec2; 2] {
+        let rate = reach_rate(material, layout, ends, self.force, by_end);
+        let start = self.walk.compliance.try_inverse().map_or(Vec2::repeat(f64::NAN), |k| -(k * rate));
+        [start, start + material.body * if by_end { -1.0 } else { 1.0 }]
+    }
+}
+
+/// Runs over the elements between two stops: `each(ds, middle force)`; returns the force before the last stop.
+pub fn elements(
+    material: &Material,
+    layout: &Layout,
+    (first, last): (usize, usize),
+    start: Vec2,
+    mut each: impl FnMut(f64, Vec2),
+) -> Vec2 {
+    let mut force = start;
+    for k in first..last {
+        let (stop, next) = (&layout.stops[k], &layout.stops[k + 1]);
+        if k > first {
+            force -= stop.load;
+        }
+        let ds = (next.arc_length - stop.leaves()) / stop.cells as f64;
+        let drop = material.body * ds;
+        for e in 0..stop.cells {
+            each(ds, force - drop * (e as f64 + 0.5));
+        }
+        force -= drop * stop.cells as f64;
+    }
+    force
+}
+
+/// The shape of a span under a start force.
+#[must_use]
+pub fn walk(material: &Material, layout: &Layout, ends: (usize, usize), start: Vec2) -> Walk {
+    let mut w = Walk::default();
+    w.end_force = elements(material, layout, ends, start, |ds, force| {
+        let r = material.respond(ds, force);
+        w.reach += r.chord;
+        w.compliance += r.compliance;
+        w.energy += r.energy;
+    });
+    w
+}
+
+/// ∂reach/∂(arc length at one end), at a constant start force.
+fn reach_rate(material: &Material, layout: &Layout, (first, last): (usize, usize), start: Vec2, by_end: bool) -> Vec2 {
+    let (moving, sign) = if by_end { (last - 1, 1.0) } else { (first, -1.0) };
+    let mut rate = Vec2::zeros();
+    let mut force = start;
+    for k in first..last {
+        let (stop, next) = (&layout.stops[k], &layout.stops[k + 1]);
+        if k > first {
+            force -= stop.load;
+        }
+        let cells = stop.cells as f64;
+        let ds = (next.arc_length - stop.leaves()) / cells;
+        for e in 0..stop.cells {
+            let middle = (e as f64 + 0.5) / cells;
+            let f = force - material.body * (ds * (e as f64 + 0.5));
+            if k == moving {
+                let compliance = material.respond(ds, f).compliance;
+                rate += material.chord_rate(ds, f) * (sign / cells) - compliance * material.body * (sign * middle);
+            } else if k > moving {
+                rate -= material.respond(ds, f).compliance * material.body * sign;
+            }
+        }
+        force -= material.body * (ds * cells);
+    }
+    rate
+}
+
+/// The whole load on a span, N, and its length, m of arc length.
+fn load_and_length(material: &Material, layout: &Layout, (first, last): (usize, usize)) -> (Vec2, f64) {
+    let length = layout.stops[last].arc_length - layout.stops[first].leaves();
+    let loads: Vec2 = layout.stops[first + 1..last].iter().map(|s| s.load).sum();
+    (material.body * length + loads, length)
+}
+
+/// A start force near the answer: the parabola where the span is taut, else the catenary's own first guess (A. Peyrot
+/// and A. Goulois, *Analysis of cable structures*, Computers & Structures 1979), point loads spread evenly.
+#[must_use]
+pub fn first_guess(material: &Material, layout: &Layout, ends: (usize, usize), d: Vec2) -> Vec2 {
+    let (load, length) = load_and_length(material, layout, ends);
+    let rest = length * material.thermal_stretch;
+    let (chord, weight) = (d.norm(), load.norm());
+    let strain = chord / rest - 1.0;
+    if !(weight > 0.0) {
+        return if chord > 0.0 { d * (material.axial_stiffness * strain.max(0.0) / chord) } else { d };
+    }
+    let up = -load / weight;
+    let rise = d.dot(&up);
+    let across = d - up * rise;
+    if strain < SLACK || chord == 0.0 {
+        let width = across.norm();
+        let lambda = if width > 1e-6 * rest {
+            (3.0 * ((rest * rest - rise * rise) / (width * width) - 1.0)).max(0.0).sqrt()
+        } else {
+            f64::INFINITY
+        };
+        let level =
+            if lambda.is_finite() && lambda > 0.0 { across * (weight / rest / (2.0 * lambda)) } else { Vec2::zeros() };
+        let steep = if lambda > 0.0 { rise / rest / lambda.tanh() } else { rise / rest };
+        return level + up * (0.5 * weight * (steep - 1.0));
+    }
+    let direction = d / chord;
+    let sideways = load - direction * load.dot(&direction);
+    let beta = sideways.norm_squared() / 24.0;
+    if strain <= 0.0 && beta.sqrt() <= STEEP * weight {
+        return load * 0.5;
+    }
+    // Taut: T/EA − β/T² = strain, β = (load across the chord)²/24. Concave and rising: Newton from the left is monotone.
+    let ea = material.axial_stiffness;
+    let mut tension = if strain > 0.0 { (ea * strain).max((beta * ea).cbrt()) } else { (beta * ea).cbrt() };
+    for _ in 0..12 {
+        let f = tension / ea - beta / (tension * tension) - strain;
+        let slope = 1.0 / ea + 2.0 * beta / tension.powi(3);
+        let next = tension - f / slope;
+        tension = if next > 0.1 * tension { next } else { 0.1 * tension };
+        if !(f.abs() > 1e-6 * slope * tension) {
+            break;
+        }
+    }
+    direction * tension + load * 0.5
+}
+
+/// Strain below which a span counts as slack for the first guess: both guesses are good about here.
+const SLACK: f64 = -0.02;
+
+/// Part of the load that must act across the chord for the parabola to mean anything.
+const STEEP: f64 = 1e-6;
+
+/// Solves a span between points `d` apart (m) from a start force. `None` when Newton fails (a number blew up).
+#[must_use]
+pub fn solve(material: &Material, layout: &Layout, ends: (usize, usize), d: Vec2, guess: Vec2) -> Option<Span> {
+    let (load, length) = load_and_length(material, layout, ends);
+    let size = length.max(d.norm());
+    let mut force = guess;
+    let mut w = walk(material, layout, ends, force);
+    for steps in 0..MAX_STEPS {
+        let gap = w.reach - d;
+        let stiffness = w.compliance.try_inverse()?;
+        let step = -(stiffness * gap);
+        if !(step.x.is_finite() && step.y.is_finite()) {
+            return None;
+        }
+        let done = |w: Walk, force: Vec2| Some(Span { force, walk: w, steps, residual: step.norm() });
+        if gap.norm() <= CLOSED * size || step.norm() <= SAME_FORCE * (force.norm() + load.norm()) {
+            return done(w, force);
+        }
+        let (value, slope) = (w.energy - force.dot(&d), gap.dot(&step));
+        let mut alpha = 1.0;
+        let mut taken = None;
+        for _ in 0..MAX_HALVINGS {
+            let trial = force + step * alpha;
+            let t = walk(material, layout, ends, trial);
+            let descends = t.energy - trial.dot(&d) <= value + ARMIJO * alpha * slope;
+            let closes = (t.reach - d).norm() <= (1.0 - ARMIJO * alpha) * gap.norm();
+            if (descends && alpha < 1.0) || closes || (descends && (t.reach - d).norm() <= 2.0 * gap.norm()) {
+                taken = Some((trial, t));
+                break;
+            }
+            alpha *= 0.5;
+        }
+        match taken {
+            Some((f, t)) => {
+                (force, w) = (f, t);
+                if gap.norm() <= CLOSED_AT_LEAST * size && (t.reach - d).norm() > 0.5 * gap.norm() {
+                    return done(w, force);
+                }
+            }
+            None if gap.norm() <= CLOSED_AT_LEAST * size => return done(w, force),
+            None => return None,
+        }
+    }
+    None
+}

@@ -1,0 +1,540 @@
+//! Rest of a cable that touches nothing but its supports, and slow motion from rest to rest.
+//!
+//! A flexible cable is solved span by span (`span`, `network`): no start can fail, and what is found is in tension and
+//! stable by construction. The mesh follows the error estimate where the scene does not give one.
+
+use std::sync::Arc;
+
+use crate::model::fem::free::results;
+use crate::model::fem::free::results::Point;
+use crate::model::fem::beam::equilibrium::{Beam, Outcome};
+use crate::model::fem::free::element::Material;
+use crate::model::fem::free::dual_weighted_residual;
+use crate::model::fem::free::stations::{Hold, Layout, place};
+use crate::model::fem::free::pulley_balance::{Failure, Network};
+use crate::error::{Place, SolveError};
+use crate::math::{Vec2, larger};
+use crate::model::initial_equilibrium::initial_equilibrium;
+use crate::model::{Model, Settings, StepReport};
+use crate::problem::Problem;
+use crate::scene::SupportKind;
+use crate::solution::ErrorEstimates;
+use crate::solution::{Assumptions, CableSolution, Cost, Warning, WarningKind};
+use crate::state::State;
+
+/// Elements to start with where nothing says how many: 1e-6 for a usual span, and 50 µs.
+const FIRST_SEGMENTS: usize = 40;
+/// Most elements the error estimate may ask for. Beyond, rounding grows faster than the error falls.
+const MOST_SEGMENTS: usize = 4000;
+/// Part of the tolerance the estimate must stay below.
+const SAFETY: f64 = 0.5;
+/// Order of the corrected bar.
+const ORDER: f64 = 4.0;
+/// Rounds of mesh refinement.
+const MAX_MESHES: usize = 6;
+/// Weight given to a weightless cable without loads, in parts of EA: far below the strain that rounding hides.
+const HINT_OF_WEIGHT_UNLOADED: f64 = 1e-18;
+/// Weight given to a weightless cable, in parts of its loads: where it is slack it has no shape
+/// of its own, this gives it that of a very light one. Far below any tension asked for.
+const HINT_OF_WEIGHT: f64 = 1e-12;
+/// Smoothing tension in parts of the load, see [`Material::smoothing`]. Seen only where the tension falls to it; at 1e-9
+/// a fold at EA 1e9 closed to 1e-8 m only, for want of digits of the force.
+const SMOOTHING: f64 = 1e-7;
+/// Longest move of a support in one slow step where friction must remember the way, in parts of the cable length.
+const SLOW_MOVE: f64 = 0.01;
+/// Most slow steps in one call.
+const MAX_SLOW_STEPS: f64 = 400.0;
+/// How often a slow step may be halved.
+const MAX_HALVINGS: usize = 8;
+
+/// The balance of pulleys without friction. On wheels it is found with the material on them by a mean of the tension (to 1e-7 of it),
+/// and then exactly.
+fn solve_smooth(network: &mut Network) -> Result<bool, Failure> {
+    network.solve()?;
+    if network.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.radius > 0.0)) {
+        let mut exact = network.clone();
+        exact.remember();
+        if exact.rub().is_ok() {
+            *network = exact;
+        }
+    }
+    Ok(true)
+}
+
+/// A cable at rest on its supports.
+#[derive(Clone, Debug)]
+pub struct Statics {
+    problem: Arc<Problem>,
+    settings: Settings,
+    time: f64,
+    segments: usize,
+    /// Arc length at each support that slides, m.
+    slid: Vec<Option<f64>>,
+    /// The flexible cable of the last answer: where the next one starts.
+    network: Option<Network>,
+    /// The same on a finer mesh where pulleys rub: it tells what the mesh does to what friction remembers.
+    finer: Option<Network>,
+    /// The stops of the last answer and the tension forces before and after them, N.
+    rested: Option<(Layout, Vec<[Vec2; 2]>)>,
+    points: Vec<Point>,
+    estimate: Option<f64>,
+    /// Estimated error of the shape, m.
+    moved: Option<f64>,
+    /// Whether it was put where it is: then it is not as it was laid.
+    adopted: bool,
+}
+
+impl Statics {
+    /// Builds it at the route.
+    ///
+    /// # Errors
+    /// `Unsupported` when the scene needs what it lacks.
+    pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
+        let given = settings.segments.or(problem.cable.segments);
+        let mut new = Self {
+            segments: given.unwrap_or(FIRST_SEGMENTS),
+            slid: vec![None; problem.supports.len()],
+            network: None,
+            finer: None,
+            rested: None,
+            points: Vec::new(),
+            estimate: None,
+            moved: None,
+            adopted: false,
+            time: 0.0,
+            problem,
+            settings,
+        };
+        new.lay_straight();
+        Ok(new)
+    }
+
+    /// The straight way through the supports, before the first answer; ends that hang hang down.
+    fn lay_straight(&mut self) {
+        let mut layout = Layout::new(&self.problem, self.time, &[], &self.slid);
+        layout.cut(self.segments);
+        let Some((first, last)) = layout.anchored() else { return };
+        let down = self.problem.body_force(self.time);
+        let down = if down.norm() > 0.0 { down / down.norm() } else { Vec2::new(0.0, -1.0) };
+        let stops = &layout.stops;
+        let at = |k: usize| -> Vec2 {
+            let anchor = |j: usize| stops[j].point(0).unwrap_or_default();
+            let (a, b) = (
+                (0..=k).rev().find(|&j| stops[j].anchors()).unwrap_or(first),
+                (k..stops.len()).find(|&j| stops[j].anchors()).unwrap_or(last),
+            );
+            if k < first || k > last {
+                return anchor(a.max(first).min(last))
+                    + down * (stops[k].arc_length - stops[a.max(first).min(last)].arc_length).abs();
+            }
+            let width = stops[b].arc_length - stops[a].arc_length;
+            let f = if width > 0.0 { (stops[k].arc_length - stops[a].arc_length) / width } else { 0.0 };
+            anchor(a) + (anchor(b) - anchor(a)) * f
+        };
+        let point = |arc_length: f64, at: Vec2| Point { arc_length, at, ..Point::default() };
+        self.points.clear();
+        for k in 0..stops.len() - 1 {
+            let (a, b, s, d) = (at(k), at(k + 1), stops[k].arc_length, stops[k + 1].arc_length - stops[k].arc_length);
+            for e in 0..stops[k].cells {
+                let f = e as f64 / stops[k].cells as f64;
+                self.points.push(point(s + d * f, a + (b - a) * f));
+            }
+        }
+        self.points.push(point(layout.length, at(stops.len() - 1)));
+    }
+
+    /// Finds the resting place at the present time; `dragged` are the hand-set support positions, m.
+    ///
+    /// # Errors
+    /// A typed reason when there is none, or none was found.
+    pub fn settle(&mut self, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
+        let time = self.time;
+        self.rest_at(time, dragged)
+    }
+
+    /// Moves supports on by `dt_s` without inertia; friction remembers.
+    ///
+    /// # Errors
+    /// As `Mechanics::advance`.
+    pub fn advance(&mut self, dt_s: f64, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
+        let (start, end) = (self.time, self.time + dt_s);
+        let rubs = self.problem.supports.iter().any(|s| s.friction > 0.0);
+        let steps = if rubs { self.slow_steps(start, end, dragged) } else { 1.0 };
+        let mut report = StepReport::default();
+        let (mut step, mut halvings) = (dt_s / steps, 0);
+        // A hand goes straight.
+        let from: Vec<Option<Vec2>> = (0..dragged.len()).map(|k| self.support_at(k)).collect();
+        let drawn = |time: f64| -> Vec<Option<Vec2>> {
+            let part = if time < end { (time - start) / dt_s } else { 1.0 };
+            let at = |to: Vec2, from: &Option<Vec2>| from.map_or(to, |f| f + (to - f) * part);
+            dragged.iter().zip(&from).map(|(to, from)| to.map(|to| at(to, from))).collect()
+        };
+        while self.time < end {
+            let next = if self.time + 1.5 * step >= end { end } else { self.time + step };
+            match self.rest_at(next, &drawn(next)) {
+                Ok(r) => {
+                    report.cost.iterations += r.cost.iterations;
+                    report.cost.residual_n = r.cost.residual_n;
+                    report.warnings = r.warnings;
+                }
+                Err(error) if halvings == MAX_HALVINGS || !rubs => return Err(error),
+                Err(_) => {
+                    step *= 0.5;
+                    halvings += 1;
+                    report.cost.halved_steps += 1;
+                }
+            }
+        }
+        Ok(report)
+    }
+
+    /// How many slow steps the moves of the supports ask for.
+    fn slow_steps(&self, start: f64, end: f64, dragged: &[Option<Vec2>]) -> f64 {
+        let mut longest: f64 = 0.0;
+        for k in 0..self.problem.supports.len() {
+            let from = self.support_at(k).or(place(&self.problem, k, start, &[]));
+            let to = place(&self.problem, k, end, dragged);
+            if let (Some(a), Some(b)) = (from, to) {
+                longest = longest.max((b - a).norm());
+            }
+        }
+        (longest / (SLOW_MOVE * self.problem.length)).ceil().clamp(1.0, MAX_SLOW_STEPS)
+    }
+
+    /// Rest at a time; on an error nothing has changed.
+    fn rest_at(&mut self, time: f64, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
+        let adaptive = self.settings.segments.or(self.problem.cable.segments).is_none();
+        let mut layout = Layout::new(&self.problem, time, dragged, &self.slid);
+        if layout.stops.len() < 2 || layout.anchored().is_none() {
+            return Err(SolveError::NoRestingPlace { why: "nothing holds the cable".to_owned() });
+        }
+        let (material, hinted) = self.material(time, &layout);
+        let (mut segments, mut iterations) = (self.segments, 0);
+        layout.cut(segments);
+        let mut network = Network::new(layout, material);
+        if let Some(old) = &self.network {
+            network.start_from(old);
+        }
+        let rubs = network.rubs() && self.problem.bending_stiffness == 0.0;
+        let first = if rubs { self.begin_rubbing(&mut network, dragged) } else { solve_smooth(&mut network) };
+        let first = first.map_err(|f| self.error(&network, f))?;
+        iterations += network.steps;
+        if self.problem.bending_stiffness > 0.0 {
+            if self.problem.supports.iter().any(|s| s.kind == SupportKind::Pulley) {
+                let feature = "bending stiffness over pulleys".to_owned();
+                return Err(SolveError::Unsupported { model: Model::Fem, feature });
+            }
+            return self.bend(network, time, hinted);
+        }
+        let mut estimate = dual_weighted_residual::relative_error(&mut network);
+        for _ in 0..MAX_MESHES {
+            if !(adaptive && estimate > SAFETY * self.settings.tolerance && segments < MOST_SEGMENTS) {
+                break;
+            }
+            let factor = (estimate / (SAFETY * self.settings.tolerance)).powf(1.0 / ORDER);
+            segments = ((segments as f64 * factor.clamp(1.2, 4.0)).ceil() as usize).min(MOST_SEGMENTS);
+            network.layout.cut(segments);
+            if network.rubbing.is_empty() { network.solve() } else { network.rub() }
+                .map_err(|f| self.error(&network, f))?;
+            iterations += network.steps;
+            estimate = dual_weighted_residual::relative_error(&mut network);
+        }
+        if rubs {
+            estimate += self.follow_finer(&network, (time, dragged), first);
+            network.commit_friction();
+            // What friction remembers is as wrong as the steps it remembers were.
+            let before = if first { None } else { self.estimate };
+            estimate = before.map_or(estimate, |e| larger(e, estimate));
+        }
+        self.time = time;
+        self.segments = segments;
+        for stop in &network.layout.stops {
+            if let (Some(k), Hold::Pulley(_)) = (stop.support, stop.hold)
+                && let Some(slid) = self.slid.get_mut(k)
+            {
+                *slid = Some(stop.arc_length + 0.5 * stop.lap);
+            }
+        }
+        results::points(&network, self.problem.radius, &mut self.points);
+        self.estimate = Some(estimate);
+        self.moved = Some(dual_weighted_residual::position_error(&mut network));
+        self.rested = Some((network.layout.clone(), network.forces.clone()));
+        let cost = Cost { iterations, residual_n: network.residual, ..Cost::default() };
+        self.network = Some(network);
+        Ok(StepReport { cost, warnings: self.warnings(hinted) })
+    }
+
+    /// The balance of pulleys that rub: from what they remember, else as the cable was laid; whether it was laid anew.
+    fn begin_rubbing(&self, network: &mut Network, dragged: &[Option<Vec2>]) -> Result<bool, Failure> {
+        if let Some(old) = &self.network
+            && network.remember_from(old)
+        {
+            return network.rub().map(|()| false);
+        }
+        if self.time == 0.0
+            && !self.adopted
+            && let Ok(Some(lay)) = initial_equilibrium(&self.problem, self.settings, (dragged, None))
+        {
+            let mut laid = network.clone();
+            if laid.remember_answer(&lay.answer) && laid.rub().is_ok() {
+                *network = laid;
+                return Ok(true);
+            }
+        }
+        network.solve()?;
+        network.remember();
+        network.rub().map(|()| true)
+    }
+
+    /// Goes the same way with bars half as long in steps half as long and with a memory of its own: by how much the forces differ, in
+    /// parts of the greatest. What mesh and steps do to friction adds up in what friction remembers, of which the present balance
+    /// knows nothing.
+    fn follow_finer(&mut self, network: &Network, (time, dragged): (f64, &[Option<Vec2>]), first: bool) -> f64 {
+        let Some(finer) = self.finer(network, (time, dragged), first) else {
+            // It begins anew from here.
+            self.finer = None;
+            return 0.0;
+        };
+        let off = dual_weighted_residual::difference(network, &finer);
+        self.finer = Some(finer);
+        off
+    }
+
+    fn finer(&self, network: &Network, (time, dragged): (f64, &[Option<Vec2>]), first: bool) -> Option<Network> {
+        let segments: usize = network.layout.stops.iter().map(|s| s.cells).sum();
+        let cut = |mut layout: Layout| {
+            layout.cut(2 * segments);
+            layout
+        };
+        let mut half = None;
+        if let Some(old) = self.finer.as_ref().filter(|_| !first && time > self.time) {
+            let middle = 0.5 * (self.time + time);
+            let halfway: Vec<Option<Vec2>> =
+                (0..dragged.len()).map(|k| Some((dragged[k]? + self.support_at(k).or(dragged[k])?) * 0.5)).collect();
+            let layout = cut(Layout::new(&self.problem, middle, &halfway, &self.slid));
+            let (material, _) = self.material(middle, &layout);
+            let mut step = Network::new(layout, material);
+            step.start_from(old);
+            if !step.remember_from(old) {
+                return None;
+            }
+            step.rub().ok()?;
+            step.commit_friction();
+            half = Some(step);
+        }
+        let mut finer = Network::new(cut(network.layout.clone()), network.material);
+        match half.as_ref().or(self.finer.as_ref().filter(|_| !first)) {
+            Some(old) => {
+                finer.start_from(old);
+                if !finer.remember_from(old) {
+                    return None;
+                }
+            }
+            None => {
+                finer.start_from(network);
+                finer.rubbing.clone_from(&network.rubbing);
+            }
+        }
+        finer.rub().ok()?;
+        finer.commit_friction();
+        Some(finer)
+    }
+
+    /// Where a support was in the last answer, of a wheel its centre (where the cable meets it is no move of the support), m.
+    fn support_at(&self, support: usize) -> Option<Vec2> {
+        let stop = self.network.as_ref()?.layout.stops.iter().find(|s| s.support == Some(support))?;
+        match stop.hold {
+            Hold::Pulley(wheel) => Some(wheel.center),
+            _ => stop.point(0),
+        }
+    }
+
+    /// Rest with bending stiffness, from the flexible cable: on a mesh and on that of half the bars, whose difference
+    /// tells the error (fourth order: a fifteenth of it is left).
+    fn bend(&mut self, network: Network, time: f64, hinted: bool) -> Result<StepReport, SolveError> {
+        let given = self.settings.segments.or(self.problem.cable.segments).is_some();
+        // A stiff cable has a shape of its own: it needs no hint of weight.
+        let body = if hinted { Vec2::zeros() } else { network.material.body };
+        let mut coarse = Beam::new(&network, self.problem.bending_stiffness, body).wound_as(&self.problem.route);
+        let mut outcome = coarse.solve();
+        let mut iterations = network.steps + coarse.steps;
+        let (mut estimate, mut moved) = (None, None);
+        while !given && outcome == Outcome::Stable && coarse.bars() < MOST_SEGMENTS {
+            let mut fine = coarse.halved();
+            outcome = fine.solve();
+            iterations += fine.steps - coarse.steps;
+            let found = dual_weighted_residual::halving_error(&coarse, &fine);
+            estimate = Some(found);
+            moved = Some(2.0 / 15.0 * dual_weighted_residual::apart(&coarse.points(false), &fine.points(false)));
+            coarse = fine;
+            if found <= SAFETY * self.settings.tolerance {
+                break;
+            }
+        }
+        if given && outcome == Outcome::Stable {
+            // The given mesh is kept; the finer one only tells its error, sixteen fifteenths of the change.
+            let mut fine = coarse.halved();
+            if fine.solve() == Outcome::Stable {
+                estimate = Some(16.0 * dual_weighted_residual::halving_error(&coarse, &fine));
+                moved = Some(2.0 * dual_weighted_residual::apart(&coarse.points(false), &fine.points(false)));
+            }
+        }
+        match outcome {
+            Outcome::Stable => {}
+            Outcome::Unstable => return Err(SolveError::Indefinite { model: Model::Fem }),
+            Outcome::Failed => return Err(self.error(&network, Failure::Span(0, coarse.residual))),
+        }
+        self.time = time;
+        // Who gives the mesh is answered at its nodes.
+        self.points = coarse.points(!given);
+        self.rested = Some((coarse.layout().clone(), coarse.stop_forces()));
+        (self.estimate, self.moved) = (estimate, moved);
+        let cost = Cost { iterations, residual_n: coarse.residual, ..Cost::default() };
+        self.network = Some(network);
+        Ok(StepReport { cost, warnings: self.warnings(hinted) })
+    }
+
+    /// What the elements share, and whether a weightless cable was given a hint of weight.
+    fn material(&self, time: f64, layout: &Layout) -> (Material, bool) {
+        let problem = &self.problem;
+        let mut body = problem.body_force(time);
+        let loads: f64 = layout.stops.iter().map(|s| s.load.norm()).sum();
+        let hinted = !(body.norm() > 0.0);
+        if hinted {
+            let whole =
+                if loads > 0.0 { HINT_OF_WEIGHT * loads } else { HINT_OF_WEIGHT_UNLOADED * problem.axial_stiffness };
+            body = Vec2::new(0.0, -whole / problem.length);
+        }
+        let material = Material {
+            axial_stiffness: problem.axial_stiffness,
+            thermal_stretch: problem.thermal_stretch,
+            body,
+            smoothing: SMOOTHING * (body.norm() * problem.length + loads),
+        };
+        (material, hinted)
+    }
+
+    fn warnings(&self, hinted: bool) -> Vec<Warning> {
+        let problem = &self.problem;
+        let mut out = Vec::new();
+        let mut warn = |kind, value: f64, limit: f64, message: String| {
+            out.push(Warning::new(kind, &problem.cable.name, 0.0, [value, limit], message));
+        };
+        if let Some(rubbing) = problem.supports.iter().find(|s| s.friction > 0.0) {
+            let message = format!(
+                "Pulley `{}` rubs, so a resting place is not unique: this is the one of least sliding from the way the cable was laid or moved",
+                rubbing.name
+            );
+            warn(WarningKind::NotUnique, rubbing.friction, 0.0, message);
+        }
+        if hinted && problem.loads.is_empty() {
+            let message = "The cable has no weight: where it is slack its shape is that of a very light one".to_owned();
+            warn(WarningKind::NotUnique, 0.0, 0.0, message);
+        }
+        if let Some(estimate) = self.estimate
+            && !(estimate <= self.settings.tolerance)
+        {
+            let message = format!(
+                "{} elements give the largest tension to about {:.1e}; {:.1e} was asked for: use more segments",
+                self.segments, estimate, self.settings.tolerance
+            );
+            warn(WarningKind::Accuracy, estimate, self.settings.tolerance, message);
+        }
+        out
+    }
+
+    /// A failure in the words of the user.
+    fn error(&self, network: &Network, failure: Failure) -> SolveError {
+        let name = |k: usize| {
+            let support =
+                network.layout.stops.get(k).and_then(|s| s.support).and_then(|i| self.problem.supports.get(i));
+            support.map_or_else(|| "?".to_owned(), |s| s.name.clone())
+        };
+        let not_converged = |k: usize, residual_n: f64| SolveError::NotConverged {
+            model: Model::Fem,
+            iterations: network.steps,
+            residual_n,
+            place: network.layout.stops.get(k).map_or_else(Box::<Place>::default, |s| {
+                self.problem.place(s.arc_length, s.point(0).unwrap_or(Vec2::repeat(f64::NAN)), self.time)
+            }),
+        };
+        match failure {
+            Failure::Span(k, residual) | Failure::Unbalanced(k, residual) => not_converged(k, residual),
+            Failure::RunsOut(k) => {
+                SolveError::NoRestingPlace { why: format!("the cable runs out through pulley `{}`", name(k)) }
+            }
+            Failure::LeavesWheel(k) => SolveError::NoRestingPlace {
+                why: format!("the cable does not press on the wheel of pulley `{}` on the side it runs on", name(k)),
+            },
+        }
+    }
+
+    /// Takes over a state of the same cable.
+    ///
+    /// # Errors
+    /// When a number is not finite or the state does not fit the cable.
+    pub fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
+        if let Some(e) = state.refuse_non_finite() {
+            return Err(e);
+        }
+        let near = 1e-6 * self.problem.length;
+        let fits = state.arc_length_m.len() == state.position_m.len()
+            && state.arc_length_m.first().is_some_and(|s| s.abs() <= near)
+            && state.arc_length_m.last().is_some_and(|s| (s - self.problem.length).abs() <= near);
+        if !fits {
+            let feature = "a state of a cable of another length".to_owned();
+            return Err(SolveError::Unsupported { model: Model::Fem, feature });
+        }
+        self.time = state.time_s;
+        for (k, support) in self.problem.supports.iter().enumerate() {
+            if let (None, Some((at, _))) = (support.arc_length, support.position_at(state.time_s)) {
+                self.slid[k] = Some(crate::model::fem::free::stations::nearest(&state.position_m, &state.arc_length_m, at));
+            }
+        }
+        self.network = None;
+        self.adopted = true;
+        self.rested = None;
+        (self.estimate, self.moved) = (None, None);
+        self.points.clear();
+        self.points.extend(state.arc_length_m.iter().zip(&state.position_m).map(|(&arc_length, &at)| Point {
+            arc_length,
+            at,
+            ..Point::default()
+        }));
+        Ok(())
+    }
+
+    /// Where the cable is.
+    #[must_use]
+    pub fn state(&self) -> State {
+        State {
+            time_s: self.time,
+            arc_length_m: self.points.iter().map(|p| p.arc_length).collect(),
+            position_m: self.points.iter().map(|p| p.at).collect(),
+            velocity_m_per_s: vec![Vec2::zeros(); self.points.len()],
+        }
+    }
+
+    /// The answer at this instant.
+    #[must_use]
+    pub fn solution(&self) -> CableSolution {
+        let body = self.problem.body_force(self.time);
+        let supports = self.rested.as_ref().map_or_else(Vec::new, |(layout, forces)| {
+            results::reactions(&self.problem, layout, forces, body, &self.points)
+        });
+        let answer = CableSolution {
+            name: self.problem.cable.name.clone(),
+            nodes: self.points.iter().map(|p| p.node(&self.problem)).collect(),
+            supports,
+            contacts: Vec::new(),
+            error_estimate: self.estimate,
+            assumptions: Assumptions {
+                bending_stiffness_n_m2: self.problem.bending_stiffness,
+                ..Assumptions::default()
+            },
+            ..CableSolution::default()
+        };
+        let errors = ErrorEstimates { position_m: self.moved, ..ErrorEstimates::of_forces(&answer, self.estimate) };
+        CableSolution { errors, ..answer }
+    }
+}

@@ -1,0 +1,262 @@
+//! The stops of a cable in order of arc length: supports and point loads, and the elements between them.
+//!
+//! A stop either anchors the cable (held, or a pulley it slides through) or carries a load on a free point. The
+//! elements between two stops follow them when the arc length at a pulley changes, so a pulley needs no new mesh:
+//! node arc lengths are the stops' ones and fixed fractions in between.
+
+use crate::model::fem::system::assembly::bars_between;
+use crate::math::Vec2;
+use crate::problem::Problem;
+use crate::scene::{PulleySide, SupportKind};
+
+/// How a stop holds the cable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Hold {
+    /// Not at all.
+    Free,
+    /// At a point, m.
+    Fixed(Vec2),
+    /// It slides through.
+    Pulley(Wheel),
+}
+
+/// A pulley.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wheel {
+    /// Centre, m.
+    pub center: Vec2,
+    /// Radius of the cable's centre line, m; 0 = a point.
+    pub radius: f64,
+    /// Coulomb friction.
+    pub friction: f64,
+    /// Which side of the wheel the cable runs on.
+    pub side: PulleySide,
+    /// Unit vectors from the centre to where the cable meets and leaves the wheel.
+    pub contact: [Vec2; 2],
+}
+
+/// A support or a point load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stop {
+    /// Where on the cable it is (a wheel: where the cable meets it), m.
+    pub arc_length: f64,
+    /// Material on the wheel, m.
+    pub lap: f64,
+    /// How it holds the cable.
+    pub hold: Hold,
+    /// Dead load, N.
+    pub load: Vec2,
+    /// Index of the support; None for a point load.
+    pub support: Option<usize>,
+    /// Direction of a clamp, rad.
+    pub clamp: Option<f64>,
+    /// Elements from here to the next stop.
+    pub cells: usize,
+}
+
+impl Stop {
+    /// Where the cable leaves the stop, m of arc length.
+    #[must_use]
+    pub fn leaves(&self) -> f64 {
+        self.arc_length + self.lap
+    }
+
+    /// Whether it holds the cable in place.
+    #[must_use]
+    pub fn anchors(&self) -> bool {
+        self.hold != Hold::Free
+    }
+
+    /// Where the cable arrives (`0`) and leaves (`1`), m; None for a free point.
+    #[must_use]
+    pub fn point(&self, side: usize) -> Option<Vec2> {
+        match self.hold {
+            Hold::Free => None,
+            Hold::Fixed(p) => Some(p),
+            Hold::Pulley(w) => Some(w.center + w.contact[side.min(1)] * w.radius),
+        }
+    }
+}
+
+/// The stops of one cable at a time, first and last at its ends.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Layout {
+    /// In order of arc length.
+    pub stops: Vec<Stop>,
+    /// Cable length, m.
+    pub length: f64,
+}
+
+impl Layout {
+    /// The stops at a time (s). `slid` gives the arc length at each support where it is known (pulleys after the first
+    /// answer); the others are laid: the cable's material spread evenly along the way through its supports.
+    #[must_use]
+    pub fn new(problem: &Problem, time_s: f64, dragged: &[Option<Vec2>], slid: &[Option<f64>]) -> Self {
+        let gravity =
+            if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
+        let laid = lay(problem, time_s, dragged);
+        let mut stops: Vec<Stop> = Vec::with_capacity(problem.supports.len() + problem.loads.len());
+        for (k, support) in problem.supports.iter().enumerate() {
+            let at = place(problem, k, time_s, dragged);
+            let end = k == 0 || k + 1 == problem.supports.len();
+            let hold = match (support.kind, at) {
+                (_, None) | (SupportKind::Load | SupportKind::Free, _) => Hold::Free,
+                (SupportKind::Pulley, Some(center)) => Hold::Pulley(Wheel {
+                    center,
+                    radius: support.wheel_radius,
+                    friction: support.friction,
+                    side: support.side,
+                    contact: [Vec2::zeros(); 2],
+                }),
+                (_, Some(p)) => Hold::Fixed(p),
+            };
+            if hold == Hold::Free && support.kind == SupportKind::Pulley && !end {
+                continue; // let go: the cable no longer knows it
+            }
+            let known = support.arc_length.or(slid.get(k).copied().flatten());
+            let released = at.is_none() && !matches!(support.kind, SupportKind::Load | SupportKind::Free);
+            stops.push(Stop {
+                arc_length: known.unwrap_or(laid.get(k).copied().unwrap_or(0.0)),
+                lap: 0.0,
+                hold,
+                load: support.force.at(time_s) + gravity * support.mass,
+                support: Some(k),
+                clamp: if released { None } else { support.angle },
+                cells: 0,
+            });
+        }
+        for load in &problem.loads {
+            let at = stops.partition_point(|s| s.arc_length <= load.arc_length).clamp(1, stops.len().max(1));
+            let force = load.force.at(time_s);
+            match stops.get_mut(at - 1) {
+                Some(s) if s.arc_length >= load.arc_length && !matches!(s.hold, Hold::Pulley(_)) => s.load += force,
+                _ => stops.insert(at.min(stops.len()), point_load(load.arc_length, force)),
+            }
+        }
+        // A load on the very end belongs to the end.
+        while let [.., end, load] = stops.as_mut_slice() {
+            if load.support.is_some() {
+                break;
+            }
+            end.load += load.load;
+            stops.pop();
+        }
+        Self { stops, length: problem.length }
+    }
+
+    /// Gives each stretch between stops its share of about `segments` elements.
+    pub fn cut(&mut self, segments: usize) {
+        for k in 1..self.stops.len() {
+            let stretch = self.stops[k].arc_length - self.stops[k - 1].leaves();
+            self.stops[k - 1].cells = bars_between(stretch, self.length, segments);
+        }
+    }
+
+    /// The spans: runs of stops from one anchor to the next.
+    pub fn spans(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let anchors = self.stops.iter().enumerate().filter(|(_, s)| s.anchors()).map(|(k, _)| k);
+        anchors.clone().zip(anchors.skip(1))
+    }
+
+    /// The first and last anchor.
+    #[must_use]
+    pub fn anchored(&self) -> Option<(usize, usize)> {
+        let first = self.stops.iter().position(Stop::anchors)?;
+        let last = self.stops.iter().rposition(Stop::anchors)?;
+        Some((first, last))
+    }
+}
+
+fn point_load(arc_length: f64, load: Vec2) -> Stop {
+    Stop { arc_length, lap: 0.0, hold: Hold::Free, load, support: None, clamp: None, cells: 0 }
+}
+
+/// Where a support is at a time, dragged there by hand or not, m.
+#[must_use]
+pub fn place(problem: &Problem, support: usize, time_s: f64, dragged: &[Option<Vec2>]) -> Option<Vec2> {
+    let own = problem.supports.get(support)?.position_at(time_s)?.0;
+    Some(dragged.get(support).copied().flatten().unwrap_or(own))
+}
+
+/// The least share of the cable that is left to a hanging end when the way to the last support is longer than the
+/// cable. Any value in (0, 1) will do: it is where a search starts.
+const LEAST_TAIL: f64 = 0.05;
+
+/// Arc length at every support with the material spread evenly along the route, or along the straight way where
+/// there is none. What the way between the outer anchors does not take is left to hanging ends.
+fn lay(problem: &Problem, time_s: f64, dragged: &[Option<Vec2>]) -> Vec<f64> {
+    let count = problem.supports.len();
+    let places: Vec<Option<Vec2>> = (0..count).map(|k| place(problem, k, time_s, dragged)).collect();
+    if problem.route.len() > 1 {
+        let way = way_along(&problem.route);
+        let whole = way.last().copied().unwrap_or(1.0);
+        return places
+            .iter()
+            .map(|p| p.map_or(0.0, |p| problem.length * nearest(&problem.route, &way, p) / whole))
+            .collect();
+    }
+    // Way from support to support; a free one is passed over.
+    let (mut way, mut last) = (vec![0.0; count], None);
+    for k in 0..count {
+        way[k] = if k > 0 { way[k - 1] } else { 0.0 };
+        if let Some(p) = places[k] {
+            if let Some(q) = last {
+                way[k] += (p - q as Vec2).norm();
+            }
+            last = Some(p);
+        }
+    }
+    let known: Vec<(usize, f64)> = problem
+        .supports
+        .iter()
+        .enumerate()
+        .filter(|(k, s)| s.arc_length.is_some() && places[*k].is_some())
+        .filter_map(|(k, s)| s.arc_length.map(|a| (k, a)))
+        .collect();
+    let whole = way.last().copied().unwrap_or(0.0);
+    let tail =
+        |room: f64, way: f64| if way < (1.0 - LEAST_TAIL) * room { 1.0 } else { (1.0 - LEAST_TAIL) * room / way };
+    (0..count)
+        .map(|k| {
+            let before = known.iter().rev().find(|(j, _)| *j <= k);
+            let after = known.iter().find(|(j, _)| *j >= k);
+            match (before, after) {
+                (Some(&(a, sa)), Some(&(b, sb))) if way[b] > way[a] => {
+                    sa + (sb - sa) * (way[k] - way[a]) / (way[b] - way[a])
+                }
+                (Some(&(_, sa)), Some(_)) => sa,
+                (Some(&(a, sa)), None) => sa + (way[k] - way[a]) * tail(problem.length - sa, whole - way[a]),
+                (None, Some(&(b, sb))) => sb - (way[b] - way[k]) * tail(sb, way[b]),
+                (None, None) => {
+                    let scale = tail(problem.length, whole);
+                    0.5 * (problem.length - whole * scale) + way[k] * scale
+                }
+            }
+        })
+        .collect()
+}
+
+fn way_along(points: &[Vec2]) -> Vec<f64> {
+    let mut way = vec![0.0];
+    let mut sum = 0.0;
+    for p in points.windows(2) {
+        sum += (p[1] - p[0]).norm();
+        way.push(sum);
+    }
+    way
+}
+
+/// How far along a line the point nearest to `p` lies, m.
+pub(in crate::model::fem) fn nearest(line: &[Vec2], way: &[f64], p: Vec2) -> f64 {
+    let mut best = (f64::INFINITY, 0.0);
+    for (k, pair) in line.windows(2).enumerate() {
+        let d = pair[1] - pair[0];
+        let square = d.norm_squared();
+        let f = if square > 0.0 { ((p - pair[0]).dot(&d) / square).clamp(0.0, 1.0) } else { 0.0 };
+        let distance = (pair[0] + d * f - p).norm();
+        if distance < best.0 {
+            best = (distance, way[k] + f * (way[k + 1] - way[k]));
+        }
+    }
+    best.1
+}

@@ -1,0 +1,159 @@
+//! Marks: the places on a round at which its material is counted.
+
+use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::mesh::tangent_path::End;
+use crate::model::fem::mesh::adapt::{MAX_CHANGES, NEAR};
+use crate::model::fem::mesh::sliding_node::Sliding;
+use crate::math::{Vec2, smaller};
+
+/// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
+const STILL: f64 = 1e-9;
+
+/// An arc of more than this (rad) from the tangent to the first mark gets another mark, in the middle of it.
+pub(in crate::model::fem) const WIDE: f64 = 0.8;
+
+/// Rounds with less than this part of an even bar on them keep one mark.
+pub(in crate::model::fem) const SMALL: f64 = 0.3;
+
+/// Logarithm of two tensions below which the next term of the series (x³/720) is rounding.
+const EVEN: f64 = 1e-4;
+
+impl Dynamics {
+    /// Moves the mark of a round with one node to where the arc is strained as a whole as friction would strain it: in its middle where
+    /// nothing rubs. In motion the material between the old mark and the new one is that of the bar that it leaves, whose strain stays.
+    pub(in crate::model::fem) fn move_marks(&mut self, rests: bool) -> bool {
+        let mut moved = false;
+        for k in 1..self.mesh.nodes().saturating_sub(1) {
+            let Some(node) = self.mesh.sliding[k] else { continue };
+            let shared = |j: usize| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
+            if !(node.end.radius > 0.0) || shared(k - 1) || shared(k + 1) {
+                continue;
+            }
+            let x = &self.motion.x;
+            let paths = [self.mesh.path(k - 1, x), self.mesh.path(k, x)];
+            let tensions = [0, 1].map(|j| self.mesh.bar(k - 1 + j).tension(paths[j].length));
+            let whole = paths[0].arcs[1] + paths[1].arcs[0];
+            let shift = part_before(tensions) * whole - paths[0].arcs[1];
+            if !(shift.abs() * node.end.radius > STILL) {
+                continue;
+            }
+            let bars = if rests {
+                k - 1..k + 1
+            } else if shift > 0.0 {
+                k..k + 1
+            } else {
+                k - 1..k
+            };
+            let sum = |of: &dyn Fn(usize) -> f64| bars.clone().map(of).sum::<f64>();
+            let stretch = sum(&|e| paths[e + 1 - k].length) / sum(&|e| self.mesh.rest_length[e]);
+            let material = shift * node.end.radius / (stretch * self.mesh.thermal_stretch);
+            let room = NEAR * NEAR * self.even();
+            let s = &self.mesh.arc_length;
+            if s[k] + material < s[k - 1] + room || s[k] + material > s[k + 1] - room {
+                continue;
+            }
+            self.keep_answer();
+            moved = true;
+            self.as_of(node.seat, |d| d.turn_mark(k, shift, material));
+        }
+        moved
+    }
+
+    /// Turns the mark of a node by an angle (rad), past material (m).
+    fn turn_mark(&mut self, k: usize, shift: f64, material: f64) {
+        let Some(node) = self.mesh.sliding[k] else { return };
+        let turned = Sliding { end: End { mark: rotate(node.end.mark, node.end.sense * shift), ..node.end }, ..node };
+        self.mesh.sliding[k] = Some(turned);
+        self.mesh.arc_length[k] += material;
+        self.motion.s_before[k] += material;
+        self.mesh.rest_length[k - 1] += self.mesh.thermal_stretch * material;
+        self.mesh.rest_length[k] -= self.mesh.thermal_stretch * material;
+        self.motion.x[k] = turned.position();
+        self.motion.x_before[k] = self.motion.x[k];
+    }
+
+    /// Gives long arcs more marks and takes away those that the tangent has passed.
+    pub(in crate::model::fem) fn wind(&mut self, rests: bool) -> bool {
+        let even = self.even();
+        let mut changed = false;
+        let mut k = 1;
+        let mut changes = 0;
+        while k + 1 < self.mesh.nodes() && changes < MAX_CHANGES {
+            let Some(node) = self.mesh.sliding[k].filter(|s| s.end.radius > 0.0) else {
+                k += 1;
+                continue;
+            };
+            let shared = [k - 1, k + 1].map(|j| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node)));
+            let x = &self.motion.x;
+            let arcs = [self.mesh.path(k - 1, x).arcs[1], self.mesh.path(k, x).arcs[0]];
+            // On a large round the marks of a cable at rest are as far apart as nodes elsewhere: what friction holds is known between marks only.
+            let spacing = if rests { smaller(0.5 * WIDE, even / node.end.radius) } else { 0.5 * WIDE };
+            let big = |arc: f64| arc > 2.0 * spacing && arc * node.end.radius > SMALL * even;
+            changes += 1;
+            if (!shared[0] && shared[1] && arcs[0] < 0.0) || (!shared[1] && shared[0] && arcs[1] < 0.0) {
+                self.remove(k);
+                changed = true;
+            } else if !shared[0] && big(arcs[0]) {
+                self.add_mark(k, 0, arcs[0] - spacing);
+                changed = true;
+            } else if !shared[1] && big(arcs[1]) {
+                self.add_mark(k, 1, arcs[1] - spacing);
+                changed = true;
+                k += 1;
+            } else {
+                k += 1;
+                changes = 0;
+            }
+        }
+        changed
+    }
+
+    /// Adds a mark on the round of node `k`, `angle` (rad) before it (`side` 0) or after it (1).
+    fn add_mark(&mut self, k: usize, side: usize, angle: f64) {
+        let Some(node) = self.mesh.sliding[k] else { return };
+        let bar = k - 1 + side;
+        let sign = if side == 0 { -1.0 } else { 1.0 };
+        let mark = rotate(node.end.mark, node.end.sense * sign * angle);
+        let length = self.mesh.path(bar, &self.motion.x).length;
+        let s = [self.mesh.arc_length[bar], self.mesh.arc_length[bar + 1]];
+        let part = angle * node.end.radius / length * (s[1] - s[0]);
+        let arc_length = if side == 0 { s[1] - part } else { s[0] + part };
+        self.insert(bar + 1, arc_length, Some(Sliding { end: End { mark, ..node.end }, ..node }));
+    }
+}
+
+/// The part of an arc before its mark: with the tension T₁ of one bar before it and T₂ of the other behind it the arc is as long as with a
+/// tension whose logarithm changes evenly, T₁ e^{−xu}, 0 ≤ u ≤ 1:
+/// ```text
+/// f T₁ + (1 − f) T₂ = T₁ (1 − e^{−x})/x,   x = ln T₁/T₂,      f = 1/x − 1/(eˣ − 1)
+/// ```
+fn part_before([before, after]: [f64; 2]) -> f64 {
+    let x = if before > 0.0 && after > 0.0 { (before / after).ln() } else { 0.0 };
+    if x.abs() < EVEN { 0.5 - x / 12.0 } else { 1.0 / x - 1.0 / x.exp_m1() }
+}
+
+/// A vector turned by an angle (rad), counter-clockwise.
+pub(in crate::model::fem) fn rotate(v: Vec2, angle: f64) -> Vec2 {
+    let (sin, cos) = angle.sin_cos();
+    Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_arc_with_its_mark_is_as_long_as_friction_makes_it() {
+        for (before, after) in
+            [(100.0f64, 100.0f64), (100.0, 99.999), (100.0, 40.0), (3.0, 800.0), (5e-7, 70.0), (1e-290, 1e9)]
+        {
+            let f = part_before([before, after]);
+            let n = 20_000;
+            let at = |k: i32| before * (after / before).powf((f64::from(k) + 0.5) / f64::from(n));
+            let mean = (0..n).map(at).sum::<f64>() / f64::from(n);
+            let two: f64 = f * before + (1.0 - f) * after;
+            assert!((two - mean).abs() < 1e-6 * before.max(after), "{before} {after}: {two} {mean}");
+            assert!((f + part_before([after, before]) - 1.0).abs() < 1e-12);
+        }
+    }
+}

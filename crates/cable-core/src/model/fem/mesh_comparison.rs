@@ -1,0 +1,176 @@
+//! How wrong the figures of a cable in contact are.
+//!
+//! Where `spans` laid the cable its answer has no error of a mesh, and the bars only came to rest from it: the two differ by what mesh,
+//! barrier and grips do, and that is what is said of each figure. On the way without inertia `spans` goes on beside the bars: it costs a small
+//! part of what they do, and remembers friction as they do.
+//!
+//! Where it has no answer (slack, stiff, in plan, in touch with itself) the same cable on bars twice and four times as long is asked. Straight bars between
+//! contacts are of the second order, where the cable touches down or meets a corner of the first: what is left of an error on the finest of three
+//! meshes is a third of what the finer two differ by, or all of it. All of it is said, and no less than half of what the coarser two differ by:
+//! one difference may pass through nothing where the error does not, as a node comes to lie at a corner. (L. F. Richardson and
+//! J. A. Gaunt, *The deferred approach to the limit*, Phil. Trans. R. Soc. A 226, 1927, without the extrapolation: its order is not
+//! known here.)
+
+use std::sync::Arc;
+
+use crate::model::fem::dynamics::Dynamics;
+use crate::math::Vec2;
+use crate::model::initial_equilibrium::InitialEquilibrium;
+use crate::model::spans::SpansModel;
+use crate::model::{Inertia, Mechanics, Settings};
+use crate::problem::Problem;
+use crate::solution::CableSolution;
+use crate::solution::ErrorEstimates;
+
+/// Fewer bars than this have no half of use.
+const LEAST_BARS: usize = 8;
+/// Most bars to which the mesh is refined by itself. More: 1e-3 is met by more scenes, each twice as dear as with half as many.
+const MOST_BARS: usize = 800;
+/// Part of what the coarser two of three meshes differ by that the error of the finest is at least: that of the first order.
+const COARSER: f64 = 0.5;
+
+/// Who goes on beside the cable, and what is said.
+#[derive(Clone, Debug, Default)]
+pub(in crate::model::fem) struct TwoMeshes {
+    exact: Option<Box<SpansModel>>,
+    coarse: Option<Box<Dynamics>>,
+    /// What is known of the errors now.
+    pub errors: ErrorEstimates,
+}
+
+impl TwoMeshes {
+    /// Looks at a cable that came to rest, beside the answer without a mesh where there is one; makes its mesh finer where it may be
+    /// (`refines`) and that comes nearer.
+    pub fn compare(
+        &mut self,
+        problem: &Arc<Problem>,
+        (settings, refines): (Settings, bool),
+        (fine, exact): (&mut Dynamics, Option<InitialEquilibrium>),
+        dragged: &[Option<Vec2>],
+    ) {
+        *self = Self::default();
+        if problem.outline.is_some() {
+            return;
+        }
+        if problem.cable.self_contact {
+            self.errors = match exact {
+                // What touches itself nowhere lies as one that cannot; once it moves it may.
+                Some(exact) if !fine.touches_itself() => beside(&fine.solution(), &exact.answer, problem),
+                _ => coarser(problem, settings, fine, dragged).map(|found| found.0).unwrap_or_default(),
+            };
+            return;
+        }
+        if !fine.slides {
+            return;
+        }
+        if let Some(exact) = exact {
+            let mut answer = fine.solution();
+            self.errors = beside(&answer, &exact.answer, problem);
+            while refines && exceeds(&self.errors, &answer, settings) && 2 * fine.even_bars <= MOST_BARS {
+                let bars = 2 * fine.even_bars;
+                let Some(finer) = laid_over(problem, settings, (fine, bars), (&exact.answer, dragged)) else { break };
+                let next = finer.solution();
+                let errors = beside(&next, &exact.answer, problem);
+                if !(errors.relative(&next) < self.errors.relative(&answer)) {
+                    break;
+                }
+                *fine = finer;
+                (answer, self.errors) = (next, errors);
+            }
+            self.exact = Some(exact.spans);
+            return;
+        }
+        if let Some((errors, coarse)) = coarser(problem, settings, fine, dragged) {
+            (self.errors, self.coarse) = (errors, Some(Box::new(coarse)));
+        }
+    }
+
+    /// Goes on beside the cable without inertia; with inertia nothing is said.
+    pub fn follow(
+        &mut self,
+        (problem, settings): (&Arc<Problem>, Settings),
+        fine: &Dynamics,
+        dt_s: f64,
+        inertia: Inertia,
+        dragged: &[Option<Vec2>],
+    ) {
+        let before = std::mem::take(self);
+        if inertia != Inertia::QuasiStatic {
+            return;
+        }
+        let answer = fine.solution();
+        let coarse = match (before.exact, before.coarse) {
+            (Some(mut exact), _) => {
+                if let Some(other) = go_on(&mut exact, dt_s, dragged) {
+                    self.errors = beside(&answer, &other, problem);
+                    self.exact = Some(exact);
+                    return;
+                }
+                // The cable has no answer without a mesh from here on.
+                laid_over(problem, settings, (fine, fine.even_bars / 2), (&answer, dragged)).map(Box::new)
+            }
+            (None, Some(mut coarse)) => coarse.advance(dt_s, inertia, dragged).is_ok().then_some(coarse),
+            (None, None) => None,
+        };
+        let Some(coarse) = coarse else { return };
+        // What friction remembers is as wrong as the steps were that it remembers.
+        self.errors = before.errors.or_larger(&ErrorEstimates::between(&coarse.solution(), &answer));
+        self.coarse = Some(coarse);
+    }
+}
+
+/// The answer of `spans` a step further on, if it has one.
+fn go_on(spans: &mut SpansModel, dt_s: f64, dragged: &[Option<Vec2>]) -> Option<CableSolution> {
+    for (k, at) in dragged.iter().enumerate() {
+        if let Some(at) = at {
+            spans.drag_support(k, *at);
+        }
+    }
+    spans.advance(dt_s, Inertia::QuasiStatic).ok()?;
+    Some(spans.solution())
+}
+
+/// Errors of a cable by the same one on bars twice and four times as long, and the one on bars twice as long; None where that finds no rest.
+fn coarser(
+    problem: &Arc<Problem>,
+    settings: Settings,
+    fine: &Dynamics,
+    dragged: &[Option<Vec2>],
+) -> Option<(ErrorEstimates, Dynamics)> {
+    if fine.even_bars < LEAST_BARS {
+        return None;
+    }
+    let answer = fine.solution();
+    let laid = (&answer, dragged);
+    let coarse = laid_over(problem, settings, (fine, fine.even_bars / 2), laid)?;
+    let other = coarse.solution();
+    let errors = ErrorEstimates::between(&other, &answer).plus(&ErrorEstimates::rounding(&answer, problem));
+    let coarsest = laid_over(problem, settings, (fine, fine.even_bars / 4), laid);
+    let change = coarsest.map(|c| ErrorEstimates::between(&c.solution(), &other).times(COARSER));
+    Some((change.map_or(errors, |change| errors.or_larger(&change)), coarse))
+}
+
+/// Errors beside an answer without a mesh.
+fn beside(answer: &CableSolution, exact: &CableSolution, problem: &Problem) -> ErrorEstimates {
+    ErrorEstimates::between(answer, exact).plus(&ErrorEstimates::rounding(exact, problem))
+}
+
+fn exceeds(errors: &ErrorEstimates, answer: &CableSolution, settings: Settings) -> bool {
+    errors.relative(answer).is_some_and(|e| e > settings.tolerance)
+}
+
+/// The same cable on another number of bars, at rest where an answer has it.
+fn laid_over(
+    problem: &Arc<Problem>,
+    settings: Settings,
+    (like, bars): (&Dynamics, usize),
+    (answer, dragged): (&CableSolution, &[Option<Vec2>]),
+) -> Option<Dynamics> {
+    let mut other = Dynamics::new(problem.clone(), Settings { segments: Some(bars), ..settings }).ok()?;
+    other.slides = like.slides;
+    other.warm_start(answer, like.time(), dragged).ok()?;
+    if !other.rested {
+        other.settle(dragged).ok()?;
+    }
+    Some(other)
+}

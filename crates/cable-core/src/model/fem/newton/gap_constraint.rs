@@ -1,0 +1,211 @@
+//! What a Newton step may not come nearer to: a contact as a constraint on the step.
+
+use crate::model::fem::system::assembly::{Mesh, System};
+use crate::model::fem::system::friction_state::Touch;
+use crate::model::fem::system::self_contact::{Coupling, couple};
+use crate::contact::self_contact::SelfPair;
+use crate::math::{Vec2, cross, larger};
+
+/// Stiffness of a constraint in units of the largest stiffness at its nodes. Softer: nodes still run into the barrier; much
+/// harder: rounding.
+const HARDNESS: f64 = 1e5;
+
+/// Change of the way a constraint leaves, in gaps left, that is not followed.
+const SETTLED: f64 = 0.05;
+
+/// What a bar turns about.
+#[derive(Clone, Copy, Debug)]
+enum Pivot {
+    /// A corner or the middle of a circle, m.
+    Fixed(Vec2),
+    /// A node of the same cable.
+    Node(usize),
+}
+
+/// One contact ahead.
+#[derive(Clone, Copy, Debug)]
+pub struct Stop {
+    /// Nodes and their parts of the gap's slope; those of part 0 count for nothing.
+    shares: [(usize, f64); 3],
+    normal: Vec2,
+    /// Gap now, m.
+    pub gap: f64,
+    /// Gap that is left, m.
+    pub least: f64,
+    /// First node of a bar whose inside touches, and what.
+    bar: Option<(usize, Pivot)>,
+    /// Spring that holds it, N/m.
+    stiffness: f64,
+    /// Way of the gap that it is held to, m; None as long as nothing holds it.
+    held_to: Option<f64>,
+}
+
+impl Stop {
+    /// The contact of an obstacle.
+    pub fn of(touch: &Touch, (mesh, system): (&Mesh, &System), least: f64) -> Self {
+        let (gap, [a, b]) = (&touch.pair.gap, touch.shares());
+        let next = touch.node + usize::from(touch.on_segment);
+        let turns = touch.on_segment && [touch.node, next].iter().all(|&k| mesh.sliding[k].is_none());
+        let shares = [(touch.node, a), (next, b), (next, 0.0)];
+        Self {
+            shares,
+            stiffness: stiffness(system, &shares),
+            normal: gap.normal,
+            gap: gap.gap_m,
+            least,
+            bar: turns.then_some((touch.node, Pivot::Fixed(gap.point))),
+            held_to: None,
+        }
+    }
+
+    /// A contact of the cable with itself.
+    pub fn of_own(pair: &SelfPair, system: &System, least: f64) -> Self {
+        let inside = pair.fraction > 0.0 && pair.fraction < 1.0;
+        let shares = pair.shares();
+        Self {
+            shares,
+            stiffness: stiffness(system, &shares),
+            normal: pair.normal,
+            gap: pair.gap_m,
+            least,
+            bar: inside.then_some((pair.segment, Pivot::Node(pair.node))),
+            held_to: None,
+        }
+    }
+
+    /// How much the gap opens in a step, m, as its slope says.
+    fn opening(&self, step: &[f64]) -> f64 {
+        let at = |k: usize| Vec2::new(step[2 * k], step[2 * k + 1]);
+        self.shares.iter().map(|&(k, part)| self.normal.dot(&at(k)) * part).sum()
+    }
+
+    /// How much more than that it opens, m: a bar that turns while it slides along a corner comes nearer to it.
+    ///
+    /// With e = b − a the distance of p from the line is ± e × (p − a)/|e|, whatever the step.
+    fn bend(&self, x: &[Vec2], step: &[f64]) -> f64 {
+        let Some((bar, pivot)) = self.bar else { return 0.0 };
+        let gone = |k: usize| Vec2::new(step[2 * k], step[2 * k + 1]);
+        let (p, go) = match pivot {
+            Pivot::Fixed(p) => (p, Vec2::zeros()),
+            Pivot::Node(k) => (x[k], gone(k)),
+        };
+        let off = |[a, b]: [Vec2; 2], p: Vec2| {
+            let e = b - a;
+            (cross(e, p - a) / e.norm(), (p - a).dot(&e) / e.norm_squared())
+        };
+        let (now, _) = off([x[bar], x[bar + 1]], p);
+        let (then, fraction) = off([x[bar] + gone(bar), x[bar + 1] + gone(bar + 1)], p + go);
+        if !(fraction > 0.0 && fraction < 1.0) {
+            return 0.0;
+        }
+        (then - now) * now.signum() - self.opening(step)
+    }
+
+    /// Holds a contact that a step would pass, by a spring ½ K (n·δc − way)²; a held one follows what the step bends. Returns whether
+    /// the matrix changed, and whether anything did.
+    pub fn hold(
+        &mut self,
+        (system, coupling, right): (&mut System, &mut Coupling, &mut [f64]),
+        mesh: &Mesh,
+        (x, step): (&[Vec2], &[f64]),
+    ) -> [bool; 2] {
+        let bend = self.bend(x, step);
+        let new = self.held_to.is_none();
+        if new && self.gap + self.opening(step) + bend >= self.least {
+            return [false, false];
+        }
+        let mut way = self.least - self.gap - bend;
+        for &(k, part) in self.shares.iter().filter(|s| s.1 != 0.0 && mesh.held[s.0]) {
+            // What is held goes where it goes; a sliding node stays where it is.
+            way -= part * self.normal.dot(&Vec2::new(step[2 * k], step[2 * k + 1]));
+        }
+        let change = way - self.held_to.unwrap_or(0.0);
+        if !new && change.abs() <= SETTLED * self.least {
+            return [false, false];
+        }
+        self.held_to = Some(way);
+        let free = |&&(k, part): &&(usize, f64)| part != 0.0 && mesh.is_free(k);
+        let n = self.normal;
+        for (i, &(k, part)) in self.shares.iter().enumerate() {
+            if !free(&&(k, part)) {
+                continue;
+            }
+            let pull = self.stiffness * part * change;
+            right[2 * k] += pull * n.x;
+            right[2 * k + 1] += pull * n.y;
+            for &(other, its) in self.shares[i..].iter().filter(free).filter(|_| new) {
+                couple(system, coupling, [k, other], &(n * n.transpose() * (self.stiffness * part * its)));
+            }
+        }
+        [new, true]
+    }
+}
+
+/// Spring of a constraint at these nodes, N/m.
+fn stiffness(system: &System, shares: &[(usize, f64)]) -> f64 {
+    let at = |&(k, part): &(usize, f64)| {
+        if part == 0.0 { 0.0 } else { system.hessian.get(2 * k, 2 * k) + system.hessian.get(2 * k + 1, 2 * k + 1) }
+    };
+    HARDNESS * shares.iter().map(at).fold(0.0, larger)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::model::fem::dynamics::Dynamics;
+    use super::*;
+    use crate::contact::self_contact::{SelfContact, SortedNodes};
+    use crate::model::Settings;
+    use crate::problem::problems;
+    use crate::scene::{Obstacle, Shape, catalog};
+    use proptest::prelude::*;
+
+    fn mesh(obstacles: Vec<Obstacle>) -> Dynamics {
+        let mut scene = catalog::hanging_span();
+        scene.obstacles = obstacles;
+        Dynamics::new(problems(&scene).unwrap().remove(0), Settings { segments: Some(4), ..Settings::default() })
+            .unwrap()
+    }
+
+    proptest! {
+        /// Slope and bend together are all of what the gap of a bar changes, however it moves.
+        #[test]
+        fn a_gap_changes_by_its_slope_and_its_bend(moves in prop::collection::vec(-0.02f64..0.02, 10)) {
+            let post = Shape::Circle { center_m: [0.35, -0.2], radius_m: 0.1 };
+            let d = mesh(vec![Obstacle { name: "post".to_owned(), shape: post, friction: None }]);
+            let radius = d.problem.radius;
+            let x: Vec<Vec2> = (0..5).map(|k| Vec2::new(0.1 + 0.2 * f64::from(k), -0.1 + radius + 5e-3)).collect();
+            let then: Vec<Vec2> = x.iter().zip(moves.chunks(2)).map(|(x, go)| x + Vec2::new(go[0], go[1])).collect();
+            let touch = |x: &[Vec2]| {
+                let mut found = Vec::new();
+                d.contacts.find_within(&d.problem, &d.mesh, x, 0.1, &mut found);
+                found.into_iter().find(|t| t.on_segment && t.node == 1)
+            };
+            let before = touch(&x).unwrap();
+            prop_assume!(touch(&then).is_some());
+            let after = touch(&then).unwrap();
+            // The gap has no sign: what is crossed is left to the sweep.
+            prop_assume!(after.pair.gap.normal.dot(&before.pair.gap.normal) > 0.0);
+            let stop = Stop::of(&before, (&d.mesh, &System::new(&d.mesh)), 0.0);
+            let change = stop.opening(&moves) + stop.bend(&x, &moves);
+            prop_assert!((after.pair.gap.gap_m - before.pair.gap.gap_m - change).abs() < 1e-12);
+        }
+
+        /// The same where the cable meets itself.
+        #[test]
+        fn a_gap_of_its_own_changes_by_its_slope_and_its_bend(moves in prop::collection::vec(-0.02f64..0.02, 10)) {
+            let d = mesh(Vec::new());
+            let x = [[0.0, 0.0], [0.4, 0.0], [0.5, 0.2], [0.3, 0.2], [0.2, 0.05]].map(|[x, y]| Vec2::new(x, y));
+            let then: Vec<Vec2> = x.iter().zip(moves.chunks(2)).map(|(x, go)| x + Vec2::new(go[0], go[1])).collect();
+            let arc = [0.0, 1.0, 2.0, 3.0, 4.0];
+            let pair = |x: &[Vec2]| {
+                let mut found = Vec::new();
+                SelfContact { diameter: 0.01 }.pairs((x, &arc), 0.2, &mut SortedNodes::default(), &mut found);
+                found.into_iter().find(|p| (p.node, p.segment) == (4, 0)).unwrap()
+            };
+            let (before, after) = (pair(&x), pair(&then));
+            let stop = Stop::of_own(&before, &System::new(&d.mesh), 0.0);
+            let change = stop.opening(&moves) + stop.bend(&x, &moves);
+            prop_assert!((after.gap_m - before.gap_m - change).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,503 @@
+//! One implicit step as a minimisation, by Newton with a banded factor and steps that cross nothing.
+//!
+//! ```text
+//! Φ(x) = ½ Σ mᵢ a² |xᵢ − x̃ᵢ|² + E(x) − Σ fᵢ·xᵢ + Σ w B(g(x)) + Σ D(y(x))
+//! ```
+//! with a = α₀/h of the integrator and x̃ what its history predicts (a = 0 for a step without inertia), and, where the cable can touch
+//! nothing, −½ mₑ a² |(x₂ − x₁) − (x̃₂ − x̃₁)|² for each bar (see `mass`). Damping
+//! of a bar with time constant τ is a second bar of stiffness EA τ a whose rest length is the one predicted.
+
+use crate::model::fem::system::assembly::{Mesh, System};
+use crate::model::fem::system::bar_energy;
+use crate::model::fem::system::friction_state::{ContactSet, Touch};
+use crate::model::fem::newton::active_set::Ahead;
+use crate::model::fem::system::self_contact;
+use crate::model::fem::system::self_contact::Coupling;
+use crate::model::fem::newton::step_input::{Done, Failure, Pose, Task};
+use crate::model::fem::system::contact_energy::{add_floor, add_rubs, add_touch};
+use crate::contact::barrier::Barrier;
+use crate::contact::friction;
+use crate::contact::self_contact::{SelfPair, SortedNodes};
+use crate::energy::Curvature;
+use crate::linalg::{BandFactor, FactorError, solve_coupled};
+use crate::math::{Mat2, Vec2, larger, smaller};
+use crate::problem::Problem;
+
+/// Sufficient decrease (Armijo).
+const DECREASE: f64 = 1e-4;
+
+/// Line search halvings before the step is given up.
+const MAX_HALVINGS: usize = 30;
+
+/// Unbalanced force, in tolerances, that is accepted where iterating gains nothing more: 3e-5 of the whole load.
+const ENOUGH: f64 = 30.0;
+
+/// Energies are trusted to this part of the sum of their magnitudes.
+const ENERGY_NOISE: f64 = 1e-13;
+
+/// Part of force times coordinate that counts as magnitude: times `ENERGY_NOISE` four roundings of the coordinate. With
+/// none, a stiff pendulum's last iteration is lost in the rounding of 98 N times 1 m and its step is halved for nothing.
+pub const ROUNDED: f64 = 0.01;
+
+/// Rounding of a gap, part of the coordinates it is worked out from. Smaller: a cable squeezed to a gap of 1e-7 m fails for
+/// 0.01 N in 1e6; larger: contact forces are known worse than they could be.
+const GAP_ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// Unbalanced force of a stretch of cable at rest, in tolerances: those of its nodes add up. More: the laws, which ask this of stretches to 1e-5 of
+/// the forces, refuse steps; less: iterations for nothing that shows.
+pub(in crate::model::fem) const DRIFT: f64 = 4.0;
+
+/// Short moves of held nodes towards their targets before they are stopped. Fewer: supports lag that could have got there;
+/// more: iterations spent on what the next step does as well.
+const MAX_PUSHES: usize = 12;
+
+/// Why a search ends that has spent its work.
+pub(in crate::model::fem) const WORK_SPENT: &str = "the work for one resting place is spent";
+
+/// What is left unbalanced at the worst node.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::fem) struct Residual {
+    /// N.
+    pub(in crate::model::fem) force: f64,
+    pub(in crate::model::fem) node: usize,
+    /// In parts of what is accepted there.
+    pub(in crate::model::fem) excess: f64,
+    /// The greatest force (N) that adds up along a stretch, in parts of what may add up for one force left at a node.
+    drift: f64,
+}
+
+/// Rounding of contact forces: a gap is known to the rounding of coordinates only.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::model::fem) struct Rounding {
+    /// Rounding of the largest force by its stiffness, N.
+    pub(in crate::model::fem) noise: f64,
+    /// The force that opening the gap by its rounding relieves, N, where it is more than the tolerance.
+    /// It is never all of the force: a step in motion that had come to a gap below its own rounding
+    /// was taken for balanced, with 2e11 N of contact and nothing to hold them.
+    relief: f64,
+    /// Unbalanced force accepted in any case, N.
+    tolerance: f64,
+}
+
+impl Rounding {
+    /// Counts a contact with a gap (m), its stiffness (N/m), and the rounding of its gap (m).
+    fn add(&mut self, barrier: &Barrier, gap: f64, stiffness: f64, rounding: f64) {
+        let noise = stiffness * rounding;
+        self.noise = larger(self.noise, noise);
+        // The barrier is convex: what is relieved is no more than that.
+        if noise > self.tolerance {
+            self.relief = larger(self.relief, barrier.relief(gap, rounding));
+        }
+    }
+}
+
+/// Memory of the minimisation.
+#[derive(Debug)]
+pub struct Workspace {
+    pub(in crate::model::fem) system: System,
+    pub(in crate::model::fem) factor: BandFactor,
+    pub(in crate::model::fem) direction: Vec<f64>,
+    /// The direction before contacts ahead were looked at.
+    pub(in crate::model::fem) plain: Vec<f64>,
+    pub(in crate::model::fem) trial: Pose,
+    /// The contacts of the last assembly.
+    pub(in crate::model::fem) touches: Vec<Touch>,
+    magnitude: f64,
+    /// Rounding of contact forces in the last assembly.
+    pub(in crate::model::fem) rounding: Rounding,
+    /// Where held nodes go: their targets, or where they had to stop, m.
+    pub(in crate::model::fem) goal: Vec<Vec2>,
+    own_pairs: Vec<SelfPair>,
+    pub(in crate::model::fem) order: SortedNodes,
+    /// Entries of the Hessian outside its band, from contacts of the cable with itself.
+    pub(in crate::model::fem) coupling: Coupling,
+    pub(in crate::model::fem) ahead: Ahead,
+    /// Pulls carried as unknowns; empty: those of the present lengths.
+    pub(in crate::model::fem) carried: Vec<bar_energy::Carried>,
+    /// Branches of the friction of `rubs`, where that is being found out; empty: those of the present pose.
+    pub(in crate::model::fem) branches: Vec<friction::Branch>,
+    /// How far each has slid before an iteration, m.
+    pub(in crate::model::fem) slid: Vec<f64>,
+    pub(in crate::model::fem) begun: Pose,
+    pub(in crate::model::fem) near_enough: bool,
+    /// Iterations times nodes that may still be spent.
+    pub(in crate::model::fem) work_left: usize,
+    /// Iterations in a hurry of this step.
+    pub(in crate::model::fem) hurried: usize,
+}
+
+impl Workspace {
+    /// Room for a mesh.
+    ///
+    /// # Errors
+    /// `TooLarge` when there is no memory for it.
+    pub fn new(mesh: &Mesh) -> Result<Self, FactorError> {
+        let system = System::new(mesh);
+        let factor = BandFactor::new(2 * mesh.nodes(), mesh.half_bandwidth())?;
+        Ok(Self {
+            direction: vec![0.0; 2 * mesh.nodes()],
+            plain: Vec::with_capacity(2 * mesh.nodes()),
+            trial: Pose { x: vec![Vec2::zeros(); mesh.nodes()], slide: vec![0.0; mesh.nodes()] },
+            touches: Vec::with_capacity(mesh.nodes()),
+            magnitude: 0.0,
+            rounding: Rounding::default(),
+            goal: Vec::new(),
+            own_pairs: Vec::new(),
+            order: SortedNodes::default(),
+            coupling: Coupling::new(),
+            ahead: Ahead::new(mesh.nodes()),
+            carried: Vec::with_capacity(mesh.nodes()),
+            branches: Vec::with_capacity(mesh.nodes()),
+            slid: Vec::with_capacity(mesh.nodes()),
+            begun: Pose::default(),
+            near_enough: false,
+            work_left: usize::MAX,
+            hurried: 0,
+            system,
+            factor,
+        })
+    }
+
+    /// Gradient of the last assembly, N: at a held node minus the force of the cable on what holds it.
+    #[must_use]
+    pub fn gradient_at(&self, node: usize) -> Vec2 {
+        self.system.gradient_at(node)
+    }
+
+    /// Number of nodes it has room for.
+    #[must_use]
+    pub fn nodes(&self) -> usize {
+        self.trial.x.len()
+    }
+
+    /// Φ with gradient and Hessian at a pose.
+    pub fn assemble(
+        &mut self,
+        problem: &Problem,
+        mesh: &Mesh,
+        contacts: &ContactSet,
+        (task, pose): (&Task, &Pose),
+        curvature: Curvature,
+    ) -> f64 {
+        let x = &pose.x;
+        let mut touches = std::mem::take(&mut self.touches);
+        contacts.find(problem, mesh, x, &mut touches);
+        let s = &mut self.system;
+        s.hessian.clear();
+        s.gradient.fill(0.0);
+        let mut value = 0.0;
+        self.magnitude = 0.0;
+        let mut round = Rounding { tolerance: task.tolerance, ..Rounding::default() };
+        // In a hurry nobody asks how well the energy is known.
+        let measured = self.carried.is_empty();
+        for e in 0..mesh.rest_length.len() {
+            let carried = self.carried.get(e).copied();
+            let (energy, size) = bar_energy::add(s, (mesh, task), (e, pose), curvature, carried);
+            value += energy;
+            self.magnitude += size;
+        }
+        if !task.coupling.is_empty() {
+            value += add_coupling(s, task, x);
+        }
+        if mesh.bending_stiffness > 0.0 {
+            value += s.add_bending(mesh, x, curvature);
+            if task.bending_damping > 0.0 {
+                value += s.add_bends(mesh, (task.bending_damping, Some(&task.start)), x, curvature);
+            }
+        }
+        self.magnitude += value.abs();
+        for i in 0..x.len() {
+            let (k, scale) = (task.inertia[i], node_scale(task, i));
+            let (kinetic, work) = if mesh.sliding[i].is_some() {
+                let away = pose.slide[i] - task.predicted_slide[i];
+                s.gradient[2 * i] += scale * k * away;
+                s.hessian.add(2 * i, 2 * i, scale * k);
+                (0.5 * k * away * away, 0.0)
+            } else {
+                let away = x[i] - task.predicted[i];
+                if measured {
+                    self.magnitude += scale * ROUNDED * (k * away.norm() + task.force[i].norm()) * x[i].norm();
+                }
+                s.add_gradient(i, (away * k - task.force[i]) * scale);
+                s.hessian.add(2 * i, 2 * i, k * scale);
+                s.hessian.add(2 * i + 1, 2 * i + 1, k * scale);
+                // Work is measured from the start of the step, so that its size is that of the change.
+                (0.5 * k * away.norm_squared(), task.force[i].dot(&(x[i] - task.start[i])))
+            };
+            value += scale * (kinetic - work);
+            self.magnitude += scale * (kinetic + work.abs());
+        }
+        for touch in &touches {
+            let scale = task.scale.get(touch.node).copied().unwrap_or(node_scale(task, touch.node));
+            let (energy, stiffness) = add_touch(s, mesh, (touch, scale), contacts, x, curvature);
+            value += energy;
+            let rounding = GAP_ROUNDING * x[touch.node].norm();
+            round.add(&contacts.barrier, touch.pair.gap.gap_m, stiffness, rounding);
+        }
+        value += add_rubs(s, (mesh, task), contacts, &self.branches, x);
+        value += add_floor(s, (mesh, task), contacts, pose);
+        self.touches = touches;
+        if contacts.own.shape.is_on() {
+            let place = (x.as_slice(), mesh.arc_length.as_slice());
+            contacts.own.shape.pairs(place, contacts.barrier.reach, &mut self.order, &mut self.own_pairs);
+            self.coupling.clear();
+            let (energy, size) =
+                self_contact::add((&mut self.system, &mut self.coupling), contacts, (&self.own_pairs, x), curvature);
+            value += energy;
+            self.magnitude += size;
+            for pair in &self.own_pairs {
+                let stiffness = contacts.barrier.at(pair.gap_m).curvature;
+                round.add(&contacts.barrier, pair.gap_m, stiffness, GAP_ROUNDING * x[pair.node].norm());
+            }
+        }
+        self.rounding = round;
+        value
+    }
+
+    /// The unbalanced force (N) that is farthest beyond what is accepted, where, and by how many times: the tolerance, or where contact forces are
+    /// known no better their rounding. At rest what is left at the nodes of a stretch adds up to a force of its own.
+    pub(in crate::model::fem) fn residual(&self, mesh: &Mesh, task: &Task) -> Residual {
+        let mut worst = Residual { force: 0.0, node: 0, excess: 0.0, drift: 0.0 };
+        // On the way to a rest any force may be hidden, for what is laid in touch begins there, and where an outline squeezes the cable.
+        let hidden = if task.moves && !task.outlined { self.rounding.relief } else { self.rounding.noise };
+        let known = smaller(hidden, task.most_noise);
+        let accepted = larger(task.tolerance, known);
+        let mut drift = Vec2::zeros();
+        for node in 0..mesh.nodes() {
+            if mesh.held[node] || mesh.sliding[node].is_some_and(|s| s.sticks()) {
+                drift = Vec2::zeros();
+                continue;
+            }
+            let left = self.system.gradient_at(node) / node_scale(task, node);
+            let slides = mesh.sliding[node].is_some();
+            let r = if slides { left.x.abs() } else { left.norm() };
+            drift = if slides || task.moves { Vec2::zeros() } else { drift + left };
+            let adds_up = drift.norm() / DRIFT;
+            let most = larger(adds_up, worst.drift);
+            let excess = larger(r, adds_up) / accepted;
+            if !(excess <= worst.excess) && !worst.excess.is_nan() {
+                worst = Residual { force: r, node, excess, drift: most };
+            }
+            worst.drift = most;
+        }
+        worst
+    }
+
+    /// Sets `direction` to the Newton step; false if the matrix is not positive definite.
+    pub(in crate::model::fem) fn solve(&mut self, mesh: &Mesh, task: &Task, (x, shift): (&[Vec2], f64)) -> bool {
+        let s = &mut self.system;
+        for (d, g) in self.direction.iter_mut().zip(&s.gradient) {
+            *d = -g;
+        }
+        let (rows, band) = (s.hessian.rows(), s.hessian.half_bandwidth());
+        for node in 0..mesh.nodes() {
+            if mesh.held[node] {
+                let go = self.goal[node] - x[node];
+                for (k, go) in [(2 * node, go.x), (2 * node + 1, go.y)] {
+                    for i in k.saturating_sub(band)..(k + band + 1).min(rows) {
+                        self.direction[i] -= s.hessian.get(i, k) * go;
+                    }
+                    for &(i, j, v) in self.coupling.iter().filter(|c| c.0 == k || c.1 == k) {
+                        self.direction[i + j - k] -= v * go;
+                    }
+                }
+            } else if shift > 0.0 {
+                s.add_block(node, node, &(Mat2::identity() * (shift * node_scale(task, node))));
+            }
+        }
+        for node in 0..mesh.nodes() {
+            if mesh.held[node] {
+                let go = self.goal[node] - x[node];
+                for (k, go) in [(2 * node, go.x), (2 * node + 1, go.y)] {
+                    s.hessian.pin(k);
+                    self.direction[k] = go;
+                }
+            } else if let Some(sliding) = &mesh.sliding[node] {
+                let first = if sliding.sticks() { 0 } else { 1 };
+                for k in 2 * node + first..2 * node + 2 {
+                    s.hessian.pin(k);
+                    self.direction[k] = 0.0;
+                }
+            }
+        }
+        if !self.coupling.is_empty() {
+            self.coupling.retain(|&(i, j, _)| !mesh.held[i / 2] && !mesh.held[j / 2]);
+            self.ahead.keep(&self.direction);
+            return solve_coupled(&s.hessian, &self.coupling, &mut self.direction).is_ok()
+                && self.direction.iter().all(|d| d.is_finite());
+        }
+        if self.factor.factor(&s.hessian).is_err() {
+            return false;
+        }
+        self.ahead.keep(&self.direction);
+        self.factor.solve_in_place(&mut self.direction);
+        self.direction.iter().all(|d| d.is_finite())
+    }
+
+    /// Minimises Φ from `pose`, which becomes the answer; on failure it is where it got to.
+    ///
+    /// # Errors
+    /// With the worst node and its unbalanced force.
+    pub(in crate::model::fem) fn descend(
+        &mut self,
+        (problem, mesh): (&Problem, &Mesh),
+        contacts: &ContactSet,
+        task: &Task,
+        pose: &mut Pose,
+    ) -> Result<Done, Failure> {
+        self.goal.clone_from(&task.target);
+        let mut shift = task.shift;
+        let mut pushes = 0;
+        let mut done = Done::default();
+        let mut value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Exact);
+        loop {
+            let Residual { force: residual, node, excess, drift } = self.residual(mesh, task);
+            let failed = |cause| Err(Failure { node, residual, cause });
+            if !value.is_finite() || !residual.is_finite() {
+                return failed("the energy is not finite");
+            }
+            let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != pose.x[k]);
+            // A support that squeezes the cable harder than numbers can tell has come as far as it can.
+            let squeezed = left && task.may_lag && self.rounding.noise > task.tolerance;
+            if squeezed {
+                self.goal.clone_from(&pose.x);
+            }
+            let left = left && !squeezed;
+            done.residual = residual;
+            if excess <= 1.0 && !left {
+                return Ok(done);
+            }
+            let enough = larger(residual, drift) <= ENOUGH * task.tolerance && !left;
+            if done.iterations >= task.max_iterations && enough {
+                return Ok(done);
+            }
+            if done.iterations >= task.max_iterations {
+                return failed("too many iterations");
+            }
+            if self.work_left == 0 {
+                return failed(WORK_SPENT);
+            }
+            self.work_left = self.work_left.saturating_sub(mesh.nodes());
+            done.iterations += 1;
+            // The gradient is needed after pinning overwrote the Hessian only, so it stays valid.
+            if !self.solve(mesh, task, (&pose.x, shift)) {
+                let mut tries = 0;
+                loop {
+                    self.assemble(problem, mesh, contacts, (task, pose), Curvature::Clipped);
+                    if self.solve(mesh, task, (&pose.x, shift)) {
+                        break;
+                    }
+                    shift = grow(shift, task);
+                    tries += 1;
+                    if tries > 40 {
+                        return failed("the tangent is not positive definite");
+                    }
+                }
+            }
+            if task.moves {
+                self.look_ahead((problem, mesh), contacts, pose);
+            }
+            let mut slope = self.slope();
+            if !(slope < 0.0) && !left {
+                slope = 0.0;
+            }
+            match self.search((problem, mesh), contacts, (task, left), (pose, value, slope)) {
+                Some((new_value, fraction)) => {
+                    value = new_value;
+                    if fraction > 0.5 {
+                        shift *= 0.25;
+                        if shift < 1e-3 * task.shift {
+                            shift = 0.0;
+                        }
+                    } else if fraction < 0.1 && task.shift > 0.0 {
+                        shift = grow(shift, task);
+                    }
+                    if left && fraction < 0.5 {
+                        pushes += 1;
+                        if pushes > MAX_PUSHES && !task.may_lag {
+                            return failed("a support cannot reach its place");
+                        } else if pushes > MAX_PUSHES {
+                            self.goal.clone_from(&pose.x);
+                        }
+                    }
+                }
+                None => {
+                    // At the noise of the energy there is nothing left to gain.
+                    if enough {
+                        return Ok(done);
+                    }
+                    if shift > 1e12 * task.shift.max(1e-6) {
+                        return failed("no descent");
+                    }
+                    shift = grow(shift, task);
+                    value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Clipped);
+                }
+            }
+        }
+    }
+
+    /// Moves `pose` along the direction as far as is free and lowers Φ; None if nothing does. Returns Φ and the part of
+    /// the step taken; the system is assembled there.
+    fn search(
+        &mut self,
+        (problem, mesh): (&Problem, &Mesh),
+        contacts: &ContactSet,
+        (task, moving): (&Task, bool),
+        (pose, value, slope): (&mut Pose, f64, f64),
+    ) -> Option<(f64, f64)> {
+        let n = mesh.nodes();
+        let whole = self.whole(task);
+        let mut fraction = self.free_from_here((problem, mesh), contacts, pose, whole);
+        let noise = ENERGY_NOISE * (self.magnitude.abs() + value.abs());
+        for _ in 0..MAX_HALVINGS {
+            let mut trial = std::mem::take(&mut self.trial);
+            for k in 0..n {
+                let step = Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]) * fraction;
+                if mesh.sliding[k].is_some() {
+                    trial.slide[k] = pose.slide[k] + step.x;
+                    trial.x[k] = pose.x[k];
+                    continue;
+                }
+                trial.slide[k] = 0.0;
+                trial.x[k] = pose.x[k] + step;
+                // A full step ends exactly on target.
+                if mesh.held[k] && fraction == 1.0 {
+                    trial.x[k] = self.goal[k];
+                }
+            }
+            let new_value = self.assemble(problem, mesh, contacts, (task, &trial), Curvature::Exact);
+            self.trial = trial;
+            let lower = new_value <= value + DECREASE * fraction * slope + noise;
+            if new_value.is_finite() && (moving || lower) {
+                std::mem::swap(pose, &mut self.trial);
+                return Some((new_value, fraction));
+            }
+            fraction *= 0.5;
+        }
+        None
+    }
+}
+
+/// What the inertia of nodes loses by being coupled over the bars (see `mass`): adds gradient and Hessian, returns the energy, J.
+#[inline(never)]
+fn add_coupling(s: &mut System, task: &Task, x: &[Vec2]) -> f64 {
+    let mut value = 0.0;
+    for (e, (coupling, chord)) in task.coupling.iter().enumerate() {
+        let (late, k) = (x[e + 1] - x[e] - chord, coupling * task.scale[e]);
+        s.add_gradient(e, late * k);
+        s.add_gradient(e + 1, late * -k);
+        s.hessian.add_spring(2 * e, [-k, 0.0, -k]);
+        value -= 0.5 * k * late.norm_squared();
+    }
+    value
+}
+
+/// Factor of the equations of a node.
+pub(in crate::model::fem) fn node_scale(task: &Task, node: usize) -> f64 {
+    task.scale.get(node.saturating_sub(1)).copied().unwrap_or(1.0)
+}
+
+fn grow(shift: f64, task: &Task) -> f64 {
+    let least = if task.shift > 0.0 { task.shift } else { 1.0 };
+    if shift > 0.0 { 4.0 * shift } else { least }
+}

@@ -1,0 +1,158 @@
+//! How far a step of all nodes may go: no node too far, nothing crossed, some cable left beside sliding nodes.
+
+use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::system::friction_state::ContactSet;
+use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::mesh::tangent_path::{End, Path};
+use crate::model::fem::newton::step_input::{Pose, Task};
+use crate::contact::sweep::Sweep;
+use crate::math::{Vec2, larger};
+use crate::problem::Problem;
+
+/// Part of each gap that a Newton step leaves. Smaller: gaps shrink faster than Newton opens them again (with 0.2 twice as many
+/// steps of ends thrown about are halved, five times as many where the cable meets itself); larger: more steps.
+const KEEP: f64 = 0.5;
+
+/// The same for gaps wider than the barrier's reach, in reaches: a little less than where foreseen contacts land.
+const KEEP_REACH: f64 = 0.45;
+
+/// Least part of the cable between a sliding node and its neighbour that one iteration leaves.
+const LEAVE: f64 = 0.3;
+
+impl Workspace {
+    /// The part of the direction in which no node moves too far.
+    pub(in crate::model::fem) fn whole(&self, task: &Task) -> f64 {
+        let largest = longest(&self.direction);
+        if largest > task.max_move { task.max_move / largest } else { 1.0 }
+    }
+
+    /// The largest part (at most `fraction`) of the direction that crosses nothing and leaves some cable between sliding
+    /// nodes and their neighbours.
+    pub(in crate::model::fem) fn free_way(
+        &mut self,
+        (problem, mesh): (&Problem, &Mesh),
+        contacts: &ContactSet,
+        pose: &Pose,
+        fraction: f64,
+    ) -> f64 {
+        let (direction, geometry) = (&self.direction, problem.world.geometry());
+        let step = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]);
+        let most = KEEP_REACH * contacts.barrier.reach;
+        let mut free = fraction;
+        for e in 0..mesh.rest_length.len() {
+            let slides = [e, e + 1].map(|k| mesh.sliding[k].is_some());
+            if slides != [false, false] {
+                let go = [e, e + 1].map(|k| if mesh.sliding[k].is_some() { direction[2 * k] } else { 0.0 });
+                let change = go[1] - go[0];
+                let whole = mesh.rest_length[e] / mesh.thermal_stretch + pose.slide[e + 1] - pose.slide[e];
+                let straight = mesh.path(e, &pose.x).straight;
+                let length = if straight > 0.0 && straight < whole { straight } else { whole };
+                if change < 0.0 && -change * free > (1.0 - LEAVE) * length {
+                    free = (1.0 - LEAVE) * length / -change;
+                }
+            }
+            if problem.world.is_empty() || slides == [true, true] {
+                continue;
+            }
+            let x = &pose.x;
+            let from = mesh.straight(e, x);
+            let to = if slides == [false, false] {
+                [from[0] + step(e) * free, from[1] + step(e + 1) * free]
+            } else {
+                let end = |k: usize| mesh.sliding[k].as_ref().map_or(End::point(x[k] + step(k) * free), |s| s.end);
+                Path::between(&end(e), &end(e + 1)).ends
+            };
+            let sweep = Sweep::new(from, to, KEEP).at_most(most);
+            free *= match contacts.near.of(e, [from, to], sweep.margin) {
+                Some([]) => 1.0,
+                Some(parts) => geometry.free_fraction_among(parts.iter().copied(), &sweep, mesh.rounds(e)),
+                None => geometry.free_fraction_round(&sweep, mesh.rounds(e)),
+            };
+        }
+        let limits = [KEEP, most, free];
+        contacts.own.shape.free_fraction((&pose.x, &mesh.arc_length), &step, limits, &mut self.order)
+    }
+
+    /// The same from where the system was assembled last. A step shorter than every gap leaves, whichever way it goes, is free:
+    /// nearly all last iterations are, and sweeps of every bar cost as much as the rest of one.
+    pub(in crate::model::fem) fn free_from_here(
+        &mut self,
+        (problem, mesh): (&Problem, &Mesh),
+        contacts: &ContactSet,
+        pose: &Pose,
+        fraction: f64,
+    ) -> f64 {
+        let still = |k: usize| self.direction[2 * k] == 0.0 && self.direction[2 * k + 1] == 0.0;
+        let plain = !contacts.own.shape.is_on()
+            && (0..mesh.nodes()).all(|k| mesh.sliding[k].is_none() && (!mesh.held[k] || still(k)));
+        if plain {
+            let gaps = self.touches.iter().map(|t| t.pair.gap.gap_m);
+            let least = gaps.fold(contacts.barrier.reach, |a, b| if b < a { b } else { a });
+            if fraction * longest(&self.direction) <= (1.0 - KEEP) * least {
+                return fraction;
+            }
+        }
+        self.free_way((problem, mesh), contacts, pose, fraction)
+    }
+}
+
+/// Longest move of a node in a step, m.
+pub(in crate::model::fem) fn longest(step: &[f64]) -> f64 {
+    step.chunks_exact(2).map(|d| d[0] * d[0] + d[1] * d[1]).fold(0.0, larger).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::model::fem::dynamics::Dynamics;
+    use super::*;
+    use crate::energy::Curvature;
+    use crate::model::Settings;
+    use crate::problem::problems;
+    use crate::scene::{Obstacle, Shape, Support, catalog};
+    use proptest::prelude::*;
+
+    /// A cable that lies in a shallow dip, its ends let go. On corners that jut out there would be sliding nodes, which are always looked at.
+    fn lying() -> Dynamics {
+        let mut scene = catalog::hanging_span();
+        let points_m = vec![[-4.0, 0.0], [3.0, -0.1], [11.0, 0.1]];
+        let shape = Shape::Terrain { points_m };
+        scene.obstacles = vec![Obstacle { name: "ground".to_owned(), shape, friction: Some(0.5) }];
+        let c = &mut scene.cables[0];
+        (c.length_m, c.bending_stiffness_n_m2) = (6.0, 0.0);
+        let hook = |name: &str, x| Support { release_s: Some(1e-3), ..Support::fixed(name, [x, 0.4]) };
+        c.supports = vec![hook("a", 0.0), hook("b", 5.9)];
+        let settings = Settings { segments: Some(60), ..Settings::default() };
+        let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings).unwrap();
+        d.settle(&[]).unwrap();
+        for _ in 0..240 {
+            d.advance(1.0 / 240.0, crate::model::Inertia::Dynamic, &[]).unwrap();
+        }
+        d
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(8))]
+        /// What is taken to be free without a look is free when looked at.
+        #[test]
+        fn a_short_way_is_free(seed in prop::collection::vec(-0.5f64..0.5, 122), down in 0.0f64..1.0) {
+            let mut d = lying();
+            d.begin_step(1.0 / 240.0, &[]);
+            let pose = d.still_pose();
+            d.contacts.prepare(&d.problem, &d.mesh, &pose.x, &d.motion.x);
+            let mut memory = Workspace::new(&d.mesh).unwrap();
+            let setting = (&*d.problem, &d.mesh);
+            memory.assemble(&d.problem, &d.mesh, &d.contacts, (&d.task, &pose), Curvature::Exact);
+            prop_assert!(memory.touches.len() > 10, "{} touch", memory.touches.len());
+            let gaps = memory.touches.iter().map(|t| t.pair.gap.gap_m);
+            let least = gaps.fold(f64::INFINITY, |a, b| if b < a { b } else { a });
+            for gaps in [0.01, 0.1, 0.3, 0.5, 0.7, 1.0, 2.0, 10.0] {
+                for (k, (way, s)) in memory.direction.iter_mut().zip(&seed).enumerate() {
+                    *way = gaps * least * (s - if k % 2 == 1 { down } else { 0.0 });
+                }
+                let looked = memory.free_way(setting, &d.contacts, &pose, 1.0);
+                let told = memory.free_from_here(setting, &d.contacts, &pose, 1.0);
+                prop_assert!(told == looked, "{} free where {} is", told, looked);
+            }
+        }
+    }
+}

@@ -1,0 +1,365 @@
+//! What one step is about: forces, targets, inertia, damping and grip at an instant.
+
+use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::dynamics::{Dynamics, INNER_STEP, REACH};
+use crate::model::fem::system::floor_friction;
+use crate::model::fem::mesh::sliding_node::Seat;
+use crate::model::fem::newton::step_input::{Done, Failure, Pose};
+use crate::model::fem::system::bar_weight;
+use crate::math::Vec2;
+use crate::model::input_filter::MAX_SPEED;
+use crate::problem::Problem;
+use crate::scene::SupportKind;
+
+/// Unbalanced force accepted, part of the whole load.
+const TOLERANCE: f64 = 1e-6;
+
+/// Time constant of material damping, s, of a cable that may rub, where its own damping ratio does not ask for more. Without it
+/// a soft cable (EA 1e5 N) shows 11 % of axial noise in a drag. A cable that can touch nothing has its own damping alone: of what
+/// a weight that swings 9 times a second pulls beyond itself this would take a twelfth.
+const MATERIAL_DAMPING: f64 = 1e-3;
+
+/// Newton iterations of a dynamic step.
+const STEP_ITERATIONS: usize = 120;
+
+/// Factors of sliding nodes count as found when they change by less than this.
+const SAME_FACTOR: f64 = 1e-9;
+
+/// Friction of the floor for a node counts as found when it changes by less than this part. More: the cones of a report are not those that were
+/// solved for (the checker asks for 1e-3); less: rounds of what moves by rounding.
+const SAME_FLOOR: f64 = 1e-6;
+
+/// Forces at a sliding node within this part of each other are equal: the law is read off bars, whose tension is
+/// known to the residual only.
+const EVEN_FORCE: f64 = 1e-7;
+
+/// Part of the greatest friction of a sliding node by which its friction may differ from that of its turn and grip after a step. Less: rounds for
+/// nothing that shows; more: friction beyond its cone (the checker asks for 1e-3 of the normal force).
+const LAWFUL: f64 = 2e-4;
+
+/// What a pose says of the friction of sliding nodes with which it was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::fem) struct Grips {
+    /// Nodes that hold where they should slip, or slip where they should hold.
+    pub(in crate::model::fem) wrong: usize,
+    /// Whether what slips has the friction that belongs to its turn, as nearly as anyone sees.
+    pub(in crate::model::fem) lawful: bool,
+    /// Whether nothing changed but by rounding.
+    pub(in crate::model::fem) same: bool,
+}
+
+impl Grips {
+    /// Nothing slides.
+    pub(in crate::model::fem) const FOUND: Self = Self { wrong: 0, lawful: true, same: true };
+
+    /// Whether the law holds at every sliding node.
+    pub(in crate::model::fem) fn hold(self) -> bool {
+        self.wrong == 0 && self.lawful
+    }
+}
+
+impl Dynamics {
+    /// Sets held nodes, their targets and all forces for the time `to` (s); dragged supports go where `dragged` says.
+    pub(in crate::model::fem) fn prepare_task(&mut self, to: f64, dragged: Option<&[Option<Vec2>]>) {
+        self.prepare_step([to, to], dragged);
+    }
+
+    /// The same for a step from one time to another (s): what holds at its start holds to its end.
+    pub(in crate::model::fem) fn prepare_step(&mut self, [from, to]: [f64; 2], dragged: Option<&[Option<Vec2>]>) {
+        self.stepped = None;
+        let (problem, mesh, task) = (&self.problem, &mut self.mesh, &mut self.task);
+        let n = mesh.nodes();
+        let body = problem.body_force(to);
+        let gravity =
+            if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
+        task.body = body;
+        task.to = to;
+        task.force.clear();
+        task.force.extend((0..n).map(|k| body * mesh.share(k)));
+        for (node, force) in &self.loads {
+            task.force[*node] += force.at(to);
+        }
+        task.start.clone_from(&self.motion.x);
+        task.target.clone_from(&self.motion.x);
+        task.laid.clear();
+        task.hands.clear();
+        mesh.held.fill(false);
+        mesh.clamps.clear();
+        for (k, (s, node)) in problem.supports.iter().zip(&self.support_node).enumerate() {
+            let Some(node) = *node else { continue };
+            if s.kind == SupportKind::Pulley {
+                continue;
+            }
+            if s.kind == SupportKind::Load {
+                task.force[node] += s.force.at(to);
+            }
+            task.force[node] += gravity * s.mass;
+            if s.holds_from(from)
+                && let Some((at, _)) = s.place_at(to)
+            {
+                let drawn = dragged.and_then(|d| d.get(k).copied().flatten());
+                let at = self.motion.followers[k].map_or(drawn.unwrap_or(at), |f| f.position());
+                // What was stopped and is free again catches up no faster than this beyond its own motion, which is followed exactly.
+                let own = s.place_at(from).map_or(0.0, |(before, _)| (at - before).norm());
+                let most = if self.motion.followers[k].is_some() { 0.0 } else { own } + MAX_SPEED * (to - from);
+                let at = if to > from { within(self.motion.x[node], at, most) } else { at };
+                // What a hand holds by a spring is a node that moves.
+                if self.motion.hands[k].is_none() {
+                    mesh.held[node] = true;
+                    task.target[node] = clear_way(problem, self.motion.x[node], at);
+                    if task.target[node] != at && !self.held_back.contains(&k) {
+                        self.held_back.push(k);
+                    }
+                }
+                if let Some(angle) = s.angle
+                    && s.kind == SupportKind::Clamped
+                    && mesh.bending_stiffness > 0.0
+                {
+                    let direction = Vec2::new(angle.cos(), angle.sin());
+                    mesh.clamps.push(crate::model::fem::system::assembly::Clamp { node, direction });
+                }
+            }
+        }
+        for (k, node) in mesh.sliding.iter_mut().enumerate() {
+            let Some(node) = node else { continue };
+            if let Seat::Pulley(support) = node.seat
+                && let Some((at, _)) =
+                    problem.supports.get(support).filter(|s| s.holds_from(from)).and_then(|s| s.place_at(to))
+            {
+                let hand = dragged.and_then(|d| d.get(support).copied().flatten());
+                let follower = self.motion.followers.get(support).copied().flatten();
+                node.end.center = follower.map_or(hand.unwrap_or(at), |f| f.position());
+                self.motion.x[k] = node.position();
+                task.start[k] = self.motion.x[k];
+            }
+        }
+        task.may_lag = to > from;
+        task.outlined = self.rider.is_some();
+        task.max_iterations = STEP_ITERATIONS;
+        task.max_move = 2.0 * INNER_STEP * 100.0;
+        task.moves = false;
+        task.shift = 0.0;
+        task.damping = 0.0;
+        task.bending_damping = 0.0;
+        task.most_noise = f64::INFINITY;
+        task.inertia.clear();
+        task.inertia.resize(n, 0.0);
+        task.predicted.clone_from(&self.motion.x);
+        task.coupling.clear();
+        task.predicted_length.clear();
+        task.predicted_length.extend_from_slice(&mesh.rest_length);
+        task.predicted_slide.clear();
+        task.predicted_slide.resize(n, 0.0);
+        self.set_scale();
+        let x = std::mem::take(&mut self.motion.x);
+        self.press_on_floor(&x, None);
+        for k in 1..n.saturating_sub(1) {
+            if self.mesh.sliding[k].is_some() {
+                let lies = self.parts_that_lie(k, &x);
+                if let Some(node) = &mut self.mesh.sliding[k] {
+                    node.lies = lies;
+                }
+            }
+        }
+        self.motion.x = x;
+    }
+
+    /// Plan view: the friction that the floor has for each node where the cable lies now; returns whether any of it changed.
+    fn press_on_floor(&mut self, x: &[Vec2], slide: Option<&[f64]>) -> bool {
+        let Some((friction, normal)) = self.problem.floor_friction else {
+            self.task.floor_limit.clear();
+            return false;
+        };
+        let (mesh, limits) = (&self.mesh, &mut self.task.floor_limit);
+        let mut changed = limits.len() != mesh.nodes();
+        limits.resize(mesh.nodes(), 0.0);
+        for (k, limit) in limits.iter_mut().enumerate() {
+            let reach: f64 = floor_friction::reaches(mesh, k, x, slide).iter().sum();
+            let now = friction * normal * reach;
+            changed |= !((now - *limit).abs() <= SAME_FLOOR * (now + *limit));
+            *limit = now;
+        }
+        changed
+    }
+
+    /// The factor of each bar's energy from the grips of the sliding nodes before it.
+    pub(in crate::model::fem) fn set_scale(&mut self) {
+        let mut scale = 1.0;
+        self.task.scale.clear();
+        for e in 0..self.mesh.rest_length.len() {
+            if let Some(s) = &self.mesh.sliding[e] {
+                scale *= s.factor;
+            }
+            self.task.scale.push(scale);
+        }
+    }
+
+    /// Reads turn and grip of every sliding node off a pose and says how that differs from what the pose was found with. Where `one` is set
+    /// only the first of the grips that are wrong is changed, and turns half of the way: nearly slack bars hang from a round, and turn over it by the
+    /// more the less they pull.
+    ///
+    /// What slid the wrong way until its grip was seen to be wrong has not slid at all.
+    pub(in crate::model::fem) fn update_grips(&mut self, pose: &mut Pose, one: bool) -> Grips {
+        if self.never_slides {
+            return Grips::FOUND;
+        }
+        let mut grips = Grips { same: !self.press_on_floor(&pose.x, Some(&pose.slide)), ..Grips::FOUND };
+        for k in 0..self.mesh.nodes() {
+            let (Some(node), Some(load)) = (self.mesh.sliding[k], self.load_at(k, &pose.x, Some(&pose.slide))) else {
+                continue;
+            };
+            if !(node.friction > 0.0) {
+                continue;
+            }
+            let mut next = node;
+            // What does not pull presses on nothing.
+            let presses = load.turn > 0.0 && load.pull[0] + load.pull[1] > 0.0;
+            let exponent = if presses { node.friction * load.turn } else { 0.0 };
+            next.exponent = if one { 0.5 * (node.exponent + exponent) } else { exponent };
+            let inertia = self.task.inertia[k] * (pose.slide[k] - self.task.predicted_slide[k]);
+            let pulls = load.pull[0].abs() + load.pull[1].abs();
+            let slack = self.task.tolerance + EVEN_FORCE * pulls;
+            let stiffness = self.mesh.axial_stiffness;
+            let grip = load.grip(&next, pose.slide[k], [inertia, slack], stiffness);
+            if grip != node.grip {
+                grips.wrong += 1;
+                if !one || grips.wrong == 1 {
+                    next.grip = grip;
+                }
+            }
+            next.factor = load.factor(next.grip, next.exponent, stiffness);
+            let floor = floor_friction::reaches(&self.mesh, k, &pose.x, Some(&pose.slide));
+            next.floor_factor = floor_friction::factor(floor, load.ratio(next.grip, next.exponent));
+            if next.sticks() && !node.sticks() {
+                pose.slide[k] = 0.0;
+            }
+            let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SAME_FACTOR;
+            grips.same &= same(next.factor, node.factor) && same(next.floor_factor, node.floor_factor);
+            let off = ((load.factor(node.grip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
+            grips.lawful &= off <= LAWFUL * pulls * exponent + slack;
+            self.mesh.sliding[k] = Some(next);
+        }
+        self.set_scale();
+        grips
+    }
+
+    /// Parts of the weight of the bars beside sliding node `k` on rounds that may act there, at positions (m).
+    fn parts_that_lie(&self, k: usize, x: &[Vec2]) -> [f64; 2] {
+        let mesh = &self.mesh;
+        [k - 1, k].map(|e| {
+            let path = mesh.path(e, x);
+            let tension = mesh.axial_stiffness * (path.length / mesh.rest_length[e] - 1.0);
+            bar_weight::may_lie(mesh, e, &path, (self.task.body, tension))
+        })
+    }
+
+    /// Whether the cable is flexible and nothing but its supports can touch it on the way to places `to` (m).
+    fn moves_freely(&self, to: &[Vec2]) -> bool {
+        let slides = !self.never_slides && self.mesh.sliding.iter().any(Option::is_some);
+        !slides
+            && self.problem.floor_friction.is_none()
+            && self.mesh.bending_stiffness == 0.0
+            && self.is_out_of_reach(to)
+    }
+
+    /// Whether nothing but supports can touch the cable on its way to places `to` (m).
+    pub(in crate::model::fem) fn is_out_of_reach(&self, to: &[Vec2]) -> bool {
+        self.meets_nothing()
+            || (!self.contacts.own.shape.is_on() && self.contacts.out_of_reach(&self.mesh, [&self.task.start, to]))
+    }
+
+    pub(in crate::model::fem) fn minimise(&mut self, pose: &mut Pose) -> Result<Done, Failure> {
+        if self.moves_freely(&pose.x)
+            && let Some(done) = self.free.solve(&self.mesh, &self.task, pose)
+        {
+            if self.is_out_of_reach(&pose.x) {
+                for (k, reaction) in self.reaction.iter_mut().enumerate() {
+                    *reaction = -self.free.gradient_at(k);
+                }
+                self.freely = true;
+                return Ok(done);
+            }
+            // It would have met something: from the start again, with contact.
+            *pose = self.still_pose();
+        }
+        let mut memory = match self.memory.0.take() {
+            Some(m) if m.nodes() == self.mesh.nodes() => m,
+            _ => Box::new(Workspace::new(&self.mesh).map_err(|_| Failure {
+                node: 0,
+                residual: f64::NAN,
+                cause: "there is no memory for it",
+            })?),
+        };
+        memory.work_left = self.work_left;
+        self.freely = false;
+        let done = memory.minimise((&self.problem, &self.mesh), &self.contacts, &self.task, pose);
+        self.work_left = memory.work_left;
+        for k in 0..self.mesh.nodes() {
+            let scale = self.task.scale.get(k.saturating_sub(1)).copied().unwrap_or(1.0);
+            self.reaction[k] = -memory.gradient_at(k) / scale;
+        }
+        self.memory.0 = Some(memory);
+        done
+    }
+}
+
+/// The point on the way from `from` towards `to` that is at most `most` (m) away.
+fn within(from: Vec2, to: Vec2, most: f64) -> Vec2 {
+    let (way, distance) = (to - from, (to - from).norm());
+    if distance > most { from + way * (most / distance) } else { to }
+}
+
+/// Gap (m) that a support keeps from what it is driven against. The bar beside it presses there with hardly a lever: nearer,
+/// and its normal force, 1e14 N at 1e-8 m, is all that Newton sees.
+const STAND_OFF: f64 = 0.2 * REACH;
+
+/// Rounding of a gap, m.
+const TOUCHING: f64 = 1e-9;
+
+/// Part of its gap that a support keeps in one step.
+const KEEP_GAP: f64 = 0.2;
+
+/// Halvings of the way of a support that comes too near, before it stays where it is.
+const STAND_OFF_TRIES: usize = 4;
+
+/// The target of a held node, stopped where an obstacle is in its way (m).
+pub(in crate::model::fem) fn clear_way(problem: &Problem, from: Vec2, to: Vec2) -> Vec2 {
+    if problem.world.is_empty() || from == to {
+        return to;
+    }
+    let gap = |p: Vec2| problem.world.signed_gap(p, STAND_OFF).map_or(STAND_OFF, |g| g.gap_m);
+    // A support that the scene puts on a surface may stay on it; none may come nearer than it stands.
+    let least = gap(from) - TOUCHING;
+    let free = problem.world.free_fraction([from, from], [to, to], KEEP_GAP);
+    let mut part = if free >= 1.0 { 1.0 } else { free };
+    for _ in 0..STAND_OFF_TRIES {
+        let at = if part >= 1.0 { to } else { from + (to - from) * part };
+        if gap(at) >= least {
+            return at;
+        }
+        part *= 0.5;
+    }
+    from
+}
+
+/// Load per metre that presses on the ground and the whole load, N/m and N; never 0.
+pub(in crate::model::fem) fn load_scale(problem: &Problem) -> (f64, f64) {
+    // What presses on the floor of a plan view counts by what it rubs.
+    let floor = problem.floor_friction.map_or(0.0, |(friction, normal)| friction * normal);
+    let whole = problem.force_scale().max(floor * problem.length);
+    let per_m = problem.body_force(0.0).norm().max(floor).max(1e-3 * whole / problem.length);
+    (per_m, whole)
+}
+
+/// Unbalanced force to reach, N: not below the rounding of the axial forces.
+pub(in crate::model::fem) fn tolerance(problem: &Problem, whole: f64) -> f64 {
+    let rounding = 64.0 * f64::EPSILON * problem.axial_stiffness * 100.0;
+    (TOLERANCE * whole).max(rounding)
+}
+
+pub(in crate::model::fem) fn damping_time(problem: &Problem, rubs: bool) -> f64 {
+    let wave = (problem.axial_stiffness / problem.linear_density).sqrt();
+    let first_mode = std::f64::consts::PI * wave / problem.length;
+    let own = 2.0 * problem.cable.damping_ratio / first_mode;
+    if rubs { MATERIAL_DAMPING.max(own) } else { own }
+}

@@ -1,0 +1,102 @@
+//! Whether the cable, as a mesh has it, runs through obstacles.
+//!
+//! The search of a step crosses nothing (`contact/sweep.rs`). What is looked at here is what nobody searched: ways that change when a
+//! node is put in, moved or taken out beside a corner, and states that come from elsewhere. A bar that is tangent to the round of a
+//! corner is nearer to the corner's edges than the barrier at that end, always; there it is the tangent point that must not
+//! lie over an edge.
+
+use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::mesh::tangent_path::Path;
+use crate::model::fem::mesh::sliding_node::{Seat, Sliding};
+use crate::error::SolveError;
+use crate::math::{Vec2, perp};
+use crate::model::Model;
+
+/// Gap (parts of the barrier's reach) that a bar must have when a node is taken out: less, and the barrier throws it.
+const LEAST_GAP: f64 = 0.05;
+
+impl Dynamics {
+    /// Whether a bar meets nothing.
+    pub(in crate::model::fem) fn is_clear(&self, e: usize) -> bool {
+        self.way_is_clear(&self.mesh.path(e, &self.motion.x), [e, e + 1].map(|k| self.mesh.sliding[k].as_ref()))
+    }
+
+    /// Whether the cable meets or leaves the round of a corner where that is over one of the corner's edges: it has folded back
+    /// and would run through the edge.
+    pub(in crate::model::fem) fn beyond_its_corner(&self, k: usize, x: &[Vec2]) -> bool {
+        let Some(node) = self.mesh.sliding[k] else { return false };
+        let meets = [self.mesh.path(k - 1, x).ends[1], self.mesh.path(k, x).ends[0]];
+        meets.into_iter().any(|p| self.is_over_an_edge(&node, p, 0.0))
+    }
+
+    /// Whether a point on the round of a corner lies over one of the corner's edges, nearer to it than `least` (parts of the
+    /// barrier's reach): a way that is tangent there runs through the edge.
+    pub(in crate::model::fem) fn is_over_an_edge(&self, node: &Sliding, p: Vec2, least: f64) -> bool {
+        let geometry = self.problem.world.geometry();
+        let body = node.feature().and_then(|f| Some((f, geometry.body_of(f)?)));
+        let Some((f, body)) = body.filter(|b| b.1.center.is_none()) else { return false };
+        let Some(corner) = body.corner((f - body.first) / 2) else { return false };
+        let least = body.offset + least * self.contacts.barrier.reach;
+        let into = [corner.before.map(|t| (-t, perp(t))), corner.after.map(|t| (t, perp(t)))];
+        let from = p - node.end.center;
+        into.into_iter().flatten().any(|(t, n)| from.dot(&t) > 0.0 && from.dot(&n).abs() < least)
+    }
+
+    /// Whether the straight part of a way between two nodes meets nothing, nor the edges of the corners it is tangent to.
+    pub(in crate::model::fem) fn way_is_clear(&self, way: &Path, nodes: [Option<&Sliding>; 2]) -> bool {
+        let geometry = self.problem.world.geometry();
+        let rounds = nodes.map(|s| s.and_then(Sliding::feature));
+        (0..2).all(|j| nodes[j].is_none_or(|s| !self.is_over_an_edge(s, way.ends[j], LEAST_GAP)))
+            && geometry.is_clear(way.ends, LEAST_GAP * self.contacts.barrier.reach, rounds)
+    }
+
+    /// Whether the straight way past node `k` meets nothing.
+    pub(in crate::model::fem) fn clear_without(&self, k: usize) -> bool {
+        if self.problem.world.is_empty() {
+            return true;
+        }
+        let x = &self.motion.x;
+        let way = Path::between(&self.mesh.end(k - 1, x), &self.mesh.end(k + 1, x));
+        self.way_is_clear(&way, [k - 1, k + 1].map(|j| self.mesh.sliding[j].as_ref()))
+    }
+
+    /// A bar tangent to a corner or circle that runs through something: with all others watched by the search of the step, proof
+    /// that the cable crosses nothing.
+    pub(in crate::model::fem) fn crossing(&self) -> Option<usize> {
+        let (mesh, geometry) = (&self.mesh, self.problem.world.geometry());
+        (0..mesh.rest_length.len()).find(|&e| {
+            let nodes = [e, e + 1].map(|k| mesh.sliding[k].as_ref());
+            let slides = |s: Option<&Sliding>| s.is_some_and(|s| matches!(s.seat, Seat::Obstacle { .. }));
+            if !nodes.into_iter().any(slides) {
+                return false;
+            }
+            let way = mesh.path(e, &self.motion.x);
+            let over = (0..2).any(|j| nodes[j].is_some_and(|s| self.is_over_an_edge(s, way.ends[j], 0.0)));
+            // Where supports and pulleys are is the scene's business.
+            let own = (0..2).all(|j| slides(nodes[j]) || mesh.is_free(e + j));
+            over || (own && !geometry.is_clear(way.ends, 0.0, mesh.rounds(e)))
+        })
+    }
+
+    /// Refuses to go on from where a node is inside an obstacle. A bar that only cuts a corner is left to the rest to come.
+    pub(in crate::model::fem) fn refuse_buried(&self) -> Result<(), SolveError> {
+        let (mesh, x, world) = (&self.mesh, &self.motion.x, &self.problem.world);
+        if world.is_empty() {
+            return Ok(());
+        }
+        let buried = |k: usize, obstacle: usize, depth_m: f64| SolveError::Buried {
+            model: Model::Fem,
+            obstacle: world.obstacle_name(obstacle).to_owned(),
+            depth_m,
+            arc_length_m: mesh.arc_length[k],
+            at_m: x[k],
+        };
+        for k in (0..mesh.nodes()).filter(|&k| mesh.is_free(k)) {
+            // However deep inside.
+            if let Some(gap) = world.signed_gap(x[k], f64::INFINITY).filter(|g| g.gap_m <= 0.0) {
+                return Err(buried(k, gap.obstacle, -gap.gap_m));
+            }
+        }
+        Ok(())
+    }
+}

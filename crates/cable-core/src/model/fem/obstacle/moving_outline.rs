@@ -1,0 +1,369 @@
+//! The outline of a robot among the obstacles of a cable: how it gets from where it is to where it is led.
+//!
+//! Within a step it stands where it will be at the end of it. What it moved into is pushed out of its way first, and the step
+//! is worked out from there: histories, inertia and anchors stay those of where the cable was, so what pushes is the barrier
+//! and nothing else. The place to begin from is found in three parts:
+//! - bars near the outline go with it as if they were a part of it, so none of them is passed;
+//! - gaps g of the nodes and bars that went, to what stands and to the outline, that would be lost are given back: with u the
+//!   way from where each was (for the outline: from where it went with it), one after the other until
+//!   ```text
+//!   n·u ≥ −(1 − κ) g
+//!   ```
+//! - the way there is swept, past what stands as seen from the ground and past the outline as seen from it: where it is not
+//!   free the outline goes half as far, and where it cannot go at all it stays.
+
+use std::sync::Arc;
+
+use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::results::rub_force;
+use crate::model::fem::system::friction_state::Touch;
+use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::newton::step_setup::clear_way;
+use crate::contact::distance::segment_segment;
+use crate::contact::geometry::{Geometry, Part};
+use crate::contact::outline::Outline;
+use crate::contact::self_contact::SortedNodes;
+use crate::contact::sweep::Sweep;
+use crate::math::RigidPose;
+use crate::math::{Vec2, larger};
+use crate::model::RobotContact;
+use crate::problem::{Problem, SupportPoint};
+use crate::scene::SupportKind;
+
+/// Bars nearer than this (m), and four ways of the outline, go with it. Nearer: bars just beyond are folded against those that
+/// go; farther: what lies on the ground some way off is moved for nothing.
+const GOES_ALONG_M: f64 = 0.02;
+
+/// Longest way of the outline in a step without inertia, m.
+const LONGEST_WAY_M: f64 = 5e-3;
+
+/// Parts of its way that are tried. Fewer: it stops before it must; more: a cable squeezed against a wall is asked again.
+const PARTS: [f64; 4] = [1.0, 0.5, 0.25, 0.0625];
+
+/// Part of a gap that is left when what stands in the way pushes back (κ); the sweep asks for less, for rounding.
+const KEEP: [f64; 2] = [0.1, 0.05];
+
+/// Rounds of giving gaps back. A node in a corner between outline and ground needs a few; a squeezed one never ends.
+const ROUNDS: usize = 40;
+
+/// Part of the time of a way that counts as nothing.
+const ARRIVED: f64 = 1e-9;
+
+/// A hitch that a wall stopped is left behind by so much, m; then the outline waits for it.
+const LEFT_BEHIND_M: f64 = 0.06;
+
+/// A way of the outline that counts as none, m.
+const STANDS_M: f64 = 1e-12;
+
+/// A lack of a gap that counts as none, m.
+const NONE: f64 = 1e-13;
+
+/// Whether a segment that moves evenly stays clear of an edge because its ends stay on one side of the edge's line: a cable
+/// drawn along the ground is told so at once, where the sweep asks again after each gap's breadth.
+fn is_passed_by(geometry: &Geometry, part: Part, from: [Vec2; 2], to: [Vec2; 2]) -> bool {
+    let Some(body) = geometry.bodies().get(part.body) else { return false };
+    let Some(edge) = part.edge.and_then(|k| body.edges.get(k)) else { return false };
+    let heights = [from[0], from[1], to[0], to[1]].map(|p| (p - edge.p).dot(&edge.normal()));
+    heights.iter().all(|h| *h > body.offset) || heights.iter().all(|h| *h < -body.offset)
+}
+
+/// The outline of a robot as a cable meets it.
+#[derive(Clone, Debug)]
+pub(in crate::model::fem) struct Rider {
+    shape: Arc<Outline>,
+    /// Its number among the obstacles.
+    pub(in crate::model::fem) obstacle: usize,
+    /// Where it was when the way began, and where it is led to, with times in s.
+    from: (f64, RigidPose),
+    to: (f64, RigidPose),
+    /// Where it was led before.
+    led_before: RigidPose,
+    /// Whether it stays where it is until the end of this advance.
+    waits: bool,
+}
+
+/// How the outline moved in the present step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carriage {
+    /// Its number among the obstacles.
+    pub obstacle: usize,
+    /// From where.
+    pub from: RigidPose,
+    /// To where.
+    pub to: RigidPose,
+}
+
+impl Carriage {
+    /// Where a point that was at `p` (m) would be now if it had gone with the outline.
+    #[must_use]
+    pub fn carried(&self, p: Vec2) -> Vec2 {
+        self.from.carried(&self.to, p)
+    }
+
+    /// How far the point of the outline that is at `p` (m) came.
+    #[must_use]
+    pub fn way(&self, p: Vec2) -> Vec2 {
+        p - self.to.carried(&self.from, p)
+    }
+}
+
+/// The problem with the outline of the robot among its obstacles.
+pub(in crate::model::fem) fn with_outline(problem: Arc<Problem>) -> Arc<Problem> {
+    Rider::of(problem).1
+}
+
+impl Rider {
+    /// That of a problem, and the problem with it among its obstacles.
+    pub(in crate::model::fem) fn of(problem: Arc<Problem>) -> (Option<Self>, Arc<Problem>) {
+        let Some(shape) = problem.outline.clone() else { return (None, problem) };
+        let world = Arc::new(problem.world.with_outline(&shape, problem.radius));
+        let obstacle = world.geometry().bodies().last().map_or(0, |b| b.obstacle);
+        let at = (0.0, shape.placement);
+        let with_it = Problem { world, ..Problem::clone(&problem) };
+        (Some(Self { shape, obstacle, from: at, to: at, led_before: at.1, waits: false }), Arc::new(with_it))
+    }
+
+    /// Where it is to be at a time, s.
+    fn goal(&self, time: f64) -> RigidPose {
+        let (whole, left) = (self.to.0 - self.from.0, self.to.0 - time);
+        // Sums of steps come as near to their end as rounding lets them.
+        if left > ARRIVED * whole { self.from.1.towards(&self.to.1, 1.0 - left / whole) } else { self.to.1 }
+    }
+
+    /// How many steps without inertia its way takes at least.
+    pub(in crate::model::fem) fn pieces(&self) -> f64 {
+        self.shape.max_displacement(&self.from.1, &self.to.1) / LONGEST_WAY_M
+    }
+}
+
+impl Dynamics {
+    /// Leads the outline: it goes there in the next advance.
+    pub(in crate::model::fem) fn set_robot_pose(&mut self, to: RigidPose) {
+        if let Some(rider) = &mut self.rider
+            && to.at.iter().all(|c| c.is_finite())
+            && to.angle.is_finite()
+        {
+            rider.led_before = std::mem::replace(&mut rider.to.1, to);
+        }
+    }
+
+    /// Its way for an advance to the time `end`, s.
+    pub(in crate::model::fem) fn begin_way(&mut self, end: f64) {
+        let now = self.motion.time;
+        if let (Some(rider), Some(at)) = (&mut self.rider, self.motion.placement) {
+            rider.from = (now, at);
+            rider.to.0 = end;
+            rider.waits = false;
+        }
+    }
+
+    /// Whether it is to move.
+    pub(in crate::model::fem) fn outline_moves(&self) -> bool {
+        self.rider.as_ref().is_some_and(|r| r.led_before != r.to.1)
+    }
+
+    /// Puts the outline where it is led at once, whatever lies there; returns whether it moved.
+    pub(in crate::model::fem) fn put_outline(&mut self) -> bool {
+        let Some(to) = self.rider.as_ref().map(|r| r.to.1) else { return false };
+        let moves = self.motion.placement != Some(to);
+        if moves {
+            self.motion.placement = Some(to);
+            self.place_outline();
+        }
+        moves
+    }
+
+    /// The obstacles with the outline where the motion has it.
+    pub(in crate::model::fem) fn place_outline(&mut self) {
+        self.contacts.carriage = None;
+        if let (Some(rider), Some(at)) = (&self.rider, self.motion.placement) {
+            let world = &mut Arc::make_mut(&mut self.problem).world;
+            Arc::make_mut(world).place_outline(&rider.shape, at);
+            self.contacts.near.clear();
+        }
+    }
+
+    /// Lets it wait where it is until the end of this advance; returns whether it was moving.
+    pub(in crate::model::fem) fn outline_waits(&mut self) -> bool {
+        let at = self.motion.placement;
+        let Some(rider) = self.rider.as_mut().filter(|r| !r.waits && at != Some(r.to.1)) else { return false };
+        rider.waits = true;
+        true
+    }
+
+    /// Sets the task of a step from one time to another (s), the outline where it will then be.
+    pub(in crate::model::fem) fn prepare_way(&mut self, times: [f64; 2], dragged: Option<&[Option<Vec2>]>) {
+        self.prepare_step(times, dragged);
+        let (Some(rider), Some(from)) = (&self.rider, self.motion.placement) else { return };
+        let (goal, obstacle) = (rider.goal(times[1]), rider.obstacle);
+        if rider.waits || !(rider.shape.max_displacement(&from, &goal) > STANDS_M) {
+            self.hitch_on(&Carriage { obstacle, from, to: from });
+            return;
+        }
+        let ends: Vec<[Vec2; 2]> =
+            (0..self.mesh.rest_length.len()).map(|e| self.mesh.straight(e, &self.motion.x)).collect();
+        for part in PARTS {
+            let carriage = Carriage { obstacle, from, to: from.towards(&goal, part) };
+            self.ride(&carriage);
+            self.prepare_step(times, dragged);
+            let comes = self.hitch_on(&carriage);
+            if let Some(laid) = self.laid(&carriage, &ends).filter(|_| comes) {
+                self.task.laid = laid;
+                self.contacts.carriage = Some(carriage);
+                return;
+            }
+            self.ride(&Carriage { from: carriage.to, to: from, ..carriage });
+        }
+        self.prepare_step(times, dragged);
+        self.hitch_on(&Carriage { obstacle, from, to: from });
+    }
+
+    /// Node of the hitch.
+    fn hitch(&self) -> Option<usize> {
+        let of_robot = |(s, node): (&SupportPoint, &Option<usize>)| node.filter(|_| s.kind == SupportKind::Robot);
+        let node = self.problem.supports.iter().zip(&self.support_node).find_map(of_robot)?;
+        self.mesh.held[node].then_some(node)
+    }
+
+    /// Puts the hitch where it is on the outline. Returns whether it can come along.
+    fn hitch_on(&mut self, carriage: &Carriage) -> bool {
+        let (Some(k), Some(rider)) = (self.hitch(), &self.rider) else { return true };
+        let on_it = carriage.to.place(rider.shape.hitch);
+        if (self.task.target[k] - on_it).norm() > STANDS_M {
+            self.task.target[k] = clear_way(&self.problem, self.task.start[k], on_it);
+        }
+        let far = |p: Vec2| (p - on_it).norm();
+        let now = self.task.start[k];
+        // One that was stopped by a wall stays there until the robot is as far from it as it may be left behind.
+        let gap =
+            |p: Vec2| self.problem.world.signed_gap(p, self.problem.radius).map_or(self.problem.radius, |g| g.gap_m);
+        if far(now) <= LEFT_BEHIND_M && gap(self.task.target[k]) < gap(now) {
+            self.task.target[k] = now;
+        }
+        far(now) <= LEFT_BEHIND_M || far(now) <= (now - carriage.from.place(rider.shape.hitch)).norm()
+    }
+
+    /// Moves the outline and nothing else.
+    fn ride(&mut self, carriage: &Carriage) {
+        self.motion.placement = Some(carriage.to);
+        self.place_outline();
+    }
+
+    /// Where the nodes go out of the way of the outline; `ends` are those of the bars before it moved. None where they cannot.
+    fn laid(&self, carriage: &Carriage, ends: &[[Vec2; 2]]) -> Option<Vec<Vec2>> {
+        let Some(rider) = &self.rider else { return Some(Vec::new()) };
+        let way = rider.shape.max_displacement(&carriage.from, &carriage.to);
+        let near: Vec<bool> =
+            ends.iter().map(|e| self.is_near(e.map(|p| carriage.carried(p)), GOES_ALONG_M + 4.0 * way)).collect();
+        if !near.contains(&true) {
+            return Some(Vec::new());
+        }
+        let start = &self.task.start;
+        let goes = |k: usize| (k > 0 && near.get(k - 1) == Some(&true)) || near.get(k) == Some(&true);
+        let mut x = start.clone();
+        for (k, p) in x.iter_mut().enumerate().filter(|(k, _)| goes(*k)) {
+            if self.mesh.is_free(k) {
+                *p = carriage.carried(*p);
+            }
+        }
+        if let Some(k) = self.hitch() {
+            x[k] = self.task.target[k];
+        }
+        self.give_back(carriage, larger(2.0 * way, self.contacts.barrier.reach), &mut x);
+        self.is_free_way(carriage, (ends, &x), &near).then_some(x)
+    }
+
+    /// Whether a bar is nearer to the outline than `within`, m.
+    fn is_near(&self, [a, b]: [Vec2; 2], within: f64) -> bool {
+        let geometry = self.problem.world.geometry();
+        let Some(body) = geometry.bodies().last() else { return false };
+        let r = Vec2::repeat(within + body.offset);
+        let reach = within + body.offset;
+        body.candidates(a.inf(&b) - r, a.sup(&b) + r)
+            .any(|k| body.edges.get(k).is_some_and(|e| segment_segment(a, b, e.p, e.q) < reach))
+    }
+
+    /// Gives back the gaps that were lost; see the module.
+    fn give_back(&self, carriage: &Carriage, within: f64, x: &mut [Vec2]) {
+        let (mesh, start) = (&self.mesh, &self.task.start);
+        let gone: Vec<Vec2> = start.iter().map(|p| carriage.carried(*p)).collect();
+        let mut kept: Vec<(Touch, Vec2)> = Vec::new();
+        let mut found: Vec<Touch> = Vec::new();
+        for (from, of_outline) in [(&gone, true), (start, false)] {
+            self.contacts.find_within(&self.problem, mesh, from, within, &mut found);
+            let wanted = |t: &&Touch| t.pair.weight > 0.0 && (t.pair.gap.obstacle == carriage.obstacle) == of_outline;
+            kept.extend(found.iter().filter(wanted).map(|t| (*t, t.interpolate(from))));
+        }
+        for _ in 0..ROUNDS {
+            let mut worst = 0.0;
+            for (touch, from) in &kept {
+                let gap = &touch.pair.gap;
+                let least = if gap.gap_m > 0.0 { -(1.0 - KEEP[0]) * gap.gap_m } else { 0.0 };
+                let lack = least - gap.normal.dot(&(touch.interpolate(x) - from));
+                let shares = touch.shares();
+                let free = [0, 1].map(|j| match shares[j] > 0.0 && mesh.is_free(touch.node + j) {
+                    true => shares[j],
+                    false => 0.0,
+                });
+                let sum = free[0] * free[0] + free[1] * free[1];
+                if !(lack > NONE) || sum < 1e-6 {
+                    continue;
+                }
+                worst = larger(worst, lack);
+                for j in (0..2).filter(|&j| free[j] > 0.0) {
+                    x[touch.node + j] += gap.normal * (lack * free[j] / sum);
+                }
+            }
+            if worst == 0.0 {
+                break;
+            }
+        }
+    }
+
+    /// Whether nothing is passed on the way to `x`: neither what stands nor, seen from it, the outline.
+    fn is_free_way(&self, carriage: &Carriage, (ends, x): (&[[Vec2; 2]], &[Vec2]), near: &[bool]) -> bool {
+        let (mesh, geometry) = (&self.mesh, self.problem.world.geometry());
+        let own = geometry.bodies().len().saturating_sub(1);
+        let swept = |e: usize, from: [Vec2; 2], of_outline: bool| {
+            let to = mesh.straight(e, x);
+            let sweep = Sweep::new(from, to, KEEP[1]);
+            let parts = geometry.parts(sweep.low, sweep.high, sweep.margin);
+            let parts = parts.filter(|p: &Part| (p.body == own) == of_outline && !is_passed_by(geometry, *p, from, to));
+            geometry.free_fraction_among(parts, &sweep, mesh.rounds(e)) >= 1.0
+        };
+        let clear = ends.iter().enumerate().all(|(e, from)| {
+            let moved = mesh.straight(e, x) != *from;
+            (!moved || swept(e, *from, false))
+                && (!(moved || near[e]) || swept(e, from.map(|p| carriage.carried(p)), true))
+        });
+        let step = |k: usize| x[k] - self.task.start[k];
+        let arc = mesh.arc_length.as_slice();
+        let own_way = |order: &mut SortedNodes| {
+            self.contacts.own.shape.free_fraction((&self.task.start, arc), &step, [KEEP[1], f64::INFINITY, 1.0], order)
+        };
+        clear && own_way(&mut SortedNodes::default()) >= 1.0
+    }
+
+    /// What the cable does to the outline, and how far that came of the way it was led.
+    pub(in crate::model::fem) fn outline_report(&self) -> Option<RobotContact> {
+        let (rider, at) = (self.rider.as_ref()?, self.motion.placement?);
+        let left = rider.shape.max_displacement(&at, &rider.to.1);
+        let left_m = if left > STANDS_M { left } else { 0.0 };
+        Some(RobotContact { force_n: self.force_on(rider.obstacle), placement: at, left_m })
+    }
+
+    /// Force of the cable on an obstacle, N.
+    fn force_on(&self, obstacle: usize) -> Vec2 {
+        let (mesh, x): (&Mesh, &[Vec2]) = (&self.mesh, &self.motion.x);
+        let mut sum = Vec2::zeros();
+        let mut touches = Vec::new();
+        self.contacts.find(&self.problem, mesh, x, &mut touches);
+        for touch in touches.iter().filter(|t| t.pair.gap.obstacle == obstacle) {
+            sum -= touch.pair.gap.normal * touch.load(&self.contacts.barrier);
+        }
+        for rub in self.contacts.rubs.iter().filter(|r| r.touch.pair.gap.obstacle == obstacle) {
+            sum -= rub_force(&self.contacts, rub, x);
+        }
+        sum
+    }
+}

@@ -1,0 +1,182 @@
+//! The energy of one bar in a step: stretching, damping, and the weight that its material carries along.
+//!
+//! With P the length of its way and L its unstretched length, ε = P/L − 1:
+//! ```text
+//! E = ½ EA L ε²,     ∂E/∂P = T = EA ε,      ∂E/∂L = −Θ = −(T + ½ T ε),
+//! ∂²E/∂P² = EA/L,    ∂²E/∂P∂L = −EA P/L²,   ∂²E/∂L² = EA P²/L³
+//! ```
+//! At a node that moves with the material P depends on where the node is; at a sliding node L depends on its slide.
+//! The weight of the bar acts at the centroid c of its way (`weight.rs`), so a change δL of the material adds −b·(c − x₀) δL, with x₀
+//! the sliding node it came through.
+//! Damping with time constant τ is a second bar of stiffness EA τ a whose strain is measured from the one predicted.
+
+use crate::model::fem::system::assembly::{Mesh, System};
+use crate::model::fem::newton::minimize::ROUNDED;
+use crate::model::fem::newton::step_input::{Pose, Task};
+use crate::model::fem::system::bar_weight::Weight;
+use crate::energy::Curvature;
+use crate::math::{Mat2, Vec2};
+
+/// EA with which a bar resists at its length, N: a flexible one only pulls, as it gives way sideways between its nodes instead of
+/// pushing. With any part of EA slack cables stand in arches on the ground and push their supports (a hundredth: 5.7 kN of a power
+/// cable that lies loose). A cable with bending stiffness does push.
+#[must_use]
+pub fn stiffness(mesh: &Mesh, stretched: bool) -> f64 {
+    if stretched || !mesh.is_flexible() { mesh.axial_stiffness } else { 0.0 }
+}
+
+/// What is carried of a bar from one iteration to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carried {
+    /// Its pull, N.
+    pub pull: f64,
+    /// Whether it counts as stretched.
+    pub taut: bool,
+}
+
+/// Unstretched length of a bar at a pose, m.
+#[must_use]
+pub fn rest_length(mesh: &Mesh, e: usize, slide: &[f64]) -> f64 {
+    mesh.rest_length[e] + mesh.thermal_stretch * (slide[e + 1] - slide[e])
+}
+
+/// What a bar pulls at the material of the sliding node at its start (`j` 0) or end (1), as the slope of its energy by the slide of that node
+/// sees it (without the factor of its energy), N: Θ, the loss, and the weight that comes over with the material.
+#[must_use]
+pub fn pull_at_slide((mesh, task): (&Mesh, &Task), e: usize, j: usize, x: &[Vec2], slide: &[f64]) -> f64 {
+    let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
+    let strain = p / l - 1.0;
+    let ratio = task.predicted_length[e] / mesh.rest_length[e];
+    let loss = task.damping / mesh.rest_length[e] * (p - ratio * l) * ratio;
+    let tension = stiffness(mesh, !(strain < 0.0)) * strain;
+    mesh.thermal_stretch * (tension * (1.0 + 0.5 * strain) + loss) + lifted((mesh, task.body), (e, j), x)
+}
+
+/// What a bar with a sliding node at an end pulls with along its way, N.
+#[must_use]
+pub fn pull_on((mesh, task): (&Mesh, &Task), e: usize, x: &[Vec2], slide: &[f64]) -> f64 {
+    let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
+    let strain = p / l - 1.0;
+    let ratio = task.predicted_length[e] / mesh.rest_length[e];
+    stiffness(mesh, !(strain < 0.0)) * strain + task.damping / mesh.rest_length[e] * (p - ratio * l)
+}
+
+/// What it takes to lift the weight from the centroid of a bar to its start (`j` 0) or end (1), N.
+#[must_use]
+pub fn lifted((mesh, body): (&Mesh, Vec2), (e, j): (usize, usize), x: &[Vec2]) -> f64 {
+    body.dot(&(Weight::of(mesh, e, &mesh.path(e, x), body).center - x[e + j]))
+}
+
+/// The pull at the present length P of a bar between nodes that move with the material, and its slope by P, N and N/m.
+#[must_use]
+pub fn pull(mesh: &Mesh, task: &Task, (e, taut): (usize, bool), p: f64) -> (f64, f64) {
+    let l = mesh.rest_length[e];
+    let stiffness = stiffness(mesh, taut);
+    let c = task.damping / l;
+    (stiffness * (p / l - 1.0) + c * (p - task.predicted_length[e]), stiffness / l + c)
+}
+
+/// Adds the bar `e`; returns its energy and the size of what was summed (its rounding counted in), J. The stiffness across
+/// the bar is that of the pull `carried`, if there is one, not that of its present length.
+pub fn add(
+    s: &mut System,
+    (mesh, task): (&Mesh, &Task),
+    (e, pose): (usize, &Pose),
+    curvature: Curvature,
+    carried: Option<Carried>,
+) -> (f64, f64) {
+    if mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
+        return add_sliding(s, (mesh, task), (e, pose), curvature);
+    }
+    let d = pose.x[e + 1] - pose.x[e];
+    let (p, l, scale) = (d.norm(), mesh.rest_length[e], task.scale[e]);
+    let t = if p > 0.0 { d / p } else { Vec2::x() };
+    let taut = carried.map_or(!(p < l), |c| c.taut);
+    let stiffness = stiffness(mesh, taut) / l;
+    let c = task.damping / l;
+    let late = p - task.predicted_length[e];
+    let pull = stiffness * (p - l) + c * late;
+    let across = carried.map_or(pull, |c| c.pull);
+    let clip = curvature == Curvature::Clipped && across < 0.0;
+    let geometric = if p > 0.0 && !clip { scale * across / p } else { 0.0 };
+    let along = scale * (stiffness + c) - geometric;
+    s.add_gradient(e, -t * (pull * scale));
+    s.add_gradient(e + 1, t * (pull * scale));
+    s.hessian.add_spring(2 * e, [along * t.x * t.x + geometric, along * t.x * t.y, along * t.y * t.y + geometric]);
+    let energy = 0.5 * scale * (stiffness * (p - l) * (p - l) + c * late * late);
+    // In a hurry nobody asks how well the energy is known.
+    let rounding = if carried.is_some() { 0.0 } else { scale * ROUNDED * pull.abs() * pose.x[e].norm() };
+    (energy, energy + rounding)
+}
+
+/// The same for a bar that has a sliding node at one end or both.
+fn add_sliding(
+    s: &mut System,
+    (mesh, task): (&Mesh, &Task),
+    (e, pose): (usize, &Pose),
+    curvature: Curvature,
+) -> (f64, f64) {
+    let path = mesh.path(e, &pose.x);
+    let (p, l, scale) = (path.length, rest_length(mesh, e, &pose.slide), task.scale[e]);
+    let strain = p / l - 1.0;
+    let slides = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
+    let stiffness = stiffness(mesh, !(strain < 0.0));
+    let tension = stiffness * strain;
+    // Damping: ½ c (P − p̂ L)², c = EA τ a/L₀, p̂ the predicted ratio P/L.
+    let c = task.damping / mesh.rest_length[e];
+    let ratio = task.predicted_length[e] / mesh.rest_length[e];
+    let late = p - ratio * l;
+    let pull = tension + c * late;
+    let push = -tension * (1.0 + 0.5 * strain) - c * late * ratio;
+    let h = [
+        scale * (stiffness / l + c),
+        scale * (-stiffness * p / (l * l) - c * ratio),
+        scale * (stiffness * p * p / (l * l * l) + c * ratio * ratio),
+    ];
+    let t = path.direction;
+    let mut geometric = if path.straight > 0.0 { scale * pull / path.straight } else { 0.0 };
+    if curvature == Curvature::Clipped && geometric < 0.0 {
+        geometric = 0.0;
+    }
+    let elastic = 0.5 * stiffness * l * strain * strain;
+    let viscous = 0.5 * c * late * late;
+    let rounding = ROUNDED * pull.abs() * pose.x[e].norm();
+    let carried = mesh.thermal_stretch;
+    let hung = Weight::of(mesh, e, &path, task.body);
+    let sign = [-1.0, 1.0];
+    // Work is measured from the sliding node itself: with friction the two sides of it count differently.
+    let weight = [0, 1].map(|j| if slides[j] { task.body.dot(&(hung.center - pose.x[e + j])) } else { 0.0 });
+    // Generalised directions of P and of L, and of the weight's lever, at both ends.
+    let along = [0, 1].map(|j| if slides[j] { Vec2::zeros() } else { t * sign[j] });
+    let length = [0, 1].map(|j| if slides[j] { Vec2::new(carried * sign[j], 0.0) } else { Vec2::zeros() });
+    let lever = [0, 1].map(|j| if slides[j] { Vec2::new(sign[j], 0.0) } else { Vec2::zeros() });
+    let change = pose.slide[e + 1] - pose.slide[e];
+    // Half of what the bar held at first is among the forces on its nodes.
+    let held = mesh.arc_length[e + 1] - mesh.arc_length[e];
+    let half = (pose.x[e] + pose.x[e + 1]) * 0.5;
+    let shifted = task.body.dot(&(hung.center - half)) * held;
+    let hang = [0, 1].map(|j| {
+        if slides[j] { Vec2::zeros() } else { hung.slope[j] * change + (hung.slope[j] - task.body * 0.5) * held }
+    });
+    let across = Mat2::identity() - t * t.transpose();
+    for j in 0..2 {
+        s.add_gradient(e + j, (along[j] * pull + length[j] * push - lever[j] * weight[j] - hang[j]) * scale);
+        for k in j..2 {
+            let mixed = along[j] * length[k].transpose() + length[j] * along[k].transpose();
+            let mut block =
+                along[j] * along[k].transpose() * h[0] + mixed * h[1] + length[j] * length[k].transpose() * h[2];
+            if !slides[j] && !slides[k] {
+                block += across * (geometric * sign[j] * sign[k]);
+            }
+            if curvature == Curvature::Exact {
+                block -= (lever[j] * hung.slope[k].transpose() + hung.slope[j] * lever[k].transpose()) * scale;
+                if j == k && !slides[j] {
+                    block -= Weight::bend(mesh, (e, j), (&path, pose.x[e + j]), task.body) * ((held + change) * scale);
+                }
+            }
+            s.add_block(e + j, e + k, &block);
+        }
+    }
+    let fallen = weight[1] * pose.slide[e + 1] - weight[0] * pose.slide[e] + shifted;
+    (scale * (elastic + viscous - fallen), scale * (elastic + viscous + fallen.abs() + rounding))
+}

@@ -1,0 +1,124 @@
+//! What contacts with obstacles add to the equations of a step.
+
+use crate::model::fem::system::assembly::{Mesh, System};
+use crate::model::fem::system::friction_state::{ContactSet, Touch};
+use crate::model::fem::newton::minimize::node_scale;
+use crate::model::fem::newton::step_input::{Pose, Task};
+use crate::contact::friction::{self, Branch};
+use crate::energy::Curvature;
+use crate::math::{Mat2, Vec2};
+
+/// Adds a force gradient and a block shared by the nodes of a touch; those that slide feel neither.
+pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &Touch, gradient: Vec2, block: &Mat2) {
+    let (node, [a, b]) = (touch.node, touch.shares());
+    let moves = |k: usize| mesh.sliding[k].is_none();
+    if moves(node) {
+        s.add_gradient(node, gradient * a);
+        s.add_block(node, node, &(block * (a * a)));
+    }
+    if b != 0.0 && moves(node + 1) {
+        s.add_gradient(node + 1, gradient * b);
+        s.add_block(node + 1, node + 1, &(block * (b * b)));
+        if moves(node) {
+            s.add_block(node, node + 1, &(block * (a * b)));
+        }
+    }
+}
+
+/// The barrier of one touch; returns its energy (J) and its stiffness where it weighs one (N/m). Its distance d from the corner has curvature (θ the turn of the segment, u its
+/// direction, c the touching point, all linear in the nodes):
+/// ```text
+/// node:     ∇²d = (I − n nᵀ)/d  at a corner, 0 at an edge
+/// segment:  ∇²d = −(θ qᵀ + q θᵀ) − d θ θᵀ,   q = u·δc,   θ = n·(δb − δa)/l
+/// ```
+pub fn add_touch(
+    s: &mut System,
+    mesh: &Mesh,
+    (touch, scale): (&Touch, f64),
+    contacts: &ContactSet,
+    x: &[Vec2],
+    curvature: Curvature,
+) -> (f64, f64) {
+    let (gap, weight) = (&touch.pair.gap, touch.pair.weight * scale);
+    let b = contacts.barrier.at(gap.gap_m);
+    let (slope, bend) = (b.slope * weight, b.curvature * weight);
+    let n = gap.normal;
+    let definite = curvature == Curvature::Clipped;
+    let bend = if definite && bend < 0.0 { 0.0 } else { bend };
+    add_pair(s, mesh, touch, n * slope, &(n * n.transpose() * bend));
+    if definite {
+        return (b.value * weight, b.curvature);
+    }
+    if !touch.on_segment {
+        let distance = (x[touch.node] - gap.point).norm();
+        // Edges have even feature numbers: their distance is linear.
+        if gap.feature % 2 == 1 && distance > 0.0 {
+            s.add_block(touch.node, touch.node, &((Mat2::identity() - n * n.transpose()) * (slope / distance)));
+        }
+        return (b.value * weight, b.curvature);
+    }
+    let (i, shares) = (touch.node, touch.shares());
+    let [from, to] = mesh.straight(i, x);
+    let (d, distance) = (to - from, (from * shares[0] + to * shares[1] - gap.point).norm());
+    let length = d.norm();
+    let u = d / length;
+    let theta = [n * (-1.0 / length), n * (1.0 / length)];
+    let q = [u * shares[0], u * shares[1]];
+    let block = |a: usize, b: usize| {
+        (-(theta[a] * q[b].transpose() + q[a] * theta[b].transpose()) - theta[a] * theta[b].transpose() * distance)
+            * slope
+    };
+    let moves = [0, 1].map(|j| mesh.sliding[i + j].is_none());
+    for j in (0..2).filter(|&j| moves[j]) {
+        s.add_block(i + j, i + j, &block(j, j));
+    }
+    if moves == [true, true] {
+        s.add_block(i, i + 1, &block(0, 1));
+    }
+    (b.value * weight, b.curvature)
+}
+
+/// Friction of the contacts with obstacles, on these branches or, where there are none, where it is; returns its energy, J.
+pub fn add_rubs(
+    s: &mut System,
+    (mesh, task): (&Mesh, &Task),
+    contacts: &ContactSet,
+    branches: &[Branch],
+    x: &[Vec2],
+) -> f64 {
+    let mut value = 0.0;
+    for (k, rub) in contacts.rubs.iter().enumerate() {
+        let scale = task.scale.get(rub.touch.node).copied().unwrap_or(node_scale(task, rub.touch.node));
+        let y = rub.sliding(x);
+        let (d, mut slope, mut bend) = friction::at(y, rub.limit, contacts.slip);
+        if let Some(branch) = branches.get(k) {
+            (slope, bend) = branch.force(y, rub.limit, contacts.slip);
+        }
+        value += d * scale;
+        let block = rub.tangent * rub.tangent.transpose() * (bend * scale);
+        add_pair(s, mesh, &rub.touch, rub.tangent * (slope * scale), &block);
+    }
+    value
+}
+
+/// Plan view: friction of every node on the floor; returns its energy, J.
+pub fn add_floor(s: &mut System, (mesh, task): (&Mesh, &Task), contacts: &ContactSet, pose: &Pose) -> f64 {
+    let mut value = 0.0;
+    for (i, &limit) in task.floor_limit.iter().enumerate() {
+        let scale = node_scale(task, i);
+        if let Some(sliding) = &mesh.sliding[i] {
+            let (d, slope, bend) =
+                friction::at(contacts.floor_slid[i].x + pose.slide[i], limit * sliding.floor_factor, contacts.slip);
+            value += d * scale;
+            s.gradient[2 * i] += slope * scale;
+            s.hessian.add(2 * i, 2 * i, bend * scale);
+        } else {
+            let slid = contacts.floor_slid[i] + (pose.x[i] - task.start[i]);
+            let (d, slope, bend) = friction::at_plane(slid, limit, contacts.slip);
+            value += d * scale;
+            s.add_gradient(i, slope * scale);
+            s.add_block(i, i, &(bend * scale));
+        }
+    }
+    value
+}

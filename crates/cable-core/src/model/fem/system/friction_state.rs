@@ -1,0 +1,479 @@
+//! The contacts of a mesh at an instant, and the friction each carries.
+
+use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::obstacle::moving_outline::Carriage;
+use crate::model::fem::system::self_contact::Own;
+use crate::contact::barrier::Barrier;
+use crate::contact::friction;
+use crate::contact::neighbour_lists::NeighbourLists;
+use crate::contact::pairs::Pair;
+use crate::math::{Vec2, bounded, larger};
+use crate::problem::Problem;
+
+/// Sliding at which friction is fully mobilised (ε) in motion, and the most of it at rest, m. 1e-6 costs half as many iterations
+/// again, 1e-4 creeps.
+pub const SLIDE: f64 = 1e-5;
+
+/// ε at rest in parts of what the cable stretches under its weight or its greatest tension: where holding ground gives way by as
+/// much as the cable stretches, nothing shows that it holds. Of the tension where a pull has turned round 1e-3 loses up to 3 %,
+/// 1e-4 up to 0.9 %; smaller costs iterations.
+const SLIDE_PART: f64 = 1e-4;
+
+/// Least ε, m: friction of newtons is then a spring of 1e9 N/m, and the rounding of a coordinate of 10 m still a millionth of ε.
+const LEAST_SLIDE: f64 = 1e-9;
+
+/// ε of a cable at rest under a greatest force of `force` (N), m.
+#[must_use]
+pub fn slip_at_rest(problem: &Problem, force: f64) -> f64 {
+    let stretch = force * problem.length / problem.axial_stiffness;
+    // A force that is no number is none of a state to be kept.
+    bounded(SLIDE_PART * stretch, LEAST_SLIDE, SLIDE)
+}
+
+/// Steps for which a contact without load is remembered: fewer and trembling contacts creep; many more and a cable
+/// that was lifted and put back is held as if it had stayed.
+const REMEMBERED: usize = 8;
+
+/// Steps for which lists of what is near are made. Fewer: they are made more often; more: they are longer.
+const STEPS_AHEAD: f64 = 4.0;
+
+/// Move of a node (m) that lists of what is near allow beside the one expected.
+const SPARE_MOVE: f64 = 2e-3;
+
+/// One contact pair of the mesh: a node, or the inside of a segment (from `node` to `node + 1`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Node, or first node of the segment.
+    pub node: usize,
+    /// Whether the segment's inside touches (a corner or a circle).
+    pub on_segment: bool,
+    /// Pair as found.
+    pub pair: Pair,
+}
+
+impl Touch {
+    /// Weights of the two nodes that carry it.
+    #[must_use]
+    pub fn shares(&self) -> [f64; 2] {
+        if self.on_segment { [1.0 - self.pair.gap.fraction, self.pair.gap.fraction] } else { [1.0, 0.0] }
+    }
+
+    /// The part of its force that acts on nodes that move with their material, as `moves` tells.
+    #[must_use]
+    pub fn felt(&self, moves: impl Fn(usize) -> bool) -> f64 {
+        let [a, b] = self.shares();
+        (if moves(self.node) { a } else { 0.0 }) + (if b != 0.0 && moves(self.node + 1) { b } else { 0.0 })
+    }
+
+    /// A field's value at the touching point.
+    #[must_use]
+    pub fn interpolate(&self, x: &[Vec2]) -> Vec2 {
+        let [a, b] = self.shares();
+        if self.on_segment { x[self.node] * a + x[self.node + 1] * b } else { x[self.node] }
+    }
+
+    /// Direction in which friction acts: the normal turned clockwise.
+    #[must_use]
+    pub fn tangent(&self) -> Vec2 {
+        Vec2::new(self.pair.gap.normal.y, -self.pair.gap.normal.x)
+    }
+
+    /// Normal force, N.
+    #[must_use]
+    pub fn load(&self, barrier: &Barrier) -> f64 {
+        -barrier.at(self.pair.gap.gap_m).slope * self.pair.weight
+    }
+}
+
+impl ContactSet {
+    /// Renumbers what friction remembers: `change` gives the new number of a node, None if it is gone.
+    pub fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {
+        self.rubs.clear();
+        let old = std::mem::take(&mut self.memory);
+        self.memory.extend(old.into_iter().filter_map(|m| Some(Memory { node: change(m.node)?, ..m })));
+    }
+}
+
+/// What friction remembers of a contact after an accepted step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Memory {
+    node: usize,
+    on_segment: bool,
+    feature: usize,
+    obstacle: usize,
+    slid: f64,
+    /// Steps since it carried load.
+    age: usize,
+}
+
+/// Friction of one contact during a step: the normal force and direction are frozen, the sliding is not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rub {
+    /// The contact.
+    pub touch: Touch,
+    /// Unit vector of positive sliding.
+    pub tangent: Vec2,
+    /// Largest friction force μN, N.
+    pub limit: f64,
+    /// Sliding remembered at the start of the step, m.
+    pub slid: f64,
+    /// Where the touching material was at the start of the step, m.
+    pub origin: Vec2,
+}
+
+impl Rub {
+    /// Whether it is the friction of a touch, wherever that is now.
+    fn is_of(&self, touch: &Touch) -> bool {
+        let key = |t: &Touch| (t.node, t.on_segment, t.pair.gap.feature);
+        key(&self.touch) == key(touch)
+    }
+
+    /// Sliding since the anchor, m.
+    #[must_use]
+    pub fn sliding(&self, x: &[Vec2]) -> f64 {
+        self.slid + self.tangent.dot(&(self.touch.interpolate(x) - self.origin))
+    }
+}
+
+/// Those of a node, of a list by node.
+fn of_node(rubs: &[Rub], node: usize) -> impl Iterator<Item = &Rub> {
+    let low = rubs.partition_point(|r| r.touch.node < node);
+    rubs[low..].iter().take_while(move |r| r.touch.node == node)
+}
+
+/// All contacts of a mesh with their history.
+#[derive(Clone, Debug)]
+pub struct ContactSet {
+    /// The barrier.
+    pub barrier: Barrier,
+    /// Sliding at which friction is fully mobilised (ε), m.
+    pub slip: f64,
+    /// Friction of the present step.
+    pub rubs: Vec<Rub>,
+    /// What it was before its normal forces were taken anew.
+    before: Vec<Rub>,
+    /// By node; of one node the newest first.
+    memory: Vec<Memory>,
+    /// Room for the next memory.
+    spare: Vec<Memory>,
+    scratch: Vec<Touch>,
+    /// What each bar can come near to in this step.
+    pub near: NeighbourLists,
+    /// Plan view: sliding of each node remembered, m.
+    pub floor_slid: Vec<Vec2>,
+    /// Contacts of the cable with itself.
+    pub own: Own,
+    /// How the outline of the robot moved in this step.
+    pub carriage: Option<Carriage>,
+}
+
+impl ContactSet {
+    /// No contact yet.
+    #[must_use]
+    pub fn new(barrier: Barrier, slip: f64, nodes: usize) -> Self {
+        Self {
+            barrier,
+            slip,
+            rubs: Vec::with_capacity(nodes),
+            before: Vec::with_capacity(nodes),
+            memory: Vec::with_capacity(2 * nodes),
+            spare: Vec::with_capacity(2 * nodes),
+            scratch: Vec::with_capacity(nodes),
+            near: NeighbourLists::default(),
+            floor_slid: vec![Vec2::zeros(); nodes],
+            own: Own::default(),
+            carriage: None,
+        }
+    }
+
+    /// Becomes a copy without new memory where there is room.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Self { barrier, slip, rubs, memory, floor_slid, own, carriage, .. } = other;
+        (self.barrier, self.slip) = (*barrier, *slip);
+        // With room for as many, so that a front of contact that runs on asks for none; and no more, or each copy would double it.
+        self.rubs.clear();
+        self.rubs.reserve_exact(rubs.capacity());
+        self.rubs.extend_from_slice(rubs);
+        self.memory.clear();
+        self.memory.reserve_exact(memory.capacity());
+        self.memory.extend_from_slice(memory);
+        self.floor_slid.clone_from(floor_slid);
+        self.own.copy_from(own);
+        self.carriage = *carriage;
+    }
+
+    /// Friction is from now on fully mobilised at a sliding of `slip` (m); every contact keeps its force.
+    pub fn set_slip(&mut self, slip: f64) {
+        let part = slip / self.slip;
+        if part == 1.0 {
+            return;
+        }
+        self.memory.iter_mut().for_each(|m| m.slid *= part);
+        self.rubs.iter_mut().for_each(|r| r.slid *= part);
+        self.floor_slid.iter_mut().for_each(|s| *s *= part);
+        self.slip = slip;
+    }
+
+    /// Forgets all friction.
+    pub fn forget(&mut self) {
+        self.memory.clear();
+        self.rubs.clear();
+        self.floor_slid.fill(Vec2::zeros());
+        self.own.forget();
+    }
+
+    /// A contact is to have slid by so much, m.
+    pub fn remember(&mut self, touch: &Touch, slid: f64) {
+        let gap = &touch.pair.gap;
+        let (node, on_segment) = (touch.node, touch.on_segment);
+        self.memory.push(Memory { node, on_segment, feature: gap.feature, obstacle: gap.obstacle, slid, age: 0 });
+        self.memory.sort_by_key(|m| m.node);
+    }
+
+    /// Finds the contacts of the mesh at `x` (m), in order of arc length. Held nodes push on nothing.
+    pub fn find(&self, problem: &Problem, mesh: &Mesh, x: &[Vec2], out: &mut Vec<Touch>) {
+        self.find_within(problem, mesh, x, self.barrier.reach, out);
+    }
+
+    /// The same for contacts nearer than `reach` (m).
+    pub fn find_within(&self, problem: &Problem, mesh: &Mesh, x: &[Vec2], reach: f64, out: &mut Vec<Touch>) {
+        out.clear();
+        if problem.world.is_empty() {
+            return;
+        }
+        let (geometry, last) = (problem.world.geometry(), x.len().saturating_sub(1));
+        let mut before: Option<Vec2> = None;
+        for node in 0..x.len() {
+            let ends = (node < last).then(|| mesh.straight(node, x));
+            let listed = match ends {
+                Some(ends) => self.near.of(node, [ends], reach),
+                None => last.checked_sub(1).and_then(|e| self.near.of(e, [mesh.straight(e, x)], reach)),
+            };
+            let chain = [before, Some(x[node]), ends.map(|e| e[1])];
+            before = ends.map(|e| e[0]);
+            if listed.is_some_and(<[_]>::is_empty) {
+                continue;
+            }
+            if mesh.is_free(node) {
+                let mut keep = |pair| out.push(Touch { node, on_segment: false, pair });
+                match listed {
+                    Some(parts) => geometry.node_pairs_among(parts.iter().copied(), chain, reach, &mut keep),
+                    None => geometry.node_pairs(chain[0], x[node], chain[2], reach, &mut keep),
+                }
+            }
+            let Some(ends) = ends.filter(|_| mesh.is_free(node) || mesh.is_free(node + 1)) else { continue };
+            let rounds = mesh.rounds(node);
+            let mut keep = |pair: Pair| {
+                if !rounds.contains(&Some(pair.gap.feature)) {
+                    out.push(Touch { node, on_segment: true, pair });
+                }
+            };
+            match listed {
+                Some(parts) => geometry.segment_pairs_among(parts.iter().copied(), ends, reach, &mut keep),
+                None => geometry.segment_pairs(ends[0], ends[1], reach, &mut keep),
+            }
+        }
+    }
+
+    /// Whether all bars stay out of reach of everything on the way between places of the nodes (m).
+    pub fn out_of_reach(&self, mesh: &Mesh, [from, to]: [&[Vec2]; 2]) -> bool {
+        (0..mesh.rest_length.len()).all(|e| {
+            let ways = [mesh.straight(e, from), mesh.straight(e, to)];
+            self.near.of(e, ways, self.barrier.reach).is_some_and(<[_]>::is_empty)
+        })
+    }
+
+    /// Lists what each bar can come near to while its nodes move from `x` by no more than `most` says, with room to spare,
+    /// unless the lists at hand are good for that.
+    pub fn look_around(&mut self, problem: &Problem, mesh: &Mesh, x: &[Vec2], most: impl Fn(usize) -> f64) {
+        if problem.world.is_empty() {
+            return;
+        }
+        let move_of = |e: usize| if most(e) > most(e + 1) { most(e) } else { most(e + 1) };
+        let bars = mesh.rest_length.len();
+        let good = |e: usize| {
+            let need = self.barrier.reach + move_of(e) + SPARE_MOVE;
+            self.near.of(e, [mesh.straight(e, x)], need).is_some()
+        };
+        if self.near.len() == bars && (0..bars).all(good) {
+            return;
+        }
+        self.near.clear();
+        self.near.reserve(bars);
+        for e in 0..bars {
+            let within = self.barrier.reach + STEPS_AHEAD * move_of(e) + 2.0 * SPARE_MOVE;
+            self.near.push(problem.world.geometry(), mesh.straight(e, x), within);
+        }
+    }
+
+    /// Sets up friction for a step that began at `start`: contacts and normal forces as at `now` (m).
+    pub fn prepare(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
+        self.own.prepare(&self.barrier, mesh, now, start);
+        self.rub(problem, mesh, now, start);
+    }
+
+    /// The same for obstacles alone.
+    fn rub(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
+        let mut touches = std::mem::take(&mut self.scratch);
+        self.find(problem, mesh, now, &mut touches);
+        self.rubs.clear();
+        for touch in &touches {
+            let limit = touch.pair.gap.friction * touch.load(&self.barrier);
+            // What is taken away of a normal force that counts twice is taken away of its friction.
+            let same = self.rubs.iter_mut().rev().take_while(|r| r.touch.node == touch.node).find(|r| r.is_of(touch));
+            if let Some(rub) = same {
+                rub.limit += limit;
+            } else if limit != 0.0 {
+                let slid = self.remembered(touch);
+                let was = touch.interpolate(start);
+                let carried = self.carriage.filter(|c| c.obstacle == touch.pair.gap.obstacle);
+                let origin = carried.map_or(was, |c| c.carried(was));
+                self.rubs.push(Rub { touch: *touch, tangent: touch.tangent(), limit, slid, origin });
+            }
+        }
+        self.rubs.retain(|r| r.limit != 0.0);
+        self.scratch = touches;
+    }
+
+    /// Takes the normal forces of friction as they are at `now` (m) in a step that began at `start`, unless with them each contact can carry what
+    /// it could before: `same` tells that of the greatest change and of the most that one can carry (N). Returns whether it took them.
+    pub fn renew(
+        &mut self,
+        (problem, mesh): (&Problem, &Mesh),
+        [now, start]: [&[Vec2]; 2],
+        same: impl Fn(f64, f64) -> bool,
+    ) -> bool {
+        std::mem::swap(&mut self.rubs, &mut self.before);
+        self.rub(problem, mesh, now, start);
+        let limit =
+            |all: &[Rub], touch: &Touch| of_node(all, touch.node).find(|r| r.is_of(touch)).map_or(0.0, |r| r.limit);
+        let (mut change, mut most) = (0.0, 0.0);
+        for rub in self.rubs.iter().chain(&self.before) {
+            let (was, is) = (limit(&self.before, &rub.touch), limit(&self.rubs, &rub.touch));
+            (change, most) = (larger(change, (is - was).abs()), larger(most, larger(is, was)));
+        }
+        let renewed = !same(change, most);
+        if renewed {
+            self.own.prepare(&self.barrier, mesh, now, start);
+        } else {
+            // The step balances these.
+            std::mem::swap(&mut self.rubs, &mut self.before);
+        }
+        renewed
+    }
+
+    /// The contacts that were found last, each with its normal force, N.
+    pub fn pressing(&self) -> impl Iterator<Item = (&Touch, f64)> {
+        let same = |a: &Touch, b: &Touch| {
+            (a.node, a.on_segment, a.pair.gap.feature) == (b.node, b.on_segment, b.pair.gap.feature)
+        };
+        self.scratch.iter().enumerate().filter_map(move |(k, touch)| {
+            // Parts of the same contact are taken together, with the first of them.
+            let of_node = |t: &&Touch| t.node == touch.node;
+            let first = !self.scratch[..k].iter().rev().take_while(of_node).any(|t| same(t, touch));
+            let all = self.scratch[k..].iter().take_while(of_node).filter(|t| same(t, touch));
+            let load: f64 = all.map(|t| t.load(&self.barrier)).sum();
+            (first && load > 0.0).then_some((touch, load))
+        })
+    }
+
+    /// Friction force of a contact along its tangent at `x` (m), N.
+    pub fn rubs(&self, touch: &Touch, x: &[Vec2]) -> f64 {
+        let rub = of_node(&self.rubs, touch.node).find(|r| r.is_of(touch));
+        rub.map_or(0.0, |r| -friction::at(r.sliding(x), r.limit, self.slip).1)
+    }
+
+    /// Takes the friction of every contact by a `part` of the way from what it had `before` to what it has now, none where it was not or is no
+    /// longer; returns by how much it was off at most, N.
+    pub fn ease(&mut self, before: &[Rub], part: f64) -> f64 {
+        let gone = |now: &[Rub], b: &Rub| !of_node(now, b.touch.node).any(|n| n.is_of(&b.touch));
+        let gone: Vec<Rub> = before.iter().filter(|b| gone(&self.rubs, b)).copied().collect();
+        self.rubs.extend(gone.iter().map(|b| Rub { limit: 0.0, ..*b }));
+        self.rubs.sort_by_key(|r| r.touch.node);
+        let mut off = 0.0;
+        for rub in &mut self.rubs {
+            let was = of_node(before, rub.touch.node).find(|b| b.is_of(&rub.touch)).map_or(0.0, |b| b.limit);
+            off = larger(off, (rub.limit - was).abs());
+            rub.limit = if part < 1.0 { was + part * (rub.limit - was) } else { rub.limit };
+        }
+        self.rubs.retain(|r| r.limit != 0.0);
+        off
+    }
+
+    /// The sliding a contact starts with: its own, else that of the same material on the same obstacle (it crossed
+    /// a corner), else that of a neighbour at the same feature (the material moved past it), else none.
+    fn remembered(&self, touch: &Touch) -> f64 {
+        let low = self.memory.partition_point(|m| m.node + 2 < touch.node);
+        let near = self.memory[low..].iter().take_while(|m| m.node <= touch.node + 2);
+        let gap = &touch.pair.gap;
+        let mut best = (0, 0.0);
+        for m in near {
+            let same_kind = m.on_segment == touch.on_segment;
+            let rank = match (m.feature == gap.feature, m.node == touch.node && same_kind) {
+                (true, true) => 3,
+                (false, true) if m.obstacle == gap.obstacle => 2,
+                (true, false) if same_kind => 1,
+                _ => 0,
+            };
+            if rank > best.0 {
+                best = (rank, m.slid);
+            }
+        }
+        best.1
+    }
+
+    /// Accepts the step from `start` to `end` (m): anchors follow what slid; `slide` is that of sliding nodes (m).
+    pub fn commit(&mut self, problem: &Problem, mesh: &Mesh, end: &[Vec2], start: &[Vec2], slide: &[f64]) {
+        self.prepare(problem, mesh, end, start);
+        self.own.commit(end);
+        // A contact that trembles loses its load now and then: forgetting it each time would let it creep by ε a step.
+        let mut old = std::mem::take(&mut self.memory);
+        let mut all = std::mem::take(&mut self.spare);
+        all.clear();
+        for rub in &self.rubs {
+            let gap = &rub.touch.pair.gap;
+            all.push(Memory {
+                node: rub.touch.node,
+                on_segment: rub.touch.on_segment,
+                feature: gap.feature,
+                obstacle: gap.obstacle,
+                slid: friction::return_map(rub.sliding(end), self.slip),
+                age: 0,
+            });
+        }
+        let now = all.len();
+        for m in old.iter().filter(|m| m.age < REMEMBERED) {
+            let same = |n: &Memory| (n.node, n.on_segment, n.feature) == (m.node, m.on_segment, m.feature);
+            let low = all[..now].partition_point(|n| n.node < m.node);
+            if !all[low..now].iter().take_while(|n| n.node == m.node).any(same) {
+                all.push(Memory { age: m.age + 1, ..*m });
+            }
+        }
+        old.clear();
+        merge(all.split_at(now), &mut old);
+        (self.memory, self.spare) = (old, all);
+        if problem.floor_friction.is_some() {
+            for (k, (slid, (e, s))) in self.floor_slid.iter_mut().zip(end.iter().zip(start)).enumerate() {
+                let by = if mesh.sliding[k].is_some() { Vec2::new(slide[k], 0.0) } else { e - s };
+                *slid = friction::return_map_plane(*slid + by, self.slip);
+            }
+        }
+        // What is left in `rubs` now tells of the state reached: nothing slides further from here.
+        for (rub, memory) in self.rubs.iter_mut().zip(&self.spare) {
+            rub.slid = memory.slid;
+            rub.origin = rub.touch.interpolate(end);
+        }
+    }
+}
+
+/// Merges two lists, each by node, into one: of one node those of the first list come first.
+fn merge((first, second): (&[Memory], &[Memory]), out: &mut Vec<Memory>) {
+    let mut rest = second.iter().peekable();
+    for m in first {
+        while let Some(n) = rest.next_if(|n| n.node < m.node) {
+            out.push(*n);
+        }
+        out.push(*m);
+    }
+    out.extend(rest);
+}

@@ -1,0 +1,250 @@
+//! Contact of the cable with itself in a step: friction, its memory, and landing.
+//!
+//! As with obstacles the normal force of friction is that of the step before, and sliding is measured from an anchor.
+
+use crate::model::fem::system::assembly::{Mesh, System};
+use crate::model::fem::system::friction_state::{ContactSet, SLIDE};
+use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::time::bdf2::{carried_on, plastic};
+use crate::model::fem::time::momentum::mass_with;
+use crate::contact::barrier::Barrier;
+use crate::contact::friction;
+use crate::contact::self_contact::{SelfContact, SelfPair, SortedNodes};
+use crate::energy::Curvature;
+use crate::math::{Mat2, Vec2};
+use crate::solution::{ContactReport, ContactSample, ContactState};
+
+/// Friction of one contact of the cable with itself during a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OwnRub {
+    /// The contact.
+    pub pair: SelfPair,
+    /// Largest friction force μN, N.
+    pub limit: f64,
+    /// Sliding remembered at the start of the step, m.
+    slid: f64,
+    /// Where the node was from the segment at the start of the step, m.
+    origin: Vec2,
+}
+
+impl OwnRub {
+    /// Sliding of the node along the segment since the anchor, m.
+    #[must_use]
+    pub fn sliding(&self, x: &[Vec2]) -> f64 {
+        self.slid + self.pair.tangent().dot(&(self.pair.difference(x) - self.origin))
+    }
+}
+
+/// The contacts of a cable with itself, with their history.
+#[derive(Clone, Debug, Default)]
+pub struct Own {
+    /// The cable as an obstacle.
+    pub shape: SelfContact,
+    /// Coulomb friction of the cable on itself.
+    pub friction: f64,
+    /// Friction of the present step.
+    pub rubs: Vec<OwnRub>,
+    memory: Vec<(usize, usize, f64)>,
+    scratch: Vec<SelfPair>,
+    order: SortedNodes,
+}
+
+impl Own {
+    /// Becomes a copy, in the memory it has.
+    pub fn copy_from(&mut self, other: &Self) {
+        (self.shape, self.friction) = (other.shape, other.friction);
+        self.rubs.clone_from(&other.rubs);
+        self.memory.clone_from(&other.memory);
+    }
+
+    /// Forgets all friction.
+    pub fn forget(&mut self) {
+        self.memory.clear();
+        self.rubs.clear();
+    }
+
+    /// Sets up friction for a step that began at `start`: contacts and normal forces as at `now` (m).
+    pub fn prepare(&mut self, barrier: &Barrier, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
+        self.rubs.clear();
+        if !self.shape.is_on() {
+            return;
+        }
+        self.shape.pairs((now, &mesh.arc_length), barrier.reach, &mut self.order, &mut self.scratch);
+        for pair in &self.scratch {
+            let load = -barrier.at(pair.gap_m).slope * pair.weight;
+            if load > 0.0 {
+                let known = |m: &&(usize, usize, f64)| (m.0, m.1) == (pair.node, pair.segment);
+                let slid = self.memory.iter().find(known).map_or(0.0, |m| m.2);
+                let origin = pair.difference(start);
+                self.rubs.push(OwnRub { pair: *pair, limit: self.friction * load, slid, origin });
+            }
+        }
+    }
+
+    /// Accepts a step that ended at `end` (m): anchors follow what slid.
+    pub fn commit(&mut self, end: &[Vec2]) {
+        self.memory.clear();
+        for rub in &mut self.rubs {
+            rub.slid = friction::return_map(rub.sliding(end), SLIDE);
+            rub.origin = rub.pair.difference(end);
+            self.memory.push((rub.pair.node, rub.pair.segment, rub.slid));
+        }
+    }
+
+    /// Smallest gap (m) and its node, if any is below `within` (m).
+    #[must_use]
+    pub fn smallest_gap(&self, mesh: &Mesh, x: &[Vec2], within: f64) -> Option<(f64, usize)> {
+        self.shape.smallest_gap(x, &mesh.arc_length, within)
+    }
+}
+
+/// Entries (row, column, value) of the Hessian outside its band, one of each symmetric pair.
+pub type Coupling = Vec<(usize, usize, f64)>;
+
+/// Adds barrier and friction of the cable on itself at `x` (m); returns the energy and the size of what was summed, J.
+///
+/// A pair's distance d = m·(p − c) has, with u along the segment of length l, the curvature (as in `contact_step`)
+/// ```text
+/// inside:  ∇²d = −(θ qᵀ + q θᵀ) − d θ θᵀ,   θ = m·(δb − δa)/l,   q = u·(δp − δc)
+/// joint:   ∇²d = (I − m mᵀ)/d on δp − δc
+/// ```
+pub fn add(
+    (s, coupling): (&mut System, &mut Coupling),
+    contacts: &ContactSet,
+    (pairs, x): (&[SelfPair], &[Vec2]),
+    curvature: Curvature,
+) -> (f64, f64) {
+    let (own, exact) = (&contacts.own, curvature == Curvature::Exact);
+    let (mut value, mut size) = (0.0, 0.0);
+    for pair in pairs {
+        let b = contacts.barrier.at(pair.gap_m);
+        let (slope, bend) = (b.slope * pair.weight, b.curvature * pair.weight);
+        let bend = if !exact && bend < 0.0 { 0.0 } else { bend };
+        let (n, d) = (pair.normal, pair.gap_m + own.shape.diameter);
+        let shares = pair.shares();
+        let chord = x[pair.segment + 1] - x[pair.segment];
+        let (length, inside) = (chord.norm(), pair.fraction > 0.0 && pair.fraction < 1.0);
+        let u = chord / length;
+        let theta = [Vec2::zeros(), -n / length, n / length];
+        for (j, &(node, part)) in shares.iter().enumerate() {
+            s.add_gradient(node, n * (slope * part));
+            for (k, &(other, its)) in shares.iter().enumerate().skip(j) {
+                let mut block = n * n.transpose() * (bend * part * its);
+                if exact && inside {
+                    let turn = theta[j] * (u * its).transpose() + (u * part) * theta[k].transpose();
+                    block -= (turn + theta[j] * theta[k].transpose() * d) * slope;
+                } else if exact {
+                    block += (Mat2::identity() - n * n.transpose()) * (slope * part * its / d);
+                }
+                couple(s, coupling, [node, other], &block);
+            }
+        }
+        value += b.value * pair.weight;
+        size += b.value;
+    }
+    for rub in &own.rubs {
+        let (d, slope, bend) = friction::at(rub.sliding(x), rub.limit, SLIDE);
+        let (t, shares) = (rub.pair.tangent(), rub.pair.shares());
+        for (j, &(node, part)) in shares.iter().enumerate() {
+            s.add_gradient(node, t * (slope * part));
+            for &(other, its) in &shares[j..] {
+                couple(s, coupling, [node, other], &(t * t.transpose() * (bend * part * its)));
+            }
+        }
+        value += d;
+        size += d;
+    }
+    (value, size)
+}
+
+/// Adds a block for two nodes, in the band or outside it.
+pub(in crate::model::fem) fn couple(s: &mut System, coupling: &mut Coupling, [i, j]: [usize; 2], block: &Mat2) {
+    if i.abs_diff(j) <= 1 {
+        s.add_block(i, j, block);
+        return;
+    }
+    for (r, c) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        coupling.push((2 * i + r, 2 * j + c, block[(r, c)]));
+    }
+}
+
+impl Dynamics {
+    /// Whether there is nothing to touch: no obstacle, and the cable can pass itself.
+    pub(in crate::model::fem) fn meets_nothing(&self) -> bool {
+        self.problem.world.is_empty() && !self.contacts.own.shape.is_on()
+    }
+
+    /// Takes the normal speed out of contacts of the cable with itself that are faster than `quiet` (m/s); momentum is kept.
+    pub(in crate::model::fem) fn land_on_itself(&mut self, quiet: f64, [h, a]: [f64; 2]) {
+        let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
+        let mass = |k: usize| mass_with((&self.problem, &self.mesh, &self.support_node), k);
+        let m = &mut self.motion;
+        for rub in &self.contacts.own.rubs {
+            let n = rub.pair.normal;
+            let speed = n.dot(&rub.pair.difference(&m.v));
+            let shares = rub.pair.shares();
+            let give = |k: usize| if self.mesh.is_free(k) { 1.0 / mass(k) } else { 0.0 };
+            let sum: f64 = shares.iter().map(|&(k, part)| part * part * give(k)).sum();
+            let made = -self.contacts.barrier.at(rub.pair.gap_m).slope * rub.pair.weight / a;
+            if !(sum > 0.0) || speed.abs() < quiet {
+                continue;
+            }
+            let taken = plastic(speed, made * sum) / sum;
+            let change = rub.pair.difference(&m.v) - rub.pair.difference(&m.v_before);
+            let (_, rubbing, _) = friction::at(rub.sliding(&m.x), rub.limit, SLIDE);
+            let acted = n * made - rub.pair.tangent() * (rubbing / a);
+            let over = acted - carried_on(acted - change / sum, n, self.contacts.own.friction);
+            for (k, part) in shares.into_iter().filter(|&(k, _)| self.mesh.is_free(k)) {
+                m.v[k] -= n * (taken * part * give(k));
+                m.v_before[k] += (over - n * taken) * (part * give(k));
+                m.x_before[k] = m.x[k] - (m.v[k] + m.v_before[k]) * (0.5 * h);
+                given -= n * (taken * part);
+                forgotten += over * part;
+            }
+        }
+        // Nothing, but where a support holds a side of the contact.
+        self.account_for_landing(given, forgotten);
+    }
+
+    /// Where the cable touches itself at positions `x` (m): one report for each stretch of nodes.
+    pub(in crate::model::fem) fn own_contacts(&self, x: &[Vec2], tension: &[f64], out: &mut Vec<ContactReport>) {
+        let own = &self.contacts.own;
+        let mut last = None;
+        for rub in &own.rubs {
+            let (k, pair) = (rub.pair.node, &rub.pair);
+            let load = -self.contacts.barrier.at(pair.gap_m).slope * pair.weight;
+            let along = self.mesh.path(k.min(tension.len().saturating_sub(1)), x).direction;
+            let (_, rubbing, _) = friction::at(rub.sliding(x), rub.limit, SLIDE);
+            let new = last.is_none_or(|l| k > l + 1);
+            last = Some(k);
+            if new {
+                let around = [k.saturating_sub(1), k.min(tension.len().saturating_sub(1))];
+                out.push(ContactReport {
+                    obstacle: self.problem.cable.name.clone(),
+                    x_m: x[k].x,
+                    y_m: x[k].y,
+                    arc_length_m: self.mesh.arc_length[k],
+                    normal: [pair.normal.x, pair.normal.y],
+                    state: ContactState::Stick,
+                    tension_before_n: tension[around[0]],
+                    begins_m: self.mesh.arc_length[k],
+                    ..ContactReport::default()
+                });
+            }
+            if let Some(report) = out.last_mut() {
+                let force = pair.normal * load - pair.tangent() * rubbing;
+                // The other side of the contact feels the opposite: the force on the whole cable is nothing.
+                for (node, part) in pair.shares() {
+                    report.samples.push(ContactSample::new(self.mesh.arc_length[node], force * part));
+                }
+                report.normal_n += load;
+                report.ends_m = self.mesh.arc_length[k];
+                report.friction_n -= rubbing * pair.tangent().dot(&along);
+                report.tension_after_n = tension[k.min(tension.len().saturating_sub(1))];
+                if rubbing.abs() >= rub.limit {
+                    report.state = ContactState::Slip;
+                }
+            }
+        }
+    }
+}

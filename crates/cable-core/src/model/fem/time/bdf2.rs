@@ -1,0 +1,439 @@
+//! One step of implicit dynamics (BDF2) of a cable in contact.
+//!
+//! BDF2 with a step ratio ω = h/h₋ (Hairer, Wanner, "Solving ordinary differential equations II", 1996): with
+//! α₀ = (1 + 2ω)/(1 + ω) and the history x̂ = ((1 + ω) x₀ − ω²/(1 + ω) x₋)/α₀,
+//! ```text
+//! v = a (x − x̂),  a = α₀/h,   v̂ likewise,   m a² (x − x̃) + ∂E/∂x − f = 0,   x̃ = x̂ + v̂/a
+//! ```
+//! Where the cable can touch nothing, steps that are even and smooth take a part β of the next order, BDF3: α₀ = (9 + 2β)/6 and
+//! x̂ = ((2 + β) x₀ − (½ + β) x₋ + (β/3) x₌)/α₀ at the same cost. Of a vibration ω BDF2 makes one that is slower by (ωh)²/3 and loses
+//! ω⁴h³/4 of its amplitude a second; this 1 − β and 1 − 2β of that.
+//!
+//! After each step contacts are made plastic: the barrier is a spring and would throw a landing cable back at
+//! 0.4 to 0.8 of its speed.
+
+use crate::model::fem::system::friction_state::SLIDE;
+use crate::model::fem::dynamics::{Dynamics, STIFFNESS_CHANGE};
+use crate::model::fem::time::momentum::mass_with;
+use crate::model::fem::time::history::Motion;
+use crate::model::fem::newton::step_setup::damping_time;
+use crate::model::fem::mesh::sliding_node::{Balanced, Grip};
+use crate::model::fem::newton::step_input::{Done, Failure, Pose};
+use crate::math::{Vec2, bounded, larger, perp};
+
+/// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
+const QUIET: f64 = 0.05;
+
+/// What a plastic contact takes of the speed along its normal (m/s, positive away from it), of which its force made so much in the step.
+pub(in crate::model::fem) fn plastic(speed: f64, made: f64) -> f64 {
+    if speed > made { made } else { speed }
+}
+
+/// What a contact of this normal and friction goes on giving against what other forces give, the opposite of `against`, N s.
+pub(in crate::model::fem) fn carried_on(against: Vec2, normal: Vec2, friction: f64) -> Vec2 {
+    let (pressed, along) = (against.dot(&normal), perp(normal));
+    let pressed = if pressed > 0.0 { pressed } else { 0.0 };
+    normal * pressed + along * bounded(against.dot(&along), -friction * pressed, friction * pressed)
+}
+
+/// Why a step is tried again without a sliding node.
+pub(in crate::model::fem) const PULLED: &str = "a corner would have to pull";
+
+/// Why a step is halved in which it was not found which sliding nodes hold and which slip.
+pub(in crate::model::fem) const NOT_FOUND: &str = "it was not found which corners hold the cable and over which it slips";
+
+/// Rounds of finding that out in which no fewer grips are wrong than before, until they are changed one at a time; and rounds beside those for each
+/// sliding node. Fewer: steps of a few nodes that free each other in turn take longer, or are halved.
+const GRIP_ROUNDS: usize = 6;
+
+/// Rounds for each sliding node. Fewer: steps in which many begin to slip one after the other are halved; more: what does not end costs more.
+pub(in crate::model::fem) const ROUNDS_EACH: usize = 3;
+
+/// Rounds in which friction follows its normal forces. With none the greatest tension of a stiff cable (1 N m²) that drops on rubble is 537, 352 and
+/// 789 N with 84, 168 and 336 bars at 1/960 s, with one 427, 399 and 463 N; a second changes that by 2 %, and costs as much as the step (a pile: 1.5 s, 0.9 with one).
+const RUB_ROUNDS: usize = 1;
+
+/// Change of a friction force that is none, in parts of the greatest; and one of the weight of a bar is none. Less: sliding costs twice as much and
+/// changes by nothing that shows; more: impacts rub late.
+const RUB_CHANGE: f64 = 0.05;
+
+/// Roundings in the force of inertia of a node. Fewer: small steps of heavy lumps fail; more: they are coarse.
+const ROUNDING: f64 = 16.0;
+
+/// Part of BDF3 in a step of a cable that can touch nothing. It is A-stable up to ½; 0.48 is V. N. Vatsa's, M. H. Carpenter's and
+/// D. P. Lockard's ("Re-evaluation of an optimized second order backward difference (BDF2OPT) scheme for unsteady flow applications",
+/// AIAA 2010-122). Less: vibrations are slower, up to twice, and damped, up to 25 times; more: what bars ring is not damped at all.
+const THIRD: f64 = 0.48;
+
+/// Part by which steps may differ and count as even.
+const EVEN: f64 = 1e-9;
+
+/// Even steps whose bars all pulled before BDF3 has its part: as many as its differences of velocities reach back. With less of a
+/// bar's snap in them chains whose bars rattle gain energy, half of mgL in a fold of 41 bars.
+const SMOOTH: usize = 3;
+
+/// What a step makes of its history: v = a (x − x̂), x̂ = now x₀ − past x₋ + older x₌.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::fem) struct Weights {
+    pub(in crate::model::fem) now: f64,
+    pub(in crate::model::fem) past: f64,
+    pub(in crate::model::fem) older: f64,
+    /// 1/s.
+    pub(in crate::model::fem) a: f64,
+}
+
+impl Weights {
+    /// A step of `h` after one of `before` (s); 0: there is no history.
+    fn bdf2(h: f64, before: f64) -> Self {
+        let omega = if before > 0.0 { h / before } else { 0.0 };
+        let alpha = (1.0 + 2.0 * omega) / (1.0 + omega);
+        let past = omega * omega / (1.0 + omega) / alpha;
+        Self { now: (1.0 + omega) / alpha, past, older: 0.0, a: alpha / h }
+    }
+
+    /// The third of steps of `h` (s) with a part of BDF3.
+    fn blended(h: f64) -> Self {
+        let alpha = 1.5 + THIRD / 3.0;
+        Self { now: (2.0 + THIRD) / alpha, past: (0.5 + THIRD) / alpha, older: THIRD / 3.0 / alpha, a: alpha / h }
+    }
+
+    fn place(self, m: &Motion, k: usize) -> Vec2 {
+        self.of([&m.x, &m.x_before, &m.x_older], k)
+    }
+
+    fn velocity(self, m: &Motion, k: usize) -> Vec2 {
+        self.of([&m.v, &m.v_before, &m.v_older], k)
+    }
+
+    fn of(self, [now, before, older]: [&[Vec2]; 3], k: usize) -> Vec2 {
+        let recent = now[k] * self.now - before[k] * self.past;
+        if self.older > 0.0 { recent + older[k] * self.older } else { recent }
+    }
+}
+
+impl Dynamics {
+    /// Makes contacts plastic: what still comes nearer stops, and what goes away goes no faster than without the force of the contact, as
+    /// nothing presses on what leaves (J. J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", in: Nonsmooth
+    /// Mechanics and Applications, CISM 302, 1988). What was drawn away by the cable itself keeps its speed: stopped in each step, it would stay
+    /// until one step carries it out of the barrier's reach, and finer steps would hold it harder.
+    ///
+    /// An impact is over with its step: the history of nodes that change has what the other forces gave them, and of the contact what holds against those
+    /// ([`carried_on`]). With all of the contact in it a third of an impact would come after it and throw the cable back; with none of it contacts would
+    /// press by half too much in the next step; without what the others gave BDF2 would give two thirds of their next impulse only.
+    fn land(&mut self, h: f64, a: f64) {
+        let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
+        let mass = |k: usize| mass_with((&self.problem, &self.mesh, &self.support_node), k);
+        let m = &mut self.motion;
+        for (touch, load) in self.contacts.pressing() {
+            let n = touch.pair.gap.normal;
+            let carried = self.contacts.carriage.filter(|c| c.obstacle == touch.pair.gap.obstacle);
+            let of_it = carried.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(&m.x)) / h);
+            let speed = (touch.interpolate(&m.v) - of_it).dot(&n);
+            let shares = touch.shares();
+            let nodes = [touch.node, touch.node + usize::from(touch.on_segment)];
+            let free = [0, 1].map(|j| if self.mesh.is_free(nodes[j]) { shares[j] } else { 0.0 });
+            let sum = free[0] * shares[0] + free[1] * shares[1];
+            if sum < 1e-3 {
+                continue;
+            }
+            let give = [0, 1].map(|j| if free[j] > 0.0 { free[j] / mass(nodes[j]) } else { 0.0 });
+            let sum = give[0] * shares[0] + give[1] * shares[1];
+            // Impulses: what the contact gave in the step, and what is taken of it.
+            let made = load / a;
+            let taken = plastic(speed, made * sum) / sum;
+            if speed.abs() < QUIET {
+                continue;
+            }
+            let change = touch.interpolate(&m.v) - touch.interpolate(&m.v_before);
+            let acted = n * made + touch.tangent() * (self.contacts.rubs(touch, &m.x) / a);
+            let over = acted - carried_on(acted - change / sum, n, touch.pair.gap.friction);
+            for j in 0..2 {
+                if free[j] > 0.0 {
+                    let k = nodes[j];
+                    m.v[k] -= n * (taken * give[j]);
+                    m.v_before[k] += (over - n * taken) * give[j];
+                    m.x_before[k] = m.x[k] - (m.v[k] + m.v_before[k]) * (0.5 * h);
+                    given -= n * (taken * free[j]);
+                    forgotten += over * free[j];
+                }
+            }
+        }
+        self.account_for_landing(given, forgotten);
+    }
+
+    /// The weights of the history in a step of `h` (s).
+    fn weights(&self, h: f64) -> Weights {
+        let m = &self.motion;
+        if m.even_steps >= SMOOTH && self.is_even(h) { Weights::blended(h) } else { Weights::bdf2(h, m.step_before) }
+    }
+
+    /// Whether a step of `h` (s) is as long as the one before.
+    fn is_even(&self, h: f64) -> bool {
+        (h - self.motion.step_before).abs() <= EVEN * h
+    }
+
+    /// Counts a step of `h` (s). Where contact may change what was, history is not looked for so far back.
+    fn note_step(&mut self, h: f64) {
+        let count = if self.is_even(h) { self.motion.even_steps } else { 0 };
+        let smooth = !self.mesh.spread.is_lumped() && self.gauged.bars.iter().all(|tension| *tension > 0.0);
+        self.motion.even_steps = if smooth { (count + 1).min(SMOOTH) } else { 0 };
+        self.motion.step_before = h;
+    }
+
+    /// Sets the task of a step of `h` (s); returns the weights of its history.
+    pub(in crate::model::fem) fn begin_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Weights {
+        self.follow_hands(h, dragged);
+        self.prepare_way([self.motion.time, self.motion.time + h], Some(dragged));
+        self.contacts.set_slip(SLIDE);
+        self.adapt_stiffness(STIFFNESS_CHANGE, 1.0);
+        let weights = self.weights(h);
+        self.set_inertia(weights, h);
+        let (m, task, mesh) = (&self.motion, &self.task, &self.mesh);
+        self.contacts.look_around(&self.problem, mesh, &m.x, |k| {
+            if mesh.held[k] { (task.target[k] - m.x[k]).norm() } else { m.v[k].norm() * h }
+        });
+        weights
+    }
+
+    pub(in crate::model::fem) fn dynamic_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Result<Done, Failure> {
+        let weights = self.begin_step(h, dragged);
+        let Weights { now, past, a, .. } = weights;
+        let (mut pose, exact) = (self.moving_pose(h), self.task.tolerance);
+        self.contacts.prepare(&self.problem, &self.mesh, &pose.x, &self.motion.x);
+        self.task.tolerance = self.rounded_tolerance();
+        let done = self.rub_and_minimise(&mut pose);
+        self.task.tolerance = exact;
+        let done = done?;
+        if let Some(node) = self.pulled(&pose.x) {
+            return Err(Failure { node, residual: done.residual, cause: PULLED });
+        }
+        self.note_lag(&pose);
+        self.note_hands(&pose);
+        self.note_balanced(&pose);
+        let given = self.forces_in_step(&pose);
+        let slid = self.sliding_momentum();
+        self.contacts.commit(&self.problem, &self.mesh, &pose.x, &self.motion.x, &pose.slide);
+        let (m, mesh) = (&mut self.motion, &self.mesh);
+        for k in 0..pose.x.len() {
+            let v = (pose.x[k] - weights.place(m, k)) * a;
+            let s = mesh.arc_length[k];
+            let w = (s + pose.slide[k] - s * now + m.s_before[k] * past) * a;
+            if let (Some(x), Some(v)) = (m.x_older.get_mut(k), m.v_older.get_mut(k)) {
+                (*x, *v) = (m.x_before[k], m.v_before[k]);
+            }
+            m.x_before[k] = m.x[k];
+            m.v_before[k] = m.v[k];
+            m.s_before[k] = s;
+            m.w_before[k] = m.w[k];
+            m.x[k] = pose.x[k];
+            m.v[k] = v;
+            m.w[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
+        }
+        self.slide(&pose.slide);
+        self.account_for_step(weights, given, (slid, &pose.slide));
+        self.pose = pose;
+        self.motion.time += h;
+        self.gauge_tension();
+        self.note_step(h);
+        self.note_pace(h);
+        self.land(h, a);
+        self.land_on_itself(QUIET, [h, a]);
+        self.close_account();
+        self.contacts.carriage = None;
+        if !self.never_slides {
+            self.keeps = self.motion.time >= self.due * (1.0 - f64::EPSILON);
+            self.remesh(false);
+            self.keeps = false;
+            self.stepped = self.kept.take();
+            if let Some(node) = self.crossing() {
+                return Err(Failure { node, residual: done.residual, cause: "the cable would run through a corner" });
+            }
+        }
+        Ok(done)
+    }
+
+    /// Keeps what friction acts between at each sliding node.
+    fn note_balanced(&mut self, pose: &Pose) {
+        for k in 0..self.mesh.nodes() {
+            let Some(load) = self.load_at(k, &pose.x, Some(&pose.slide)) else { continue };
+            let inertia = self.task.inertia[k] * (pose.slide[k] - self.task.predicted_slide[k]);
+            if let Some(node) = &mut self.mesh.sliding[k] {
+                let [comes, leaves] = load.at_round();
+                // The step balances slopes by the slide, where inertia counts by what is stretched.
+                let [before, after] = load.at_material;
+                let stretch = 1.0 + 0.5 * (comes + leaves) / self.mesh.axial_stiffness;
+                let pulls = match node.grip {
+                    _ if load.floor != [0.0; 3] => comes - inertia,
+                    Grip::Stick => leaves + (before - inertia - after) / stretch,
+                    slips => load.ratio(slips, node.exponent) * leaves,
+                };
+                node.balanced = Some(Balanced { pull: [pulls, leaves], turn: load.turn });
+            }
+        }
+    }
+
+    /// Supports that could not get where they were to be: said, and their hands start again from there.
+    fn note_lag(&mut self, pose: &Pose) {
+        for (support, node) in self.support_node.iter().enumerate() {
+            let Some(k) = node.filter(|&k| self.mesh.held[k]) else { continue };
+            if pose.x[k] != self.task.target[k] && !self.held_back.contains(&support) {
+                self.held_back.push(support);
+            }
+            if let Some(f) = &mut self.motion.followers[support]
+                && f.position() != pose.x[k]
+            {
+                f.stop_at(pose.x[k]);
+            }
+        }
+    }
+
+    /// The present pose moved on at its velocities for `h` (s), where nothing can be in the way. Newton then starts nearer
+    /// by a factor of the step, and what it leaves is smaller and not always on the same side.
+    fn moving_pose(&mut self, h: f64) -> Pose {
+        let mut pose = self.still_pose();
+        for (k, (x, v)) in pose.x.iter_mut().zip(&self.motion.v).enumerate() {
+            if self.mesh.is_free(k) {
+                *x += v * h;
+            } else if self.mesh.held[k] {
+                // Short bars beside a support would have to turn by large angles if it stayed behind.
+                *x = self.task.target[k];
+            }
+        }
+        if self.is_out_of_reach(&pose.x) {
+            pose
+        } else {
+            self.pose = pose;
+            self.still_pose()
+        }
+    }
+
+    /// Minimises until contacts rub by the normal forces that the step itself has. By those at its start an impact would rub in the step after it, by
+    /// a force that is no longer there: up to nine times the cone, along the cable.
+    fn rub_and_minimise(&mut self, pose: &mut Pose) -> Result<Done, Failure> {
+        let mut done = self.grip_and_minimise(pose)?;
+        for _ in 0..RUB_ROUNDS {
+            let same = |change: f64, most: f64| change <= larger(RUB_CHANGE * most, self.bar_weight);
+            if !self.contacts.renew((&self.problem, &self.mesh), [&pose.x, &self.motion.x], same) {
+                break;
+            }
+            let more = self.grip_and_minimise(pose)?;
+            done = Done { iterations: done.iterations + more.iterations, ..more };
+        }
+        Ok(done)
+    }
+
+    /// Minimises until the law holds at every sliding node: what slips, and with what friction, is part of the step, not found out after it.
+    ///
+    /// All grips that are wrong are changed at once while that makes them fewer; then one at a time (J. Júdice, F. Pires, "A block principal
+    /// pivoting algorithm for large-scale strictly monotone linear complementarity problems", Computers & Operations Research 21, 1994).
+    fn grip_and_minimise(&mut self, pose: &mut Pose) -> Result<Done, Failure> {
+        let mut done = self.minimise(pose)?;
+        let sliding = self.mesh.sliding.iter().flatten().count();
+        let (mut fewest, mut spare) = (usize::MAX, GRIP_ROUNDS);
+        for _ in 0..GRIP_ROUNDS + ROUNDS_EACH * sliding {
+            let grips = self.update_grips(pose, spare == 0);
+            if grips.hold() {
+                return Ok(done);
+            }
+            if grips.wrong < fewest {
+                (fewest, spare) = (grips.wrong, GRIP_ROUNDS);
+            } else {
+                spare = spare.saturating_sub(1);
+            }
+            let more = self.minimise(pose)?;
+            done = Done { iterations: done.iterations + more.iterations, ..more };
+        }
+        let node = self.mesh.sliding.iter().position(Option::is_some).unwrap_or(0);
+        Err(Failure { node, residual: done.residual, cause: NOT_FOUND })
+    }
+
+    /// Unbalanced force to reach in a step with inertia, N: not below the rounding of m a² (x − x̃). That grows as the
+    /// step shrinks: 5 kg at 20 m and 1/4000 s know their force to 1e-6 N only.
+    fn rounded_tolerance(&self) -> f64 {
+        let mut tolerance = self.task.tolerance;
+        for (inertia, x) in self.task.inertia.iter().zip(&self.motion.x) {
+            let rounding = ROUNDING * f64::EPSILON * inertia * x.norm();
+            if rounding > tolerance {
+                tolerance = rounding;
+            }
+        }
+        tolerance
+    }
+
+    /// Inertia and damping of a step of `h` (s).
+    ///
+    /// Where velocities jump between two steps (a plastic impulse, a change of the mesh) the rate of a length has no history: two steps
+    /// extrapolate through the jump and add ½ EA τ Δv/l₀ to the loss, 150 kN where nodes are 3 cm apart. So the loss of a cable that may
+    /// touch something is that of the step itself, EA τ (P − P₀)/(L h). It is a first-order error of a small force, ¾ τ/h of that which
+    /// BDF2 makes of a vibration.
+    fn set_inertia(&mut self, weights: Weights, h: f64) {
+        let Weights { now, past, a, .. } = weights;
+        let rubs = !(self.meets_nothing() && self.never_slides && self.problem.floor_friction.is_none());
+        let jumps = !self.meets_nothing();
+        let (m, task, mesh) = (&self.motion, &mut self.task, &self.mesh);
+        for k in 0..m.x.len() {
+            task.predicted[k] = weights.place(m, k) + weights.velocity(m, k) / a;
+            task.inertia[k] = self.problem.linear_density * mesh.share(k) * a * a;
+            if mesh.sliding[k].is_some() {
+                let w_hat = m.w[k] * now - m.w_before[k] * past;
+                let s = mesh.arc_length[k];
+                task.predicted_slide[k] = s * now - m.s_before[k] * past + w_hat / a - s;
+            }
+        }
+        // Of the masses alone: hands draw at their nodes, not at what these are coupled with.
+        let predicted = &task.predicted;
+        task.coupling.extend(mesh.spread.coupling.iter().enumerate().map(|(e, length)| {
+            let chord = predicted[e + 1] - predicted[e];
+            (self.problem.linear_density * length * a * a, chord)
+        }));
+        for (s, node) in self.problem.supports.iter().zip(&self.support_node) {
+            if let Some(k) = node {
+                task.inertia[*k] += s.mass * a * a;
+            }
+        }
+        for (hand, node) in m.hands.iter().zip(&self.support_node) {
+            let (Some(hand), Some(k)) = (hand, *node) else { continue };
+            let (stiffness, at) = hand.pull(h, m.x[k]);
+            let (inertia, both) = (task.inertia[k], task.inertia[k] + stiffness);
+            task.predicted[k] = (task.predicted[k] * inertia + at * stiffness) / both;
+            task.inertia[k] = both;
+            task.hands.push((k, stiffness, at));
+        }
+        task.moves = true;
+        let (rate, time) = (if jumps { 1.0 / h } else { a }, damping_time(&self.problem, rubs));
+        task.damping = self.problem.axial_stiffness * time * rate;
+        task.bending_damping = mesh.bending_stiffness * time / h;
+        for e in 0..mesh.rest_length.len() {
+            task.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
+                mesh.path(e, &m.x).length
+            } else {
+                let length = |x: &[Vec2]| (x[e + 1] - x[e]).norm();
+                let older = if weights.older > 0.0 { length(&m.x_older) * weights.older } else { 0.0 };
+                length(&m.x) * now - length(&m.x_before) * past + older
+            };
+        }
+    }
+
+    /// The present pose.
+    pub(in crate::model::fem) fn still_pose(&mut self) -> Pose {
+        let mut pose = std::mem::take(&mut self.pose);
+        pose.x.clear();
+        pose.x.extend_from_slice(self.task.begins());
+        pose.slide.clear();
+        pose.slide.resize(self.mesh.nodes(), 0.0);
+        pose
+    }
+
+    /// Lets the material slide through the sliding nodes, m of arc length each.
+    pub(in crate::model::fem) fn slide(&mut self, slide: &[f64]) {
+        let mesh = &mut self.mesh;
+        for (s, by) in mesh.arc_length.iter_mut().zip(slide) {
+            *s += by;
+        }
+        for e in 0..mesh.rest_length.len() {
+            if slide[e] != 0.0 || slide[e + 1] != 0.0 {
+                mesh.rest_length[e] = mesh.thermal_stretch * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
+            }
+        }
+    }
+}

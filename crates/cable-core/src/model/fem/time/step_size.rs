@@ -1,0 +1,95 @@
+//! Steps follow how fast a taut cable vibrates.
+//!
+//! BDF2 puts (3x₁ − 4x₀ + x₋)/2h = ẋ − h²/3 x⃛ + … for ẋ, so that a vibration of angular frequency ω comes out slower by
+//! (ωh)²/3 of it, and loses π(ωh)³/2 of its amplitude a period (Hairer, Wanner, "Solving ordinary differential equations
+//! II", 1996, V.1). Even steps have a part of BDF3 and half of that error; it is BDF2's that is reckoned with, for steps that change. The
+//! frequency of a motion is read off it, ω² = Σ m a² / Σ m v² over the last while, a and v without the mean of the cable, which falls or
+//! is carried along.
+
+use crate::model::fem::dynamics::Dynamics;
+use crate::math::{Vec2, bounded};
+
+/// The shortest step is this part of the longest, 1/240 s: strings up to 17 Hz are in tune to 1e-3, of 40 Hz to 6e-3. Less: a cable that
+/// rings costs more than it tells; more: the tones that are in tune are lower.
+const SHORTEST: f64 = 0.125;
+
+/// Vibrations of less than this part of the cable's length are left as they are: what is left over from coming to rest rings at
+/// any frequency, and 0.1 mm in 10 m is no motion that a user sees.
+const LEAST: f64 = 1e-5;
+
+/// Change of the step from one frame to the next. BDF2 is stable up to 2.4.
+const CHANGE: f64 = 2.0;
+
+/// What was seen is forgotten with this time, s. Half a period of what needs shorter steps passes in it: with less the step
+/// would be short where a vibration turns and long where it is fastest.
+const MEMORY: f64 = 0.25;
+
+/// What was seen of the motion, and the step that follows from it.
+#[derive(Clone, Debug)]
+pub(in crate::model::fem) struct Pace {
+    /// ∫ Σ l |a|² dt, m³/s³, ∫ Σ l |v|² dt, m³/s, and ∫ dt, s.
+    seen: [f64; 3],
+    /// Longest step of the next frame, s.
+    pub(in crate::model::fem) step: f64,
+    /// Longest step of all, s.
+    longest: f64,
+}
+
+impl Pace {
+    /// Nothing was seen yet.
+    pub(in crate::model::fem) fn new(longest: f64) -> Self {
+        Self { seen: [0.0; 3], step: longest, longest }
+    }
+
+    /// What was seen is forgotten.
+    pub(in crate::model::fem) fn forget(&mut self) {
+        *self = Self::new(self.longest);
+    }
+}
+
+impl Dynamics {
+    /// Looks at a step of `h` (s) just made. What falls or lands is no vibration.
+    pub(in crate::model::fem) fn note_pace(&mut self, h: f64) {
+        if !self.is_string() {
+            self.pace.seen = [0.0; 3];
+            return;
+        }
+        let (m, pace) = (&self.motion, &mut self.pace);
+        let free = || (0..m.v.len()).filter(|&k| self.mesh.is_free(k)).map(|k| (k, self.mesh.share(k)));
+        let (mut length, mut mean) = (0.0, [Vec2::zeros(); 2]);
+        for (k, share) in free() {
+            length += share;
+            mean[0] += (m.v[k] - m.v_before[k]) * share;
+            mean[1] += (m.v[k] + m.v_before[k]) * share;
+        }
+        for (k, share) in free() {
+            let change = m.v[k] - m.v_before[k] - mean[0] / length;
+            let speed = m.v[k] + m.v_before[k] - mean[1] / length;
+            pace.seen[0] += share * change.norm_squared() / h;
+            pace.seen[1] += share * speed.norm_squared() * 0.25 * h;
+        }
+        pace.seen[2] += h;
+    }
+
+    /// Whether the cable touches nothing and is pulled all along by more than it weighs.
+    fn is_string(&self) -> bool {
+        let weight = self.problem.body_force(self.motion.time).norm() * self.problem.length;
+        let taut = |e: usize| self.mesh.bar(e).tension(self.mesh.path(e, &self.motion.x).length) > weight;
+        let alone = self.contacts.rubs.is_empty() && self.contacts.own.rubs.is_empty();
+        alone && (0..self.mesh.rest_length.len()).all(taut)
+    }
+
+    /// Chooses the longest step of the next frame, after one of `dt` (s).
+    pub(in crate::model::fem) fn set_pace(&mut self, dt: f64) {
+        let (pace, length) = (&mut self.pace, self.problem.length);
+        let [changes, speeds, time] = pace.seen;
+        let frequency = (changes / speeds).sqrt();
+        let amplitude = (speeds / (time * length)).sqrt() / frequency;
+        let matters = frequency.is_finite() && amplitude > LEAST * length;
+        let wanted = if matters { (3.0 * self.tolerance).sqrt() / frequency } else { pace.longest };
+        let near = bounded(wanted, pace.step / CHANGE, pace.step * CHANGE);
+        pace.step = near.clamp(SHORTEST * pace.longest, pace.longest);
+        let left = (-dt / MEMORY).exp();
+        pace.seen = pace.seen.map(|s| s * left);
+    }
+}

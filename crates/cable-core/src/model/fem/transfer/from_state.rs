@@ -1,0 +1,152 @@
+//! Taking over a state of another mesh or model, and threading the cable through its pulleys.
+
+use std::sync::Arc;
+
+use crate::model::fem::equilibrium::initial_guess::push_out;
+use crate::model::fem::dynamics::{Dynamics, REACH};
+use crate::model::fem::free::stations::{Hold, Layout};
+use crate::model::fem::mesh::tangent_path::End;
+use crate::model::fem::mesh::sliding_node::{Grip, Seat, Sliding};
+use crate::error::SolveError;
+use crate::math::{Vec2, perp};
+use crate::scene::PulleySide;
+use crate::state::State;
+
+/// Part of a bar that a new node keeps away from its ends. Less: bars without mass; more: corners beside a node are still cut off.
+const LEAST_PART: f64 = 0.05;
+
+impl Dynamics {
+    /// Puts a sliding node at every pulley: where `state` has the cable nearest to it, else where the layout lays it.
+    pub(in crate::model::fem) fn thread_pulleys(&mut self, state: Option<&State>) {
+        let problem = Arc::clone(&self.problem);
+        let layout = Layout::new(&problem, self.motion.time, &[], &[]);
+        for stop in &layout.stops {
+            let (Hold::Pulley(wheel), Some(support)) = (stop.hold, stop.support) else { continue };
+            let s = state.and_then(|s| s.on_round(wheel.center, wheel.radius)).unwrap_or(stop.arc_length);
+            let k = self.mesh.arc_length.partition_point(|&a| a <= s).clamp(1, self.mesh.nodes() - 1);
+            let room = 0.05 * problem.length / self.even_bars as f64;
+            let (low, high) = (self.mesh.arc_length[k - 1] + room, self.mesh.arc_length[k] - room);
+            let at = if low < high { s.clamp(low, high) } else { 0.5 * (low + high) };
+            let passing = self.motion.x[k] - self.motion.x[k - 1];
+            let up = if wheel.side == PulleySide::Over { 1.0 } else { -1.0 };
+            let right = if passing.x < 0.0 { -1.0 } else { 1.0 };
+            let end = End { center: wheel.center, radius: wheel.radius, mark: Vec2::new(0.0, up), sense: -up * right };
+            let sliding = Sliding {
+                end,
+                friction: wheel.friction,
+                seat: Seat::Pulley(support),
+                grip: Grip::Stick,
+                factor: 1.0,
+                exponent: 0.0,
+                floor_factor: 1.0,
+                lies: [1.0; 2],
+                balanced: None,
+            };
+            self.insert(k, at, Some(sliding));
+        }
+        self.even_out();
+        self.renew_task();
+    }
+
+    /// Takes over a state (from statics: at rest).
+    ///
+    /// # Errors
+    /// When a number is not finite, and `Buried` when it is so far inside an obstacle that nodes cannot be pushed out.
+    pub fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
+        if let Some(e) = state.refuse_non_finite() {
+            return Err(e);
+        }
+        if state.arc_length_m.len() < 2 || state.position_m.len() != state.arc_length_m.len() {
+            return Ok(());
+        }
+        self.save();
+        let taken = self.take(state);
+        if taken.is_err() {
+            self.restore();
+        }
+        taken
+    }
+
+    fn take(&mut self, state: &State) -> Result<(), SolveError> {
+        self.wake();
+        let led = self.put_outline();
+        let same = state.arc_length_m == self.mesh.arc_length && !led;
+        if !same {
+            self.unthread();
+        }
+        for (k, &s) in self.mesh.arc_length.iter().enumerate() {
+            if self.mesh.sliding[k].is_some() {
+                continue;
+            }
+            if let Some(p) = state.position_at(s) {
+                self.motion.x[k] = p;
+            }
+            self.motion.v[k] = state.velocity_at(s).unwrap_or_default();
+        }
+        self.motion.time = state.time_s;
+        self.motion.followers.fill(None);
+        self.motion.hands.fill(None);
+        self.contacts.forget();
+        if !same {
+            self.thread_pulleys(Some(state));
+        }
+        // What moves goes on from where it is; a state at rest is brought to rest on this mesh.
+        let still = self.motion.v.iter().all(|v| v.norm() == 0.0);
+        if !same && !still {
+            self.follow_corners(state);
+        }
+        if !same || self.refuse_buried().is_err() {
+            let mut x = std::mem::take(&mut self.motion.x);
+            push_out(&self.problem, &self.mesh, &mut x, 0.9 * REACH);
+            self.motion.x = x;
+        }
+        self.refuse_buried()?;
+        self.forget_history();
+        // A state at rest on another mesh is brought to rest on this one before it moves.
+        self.rested = same || !still;
+        self.renew_task();
+        Ok(())
+    }
+
+    /// Bars that cut off by more than the cable's radius what the state leads round get a node where the state is farthest from them: from
+    /// there inside nothing tells on which side of a corner they were, and nothing could push them out.
+    fn follow_corners(&mut self, state: &State) {
+        let (mut e, mut left) = (0, state.arc_length_m.len());
+        while e + 1 < self.mesh.nodes() {
+            let farthest = if left > 0 && !self.is_clear(e) { self.farthest(e, state) } else { None };
+            let Some((s, at)) = farthest else {
+                e += 1;
+                continue;
+            };
+            self.insert(e + 1, s, None);
+            self.motion.x[e + 1] = at;
+            self.motion.v[e + 1] = state.velocity_at(s).unwrap_or_default();
+            left -= 1;
+        }
+    }
+
+    /// Arc length and place (m) of the node of a state that is farthest from a bar, if that is more than the cable's radius.
+    fn farthest(&self, e: usize, state: &State) -> Option<(f64, Vec2)> {
+        let (s, x) = (&self.mesh.arc_length, &self.motion.x);
+        let (from, along) = (x[e], (x[e + 1] - x[e]).try_normalize(0.0)?);
+        let near = LEAST_PART * (s[e + 1] - s[e]);
+        let nodes = state.arc_length_m.iter().copied().zip(state.position_m.iter().copied());
+        let inside = nodes.filter(|(a, _)| *a > s[e] + near && *a < s[e + 1] - near);
+        let off = |p: &Vec2| perp(along).dot(&(p - from)).abs();
+        let farthest = inside.reduce(|a, b| if off(&b.1) > off(&a.1) { b } else { a })?;
+        (off(&farthest.1) > self.problem.radius).then_some(farthest)
+    }
+
+    /// Takes all sliding nodes out.
+    fn unthread(&mut self) {
+        let mut k = 1;
+        while k + 1 < self.mesh.nodes() {
+            if self.mesh.sliding[k].is_some() {
+                self.remove(k);
+            } else {
+                k += 1;
+            }
+        }
+        self.even_out();
+    }
+}
