@@ -1,6 +1,6 @@
 //! Scenes of one cable, starts away from rest, and what is read off a motion.
 
-use cable_core::model::fem::mass::Spread;
+use cable_core::model::fem::system::mass::Spread;
 use cable_core::scene::{Scene, Support, SupportKind, catalog};
 use cable_core::state::State;
 use cable_core::{Model, Settings, Simulation, Vec2};

@@ -2,23 +2,23 @@
 
 use std::sync::Arc;
 
-use crate::model::fem::system::assembly::Mesh;
-use crate::model::fem::obstacle::moving_outline::Rider;
-use crate::model::fem::system::friction_state::{ContactSet, SLIDE, Touch, slip_at_rest};
-use crate::model::fem::equilibrium::initial_guess::{lay, push_out, way};
-use crate::model::fem::newton::minimize::Workspace;
-use crate::model::fem::newton::mixed_free::FreeStep;
-use crate::model::fem::time::bdf2::PULLED;
-use crate::model::fem::time::history::{Motion, Saved};
-use crate::model::fem::time::step_size::Pace;
-use crate::model::fem::newton::step_setup::{load_scale, tolerance};
-use crate::model::fem::time::sleeping::Sleep;
-use crate::model::fem::mesh::sliding_node::Seat;
-use crate::model::fem::newton::step_input::{Done, Failure, Pose, Task};
-use crate::model::fem::touches_nothing;
 use crate::contact::barrier::Barrier;
 use crate::error::{Place, SolveError};
 use crate::math::{Vec2, bounded};
+use crate::model::fem::equilibrium::initial_guess::{lay, push_out, way};
+use crate::model::fem::mesh::sliding_node::Seat;
+use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::newton::mixed_free::FreeStep;
+use crate::model::fem::newton::step_input::{Done, Failure, Pose, Task};
+use crate::model::fem::newton::step_setup::{load_scale, tolerance};
+use crate::model::fem::obstacle::moving_outline::Rider;
+use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::system::friction_state::{ContactSet, SLIDE, Touch, slip_at_rest};
+use crate::model::fem::time::bdf2::PULLED;
+use crate::model::fem::time::history::{Motion, Saved};
+use crate::model::fem::time::sleeping::Sleep;
+use crate::model::fem::time::step_size::Pace;
+use crate::model::fem::touches_nothing;
 use crate::model::gauge::TensionGauge;
 use crate::model::input_filter::held_warning;
 use crate::model::{Inertia, Model, Settings, StepReport};

@@ -13,8 +13,8 @@
 
 use std::sync::Arc;
 
-use crate::model::fem::dynamics::Dynamics;
 use crate::math::Vec2;
+use crate::model::fem::dynamics::Dynamics;
 use crate::model::initial_equilibrium::InitialEquilibrium;
 use crate::model::spans::SpansModel;
 use crate::model::{Inertia, Mechanics, Settings};

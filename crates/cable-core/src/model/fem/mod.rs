@@ -1,46 +1,45 @@
-//! Rung 2: finite elements. Two parts share the work:
+//! `fem` is the finite element model of a cable: contact, friction, bending, equilibrium and motion.
 //!
-//! - [`statics`]: a cable that touches nothing but its supports, at rest or pulled slowly;
-//! - [`dynamics`]: anything that moves, and anything with obstacles or a floor to rub on, at rest or not.
+//! | room | what it holds |
+//! |---|---|
+//! | [`dynamics`] | the cable in contact: its mesh, contacts, history and settings in one place |
+//! | [`free`] | equilibrium of a flexible cable that touches nothing but its supports |
+//! | [`beam`], [`elastica`] | equilibrium of a stiff cable, free and in contact |
+//! | [`equilibrium`] | equilibria in contact, and steps without inertia |
+//! | [`time`] | BDF2, step sizes, sleep, hands, momentum |
+//! | [`newton`] | one step: its input, its Newton iterations, and what bounds them |
+//! | [`system`] | the energies of a step: value, gradient and banded Hessian |
+//! | [`mesh`] | sliding nodes, paths round corners, edits between steps |
+//! | [`obstacle`], [`transfer`] | the robot's outline; states and answers of other models |
+//! | [`results`], [`mesh_comparison`] | what is read out of a state, and how wrong it is |
 //!
-//! [`FemModel`] decides which part is asked, and hands the state over when the question changes.
-
-mod transfer;
-
-mod time;
-
-#[cfg(test)]
-mod tests;
-
-pub mod system;
-
-mod obstacle;
-
-pub mod newton;
-
-mod mesh;
-
-pub mod free;
-
-pub mod equilibrium;
+//! [`FemModel`] decides which part answers, and hands the state over when the question changes.
 
 mod beam;
-
-mod mesh_comparison;
-pub mod results;
-
 pub mod dynamics;
 mod elastica;
+pub mod equilibrium;
+pub mod free;
+mod mesh;
+mod mesh_comparison;
+pub mod newton;
+mod obstacle;
+pub mod results;
+pub mod system;
+#[cfg(test)]
+mod tests;
+mod time;
+mod transfer;
 
 use std::sync::Arc;
 
+use crate::error::SolveError;
+use crate::math::RigidPose;
+use crate::math::{Vec2, larger};
 use crate::model::fem::mesh_comparison::TwoMeshes;
 use crate::model::gauge::TensionGauge;
 use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium, slid_first, slides_on, work};
 use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
-use crate::error::SolveError;
-use crate::math::RigidPose;
-use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::ErrorEstimates;
@@ -538,8 +537,10 @@ impl Mechanics for FemModel {
     }
 
     fn borrow(&mut self, own: Option<OwnedResources>) {
-        let own =
-            own.unwrap_or_else(|| OwnedResources { memory: None, problem: obstacle::moving_outline::with_outline(self.problem.clone()) });
+        let own = own.unwrap_or_else(|| OwnedResources {
+            memory: None,
+            problem: obstacle::moving_outline::with_outline(self.problem.clone()),
+        });
         self.dynamics.memory.0 = own.memory.and_then(|memory| memory.downcast().ok());
         self.dynamics.problem = own.problem;
         self.dynamics.place_outline();

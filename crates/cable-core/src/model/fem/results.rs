@@ -1,18 +1,18 @@
 //! Reads tensions, reactions and contacts out of a state.
 
-use crate::model::fem::system::assembly::Mesh;
-use crate::model::fem::system::friction_state::{ContactSet, Rub, Touch};
-use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::system::floor_friction::OverRound;
-use crate::model::fem::mesh::arc_nodes::SMALL;
-use crate::model::fem::mesh::tangent_path::angle_between;
-use crate::model::fem::mesh::sliding_node::{Balanced, Load, Seat, Sliding};
-use crate::model::fem::system::bar_weight;
-use crate::model::fem::system::bar_weight::Weight;
 use crate::contact::friction;
 use crate::energy::bending::turn;
 use crate::math::{Vec2, bounded, larger, perp, smaller};
 use crate::model::arc_nodes;
+use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::mesh::arc_nodes::SMALL;
+use crate::model::fem::mesh::sliding_node::{Balanced, Load, Seat, Sliding};
+use crate::model::fem::mesh::tangent_path::angle_between;
+use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::system::bar_weight;
+use crate::model::fem::system::bar_weight::Weight;
+use crate::model::fem::system::floor_friction::OverRound;
+use crate::model::fem::system::friction_state::{ContactSet, Rub, Touch};
 use crate::problem::Problem;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 

@@ -1,10 +1,10 @@
 //! Bending forces of the chain: see [`crate::energy::bending`]. A pulley bends the cable without a moment of its own.
 
-use super::MassSpringModel;
-use super::pulley::NONE;
 use crate::energy::Energy;
 use crate::energy::bending::{Bend, ClampBend};
 use crate::math::Vec2;
+use crate::model::mass_spring::MassSpringModel;
+use crate::model::mass_spring::pulleys::pulley::NONE;
 use crate::scene::SupportKind;
 
 impl MassSpringModel {

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::MassSpringModel;
-use super::pulley::{NONE, Pulley};
 use crate::math::{Vec2, bounded};
 use crate::model::Settings;
+use crate::model::mass_spring::MassSpringModel;
+use crate::model::mass_spring::pulleys::pulley::{NONE, Pulley};
 use crate::problem::Problem;
 use crate::solution::Cost;
 use crate::state::State;
@@ -105,9 +105,9 @@ impl MassSpringModel {
             warnings: Vec::new(),
             settings,
             driven: 0.0,
-            kept: super::Kept::default(),
-            beside: super::Beside::default(),
-            account: super::momentum::Account::default(),
+            kept: crate::model::mass_spring::Kept::default(),
+            beside: crate::model::mass_spring::Beside::default(),
+            account: crate::model::mass_spring::dynamics::momentum::Account::default(),
             errors: crate::solution::ErrorEstimates::default(),
             problem,
             s,

@@ -1,52 +1,52 @@
-//! Lumped masses and axial springs, stepped by the leapfrog (velocities half a sub-step behind places): a quick look, and the cheap way through violent
-//! free motion. Its discretisation error is second order in the element; at rest and
-//! without inertia it is estimated (`beside`), in motion only for corners (`corner`).
+//! `mass_spring` is the model of lumped masses and springs: a quick look, and the cheap way through violent free motion.
+//!
+//! | room | what it holds |
+//! |---|---|
+//! | [`mesh`] | nodes, masses and the first shape |
+//! | [`integrator`] | how dynamic steps are taken: explicit, or as a preview |
+//! | [`dynamics`] | one explicit sub-step: forces, impacts, limits, rollback, momentum, hands |
+//! | [`xpbd`] | the preview's sub-steps of compliant constraints |
+//! | [`equilibrium`] | equilibria, steps without inertia, and how wrong their figures are |
+//! | [`pulleys`], [`bending`] | material that slides through pulleys; bending forces |
+//! | [`results`], [`corner_error`] | the answer, and what a mesh cannot know of tension beyond a corner |
+//!
+//! The leapfrog keeps velocities half a sub-step behind places. The discretisation error is of second order in the
+//! element; at equilibrium and without inertia it is estimated, in motion only for corners.
 //!
 //! Sub-steps keep below the stability limit of a chain of springs, with ω_max = 2√(EA/(ρ l₀²)) and the damping ratio ζ
 //! of that mode: `dt < 2/ω_max · (√(1+ζ²) − ζ)` (D. Baraff, A. Witkin, Physically based modeling, SIGGRAPH course notes,
-//! 1997, derive the undamped part). Pulleys are nodes through which material slides (`pulley`). Resting places, and steps
-//! without inertia, are found by Newton's method on the energy of springs, contacts and friction (`rest`). They start from
-//! the shape of [`super::fem`] where there is one: which of many resting places a rough floor allows is then the same for
-//! both models, what holds there is this model's own balance of forces.
+//! 1997, derive the undamped part). Equilibria are found by Newton's method on the energy of springs, contacts and
+//! friction. They start from the shape of [`crate::model::fem`] where there is one: which of many equilibria a rough
+//! floor allows is then the same for both models; what holds there is this model's own balance of forces.
 
-mod answer;
 mod bending;
-mod beside;
-mod calm;
-mod chain;
-mod collide;
-mod corner;
-mod creep;
-mod hands;
-mod kept;
+mod corner_error;
+mod dynamics;
+mod equilibrium;
+mod integrator;
 mod mesh;
-mod momentum;
-mod preview;
-mod pulley;
-mod remesh;
-mod rest;
-mod rest_contact;
-mod step;
-mod stepping;
+mod pulleys;
+mod results;
+mod xpbd;
 
 use std::sync::Arc;
 
-use super::fem::FemModel;
-use super::gauge::TensionGauge;
-use super::input_filter::{Hand, SmoothedTarget, held_warning};
-use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::contact::Gap;
 use crate::error::SolveError;
 use crate::math::Vec2;
+use crate::model::fem::FemModel;
+use crate::model::gauge::TensionGauge;
+use crate::model::input_filter::{Hand, SmoothedTarget, held_warning};
 pub use crate::model::settings::Stepping;
+use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::ErrorEstimates;
 use crate::solution::{CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
-use beside::Beside;
-use kept::Kept;
-use pulley::Pulley;
+use dynamics::rollback::Kept;
+use equilibrium::error_estimate::Beside;
+use pulleys::pulley::Pulley;
 
 /// The model's mechanics of one cable.
 #[derive(Clone, Debug)]
@@ -103,7 +103,7 @@ pub struct MassSpringModel {
     /// Lumped mass at each node, kg.
     lump: Vec<f64>,
     pulleys: Vec<Pulley>,
-    /// Index of the pulley at each node, or `pulley::NONE`.
+    /// Index of the pulley at each node, or `pulleys::pulley::NONE`.
     pulley_at: Vec<usize>,
     /// Where friction holds, between steps without inertia.
     anchors: Vec<Anchor>,
@@ -115,7 +115,7 @@ pub struct MassSpringModel {
     /// Who goes on beside it to tell its errors, and what they are.
     beside: Beside,
     /// What became of the momentum since the caller's step began.
-    account: momentum::Account,
+    account: dynamics::momentum::Account,
     errors: ErrorEstimates,
 }
 
@@ -258,7 +258,7 @@ impl MassSpringModel {
 
     /// Comes to rest; on an error nothing has changed.
     fn settle_alone(&mut self) -> Result<(), SolveError> {
-        self.account = momentum::Account::default();
+        self.account = dynamics::momentum::Account::default();
         let kept = self.clone();
         if !self.laid {
             self.lay();

@@ -1,65 +1,53 @@
-//! Rung 1: a quasi-static network of exact elements. Free spans are elastic catenaries, contacts are intervals of an
-//! obstacle's boundary through which the material slides, friction remembers in closed form: no mesh, and so none of its
-//! errors.
+//! `spans` is the quasi-static model of exact elements: a taut flexible cable with contact and friction, without a mesh.
 //!
-//! Each part has its derivation above it: the boundary (`curve`), the law of sliding along it (`law`), what friction
-//! remembers (`history`), a contact's equations (`rub`), the unknowns (`strand`), their solution (`newton`), contacts that
-//! come and go (`events`, `seek`, `ends`, `lift`), loads that come down and lie (`landing`, `weight`, `wedge`), the way from one instant to the next (`drive`), the first lay (`taut`, `lay`, `turned`),
-//! and the checks of each answer that know nothing of all this (`check`, `gaps`).
+//! Free spans are elastic catenaries, contacts are intervals of an obstacle's boundary through which the material
+//! slides, and friction remembers in closed form. Each room has its derivation at its head.
 //!
-//! What it cannot do it refuses: bending, self-contact, inertia, plan view, supports that let go; a cable that loses its
-//! tension is said to have lost it, with the place.
+//! | room | what it holds |
+//! |---|---|
+//! | [`boundary`] | the boundary as the centre line runs along it, and the capstan law on it |
+//! | [`contact`] | a contact: friction memory, equations, loads on it, supports on it, wheels |
+//! | [`run`] | free spans and contacts in a row between two grips: the unknowns |
+//! | [`boundary_conditions`] | supports and loads at an instant, and how a cable falls into runs |
+//! | [`newton`], [`numerics`] | all unknowns of a run at once; band LU, root finding |
+//! | [`changes`] | contacts that come, go, join and part |
+//! | [`initial`] | the first shape: route, shortest path, contacts, tension; or another answer |
+//! | [`continuation`], [`reversed`] | from one instant to the next; the cable counted from its other end |
+//! | [`slack`] | cable that lies without tension |
+//! | [`verify`] | checks of an answer that do not use the solver |
+//! | [`results`], [`failure`] | the answer; why there is none |
+//!
+//! The model refuses what it cannot do: bending, self-contact, inertia, plan view, supports that let go. A cable that
+//! loses its tension is said to have lost it, with the place.
 
-mod arc;
-mod band;
-mod check;
-mod curve;
-mod drained;
-mod drive;
-mod ends;
-mod events;
-mod foresee;
-mod gaps;
-mod history;
-mod instant;
-mod landing;
-mod law;
-mod lay;
-mod lift;
-mod loose;
-mod loss;
+mod boundary;
+mod boundary_conditions;
+mod changes;
+pub(in crate::model) mod contact;
+mod continuation;
+mod failure;
+mod initial;
 mod newton;
-mod pass;
-mod piece;
-mod pocket;
-mod report;
-mod root;
-mod rub;
-mod seek;
-mod strand;
-mod take;
-mod taut;
-mod tight;
-mod trouble;
-mod turned;
-mod way;
-mod wedge;
-mod weight;
-pub(in crate::model) mod wheel_friction;
+mod numerics;
+mod results;
+mod reversed;
+mod run;
+mod slack;
+mod verify;
 
 use std::sync::Arc;
 
-use self::drive::{Network, Taken, Unfound};
-use self::instant::{Instant, Layout, unsupported};
-use self::newton::Work;
-use self::report::Report;
-use self::trouble::Trouble;
-use self::turned::Turned;
-use super::catenary::slack_without_weight;
-use super::gauge::TensionGauge;
-use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::{Place, SolveError};
 use crate::math::{Vec2, larger, smaller};
+use crate::model::catenary::slack_without_weight;
+use crate::model::gauge::TensionGauge;
+use crate::model::spans::boundary_conditions::{Instant, Layout, unsupported};
+use crate::model::spans::continuation::{Network, Taken, Unfound};
+use crate::model::spans::failure::Trouble;
+use crate::model::spans::newton::Work;
+use crate::model::spans::results::Report;
+use crate::model::spans::reversed::Turned;
+use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::FrictionMobilised;
 use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
@@ -96,7 +84,7 @@ impl SpansModel {
     /// # Errors
     /// `Unsupported` when the scene needs what the model lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
-        let layout = counted(&problem, turned::is_led_up(&problem))?;
+        let layout = counted(&problem, reversed::is_led_up(&problem))?;
         let n = problem.supports.len();
         let mut points: Vec<Vec2> = problem.route.clone();
         if points.len() < 2 {
@@ -134,7 +122,7 @@ impl SpansModel {
     fn look(&self) -> Report {
         match &self.network {
             Some(network) => {
-                let report = report::report(&self.layout, network);
+                let report = results::report(&self.layout, network);
                 if self.layout.turned { self.turned().report(&report) } else { report }
             }
             None => self.shown.clone(),
@@ -149,7 +137,8 @@ impl SpansModel {
     /// A trouble as an error: a loss of tension where the last state found, `stopped` or the present one, shows one.
     fn said(&self, stopped: Option<&Network>, trouble: Trouble) -> SolveError {
         if let Some(network) = stopped.or(self.network.as_ref())
-            && let Some((loss, arc_length_m, at_m)) = loss::lost(&network.strands, &network.course, &trouble)
+            && let Some((loss, arc_length_m, at_m)) =
+                verify::tension_loss::lost(&network.strands, &network.course, &trouble)
         {
             let arc_length_m = if self.layout.turned { self.turned().s(arc_length_m) } else { arc_length_m };
             return SolveError::TensionLost { model: Model::Spans, loss, arc_length_m, at_m };
@@ -212,12 +201,12 @@ impl SpansModel {
         let Some(network) = &self.network else { return String::new() };
         let turned = self.layout.turned;
         let tensions = |network: &Network| {
-            let [start, end, greatest] = report::tensions(network);
+            let [start, end, greatest] = results::tensions(network);
             if turned { [end, start, greatest] } else { [start, end, greatest] }
         };
         let laid = tensions(network);
         let drawn = [FrictionMobilised::TowardsStart, FrictionMobilised::TowardsEnd].map(|drawn| {
-            let drawn = if turned { turned::mobilised(drawn) } else { drawn };
+            let drawn = if turned { reversed::mobilised(drawn) } else { drawn };
             let found = network.drawn(&self.layout, drawn.way(), work);
             found.or_else(|| self.laid_anew(drawn, eased, work)).map(|n| tensions(&n))
         });
@@ -279,7 +268,7 @@ const NOTHING_RUBS: &str = "it slides: nothing rubs that would hold it where it 
 
 /// The layout of a cable counted from its start, or from its end.
 fn counted(problem: &Arc<Problem>, turned: bool) -> Result<Layout, SolveError> {
-    if turned { Layout::new(&Arc::new(turned::problem(problem)), true) } else { Layout::new(problem, false) }
+    if turned { Layout::new(&Arc::new(reversed::problem(problem)), true) } else { Layout::new(problem, false) }
 }
 
 /// A trouble in the words everyone uses.

@@ -18,12 +18,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::model::fem::beam::mesh::places;
-use crate::model::fem::free::element::Material;
-use crate::model::fem::free::stations::{Layout, Stop};
-use crate::model::fem::free::pulley_balance::Network;
 use crate::linalg::{BandFactor, BandMatrix};
 use crate::math::{Vec2, larger, perp};
+use crate::model::fem::beam::mesh::places;
+use crate::model::fem::free::element::Material;
+use crate::model::fem::free::pulley_balance::Network;
+use crate::model::fem::free::stations::{Layout, Stop};
 
 /// Newton steps at one bending stiffness. Measured: 4 to 12.
 const MAX_STEPS: usize = 40;

@@ -1,9 +1,9 @@
 //! From a solved stiff cable to its nodes: places, tensions, moments and curvatures.
 
-use crate::model::fem::free::results::Point;
-use crate::model::fem::beam::equilibrium::{BEND, Beam, GAUSS, dot};
-use crate::model::fem::free::stations::Stop;
 use crate::math::{Vec2, larger};
+use crate::model::fem::beam::equilibrium::{BEND, Beam, GAUSS, dot};
+use crate::model::fem::free::results::Point;
+use crate::model::fem::free::stations::Stop;
 
 /// Between two points the cable leaves a straight line by no more than this part of its length. More: places read between
 /// points are off by as much, with the nodes alone by 1e-3 of a span; less: thousands of points.

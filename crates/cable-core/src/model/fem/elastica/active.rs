@@ -1,8 +1,10 @@
 //! Which contacts there are, and which of them are a point and which a stretch.
 
-use crate::model::fem::elastica::start::contact_at;
-use crate::model::fem::elastica::{ANGLE, ARC, Contact, Elastica, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, place, tangent};
 use crate::math::{Vec2, perp};
+use crate::model::fem::elastica::start::contact_at;
+use crate::model::fem::elastica::{
+    ANGLE, ARC, Contact, Elastica, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, place, tangent,
+};
 use crate::problem::Problem;
 
 /// Changes of the set of contacts before it is given up. 1 to 4 are usual.

@@ -1,7 +1,9 @@
 //! From a solved elastica to an answer.
 
-use crate::model::fem::elastica::{ANGLE, ARC, Elastica, End, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, place, tangent, tension};
 use crate::math::{Vec2, larger, perp};
+use crate::model::fem::elastica::{
+    ANGLE, ARC, Elastica, End, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, place, tangent, tension,
+};
 use crate::problem::Problem;
 use crate::solution::ErrorEstimates;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};

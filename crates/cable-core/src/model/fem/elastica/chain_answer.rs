@@ -3,8 +3,8 @@
 //! Forces of contacts and weight act on the chain's nodes. In the answer a contact acts where it is: a bar that lies on a corner is cut
 //! there, its force before and after differ by what the corner does, and its moment balances as before.
 
-use crate::model::fem::elastica::relax::{Chain, Touch};
 use crate::math::{Vec2, larger, perp};
+use crate::model::fem::elastica::relax::{Chain, Touch};
 use crate::scene::SupportKind;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 

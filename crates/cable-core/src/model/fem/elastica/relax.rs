@@ -11,16 +11,16 @@
 //! quadratic programme; each mobilises the friction that it is given. Material that the first lay has no room for is paid out on the way.
 //! At the end the second derivative of E on the active set is positive definite: what was found is stable.
 
-use crate::model::fem::equilibrium::initial_guess::{leaning_way, push_chain_out};
-use crate::model::fem::free::stations::place as support_place;
-use crate::model::fem::elastica::band::Band;
-use crate::model::fem::elastica::start::{Curve, mobilised};
 use crate::contact::Gap;
 use crate::contact::pairs::Pair;
 use crate::energy::bending::{Bend, ClampBend, turn};
 use crate::energy::{Curvature, Energy};
 use crate::linalg::{BandFactor, BandMatrix};
 use crate::math::{Mat2, Vec2, larger, perp};
+use crate::model::fem::elastica::band::Band;
+use crate::model::fem::elastica::start::{Curve, mobilised};
+use crate::model::fem::equilibrium::initial_guess::{leaning_way, push_chain_out};
+use crate::model::fem::free::stations::place as support_place;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Node};

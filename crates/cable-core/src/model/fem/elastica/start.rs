@@ -1,12 +1,14 @@
 //! From the answer for a flexible cable to the first guess of a stiff one, and up in its stiffness.
 
-use crate::model::fem::beam::mesh::places;
-use crate::model::fem::free::stations::place as support_place;
-use crate::model::fem::mesh::sliding_node::round_of;
-use crate::model::fem::elastica::relax::{Chain, Touch};
-use crate::model::fem::elastica::{ANGLE, ARC, Contact, Elastica, End, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, tangent};
 use crate::contact::Gap;
 use crate::math::{Vec2, cross, perp};
+use crate::model::fem::beam::mesh::places;
+use crate::model::fem::elastica::relax::{Chain, Touch};
+use crate::model::fem::elastica::{
+    ANGLE, ARC, Contact, Elastica, End, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, tangent,
+};
+use crate::model::fem::free::stations::place as support_place;
+use crate::model::fem::mesh::sliding_node::round_of;
 use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 use crate::solution::{CableSolution, ContactState, Node};

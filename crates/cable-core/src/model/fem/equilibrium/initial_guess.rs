@@ -1,8 +1,8 @@
 //! Where a cable is first laid: its material spread along a route that goes round what is in the way.
 
-use crate::model::fem::system::assembly::Mesh;
 use crate::contact::Gap;
 use crate::math::{Vec2, cross};
+use crate::model::fem::system::assembly::Mesh;
 use crate::problem::Problem;
 use crate::problem::ground_route::above_ground;
 use crate::scene::SupportKind;

@@ -1,16 +1,16 @@
 //! Resting places and slow motion in contact.
 
+use crate::error::SolveError;
+use crate::math::{Vec2, bounded, larger};
+use crate::model::fem::dynamics::{Dynamics, REACH};
+use crate::model::fem::equilibrium::initial_guess::push_out;
+use crate::model::fem::newton::minimize::{DRIFT, WORK_SPENT};
+use crate::model::fem::newton::step_input::{Done, Failure, Pose, Task};
+use crate::model::fem::newton::step_setup::{Grips, load_scale, tolerance};
 use crate::model::fem::obstacle::moving_outline::Rider;
 use crate::model::fem::results;
 use crate::model::fem::system::friction_state::SLIDE;
-use crate::model::fem::equilibrium::initial_guess::push_out;
-use crate::model::fem::newton::minimize::{DRIFT, WORK_SPENT};
-use crate::model::fem::dynamics::{Dynamics, REACH};
 use crate::model::fem::time::bdf2::{NOT_FOUND, PULLED, ROUNDS_EACH};
-use crate::model::fem::newton::step_setup::{Grips, load_scale, tolerance};
-use crate::model::fem::newton::step_input::{Done, Failure, Pose, Task};
-use crate::error::SolveError;
-use crate::math::{Vec2, bounded, larger};
 use crate::model::{Model, StepReport};
 use crate::state::State;
 

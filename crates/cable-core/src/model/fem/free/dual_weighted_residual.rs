@@ -13,14 +13,14 @@
 //! What is estimated is the error of the whole force vector beside every stop, in parts of the greatest tension: a slack span
 //! may have its greatest tension right to many digits and its horizontal force wrong in the third.
 
-use crate::model::fem::free::results::Point;
+use crate::math::{Vec2, larger};
 use crate::model::fem::beam::equilibrium::Beam;
 use crate::model::fem::free::element::Material;
-use crate::model::fem::free::stations::Layout;
 use crate::model::fem::free::pulley_balance::Network;
+use crate::model::fem::free::results::Point;
 use crate::model::fem::free::span;
 use crate::model::fem::free::span::{Span, elements};
-use crate::math::{Vec2, larger};
+use crate::model::fem::free::stations::Layout;
 
 /// Rounds of the correction, and the part of it below which another round changes nothing that shows.
 const ROUNDS: usize = 8;

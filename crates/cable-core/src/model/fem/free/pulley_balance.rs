@@ -12,12 +12,12 @@
 //! each pulley in turn is bisected for a change of ρ from − to +, which only stable places have.
 //! Wheels with a radius are in `wheel`.
 
+use crate::math::{Vec2, bounded, larger, perp};
 use crate::model::fem::free::element::{Material, turn_between};
-use crate::model::fem::free::stations::{Hold, Layout, Wheel};
 use crate::model::fem::free::pulley_friction::Rubbing;
 use crate::model::fem::free::span;
 use crate::model::fem::free::span::{Span, elements};
-use crate::math::{Vec2, bounded, larger, perp};
+use crate::model::fem::free::stations::{Hold, Layout, Wheel};
 
 /// Newton steps for the pulleys together. Measured: 3 to 8.
 const MAX_STEPS: usize = 40;
@@ -399,7 +399,13 @@ impl Network {
     }
 
     /// How the fault at a pulley changes when the forces beside it change by `rates`.
-    pub(in crate::model::fem) fn fault_rate(&self, wheel: &Wheel, fault: f64, [before, after]: [Vec2; 2], rates: [Vec2; 2]) -> f64 {
+    pub(in crate::model::fem) fn fault_rate(
+        &self,
+        wheel: &Wheel,
+        fault: f64,
+        [before, after]: [Vec2; 2],
+        rates: [Vec2; 2],
+    ) -> f64 {
         let ratio = after.dot(&rates[1]) / after.norm_squared() - before.dot(&rates[0]) / before.norm_squared();
         if !(wheel.friction > 0.0) {
             return ratio;

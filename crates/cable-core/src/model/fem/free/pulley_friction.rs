@@ -4,7 +4,7 @@
 //! only the material. The spans between follow from these (`span`), so the equations are few:
 //!
 //! ```text
-//! wheel    t(p₁) × F₁ = 0,  t(p₂) × F₂ = 0,  and the two of the friction on it (`spans::wheel_friction`)
+//! wheel    t(p₁) × F₁ = 0,  t(p₂) × F₂ = 0,  and the two of the friction on it (`spans::contact::wheel_friction`)
 //! point    holds: s = s_old,    slides with m: ln(T₂/T₁) = m·turn
 //! ```
 //!
@@ -15,11 +15,11 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::model::fem::free::element::turn_between;
-use crate::model::fem::free::stations::{Hold, Stop};
-use crate::model::fem::free::pulley_balance::{Failure, Network};
 use crate::math::{Vec2, cross, larger, perp};
-use crate::model::spans::wheel_friction::{OnWheel, WheelEnds, WheelFriction};
+use crate::model::fem::free::element::turn_between;
+use crate::model::fem::free::pulley_balance::{Failure, Network};
+use crate::model::fem::free::stations::{Hold, Stop};
+use crate::model::spans::contact::wheel_friction::{OnWheel, WheelEnds, WheelFriction};
 use crate::solution::CableSolution;
 
 /// Newton steps for one set of modes. Measured: 2 to 8.

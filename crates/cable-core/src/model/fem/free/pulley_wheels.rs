@@ -4,10 +4,10 @@
 //! forces of the spans beside (a few rounds, each gains the ratio of radius to span). Along the arc, with t the direction
 //! and n the outward normal, dT = −q·t ds ± μ (T dα − q·n ds): the capstan with the weight on the wheel.
 
-use crate::model::fem::free::element::{Material, turn_between};
-use crate::model::fem::free::stations::{Hold, Wheel};
-use crate::model::fem::free::pulley_balance::{Failure, Network};
 use crate::math::{Vec2, cross, larger, perp};
+use crate::model::fem::free::element::{Material, turn_between};
+use crate::model::fem::free::pulley_balance::{Failure, Network};
+use crate::model::fem::free::stations::{Hold, Wheel};
 use crate::scene::PulleySide;
 
 /// Steps of the integration round a wheel.

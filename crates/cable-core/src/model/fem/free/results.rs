@@ -1,11 +1,11 @@
 //! From a solved network to nodes and support reactions.
 
-use crate::model::fem::free::stations::{Hold, Layout, Stop};
-use crate::model::fem::free::pulley_balance::Network;
-use crate::model::fem::free::span::elements;
-use crate::model::fem::free::pulley_wheels;
 use crate::math::{Vec2, cross, larger, perp};
 use crate::model::arc_nodes;
+use crate::model::fem::free::pulley_balance::Network;
+use crate::model::fem::free::pulley_wheels;
+use crate::model::fem::free::span::elements;
+use crate::model::fem::free::stations::{Hold, Layout, Stop};
 use crate::problem::Problem;
 use crate::solution::{Node, SupportReaction};
 

@@ -9,9 +9,9 @@
 //! Every minimum is an equilibrium in tension: compression and unstable states have no place in it. Newton with a
 //! line search; accepted on the gradient where D itself has no digits left.
 
+use crate::math::{Mat2, Vec2};
 use crate::model::fem::free::element::Material;
 use crate::model::fem::free::stations::Layout;
-use crate::math::{Mat2, Vec2};
 
 /// Newton steps a span may take. Measured: 3 to 14, up to 40 for a span folded on itself.
 const MAX_STEPS: usize = 200;

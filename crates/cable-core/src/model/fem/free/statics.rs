@@ -5,15 +5,15 @@
 
 use std::sync::Arc;
 
-use crate::model::fem::free::results;
-use crate::model::fem::free::results::Point;
-use crate::model::fem::beam::equilibrium::{Beam, Outcome};
-use crate::model::fem::free::element::Material;
-use crate::model::fem::free::dual_weighted_residual;
-use crate::model::fem::free::stations::{Hold, Layout, place};
-use crate::model::fem::free::pulley_balance::{Failure, Network};
 use crate::error::{Place, SolveError};
 use crate::math::{Vec2, larger};
+use crate::model::fem::beam::equilibrium::{Beam, Outcome};
+use crate::model::fem::free::dual_weighted_residual;
+use crate::model::fem::free::element::Material;
+use crate::model::fem::free::pulley_balance::{Failure, Network};
+use crate::model::fem::free::results;
+use crate::model::fem::free::results::Point;
+use crate::model::fem::free::stations::{Hold, Layout, place};
 use crate::model::initial_equilibrium::initial_equilibrium;
 use crate::model::{Model, Settings, StepReport};
 use crate::problem::Problem;
@@ -488,7 +488,8 @@ impl Statics {
         self.time = state.time_s;
         for (k, support) in self.problem.supports.iter().enumerate() {
             if let (None, Some((at, _))) = (support.arc_length, support.position_at(state.time_s)) {
-                self.slid[k] = Some(crate::model::fem::free::stations::nearest(&state.position_m, &state.arc_length_m, at));
+                self.slid[k] =
+                    Some(crate::model::fem::free::stations::nearest(&state.position_m, &state.arc_length_m, at));
             }
         }
         self.network = None;

@@ -4,8 +4,8 @@
 //! elements between two stops follow them when the arc length at a pulley changes, so a pulley needs no new mesh:
 //! node arc lengths are the stops' ones and fixed fractions in between.
 
-use crate::model::fem::system::assembly::bars_between;
 use crate::math::Vec2;
+use crate::model::fem::system::assembly::bars_between;
 use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 

@@ -9,14 +9,14 @@
 //!
 //! Material, place and momentum of what stays are left as they are.
 
-use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::system::floor_friction;
-use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
-use crate::model::fem::newton::step_setup::load_scale;
-use crate::model::fem::mesh::sliding_node::{Grip, Load, Seat, Sliding, round_of};
-use crate::model::fem::system::bar_weight::Weight;
 use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp};
+use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::mesh::sliding_node::{Grip, Load, Seat, Sliding, round_of};
+use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
+use crate::model::fem::newton::step_setup::load_scale;
+use crate::model::fem::system::bar_weight::Weight;
+use crate::model::fem::system::floor_friction;
 
 /// Corners that turn by less (rad) are left to the barrier: there a chain jerks by less than 1e-3 of its tension.
 pub(in crate::model::fem) const LEAST_TURN: f64 = 0.05;
@@ -157,7 +157,9 @@ impl Dynamics {
             return None;
         }
         let path = [mesh.path(k - 1, x), mesh.path(k, x)];
-        let rest = [k - 1, k].map(|e| slide.map_or(mesh.rest_length[e], |s| crate::model::fem::system::bar_energy::rest_length(mesh, e, s)));
+        let rest = [k - 1, k].map(|e| {
+            slide.map_or(mesh.rest_length[e], |s| crate::model::fem::system::bar_energy::rest_length(mesh, e, s))
+        });
         // What a step balances is the pull with its loss.
         let loss = |e: usize, p: f64, l: f64| {
             let ratio = self.task.predicted_length[e] / mesh.rest_length[e];
@@ -185,7 +187,8 @@ impl Dynamics {
         let load = Load::new(node, straight, [&path[0], &path[1]], (body, share));
         // Between steps the task may be of another mesh, and nothing is balanced.
         let at_material = slide.map_or(load.pull, |slide| {
-            [k - 1, k].map(|e| crate::model::fem::system::bar_energy::pull_at_slide((mesh, &self.task), e, k - e, x, slide))
+            [k - 1, k]
+                .map(|e| crate::model::fem::system::bar_energy::pull_at_slide((mesh, &self.task), e, k - e, x, slide))
         });
         let lifted = [0, 1].map(|j| tension[j] + body.dot(&(weight[j].center - x[k])));
         Some(Load { floor, lifted, at_material, ..load })

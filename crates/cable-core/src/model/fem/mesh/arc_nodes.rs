@@ -1,10 +1,10 @@
 //! Marks: the places on a round at which its material is counted.
 
+use crate::math::{Vec2, smaller};
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::mesh::tangent_path::End;
 use crate::model::fem::mesh::adapt::{MAX_CHANGES, NEAR};
 use crate::model::fem::mesh::sliding_node::Sliding;
-use crate::math::{Vec2, smaller};
+use crate::model::fem::mesh::tangent_path::End;
 
 /// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
 const STILL: f64 = 1e-9;

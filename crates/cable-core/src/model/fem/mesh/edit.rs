@@ -1,9 +1,9 @@
 //! Putting nodes into a mesh and taking them out: material, place and momentum of what stays are left as they are.
 
-use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::system::floor_friction;
-use crate::model::fem::mesh::sliding_node::Sliding;
 use crate::math::Vec2;
+use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::mesh::sliding_node::Sliding;
+use crate::model::fem::system::floor_friction;
 
 impl Dynamics {
     /// Puts a node at an arc length (m) between nodes `k` − 1 and `k`.

@@ -12,10 +12,10 @@
 //! matrix stays symmetric. What is balanced is Θ = T + T²/2EA, the slope of a bar's energy by its own length, so γ
 //! is corrected by Θ(γT)/Θ(T)/γ.
 
-use crate::model::fem::system::floor_friction;
-use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
 use crate::contact::geometry::Geometry;
 use crate::math::Vec2;
+use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
+use crate::model::fem::system::floor_friction;
 
 /// What a sliding node runs over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

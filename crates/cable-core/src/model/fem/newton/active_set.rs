@@ -15,16 +15,16 @@
 //! round a corner goes a hundredth of its way in each iteration. With r = 0 the step δ = 0 keeps every constraint, so what is found goes
 //! downhill; with r it may not, and the step without constraints is then taken as far as it is free.
 
-use crate::model::fem::system::assembly::{Mesh, System};
-use crate::model::fem::system::friction_state::{ContactSet, Touch};
-use crate::model::fem::newton::minimize::Workspace;
-use crate::model::fem::newton::step_bound::longest;
-use crate::model::fem::system::self_contact::Coupling;
-use crate::model::fem::newton::gap_constraint::Stop;
-use crate::model::fem::newton::step_input::Pose;
 use crate::contact::self_contact::{SelfPair, SortedNodes};
 use crate::linalg::{BandFactor, solve_coupled};
 use crate::math::Vec2;
+use crate::model::fem::newton::gap_constraint::Stop;
+use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::newton::step_bound::longest;
+use crate::model::fem::newton::step_input::Pose;
+use crate::model::fem::system::assembly::{Mesh, System};
+use crate::model::fem::system::friction_state::{ContactSet, Touch};
+use crate::model::fem::system::self_contact::Coupling;
 use crate::problem::Problem;
 
 /// Rounds of adding constraints. More find nothing new where a front of contact runs along the cable.
@@ -158,7 +158,12 @@ impl Workspace {
     }
 
     /// Finds the direction again if something is in its way; returns how much of it is free.
-    pub(in crate::model::fem) fn look_ahead(&mut self, (problem, mesh): (&Problem, &Mesh), contacts: &ContactSet, pose: &Pose) -> f64 {
+    pub(in crate::model::fem) fn look_ahead(
+        &mut self,
+        (problem, mesh): (&Problem, &Mesh),
+        contacts: &ContactSet,
+        pose: &Pose,
+    ) -> f64 {
         let free = self.free_from_here((problem, mesh), contacts, pose, 1.0);
         if free >= FREE_ENOUGH {
             return free;
@@ -190,9 +195,9 @@ fn moved(touch: &Touch, step: &[f64]) -> Vec2 {
 
 #[cfg(test)]
 mod tests {
-    use crate::model::fem::dynamics::{Dynamics, REACH};
     use super::Workspace;
     use crate::math::Vec2;
+    use crate::model::fem::dynamics::{Dynamics, REACH};
     use crate::model::{Inertia, Settings};
     use crate::problem::problems;
     use crate::scene::{Obstacle, Shape, Support, catalog};

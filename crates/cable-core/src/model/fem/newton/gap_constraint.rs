@@ -1,10 +1,10 @@
 //! What a Newton step may not come nearer to: a contact as a constraint on the step.
 
+use crate::contact::self_contact::SelfPair;
+use crate::math::{Vec2, cross, larger};
 use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::friction_state::Touch;
 use crate::model::fem::system::self_contact::{Coupling, couple};
-use crate::contact::self_contact::SelfPair;
-use crate::math::{Vec2, cross, larger};
 
 /// Stiffness of a constraint in units of the largest stiffness at its nodes. Softer: nodes still run into the barrier; much
 /// harder: rounding.
@@ -151,10 +151,10 @@ fn stiffness(system: &System, shares: &[(usize, f64)]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::model::fem::dynamics::Dynamics;
     use super::*;
     use crate::contact::self_contact::{SelfContact, SortedNodes};
     use crate::model::Settings;
+    use crate::model::fem::dynamics::Dynamics;
     use crate::problem::problems;
     use crate::scene::{Obstacle, Shape, catalog};
     use proptest::prelude::*;

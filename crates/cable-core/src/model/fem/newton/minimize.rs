@@ -7,20 +7,20 @@
 //! nothing, −½ mₑ a² |(x₂ − x₁) − (x̃₂ − x̃₁)|² for each bar (see `mass`). Damping
 //! of a bar with time constant τ is a second bar of stiffness EA τ a whose rest length is the one predicted.
 
-use crate::model::fem::system::assembly::{Mesh, System};
-use crate::model::fem::system::bar_energy;
-use crate::model::fem::system::friction_state::{ContactSet, Touch};
-use crate::model::fem::newton::active_set::Ahead;
-use crate::model::fem::system::self_contact;
-use crate::model::fem::system::self_contact::Coupling;
-use crate::model::fem::newton::step_input::{Done, Failure, Pose, Task};
-use crate::model::fem::system::contact_energy::{add_floor, add_rubs, add_touch};
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
 use crate::contact::self_contact::{SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger, smaller};
+use crate::model::fem::newton::active_set::Ahead;
+use crate::model::fem::newton::step_input::{Done, Failure, Pose, Task};
+use crate::model::fem::system::assembly::{Mesh, System};
+use crate::model::fem::system::bar_energy;
+use crate::model::fem::system::contact_energy::{add_floor, add_rubs, add_touch};
+use crate::model::fem::system::friction_state::{ContactSet, Touch};
+use crate::model::fem::system::self_contact;
+use crate::model::fem::system::self_contact::Coupling;
 use crate::problem::Problem;
 
 /// Sufficient decrease (Armijo).

@@ -8,14 +8,14 @@
 //! obstacle by a part of its gap in every iteration. What has not converged after a few iterations is left to the minimiser, from the same start.
 //! Where the cable meets itself the minimiser goes first, and what it does not find is tried in a hurry.
 
-use crate::model::fem::system::assembly::Mesh;
-use crate::model::fem::system::bar_energy;
-use crate::model::fem::system::friction_state::ContactSet;
-use crate::model::fem::newton::minimize::Workspace;
-use crate::model::fem::newton::step_input::{Done, Failure, Pose, Task};
 use crate::contact::friction::Branch;
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
+use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::newton::step_input::{Done, Failure, Pose, Task};
+use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::system::bar_energy;
+use crate::model::fem::system::friction_state::ContactSet;
 use crate::problem::Problem;
 
 /// Iterations before the minimiser is asked. Fewer: one of its iterations costs as much as five of these, and with 24 eleven steps of a
@@ -260,9 +260,9 @@ impl Workspace {
 
 #[cfg(test)]
 mod tests {
-    use crate::model::fem::dynamics::Dynamics;
     use super::*;
     use crate::math::larger;
+    use crate::model::fem::dynamics::Dynamics;
     use crate::model::{Inertia, Settings};
     use crate::problem::problems;
     use crate::scene::{Obstacle, Shape, Support, catalog};

@@ -15,11 +15,11 @@
 //! It is block tridiagonal and needs no general sparse factor. Where this fails (a cable that is slack and stiff at
 //! once, say) the minimiser of contact steps takes over from the same start.
 
-use crate::model::fem::system::assembly::Mesh;
-use crate::model::fem::system::bar_energy;
-use crate::model::fem::newton::step_input::{Done, Pose, Task};
 use crate::energy::Curvature;
 use crate::math::{Vec2, larger};
+use crate::model::fem::newton::step_input::{Done, Pose, Task};
+use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::system::bar_energy;
 
 /// Iterations before the minimiser is asked. Measured: 2 to 5 in a swing, up to 12 where a slack chain snaps taut.
 const MAX_STEPS: usize = 16;
@@ -252,9 +252,9 @@ fn product(a: &Symmetric, b: &Symmetric) -> [f64; 4] {
 
 #[cfg(test)]
 mod tests {
-    use crate::model::fem::newton::minimize::Workspace;
-    use crate::model::fem::dynamics::Dynamics;
     use super::*;
+    use crate::model::fem::dynamics::Dynamics;
+    use crate::model::fem::newton::minimize::Workspace;
     use crate::model::{Inertia, Settings};
     use crate::problem::problems;
     use crate::scene::{Support, SupportKind, catalog};

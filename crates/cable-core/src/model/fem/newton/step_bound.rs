@@ -1,12 +1,12 @@
 //! How far a step of all nodes may go: no node too far, nothing crossed, some cable left beside sliding nodes.
 
-use crate::model::fem::system::assembly::Mesh;
-use crate::model::fem::system::friction_state::ContactSet;
-use crate::model::fem::newton::minimize::Workspace;
-use crate::model::fem::mesh::tangent_path::{End, Path};
-use crate::model::fem::newton::step_input::{Pose, Task};
 use crate::contact::sweep::Sweep;
 use crate::math::{Vec2, larger};
+use crate::model::fem::mesh::tangent_path::{End, Path};
+use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::newton::step_input::{Pose, Task};
+use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::system::friction_state::ContactSet;
 use crate::problem::Problem;
 
 /// Part of each gap that a Newton step leaves. Smaller: gaps shrink faster than Newton opens them again (with 0.2 twice as many
@@ -103,10 +103,10 @@ pub(in crate::model::fem) fn longest(step: &[f64]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::model::fem::dynamics::Dynamics;
     use super::*;
     use crate::energy::Curvature;
     use crate::model::Settings;
+    use crate::model::fem::dynamics::Dynamics;
     use crate::problem::problems;
     use crate::scene::{Obstacle, Shape, Support, catalog};
     use proptest::prelude::*;

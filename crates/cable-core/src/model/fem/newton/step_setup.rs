@@ -1,12 +1,12 @@
 //! What one step is about: forces, targets, inertia, damping and grip at an instant.
 
-use crate::model::fem::newton::minimize::Workspace;
+use crate::math::Vec2;
 use crate::model::fem::dynamics::{Dynamics, INNER_STEP, REACH};
-use crate::model::fem::system::floor_friction;
 use crate::model::fem::mesh::sliding_node::Seat;
+use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::newton::step_input::{Done, Failure, Pose};
 use crate::model::fem::system::bar_weight;
-use crate::math::Vec2;
+use crate::model::fem::system::floor_friction;
 use crate::model::input_filter::MAX_SPEED;
 use crate::problem::Problem;
 use crate::scene::SupportKind;

@@ -5,12 +5,12 @@
 //! corner is nearer to the corner's edges than the barrier at that end, always; there it is the tangent point that must not
 //! lie over an edge.
 
-use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::mesh::tangent_path::Path;
-use crate::model::fem::mesh::sliding_node::{Seat, Sliding};
 use crate::error::SolveError;
 use crate::math::{Vec2, perp};
 use crate::model::Model;
+use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::mesh::sliding_node::{Seat, Sliding};
+use crate::model::fem::mesh::tangent_path::Path;
 
 /// Gap (parts of the barrier's reach) that a bar must have when a node is taken out: less, and the barrier throws it.
 const LEAST_GAP: f64 = 0.05;

@@ -14,11 +14,6 @@
 
 use std::sync::Arc;
 
-use crate::model::fem::system::assembly::Mesh;
-use crate::model::fem::results::rub_force;
-use crate::model::fem::system::friction_state::Touch;
-use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::newton::step_setup::clear_way;
 use crate::contact::distance::segment_segment;
 use crate::contact::geometry::{Geometry, Part};
 use crate::contact::outline::Outline;
@@ -27,6 +22,11 @@ use crate::contact::sweep::Sweep;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
 use crate::model::RobotContact;
+use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::newton::step_setup::clear_way;
+use crate::model::fem::results::rub_force;
+use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::system::friction_state::Touch;
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 

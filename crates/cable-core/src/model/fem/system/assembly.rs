@@ -5,14 +5,14 @@
 //! and the numbering never change. Before pinning, minus the gradient at a held node is the force of the cable
 //! on its support.
 
-use crate::model::fem::system::mass::Spread;
-use crate::model::fem::mesh::tangent_path::{End, Path};
-use crate::model::fem::mesh::sliding_node::Sliding;
 use crate::energy::axial::Bar;
 use crate::energy::bending::{Bend, ClampBend, turn};
 use crate::energy::{Curvature, Energy};
 use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH, BandMatrix};
 use crate::math::{Mat2, Vec2};
+use crate::model::fem::mesh::sliding_node::Sliding;
+use crate::model::fem::mesh::tangent_path::{End, Path};
+use crate::model::fem::system::mass::Spread;
 use crate::problem::Problem;
 
 /// A direction prescribed at a node; it bends the bars on both sides of the node, each by itself.

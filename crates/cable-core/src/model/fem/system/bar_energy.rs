@@ -10,12 +10,12 @@
 //! the sliding node it came through.
 //! Damping with time constant τ is a second bar of stiffness EA τ a whose strain is measured from the one predicted.
 
-use crate::model::fem::system::assembly::{Mesh, System};
-use crate::model::fem::newton::minimize::ROUNDED;
-use crate::model::fem::newton::step_input::{Pose, Task};
-use crate::model::fem::system::bar_weight::Weight;
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
+use crate::model::fem::newton::minimize::ROUNDED;
+use crate::model::fem::newton::step_input::{Pose, Task};
+use crate::model::fem::system::assembly::{Mesh, System};
+use crate::model::fem::system::bar_weight::Weight;
 
 /// EA with which a bar resists at its length, N: a flexible one only pulls, as it gives way sideways between its nodes instead of
 /// pushing. With any part of EA slack cables stand in arches on the ground and push their supports (a hundredth: 5.7 kN of a power

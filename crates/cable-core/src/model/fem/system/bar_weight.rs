@@ -14,9 +14,9 @@
 //! that nothing pushes, and of the rest half at each end. How much is found from the pose in which a step begins: sought within the step, it goes to
 //! and fro where a bar is nearly slack.
 
-use crate::model::fem::system::assembly::Mesh;
-use crate::model::fem::mesh::tangent_path::Path;
 use crate::math::{Mat2, Vec2, larger, perp, smaller};
+use crate::model::fem::mesh::tangent_path::Path;
+use crate::model::fem::system::assembly::Mesh;
 
 /// The weight of one bar with a sliding node at an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -186,9 +186,9 @@ pub fn on_node(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> Vec2 {
 
 #[cfg(test)]
 mod tests {
-    use crate::model::fem::mesh::tangent_path::End;
-    use crate::model::fem::mesh::sliding_node::{Grip, Seat, Sliding};
     use super::*;
+    use crate::model::fem::mesh::sliding_node::{Grip, Seat, Sliding};
+    use crate::model::fem::mesh::tangent_path::End;
     use proptest::prelude::*;
 
     const BODY: Vec2 = Vec2::new(0.7, -3.0);

@@ -1,12 +1,12 @@
 //! What contacts with obstacles add to the equations of a step.
 
-use crate::model::fem::system::assembly::{Mesh, System};
-use crate::model::fem::system::friction_state::{ContactSet, Touch};
-use crate::model::fem::newton::minimize::node_scale;
-use crate::model::fem::newton::step_input::{Pose, Task};
 use crate::contact::friction::{self, Branch};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
+use crate::model::fem::newton::minimize::node_scale;
+use crate::model::fem::newton::step_input::{Pose, Task};
+use crate::model::fem::system::assembly::{Mesh, System};
+use crate::model::fem::system::friction_state::{ContactSet, Touch};
 
 /// Adds a force gradient and a block shared by the nodes of a touch; those that slide feel neither.
 pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &Touch, gradient: Vec2, block: &Mat2) {

@@ -9,8 +9,8 @@
 //! ```
 //! A cable that slips has m = ±μ: with γ = e^{±μφ}, T₁ = γT₂ + f₀ + γf₂ + f (γ − 1)/ln γ.
 
-use crate::model::fem::system::assembly::Mesh;
 use crate::math::Vec2;
+use crate::model::fem::system::assembly::Mesh;
 
 /// Iterations for the rate at which tension grows over a round: Newton's method on a function that is convex and near to an exponential.
 const RATE_ITERATIONS: usize = 30;
@@ -18,7 +18,8 @@ const RATE_ITERATIONS: usize = 30;
 /// Material of a bar (m) that its ends answer for: on the round at its start, half of the straight part, on the round at its end.
 fn shares(mesh: &Mesh, e: usize, x: &[Vec2], slide: Option<&[f64]>) -> [f64; 3] {
     let path = mesh.path(e, x);
-    let rest = slide.map_or(mesh.rest_length[e], |s| crate::model::fem::system::bar_energy::rest_length(mesh, e, s)) / mesh.thermal_stretch;
+    let rest = slide.map_or(mesh.rest_length[e], |s| crate::model::fem::system::bar_energy::rest_length(mesh, e, s))
+        / mesh.thermal_stretch;
     let on_round = |j: usize| {
         let end = &mesh.sliding[e + j];
         let lap = end.map_or(0.0, |s| s.end.radius * path.arcs[j]);

@@ -1,13 +1,13 @@
 //! The contacts of a mesh at an instant, and the friction each carries.
 
-use crate::model::fem::system::assembly::Mesh;
-use crate::model::fem::obstacle::moving_outline::Carriage;
-use crate::model::fem::system::self_contact::Own;
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
 use crate::contact::neighbour_lists::NeighbourLists;
 use crate::contact::pairs::Pair;
 use crate::math::{Vec2, bounded, larger};
+use crate::model::fem::obstacle::moving_outline::Carriage;
+use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::system::self_contact::Own;
 use crate::problem::Problem;
 
 /// Sliding at which friction is fully mobilised (ε) in motion, and the most of it at rest, m. 1e-6 costs half as many iterations

@@ -2,16 +2,16 @@
 //!
 //! As with obstacles the normal force of friction is that of the step before, and sliding is measured from an anchor.
 
-use crate::model::fem::system::assembly::{Mesh, System};
-use crate::model::fem::system::friction_state::{ContactSet, SLIDE};
-use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::time::bdf2::{carried_on, plastic};
-use crate::model::fem::time::momentum::mass_with;
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
 use crate::contact::self_contact::{SelfContact, SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
+use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::system::assembly::{Mesh, System};
+use crate::model::fem::system::friction_state::{ContactSet, SLIDE};
+use crate::model::fem::time::bdf2::{carried_on, plastic};
+use crate::model::fem::time::momentum::mass_with;
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
 /// Friction of one contact of the cable with itself during a step.

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::model::fem::dynamics::Dynamics;
 use crate::math::Vec2;
+use crate::model::fem::dynamics::Dynamics;
 use crate::model::{Inertia, Settings};
 use crate::problem::problems;
 use crate::scene::{Cable, Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
@@ -150,7 +150,10 @@ fn a_barrier_as_stiff_as_the_cable_is_taut_keeps_a_gap_that_numbers_can_tell() {
         println!("{gap:e} m under {pull:.0} N, {halved} halved");
         assert!(pull > 5e4, "{pull}");
         // A hundredth of the tension turns at a node here: φ'(u) = −0.2 of the barrier's stiffness, at u = 0.7.
-        assert!(gap > 0.2 * crate::model::fem::dynamics::REACH && halved == 0, "{gap:e} m under {pull} N, {halved} halved");
+        assert!(
+            gap > 0.2 * crate::model::fem::dynamics::REACH && halved == 0,
+            "{gap:e} m under {pull} N, {halved} halved"
+        );
     }
 }
 

@@ -12,14 +12,14 @@
 //! After each step contacts are made plastic: the barrier is a spring and would throw a landing cable back at
 //! 0.4 to 0.8 of its speed.
 
-use crate::model::fem::system::friction_state::SLIDE;
+use crate::math::{Vec2, bounded, larger, perp};
 use crate::model::fem::dynamics::{Dynamics, STIFFNESS_CHANGE};
-use crate::model::fem::time::momentum::mass_with;
-use crate::model::fem::time::history::Motion;
-use crate::model::fem::newton::step_setup::damping_time;
 use crate::model::fem::mesh::sliding_node::{Balanced, Grip};
 use crate::model::fem::newton::step_input::{Done, Failure, Pose};
-use crate::math::{Vec2, bounded, larger, perp};
+use crate::model::fem::newton::step_setup::damping_time;
+use crate::model::fem::system::friction_state::SLIDE;
+use crate::model::fem::time::history::Motion;
+use crate::model::fem::time::momentum::mass_with;
 
 /// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
 const QUIET: f64 = 0.05;
@@ -40,7 +40,8 @@ pub(in crate::model::fem) fn carried_on(against: Vec2, normal: Vec2, friction: f
 pub(in crate::model::fem) const PULLED: &str = "a corner would have to pull";
 
 /// Why a step is halved in which it was not found which sliding nodes hold and which slip.
-pub(in crate::model::fem) const NOT_FOUND: &str = "it was not found which corners hold the cable and over which it slips";
+pub(in crate::model::fem) const NOT_FOUND: &str =
+    "it was not found which corners hold the cable and over which it slips";
 
 /// Rounds of finding that out in which no fewer grips are wrong than before, until they are changed one at a time; and rounds beside those for each
 /// sliding node. Fewer: steps of a few nodes that free each other in turn take longer, or are halved.

@@ -1,9 +1,9 @@
 //! What draws supports in a step with inertia: a hand by a spring, which then is a force on a node, or the support itself.
 
+use crate::math::Vec2;
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::newton::step_input::Pose;
 use crate::model::fem::system::bar_weight;
-use crate::math::Vec2;
 use crate::model::input_filter::{Hand, SmoothedTarget, is_led};
 use crate::solution::Warning;
 

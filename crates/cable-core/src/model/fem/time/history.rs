@@ -1,11 +1,11 @@
 //! Where the cable is and how it moves, and the state that a step which fails goes back to.
 
-use crate::model::fem::system::assembly::Mesh;
-use crate::model::fem::system::friction_state::ContactSet;
-use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::time::momentum::Account;
 use crate::math::RigidPose;
 use crate::math::{Vec2, cross, perp};
+use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::system::friction_state::ContactSet;
+use crate::model::fem::time::momentum::Account;
 use crate::model::input_filter::{Hand, SmoothedTarget};
 
 /// What a step may change, kept to go back to.

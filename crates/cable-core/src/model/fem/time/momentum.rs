@@ -7,15 +7,15 @@
 //! so that the impulse of each kind of force is filtered as their sum is. What a round does to the cable that runs over it is what bends its way:
 //! the pull of the bars beside it, and the change of the momentum of what lies on it and of what goes over it.
 
-use crate::model::fem::system::assembly::Mesh;
-use crate::model::fem::system::bar_energy;
-use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::time::bdf2::Weights;
-use crate::model::fem::mesh::sliding_node::Seat;
-use crate::model::fem::newton::step_input::Pose;
-use crate::model::fem::system::bar_weight;
 use crate::contact::friction;
 use crate::math::Vec2;
+use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::mesh::sliding_node::Seat;
+use crate::model::fem::newton::step_input::Pose;
+use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::system::bar_energy;
+use crate::model::fem::system::bar_weight;
+use crate::model::fem::time::bdf2::Weights;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::MomentumAccount;
@@ -67,7 +67,10 @@ fn kind_of(seat: Seat) -> usize {
 }
 
 /// Mass that moves with a node, kg.
-pub(in crate::model::fem) fn mass_with((problem, mesh, support_node): (&Problem, &Mesh, &[Option<usize>]), node: usize) -> f64 {
+pub(in crate::model::fem) fn mass_with(
+    (problem, mesh, support_node): (&Problem, &Mesh, &[Option<usize>]),
+    node: usize,
+) -> f64 {
     let lumps = problem.supports.iter().zip(support_node).filter(|(_, k)| **k == Some(node));
     problem.linear_density * mesh.share(node) + lumps.map(|(s, _)| s.mass).sum::<f64>()
 }
@@ -222,7 +225,12 @@ impl Dynamics {
 
     /// Adds the impulses of a step of these weights in which forces (N) were balanced: the step is made, contacts are not yet
     /// made plastic. `slid` is the momentum of what lay on rounds before (kg m/s), `slide` how far it slid (m).
-    pub(in crate::model::fem) fn account_for_step(&mut self, weights: Weights, forces: Kinds, (slid, slide): ([Vec2; 2], &[f64])) {
+    pub(in crate::model::fem) fn account_for_step(
+        &mut self,
+        weights: Weights,
+        forces: Kinds,
+        (slid, slide): ([Vec2; 2], &[f64]),
+    ) {
         let now = self.sliding_momentum();
         let mut over = [now[0] - slid[0], now[1] - slid[1]];
         let mut history = [Vec2::zeros(); 2];

@@ -4,8 +4,8 @@
 //! place by more than that for a while, and all that acts on the cable is what acted then, nothing more will happen:
 //! the state is kept, speeds are 0 and a step costs a comparison.
 
-use crate::model::fem::dynamics::{Dynamics, REACH};
 use crate::math::Vec2;
+use crate::model::fem::dynamics::{Dynamics, REACH};
 
 /// How long a cable must have been still, s. Shorter: a slow swing that turns round may be caught.
 const STILL_FOR: f64 = 0.5;

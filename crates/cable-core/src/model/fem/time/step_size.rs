@@ -6,8 +6,8 @@
 //! frequency of a motion is read off it, ω² = Σ m a² / Σ m v² over the last while, a and v without the mean of the cable, which falls or
 //! is carried along.
 
-use crate::model::fem::dynamics::Dynamics;
 use crate::math::{Vec2, bounded};
+use crate::model::fem::dynamics::Dynamics;
 
 /// The shortest step is this part of the longest, 1/240 s: strings up to 17 Hz are in tune to 1e-3, of 40 Hz to 6e-3. Less: a cable that
 /// rings costs more than it tells; more: the tones that are in tune are lower.

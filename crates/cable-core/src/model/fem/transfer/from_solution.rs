@@ -6,16 +6,16 @@
 //! sliding y that gives the friction the answer had is what a contact remembers from then on. Corners and posts get their sliding
 //! nodes at once, with the material the answer has there.
 
-use crate::model::fem::system::friction_state::Touch;
-use crate::model::fem::equilibrium::initial_guess::push_out;
-use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::dynamics::REACH;
-use crate::model::fem::mesh::arc_nodes::{SMALL, WIDE, rotate};
-use crate::model::fem::mesh::tangent_path::{End, angle_between};
-use crate::model::fem::mesh::adapt::LEAST_TURN;
-use crate::model::fem::mesh::sliding_node::{Grip, Seat, Sliding, round_of};
 use crate::error::SolveError;
 use crate::math::{Vec2, perp};
+use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::dynamics::REACH;
+use crate::model::fem::equilibrium::initial_guess::push_out;
+use crate::model::fem::mesh::adapt::LEAST_TURN;
+use crate::model::fem::mesh::arc_nodes::{SMALL, WIDE, rotate};
+use crate::model::fem::mesh::sliding_node::{Grip, Seat, Sliding, round_of};
+use crate::model::fem::mesh::tangent_path::{End, angle_between};
+use crate::model::fem::system::friction_state::Touch;
 use crate::solution::{CableSolution, Node};
 use crate::state::State;
 

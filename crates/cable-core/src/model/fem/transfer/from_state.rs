@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::model::fem::equilibrium::initial_guess::push_out;
-use crate::model::fem::dynamics::{Dynamics, REACH};
-use crate::model::fem::free::stations::{Hold, Layout};
-use crate::model::fem::mesh::tangent_path::End;
-use crate::model::fem::mesh::sliding_node::{Grip, Seat, Sliding};
 use crate::error::SolveError;
 use crate::math::{Vec2, perp};
+use crate::model::fem::dynamics::{Dynamics, REACH};
+use crate::model::fem::equilibrium::initial_guess::push_out;
+use crate::model::fem::free::stations::{Hold, Layout};
+use crate::model::fem::mesh::sliding_node::{Grip, Seat, Sliding};
+use crate::model::fem::mesh::tangent_path::End;
 use crate::scene::PulleySide;
 use crate::state::State;
 

@@ -1,6 +1,6 @@
-use super::*;
-use crate::model::spans::drive::Network;
-use crate::model::spans::instant::{Instant, Layout};
+use crate::model::spans::boundary_conditions::{Instant, Layout};
+use crate::model::spans::continuation::Network;
+use crate::model::spans::newton::*;
 use crate::problem::problems;
 use crate::scene::obstacle::{Obstacle, Shape};
 use crate::scene::{Load, Support, catalog};

@@ -1,0 +1,87 @@
+//! The state before a step, kept to go back to where the step fails, in the same memory step after step.
+
+use crate::model::mass_spring::MassSpringModel;
+
+/// A copy of the model, if one was made; copies of the model make their own.
+#[derive(Debug, Default)]
+pub(in crate::model::mass_spring) struct Kept(Option<Box<MassSpringModel>>);
+
+impl Clone for Kept {
+    fn clone(&self) -> Self {
+        Self(None)
+    }
+}
+
+impl MassSpringModel {
+    /// Does `step`; where it fails, all is as before.
+    pub(in crate::model::mass_spring) fn or_as_before<E>(
+        &mut self,
+        step: impl FnOnce(&mut Self) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut kept = match self.kept.0.take() {
+            Some(mut kept) => {
+                kept.copy_from(self);
+                kept
+            }
+            None => Box::new(self.clone()),
+        };
+        let done = step(self);
+        if done.is_err() {
+            std::mem::swap(self, &mut kept);
+        }
+        self.kept.0 = Some(kept);
+        done
+    }
+
+    /// Becomes a copy without new memory where there is room.
+    fn copy_from(&mut self, other: &Self) {
+        macro_rules! copy {
+            ($($field:ident),*) => {{
+                // All fields are named, so that none is forgotten.
+                let Self { $($field: _),*, problem, kept: _ } = other;
+                $(self.$field.clone_from(&other.$field);)*
+                self.problem.clone_from(problem);
+            }};
+        }
+        copy!(
+            time_s,
+            due_s,
+            s,
+            rest,
+            span,
+            mass,
+            node_of,
+            load_node,
+            x,
+            v,
+            behind_s,
+            f,
+            tension,
+            held,
+            let_go,
+            held_acceleration,
+            drag,
+            clearance,
+            touches,
+            gaps,
+            damping_time_s,
+            cost,
+            laid,
+            followers,
+            pulled,
+            hands,
+            even,
+            share,
+            lump,
+            pulleys,
+            pulley_at,
+            anchors,
+            warnings,
+            settings,
+            driven,
+            beside,
+            account,
+            errors
+        );
+    }
+}

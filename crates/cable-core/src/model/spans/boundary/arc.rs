@@ -1,0 +1,185 @@
+//! A stretch of an arc in closed form.
+//!
+//! With λ = λ₀ frozen dT/dψ = mT − (c/λ)(b·t + m b·n) is solved by T⁰, see [`law`](crate::model::spans::boundary::capstan). What is left of it, and the
+//! material, are integrals of functions that hardly change along a stretch, and whose derivatives at both ends are known:
+//! with f = 1/λ, k = τ/EA, q = b·t + m b·n and r = dq/dψ = m b·t − b·n (dr/dψ = −q),
+//!
+//! ```text
+//! T' = mT − c f q            T'' = mT' − c(f' q + f r)         T''' = mT'' − c(f'' q + 2 f' r − f q)
+//! f' = −k f² T'              f'' = −k f² T'' + 2 f'²/f
+//!
+//! T = T⁰ − c ∫ G dξ,         G = e^{m(h−ξ)} q (f − f₀)         material = c ∫ f dξ
+//! ```
+//!
+//! both by the rule of Hermite that is exact to the fifth power,
+//! ∫ g = h/2 (g₀ + g₁) + h²/10 (g₀' − g₁') + h³/120 (g₀'' + g₁''): one exponential and one turn for a stretch, and nothing in
+//! between.
+
+use crate::math::{exp, sin_cos};
+use crate::model::spans::boundary::capstan::{Law, Spot, Step};
+
+/// Longest stretch taken at once, rad: the rule leaves h⁶/100 800 of what 1/λ changes along it, itself of the order of T/EA.
+const PANEL: f64 = 0.3;
+
+/// A way (rad) so short that what changes on it is known from its start to third order: what is left out is its fourth power
+/// times a part of the tension. Larger: material is off. Smaller: one more look at both tensions where they are to be one.
+pub(in crate::model::spans) const HAIR: f64 = 1e-3;
+
+/// A way along an arc, in as many stretches as it needs.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::spans) struct Way {
+    /// Radius, m.
+    c: f64,
+    count: usize,
+    /// How far each goes, rad, with sine and cosine.
+    h: f64,
+    turn: (f64, f64),
+    /// b·t and b·n at the start, N/m.
+    load: (f64, f64),
+}
+
+/// Farthest way along an arc, rad: 1600 turns. Less: drums are refused; more: a step of Newton into nowhere takes a minute.
+pub(in crate::model::spans) const MOST_TURN: f64 = 1e4;
+
+/// How tension and material go on from a point of an arc: derivatives by the angle.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::spans) struct Rates {
+    /// dT/dψ, d²T/dψ², d³T/dψ³, N.
+    pub tension: [f64; 3],
+    /// Material per radian and its first two derivatives, m.
+    material: [f64; 3],
+    /// Derivative of the first by the tension at the start, m/N.
+    by_tension: f64,
+    m: f64,
+}
+
+impl Way {
+    /// From a place so far along its arc (either way).
+    pub fn new(from: &Spot, way: f64) -> Self {
+        let (h, count) = if way.abs() <= PANEL {
+            (way, 1)
+        } else if !(way.abs() <= MOST_TURN) {
+            // No cable is wound so: Newton is told to look elsewhere.
+            (f64::NAN, 1)
+        } else {
+            let panels = (way.abs() / PANEL).ceil().max(1.0);
+            (way / panels, panels as usize)
+        };
+        let turn = if h.abs() <= HAIR { (h, 1.0) } else { sin_cos(h) };
+        Self { c: from.stretch, count, h, turn, load: from.load }
+    }
+
+    /// Slides along it with m from the tension `t`; and how it goes on from there.
+    pub fn slide(&self, law: &Law, t: f64, m: f64) -> (Step, Rates) {
+        if self.h.abs() <= HAIR {
+            return self.hair(law, t, m);
+        }
+        let ((sin, cos), mut load) = (self.turn, self.load);
+        let grown = if m == 0.0 { 1.0 } else { exp(m * self.h) };
+        let mut on = |t: f64| {
+            let (bt, bn) = load;
+            let end = (bt * cos - bn * sin, bn * cos + bt * sin);
+            let found = self.stretch(law, [load, end], (t, m, grown));
+            load = end;
+            found
+        };
+        let (mut sum, mut rates) = on(t);
+        for _ in 1..self.count {
+            let (step, next) = on(sum.tension);
+            rates = Rates { by_tension: next.by_tension * sum.by_tension, ..next };
+            sum = sum.then(step);
+        }
+        (sum, rates)
+    }
+
+    /// No more than a hair's breadth.
+    fn hair(&self, law: &Law, t: f64, m: f64) -> (Step, Rates) {
+        let ((c, h), (bt, bn)) = ((self.c, self.h), self.load);
+        let start = Point::new(law, (c, law.thermal * law.compliance), (bt + m * bn, m * bt - bn), (t, m));
+        let rates = start.rates((c, law.thermal * law.compliance), (1.0, m));
+        let step = rates.on(&Step::none(t), h);
+        let shifted = |[a, b, d]: [f64; 3]| [a + h * (b + 0.5 * h * d), b + h * d, d];
+        (step, Rates { tension: shifted(rates.tension), material: shifted(rates.material), ..rates })
+    }
+
+    /// A stretch, with the loads at its start and end; `grown` = e^{mh}.
+    fn stretch(&self, law: &Law, load: [(f64, f64); 2], (t, m, grown): (f64, f64, f64)) -> (Step, Rates) {
+        let (c, h, [(bt, bn), (bt1, bn1)]) = (self.c, self.h, load);
+        let k = law.thermal * law.compliance;
+        let start = Point::new(law, (c, k), (bt + m * bn, m * bt - bn), (t, m));
+        let (q, r, [f, f1, f2]) = (start.q, start.r, start.f);
+        // T⁰ at the end.
+        let divided = c * f / (1.0 + m * m);
+        let (alpha, beta) = (2.0 * divided * m, divided * (m * m - 1.0));
+        let tension = alpha * bt1 + beta * bn1 + (t - alpha * bt - beta * bn) * grown;
+        let mut end = Point::new(law, (c, k), (bt1 + m * bn1, m * bt1 - bn1), (tension, m));
+        // G and its derivatives at both ends.
+        let (more, q1, r1) = (end.f[0] - f, end.q, end.r);
+        let first = grown * q * f1;
+        let first2 = grown * (2.0 * (r - m * q) * f1 + q * f2);
+        let drift = r1 - m * q1;
+        let last1 = drift * more + q1 * end.f[1];
+        let last2 = (m * m * q1 - q1 - 2.0 * m * r1) * more + 2.0 * drift * end.f[1] + q1 * end.f[2];
+        let off = -c * h * (0.5 * q1 * more + h * (0.1 * (first - last1) + h / 120.0 * (first2 + last2)));
+        end.shift(off, k);
+        let [g, g1, g2] = end.f;
+        let material = h * (0.5 * (f + g) + h * (0.1 * (f1 - g1) + h / 120.0 * (f2 + g2)));
+        // ∫ e^{mξ} f² dξ only steers Newton: by the rule of the third power.
+        let squares = [f * f, grown * g * g];
+        let change = m * (squares[0] - squares[1]) + 2.0 * (f * f1 - grown * g * g1);
+        let by = h * (0.5 * (squares[0] + squares[1]) + h / 12.0 * change);
+        let step =
+            Step { tension: end.tension, material: c * material, by_tension: grown, material_by_tension: -c * k * by };
+        (step, end.rates((c, k), (grown, m)))
+    }
+}
+
+/// A point of the way.
+struct Point {
+    tension: f64,
+    q: f64,
+    r: f64,
+    /// f, f', f''.
+    f: [f64; 3],
+    /// T', T'', T'''.
+    slopes: [f64; 3],
+}
+
+impl Point {
+    fn new(law: &Law, (c, k): (f64, f64), (q, r): (f64, f64), (tension, m): (f64, f64)) -> Self {
+        let stretch = law.stretch(tension);
+        let f = 1.0 / stretch;
+        let slope = m * tension - c * f * q;
+        let f1 = -k * f * f * slope;
+        let bend = m * slope - c * (f1 * q + f * r);
+        let f2 = -k * f * f * bend + 2.0 * f1 * f1 * stretch;
+        let third = m * bend - c * (f2 * q + 2.0 * f1 * r - f * q);
+        Self { tension, q, r, f: [f, f1, f2], slopes: [slope, bend, third] }
+    }
+
+    /// As it goes on from there; `grown`: its tension by that at the start.
+    fn rates(&self, (c, k): (f64, f64), (grown, m): (f64, f64)) -> Rates {
+        let [f, f1, f2] = self.f;
+        Rates { tension: self.slopes, material: [c * f, c * f1, c * f2], by_tension: -c * k * f * f * grown, m }
+    }
+
+    /// The tension is more by so little that its square does not count.
+    fn shift(&mut self, by: f64, k: f64) {
+        self.tension += by;
+        self.f[0] -= k * self.f[0] * self.f[0] * by;
+    }
+}
+
+impl Rates {
+    /// A little further on.
+    pub fn on(&self, way: &Step, by: f64) -> Step {
+        let ([first, second, third], [per, change, again]) = (self.tension, self.material);
+        let turn = self.m * by;
+        Step {
+            tension: way.tension + by * (first + 0.5 * by * (second + by / 3.0 * third)),
+            material: way.material + by * (per + 0.5 * by * (change + by / 3.0 * again)),
+            by_tension: way.by_tension * (1.0 + turn * (1.0 + 0.5 * turn * (1.0 + turn / 3.0))),
+            material_by_tension: way.material_by_tension + by * self.by_tension,
+        }
+    }
+}

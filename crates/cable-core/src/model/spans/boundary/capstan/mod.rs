@@ -1,0 +1,367 @@
+//! How tension changes along a boundary while the cable slides, and how much material lies there.
+//!
+//! With b the load per unstretched metre, t the direction of travel, n the outward normal, λ = τ(1 + T/EA) the stretch,
+//! τ = 1 + αΔT, c the radius (∞ on an edge), equilibrium of a piece of cable that is pressed by N n and rubbed by −mN t
+//! (both per unstretched metre; m = +μ where it slides on along t, −μ where it slides back, 0 where it is smooth) gives
+//!
+//! ```text
+//! N = Tλ/c − b·n,      dT/ds = −b·t + mN,      ds/dp = (dℓ/dp)/λ
+//! ```
+//!
+//! Edge (ℓ = p): with Θ = T + T²/2EA, λ dT = τ dΘ, so τ dΘ/dp = −b·t − m b·n: Θ is exactly linear. The material is
+//! ΔT/(τ dΘ/dp), which is Δp/(τ(1 + T̄/EA)) with T̄ the mean of the two end tensions: nothing cancels on a level edge.
+//!
+//! Arc (ℓ = cψ, p = ψ): dT/dψ = mT − (c/λ)(b·t + m b·n), and dt/dψ = −n, dn/dψ = t. With λ = λ₀ frozen it is solved by
+//!
+//! ```text
+//! T⁰ = α b·t + β b·n + C e^{mψ},   α = 2gm/(1+m²),   β = g(m²−1)/(1+m²),   g = c/λ₀
+//! ```
+//!
+//! and the exact T differs by −c ∫ e^{m(ψ−ξ)} (b·t + m b·n)(1/λ(T⁰) − 1/λ₀) dξ, a small part (of order cb·ΔT/EA) of a
+//! small part; what this leaves out is of the order of its square over T. Material is c ∫ dψ/λ. Both in `arc`.
+
+use crate::math::{Vec2, bounded, exp, perp};
+use crate::model::spans::boundary::arc::{MOST_TURN, Way};
+use crate::model::spans::boundary::curve::{Curve, Home, Place};
+use crate::model::spans::boundary::segment_cursor::{OnPiece, Pivot};
+
+/// Load and stiffness of a cable at an instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::model::spans) struct Law {
+    /// Load per unstretched metre, N/m.
+    pub load: Vec2,
+    /// τ = 1 + αΔT.
+    pub thermal: f64,
+    /// EA, N.
+    pub stiffness: f64,
+    /// 1/EA, 1/N.
+    pub compliance: f64,
+}
+
+/// A point of the boundary as the law sees it.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::spans) struct Spot {
+    /// d(length)/dp, m.
+    pub stretch: f64,
+    /// Whether it is on an arc.
+    pub turns: bool,
+    /// b·t and b·n, N/m.
+    pub load: (f64, f64),
+}
+
+/// What came of a way along the boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::model::spans) struct Step {
+    /// Tension at its end, N.
+    pub tension: f64,
+    /// Unstretched material on it, m (negative for a way back).
+    pub material: f64,
+    /// ∂tension/∂(tension at its start).
+    pub by_tension: f64,
+    /// ∂material/∂(tension at its start), m/N.
+    pub material_by_tension: f64,
+}
+
+impl Law {
+    /// With a load per metre (N/m), τ and EA (N).
+    pub fn new(load: Vec2, thermal: f64, stiffness: f64) -> Self {
+        Self { load, thermal, stiffness, compliance: 1.0 / stiffness }
+    }
+
+    /// λ of a tension.
+    pub fn stretch(&self, t: f64) -> f64 {
+        self.thermal * (1.0 + t * self.compliance)
+    }
+
+    /// Θ = T + T²/2EA of a tension.
+    pub fn theta(&self, t: f64) -> f64 {
+        t + 0.5 * t * t * self.compliance
+    }
+
+    /// The tension of Θ; −EA (crushed to nothing) where there is none.
+    pub fn tension(&self, theta: f64) -> f64 {
+        let square = 1.0 + 2.0 * theta * self.compliance;
+        2.0 * theta / (1.0 + if square > 0.0 { square.sqrt() } else { 0.0 })
+    }
+
+    /// A place as the law sees it.
+    pub fn spot(&self, place: &Place) -> Spot {
+        let load = (self.load.dot(&place.tangent), self.load.dot(&place.normal));
+        Spot { stretch: place.stretch, turns: place.turn != 0.0, load }
+    }
+
+    /// dT/dp at a place where it slides with m.
+    pub fn slope(&self, place: &Place, t: f64, m: f64) -> f64 {
+        self.slope_at(&self.spot(place), t, m)
+    }
+
+    /// As [`Self::slope`].
+    pub fn slope_at(&self, spot: &Spot, t: f64, m: f64) -> f64 {
+        let turned = if spot.turns { m * t } else { 0.0 };
+        turned - spot.stretch * (spot.load.0 + m * spot.load.1) / self.stretch(t)
+    }
+
+    /// dΘ/dp on an edge.
+    pub fn edge_rate(&self, spot: &Spot, m: f64) -> f64 {
+        -(spot.load.0 + m * spot.load.1) / self.thermal
+    }
+
+    /// Normal force per unstretched metre times its stretch, per dp: N ds/dp, N (per metre of an edge, per radian of an
+    /// arc).
+    pub fn press(&self, place: &Place, t: f64) -> f64 {
+        let turned = if place.turn == 0.0 { 0.0 } else { t };
+        turned - self.load.dot(&place.normal) * place.stretch / self.stretch(t)
+    }
+
+    /// From a place, with tension `t`, so far (`way`) along the piece it lies on.
+    pub fn along(&self, from: &Spot, way: f64, t: f64, m: f64) -> Step {
+        if !from.turns {
+            return self.on_edge(self.edge_rate(from, m), way, t);
+        }
+        if from.stretch == 0.0 {
+            let grown = exp(m * way);
+            return Step { tension: t * grown, material: 0.0, by_tension: grown, material_by_tension: 0.0 };
+        }
+        Way::new(from, way).slide(self, t, m).0
+    }
+
+    fn on_edge(&self, rate: f64, x: f64, t: f64) -> Step {
+        let tension = self.tension(self.theta(t) + rate * x);
+        let (a, b) = (1.0 + t * self.compliance, 1.0 + tension * self.compliance);
+        let by_tension = a / b;
+        let mean = 0.5 * (a + b);
+        let material = x / (self.thermal * mean);
+        let material_by_tension = -material / mean * (1.0 + by_tension) * (0.5 * self.compliance);
+        Step { tension, material, by_tension, material_by_tension }
+    }
+}
+
+impl Step {
+    /// This way and then another that started from where it ended.
+    pub fn then(self, next: Self) -> Self {
+        Self {
+            tension: next.tension,
+            material: self.material + next.material,
+            by_tension: self.by_tension * next.by_tension,
+            material_by_tension: self.material_by_tension + next.material_by_tension * self.by_tension,
+        }
+    }
+
+    /// No way at all, with tension `t`.
+    pub fn none(t: f64) -> Self {
+        Self { tension: t, material: 0.0, by_tension: 1.0, material_by_tension: 0.0 }
+    }
+}
+
+/// A chain of a boundary and what the cable on it obeys.
+#[derive(Clone, Copy)]
+pub(in crate::model::spans) struct Track<'a> {
+    pub curve: &'a Curve,
+    pub home: Home,
+    pub law: Law,
+    /// μ.
+    pub friction: f64,
+    /// See [`Course`](crate::model::spans::run::Course).
+    pub drag: f64,
+    /// Whether all of it slides away from the end that is drawn as far as there is tension, and lies loose beyond that.
+    pub floored: bool,
+    /// A point of it from which what lies on the same piece is seen.
+    pub pivot: Option<Pivot>,
+}
+
+impl Track<'_> {
+    /// The same, seen from p.
+    pub fn seen_from(self, p: f64) -> Self {
+        Self { pivot: Some(Pivot::new(self.curve, self.home, &self.law, p)), ..self }
+    }
+
+    /// The point at p.
+    pub fn place(&self, p: f64) -> Place {
+        match &self.pivot {
+            Some(pivot) if pivot.holds(p) => pivot.place(p),
+            _ => self.curve.place(p, self.home),
+        }
+    }
+
+    /// Whether p is on an arc.
+    pub fn turns(&self, p: f64) -> bool {
+        match &self.pivot {
+            Some(pivot) if pivot.holds(p) => pivot.turns(),
+            _ => self.curve.is_arc(self.curve.locate(p, self.home)),
+        }
+    }
+
+    /// The piece between p₀ and p₁, which lie on one.
+    pub fn on(&self, p0: f64, p1: f64) -> OnPiece<'_> {
+        let from = match &self.pivot {
+            Some(pivot) if pivot.reaches(p0) && pivot.reaches(p1) => pivot.spot(p0),
+            _ => {
+                let i = self.curve.locate(0.5 * (p0 + p1), self.home);
+                self.law.spot(&self.curve.place_on(i, p0 - self.curve.origin(i)))
+            }
+        };
+        OnPiece { law: &self.law, from, p0 }
+    }
+
+    /// Slides with m from p₀, where the tension is `t`, to p₁ (either way).
+    pub fn slide(&self, p0: f64, p1: f64, t: f64, m: f64) -> Step {
+        if p0 == p1 {
+            return Step::none(t);
+        }
+        if let Some(pivot) = &self.pivot
+            && pivot.reaches(p0)
+            && pivot.reaches(p1)
+        {
+            return self.law.along(&pivot.spot(p0), p1 - p0, t, m);
+        }
+        let (mut i, last) = (self.curve.locate(p0, self.home), self.curve.locate(p1, self.home));
+        let (mut at, mut sum) = (p0, Step::none(t));
+        loop {
+            let origin = self.curve.origin(i);
+            let to = match i.cmp(&last) {
+                std::cmp::Ordering::Equal => p1,
+                std::cmp::Ordering::Less => self.curve.origin(i + 1),
+                std::cmp::Ordering::Greater => origin,
+            };
+            let from = self.law.spot(&self.curve.place_on(i, at - origin));
+            sum = sum.then(self.law.along(&from, to - at, sum.tension, m));
+            if i == last {
+                return sum;
+            }
+            i += if i < last { 1 } else { -1 };
+            at = to;
+        }
+    }
+
+    /// Slides with m from p₀, the end that is drawn, to p₁; from where no tension is left on an edge the cable lies loose to p₁. Where
+    /// that is, and the material up to there.
+    pub fn slide_floored(&self, p0: f64, p1: f64, t: f64, m: f64) -> (Step, Option<(f64, f64)>) {
+        let (mut at, mut sum, mut loose) = (p0, Step::none(t), None);
+        while at != p1 {
+            let next = self.next_border(at, p1);
+            let edge = !self.turns(0.5 * (at + next));
+            let way = self.slide(at, next, sum.tension, m);
+            if !(edge && way.tension < 0.0) {
+                sum = sum.then(way);
+                // Drawn down a slope it has tension again.
+                loose = loose.filter(|_| !(sum.tension > 0.0));
+            } else {
+                let thetas = [self.law.theta(sum.tension), self.law.theta(way.tension)];
+                let q = at + (next - at) * (thetas[0] / (thetas[0] - thetas[1])).clamp(0.0, 1.0);
+                sum = sum.then(self.slide(at, q, sum.tension, m));
+                loose = loose.or(Some((q, sum.material)));
+                let rest = Step::none(0.0);
+                let material = self.slide(q, next, 0.0, self.even(0.5 * (q + next))).material;
+                sum = sum.then(Step { material, by_tension: 0.0, ..rest });
+            }
+            at = next;
+        }
+        (sum, loose)
+    }
+
+    /// The m that keeps tension even where p is, as far as friction can: −b·t − m b·n = 0 on an edge; 0 on an arc.
+    pub fn even(&self, p: f64) -> f64 {
+        if self.turns(p) {
+            return 0.0;
+        }
+        let place = self.place(p);
+        let out_of = self.law.load.dot(&place.normal);
+        if out_of == 0.0 {
+            return 0.0;
+        }
+        bounded(-self.law.load.dot(&place.tangent) / out_of, -self.friction, self.friction)
+    }
+
+    /// From p₀ to p₁ (either way) with the tension as even as friction can keep it: as cable is laid down.
+    pub fn lay(&self, p0: f64, p1: f64, t: f64) -> Step {
+        let (mut at, mut sum) = (p0, Step::none(t));
+        while at != p1 {
+            let next = self.next_border(at, p1);
+            sum = sum.then(self.slide(at, next, sum.tension, self.even(0.5 * (at + next))));
+            at = next;
+        }
+        sum
+    }
+
+    /// Calls back with the places inside an arc from p to q at which tension or pressure may be least while it slides with m.
+    ///
+    /// With P the [`Law::press`] of a place, P' = mP − 2(c/λ) b·t and T' = mT − (c/λ)(b·t + m b·n), both but for the change of λ: P e^{−mψ}
+    /// is least where b·t = 0 with the load out of the arc, below it, T e^{−mψ} where b·t + m b·n = 0. If neither is below nothing
+    /// there and at the ends, it is nowhere.
+    pub fn loosest(&self, (p, q): (f64, f64), m: f64, mut each: impl FnMut(f64)) {
+        let middle = self.curve.locate(0.5 * (p + q), self.home);
+        if !self.curve.is_arc(middle) {
+            return;
+        }
+        let least = self.law.load - perp(self.law.load) * (m * self.curve.sense);
+        for out in [self.law.load, least] {
+            self.facing(middle, out, (p, q), &mut each);
+        }
+    }
+
+    /// Calls back with the places between p and q at which a round boundary faces the load: its bottoms.
+    pub fn bottoms(&self, (p, q): (f64, f64), each: impl FnMut(f64)) {
+        self.facing(self.home.first, self.law.load, (p, q), each);
+    }
+
+    /// The places between p and q, on arc i, whose outward normal is along `out`.
+    fn facing(&self, i: i64, out: Vec2, (p, q): (f64, f64), each: impl FnMut(f64)) {
+        // No cable is wound further.
+        if out.norm() > 0.0 && q - p <= MOST_TURN {
+            // n = σ perp t.
+            self.curve.running(i, perp(out) * -self.curve.sense, (p, q), each);
+        }
+    }
+
+    /// The middle of the length between two places.
+    pub fn middle(&self, [first, last]: [f64; 2]) -> f64 {
+        let long = |a: f64, b: f64| self.curve.length(a, b, self.home);
+        let (mut low, mut high) = (first, last);
+        // Down to rounding; a point, which has no length, is halved by its turn.
+        for _ in 0..64 {
+            let p = 0.5 * (low + high);
+            let [before, after] = [long(first, p), long(p, last)];
+            if before == after {
+                return p;
+            }
+            if before < after { low = p } else { high = p }
+        }
+        0.5 * (low + high)
+    }
+
+    /// The next place from p towards `to` where the boundary changes from edge to arc or back; `to` if none lies between.
+    pub fn next_border(&self, p: f64, to: f64) -> f64 {
+        if self.pivot.as_ref().is_some_and(|v| v.reaches(p) && v.reaches(to)) {
+            return to;
+        }
+        let mut i = self.curve.locate(p, self.home);
+        if to > p {
+            // A border reached by rounding lies behind.
+            while i < self.home.last {
+                let border = self.curve.origin(i + 1);
+                if border >= to {
+                    return to;
+                }
+                if border > p {
+                    return border;
+                }
+                i += 1;
+            }
+        } else {
+            while i > self.home.first {
+                let border = self.curve.origin(i);
+                if border <= to {
+                    return to;
+                }
+                if border < p {
+                    return border;
+                }
+                i -= 1;
+            }
+        }
+        to
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,445 @@
+//! The boundary of an obstacle as the centre line of the cable runs along it, with a coordinate p that grows along the
+//! cable.
+//!
+//! The centre line runs at the offset c (cable radius and what the obstacle adds) from the obstacle. On an edge p counts
+//! metres, on an arc (a convex corner, a post, a wheel) radians, so that a sharp corner needs no case of its own. With
+//! the sense σ = +1 where the solid lies right of travel and −1 where it lies left, t the direction of travel and n the
+//! outward normal,
+//!
+//! ```text
+//! n = σ perp t        edge: x = x₀ + t p        arc: x = C + c n,  dt/dp = −n,  dn/dp = t
+//! ```
+//!
+//! A concave kink is a break: a tensioned cable bridges it by a free span. So is an edge the load does not press the
+//! cable on to (b·n ≥ 0: walls, undersides): the cable hangs beside it by a free span from corner to corner. What lies
+//! between two breaks is a chain; a contact never leaves its chain. Beyond the ends of its chain the curve goes on
+//! straight or round, so that Newton may look there; what that would cut is found by the search for penetration.
+
+use std::sync::Arc;
+
+use crate::contact::geometry::{Body, Edge};
+use crate::math::{Vec2, bounded, cross, perp, sin_cos};
+
+/// An edge holds the cable if the load presses on it with more than this part of itself. Smaller: a wall that rounding
+/// tilts would hold a cable that hangs beside it. Larger: floors steeper than 89.99° would not hold.
+const PRESSES: f64 = 1e-9;
+
+/// A direction beyond the end of an arc by less than this (rad) is rounding.
+const ASIDE: f64 = 1e-9;
+
+/// The form of a piece of the curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::model::spans) enum Form {
+    /// Straight.
+    Edge {
+        /// Where it starts, m.
+        from: Vec2,
+        /// Direction of travel, a unit vector.
+        tangent: Vec2,
+    },
+    /// Round, always convex.
+    Arc {
+        /// Centre, m.
+        center: Vec2,
+        /// Radius of the centre line, m; 0 = a point.
+        radius: f64,
+        /// Direction of the tangent at its start, a unit vector.
+        from: Vec2,
+    },
+}
+
+/// A piece of the curve.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::spans) struct Piece {
+    pub form: Form,
+    /// How far it goes: m on an edge, rad on an arc.
+    pub extent: f64,
+    /// Whether a concave kink lies before it.
+    pub kink_before: bool,
+    /// Feature of the obstacle it belongs to.
+    pub feature: usize,
+}
+
+/// A boundary, in one sense of travel.
+#[derive(Clone, Debug)]
+pub(in crate::model::spans) struct Curve {
+    /// Index of the obstacle in the scene; None for a wheel.
+    pub obstacle: Option<usize>,
+    /// Coulomb friction coefficient.
+    pub friction: f64,
+    /// +1 with the solid right of travel, −1 with the solid left of it.
+    pub sense: f64,
+    /// How far it has been moved, m (a wheel that travels).
+    pub shift: Vec2,
+    /// Shared by all copies: scanned ground has a million.
+    pieces: Arc<[Piece]>,
+    starts: Arc<[f64]>,
+    /// One turn of a closed boundary in p.
+    period: Option<f64>,
+}
+
+/// Pieces of a chain, counted on over the turns of a closed boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::spans) struct Home {
+    pub first: i64,
+    pub last: i64,
+}
+
+/// A point of the curve.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::spans) struct Place {
+    pub at: Vec2,
+    pub tangent: Vec2,
+    pub normal: Vec2,
+    /// d(length)/dp, m: 1 on an edge, c on an arc.
+    pub stretch: f64,
+    /// d(angle of the tangent)/dp.
+    pub turn: f64,
+}
+
+/// The direction of an angle.
+fn direction(angle: f64) -> Vec2 {
+    turned(Vec2::x(), angle)
+}
+
+/// A vector turned by an angle, rad.
+fn turned(v: Vec2, angle: f64) -> Vec2 {
+    let (sin, cos) = sin_cos(angle);
+    Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
+}
+
+impl Curve {
+    /// Both senses of a body's boundary: solid right of travel, then left.
+    pub fn both(body: &Body) -> [Self; 2] {
+        let c = body.offset;
+        let (pieces, closed) = match body.center {
+            Some(center) => {
+                let arc = Form::Arc { center, radius: c, from: Vec2::x() };
+                let extent = f64::INFINITY;
+                (vec![Piece { form: arc, extent, kink_before: false, feature: body.first + 1 }], false)
+            }
+            None => boundary(body, c),
+        };
+        let forward = Self::new(pieces, closed, (Some(body.obstacle), body.friction, 1.0));
+        let back = forward.reversed();
+        [forward, back]
+    }
+
+    /// A wheel of a radius (of the centre line, m) about the origin; shift it to its place.
+    pub fn wheel(radius: f64, friction: f64, sense: f64) -> Self {
+        let form = Form::Arc { center: Vec2::zeros(), radius, from: Vec2::x() };
+        let piece = Piece { form, extent: f64::INFINITY, kink_before: false, feature: usize::MAX };
+        Self::new(vec![piece], false, (None, friction, sense))
+    }
+
+    fn new(pieces: Vec<Piece>, closed: bool, (obstacle, friction, sense): (Option<usize>, f64, f64)) -> Self {
+        let mut starts = Vec::with_capacity(pieces.len());
+        let mut sum = 0.0;
+        for p in &pieces {
+            starts.push(sum);
+            sum += p.extent;
+        }
+        let period = closed.then_some(sum);
+        let (pieces, starts) = (pieces.into(), starts.into());
+        Self { obstacle, friction, sense, shift: Vec2::zeros(), pieces, starts, period }
+    }
+
+    /// The same boundary travelled the other way.
+    fn reversed(&self) -> Self {
+        let n = self.pieces.len();
+        let back = |k: usize| {
+            let p = self.pieces[n - 1 - k];
+            let form = match p.form {
+                Form::Edge { from, tangent } => Form::Edge { from: from + tangent * p.extent, tangent: -tangent },
+                Form::Arc { center, radius, from } if p.extent.is_infinite() => Form::Arc { center, radius, from },
+                Form::Arc { center, radius, from } => {
+                    Form::Arc { center, radius, from: -turned(from, -self.sense * p.extent) }
+                }
+            };
+            // What was the kink after a piece is the kink before it now.
+            let kink_before = self.pieces.get(n - k).or(self.pieces.first()).is_some_and(|next| next.kink_before);
+            Piece { form, kink_before, ..p }
+        };
+        let pieces = (0..n).map(back).collect();
+        Self::new(pieces, self.period.is_some(), (self.obstacle, self.friction, -self.sense))
+    }
+
+    /// Whether it is round all the way: a post or a wheel.
+    pub fn is_round(&self) -> bool {
+        matches!(self.pieces[..], [Piece { form: Form::Arc { .. }, .. }])
+    }
+
+    /// The numbers of its pieces in the first turn.
+    pub fn pieces(&self) -> impl Iterator<Item = i64> + use<> {
+        0..self.pieces.len() as i64
+    }
+
+    /// The piece of a number that counts on over the turns.
+    pub fn piece(&self, i: i64) -> &Piece {
+        // Without a division in the first turn.
+        let k = i as usize;
+        if k < self.pieces.len() {
+            &self.pieces[k]
+        } else {
+            &self.pieces[i.rem_euclid(self.pieces.len() as i64) as usize]
+        }
+    }
+
+    /// Whether a piece is an arc.
+    pub fn is_arc(&self, i: i64) -> bool {
+        matches!(self.piece(i).form, Form::Arc { .. })
+    }
+
+    /// Where a piece starts in p.
+    pub fn origin(&self, i: i64) -> f64 {
+        if let Some(start) = self.starts.get(i as usize) {
+            return *start;
+        }
+        let n = self.pieces.len() as i64;
+        let turns = i.div_euclid(n);
+        self.starts[i.rem_euclid(n) as usize] + if turns == 0 { 0.0 } else { turns as f64 * self.period.unwrap_or(0.0) }
+    }
+
+    /// Where a piece ends in p.
+    pub fn end(&self, i: i64) -> f64 {
+        self.origin(i) + self.piece(i).extent
+    }
+
+    /// The piece at p, of those of a chain: its first or last beyond their ends.
+    pub fn locate(&self, p: f64, home: Home) -> i64 {
+        let (mut i, mut last) = (home.first, home.last);
+        while i < last {
+            let middle = i + (last - i + 1) / 2;
+            if self.origin(middle) <= p {
+                i = middle;
+            } else {
+                last = middle - 1;
+            }
+        }
+        i
+    }
+
+    /// The point at p.
+    pub fn place(&self, p: f64, home: Home) -> Place {
+        let i = self.locate(p, home);
+        self.place_on(i, p - self.origin(i))
+    }
+
+    /// The point at x on piece i.
+    pub fn place_on(&self, i: i64, x: f64) -> Place {
+        match self.piece(i).form {
+            Form::Edge { from, tangent } => Place {
+                at: self.shift + from + tangent * x,
+                tangent,
+                normal: perp(tangent) * self.sense,
+                stretch: 1.0,
+                turn: 0.0,
+            },
+            Form::Arc { center, radius, from } => {
+                let tangent = turned(from, -self.sense * x);
+                let normal = perp(tangent) * self.sense;
+                Place { at: self.shift + center + normal * radius, tangent, normal, stretch: radius, turn: -self.sense }
+            }
+        }
+    }
+
+    /// Length from `a` to `b` along the curve, m.
+    pub fn length(&self, a: f64, b: f64, home: Home) -> f64 {
+        let (i, j) = (self.locate(a, home), self.locate(b, home));
+        let weight = |k: i64| match self.piece(k).form {
+            Form::Edge { .. } => 1.0,
+            Form::Arc { radius, .. } => radius,
+        };
+        if i == j {
+            return (b - a) * weight(i);
+        }
+        if i > j {
+            return -self.length(b, a, home);
+        }
+        let inner: f64 = (i + 1..j).map(|k| self.piece(k).extent * weight(k)).sum();
+        (self.origin(i + 1) - a) * weight(i) + inner + (b - self.origin(j)) * weight(j)
+    }
+
+    /// Whether the cable can lie on a piece under a load per metre.
+    fn holds(&self, i: i64, load: Vec2) -> bool {
+        let piece = self.piece(i);
+        match piece.form {
+            Form::Edge { tangent, .. } => {
+                piece.extent > 0.0 && -load.dot(&perp(tangent)) * self.sense > PRESSES * load.norm()
+            }
+            Form::Arc { .. } => true,
+        }
+    }
+
+    /// The chain a piece belongs to and the number of the piece in it; None if it cannot hold a cable. A chain of a closed
+    /// boundary is always counted from the same turn.
+    pub fn chain(&self, i: i64, load: Vec2) -> Option<(i64, Home)> {
+        if !self.holds(i, load) {
+            return None;
+        }
+        let n = self.pieces.len() as i64;
+        let open = self.period.is_none();
+        let (mut first, mut last) = (i, i);
+        while last - first < n && !(open && first == 0) && !self.piece(first).kink_before && self.holds(first - 1, load)
+        {
+            first -= 1;
+        }
+        while last - first < n
+            && !(open && last == n - 1)
+            && !self.piece(last + 1).kink_before
+            && self.holds(last + 1, load)
+        {
+            last += 1;
+        }
+        let turn = first.rem_euclid(n) - first;
+        Some((i + turn, Home { first: first + turn, last: last + turn }))
+    }
+
+    /// The piece beyond the kink at the start (side 0) or the end of a chain; None where there is none.
+    pub fn beyond_kink(&self, home: Home, side: usize) -> Option<i64> {
+        let (i, after) = if side == 0 { (home.first - 1, home.first) } else { (home.last + 1, home.last + 1) };
+        let there = self.period.is_some() || (i >= 0 && i < self.pieces.len() as i64);
+        (there && !self.is_round() && self.piece(after).kink_before).then_some(i)
+    }
+
+    /// The piece of one turn that stands for a feature of the obstacle, the nearest to a point where it has several.
+    pub fn piece_of(&self, feature: usize, at: Vec2) -> Option<i64> {
+        let mut best: Option<(f64, i64)> = None;
+        for k in (0..self.pieces.len()).filter(|&k| self.pieces[k].feature == feature) {
+            let i = k as i64;
+            let d = (self.place_on(i, self.project(i, at) - self.origin(i)).at - at).norm();
+            if best.is_none_or(|(b, _)| d < b) {
+                best = Some((d, i));
+            }
+        }
+        best.map(|b| b.1)
+    }
+
+    /// The corner at an end of edge i that is nearer to a point.
+    pub fn corner_beside(&self, i: i64, at: Vec2) -> Option<i64> {
+        let n = self.pieces.len() as i64;
+        let beside = [i - 1, i + 1].into_iter().filter(|&k| self.period.is_some() || (k >= 0 && k < n));
+        let corner = |k: &i64| matches!(self.piece(*k).form, Form::Arc { .. });
+        let far = |k: &i64| (self.place_on(*k, 0.5 * self.piece(*k).extent).at - at).norm();
+        beside.filter(corner).min_by(|a, b| far(a).total_cmp(&far(b))).map(|k| k.rem_euclid(n))
+    }
+
+    /// p of a point that lies on a chain, within a distance (m).
+    pub fn on_chain(&self, home: Home, at: Vec2, within: f64) -> Option<f64> {
+        (home.first..=home.last).find_map(|i| {
+            let p = self.project(i, at);
+            ((self.place_on(i, p - self.origin(i)).at - at).norm() <= within).then_some(p)
+        })
+    }
+
+    /// p on piece i of the point nearest to `at`, kept on the piece.
+    pub fn project(&self, i: i64, at: Vec2) -> f64 {
+        let piece = self.piece(i);
+        let x = match piece.form {
+            Form::Edge { from, tangent } => bounded((at - self.shift - from).dot(&tangent), 0.0, piece.extent),
+            Form::Arc { center, from, .. } => {
+                // n = σ perp t, t at the angle from − σ x.
+                let n = at - self.shift - center;
+                let tangent = -perp(n) * self.sense;
+                self.arc_at(from, piece.extent, tangent)
+            }
+        };
+        self.origin(i) + x
+    }
+
+    /// p on the arc i where its tangent is that of `along`, kept on the arc (on a post: within half a turn of 0).
+    pub fn with_tangent(&self, i: i64, along: Vec2) -> f64 {
+        let piece = self.piece(i);
+        let x = match piece.form {
+            Form::Edge { .. } => 0.0,
+            Form::Arc { from, .. } => self.arc_at(from, piece.extent, along),
+        };
+        self.origin(i) + x
+    }
+
+    /// Calls back with each place between p and q, on arc i, at which its tangent is that of `along`.
+    pub fn running(&self, i: i64, along: Vec2, (p, q): (f64, f64), mut each: impl FnMut(f64)) {
+        let Form::Arc { from, .. } = self.piece(i).form else { return };
+        let turn = std::f64::consts::TAU;
+        let mut x = self.origin(i) - self.sense * cross(from, along).atan2(from.dot(&along));
+        x += ((p - x) / turn).ceil() * turn;
+        while x < q {
+            each(x);
+            x += turn;
+        }
+    }
+
+    /// Whether the tangent of arc i comes to be `along` only before its start (−1) or after its end (+1); 0 where it does on it.
+    pub fn aside(&self, i: i64, along: Vec2) -> i64 {
+        let piece = self.piece(i);
+        let Form::Arc { from, .. } = piece.form else { return 0 };
+        let x = -self.sense * cross(from, along).atan2(from.dot(&along));
+        match piece.extent.is_finite() {
+            true if x < -ASIDE => -1,
+            true if x > piece.extent + ASIDE => 1,
+            _ => 0,
+        }
+    }
+
+    fn arc_at(&self, start: Vec2, extent: f64, tangent: Vec2) -> f64 {
+        let x = -self.sense * cross(start, tangent).atan2(start.dot(&tangent));
+        if extent.is_infinite() {
+            x
+        } else if x < -0.5 * (std::f64::consts::TAU - extent) {
+            // The far side of the arc is nearer to its end.
+            extent
+        } else {
+            bounded(x, 0.0, extent)
+        }
+    }
+}
+
+/// The pieces of a polygon, ground or thin line at an offset, with the solid right of travel; and whether it closes.
+fn boundary(body: &Body, c: f64) -> (Vec<Piece>, bool) {
+    let mut edges: Vec<(Edge, usize)> = Vec::with_capacity(2 * body.edges.len());
+    edges.extend(body.edges.iter().enumerate().map(|(k, e)| (*e, k)));
+    let loops = body.edges.first().zip(body.edges.last()).is_some_and(|(a, b)| a.p == b.q);
+    let closed = !body.is_ground();
+    if closed && !loops {
+        // A thin line is gone round: there and back.
+        let back = body.edges.iter().enumerate().rev();
+        edges.extend(back.map(|(k, e)| (Edge { p: e.q, q: e.p, tangent: -e.tangent }, k)));
+    }
+    let n = edges.len();
+    // The turn at the start of edge k: negative = convex.
+    let turn = |k: usize| {
+        let (before, after) = (edges[(k + n - 1) % n].0.tangent, edges[k % n].0.tangent);
+        let turn = cross(before, after).atan2(before.dot(&after));
+        if turn == std::f64::consts::PI { -turn } else { turn }
+    };
+    let kink = |k: usize| if closed || (k > 0 && k < n) { turn(k).max(0.0) } else { 0.0 };
+    let corner_feature = |k: usize| {
+        let (e, index) = &edges[k % n];
+        body.first + 2 * if e.tangent == body.edges[*index].tangent { *index } else { *index + 1 } + 1
+    };
+    let mut out = Vec::with_capacity(2 * n + 1);
+    for (k, (e, index)) in edges.iter().enumerate() {
+        let angle = e.tangent.y.atan2(e.tangent.x);
+        let up = std::f64::consts::FRAC_PI_2;
+        let (arc_from, arc) =
+            if closed || k > 0 { (angle - turn(k).min(0.0), -turn(k).min(0.0)) } else { (up, up - angle) };
+        let kink_before = kink(k) > 0.0;
+        let first = out.len();
+        if arc > 0.0 {
+            let form = Form::Arc { center: e.p, radius: c, from: direction(arc_from) };
+            out.push(Piece { form, extent: arc, kink_before, feature: corner_feature(k) });
+        }
+        // A kink takes c tan(δ/2) of both its edges.
+        let cut = [kink(k), kink(k + 1)].map(|d| c * (0.5 * d).tan());
+        let form = Form::Edge { from: e.p + e.normal() * c + e.tangent * cut[0], tangent: e.tangent };
+        let extent = e.length() - cut[0] - cut[1];
+        let extent = if extent > 0.0 { extent } else { 0.0 };
+        let kink_before = kink_before && out.len() == first;
+        out.push(Piece { form, extent, kink_before, feature: body.first + 2 * index });
+        if !closed && k + 1 == n && angle > -up {
+            let form = Form::Arc { center: e.q, radius: c, from: direction(angle) };
+            out.push(Piece { form, extent: angle + up, kink_before: false, feature: body.first + 2 * n + 1 });
+        }
+    }
+    (out, closed)
+}

@@ -1,0 +1,194 @@
+//! One piece of a track, seen from a point of it: what lies on the same piece needs no search, and its direction is that of
+//! the point turned by a small angle. And where on a piece two tensions come to be one.
+
+use std::cell::Cell;
+
+use crate::math::{Vec2, sin_cos};
+use crate::model::spans::boundary::arc::{HAIR, Way};
+use crate::model::spans::boundary::capstan::{Law, Spot, Step};
+use crate::model::spans::boundary::curve::{Curve, Home, Place};
+use crate::model::spans::numerics::root::{FLOOR, crossing};
+
+/// Where two tensions are about one before this part of a piece it is not asked whether they are so on it. Larger: asked after
+/// all more often.
+const WELL: f64 = 0.9;
+
+/// Looks at both tensions before their meeting is sought within bounds.
+const LOOKS: usize = 3;
+
+/// A point of a piece and how far that goes.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::spans) struct Pivot {
+    p: f64,
+    pub at: Place,
+    /// b·t and b·n there, N/m.
+    load: (f64, f64),
+    /// Where the piece begins and ends; beyond the ends of its chain it goes on.
+    ends: [f64; 2],
+}
+
+impl Pivot {
+    /// The piece at p.
+    pub fn new(curve: &Curve, home: Home, law: &Law, p: f64) -> Self {
+        let i = curve.locate(p, home);
+        let origin = curve.origin(i);
+        let at = curve.place_on(i, p - origin);
+        let first = if i > home.first { origin } else { f64::NEG_INFINITY };
+        let last = if i < home.last { curve.origin(i + 1) } else { f64::INFINITY };
+        Self { p, at, load: law.spot(&at).load, ends: [first, last] }
+    }
+
+    /// The places of both ends of a contact, and the piece of the first.
+    pub fn of_ends(curve: &Curve, home: Home, law: &Law, [first, last]: [f64; 2]) -> ([Place; 2], Self) {
+        let pivot = Self::new(curve, home, law, first);
+        ([pivot.at, if pivot.holds(last) { pivot.place(last) } else { curve.place(last, home) }], pivot)
+    }
+
+    /// Whether p is on this piece.
+    pub fn holds(&self, p: f64) -> bool {
+        p >= self.ends[0] && p < self.ends[1]
+    }
+
+    /// Whether p is on this piece or at its end.
+    pub fn reaches(&self, p: f64) -> bool {
+        p >= self.ends[0] && p <= self.ends[1]
+    }
+
+    /// Whether it is an arc.
+    pub fn turns(&self) -> bool {
+        self.at.turn != 0.0
+    }
+
+    /// The point at p.
+    pub fn place(&self, p: f64) -> Place {
+        let (at, x) = (&self.at, p - self.p);
+        if x == 0.0 {
+            return *at;
+        }
+        if !self.turns() {
+            return Place { at: at.at + at.tangent * x, ..*at };
+        }
+        // dt/dp = −n, dn/dp = t.
+        let (sin, cos) = sin_cos(x);
+        let tangent: Vec2 = at.tangent * cos - at.normal * sin;
+        let normal: Vec2 = at.normal * cos + at.tangent * sin;
+        Place { at: at.at + (normal - at.normal) * at.stretch, tangent, normal, ..*at }
+    }
+
+    /// As the law sees the point at p.
+    pub fn spot(&self, p: f64) -> Spot {
+        let spot = Spot { stretch: self.at.stretch, turns: self.turns(), load: self.load };
+        spot.on(p - self.p)
+    }
+}
+
+impl Spot {
+    /// So far on along its piece.
+    fn on(self, way: f64) -> Self {
+        if !self.turns || way == 0.0 {
+            return self;
+        }
+        let ((sin, cos), (bt, bn)) = (sin_cos(way), self.load);
+        Self { load: (bt * cos - bn * sin, bn * cos + bt * sin), ..self }
+    }
+}
+
+/// One piece of a track, from a point on it.
+pub(in crate::model::spans) struct OnPiece<'a> {
+    pub law: &'a Law,
+    pub from: Spot,
+    pub p0: f64,
+}
+
+impl OnPiece<'_> {
+    /// Slides with m from its point, where the tension is `t`, to p.
+    pub fn slide(&self, p: f64, t: f64, m: f64) -> Step {
+        self.law.along(&self.from, p - self.p0, t, m)
+    }
+
+    /// Where before p₁ two tensions, each with its m, that differ at its point come to be one, and both ways there; None
+    /// where that is not before p₁, and both ways there. On an edge both Θ are linear, round a sharp corner both T are
+    /// exponential, else about.
+    pub fn crossing(&self, p1: f64, [(t, m), (u, n)]: [(f64, f64); 2]) -> (Option<f64>, [Step; 2]) {
+        let law = self.law;
+        let whole = p1 - self.p0;
+        let both = |p: f64| [self.slide(p, t, m), self.slide(p, u, n)];
+        let about = if !self.from.turns {
+            (law.theta(u) - law.theta(t)) / (law.edge_rate(&self.from, m) - law.edge_rate(&self.from, n))
+        } else {
+            // As if the load were that of its start all along.
+            let held = |t: f64, m: f64| {
+                let g = self.from.stretch / (law.stretch(t) * (1.0 + m * m));
+                let (bt, bn) = self.from.load;
+                t - g * (2.0 * m * bt + (m * m - 1.0) * bn)
+            };
+            (held(u, n) / held(t, m)).ln() / (m - n)
+        };
+        // Parallel: nowhere. NaN is not inside either.
+        let part = about / whole;
+        let exact = !self.from.turns || self.from.stretch == 0.0;
+        if exact {
+            let at = (0.0..=1.0).contains(&part).then_some(self.p0 + about);
+            return (at, both(at.unwrap_or(p1)));
+        }
+        if part > 0.0
+            && part < WELL
+            && let Some((at, ways)) = self.closing(about, whole, [(t, m), (u, n)])
+        {
+            return (Some(at), ways);
+        }
+        let sign = (t - u).signum();
+        let [a, b] = both(p1);
+        let end = (a.tension - b.tension) * sign;
+        if end > 0.0 {
+            return (None, [a, b]);
+        }
+        // Where friction goes to and fro over the same stretch.
+        if end.abs() <= FLOOR * t.abs() {
+            return (Some(p1), [a, b]);
+        }
+        let (at, ways) = self.meeting(p1, [(t, m), (u, n)], end);
+        (Some(at), ways)
+    }
+
+    /// As [`Self::crossing`] round an arc, from about where: Newton's method, the last step from the derivatives alone.
+    fn closing(&self, about: f64, whole: f64, [(t, m), (u, n)]: [(f64, f64); 2]) -> Option<(f64, [Step; 2])> {
+        let mut way = about;
+        for _ in 0..LOOKS {
+            let there = Way::new(&self.from, way);
+            let [(a, one), (b, two)] = [(t, m), (u, n)].map(|(t, m)| there.slide(self.law, t, m));
+            let apart = a.tension - b.tension;
+            let [first, second, third] = [0, 1, 2].map(|k| one.tension[k] - two.tension[k]);
+            // Halley's step, and from there one of Newton's on what is known to third order.
+            let by = -apart / (first - 0.5 * second * apart / first);
+            let rest = apart + by * (first + 0.5 * by * (second + by / 3.0 * third));
+            let by = by - rest / (first + by * (second + 0.5 * by * third));
+            let next = way + by;
+            if !(next / whole > 0.0 && next / whole < 1.0) {
+                return None;
+            }
+            if by.abs() <= HAIR {
+                return Some((self.p0 + next, [one.on(&a, by), two.on(&b, by)]));
+            }
+            way = next;
+        }
+        None
+    }
+
+    /// As [`Self::crossing`] round an arc; `end`: the difference at p₁.
+    fn meeting(&self, p1: f64, [(t, m), (u, n)]: [(f64, f64); 2], end: f64) -> (f64, [Step; 2]) {
+        let sign = (t - u).signum();
+        let both = |p: f64| [self.slide(p, t, m), self.slide(p, u, n)];
+        let last = Cell::new((f64::NAN, [Step::none(t); 2]));
+        let ends = ((t - u) * sign, end);
+        let x = crossing((self.p0, p1), FLOOR * t.abs(), Some(ends), |x| {
+            let [a, b] = both(x);
+            last.set((x, [a, b]));
+            let spot = self.from.on(x - self.p0);
+            let slope = |t: f64, m: f64| self.law.slope_at(&spot, t, m);
+            ((a.tension - b.tension) * sign, (slope(a.tension, m) - slope(b.tension, n)) * sign)
+        });
+        let (at, ways) = last.get();
+        (x, if at == x { ways } else { both(x) })
+    }
+}

@@ -1,0 +1,305 @@
+//! What is given at an instant, and how a scene's cable falls into strands.
+
+use std::sync::Arc;
+
+use crate::catenary::PointForce;
+use crate::contact::swept_corners::{self, Corner};
+use crate::error::SolveError;
+use crate::math::Vec2;
+use crate::model::Model;
+use crate::model::catenary::layout::hint_of_weight;
+use crate::model::spans::boundary::capstan::Law;
+use crate::model::spans::boundary::curve::Curve;
+use crate::model::spans::failure::Trouble;
+use crate::model::spans::run::{Course, Strand, Tie};
+use crate::problem::Problem;
+use crate::scene::{PulleySide, SupportKind};
+
+/// Supports, loads and temperature at an instant; two of them can be mixed.
+#[derive(Debug, Default, PartialEq)]
+pub(in crate::model::spans) struct Instant {
+    /// Place of each support, m (unused where it has none).
+    pub places: Vec<Vec2>,
+    /// Load per metre, N/m.
+    pub load: Vec2,
+    /// 1 + αΔT.
+    pub thermal: f64,
+    /// Dead loads of the layout, N.
+    pub forces: Vec<Vec2>,
+    /// Forces up to this come of the hint of weight that a weightless cable is given, N; 0 for one that has weight.
+    pub hint: f64,
+    /// Part of the friction that acts: 1, less only while a rest is sought.
+    pub friction: f64,
+}
+
+/// A dead load: where, and which it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Load {
+    arc_length: f64,
+    /// Index among the supports, else among the loads.
+    support: Option<usize>,
+    load: usize,
+}
+
+/// A pulley between the ends of a strand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::model::spans) struct Pulley {
+    pub support: usize,
+    /// Index of its boundary with sense +1.
+    pub curve: usize,
+    /// Sense on the side it must be passed; 0 = a point, either.
+    pub facing: f64,
+}
+
+/// Where the cable is held and loaded, whatever the instant.
+#[derive(Clone, Debug)]
+pub(in crate::model::spans) struct Layout {
+    pub problem: Arc<Problem>,
+    /// Whether it counts the cable from the end of the scene's: its problem is that one turned.
+    pub turned: bool,
+    loads: Vec<Load>,
+    /// Where it must not pass, in order of x.
+    pub corners: Arc<[Corner]>,
+    /// Strands: material from, to (m) and the support at each end; None = free or dead load.
+    pub strands: Vec<Part>,
+}
+
+/// A strand between grips.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::model::spans) struct Part {
+    pub material: [f64; 2],
+    pub supports: [Option<usize>; 2],
+    pub pulleys: Vec<Pulley>,
+}
+
+/// The model's refusal.
+pub(in crate::model::spans) fn unsupported(feature: impl Into<String>) -> SolveError {
+    SolveError::Unsupported { model: Model::Spans, feature: feature.into() }
+}
+
+impl Layout {
+    /// The layout of a cable.
+    ///
+    /// # Errors
+    /// `Unsupported` for what the model lacks.
+    pub fn new(problem: &Arc<Problem>, turned: bool) -> Result<Self, SolveError> {
+        let p = problem;
+        if p.bending_stiffness > 0.0 {
+            return Err(unsupported("the cable has bending stiffness"));
+        }
+        if p.floor_friction.is_some() {
+            return Err(unsupported("in plan view the floor rubs everywhere"));
+        }
+        if p.cable.self_contact {
+            return Err(unsupported("the cable can touch itself"));
+        }
+        if p.supports.iter().any(|s| s.release.is_some()) {
+            return Err(unsupported("a support lets go"));
+        }
+        let mut loads = Vec::new();
+        for (load, l) in p.loads.iter().enumerate() {
+            loads.push(Load { arc_length: l.arc_length, support: None, load });
+        }
+        let mut strands: Vec<Part> = Vec::new();
+        let start = Part { material: [0.0, p.length], supports: [None, None], pulleys: Vec::new() };
+        let mut part = start.clone();
+        let bodies = p.world.geometry().bodies().len();
+        let mut wheels = 0;
+        for (k, s) in p.supports.iter().enumerate() {
+            match s.kind {
+                SupportKind::Load | SupportKind::Free => {
+                    let arc_length = s.arc_length.unwrap_or(0.0);
+                    loads.push(Load { arc_length, support: Some(k), load: k });
+                }
+                SupportKind::Pulley => {
+                    part.pulleys.push(Pulley { support: k, curve: 2 * (bodies + wheels), facing: 0.0 });
+                    wheels += 1;
+                }
+                SupportKind::Fixed | SupportKind::Clamped | SupportKind::Robot => {
+                    let Some(arc_length) = s.arc_length else { return Err(unsupported("a grip without a place")) };
+                    if arc_length > part.material[0] {
+                        part.material[1] = arc_length;
+                        part.supports[1] = Some(k);
+                        strands.push(part.clone());
+                    }
+                    part = Part { material: [arc_length, p.length], supports: [Some(k), None], pulleys: Vec::new() };
+                }
+            }
+        }
+        if part.material[1] > part.material[0] {
+            strands.push(part);
+        }
+        if p.supports.iter().all(|s| s.at.is_none()) && p.world.is_empty() {
+            return Err(SolveError::NoRestingPlace { why: "nothing holds the cable".to_owned() });
+        }
+        loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
+        let corners = swept_corners::corners(&problem.world).into();
+        let mut layout = Self { problem: problem.clone(), turned, loads, corners, strands };
+        layout.face_wheels();
+        Ok(layout)
+    }
+
+    /// Which side of its wheel the cable passes: over means above where it travels to the right.
+    fn face_wheels(&mut self) {
+        let p = &self.problem;
+        let held: Vec<usize> = (0..p.supports.len()).filter(|&k| p.supports[k].at.is_some()).collect();
+        let at = |k: usize| p.supports[k].at.unwrap_or_default();
+        for pulley in self.strands.iter_mut().flat_map(|s| &mut s.pulleys) {
+            let s = &p.supports[pulley.support];
+            if s.wheel_radius == 0.0 {
+                continue;
+            }
+            let i = held.iter().position(|&k| k == pulley.support).unwrap_or(0);
+            let before = i.checked_sub(1).and_then(|j| held.get(j)).map_or(at(pulley.support), |&k| at(k));
+            let after = held.get(i + 1).map_or(at(pulley.support), |&k| at(k));
+            let way = after.x - before.x;
+            let right = if way < 0.0 || (way == 0.0 && self.turned) { -1.0 } else { 1.0 };
+            let over = if s.side == PulleySide::Over { 1.0 } else { -1.0 };
+            pulley.facing = right * over;
+        }
+    }
+
+    /// Every boundary: both senses of each body, then both of each pulley.
+    pub fn curves(&self) -> Vec<Curve> {
+        let p = &self.problem;
+        let mut out: Vec<Curve> = p.world.geometry().bodies().iter().flat_map(Curve::both).collect();
+        for s in p.supports.iter().filter(|s| s.kind == SupportKind::Pulley) {
+            for sense in [1.0, -1.0] {
+                out.push(Curve::wheel(s.wheel_radius, s.friction, sense));
+            }
+        }
+        out
+    }
+
+    /// What is given at a time, with supports dragged by hand where they are.
+    pub fn instant(&self, dragged: &[Option<Vec2>], time_s: f64, out: &mut Instant) {
+        let p = &self.problem;
+        let gravity = if p.linear_density > 0.0 { p.weight / p.linear_density } else { Vec2::zeros() };
+        let place = |(k, s): (usize, &crate::problem::SupportPoint)| {
+            let own = s.position_at(time_s).map_or(Vec2::zeros(), |(at, _)| at);
+            dragged.get(k).copied().flatten().unwrap_or(own)
+        };
+        let force = |l: &Load| match l.support.and_then(|k| p.supports.get(k)) {
+            Some(s) => s.force.at(time_s) + gravity * s.mass,
+            None => p.loads.get(l.load).map_or(Vec2::zeros(), |l| l.force.at(time_s)),
+        };
+        out.places.clear();
+        out.places.extend(p.supports.iter().enumerate().map(place));
+        out.forces.clear();
+        out.forces.extend(self.loads.iter().map(force));
+        (out.load, out.hint) = (p.body_force(time_s), 0.0);
+        if out.load.norm() == 0.0 {
+            (out.load, out.hint) = hint_of_weight(p, out.forces.iter().map(|f| f.norm()).sum());
+        }
+        (out.thermal, out.friction) = (p.thermal_stretch, 1.0);
+    }
+
+    /// The course at an instant; the boundaries are those of `self.curves()`.
+    pub fn course(&self, curves: Vec<Curve>, instant: &Instant) -> Course {
+        let loads = self.loads.iter().map(|l| PointForce { arc_length: l.arc_length, force: Vec2::zeros() });
+        let law = Law::new(instant.load, instant.thermal, self.problem.axial_stiffness);
+        let mut course = Course {
+            curves,
+            law,
+            drag: 0.0,
+            mobilised: self.problem.cable.friction_mobilised.way(),
+            loads: loads.collect(),
+        };
+        self.give(&mut course, instant);
+        course
+    }
+
+    /// Takes the numbers of an instant into a course.
+    pub fn give(&self, course: &mut Course, instant: &Instant) {
+        course.law.load = instant.load;
+        course.law.thermal = instant.thermal;
+        for (l, force) in course.loads.iter_mut().zip(&instant.forces) {
+            l.force = *force;
+        }
+        for pulley in self.strands.iter().flat_map(|s| &s.pulleys) {
+            for curve in course.curves.iter_mut().skip(pulley.curve).take(2) {
+                curve.shift = instant.places[pulley.support];
+            }
+        }
+        let bodies = self.problem.world.geometry().bodies();
+        for (k, curve) in course.curves.iter_mut().enumerate() {
+            if let Some(body) = bodies.get(k / 2) {
+                curve.friction = body.friction * instant.friction;
+            }
+        }
+        for pulley in self.strands.iter().flat_map(|s| &s.pulleys) {
+            for curve in course.curves.iter_mut().skip(pulley.curve).take(2) {
+                curve.friction = self.problem.supports[pulley.support].friction * instant.friction;
+            }
+        }
+    }
+
+    /// Dead force on an end of the cable, N.
+    pub fn end_force(&self, instant: &Instant, at: f64) -> Vec2 {
+        let here = self.loads.iter().zip(&instant.forces).filter(|(l, _)| l.arc_length == at);
+        here.fold(Vec2::zeros(), |sum, (_, f)| sum + f)
+    }
+}
+
+impl Clone for Instant {
+    fn clone(&self) -> Self {
+        Self { places: self.places.clone(), forces: self.forces.clone(), ..*self }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        self.places.clone_from(&other.places);
+        self.forces.clone_from(&other.forces);
+        (self.load, self.hint) = (other.load, other.hint);
+        (self.thermal, self.friction) = (other.thermal, other.friction);
+    }
+}
+
+impl Instant {
+    /// Becomes part f of the way from `from` to `to`.
+    pub fn between(&mut self, from: &Self, to: &Self, f: f64) {
+        self.clone_from(to);
+        if f >= 1.0 {
+            return;
+        }
+        let mix = |out: &mut [Vec2], from: &[Vec2]| {
+            for (b, a) in out.iter_mut().zip(from) {
+                *b = a + (*b - a) * f;
+            }
+        };
+        mix(&mut self.places, &from.places);
+        mix(&mut self.forces, &from.forces);
+        self.load = from.load + (to.load - from.load) * f;
+        self.thermal = from.thermal + (to.thermal - from.thermal) * f;
+        self.friction = from.friction + (to.friction - from.friction) * f;
+    }
+}
+
+/// Moves the ends of a strand to where an instant has them.
+///
+/// # Errors
+/// A support inside an obstacle.
+pub(in crate::model::spans) fn place_ends(
+    layout: &Layout,
+    index: usize,
+    strand: &mut Strand,
+    course: &Course,
+    instant: &Instant,
+) -> Result<(), Trouble> {
+    let part = &layout.strands[index];
+    for side in 0..2 {
+        let Some(support) = part.supports[side] else {
+            if let Tie::Hangs(force) | Tie::Loose(force) = &mut strand.ties[side] {
+                *force = layout.end_force(instant, part.material[side]);
+            }
+            continue;
+        };
+        let at = instant.places[support];
+        let world = &layout.problem.world;
+        let gap = world.signed_gap(at, layout.problem.radius).map(|g| g.gap_m);
+        if gap.is_some_and(|g| g < -crate::model::spans::changes::ON) {
+            return Err(Trouble::SupportInside { at });
+        }
+        crate::model::spans::contact::support_contact::place(strand, course, side, at);
+    }
+    Ok(())
+}

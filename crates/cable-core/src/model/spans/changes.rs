@@ -1,0 +1,500 @@
+//! What a converged strand may have to change: contacts released, joined, met, made.
+//!
+//! R a contact whose interval has turned round is let go; M two contacts of one chain are one; L one that pulls is parted (`lift`); P where a span runs into
+//! an obstacle the neighbouring contact is drawn out to it, or a new one begins at a point. After each the strand is
+//! solved again, until nothing fires.
+
+use crate::contact::swept_corners::{self, Corner};
+use crate::contact::{Gap, World};
+use crate::math::{Vec2, cross, perp, smaller};
+use crate::model::spans::boundary::capstan::Track;
+use crate::model::spans::boundary::curve::{Curve, Home};
+use crate::model::spans::contact::friction_memory::{Ends, History, Knot, Mode};
+use crate::model::spans::contact::kink_load;
+use crate::model::spans::contact::load_landing;
+use crate::model::spans::contact::point_load;
+use crate::model::spans::contact::release_below;
+use crate::model::spans::contact::slack_pocket;
+use crate::model::spans::failure::Trouble;
+use crate::model::spans::newton;
+use crate::model::spans::newton::{Solved, Work};
+use crate::model::spans::run::{Contact, Course, Strand, Tie};
+use crate::model::spans::verify::penetration;
+use crate::model::spans::verify::penetration::Hit;
+use crate::model::spans::verify::tunnelling;
+
+/// Events in one solve at most. A cold start over 24 corners takes 60.
+const MAX_EVENTS: usize = 200;
+/// A contact is let go when its interval has turned round by this much (m or rad). Smaller: rounding releases what
+/// touches in a point. Larger: a contact that pulls is accepted.
+const TURNED: f64 = 1e-10;
+/// Depth inside an obstacle that is met, of the strand's length, and at most, m. Smaller: rounding at touch points; larger: it
+/// is seen.
+const DEEP: f64 = 1e-9;
+const DEEPEST: f64 = 1e-6;
+/// Times in one solve at most that something is done about loads where Newton stalls.
+const MOST_CAUGHT: usize = 4;
+/// What lies beside a load is let go where it is shorter than this part of the strand when Newton stalls. Smaller: Newton comes
+/// so near to its end only after many halvings. Larger: it is laid down again for nothing.
+const SHED: f64 = 1e-4;
+/// Edges that a contact grows over at once.
+const MOST_EDGES: usize = 8;
+/// Part of p by which an end of a contact may be off the end of an arc and be taken to be there: Newton's steps go beyond it by
+/// less.
+const AT_BORDER: f64 = 1e-8;
+/// A support this near to a boundary lies on it, m.
+pub(in crate::model::spans) const ON: f64 = 1e-9;
+
+/// Solves a strand, events and all.
+///
+/// `came`: the shape it comes from, of a rest that is sought far away; what lies between is met.
+pub(in crate::model::spans) fn solve(
+    strand: &mut Strand,
+    course: &mut Course,
+    (world, corners): (&World, &[Corner]),
+    came: Option<&[Vec2]>,
+    work: &mut Work,
+) -> Result<Solved, Trouble> {
+    let (mut sum, mut caught) = (Solved::default(), 0);
+    for _ in 0..MAX_EVENTS {
+        point_load::join(strand, course)?;
+        let found = match newton::solve(strand, course, work) {
+            Ok(found) => found,
+            Err(stall) => {
+                sum.iterations += stall.iterations;
+                if grow(strand, course) || kink_load::enter(strand, course) {
+                    continue;
+                }
+                caught += 1;
+                if caught <= MOST_CAUGHT && (shed(strand, course)? || point_load::catch(strand, course)) {
+                    continue;
+                }
+                if let Some(support) = lifted(strand, course) {
+                    return Err(Trouble::OffWheel { support });
+                }
+                let s = strand.material(stall.at).0;
+                return Err(Trouble::Stalled { iterations: sum.iterations, residual: stall.residual, s });
+            }
+        };
+        sum.iterations += found.iterations;
+        sum.residual = found.residual;
+        // What was passed on the way says better than what is inside on which side of it the cable shall be.
+        let changed = release(strand, course)?
+            || join(strand, course)
+            || release_below::part(strand, course)
+            || kink_load::enter(strand, course)
+            || point_load::settle(strand, course)?
+            || slack_pocket::open(strand, course)
+            || match came {
+                Some(came) => passed(strand, course, (corners, came), work)?,
+                None => false,
+            }
+            || meet(strand, course, world, came.is_some())?;
+        if !changed {
+            // What else holds the cable may press it on to its wheel again: it is off when nothing else changes.
+            return lifted(strand, course).map_or(Ok(sum), |support| Err(Trouble::OffWheel { support }));
+        }
+    }
+    Err(Trouble::Restless { s: strand.from })
+}
+
+/// R: lets go of what no longer presses.
+fn release(strand: &mut Strand, course: &mut Course) -> Result<bool, Trouble> {
+    let turned = |c: &Contact| c.ends.p[1] - c.ends.p[0];
+    let worst = (0..strand.contacts.len())
+        .filter(|&j| !is_round_wheel(&strand.contacts[j], course))
+        .min_by(|&a, &b| turned(&strand.contacts[a]).total_cmp(&turned(&strand.contacts[b])));
+    let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -TURNED) else { return Ok(false) };
+    let_go(strand, course, j)
+}
+
+/// Whether a contact is a wheel, which has a side; an eye has none.
+fn is_round_wheel(c: &Contact, course: &Course) -> bool {
+    c.wheel.is_some() && course.track(c).place(c.ends.p[0]).stretch > 0.0
+}
+
+/// The wheel that the cable has turned round on most: it would have to pull there.
+fn lifted(strand: &Strand, course: &Course) -> Option<usize> {
+    let wheels = strand.contacts.iter().filter(|c| is_round_wheel(c, course));
+    let turned = |c: &&Contact| c.ends.p[1] - c.ends.p[0];
+    wheels.min_by(|a, b| turned(a).total_cmp(&turned(b))).filter(|c| turned(c) < -TURNED)?.wheel
+}
+
+/// S: lets go of what has shrunk to next to nothing beside a load, whose weight a span that turned round past it would count;
+/// whether there was any.
+fn shed(strand: &mut Strand, course: &mut Course) -> Result<bool, Trouble> {
+    let least = SHED * (strand.to - strand.from);
+    let small = |c: &Contact| !c.weight && c.ends.s[1] - c.ends.s[0] < least;
+    let beside = |j: usize| strand.is_joined(j, 0) || strand.is_joined(j, 1);
+    let Some(j) = (0..strand.contacts.len()).find(|&j| small(&strand.contacts[j]) && beside(j)) else {
+        return Ok(false);
+    };
+    let_go(strand, course, j)
+}
+
+fn let_go(strand: &mut Strand, course: &mut Course, j: usize) -> Result<bool, Trouble> {
+    if let Some(support) = strand.contacts[j].wheel {
+        if is_round_wheel(&strand.contacts[j], course) {
+            return Err(Trouble::OffWheel { support });
+        }
+        turn_eye(&mut strand.contacts[j]);
+        return Ok(true);
+    }
+    let contact = strand.contacts.remove(j);
+    let m = strand.contacts.len();
+    if let Some(before) = j.checked_sub(1).and_then(|i| strand.contacts.get_mut(i)) {
+        before.pocket = false;
+    }
+    // Beside a load there was no span; now there is the one that was on the other side.
+    let before = j.checked_sub(1).is_some_and(|i| std::mem::take(&mut strand.contacts[i].joined));
+    if before || contact.joined {
+        let (k, other) = if contact.joined { (j + 1, j) } else { (j, j + 1) };
+        let ends = (other == 0 && !strand.ties[0].has_span()) || (other > m && !strand.ties[1].has_span());
+        if ends {
+            return Err(Trouble::LoadLies { s: contact.ends.s[0] });
+        }
+        strand.forces.remove(k);
+        resolve(strand, course, j);
+        return Ok(true);
+    }
+    // What lay is held in the air now, or hangs.
+    for side in 0..2 {
+        let outer = if side == 0 { j == 0 } else { j == m };
+        if outer && !strand.ties[side].has_span() {
+            strand.ties[side] = match strand.ties[side] {
+                Tie::Lies(p) => Tie::Held(course.track(&contact).place(p).at),
+                Tie::Loose(force) => Tie::Hangs(force),
+                other => other,
+            };
+            strand.forces.remove(if side == 0 { 0 } else { m + 1 });
+            if strand.contacts.is_empty() && strand.forces.len() > 1 {
+                strand.forces.truncate(1);
+            }
+            resolve(strand, course, if side == 0 { 0 } else { m });
+            return Ok(true);
+        }
+    }
+    strand.forces.remove(j);
+    resolve(strand, course, j);
+    Ok(true)
+}
+
+/// The force of a span that has changed.
+pub(in crate::model::spans) fn resolve(strand: &mut Strand, course: &Course, k: usize) {
+    if let Some(g) = strand.solve_span(course, k) {
+        strand.forces[k] = g;
+    }
+}
+
+/// A point pulley may be passed on either side.
+fn turn_eye(c: &mut Contact) {
+    // Its boundary in the other sense: p → −p.
+    c.curve ^= 1;
+    c.ends.p = [-c.ends.p[0], -c.ends.p[1]];
+    let s = 0.5 * (c.ends.s[0] + c.ends.s[1]);
+    let knot = |k: usize| Knot { p: c.ends.p[k], s, tension: c.ends.t[k], m: 0.0 };
+    // Nothing is left between: it holds what it has.
+    let held = c.history.knots().first().map_or(s, |k| k.s);
+    c.history = History::new(Knot { s: held, ..knot(0) }, Knot { s: held, ..knot(1) });
+    if let Mode::Slide(m) = c.mode
+        && m != 0.0
+    {
+        c.mode = Mode::Hold;
+    }
+}
+
+/// M: two contacts of one chain, one after the other, are one.
+fn join(strand: &mut Strand, course: &Course) -> bool {
+    for j in 1..strand.contacts.len() {
+        let (a, b) = (&strand.contacts[j - 1], &strand.contacts[j]);
+        let loads = a.weight || b.weight;
+        let apart =
+            |track: &Track<'_>| track.curve.is_round() && release_below::hangs_between(track, a.ends.p[1], b.ends.p[0]);
+        if a.curve == b.curve
+            && a.home == b.home
+            && a.wheel.is_none()
+            && !loads
+            && b.ends.p[1] >= a.ends.p[0]
+            && !apart(&course.track(a))
+        {
+            let b = strand.contacts.remove(j);
+            strand.forces.remove(j);
+            let a = &mut strand.contacts[j - 1];
+            a.history.append(&course.track(&b), &b.history);
+            a.smooth &= b.smooth;
+            (a.pocket, a.joined) = (b.pocket, b.joined);
+            (a.ends.p[1], a.ends.s[1], a.ends.t[1]) = (b.ends.p[1], b.ends.s[1], b.ends.t[1]);
+            if let (Mode::Slide(m), Mode::Hold) = (a.mode, b.mode)
+                && m != 0.0
+            {
+                a.mode = Mode::Hold;
+            }
+            return true;
+        }
+    }
+    false
+}
+
+/// P: meets the deepest obstacle of each span.
+fn meet(strand: &mut Strand, course: &Course, world: &World, resting: bool) -> Result<bool, Trouble> {
+    if world.is_empty() {
+        return Ok(false);
+    }
+    let deep = smaller(DEEP * (strand.to - strand.from), DEEPEST);
+    let mut any = false;
+    // From the last span, so that those before keep their number.
+    for k in (0..strand.spans()).rev() {
+        if let Some(landing) = load_landing::find(strand, course, world, (k, deep)) {
+            load_landing::touch(strand, course, k, &landing)?;
+            any = true;
+            continue;
+        }
+        if let Some(hit) = penetration::deepest(strand, course, world, k, deep) {
+            touch(strand, course, k, &hit, resting)?;
+            any = true;
+        }
+    }
+    Ok(any)
+}
+
+/// Lays the cable on a corner it has passed through on its way.
+fn passed(
+    strand: &mut Strand,
+    course: &Course,
+    (corners, came): (&[Corner], &[Vec2]),
+    work: &mut Work,
+) -> Result<bool, Trouble> {
+    let mut shape = Vec::new();
+    tunnelling::shape(strand, course, &mut shape);
+    let Some(corner) = swept_corners::through(corners, came, &shape, &mut work.turns) else { return Ok(false) };
+    let mut best: Option<(f64, usize, f64, Vec2, Vec2)> = None;
+    for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
+        penetration::shapes(strand, course, k, |s0, at, c| {
+            for i in 1..PASSED_POINTS {
+                let s = c.span().length * i as f64 / PASSED_POINTS as f64;
+                let p = at + c.position_at(s);
+                let d = (p - corner.at).norm();
+                if best.is_none_or(|b| d < b.0) {
+                    best = Some((d, k, s0 + s, p, c.force_at(s)));
+                }
+            }
+        });
+    }
+    let Some((_, k, s, at, force)) = best else { return Ok(false) };
+    let tangent = force / force.norm();
+    // It must come to lie on the other side of the cable: on its left now, it shall be on its right.
+    let normal = perp(tangent) * cross(tangent, corner.at - at).signum();
+    let gap = Gap {
+        gap_m: -(corner.at - at).norm(),
+        normal,
+        point: corner.at,
+        fraction: 0.0,
+        friction: 0.0,
+        obstacle: 0,
+        feature: corner.feature,
+    };
+    touch(strand, course, k, &Hit { s, at: corner.at, tangent, gap, body: corner.body }, true)?;
+    Ok(true)
+}
+
+/// Points of a catenary among which the nearest to a corner is sought.
+const PASSED_POINTS: usize = 64;
+
+/// Lays span k down where it hit.
+///
+/// `resting`: a rest is sought, and what is found on the way has not rubbed.
+fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit, resting: bool) -> Result<(), Trouble> {
+    let no_seat = Trouble::NoSeat { s: hit.s, at: hit.at };
+    let back = hit.gap.normal.dot(&perp(hit.tangent)) < 0.0;
+    let curve_index = 2 * hit.body + usize::from(back);
+    let Some(curve) = course.curves.get(curve_index) else { return Err(no_seat) };
+    let load = course.law.load;
+    // In a kink there is nothing but its edges.
+    let kink = || [1, 3].into_iter().find_map(|back| curve.piece_of(hit.gap.feature.checked_sub(back)?, hit.at));
+    let Some(i) = curve.piece_of(hit.gap.feature, hit.at).or_else(kink) else { return Err(no_seat) };
+    // Of a wall or an underside the cable goes round the corner that is nearer.
+    let found = curve.chain(i, load).or_else(|| curve.chain(curve.corner_beside(i, hit.at)?, load));
+    let Some((i, home)) = found else { return Err(no_seat) };
+    let edge = curve.place_on(i, 0.0).turn == 0.0;
+    let p = if edge { curve.project(i, hit.at) } else { curve.with_tangent(i, hit.tangent) };
+    let ends = strand.ends_of(course, k);
+    let force = strand.force(course, k, hit.s).norm();
+    let same = |c: &Contact| c.curve == curve_index && c.home == home && c.wheel.is_none() && !c.weight;
+    let end = |j: Option<usize>, side: usize| {
+        j.and_then(|j| strand.contacts.get(j)).filter(|c| same(c)).map(|c| c.ends.p[side])
+    };
+    let p = match end(k.checked_sub(1), 1).or_else(|| end(Some(k), 0)).filter(|_| curve.is_round()) {
+        Some(end) => release_below::nearest_turn(p, end),
+        None => p,
+    };
+    // Below a post it goes on over the bottom only where its tension bears it there.
+    let bears = |c: &Contact, (from, to): (f64, f64)| {
+        let track = course.track(c);
+        let mut bears = true;
+        track.bottoms((from, to), |p| bears &= track.law.press(&track.place(p), force) >= 0.0);
+        bears || !curve.is_round()
+    };
+    if let Some(c) = k
+        .checked_sub(1)
+        .and_then(|j| strand.contacts.get_mut(j))
+        .filter(|c| same(c) && p > c.ends.p[1] && bears(c, (c.ends.p[1], p)))
+    {
+        let p = beyond_edges(curve, home, (p, 1), ends[1]);
+        (c.ends.p[1], c.ends.s[1], c.ends.t[1]) = (p, hit.s, force);
+        return Ok(());
+    }
+    if let Some(c) = strand.contacts.get_mut(k).filter(|c| same(c) && p < c.ends.p[0] && bears(c, (p, c.ends.p[0]))) {
+        let p = beyond_edges(curve, home, (p, 0), ends[0]);
+        (c.ends.p[0], c.ends.s[0], c.ends.t[0]) = (p, hit.s, force);
+        return Ok(());
+    }
+    let mut contact = Contact {
+        curve: curve_index,
+        home,
+        ends: Ends { p: [p, p], s: [hit.s, hit.s], t: [force, force] },
+        mode: if curve.friction > 0.0 && !resting { Mode::Hold } else { Mode::Slide(0.0) },
+        history: History::default(),
+        wheel: None,
+        flips: 0,
+        held: None,
+        pocket: false,
+        joined: false,
+        weight: false,
+        kink: None,
+        smooth: resting,
+    };
+    let track = course.track(&contact);
+    let mut lies = [None, None];
+    for side in 0..2 {
+        let outer = if side == 0 { k == 0 } else { k == strand.contacts.len() };
+        if let (true, Tie::Held(at)) = (outer, strand.ties[side])
+            && let Some(end) = curve.on_chain(home, at, ON)
+            && (if side == 0 { end <= p } else { end >= p })
+        {
+            let s = if side == 0 { strand.from } else { strand.to };
+            lies[side] = Some(end);
+            (contact.ends.p[side], contact.ends.s[side]) = (end, s);
+            // From the end that is held: so much is laid from there to the other.
+            let laid = track.slide(end, p, force, 0.0).material;
+            if lies[1 - side].is_none() {
+                contact.ends.s[1 - side] = s + laid;
+            }
+        }
+    }
+    let knot = |side: usize| Knot { p: contact.ends.p[side], s: contact.ends.s[side], tension: force, m: 0.0 };
+    contact.history = History::new(knot(0), knot(1));
+    let g = strand.forces[k];
+    strand.contacts.insert(k, contact);
+    strand.forces.insert(k, g);
+    for side in 0..2 {
+        if let Some(p) = lies[side] {
+            strand.ties[side] = Tie::Lies(p);
+        }
+    }
+    if resting {
+        lead(strand, course, k);
+    }
+    Ok(())
+}
+
+/// From p, where a contact ends on a side, on to the corner behind each edge that the way to the far end of the span there
+/// leads into: along an edge nothing turns, and Newton's method does not find across it.
+fn beyond_edges(curve: &Curve, home: Home, (mut p, side): (f64, usize), far: Option<Vec2>) -> f64 {
+    let (step, forward) = if side == 0 { (-1, -1.0) } else { (1, 1.0) };
+    let Some(far) = far else { return p };
+    let inside = |i: i64| i >= home.first && i <= home.last;
+    let mut i = curve.locate(p, home);
+    for _ in 0..MOST_EDGES {
+        let edge = if curve.is_arc(i) { i + step } else { i };
+        let arc = edge + step;
+        let way = (far - curve.place(p, home).at) * forward;
+        if !inside(edge) || !inside(arc) || curve.is_arc(edge) || !curve.is_arc(arc) {
+            break;
+        }
+        // An arc leads on to its edge where it does not come to run along the way.
+        if curve.is_arc(i) && curve.aside(i, way) != step {
+            break;
+        }
+        let place = curve.place_on(edge, 0.0);
+        let corner = curve.place_on(arc, if side == 0 { curve.piece(arc).extent } else { 0.0 }).at;
+        // On beyond the end of the edge, and below it there.
+        let on = (far - corner) * forward;
+        if (far - corner).dot(&place.normal) >= 0.0 || on.dot(&place.tangent) <= 0.0 {
+            break;
+        }
+        (p, i) = (curve.with_tangent(arc, on), arc);
+    }
+    p
+}
+
+/// What has been laid down in span k leads the contacts beside it over their edges.
+fn lead(strand: &mut Strand, course: &Course, k: usize) {
+    for (j, side) in [(k.checked_sub(1), 1), (Some(k + 1), 0)] {
+        if let Some(j) = j.filter(|&j| strand.contacts.get(j).is_some_and(|c| c.wheel.is_none() && !c.weight)) {
+            lead_end(strand, course, j, side);
+        }
+    }
+}
+
+/// Leads an end of contact j over edges; whether there was one.
+fn lead_end(strand: &mut Strand, course: &Course, j: usize, side: usize) -> bool {
+    let far = strand.ends_of(course, j + side)[side];
+    let c = &mut strand.contacts[j];
+    let p = beyond_edges(&course.curves[c.curve], c.home, (c.ends.p[side], side), far);
+    if p == c.ends.p[side] {
+        return false;
+    }
+    let way = course.curves[c.curve].length(c.ends.p[side], p, c.home) / course.law.stretch(c.ends.t[side]);
+    (c.ends.p[side], c.ends.s[side]) = (p, c.ends.s[side] + way);
+    true
+}
+
+/// Takes an end of contact j that lies at the start of an arc, seen along the contact, back over the edge before it where its span
+/// leaves that edge; whether it did.
+fn lift_end(strand: &mut Strand, course: &Course, j: usize, side: usize) -> bool {
+    let Some(far) = strand.ends_of(course, j + side)[side] else { return false };
+    let c = &mut strand.contacts[j];
+    let (curve, p) = (&course.curves[c.curve], c.ends.p[side]);
+    let (back, forward) = if side == 0 { (1, -1.0) } else { (-1, 1.0) };
+    let i = curve.locate(p, c.home);
+    let arc = if curve.is_arc(i) { i } else { i - back };
+    let (edge, near) = (arc + back, arc + 2 * back);
+    let inside = |i: i64| i >= c.home.first && i <= c.home.last;
+    let way = (far - curve.place(p, c.home).at) * forward;
+    if ![arc, edge, near].into_iter().all(inside) || curve.is_arc(edge) || !curve.is_arc(arc) || !curve.is_arc(near) {
+        return false;
+    }
+    if curve.aside(arc, way) != back {
+        return false;
+    }
+    let q = curve.with_tangent(near, way);
+    let other = c.ends.p[1 - side];
+    let q = if (q - other) * forward > 0.0 { q } else { other };
+    let moved = curve.length(p, q, c.home) / course.law.stretch(c.ends.t[side]);
+    (c.ends.p[side], c.ends.s[side]) = (q, c.ends.s[side] + moved);
+    moved != 0.0
+}
+
+/// G: contacts that came to the end of an arc, with their span turned on into the edge behind it, go on to the corner at the
+/// edge's far end, those that came to its start, with their span lifted off the edge before it, back to the near one; whether there
+/// was one. A stiff taut cable turns by w/T a metre along an edge: next to nothing.
+fn grow(strand: &mut Strand, course: &Course) -> bool {
+    let mut any = false;
+    for j in 0..strand.contacts.len() {
+        for side in 0..2 {
+            let c = &strand.contacts[j];
+            let curve = &course.curves[c.curve];
+            let p = c.ends.p[side];
+            let i = curve.locate(p, c.home);
+            let border = |q: f64| (p - q).abs() <= AT_BORDER * (1.0 + p.abs());
+            if c.wheel.is_none()
+                && !c.weight
+                && strand.has_span(j + side)
+                && (border(curve.origin(i)) || border(curve.end(i)))
+            {
+                any |= lead_end(strand, course, j, side) || lift_end(strand, course, j, side);
+            }
+        }
+    }
+    any
+}

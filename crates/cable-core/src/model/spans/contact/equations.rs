@@ -1,0 +1,275 @@
+//! A contact's two equations for its material, with their derivatives.
+//!
+//! Where some of it sticks, at the fronts p_l and p_r, with A the material between end and front as it slides:
+//!
+//! ```text
+//! s₁ + A₁ − s_old(p_l) = 0,      s₂ − A₂ − s_old(p_r) = 0
+//! ```
+//!
+//! Where all of it slides with m: s₂ − s₁ − A = 0 and T₂ = the tension the law makes of T₁. Moving an end by dp under the
+//! same end tension is the same as a tension there changed by −T'(p) dp, so every derivative by p follows from the one by
+//! tension. At a front both stretches have the same tension, so that moving it changes nothing.
+
+use crate::math::larger;
+use crate::model::spans::boundary::capstan::Track;
+use crate::model::spans::boundary::curve::Place;
+use crate::model::spans::contact::friction_memory::{Ends, Front, Held, History, Mode};
+
+/// Residuals and their derivatives by (p₁, s₁, T₁, p₂, s₂, T₂).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(in crate::model::spans) struct Rows {
+    pub residual: [f64; 2],
+    pub by: [[f64; 6]; 2],
+    /// Whether a row is of tensions (N), not of material (m).
+    pub of_tension: [bool; 2],
+}
+
+/// The rows of a contact in a mode, and where it sticks if it does.
+///
+/// `pinned`: which ends are held on the boundary, so that their tension is unknown by itself; `spots`: the places of its ends.
+pub(in crate::model::spans) fn rows(
+    track: &Track<'_>,
+    (history, e): (&History, &Ends),
+    spots: &[Place; 2],
+    (mode, pinned): (Mode, [bool; 2]),
+) -> (Rows, Option<Held>) {
+    // Lifted (Newton looks there): a point without friction.
+    let mode = if e.p[1] < e.p[0] { Mode::Slide(0.0) } else { mode };
+    match mode {
+        Mode::Slide(m) if track.floored && m != 0.0 => (drawn(track, e, spots, m), None),
+        Mode::Slide(m) => (sliding(track, (history, e), spots, m), None),
+        Mode::Hold => {
+            let held = history.hold(track, e);
+            let (mut out, fronts) = match held {
+                // Beyond its cone the rows of sticking go on smoothly: the mode is changed, not the rows.
+                Held::Between(fronts) | Held::Beyond(_, fronts) => (holding(track, e, spots, &fronts), fronts),
+                Held::Meet(fronts) => {
+                    let mut out = holding(track, e, spots, &fronts);
+                    meeting(&mut out, (track, history, e), spots, &fronts);
+                    (out, fronts)
+                }
+            };
+            for side in 0..2 {
+                if pinned[side] {
+                    pin(&mut out, (track, history, e), side, &fronts[side]);
+                }
+            }
+            (out, Some(held))
+        }
+    }
+}
+
+/// The row of an end that is held on the boundary, made linear in its tension.
+///
+/// Near the old tension what a change x of it moves is φ = ∓ k x|x|, k = 1/(2·D·EA·τ), D the difference of the slopes
+/// of tension at the front: flat at x = 0, where Newton starts. Its root √|φ| is straight. Where the end has not moved
+/// the answer is x = 0, with nothing to solve.
+fn pin(out: &mut Rows, (track, history, e): (&Track<'_>, &History, &Ends), side: usize, front: &Front) {
+    let (old_t, old_s) = history.at(track, e.p[side]);
+    let gap = e.s[side] - old_s;
+    let x = e.t[side] - old_t;
+    out.of_tension[side] = true;
+    if gap.abs() <= UNMOVED * (e.s[0].abs() + e.s[1].abs()) {
+        out.residual[side] = x;
+        out.by[side] = [0.0; 6];
+        out.by[side][3 * side + 2] = 1.0;
+        return;
+    }
+    let size = e.s[0].abs() + e.s[1].abs();
+    let law = &track.law;
+    let place = track.place(e.p[side]);
+    let sign = if side == 0 { -1.0 } else { 1.0 };
+    let target = -sign * gap;
+    // The way the tension will have to go decides the slope of the sliding there.
+    let m = front.m.abs() * if (target > 0.0) == (side == 0) { -1.0 } else { 1.0 };
+    let inner = e.p[side] + (e.p[1 - side] - e.p[side]) * 1e-9;
+    let drop = (law.slope(&place, old_t, m) - history.slope(track, inner)).abs() / place.stretch;
+    if drop <= PARALLEL * law.load.norm() {
+        // It slides on as it slid: the material follows the tension along the whole of the old sliding, evenly, which a
+        // tension that has not changed yet does not show.
+        out.of_tension[side] = false;
+        if x == 0.0 {
+            let nudged = old_t + NUDGE * (old_t.abs() + law.load.norm() * size) * target.signum();
+            let way = history.front(track, (e.p[side], nudged), e.p[1 - side]).way;
+            out.by[side][3 * side + 2] = way.material_by_tension;
+        }
+        return;
+    }
+    let k = place.stretch / (2.0 * drop * law.stiffness * law.thermal);
+    let solved = out.residual[side].abs() <= ROUNDING * size;
+    let phi = sign * (out.residual[side] - gap);
+    let root = |v: f64| v.signum() * v.abs().sqrt();
+    let flat = phi.abs() <= 1e-3 * gap.abs();
+    let value = if flat { x * k.sqrt() } else { root(phi) };
+    // The root of rounding is no rounding.
+    out.residual[side] = if solved { 0.0 } else { (value - root(target)) / k.sqrt() };
+    let factor = sign / (2.0 * phi.abs().sqrt() * k.sqrt());
+    for (i, by) in out.by[side].iter_mut().enumerate() {
+        *by = if i == 3 * side + 2 {
+            if flat { 1.0 } else { *by * factor }
+        } else if flat || i == 3 * side + 1 {
+            0.0
+        } else {
+            *by * factor
+        };
+    }
+}
+
+/// Where a cable runs away it is followed with a drag η: T₂ less what the law makes of T₁ is η (s_old(p₁) − s₁), the slip.
+fn sliding(track: &Track<'_>, (history, e): (&History, &Ends), [a, b]: &[Place; 2], m: f64) -> Rows {
+    let way = track.slide(e.p[0], e.p[1], e.t[0], m);
+    let slope = track.law.slope(a, e.t[0], m);
+    let (mut held, mut held_by) = (0.0, 0.0);
+    if track.drag > 0.0 {
+        let (t, s) = history.at(track, e.p[0]);
+        held = track.drag * (s - e.s[0]);
+        held_by = track.drag * a.stretch / track.law.stretch(t);
+    }
+    Rows {
+        residual: [e.s[1] - e.s[0] - way.material, e.t[1] - way.tension - held],
+        by: [
+            [
+                a.stretch / track.law.stretch(e.t[0]) + way.material_by_tension * slope,
+                -1.0,
+                -way.material_by_tension,
+                -b.stretch / track.law.stretch(way.tension),
+                1.0,
+                0.0,
+            ],
+            [
+                way.by_tension * slope - held_by,
+                track.drag,
+                -way.by_tension,
+                -track.law.slope(b, way.tension, m),
+                0.0,
+                1.0,
+            ],
+        ],
+        of_tension: [false, true],
+    }
+}
+
+/// Friction fully mobilised: from the end that is drawn the tension falls by the law, to nothing at most.
+fn drawn(track: &Track<'_>, e: &Ends, spots: &[Place; 2], m: f64) -> Rows {
+    let from = usize::from(m > 0.0);
+    let to = 1 - from;
+    let (way, _) = track.slide_floored(e.p[from], e.p[to], e.t[from], m);
+    let (start, end) = (&spots[from], &spots[to]);
+    let slope = track.law.slope(start, e.t[from], m);
+    let falls = if way.by_tension == 0.0 { 0.0 } else { track.law.slope(end, way.tension, m) };
+    let mut rows = Rows { of_tension: [false, true], ..Rows::default() };
+    rows.residual = [e.s[to] - e.s[from] - way.material, e.t[to] - way.tension];
+    let [lengths, tensions] = &mut rows.by;
+    lengths[3 * from] = start.stretch / track.law.stretch(e.t[from]) + way.material_by_tension * slope;
+    lengths[3 * from + 1] = -1.0;
+    lengths[3 * from + 2] = -way.material_by_tension;
+    lengths[3 * to] = -end.stretch / track.law.stretch(way.tension);
+    lengths[3 * to + 1] = 1.0;
+    tensions[3 * from] = way.by_tension * slope;
+    tensions[3 * from + 2] = -way.by_tension;
+    tensions[3 * to] = -falls;
+    tensions[3 * to + 2] = 1.0;
+    rows
+}
+
+fn holding(track: &Track<'_>, e: &Ends, spots: &[Place; 2], fronts: &[Front; 2]) -> Rows {
+    let law = &track.law;
+    let mut out = Rows::default();
+    for k in 0..2 {
+        let (f, place) = (&fronts[k], &spots[k]);
+        out.residual[k] = e.s[k] + f.way.material - f.old;
+        let slope = law.slope(place, e.t[k], f.m);
+        let by_t = f.way.material_by_tension;
+        out.by[k][3 * k] = -place.stretch / law.stretch(e.t[k]) - by_t * slope;
+        out.by[k][3 * k + 1] = 1.0;
+        out.by[k][3 * k + 2] = by_t;
+    }
+    out
+}
+
+/// What is added where the fronts meet: the meeting point moves with both tensions, and the old tension there differs from
+/// the new one.
+fn meeting(
+    out: &mut Rows,
+    (track, history, e): (&Track<'_>, &History, &Ends),
+    spots: &[Place; 2],
+    fronts: &[Front; 2],
+) {
+    let law = &track.law;
+    let place = track.place(fronts[0].p);
+    let t = fronts[0].way.tension;
+    let old = history.at(track, fronts[0].p).0;
+    let gain = place.stretch * (1.0 / law.stretch(t) - 1.0 / law.stretch(old));
+    let closing = law.slope(&place, t, fronts[0].m) - law.slope(&place, t, fronts[1].m);
+    if closing == 0.0 {
+        return;
+    }
+    for k in 0..2 {
+        let sign = if k == 0 { -1.0 } else { 1.0 };
+        let moved = gain * sign * fronts[k].way.by_tension / closing;
+        let slope = law.slope(&spots[k], e.t[k], fronts[k].m);
+        for row in &mut out.by {
+            row[3 * k + 2] += moved;
+            row[3 * k] -= moved * slope;
+        }
+    }
+}
+
+/// The mode to go on with: a contact that holds beyond its cone slides; one that would slide the wrong way holds.
+///
+/// `held`: where it sticks; `patience`: how many times rounding that is; 1 while it costs nothing to change.
+pub(in crate::model::spans) fn next_mode(
+    track: &Track<'_>,
+    (history, e): (&History, &Ends),
+    held: Option<Held>,
+    (mode, pinned): (Mode, [bool; 2]),
+    patience: f64,
+) -> Mode {
+    let friction = track.friction;
+    let (cone, stuck) = (CONE * patience, STUCK * patience);
+    if friction <= 0.0 || e.p[1] < e.p[0] {
+        return if friction <= 0.0 { Mode::Slide(0.0) } else { mode };
+    }
+    match mode {
+        Mode::Hold => match held.unwrap_or_else(|| history.hold(track, e)) {
+            Held::Beyond(m, _) => {
+                // Rounding at the edge of the cone is not sliding.
+                let reached = track.slide(e.p[0], e.p[1], e.t[0], m).tension;
+                if (e.t[1] - reached).abs() > cone * e.t[1].abs() { Mode::Slide(m) } else { mode }
+            }
+            _ => mode,
+        },
+        Mode::Slide(m) => {
+            for side in (0..2).filter(|&side| pinned[side]) {
+                let (old_t, old_s) = history.at(track, e.p[side]);
+                if (e.s[side] - old_s).abs() <= UNMOVED * (e.s[0].abs() + e.s[1].abs()) {
+                    // What does not move is drawn the more the more the rest slides away from it.
+                    let drawn = (e.t[side] - old_t) * m * if side == 0 { 1.0 } else { -1.0 };
+                    let rounding = cone * friction * larger(e.t[0].abs(), e.t[1].abs());
+                    return if drawn < -rounding { Mode::Hold } else { mode };
+                }
+            }
+            // With m = +μ material goes on along p, so there is less of it than was, s < s_old, at every p. The slip is
+            // least where the tension is what it was: before it the one stretch is the greater, after it the other.
+            let (old, _) = history.at(track, e.p[0]);
+            let least =
+                if (old - e.t[0]) * m > 0.0 { history.front(track, (e.p[0], e.t[0]), e.p[1]).p } else { e.p[0] };
+            let s = e.s[0] + track.slide(e.p[0], least, e.t[0], m).material;
+            let slid = s - history.at(track, least).1;
+            if m * slid > 0.0 && slid.abs() > stuck * (s.abs() + e.s[1].abs()) { Mode::Hold } else { mode }
+        }
+    }
+}
+
+/// Part of a tension by which the cone of friction may be left. Smaller: chatter of rounding; larger: creep.
+const CONE: f64 = 1e-13;
+/// Part of the material coordinate that is rounding.
+const ROUNDING: f64 = 1e-15;
+/// Part of a tension by which it is changed to see what that moves.
+const NUDGE: f64 = 1e-6;
+/// Slopes of tension nearer to each other than this part of the load are one.
+const PARALLEL: f64 = 1e-6;
+/// Part of the material coordinate that an end held on the boundary may be off without having moved.
+const UNMOVED: f64 = 1e-14;
+/// Part of the material coordinate that is no movement: rounding.
+const STUCK: f64 = 1e-15;

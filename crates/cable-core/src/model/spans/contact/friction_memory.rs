@@ -1,0 +1,443 @@
+//! What friction remembers of a contact, in closed form.
+//!
+//! Where the cable has stuck the tension is what it was, where it slides it follows the law of sliding from one end:
+//!
+//! ```text
+//! T(p) = clamp(T_old(p), max(L₁, L₂), min(U₁, U₂))
+//! ```
+//!
+//! with L and U the least and the greatest tension that sliding allows from the tension at either end (1 at p₁, 2 at
+//! p₂). This is the exact minimiser of the energy and the incremental dissipation: T − T_old has the sign that the law
+//! asks for wherever it slides. U₁ and L₂ follow m = +μ, L₁ and U₂ m = −μ, so whatever happens T stays a curve made of
+//! stretches with one m each: a knot where m changes is all there is to store, and nothing is ever interpolated.
+//! From each end T leaves its envelope at most once, at the *front*; between the fronts it sticks, and the material
+//! there is where it was. Material newly laid down beyond the old contact has the tension of its end, as even as friction
+//! can keep it (m between −μ and μ on each edge).
+
+use crate::math::smaller;
+use crate::model::spans::boundary::capstan::{Step, Track};
+use crate::model::spans::numerics::root::{FLOOR, crossing};
+
+/// Part of the friction coefficient by which it is changed to see what that moves.
+const NUDGE: f64 = 1e-6;
+
+/// A stretch of no more than this (m or rad) is none. Smaller: where friction goes to and fro over the same stretch rounding
+/// leaves a knot more each time. Larger: tension is off by as much times the slope of tension.
+const SLIVER: f64 = 1e-12;
+
+/// A point from which the tension follows the law with m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::model::spans) struct Knot {
+    pub p: f64,
+    /// Material there, m.
+    pub s: f64,
+    /// Tension there, N.
+    pub tension: f64,
+    /// m from here to the next knot.
+    pub m: f64,
+}
+
+/// Tension and material along a contact as they were last.
+#[derive(Debug, Default, PartialEq)]
+pub(in crate::model::spans) struct History {
+    knots: Vec<Knot>,
+}
+
+/// Ends of a contact: place, material (m), tension (N).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::model::spans) struct Ends {
+    pub p: [f64; 2],
+    pub s: [f64; 2],
+    pub t: [f64; 2],
+}
+
+/// How a contact stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::model::spans) enum Mode {
+    /// Some of it sticks.
+    Hold,
+    /// All of it slides with this m (0: smooth).
+    Slide(f64),
+}
+
+/// Where sliding from an end stops.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::model::spans) struct Front {
+    pub p: f64,
+    /// The way from the end to it.
+    pub way: Step,
+    pub m: f64,
+    /// Whether the old tension stopped it; else it came to the other end.
+    pub met: bool,
+    /// Old material at p, m.
+    pub old: f64,
+}
+
+/// A contact that holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::model::spans) enum Held {
+    /// It sticks between two fronts (or at one point).
+    Between([Front; 2]),
+    /// Sliding from both ends meets in one point, which sticks.
+    Meet([Front; 2]),
+    /// The end tensions are too far apart: it slides with this m. The fronts have passed each other.
+    Beyond(f64, [Front; 2]),
+}
+
+impl Clone for History {
+    fn clone(&self) -> Self {
+        Self { knots: self.knots.clone() }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        self.knots.clone_from(&other.knots);
+    }
+}
+
+impl History {
+    /// Material laid with one tension law from a point.
+    pub fn new(start: Knot, end: Knot) -> Self {
+        Self { knots: if end.p > start.p { vec![start, end] } else { vec![start] } }
+    }
+
+    /// Through these knots, as near as a part of the cone of friction allows.
+    pub fn through(track: &Track<'_>, knots: &[Knot], within: f64) -> Self {
+        let track = &Track { friction: track.friction * within, ..*track };
+        let mut out = Self { knots: knots.first().copied().into_iter().collect() };
+        out.append(track, &Self { knots: knots.get(1..).unwrap_or_default().to_vec() });
+        out
+    }
+
+    /// The same, from the last knot back.
+    pub fn through_back(track: &Track<'_>, knots: &[Knot], within: f64) -> Self {
+        let friction = track.friction * within;
+        let mut out: Vec<Knot> = Vec::with_capacity(knots.len());
+        for knot in knots.iter().rev() {
+            let mut knot = *knot;
+            if let Some(next) = out.last() {
+                if knot.p >= next.p {
+                    continue;
+                }
+                let reach = |m: f64| track.slide(next.p, knot.p, next.tension, m).tension;
+                knot.m = Self::between(&mut knot.tension, friction, reach, false);
+            }
+            out.push(knot);
+        }
+        out.reverse();
+        Self { knots: out }
+    }
+
+    /// The m with which sliding reaches a tension, which is brought to what it can reach. `grows`: what it reaches grows with m.
+    fn between(tension: &mut f64, friction: f64, reach: impl Fn(f64) -> f64, grows: bool) -> f64 {
+        let sign = if grows { 1.0 } else { -1.0 };
+        let (low, high) = (reach(-friction * sign), reach(friction * sign));
+        if *tension >= high {
+            *tension = high;
+            return friction * sign;
+        }
+        if *tension <= low {
+            *tension = low;
+            return -friction * sign;
+        }
+        let by = NUDGE * friction;
+        let goal = *tension;
+        sign * crossing((-friction, friction), FLOOR * goal.abs(), None, |m| {
+            (goal - reach(m * sign), (reach((m - by) * sign) - reach((m + by) * sign)) / (2.0 * by))
+        })
+    }
+
+    /// Material laid from `start` to p₁ and to p₂ with an even tension as far as friction holds that on every slope: what it is does
+    /// not depend on the end from which the cable is counted.
+    pub fn laid(track: &Track<'_>, start: Knot, [first, last]: [f64; 2]) -> Self {
+        let way = |to: f64| {
+            let mut knots = vec![Knot { m: 0.0, ..start }];
+            let (mut p, mut tension, mut s) = (start.p, start.tension, start.s);
+            while p != to {
+                let next = track.next_border(p, to);
+                let (m, way) = (track.even(0.5 * (p + next)), track.lay(p, next, tension));
+                // The law of a stretch stands at its left end.
+                if let (Some(knot), true) = (knots.last_mut(), next > p) {
+                    knot.m = m;
+                }
+                (p, tension, s) = (next, way.tension, s + way.material);
+                knots.push(Knot { p, s, tension, m });
+            }
+            knots
+        };
+        let mut out = Self::default();
+        way(first).into_iter().skip(1).rev().for_each(|knot| out.push(knot));
+        let right = way(last);
+        let end = right.len() - 1;
+        right
+            .into_iter()
+            .enumerate()
+            .for_each(|(k, knot)| out.push(if k == end { Knot { m: 0.0, ..knot } } else { knot }));
+        out
+    }
+
+    /// The same from the middle of its length with a tension there, N, what is missing or too much of its material at both ends alike; no
+    /// end has less than that tension: weight that hangs down on both sides of a crest is held there.
+    pub fn laid_from_middle(track: &Track<'_>, e: &Ends, tension: f64) -> Self {
+        let middle = Knot { p: track.middle(e.p), s: 0.5 * (e.s[0] + e.s[1]), tension, m: 0.0 };
+        let mut laid = Self::laid(track, middle, e.p);
+        let missing = tension - laid.ends().map_or(tension, |[a, b]| smaller(a.tension, b.tension));
+        if missing > 0.0 {
+            laid = Self::laid(track, Knot { tension: tension + missing, ..middle }, e.p);
+        }
+        let off = laid.ends().map_or(0.0, |[a, b]| middle.s - 0.5 * (a.s + b.s));
+        laid.knots.iter_mut().for_each(|knot| knot.s += off);
+        laid
+    }
+
+    /// Counts its material anew from its first knot (its last, if `back`), as its tensions strain it.
+    pub fn measure(&mut self, track: &Track<'_>, back: bool) {
+        let way = |a: &Knot, b: &Knot| track.slide(a.p, b.p, a.tension, a.m).material;
+        if back {
+            for k in (1..self.knots.len()).rev() {
+                self.knots[k - 1].s = self.knots[k].s - way(&self.knots[k - 1], &self.knots[k]);
+            }
+        } else {
+            for k in 1..self.knots.len() {
+                self.knots[k].s = self.knots[k - 1].s + way(&self.knots[k - 1], &self.knots[k]);
+            }
+        }
+    }
+
+    /// Its first and last knot.
+    fn ends(&self) -> Option<[Knot; 2]> {
+        Some([*self.knots.first()?, *self.knots.last()?])
+    }
+
+    /// The knots.
+    pub fn knots(&self) -> &[Knot] {
+        &self.knots
+    }
+
+    /// Takes over what another contact, joined to this one at its end, remembers. Between the two, and on as far as it
+    /// must, tension is brought within the cone by the least change.
+    pub fn append(&mut self, track: &Track<'_>, next: &Self) {
+        let friction = track.friction;
+        for knot in &next.knots {
+            let mut knot = *knot;
+            let mut tension = knot.tension;
+            if let Some(last) = self.knots.last_mut() {
+                if knot.p <= last.p {
+                    continue;
+                }
+                let from = *last;
+                let reach = |m: f64| track.slide(from.p, knot.p, from.tension, m).tension;
+                last.m = Self::between(&mut tension, friction, reach, true);
+                knot.tension = tension;
+            }
+            self.knots.push(knot);
+        }
+    }
+
+    /// What is remembered up to p, and from there on.
+    pub fn split(&self, track: &Track<'_>, p: f64) -> (Self, Self) {
+        let (tension, s) = self.at(track, p);
+        let knot = Knot { p, s, tension, m: self.called(track, p) };
+        let before = self.knots.iter().filter(|k| k.p < p).copied().chain([Knot { m: 0.0, ..knot }]);
+        let after = [knot].into_iter().chain(self.knots.iter().filter(|k| k.p > p).copied());
+        (Self { knots: before.collect() }, Self { knots: after.collect() })
+    }
+
+    /// Forgets everything but what is new; keeps the memory of the list.
+    fn clear(&mut self) {
+        self.knots.clear();
+    }
+
+    fn push(&mut self, k: Knot) {
+        if let Some(last) = self.knots.last_mut() {
+            if k.p - last.p <= SLIVER {
+                // A stretch of no extent.
+                last.m = k.m;
+                return;
+            }
+            if self.knots.len() > 1 {
+                let n = self.knots.len();
+                if self.knots[n - 2].m == self.knots[n - 1].m {
+                    self.knots.pop();
+                }
+            }
+        }
+        self.knots.push(k);
+    }
+
+    /// The knot from which the tension at p follows, seen going on to the right or back to the left, and whether it lies
+    /// beyond what was there.
+    fn knot(&self, p: f64, right: bool) -> (Knot, bool) {
+        let k = self.knots.partition_point(|k| if right { k.p <= p } else { k.p < p });
+        match k.checked_sub(1).and_then(|j| self.knots.get(j)) {
+            None => (self.knots.first().copied().unwrap_or(Knot { p, s: 0.0, tension: 0.0, m: 0.0 }), true),
+            Some(knot) => (*knot, k == self.knots.len()),
+        }
+    }
+
+    /// Old tension and material at p.
+    pub fn at(&self, track: &Track<'_>, p: f64) -> (f64, f64) {
+        let (knot, beyond) = self.knot(p, true);
+        let way =
+            if beyond { track.lay(knot.p, p, knot.tension) } else { track.slide(knot.p, p, knot.tension, knot.m) };
+        (way.tension, knot.s + way.material)
+    }
+
+    /// The friction coefficient called upon at p.
+    pub fn called(&self, track: &Track<'_>, p: f64) -> f64 {
+        let (knot, beyond) = self.knot(p, true);
+        if beyond { track.even(p) } else { knot.m }
+    }
+
+    /// From p towards `to`: how far the old tension has one law there, and its m.
+    fn stretch(&self, track: &Track<'_>, p: f64, to: f64) -> (f64, f64) {
+        let right = to > p;
+        let (knot, beyond) = self.knot(p, right);
+        let k = self.knots.partition_point(|k| if right { k.p <= p } else { k.p < p });
+        let border = if right { self.knots.get(k) } else { k.checked_sub(1).and_then(|j| self.knots.get(j)) };
+        let mut next = track.next_border(p, to);
+        if let Some(b) = border
+            && (if right { b.p < next } else { b.p > next })
+        {
+            next = b.p;
+        }
+        (next, if beyond { track.even(0.5 * (p + next)) } else { knot.m })
+    }
+
+    /// dT/dp of the old tension at p.
+    pub fn slope(&self, track: &Track<'_>, p: f64) -> f64 {
+        track.law.slope(&track.place(p), self.at(track, p).0, self.called(track, p))
+    }
+
+    /// Slides from an end at p with tension `t` towards `to`, as far as the old tension lets it.
+    pub fn front(&self, track: &Track<'_>, (p, t): (f64, f64), to: f64) -> Front {
+        let right = to > p;
+        let (mut old, mut s) = self.at(track, p);
+        let sign = if t < old { 1.0 } else { -1.0 };
+        let m = track.friction * sign * if right { 1.0 } else { -1.0 };
+        let (mut at, mut way) = (p, Step::none(t));
+        if (t - old).abs() <= FLOOR * t.abs() {
+            return Front { p, way, m, met: true, old: s };
+        }
+        while at != to {
+            let (next, old_m) = self.stretch(track, at, to);
+            let (met, [there, here]) = track.on(at, next).crossing(next, [(old, old_m), (way.tension, m)]);
+            way = way.then(here);
+            if let Some(x) = met {
+                return Front { p: x, way, m, met: true, old: s + there.material };
+            }
+            (old, s) = (there.tension, s + there.material);
+            at = next;
+            if (old - way.tension) * sign <= 0.0 {
+                return Front { p: at, way, m, met: true, old: s };
+            }
+        }
+        Front { p: to, way, m, met: false, old: s }
+    }
+
+    /// Where a contact sticks under its end tensions.
+    pub fn hold(&self, track: &Track<'_>, e: &Ends) -> Held {
+        let friction = track.friction;
+        let [p1, p2] = e.p;
+        let [t1, t2] = e.t;
+        let left = self.front(track, (p1, t1), p2);
+        let right = self.front(track, (p2, t2), p1);
+        if left.met && right.met && left.p <= right.p {
+            return Held::Between([left, right]);
+        }
+        // One has come past the other, or to the far end: either the tensions are too far apart …
+        let beyond = |m: f64| Held::Beyond(m, [left, right]);
+        if !(p2 > p1) {
+            return beyond(if t2 > t1 { friction } else { -friction });
+        }
+        // (along a slope the load may make the tension behind the greater all the same) …
+        if left.m == right.m {
+            return beyond(left.m);
+        }
+        if t2 > track.slide(p1, p2, t1, friction).tension {
+            return beyond(friction);
+        }
+        if t2 < track.slide(p1, p2, t1, -friction).tension {
+            return beyond(-friction);
+        }
+        // … or they slide towards or away from each other.
+        let sign = if left.m > 0.0 { 1.0 } else { -1.0 };
+        let meet = crossing((p1, p2), FLOOR * (t1.abs() + t2.abs()), None, |x| {
+            let (r, l) = (track.slide(p2, x, t2, right.m).tension, track.slide(p1, x, t1, left.m).tension);
+            let place = track.place(x);
+            let slope = track.law.slope(&place, r, right.m) - track.law.slope(&place, l, left.m);
+            ((r - l) * sign, slope * sign)
+        });
+        let old = self.at(track, meet).1;
+        let front = |p: f64, t: f64, m: f64| Front { p: meet, way: track.slide(p, meet, t, m), m, met: true, old };
+        Held::Meet([front(p1, t1, left.m), front(p2, t2, right.m)])
+    }
+
+    /// Takes what came of a step as the new past. `held`: where it sticks, where that is known; `old`: memory.
+    pub fn commit(&mut self, track: &Track<'_>, e: &Ends, (mode, held): (Mode, Option<Held>), old: &mut Self) {
+        let [first, last] = [0, 1].map(|k| Knot { p: e.p[k], s: e.s[k], tension: e.t[k], m: 0.0 });
+        if last.p <= first.p {
+            self.clear();
+            self.knots.push(first);
+            return;
+        }
+        match mode {
+            Mode::Slide(m) => {
+                let from = if m > 0.0 { last } else { first };
+                let to = if m > 0.0 { first } else { last };
+                let loose = match track.floored && m != 0.0 {
+                    true => track.slide_floored(from.p, to.p, from.tension, m).1,
+                    false => None,
+                };
+                self.clear();
+                let Some((p, material)) = loose else {
+                    self.knots.extend([Knot { m, ..first }, last]);
+                    return;
+                };
+                // Loose from there to the end that is not drawn, as even as friction keeps it: without tension.
+                let end = Knot { p, s: from.s + material, tension: 0.0, m };
+                let [a, b] = if m > 0.0 { [first, end] } else { [end, last] };
+                let laid = Self::laid(track, Knot { tension: 0.0, ..if m > 0.0 { a } else { b } }, [a.p, b.p]);
+                if m < 0.0 {
+                    self.push(Knot { m, ..first });
+                }
+                laid.knots.iter().for_each(|knot| self.push(*knot));
+                if m > 0.0 {
+                    self.push(end);
+                    self.push(last);
+                }
+            }
+            Mode::Hold => match held.unwrap_or_else(|| self.hold(track, e)) {
+                Held::Between([left, right]) => {
+                    old.clone_from(self);
+                    self.clear();
+                    if left.p > first.p {
+                        self.push(Knot { m: left.m, ..first });
+                    }
+                    let mut p = left.p;
+                    while p < right.p {
+                        let (next, m) = old.stretch(track, p, right.p);
+                        let (tension, s) = old.at(track, p);
+                        self.push(Knot { p, s, tension, m });
+                        p = next;
+                    }
+                    if right.p < last.p {
+                        let (tension, s) = old.at(track, right.p);
+                        self.push(Knot { p: right.p, s, tension, m: right.m });
+                    }
+                    self.push(last);
+                }
+                Held::Meet([left, right]) => {
+                    let (tension, s) = (left.way.tension, e.s[0] + left.way.material);
+                    self.clear();
+                    self.push(Knot { m: left.m, ..first });
+                    self.push(Knot { p: left.p, s, tension, m: right.m });
+                    self.push(last);
+                }
+                Held::Beyond(m, _) => {
+                    self.clear();
+                    self.knots.extend([Knot { m, ..first }, last]);
+                }
+            },
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! Loads in a concave kink of a boundary, held by both its edges.
+//!
+//! What slides down into a kink stays there as long as the force V on it lies between the cones of friction of the two edges:
+//! it leaves along its own edge where V·t back from the kink is more than μN, with N = −V·n of that edge alone, and likewise along
+//! the other. The cable beside it may lie on either edge, joined to it.
+
+use crate::math::{Vec2, larger};
+use crate::model::spans::changes::resolve;
+use crate::model::spans::contact::friction_memory::{History, Knot, Mode};
+use crate::model::spans::contact::point_load::{Felt, felt};
+use crate::model::spans::failure::Trouble;
+use crate::model::spans::run::{Contact, Course, Strand};
+
+/// A load so far beyond the end of its chain (m or rad) is in the kink there. Smaller: rounding.
+const BEYOND: f64 = 1e-12;
+/// Part of the forces that is rounding.
+const CONE: f64 = 1e-12;
+/// Part of the strand that a contact gives way by where a load leaves it, to begin with.
+const GIVES: f64 = 1e-6;
+
+/// Which way along the boundary the kink lies that a load is in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::spans) enum Kink {
+    Back,
+    Ahead,
+}
+
+impl Kink {
+    fn sign(self) -> f64 {
+        match self {
+            Self::Back => -1.0,
+            Self::Ahead => 1.0,
+        }
+    }
+
+    fn side(self) -> usize {
+        match self {
+            Self::Back => 0,
+            Self::Ahead => 1,
+        }
+    }
+}
+
+/// The piece beyond the kink at an end of a contact's chain, and p of the kink.
+fn beyond(course: &Course, c: &Contact, kink: Kink) -> Option<(i64, f64)> {
+    let curve = &course.curves[c.curve];
+    let p = if kink == Kink::Back { curve.origin(c.home.first) } else { curve.end(c.home.last) };
+    curve.beyond_kink(c.home, kink.side()).map(|i| (i, p))
+}
+
+/// Direction and normal of the other edge where it begins.
+fn other(course: &Course, c: &Contact, kink: Kink) -> Option<(Vec2, Vec2)> {
+    let curve = &course.curves[c.curve];
+    let (i, _) = beyond(course, c, kink)?;
+    let place = curve.place_on(i, if kink == Kink::Ahead { 0.0 } else { curve.piece(i).extent });
+    Some((place.tangent, place.normal))
+}
+
+/// The way V pushes the load out of its kink: away along its own edge, or on along the other (`true`).
+fn leaves(course: &Course, c: &Contact, (kink, f): (Kink, &Felt), room: f64) -> Option<bool> {
+    let out = |along: f64, press: f64| along > course.friction(c) * larger(press, 0.0) + room * f.size;
+    if out(-kink.sign() * f.sum.dot(&f.tangent), -f.sum.dot(&f.normal)) {
+        return Some(false);
+    }
+    let (tangent, normal) = other(course, c, kink)?;
+    out(kink.sign() * f.sum.dot(&tangent), -f.sum.dot(&normal)).then_some(true)
+}
+
+/// N of both edges together.
+pub(in crate::model::spans) fn press(course: &Course, c: &Contact, f: &Felt) -> f64 {
+    match c.kink.and_then(|kink| other(course, c, kink)) {
+        Some((_, normal)) => -f.sum.dot(&(f.normal + normal).normalize()),
+        None => f.press(),
+    }
+}
+
+/// Whether the load keeps its kink, to a part of its forces.
+pub(in crate::model::spans) fn holds(course: &Course, c: &Contact, (kink, f): (Kink, &Felt), room: f64) -> bool {
+    leaves(course, c, (kink, f), room).is_none()
+}
+
+/// K: loads that have come into a kink stay there; whether there was one.
+pub(in crate::model::spans) fn enter(strand: &mut Strand, course: &Course) -> bool {
+    for c in strand.contacts.iter_mut().filter(|c| c.weight && c.kink.is_none()) {
+        for kink in [Kink::Back, Kink::Ahead] {
+            let Some((_, p)) = beyond(course, c, kink) else { continue };
+            if (c.ends.p[0] - p) * kink.sign() > BEYOND {
+                let knot = Knot { p, s: c.ends.s[0], tension: c.ends.t[0], m: 0.0 };
+                c.ends.p = [p; 2];
+                c.history = History::new(knot, knot);
+                (c.kink, c.mode, c.smooth) = (Some(kink), Mode::Hold, false);
+                return true;
+            }
+        }
+    }
+    false
+}
+
+/// Lets the load that is contact j out of its kink; whether it left.
+pub(in crate::model::spans) fn leave(strand: &mut Strand, course: &Course, j: usize) -> Result<bool, Trouble> {
+    let f = felt(strand, course, j);
+    let c = &strand.contacts[j];
+    let Some(kink) = c.kink else { return Ok(false) };
+    let Some(on) = leaves(course, c, (kink, &f), CONE) else { return Ok(false) };
+    let (curve, friction) = (&course.curves[c.curve], course.friction(c));
+    let mut home = c.home;
+    if on {
+        let found = beyond(course, c, kink).and_then(|(i, _)| curve.chain(i, course.law.load));
+        home = found.ok_or(Trouble::LoadLies { s: c.ends.s[0] })?.1;
+    }
+    let p = match (kink, on) {
+        (Kink::Ahead, true) => curve.origin(home.first),
+        (Kink::Back, true) => curve.end(home.last),
+        _ => c.ends.p[0],
+    };
+    let c = &mut strand.contacts[j];
+    let knot = Knot { p, s: c.ends.s[0], tension: c.ends.t[0], m: 0.0 };
+    (c.home, c.ends.p, c.history, c.kink) = (home, [p; 2], History::new(knot, knot), None);
+    c.mode = Mode::Slide(friction * if on { kink.sign() } else { -kink.sign() });
+    for side in 0..2 {
+        part(strand, course, (j, side));
+    }
+    Ok(true)
+}
+
+/// What is joined to the load that is contact j but lies on another chain leaves it by a span.
+fn part(strand: &mut Strand, course: &Course, (j, side): (usize, usize)) {
+    if !strand.is_joined(j, side) {
+        return;
+    }
+    let i = j + 2 * side - 1;
+    if strand.contacts[i].home == strand.contacts[j].home {
+        return;
+    }
+    strand.contacts[if side == 0 { i } else { j }].joined = false;
+    give_way(strand, (i, 1 - side));
+    resolve(strand, course, j + side);
+}
+
+/// An end of contact i gives way by a little, for a span to begin there.
+pub(in crate::model::spans) fn give_way(strand: &mut Strand, (i, end): (usize, usize)) {
+    let gives = GIVES * (strand.to - strand.from);
+    let e = &mut strand.contacts[i].ends;
+    let (most, sign) = (0.5 * (e.s[1] - e.s[0]), if end == 0 { 1.0 } else { -1.0 });
+    let by = if gives < most { gives } else { most };
+    e.s[end] += sign * by;
+    e.p[end] += sign * 0.5 * (e.p[1] - e.p[0]) * if most > 0.0 { by / most } else { 0.0 };
+}
+
+/// Whether contact `c` lies on the chain beyond the kink that a load is in, on that side.
+pub(in crate::model::spans) fn follows(course: &Course, load: &Contact, c: &Contact, side: usize) -> bool {
+    load.kink.is_some_and(|kink| {
+        kink.side() == side
+            && c.curve == load.curve
+            && beyond(course, load, kink).is_some_and(|(i, p)| {
+                let curve = &course.curves[c.curve];
+                let (first, at) = match kink {
+                    Kink::Ahead => (c.home.first, curve.origin(c.home.first)),
+                    Kink::Back => (c.home.last, curve.end(c.home.last)),
+                };
+                // Of a closed boundary that is counted from another turn nothing is said.
+                first == i && at == p
+            })
+    })
+}

@@ -1,0 +1,137 @@
+//! Loads and ends of the cable that come down onto a boundary, found and laid down where they did; what they are there is said
+//! in `weight`.
+
+use crate::contact::{Gap, World};
+use crate::math::{Vec2, larger, perp};
+use crate::model::spans::contact::friction_memory::{Ends, History, Knot, Mode};
+use crate::model::spans::contact::point_load::LIFTS;
+use crate::model::spans::failure::Trouble;
+use crate::model::spans::run::{Contact, Course, Strand, Tie};
+use crate::model::spans::verify::penetration;
+
+/// A load of span k, or the tip of it, that is deeper inside something than `deep` (m).
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::spans) struct Landing {
+    s: f64,
+    at: Vec2,
+    /// Direction of the cable there, about, of any length.
+    along: Vec2,
+    gap: Gap,
+    body: usize,
+    /// The end of the strand that it is.
+    tip: Option<usize>,
+}
+
+/// What of span k is inside something.
+pub(in crate::model::spans) fn find(
+    strand: &Strand,
+    course: &Course,
+    world: &World,
+    (k, deep): (usize, f64),
+) -> Option<Landing> {
+    let hangs = [k == 0, k == strand.contacts.len()];
+    let (from, to) = strand.material(k);
+    let inner = course.loads.iter().any(|l| l.arc_length > from && l.arc_length < to);
+    let tip = |side: usize| hangs[side] && matches!(strand.ties[side], Tie::Hangs(_));
+    if !strand.has_span(k) || !(inner || tip(0) || tip(1)) {
+        return None;
+    }
+    let mut worst: Option<Landing> = None;
+    let look = |s: f64, at: Vec2, along: Vec2, tip: Option<usize>, worst: &mut Option<Landing>| {
+        let Some(gap) = world.signed_gap(at, strand.to - strand.from).filter(|g| g.gap_m < -deep) else { return };
+        let Some(body) = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle) else { return };
+        if worst.is_none_or(|w| gap.gap_m < w.gap.gap_m) {
+            *worst = Some(Landing { s, at, along, gap, body, tip });
+        }
+    };
+    let mut before: Option<Vec2> = None;
+    penetration::shapes(strand, course, k, |s0, at, shape| {
+        let (start, end) = (shape.start_force(), shape.end_force());
+        match before.take() {
+            Some(force) => look(s0, at, force / force.norm() + start / start.norm(), None, &mut worst),
+            None if tip(0) => look(s0, at, start, Some(0), &mut worst),
+            None => {}
+        }
+        before = Some(end);
+        if tip(1) && s0 + shape.span().length >= to {
+            look(to, at + shape.span().chord, end, Some(1), &mut worst);
+        }
+    });
+    worst
+}
+
+/// Lays down what has landed of span k.
+pub(in crate::model::spans) fn touch(
+    strand: &mut Strand,
+    course: &Course,
+    k: usize,
+    l: &Landing,
+) -> Result<(), Trouble> {
+    let no_seat = Trouble::NoSeat { s: l.s, at: l.at };
+    let drawn = match l.tip.map(|side| strand.ties[side]) {
+        Some(Tie::Hangs(force)) => force,
+        _ => Vec2::zeros(),
+    };
+    let pressed = l.tip.is_none() || drawn.dot(&l.gap.normal) < -LIFTS * drawn.norm();
+    // An end that nothing presses down slides on with its load as it lies down, or comes to lie in a heap.
+    let load = course.law.load;
+    let down = load - l.gap.normal * load.dot(&l.gap.normal);
+    let along = if pressed { l.along } else { down * if l.tip == Some(0) { -1.0 } else { 1.0 } };
+    let index = 2 * l.body + usize::from(l.gap.normal.dot(&perp(along)) < 0.0);
+    let Some(curve) = course.curves.get(index) else { return Err(no_seat) };
+    // In a kink there is nothing but its edges.
+    let kink = || [1, 3].into_iter().find_map(|back| curve.piece_of(l.gap.feature.checked_sub(back)?, l.at));
+    let found = curve.piece_of(l.gap.feature, l.at).or_else(kink).and_then(|i| curve.chain(i, load));
+    let Some((i, home)) = found else { return Err(no_seat) };
+    let p = curve.project(i, l.at);
+    let tension = strand.force(course, k, l.s).norm();
+    let knot = |p: f64, s: f64, tension: f64| Knot { p, s, tension, m: 0.0 };
+    let mut c = Contact {
+        curve: index,
+        home,
+        ends: Ends { p: [p; 2], s: [l.s, l.s.next_up()], t: [tension; 2] },
+        mode: Mode::Slide(0.0),
+        held: None,
+        history: History::new(knot(p, l.s, tension), knot(p, l.s, tension)),
+        wheel: None,
+        flips: 0,
+        pocket: false,
+        joined: false,
+        weight: true,
+        kink: None,
+        smooth: true,
+    };
+    let Some(side) = l.tip else {
+        let g = strand.forces[k];
+        strand.contacts.insert(k, c);
+        strand.forces.insert(k + 1, g);
+        return Ok(());
+    };
+    c.ends.s = [l.s; 2];
+    if !pressed {
+        let place = curve.place(p, home);
+        let (press, pull) = (-load.dot(&place.normal), load.dot(&place.tangent).abs());
+        let rate = pull - curve.friction * press;
+        if !(rate > 0.0) {
+            return Err(Trouble::Compressed { s: l.s, at: l.at, tension: 0.0 });
+        }
+        // So much of it hangs below the surface, and lies along it.
+        let hangs = if l.along.norm() > 0.0 { l.along } else { load };
+        let steep = hangs.dot(&place.normal).abs() / hangs.norm();
+        let below = -l.gap.gap_m / larger(steep, 0.1);
+        let sign = if side == 0 { -1.0 } else { 1.0 };
+        let (inner, tension) = (1 - side, rate * below);
+        (c.weight, c.smooth) = (false, false);
+        c.ends.p[side] += sign * below;
+        c.ends.s[inner] -= sign * below;
+        (c.ends.t[side], c.ends.t[inner]) = (0.0, tension);
+        c.mode = Mode::Slide(sign * curve.friction);
+        let e = c.ends;
+        c.history = History::new(knot(e.p[0], e.s[0], e.t[0]), knot(e.p[1], e.s[1], e.t[1]));
+        strand.forces[k] = place.tangent * tension + course.load_between(strand.from, e.s[inner]);
+    }
+    strand.ties[side] = Tie::Loose(drawn);
+    strand.contacts.insert(k, c);
+    strand.forces.insert(k + side, Vec2::zeros());
+    Ok(())
+}

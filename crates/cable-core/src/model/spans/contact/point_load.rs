@@ -1,0 +1,412 @@
+//! Dead loads that lie on a boundary, inside the cable or at an end of it.
+//!
+//! Such a load P is a contact without extent: p₁ = p₂ = q, and its material is its own (after it the next number, so that
+//! what is summed up to there has the load in it, and what is summed up to before it has not). With F₋ and F₊ the force of
+//! the cable before and after it, pressed by N n and rubbed by −mN t as all that lies (see `law`), V = F₊ − F₋ + P:
+//!
+//! ```text
+//! V + N n − m N t = 0:      N = −V·n,      V·(t + m n) = 0  where it slides with m,      |V·t| ≤ μN  where it sticks
+//! ```
+//!
+//! The cable beside it comes from the air at any angle, a span that ends in q; or it lies on the same chain, F = T t, and
+//! there is no span between the two: they are *joined*, and T stands where the force of that span would stand. At an end of
+//! the cable nothing is beyond it, and P is what draws the end.
+
+use crate::catenary::PointForce;
+use crate::math::{Vec2, larger, smaller};
+use crate::model::spans::boundary::capstan::Track;
+use crate::model::spans::changes::resolve;
+use crate::model::spans::contact::friction_memory::{Ends, History, Knot, Mode};
+use crate::model::spans::contact::kink_load;
+use crate::model::spans::failure::Trouble;
+use crate::model::spans::numerics::root::{FLOOR, crossing};
+use crate::model::spans::run::{Contact, Course, Strand, Tie};
+
+/// Part of the forces at a load that is rounding. Smaller: chatter at the edge of the cone. Larger: creep.
+const CONE: f64 = 1e-12;
+/// Part of the material coordinate that is no movement.
+const UNMOVED: f64 = 1e-15;
+/// Part of a dead force that lifts an end off what it lies on, or presses it down.
+pub(in crate::model::spans) const LIFTS: f64 = 1e-9;
+/// Equations must hold to this part of the forces; the solver stops at 1e-11.
+const HOLDS: f64 = 1e-7;
+/// A contact's end this near to a load, of the strand's length, may end there. Smaller: it is found after more halvings. Larger: loads
+/// in the air are set down for nothing.
+const CATCHES: f64 = 0.02;
+
+/// What a load feels.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::spans) struct Felt {
+    /// V, N, and what of it does not turn with the boundary.
+    pub sum: Vec2,
+    pub fixed: Vec2,
+    pub tangent: Vec2,
+    pub normal: Vec2,
+    /// Greatest of the forces in V, N.
+    pub size: f64,
+}
+
+impl Felt {
+    /// N.
+    pub fn press(&self) -> f64 {
+        -self.sum.dot(&self.normal)
+    }
+}
+
+/// What the load that is contact j feels.
+pub(in crate::model::spans) fn felt(strand: &Strand, course: &Course, j: usize) -> Felt {
+    let c = &strand.contacts[j];
+    let place = course.track(c).place(c.ends.p[0]);
+    let own = load(strand, course, j);
+    let (mut fixed, mut along, mut size) = (own, 0.0, own.norm());
+    for (side, sign) in [(0, -1.0), (1, 1.0)] {
+        if let Some(force) = strand.force_at_contact(course, j, side) {
+            fixed += force * sign;
+            size = larger(size, force.norm());
+        } else if strand.is_joined(j, side) {
+            let (tension, beside) = (strand.forces[j + side].x, &strand.contacts[j + 2 * side - 1]);
+            size = larger(size, tension.abs());
+            if beside.home == c.home {
+                along += tension * sign;
+            } else {
+                fixed += course.track(beside).place(beside.ends.p[1 - side]).tangent * (tension * sign);
+            }
+        }
+    }
+    Felt { sum: fixed + place.tangent * along, fixed, tangent: place.tangent, normal: place.normal, size }
+}
+
+/// P of the load that is contact j, N.
+fn load(strand: &Strand, course: &Course, j: usize) -> Vec2 {
+    let s = strand.contacts[j].ends.s[0];
+    for (side, end) in [(0, 0), (1, strand.contacts.len() - 1)] {
+        if let (true, Tie::Loose(force)) = (j == end, strand.ties[side]) {
+            return force;
+        }
+    }
+    course.load_at(s)
+}
+
+/// The mode that the load that is contact j asks for.
+pub(in crate::model::spans) fn next_mode(strand: &Strand, course: &Course, j: usize, patience: f64) -> Mode {
+    let c = &strand.contacts[j];
+    let friction = course.friction(c);
+    if c.kink.is_some() {
+        return Mode::Hold;
+    }
+    if friction <= 0.0 {
+        return Mode::Slide(0.0);
+    }
+    let felt = felt(strand, course, j);
+    match c.mode {
+        Mode::Hold => {
+            let (along, press) = (felt.sum.dot(&felt.tangent), larger(felt.press(), 0.0));
+            let beyond = along.abs() > friction * press + CONE * patience * felt.size;
+            if beyond { Mode::Slide(friction * along.signum()) } else { Mode::Hold }
+        }
+        Mode::Slide(m) => {
+            let moved = c.ends.p[0] - held_at(c);
+            let back = m * moved < 0.0 && moved.abs() > UNMOVED * patience * c.ends.p[0].abs();
+            if m == 0.0 || back { Mode::Hold } else { c.mode }
+        }
+    }
+}
+
+/// The friction of what came down in a step that is not remembered yet, of the force there: loads have had none, and cable rubs
+/// as if it had come down where it was found.
+pub(in crate::model::spans) fn fresh(strand: &Strand, course: &Course) -> f64 {
+    let missing = |j: usize| {
+        let c = &strand.contacts[j];
+        if c.weight && c.smooth {
+            let f = felt(strand, course, j);
+            return course.curves[c.curve].friction * larger(f.press(), 0.0) / larger(f.size, f64::MIN_POSITIVE);
+        }
+        let [t1, t2] = c.ends.t;
+        let new = !c.weight && c.wheel.is_none() && c.history.knots().len() == 1 && c.ends.p[1] > c.ends.p[0];
+        if new { (t2 - t1).abs() / larger(larger(t1, t2), f64::MIN_POSITIVE) } else { 0.0 }
+    };
+    (0..strand.contacts.len()).map(missing).fold(0.0, larger)
+}
+
+/// Whether all of a strand is about to slide one way (1: towards its end, −1: towards its start): at each contact the tensions are
+/// those of sliding, but for this part of them.
+pub(in crate::model::spans) fn mobilised(strand: &Strand, course: &Course, way: f64, near: f64) -> bool {
+    let slides = |(j, c): (usize, &Contact)| {
+        let m = way * course.friction(c);
+        if c.weight {
+            let felt = felt(strand, course, j);
+            return felt.sum.dot(&(felt.tangent + felt.normal * m)).abs() <= near * felt.size;
+        }
+        let [t1, t2] = c.ends.t;
+        let reached = course.track(c).slide(c.ends.p[0], c.ends.p[1], t1, m).tension;
+        let laid = course.law.load.norm() * (c.ends.s[1] - c.ends.s[0]);
+        (t2 - reached).abs() <= near * larger(larger(t1.abs(), t2.abs()), laid)
+    };
+    !strand.contacts.is_empty() && strand.contacts.iter().enumerate().all(slides)
+}
+
+/// Where a load was last, p.
+pub(in crate::model::spans) fn held_at(c: &Contact) -> f64 {
+    c.history.knots().first().map_or(c.ends.p[0], |k| k.p)
+}
+
+/// Whether an answer holds at the load that is contact j.
+pub(in crate::model::spans) fn sound(strand: &Strand, course: &Course, j: usize) -> Result<(), Trouble> {
+    let c = &strand.contacts[j];
+    let f = felt(strand, course, j);
+    let unsound =
+        |what: &'static str| Trouble::Unsound { what, s: c.ends.s[0], at: course.track(c).place(c.ends.p[0]).at };
+    let room = HOLDS * f.size;
+    if !(kink_load::press(course, c, &f) >= -room) {
+        return Err(unsound("a load is held down"));
+    }
+    if let Some(kink) = c.kink {
+        if !kink_load::holds(course, c, (kink, &f), HOLDS) {
+            return Err(unsound("a load is out of its kink"));
+        }
+    } else if !(f.sum.dot(&f.tangent).abs() <= course.friction(c) * f.press() + room) {
+        return Err(unsound("a load slides against more than its friction"));
+    }
+    for side in (0..2).filter(|&side| strand.is_joined(j, side)) {
+        let beside = strand.contacts[j + 2 * side - 1].ends;
+        if !((beside.p[1 - side] - c.ends.p[side]).abs() <= HOLDS * (strand.to - strand.from)) {
+            return Err(unsound("a load is not where the cable beside it ends"));
+        }
+    }
+    Ok(())
+}
+
+/// L: loads that lift are let go, those within a contact are set down there, ends that are pressed down rub, and what lies
+/// on one chain beside a load is joined to it; whether there was any.
+pub(in crate::model::spans) fn settle(strand: &mut Strand, course: &Course) -> Result<bool, Trouble> {
+    for j in 0..strand.contacts.len() {
+        if strand.contacts[j].weight {
+            let f = felt(strand, course, j);
+            if kink_load::press(course, &strand.contacts[j], &f) < -CONE * f.size {
+                lift(strand, course, j);
+                return Ok(true);
+            }
+            if kink_load::leave(strand, course, j)? {
+                return Ok(true);
+            }
+        } else if set_down(strand, course, j) || press_end(strand, course, j) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// Lets the load that is contact j go.
+fn lift(strand: &mut Strand, course: &Course, j: usize) {
+    for side in 0..2 {
+        if strand.is_joined(j, side) {
+            kink_load::give_way(strand, (j + 2 * side - 1, 1 - side));
+        }
+    }
+    let last = strand.contacts.len() - 1;
+    let before = j.checked_sub(1).is_some_and(|i| std::mem::take(&mut strand.contacts[i].joined));
+    let after = strand.contacts[j].joined;
+    for (side, end) in [(0, 0), (1, last)] {
+        if let (true, Tie::Loose(force)) = (j == end, strand.ties[side]) {
+            let lies = if side == 0 { after } else { before };
+            strand.contacts.remove(j);
+            strand.forces.remove(j + usize::from((side == 1) != lies));
+            if !lies {
+                strand.ties[side] = Tie::Hangs(force);
+            }
+            resolve(strand, course, if side == 0 { 0 } else { strand.contacts.len() });
+            return;
+        }
+    }
+    strand.contacts.remove(j);
+    strand.forces.remove(j + usize::from(!before));
+    resolve(strand, course, j);
+}
+
+/// Joins loads to what lies on their chains beside them.
+pub(in crate::model::spans) fn join(strand: &mut Strand, course: &Course) -> Result<(), Trouble> {
+    let mut j = 0;
+    while j < strand.contacts.len() {
+        while strand.contacts[j].weight && join_one(strand, course, j)? {}
+        j += 1;
+    }
+    Ok(())
+}
+
+/// Whether there was one more beside the load that is contact j.
+fn join_one(strand: &mut Strand, course: &Course, j: usize) -> Result<bool, Trouble> {
+    let load = strand.contacts[j].clone();
+    for side in 0..2 {
+        let Some(i) = (j + 2 * side).checked_sub(1).filter(|&i| i < strand.contacts.len()) else { continue };
+        let c = &strand.contacts[i];
+        let same = c.curve == load.curve && c.home == load.home && c.wheel.is_none();
+        let here = same || kink_load::follows(course, &load, c, side);
+        if !here || strand.is_joined(j, side) || strand.in_pocket(j, side) {
+            continue;
+        }
+        let (k, first) = (j + side, if side == 0 { i } else { j });
+        if c.weight {
+            // What lies between two loads of one chain lies, too.
+            let [a, b] = [first, first + 1].map(|k| strand.contacts[k].ends);
+            if !same || !(b.p[0] > a.p[0]) {
+                return Err(Trouble::LoadLies { s: load.ends.s[side] });
+            }
+            let tension = strand.force(course, k, a.s[1]).norm();
+            let ends = Ends { p: [a.p[0], b.p[0]], s: [a.s[1], b.s[0]], t: [tension; 2] };
+            let knot = |side: usize| Knot { p: ends.p[side], s: ends.s[side], tension, m: 0.0 };
+            let history = History::new(knot(0), knot(1));
+            let mode = Mode::Slide(0.0);
+            let between = Contact { ends, history, mode, weight: false, smooth: true, joined: true, ..load };
+            strand.contacts[first].joined = true;
+            strand.contacts.insert(first + 1, Contact { kink: None, ..between });
+            strand.forces[k] = Vec2::new(tension, 0.0);
+            strand.forces.insert(k, Vec2::new(tension, 0.0));
+            return Ok(true);
+        }
+        let tension = c.ends.t[1 - side];
+        let e = &mut strand.contacts[i].ends;
+        (e.p[1 - side], e.s[1 - side]) = (load.ends.p[0], load.ends.s[side]);
+        strand.forces[k] = Vec2::new(tension, 0.0);
+        strand.contacts[first].joined = true;
+        return Ok(true);
+    }
+    Ok(false)
+}
+
+/// C: where Newton stalls an end of a contact may have come to a load: it ends there, whatever the load rests with. The load
+/// that is nearest to an end is set down; whether there was one.
+pub(in crate::model::spans) fn catch(strand: &mut Strand, course: &Course) -> bool {
+    let mut best: Option<(f64, usize, usize, f64)> = None;
+    let lies = |s: f64| strand.contacts.iter().any(|c| c.weight && c.ends.s[0] == s);
+    for (j, c) in strand.contacts.iter().enumerate() {
+        for side in (0..2).filter(|&side| strand.has_span(j + side) && !c.weight && c.wheel.is_none()) {
+            let [from, to] = [strand.material(j + side).0, strand.material(j + side).1];
+            let inside = |l: &&PointForce| l.arc_length > strand.from && l.arc_length < strand.to;
+            let near = |l: &&PointForce| l.force.norm() > 0.0 && inside(l) && !lies(l.arc_length);
+            for l in course.loads.iter().filter(near) {
+                let off = (l.arc_length - c.ends.s[side]).abs();
+                let beside = l.arc_length >= from && l.arc_length <= to;
+                let turned =
+                    l.arc_length >= c.ends.s[1].min(c.ends.s[0]) && l.arc_length <= c.ends.s[0].max(c.ends.s[1]);
+                if (beside || turned) && off <= CATCHES * (strand.to - strand.from) && best.is_none_or(|b| off < b.0) {
+                    best = Some((off, j, side, l.arc_length));
+                }
+            }
+        }
+    }
+    let Some((_, j, side, s)) = best else { return false };
+    let c = &strand.contacts[j];
+    let e = c.ends;
+    let p = walk(&course.track(c), e.p[side], (s - e.s[side]) * course.law.stretch(e.t[side]));
+    let load = lying(c, (p, [s, s.next_up()]), e.t[side], true);
+    let left = if side == 0 { e.p[1] - p } else { p - e.p[0] };
+    if left <= 0.0 {
+        // Nothing else of it is left.
+        strand.contacts[j] = Contact { joined: c.joined, pocket: c.pocket, ..load };
+        return true;
+    }
+    let c = &mut strand.contacts[j];
+    (c.ends.p[side], c.ends.s[side]) = (p, if side == 0 { s.next_up() } else { s });
+    let joint = Vec2::new(e.t[side], 0.0);
+    if side == 0 {
+        strand.contacts.insert(j, Contact { joined: true, ..load });
+        strand.forces.insert(j + 1, joint);
+    } else {
+        c.joined = true;
+        strand.contacts.insert(j + 1, load);
+        strand.forces.insert(j + 1, joint);
+    }
+    true
+}
+
+/// So far (m, either way) along a boundary from p, to the end of its chain at most.
+fn walk(track: &Track<'_>, mut p: f64, way: f64) -> f64 {
+    let (first, last) = (track.curve.origin(track.home.first), track.curve.end(track.home.last));
+    let end = if way > 0.0 { last } else { first };
+    let mut left = way.abs();
+    while p != end && left > 0.0 {
+        let next = track.next_border(p, end);
+        let stretch = track.place(0.5 * (p + next)).stretch;
+        if !((next - p).abs() * stretch < left) {
+            return p + left / stretch * way.signum();
+        }
+        left -= (next - p).abs() * stretch;
+        p = next;
+    }
+    p
+}
+
+/// Sets a load within contact j down where it lies.
+fn set_down(strand: &mut Strand, course: &Course, j: usize) -> bool {
+    let c = &strand.contacts[j];
+    // What is at an end of the strand draws that end.
+    let [from, to] = [larger(c.ends.s[0], strand.from), smaller(c.ends.s[1], strand.to)];
+    let Some(s) = course.loads.iter().find(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0) else {
+        return false;
+    };
+    let s = s.arc_length;
+    let track = course.track(c);
+    let [p0, p1] = c.ends.p;
+    let floor = FLOOR * (strand.to - strand.from);
+    let q = crossing((p0, p1), floor, None, |p| {
+        let place = track.place(p);
+        let (tension, laid) = c.history.at(&track, p);
+        (s - laid, -place.stretch / track.law.stretch(tension))
+    });
+    let tension = c.history.at(&track, q).0;
+    let knots = c.history.knots();
+    // What had been laid before stays; where it is only now coming to lie nothing has rubbed yet.
+    let fresh = c.smooth || !knots.first().zip(knots.last()).is_some_and(|(a, b)| q >= a.p && q <= b.p);
+    let (first, second) = c.history.split(&track, q);
+    let after = s.next_up();
+    let mut load = lying(c, (q, [s, after]), tension, fresh);
+    (load.joined, load.smooth) = (true, fresh);
+    let mut rest = c.clone();
+    (rest.ends.p[0], rest.ends.s[0], rest.ends.t[0], rest.history) = (q, after, tension, second);
+    let c = &mut strand.contacts[j];
+    (c.ends.p[1], c.ends.s[1], c.ends.t[1], c.history) = (q, s, tension, first);
+    (c.pocket, c.joined) = (false, true);
+    strand.contacts.insert(j + 1, load);
+    strand.contacts.insert(j + 2, rest);
+    for _ in 0..2 {
+        strand.forces.insert(j + 1, Vec2::new(tension, 0.0));
+    }
+    true
+}
+
+/// An end that lies on contact j and is pressed down by what draws it rubs by itself.
+fn press_end(strand: &mut Strand, course: &Course, j: usize) -> bool {
+    for (side, end) in [(0, 0), (1, strand.contacts.len() - 1)] {
+        let Tie::Loose(force) = strand.ties[side] else { continue };
+        let c = &strand.contacts[j];
+        let normal = course.track(c).place(c.ends.p[side]).normal;
+        if j != end || course.friction(c) <= 0.0 || force.dot(&normal) >= -LIFTS * force.norm() {
+            continue;
+        }
+        let (p, s, tension) = (c.ends.p[side], c.ends.s[side], c.ends.t[side]);
+        let load = lying(c, (p, [s; 2]), tension, c.smooth);
+        let k = j + side;
+        strand.contacts.insert(k, load);
+        strand.contacts[j].joined = true;
+        strand.forces.insert(j + 1, Vec2::new(tension, 0.0));
+        return true;
+    }
+    false
+}
+
+/// A load on what a contact lies on.
+fn lying(on: &Contact, (p, s): (f64, [f64; 2]), tension: f64, fresh: bool) -> Contact {
+    Contact {
+        ends: Ends { p: [p; 2], s, t: [tension; 2] },
+        mode: if fresh { Mode::Slide(0.0) } else { Mode::Hold },
+        held: None,
+        history: History::new(Knot { p, s: s[0], tension, m: 0.0 }, Knot { p, s: s[0], tension, m: 0.0 }),
+        flips: 0,
+        pocket: false,
+        joined: false,
+        weight: true,
+        kink: None,
+        smooth: fresh,
+        ..on.clone()
+    }
+}

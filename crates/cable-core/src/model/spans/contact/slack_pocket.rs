@@ -1,0 +1,142 @@
+//! Slack in a concave kink.
+//!
+//! A cable under tension bridges a kink of δ by a span that is tangent to both its edges; its size goes with its tension,
+//! x = T tan(δ/2)/w on each edge. Where there is more cable than that the span shrinks to nothing: the cable lies in the kink
+//! without tension, and what is over lies there loose. Such a *pocket* is two ends of contacts held in the kink, T = 0 on
+//! both, with as much material between them as there is over, surplus = s₁ − s₂ ≥ 0. Where the surplus is used up the cable
+//! draws a span across the kink again. Between the two nothing jumps: T → 0 as surplus → 0.
+//!
+//! What is over is a heap in the kink that weighs B = −b·surplus and more where dead loads are in it. The two edges have to carry
+//! it: pressed alone, N₁n₁ + N₂n₂ = −B, where −B is between their normals; else by the one edge it lies on, within its cone.
+//! A heap that neither carries slides on down (see [`heap`]).
+//!
+//! The span that replaces a surplus of −e: an arc tangent to both edges x from the kink is δ x/tan(δ/2) long, and so
+//! e = x (2 − δ/tan(δ/2)), the tension being w x/tan(δ/2).
+
+use crate::math::{Vec2, cross};
+use crate::model::spans::run::{Contact, Course, Strand};
+
+/// A pocket opens when material is short by this part of the strand. Smaller: rounding opens it. Larger: the cable there is
+/// too short by as much.
+pub(in crate::model::spans) const SHORT: f64 = 1e-11;
+/// Spans of less tension than this part of the cable's weight may have become pockets where a step fails. Smaller: it takes
+/// more halvings to come so near. Larger: more of them are tried for nothing.
+const LOOSE: f64 = 1e-2;
+/// Ends of two chains this near to each other (m) are one kink.
+const ONE: f64 = 1e-9;
+/// Part of a heap's weight by which it may leave the cone of what it lies on: rounding.
+const CONE: f64 = 1e-9;
+/// A span drawn across a kink takes at most this part of the contacts beside it.
+const PART: f64 = 0.3;
+
+/// Where the ends of the contacts before and after span k would lie in a kink: p on both, the turn, rad.
+fn kink(strand: &Strand, course: &Course, k: usize) -> Option<([f64; 2], f64)> {
+    let (a, b) = (strand.contacts.get(k.checked_sub(1)?)?, strand.contacts.get(k)?);
+    if a.curve != b.curve || a.wheel.is_some() || b.wheel.is_some() || a.weight || b.weight {
+        return None;
+    }
+    let curve = &course.curves[a.curve];
+    let p = [curve.end(a.home.last), curve.origin(b.home.first)];
+    let (u, v) = (curve.place(p[0], a.home), curve.place(p[1], b.home));
+    let turn = cross(u.tangent, v.tangent).atan2(u.tangent.dot(&v.tangent)).abs();
+    ((u.at - v.at).norm() <= ONE && turn > 0.0 && p[0] >= a.ends.p[0] && p[1] <= b.ends.p[1]).then_some((p, turn))
+}
+
+/// Spans that may become pockets, those of the least tension first.
+pub(in crate::model::spans) fn candidates(strand: &Strand, course: &Course, out: &mut Vec<(f64, usize)>) {
+    out.clear();
+    let most = LOOSE * course.law.load.norm() * (strand.to - strand.from);
+    for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
+        let tension = strand.force(course, k, strand.material(k).0).norm();
+        if tension < most && kink(strand, course, k).is_some() {
+            out.push((tension, k));
+        }
+    }
+    out.sort_by(|a, b| a.0.total_cmp(&b.0));
+}
+
+/// Lays span k into its kink.
+pub(in crate::model::spans) fn fill(strand: &mut Strand, course: &Course, k: usize) {
+    let Some((p, _)) = kink(strand, course, k) else { return };
+    let stretch = course.law.stretch(0.0);
+    for (side, p) in p.into_iter().enumerate() {
+        let c = &mut strand.contacts[k - 1 + side];
+        let end = 1 - side;
+        c.ends.s[end] += (p - c.ends.p[end]) / stretch;
+        (c.ends.p[end], c.ends.t[end]) = (p, 0.0);
+    }
+    strand.contacts[k - 1].pocket = true;
+    strand.forces[k] = Vec2::zeros();
+}
+
+/// The force of an edge on the heap in a pocket.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::model::spans) struct Borne {
+    /// The contact whose edge it is.
+    pub contact: usize,
+    /// Normal of the edge, and its direction of growing arc length.
+    pub normal: Vec2,
+    pub tangent: Vec2,
+    /// Force on the cable along both, N.
+    pub press: f64,
+    pub friction: f64,
+}
+
+/// What carries the heap between contacts k − 1 and k; None where nothing does, and it slides.
+pub(in crate::model::spans) fn heap(strand: &Strand, course: &Course, k: usize) -> Option<[Borne; 2]> {
+    let (a, b) = (&strand.contacts[k - 1], &strand.contacts[k]);
+    let edge = |c: &Contact, contact: usize, end: usize| {
+        let place = course.track(c).place(c.ends.p[end]);
+        Borne { contact, normal: place.normal, tangent: place.tangent, press: 0.0, friction: 0.0 }
+    };
+    let mut borne = [edge(a, k - 1, 1), edge(b, k, 0)];
+    // Material that rounding alone tells from none weighs nothing.
+    if b.ends.s[0] <= a.ends.s[1] {
+        return Some(borne);
+    }
+    let held = -course.load_between(a.ends.s[1], b.ends.s[0]);
+    let both = cross(borne[0].normal, borne[1].normal);
+    let press = [cross(held, borne[1].normal) / both, cross(borne[0].normal, held) / both];
+    if press.iter().all(|n| *n >= 0.0) {
+        (borne[0].press, borne[1].press) = (press[0], press[1]);
+        return Some(borne);
+    }
+    let side = usize::from(!(press[1] < 0.0));
+    let edge = &mut borne[side];
+    (edge.press, edge.friction) = (held.dot(&edge.normal), held.dot(&edge.tangent));
+    let most = course.friction([a, b][side]) * edge.press + CONE * held.norm();
+    (edge.press >= 0.0 && edge.friction.abs() <= most).then_some(borne)
+}
+
+/// U: draws a span across the kink whose material is shortest.
+pub(in crate::model::spans) fn open(strand: &mut Strand, course: &Course) -> bool {
+    let surplus = |k: usize| strand.contacts[k].ends.s[0] - strand.contacts[k - 1].ends.s[1];
+    let pockets = (1..strand.contacts.len()).filter(|&k| strand.contacts[k - 1].pocket);
+    let Some(k) = pockets.min_by(|&a, &b| surplus(a).total_cmp(&surplus(b))) else { return false };
+    let short = -surplus(k);
+    if !(short > SHORT * (strand.to - strand.from)) {
+        return false;
+    }
+    let Some((_, turn)) = kink(strand, course, k) else { return false };
+    let extent = |j: usize| strand.contacts[j].ends.p[1] - strand.contacts[j].ends.p[0];
+    let half = (0.5 * turn).tan();
+    let (mut x, stretch) = (short / (2.0 - turn / half), course.law.stretch(0.0));
+    for j in [k - 1, k] {
+        let most = PART * extent(j);
+        x = if x < most { x } else { most };
+    }
+    let normal = course.track(&strand.contacts[k]).place(strand.contacts[k].ends.p[0]).normal;
+    let tension = (course.law.load.dot(&normal)).abs() * x / half;
+    for side in 0..2 {
+        let c = &mut strand.contacts[k - 1 + side];
+        let (end, sign) = (1 - side, if side == 0 { -1.0 } else { 1.0 });
+        c.ends.p[end] += sign * x;
+        c.ends.s[end] += sign * x / stretch;
+        c.ends.t[end] = tension;
+    }
+    strand.contacts[k - 1].pocket = false;
+    if let Some(g) = strand.solve_span(course, k) {
+        strand.forces[k] = g;
+    }
+    true
+}

@@ -1,0 +1,77 @@
+//! Supports that come to lie on a boundary, slide along it, or lift the cable off it.
+
+use crate::math::Vec2;
+use crate::model::spans::changes::ON;
+use crate::model::spans::run::{Course, Strand, Tie};
+
+/// Part of a contact that the first guess of a lifted end leaves lying at least.
+const LEFT: f64 = 0.02;
+
+/// Moves an end that is held to `at`, m.
+pub(in crate::model::spans) fn place(strand: &mut Strand, course: &Course, side: usize, at: Vec2) {
+    let outer = if side == 0 { 0 } else { strand.contacts.len().wrapping_sub(1) };
+    let on = strand.contacts.get(outer).filter(|c| c.wheel.is_none() && !c.weight).and_then(|c| {
+        let curve = course.track(c).curve;
+        curve.on_chain(c.home, at, ON)
+    });
+    match (strand.ties[side], on) {
+        (Tie::Lies(_), Some(p)) => {
+            strand.ties[side] = Tie::Lies(p);
+            let c = &mut strand.contacts[outer];
+            let gap = p - c.ends.p[side];
+            c.ends.p[side] = p;
+            if gap != 0.0 {
+                // The tension starts from what was at its place.
+                c.ends.t[side] = c.history.at(&course.track(c), p).0;
+            }
+        }
+        (Tie::Lies(_), None) => lift(strand, course, side, (outer, at)),
+        (Tie::Held(_), Some(p)) if beyond(strand, outer, side, p) => lay(strand, side, (outer, p)),
+        (Tie::Held(_), _) => strand.ties[side] = Tie::Held(at),
+        _ => {}
+    }
+}
+
+/// Whether p lies outside contact `j` on that side.
+fn beyond(strand: &Strand, j: usize, side: usize, p: f64) -> bool {
+    let e = &strand.contacts[j].ends;
+    if side == 0 { p <= e.p[0] } else { p >= e.p[1] }
+}
+
+/// An end that comes down to lie on the boundary: its span is gone.
+fn lay(strand: &mut Strand, side: usize, (j, p): (usize, f64)) {
+    strand.ties[side] = Tie::Lies(p);
+    let s = if side == 0 { strand.from } else { strand.to };
+    let e = &mut strand.contacts[j].ends;
+    (e.p[side], e.s[side]) = (p, s);
+}
+
+/// An end that leaves the boundary: a span begins where a parabola of the height h and tension T there would,
+/// x = √(2Th/w_n).
+fn lift(strand: &mut Strand, course: &Course, side: usize, (j, at): (usize, Vec2)) {
+    let c = &mut strand.contacts[j];
+    let track = course.track(c);
+    let curve = track.curve;
+    let i = curve.locate(c.ends.p[side], c.home);
+    let foot = curve.project(i, at);
+    let place = track.place(foot);
+    let height = (at - place.at).dot(&place.normal).abs();
+    let press = -course.law.load.dot(&place.normal) / course.law.stretch(c.ends.t[side]);
+    let reach = if press > 0.0 { (2.0 * c.ends.t[side].abs() * height / press).sqrt() } else { 0.0 };
+    let other = c.ends.p[1 - side];
+    let sign = if side == 0 { 1.0 } else { -1.0 };
+    let least = (foot - other).abs() * (1.0 - LEFT);
+    let p = foot + sign * if reach < least { reach } else { least };
+    let end = if side == 0 { strand.from } else { strand.to };
+    // Of the material there is some must remain for the span.
+    let span = ((at - track.place(p).at).norm()) / course.law.stretch(c.ends.t[side]);
+    let s = end + sign * span;
+    let inner = c.ends.s[1 - side];
+    let s = if (s - inner) * sign < 0.0 { s } else { 0.5 * (end + inner) };
+    let t = c.ends.t[side];
+    (c.ends.p[side], c.ends.s[side]) = (p, s);
+    let force = track.place(p).tangent * t;
+    let k = if side == 0 { 0 } else { strand.forces.len() - 1 };
+    strand.ties[side] = Tie::Held(at);
+    strand.forces[k] = force + course.load_between(strand.from, s);
+}

@@ -1,0 +1,548 @@
+//! The first guess of a strand: contacts where the taut string of its route bends, the material spread evenly along the
+//! route.
+
+use crate::contact::World;
+use crate::math::{Vec2, cross, smaller};
+use crate::model::spans::boundary::capstan::Track;
+use crate::model::spans::boundary::curve::Home;
+use crate::model::spans::boundary_conditions::{Instant, Layout, Part, Pulley};
+use crate::model::spans::contact::friction_memory::{Ends, History, Knot, Mode};
+use crate::model::spans::contact::point_load::LIFTS;
+use crate::model::spans::initial::route::{Way, way};
+use crate::model::spans::initial::shortest_path;
+use crate::model::spans::initial::shortest_path::{Bend, Ring};
+use crate::model::spans::initial::tension;
+use crate::model::spans::run::{Contact, Course, Strand, Tie};
+
+/// Ends of a route this near to a boundary lie on it, of the cable's radius.
+const LIES: f64 = 0.05;
+/// The same of a free end and of the points of the route behind it, which fall on what is below them. Smaller: an end drawn by hand a
+/// little above the ground hangs from its support, through the ground; larger: what hangs beside an obstacle is laid on it.
+const FALLS: f64 = 1.0;
+/// Tension with which the cable is laid at least where it does not lie in one piece, of its weight. Smaller: spans over
+/// hollows shrink to nothing. Larger: friction at a free end has to hold it, and it slides there first.
+const LAID: f64 = 1e-3;
+/// A route longer than the cable by more than this part is not how it lies: no cable is strained so. It is laid along the string
+/// then. Smaller: a cable laid taut is laid anew with other tensions. Larger: the first guess is far off.
+const LONG: f64 = 0.05;
+/// Points of a route between its ends lie on a boundary if they are this near, of the cable's radius: routes follow the
+/// surface, the centre line is cut off at kinks.
+const NEAR: f64 = 0.5;
+/// How far along the route, in radii of a post, the cable may come up to it before or after the string does: less than half
+/// a turn, so that turns are not mistaken for each other.
+const ROUND: f64 = 2.5;
+/// How much further than at its nearest a route that is drawn round a wheel may be from its centre, of the radius. Smaller: the chords of
+/// a coarse polygon are left; larger: of a route that only comes near more is taken for its round.
+const ABOUT: f64 = 0.1;
+/// Rounds of bringing a free end to where the material ends; each gains the digits of the strain.
+const FITS: usize = 6;
+/// Corners by which a seat goes on at most.
+const MOST_STRETCHED: usize = 8;
+/// A contact guessed keeps at least this part of the strand's material clear of the next.
+const CLEAR: f64 = 1e-4;
+
+/// Something the cable bends round, in order.
+#[derive(Clone, Debug)]
+struct Seat {
+    curve: usize,
+    home: Home,
+    /// First and last piece.
+    pieces: [i64; 2],
+    wheel: Option<usize>,
+    /// First and last of it along the route, m.
+    way: [f64; 2],
+    /// How far the string turns there, rad.
+    turn: f64,
+}
+
+/// The strand at its route, and the route. None where the string of the route finds no end.
+pub(in crate::model::spans) fn lay(
+    layout: &Layout,
+    index: usize,
+    (course, instant): (&Course, &Instant),
+    ring: Ring,
+) -> Option<(Strand, Vec<Vec2>)> {
+    let way = way(layout, layout.strands.get(index)?, instant);
+    Some((along(layout, index, (course, instant), (&way, ring))?, way.points))
+}
+
+fn along(
+    layout: &Layout,
+    index: usize,
+    (course, instant): (&Course, &Instant),
+    (way, ring): (&Way, Ring),
+) -> Option<Strand> {
+    let part = layout.strands.get(index)?;
+    let [from, to] = part.material;
+    let total = way.total();
+    if !(total > 0.0) {
+        return bare(part, instant);
+    }
+    let ties = [0, 1].map(|side| match part.supports[side] {
+        Some(k) => Tie::Held(instant.places[k]),
+        None => Tie::Hangs(layout.end_force(instant, part.material[side])),
+    });
+    // Ends that lie: how many points of the route, and the contact. What a load lifts does not.
+    let heads = [0, 1].map(|side| {
+        let near = if part.supports[side].is_none() { [FALLS; 2] } else { [LIES, NEAR] };
+        let near = near.map(|n| n * layout.problem.radius);
+        lying(course, &layout.problem.world, near, (&way.points, side)).filter(|h| match ties[side] {
+            Tie::Hangs(force) => {
+                let place = course.curves[h.curve].place(h.p[side], h.home);
+                force.dot(&place.normal) <= LIFTS * force.norm()
+            }
+            _ => true,
+        })
+    });
+    // Evenly along the route; from the end that is held, strained by what draws the other, where that is not held.
+    let loose = |side: usize| part.supports[side].is_none();
+    let drawn = |side: usize| match (&heads[side], ties[side]) {
+        (None, Tie::Hangs(force)) => (force + course.law.load * tail(part, instant, way, side)).norm(),
+        _ => 0.0,
+    };
+    let drawn = if loose(0) && (!loose(1) || drawn(0) < drawn(1)) { drawn(0) } else { drawn(1) };
+    let stretch = course.law.stretch(drawn);
+    let at = |w: f64| match (loose(0), loose(1)) {
+        (true, false) => to - (total - w) / stretch,
+        (false, true) => from + w / stretch,
+        _ => from + (to - from) * w / total,
+    };
+    let mut strand = Strand { from, to, ties, contacts: Vec::new(), forces: Vec::new(), loose: None };
+    let slack = total / ((to - from) * course.law.thermal) - 1.0;
+    let tension = if loose(0) || loose(1) {
+        drawn
+    } else if slack > 0.0 {
+        slack * course.law.stiffness
+    } else {
+        0.0
+    };
+    let least = LAID * course.law.load.norm() * (to - from);
+    if let [Some(a), Some(b)] = &heads
+        && (a.count + b.count > way.points.len() && a.curve == b.curve && a.home == b.home)
+    {
+        return Some(lies_whole(strand, course, [a, b], tension));
+    }
+    // A span from one lying stretch to the next needs some tension.
+    let tension = if tension > least || heads.iter().any(Option::is_none) { tension } else { least };
+    let first = heads[0].as_ref().map_or(0, |h| h.count - 1);
+    let last = way.points.len() - heads[1].as_ref().map_or(1, |h| h.count);
+    if first > last {
+        return None;
+    }
+    let mut contacts = bends(layout, part, (course, instant), (way, first, last, ring), (&at, tension))?;
+    let join = joint(course, &heads, (first == last, tension));
+    for (side, h) in heads.iter().enumerate() {
+        let Some(h) = h else { continue };
+        let way_at = |k: usize| at(way.along[k]);
+        let join = smaller(join, 0.5 * (h.p[1] - h.p[0]));
+        let s = if side == 0 { [from, way_at(first) - join] } else { [way_at(last) + join, to] };
+        let p = if side == 0 { [h.p[0], h.p[1] - join] } else { [h.p[0] + join, h.p[1]] };
+        let c = contact(course, (h.curve, h.home), (p, s), tension);
+        contacts.insert(if side == 0 { 0 } else { contacts.len() }, c);
+        strand.ties[side] = end_tie(ties[side], h.p[side]);
+    }
+    strand.forces = vec![Vec2::zeros(); contacts.len() + 1];
+    strand.contacts = contacts;
+    if join == 0.0 && (loose(0) || loose(1)) {
+        measure(&mut strand, course, [loose(0), loose(1)], stretch);
+    }
+    spread(&mut strand, course);
+    solve_spans(&mut strand, course)?;
+    // Without a route the way is straight from support to support: round a wheel from tangent to tangent.
+    let wheel = |q: &Pulley| layout.problem.supports.get(q.support).is_some_and(|s| s.wheel_radius > 0.0);
+    let tangent_ways = layout.problem.route.len() < 2 && part.pulleys.iter().any(wheel);
+    if (slack > LONG || tangent_ways) && heads.iter().all(Option::is_none) && !loose(0) && !loose(1) {
+        tension::relay(&mut strand, course);
+    }
+    Some(strand)
+}
+
+/// Forces of spans whose ends and material are known.
+fn solve_spans(strand: &mut Strand, course: &Course) -> Option<()> {
+    for k in 0..strand.spans() {
+        if strand.has_span(k) {
+            strand.forces[k] = strand.solve_span(course, k)?;
+        }
+    }
+    strand.take_tensions(course);
+    Some(())
+}
+
+/// A strand that lies on one boundary from end to end.
+fn lies_whole(mut strand: Strand, course: &Course, [a, b]: [&Head; 2], tension: f64) -> Strand {
+    let mut c = contact(course, (a.curve, a.home), ([a.p[0], b.p[1]], [strand.from, strand.to]), tension);
+    c.wheel = None;
+    strand.ties = [0, 1].map(|side| end_tie(strand.ties[side], if side == 0 { a.p[0] } else { b.p[1] }));
+    strand.contacts.push(c);
+    strand.forces = vec![Vec2::zeros(); 2];
+    spread(&mut strand, course);
+    for side in 0..2 {
+        if matches!(strand.ties[side], Tie::Lies(_)) {
+            let c = &mut strand.contacts[0];
+            let track = course.track(c);
+            c.ends.t[side] = c.history.at(&track, c.ends.p[side]).0;
+        }
+    }
+    strand
+}
+
+/// Two stretches that meet at a kink of δ are joined by a span of length Tδ/w: half of it, m; 0 where they do not meet.
+fn joint(course: &Course, heads: &[Option<Head>; 2], (meet, tension): (bool, f64)) -> f64 {
+    match heads {
+        [Some(a), Some(b)] if meet => {
+            let (u, v) = (course.curves[a.curve].place(a.p[1], a.home), course.curves[b.curve].place(b.p[0], b.home));
+            let turn = cross(u.tangent, v.tangent).atan2(u.tangent.dot(&v.tangent)).abs();
+            0.5 * tension * turn / course.law.load.norm()
+        }
+        _ => 0.0,
+    }
+}
+
+/// Contacts where the taut string of the route bends, `at` the material at a length along the way (m), laid with a tension.
+fn bends(
+    layout: &Layout,
+    part: &Part,
+    (course, instant): (&Course, &Instant),
+    (way, first, last, ring): (&Way, usize, usize, Ring),
+    (at, tension): (&dyn Fn(f64) -> f64, f64),
+) -> Option<Vec<Contact>> {
+    let mut seats = seats(layout, part, (course, instant), (way, first, last), ring)?;
+    let mut contacts = Vec::with_capacity(seats.len() + 2);
+    let rounds = stretched(course, &mut seats, (way.points[first], way.points[last]));
+    for (k, seat) in seats.iter().enumerate() {
+        let arrive = tangent(rounds[k][1], rounds[k + 1][0]);
+        let leave = tangent(rounds[k + 1][1], rounds[k + 2][0]);
+        let curve = &course.curves[seat.curve];
+        let p1 = curve.with_tangent(seat.pieces[0], arrive);
+        let p2 = curve.with_tangent(seat.pieces[1], leave);
+        // The turns counted along the string, brought to where the tangents are.
+        let turns = if curve.is_round() { ((p1 + seat.turn - p2) / std::f64::consts::TAU).round() } else { 0.0 };
+        let p2 = p2 + std::f64::consts::TAU * turns;
+        // An eye has no side of its own: it is passed on the one on which the string bends.
+        let eye = seat.wheel.is_some() && curve.place(p1, seat.home).stretch == 0.0;
+        let (index, [p1, p2]) = if eye && p2 < p1 { (seat.curve ^ 1, [-p1, -p2]) } else { (seat.curve, [p1, p2]) };
+        let curve = &course.curves[index];
+        // One that the string passes without a bend touches in one point, seen from either end.
+        let [p1, p2] = if p2 > p1 { [p1, p2] } else { [0.5 * (p1 + p2); 2] };
+        let half = 0.5 * curve.length(p1, p2, seat.home) / course.law.stretch(tension);
+        // Round a post the string's points are not those of the cable: where it comes and goes on the route itself.
+        let seen = |p: f64, w: f64| {
+            let place = curve.place(p, seat.home);
+            if curve.is_round() { way.close(place.at, w, ROUND * place.stretch) } else { w }
+        };
+        let s = at(0.5 * (seen(p1, seat.way[0]) + seen(p2, seat.way[1])));
+        let mut c = contact(course, (index, seat.home), ([p1, p2], [s - half, s + half]), tension);
+        c.wheel = seat.wheel;
+        contacts.push(c);
+    }
+    Some(contacts)
+}
+
+/// A strand whose ends are in one place: nothing but a span.
+fn bare(part: &Part, instant: &Instant) -> Option<Strand> {
+    let [a, b] = part.supports;
+    let [from, to] = part.material;
+    let ties = [Tie::Held(instant.places[a?]), Tie::Held(instant.places[b?])];
+    part.pulleys.is_empty().then(|| Strand {
+        from,
+        to,
+        ties,
+        contacts: Vec::new(),
+        forces: vec![Vec2::zeros()],
+        loose: None,
+    })
+}
+
+/// Material as it lies along the taut string, strained by `stretch`, from the end that is held; from the first contact as
+/// the route has it where none is.
+pub(in crate::model::spans) fn measure(strand: &mut Strand, course: &Course, loose: [bool; 2], stretch: f64) {
+    let n = strand.contacts.len();
+    let point = |strand: &Strand, k: usize, side: usize| strand.ends_of(course, k)[side];
+    let chord = |strand: &Strand, k: usize| match (point(strand, k, 0), point(strand, k, 1)) {
+        (Some(a), Some(b)) => (b - a).norm() / stretch,
+        _ => 0.0,
+    };
+    let own = |c: &Contact| course.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.home) / stretch;
+    if loose[1] {
+        let mut s = if loose[0] { strand.contacts.first().map_or(0.0, |c| c.ends.s[0]) } else { strand.from };
+        for j in 0..n {
+            s += if loose[0] && j == 0 { 0.0 } else { chord(strand, j) };
+            let length = own(&strand.contacts[j]);
+            let last = j + 1 == n && !strand.ties[1].has_span();
+            strand.contacts[j].ends.s = [s, if last { strand.to } else { s + length }];
+            s += length;
+        }
+    } else {
+        let mut s = strand.to;
+        for j in (0..n).rev() {
+            s -= chord(strand, j + 1);
+            let length = own(&strand.contacts[j]);
+            let first = j == 0 && !strand.ties[0].has_span();
+            strand.contacts[j].ends.s = [if first { strand.from } else { s - length }, s];
+            s -= length;
+        }
+    }
+}
+
+/// Length of a route from an end that hangs to the highest of its points, about where it is first held, m.
+fn tail(part: &Part, instant: &Instant, way: &Way, side: usize) -> f64 {
+    let up = -instant.load;
+    let high = |k: &usize| way.points[*k].dot(&up);
+    // Of several the one nearest to that end.
+    let higher = |best: usize, k: usize| if high(&k) > high(&best) { k } else { best };
+    let top = match side {
+        0 => (0..way.points.len()).reduce(higher),
+        _ => (0..way.points.len()).rev().reduce(higher),
+    };
+    let top = top.unwrap_or(0);
+    let length = if side == 0 { way.along[top] } else { way.total() - way.along[top] };
+    let whole = part.material[1] - part.material[0];
+    if length < whole { length } else { whole }
+}
+
+/// An end that lies at p.
+fn end_tie(tie: Tie, p: f64) -> Tie {
+    match tie {
+        Tie::Held(_) => Tie::Lies(p),
+        Tie::Hangs(force) => Tie::Loose(force),
+        other => other,
+    }
+}
+
+/// Keeps material in order, and some of it in each span.
+pub(in crate::model::spans) fn spread(strand: &mut Strand, course: &Course) {
+    let least = CLEAR * (strand.to - strand.from);
+    let n = strand.contacts.len();
+    let mut before = strand.from;
+    for j in 0..n {
+        let lies = j == 0 && !strand.ties[0].has_span();
+        let room = strand.to - least * (n - j) as f64;
+        let e = &mut strand.contacts[j].ends;
+        if !lies && e.s[0] < before + least {
+            let shift = before + least - e.s[0];
+            e.s = [e.s[0] + shift, e.s[1] + shift];
+        }
+        let last = j + 1 == n && !strand.ties[1].has_span();
+        if !last && e.s[1] > room {
+            let shift = room - e.s[1];
+            e.s = [e.s[0] + shift, e.s[1] + shift];
+        }
+        before = e.s[1];
+    }
+    let loose = [0, 1].map(|side| matches!(strand.ties[side], Tie::Loose(_)));
+    let lies = [0, 1].map(|side| matches!(strand.ties[side], Tie::Lies(_)));
+    for (j, c) in strand.contacts.iter_mut().enumerate() {
+        let track = course.track(c);
+        let free = [loose[0] && j == 0, loose[1] && j + 1 == n];
+        let held = [lies[0] && j == 0, lies[1] && j + 1 == n];
+        for side in 0..2 {
+            if let Tie::Loose(force) = strand.ties[side] {
+                c.ends.t[side] = if free[side] { course.pull(c, side, force) } else { c.ends.t[side] };
+            }
+        }
+        c.history = lay_down(&track, &c.ends, [free, held]);
+        // A free end lies where the material ends.
+        for side in (0..2).filter(|&side| free[side]) {
+            for _ in 0..FITS {
+                // Laid from a free end it is the other end that does not fit.
+                let other = if free[1 - side] { side } else { 1 - side };
+                let (tension, s) = c.history.at(&track, c.ends.p[other]);
+                let off = (s - c.ends.s[other]) * course.law.stretch(tension);
+                c.ends.p[side] += if other == side { -off } else { off };
+                c.history = lay_down(&track, &c.ends, [free, held]);
+            }
+        }
+    }
+}
+
+/// A contact as it is laid: from its end that is free, where its tension is known, or held, where its material is; else from its middle.
+/// With two free ends it is laid with the tension of the one that draws less.
+fn lay_down(track: &Track<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> History {
+    let end = |side: usize| Knot { p: e.p[side], s: e.s[side], tension: e.t[side], m: 0.0 };
+    let start = match (free, held) {
+        ([true, false], _) | ([false, false], [true, false]) => end(0),
+        ([false, true], _) | ([false, false], [false, true]) => end(1),
+        ([true, true], _) => return History::laid_from_middle(track, e, smaller(e.t[0], e.t[1])),
+        ([false, false], _) => return History::laid_from_middle(track, e, 0.5 * (e.t[0] + e.t[1])),
+    };
+    History::laid(track, start, e.p)
+}
+
+fn contact(course: &Course, (curve, home): (usize, Home), (p, s): ([f64; 2], [f64; 2]), tension: f64) -> Contact {
+    let knot = |k: usize| Knot { p: p[k], s: s[k], tension, m: 0.0 };
+    Contact {
+        curve,
+        home,
+        ends: Ends { p, s, t: [tension; 2] },
+        mode: if course.curves[curve].friction > 0.0 { Mode::Hold } else { Mode::Slide(0.0) },
+        history: History::new(knot(0), knot(1)),
+        wheel: None,
+        flips: 0,
+        held: None,
+        pocket: false,
+        joined: false,
+        weight: false,
+        kink: None,
+        smooth: false,
+    }
+}
+
+/// An end of a route that lies on a boundary.
+struct Head {
+    curve: usize,
+    home: Home,
+    p: [f64; 2],
+    /// Points of the route that lie, the end included.
+    count: usize,
+}
+
+/// Whether the first points of a route (the last, for side 1) lie on one chain: the end and the others as `near` as that, m.
+fn lying(course: &Course, world: &World, near: [f64; 2], (points, side): (&[Vec2], usize)) -> Option<Head> {
+    let n = points.len();
+    let point = |k: usize| points[if side == 0 { k } else { n - 1 - k }];
+    let gap = world.signed_gap(point(0), 2.0 * near[0]).filter(|g| g.gap_m.abs() <= near[0])?;
+    let body = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle)?;
+    let travel = (point(1) - point(0)) * if side == 0 { 1.0 } else { -1.0 };
+    // n = σ perp t.
+    let back = cross(travel, gap.normal) < 0.0;
+    let curve_index = 2 * body + usize::from(back);
+    let curve = course.curves.get(curve_index)?;
+    let i = curve.piece_of(gap.feature, point(0))?;
+    let (_, home) = curve.chain(i, course.law.load)?;
+    let on: Vec<f64> = (0..n).map_while(|k| curve.on_chain(home, point(k), near[k.min(1)])).collect();
+    let (first, last) = (*on.first()?, *on.last()?);
+    let p = if side == 0 { [first, last] } else { [last, first] };
+    (on.len() > 1 && p[1] > p[0]).then_some(Head { curve: curve_index, home, p, count: on.len() })
+}
+
+/// What the string bends round, pulleys among it; posts are seen as rings of points.
+fn seats(
+    layout: &Layout,
+    part: &Part,
+    (course, instant): (&Course, &Instant),
+    (way, first, last): (&Way, usize, usize),
+    ring: Ring,
+) -> Option<Vec<Seat>> {
+    let world = &layout.problem.world;
+    let corners = shortest_path::corners(world, ring);
+    let mut out: Vec<Seat> = Vec::new();
+    let mut reached = way.along[first];
+    let mut begin = (way.points[first], first);
+    for k in 0..=part.pulleys.len() {
+        let pulley: Option<&Pulley> = part.pulleys.get(k);
+        let (stop, w) = match pulley {
+            Some(q) => {
+                let at = instant.places[q.support];
+                (at, way.nearest(at, reached, last.saturating_sub(1)))
+            }
+            None => (way.points[last], way.along[last]),
+        };
+        let leg = if pulley.is_some() { way.leg(w) } else { last.saturating_sub(1) };
+        let mut route = vec![begin.0];
+        for i in begin.1 + 1..=leg.min(way.points.len() - 1) {
+            route.push(way.points[i]);
+        }
+        route.push(stop);
+        let bends = shortest_path::pull(&route, &corners)?;
+        for (j, b) in bends.iter().enumerate() {
+            reached = way.nearest(b.corner.at, reached, begin.1 + b.leg);
+            let before = j.checked_sub(1).and_then(|i| bends.get(i)).map_or(begin.0, |a| a.corner.at);
+            let after = bends.get(j + 1).map_or(stop, |a| a.corner.at);
+            let (u, v) = (b.corner.at - before, after - b.corner.at);
+            push(&mut out, course, b, (reached, cross(u, v).atan2(u.dot(&v)).abs()))?;
+        }
+        if let Some(q) = pulley {
+            let curve = q.curve + usize::from(q.facing < 0.0);
+            let home = Home { first: 0, last: 0 };
+            // Tangents say how far it turns but for whole turns. A wheel passed on its side turns it by −90° (it lifts off, almost) to
+            // 270°: half a turn, two tails that hang from it, lies in the middle of that.
+            let turn = if q.facing == 0.0 { 0.0 } else { std::f64::consts::FRAC_PI_2 };
+            // The route may be drawn round it: where it comes and where it goes.
+            let radius = course.curves[curve].place(0.0, home).stretch;
+            let near = way.distance(stop, w) + ABOUT * radius;
+            let round = way.beside(stop, w, near);
+            out.push(Seat { curve, home, pieces: [0, 0], wheel: Some(q.support), way: round, turn });
+            (begin, reached) = ((stop, leg), w);
+        }
+    }
+    Some(out)
+}
+
+/// Adds a bend to what there is, or to the last seat where it goes on there.
+fn push(out: &mut Vec<Seat>, course: &Course, b: &Bend, (w, turn): (f64, f64)) -> Option<()> {
+    let curve_index = 2 * b.corner.body + usize::from(b.sense < 0.0);
+    let curve = course.curves.get(curve_index)?;
+    let i = curve.piece_of(b.corner.feature, b.corner.at)?;
+    let (i, home) = curve.chain(i, course.law.load)?;
+    if let Some(last) = out.last_mut()
+        && last.wheel.is_none()
+        && last.curve == curve_index
+        && (curve.is_round() || (last.home == home && i >= last.pieces[1]))
+    {
+        (last.pieces[1], last.way[1]) = (i, w);
+        last.turn += turn;
+        return Some(());
+    }
+    out.push(Seat { curve: curve_index, home, pieces: [i, i], wheel: None, way: [w, w], turn });
+    Some(())
+}
+
+/// Lets each seat go on to the corner beside it where the string comes up to its corner, or leaves it, through the edge
+/// between the two; the rounds of all.
+///
+/// The string of points passes just by such a corner, that of the cable's radius bends round it: along the edge nothing
+/// turns, and Newton's method does not find across it.
+fn stretched(course: &Course, seats: &mut [Seat], ends: (Vec2, Vec2)) -> Vec<[Round; 2]> {
+    let mut found = rounds(course, seats, ends);
+    for _ in 0..MOST_STRETCHED {
+        let mut changed = false;
+        for (k, seat) in seats.iter_mut().enumerate() {
+            let curve = &course.curves[seat.curve];
+            let arrive = tangent(found[k][1], found[k + 1][0]);
+            let leave = tangent(found[k + 1][1], found[k + 2][0]);
+            let (first, last) = (seat.pieces[0] - 2, seat.pieces[1] + 2);
+            if curve.aside(seat.pieces[0], arrive) < 0 && first >= seat.home.first && curve.is_arc(first) {
+                seat.pieces[0] = first;
+                changed = true;
+            }
+            if curve.aside(seat.pieces[1], leave) > 0 && last <= seat.home.last && curve.is_arc(last) {
+                seat.pieces[1] = last;
+                changed = true;
+            }
+        }
+        if !changed {
+            break;
+        }
+        found = rounds(course, seats, ends);
+    }
+    found
+}
+
+/// A circle: centre, radius, sense.
+type Round = (Vec2, f64, f64);
+
+/// The circles on which the string arrives at each seat and leaves it; points at both ends.
+fn rounds(course: &Course, seats: &[Seat], (start, end): (Vec2, Vec2)) -> Vec<[Round; 2]> {
+    let mut out = vec![[(start, 0.0, 1.0); 2]];
+    for s in seats {
+        let curve = &course.curves[s.curve];
+        out.push(s.pieces.map(|i| {
+            let place = curve.place_on(i, 0.0);
+            (place.at - place.normal * place.stretch, place.stretch, curve.sense)
+        }));
+    }
+    out.push([(end, 0.0, 1.0); 2]);
+    out
+}
+
+/// Direction of the line that touches two circles: with n = σ perp t, (C₂ − C₁)·perp t = σ₁r₁ − σ₂r₂.
+fn tangent(a: Round, b: Round) -> Vec2 {
+    let d = b.0 - a.0;
+    let far = d.norm();
+    if far == 0.0 {
+        return Vec2::x();
+    }
+    let aside = ((b.2 * b.1 - a.2 * a.1) / far).clamp(-1.0, 1.0).asin();
+    let (sin, cos) = aside.sin_cos();
+    Vec2::new(cos * d.x - sin * d.y, sin * d.x + cos * d.y) / far
+}

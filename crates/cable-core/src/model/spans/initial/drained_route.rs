@@ -1,0 +1,469 @@
+//! The way of a cable that has drained down from its route.
+//!
+//! With cable enough, nothing is held up but by what is below it: each point of the route falls along the load, on to the first
+//! boundary that faces it. On the way down nothing is passed through, so that what comes of it lies on the same sides of everything as the
+//! route. It is a word of two letters: it *lies* along a boundary, or *hangs* plumb where the boundary below it ends and the next one is
+//! lower or higher. Where it goes back over what it has just come along it can be drawn back: the word is reduced as it is written.
+//!
+//! All of it in the frame of the load: u across it, v against it.
+
+use crate::contact::geometry::Body;
+use crate::math::{Vec2, cross, larger, perp, smaller};
+use crate::model::spans::boundary::curve::{Curve, Form};
+use crate::model::spans::run::Course;
+
+/// Lengths that are none, m: rounding of kilometres.
+pub(in crate::model::spans) const NONE_M: f64 = 1e-9;
+/// A boundary that faces the load with less than this part of itself is a wall: the cable hangs beside it.
+const FACES: f64 = 1e-9;
+/// Roofs that what does not hold slides down over at most.
+const MOST_DOWN: usize = 1000;
+
+/// The directions across the load and against it, unit vectors.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::spans) struct Frame {
+    across: Vec2,
+    pub up: Vec2,
+}
+
+/// What a cable does on a part of the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::model::spans) enum Leg {
+    /// Hangs plumb, from a height to another.
+    Hangs { u: f64, v: [f64; 2] },
+    /// Lies on a roof, from one place across the load to another.
+    Lies { roof: usize, u: [f64; 2] },
+}
+
+/// A piece of boundary that holds what falls on it.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::spans) struct Roof {
+    pub body: usize,
+    friction: f64,
+    /// Piece of the boundary of the body with the solid right of travel, and how far along it the roof begins.
+    piece: i64,
+    start: f64,
+    u: [f64; 2],
+    top: Top,
+}
+
+/// The form of a roof: v as a function of u.
+#[derive(Clone, Copy, Debug)]
+enum Top {
+    Line { from: Vec2, slope: f64 },
+    Round { center: Vec2, radius: f64 },
+}
+
+/// A part of a boundary with the direction of travel: (index of the curve, piece, p from where to where).
+pub(in crate::model::spans) type Along = (usize, i64, [f64; 2]);
+
+impl Frame {
+    /// That of a load; None where there is none.
+    pub fn of(load: Vec2) -> Option<Self> {
+        let up = -load.try_normalize(0.0)?;
+        Some(Self { across: -perp(up), up })
+    }
+
+    /// A vector in it.
+    pub fn split(self, at: Vec2) -> Vec2 {
+        Vec2::new(at.dot(&self.across), at.dot(&self.up))
+    }
+
+    /// The point at a place across the load and a height.
+    pub fn point(self, u: f64, v: f64) -> Vec2 {
+        self.across * u + self.up * v
+    }
+}
+
+impl Leg {
+    /// The same the other way.
+    fn back(&self) -> Self {
+        match *self {
+            Self::Hangs { u, v: [a, b] } => Self::Hangs { u, v: [b, a] },
+            Self::Lies { roof, u: [a, b] } => Self::Lies { roof, u: [b, a] },
+        }
+    }
+}
+
+impl Top {
+    fn height(&self, u: f64) -> f64 {
+        match *self {
+            Self::Line { from, slope } => from.y + slope * (u - from.x),
+            Self::Round { center, radius } => center.y + larger(radius * radius - (u - center.x).powi(2), 0.0).sqrt(),
+        }
+    }
+
+    /// Where two of them have one height, at most two places.
+    fn crossings(&self, other: &Self) -> [f64; 2] {
+        match (*self, *other) {
+            (Self::Line { from, slope }, Self::Line { from: g, slope: n }) => {
+                [g.x + (from.y + slope * (g.x - from.x) - g.y) / (n - slope), f64::NAN]
+            }
+            (Self::Line { from, slope }, Self::Round { center, radius })
+            | (Self::Round { center, radius }, Self::Line { from, slope }) => {
+                let d = Vec2::new(1.0, slope).normalize();
+                let off = from - center;
+                let along = off.dot(&d);
+                let root = (along * along - off.norm_squared() + radius * radius).sqrt();
+                [-along - root, -along + root].map(|t| from.x + t * d.x)
+            }
+            (Self::Round { center, radius }, Self::Round { center: c, radius: r }) => {
+                let d = c - center;
+                let apart = d.norm();
+                let a = 0.5 * (apart + (radius * radius - r * r) / apart);
+                let half = (radius * radius - a * a).sqrt();
+                let (middle, aside) = (center + d * (a / apart), perp(d / apart) * half);
+                [middle.x - aside.x, middle.x + aside.x]
+            }
+        }
+    }
+}
+
+impl Roof {
+    /// Its height at a place.
+    pub fn height(&self, u: f64) -> f64 {
+        self.top.height(u)
+    }
+
+    /// How it rises there.
+    fn slope(&self, u: f64) -> f64 {
+        match self.top {
+            Top::Line { slope, .. } => slope,
+            Top::Round { center, .. } => (center.x - u) / larger(self.height(u) - center.y, f64::MIN_POSITIVE),
+        }
+    }
+
+    /// How far along its piece a place of it is.
+    fn along(&self, u: f64) -> f64 {
+        self.start
+            + match self.top {
+                Top::Line { slope, .. } => (u - self.u[0]) * 1.0f64.hypot(slope),
+                Top::Round { center, radius } => {
+                    // The angle from where it rises plumb.
+                    let rounding = 4.0 * f64::EPSILON * (center.x.abs() + radius) / radius;
+                    let angle = |u: f64| {
+                        let c = (center.x - u) / radius;
+                        // Where it is plumb the angle would be off by the root of what rounding leaves.
+                        let c = if 1.0 - c.abs() <= rounding { c.signum() } else { c };
+                        larger(1.0 - c * c, 0.0).sqrt().atan2(c)
+                    };
+                    angle(u) - angle(self.u[0])
+                }
+            }
+    }
+
+    /// The stretch of the boundary of its body from one place to another, in the sense in which that goes on.
+    pub fn stretch(&self, curves: &[Curve], u: [f64; 2]) -> Along {
+        let forward = &curves[2 * self.body];
+        let [a, b] = u.map(|u| self.along(u));
+        if b >= a {
+            return (2 * self.body, self.piece, [a, b].map(|x| forward.origin(self.piece) + x));
+        }
+        let piece = forward.pieces().count() as i64 - 1 - self.piece;
+        let extent = forward.piece(self.piece).extent;
+        // A post begins in the direction of x in either sense.
+        let whole = if extent.is_finite() { extent } else { std::f64::consts::PI };
+        let back = &curves[2 * self.body + 1];
+        (2 * self.body + 1, piece, [a, b].map(|x| back.origin(piece) + whole - x))
+    }
+}
+
+/// Every boundary that faces the load, in order of where it begins across it.
+#[derive(Debug)]
+pub(in crate::model::spans) struct Roofs {
+    pub all: Vec<Roof>,
+    /// How far the roofs up to each reach.
+    reach: Vec<f64>,
+}
+
+impl Roofs {
+    /// Those of the bodies of a course.
+    pub fn new(course: &Course, bodies: usize, frame: Frame) -> Self {
+        let mut all = Vec::new();
+        for body in 0..bodies {
+            if let Some(curve) = course.curves.get(2 * body) {
+                curve.pieces().for_each(|piece| roofs_of(curve, (body, piece), frame, &mut all));
+            }
+        }
+        all.sort_by(|a, b| a.u[0].total_cmp(&b.u[0]));
+        let mut far = f64::NEG_INFINITY;
+        let reach = all.iter().map(|r| (far = larger(far, r.u[1]), far).1).collect();
+        Self { all, reach }
+    }
+
+    /// Those over an interval across the load.
+    fn over(&self, low: f64, high: f64) -> impl Iterator<Item = usize> {
+        let first = self.reach.partition_point(|far| *far <= low);
+        let last = self.all.partition_point(|r| r.u[0] < high);
+        (first..last.max(first)).filter(move |&k| self.all[k].u[1] > low)
+    }
+}
+
+fn roofs_of(curve: &Curve, (body, piece): (usize, i64), frame: Frame, out: &mut Vec<Roof>) {
+    let (given, friction) = (curve.piece(piece), curve.friction);
+    match given.form {
+        Form::Edge { from, tangent } => {
+            let (from, along) = (frame.split(from + curve.shift), frame.split(tangent));
+            if along.x > FACES && given.extent > 0.0 {
+                let u = [from.x, from.x + along.x * given.extent];
+                out.push(Roof {
+                    body,
+                    friction,
+                    piece,
+                    start: 0.0,
+                    u,
+                    top: Top::Line { from, slope: along.y / along.x },
+                });
+            }
+        }
+        Form::Arc { center, radius, from } => {
+            let center = frame.split(center + curve.shift);
+            // How far along it the cable would rise plumb.
+            let rises = -curve.sense * cross(from, frame.up).atan2(from.dot(&frame.up));
+            let turn = std::f64::consts::TAU;
+            let turns: &[f64] = if given.extent.is_finite() { &[-1.0, 0.0, 1.0] } else { &[0.0] };
+            for k in turns {
+                let first = rises + k * turn;
+                let (mut low, mut high) = (first, first + std::f64::consts::PI);
+                if given.extent.is_finite() {
+                    (low, high) = (larger(low, 0.0), smaller(high, given.extent));
+                }
+                if !(high > low) {
+                    continue;
+                }
+                let across = |x: f64| center.x - radius * (x - first).cos();
+                let u = [across(low), across(high)];
+                if u[1] > u[0] {
+                    out.push(Roof { body, friction, piece, start: low, u, top: Top::Round { center, radius } });
+                }
+            }
+        }
+    }
+}
+
+/// The way that is left of a route.
+pub(in crate::model::spans) struct Drained {
+    pub legs: Vec<Leg>,
+}
+
+struct Draining<'a> {
+    roofs: &'a Roofs,
+    bodies: &'a [Body],
+    frame: Frame,
+    legs: Vec<Leg>,
+    /// Height of the end of the way so far.
+    height: f64,
+}
+
+impl Drained {
+    /// What is left of a route; None where the cable falls off everything.
+    pub fn new(roofs: &Roofs, bodies: &[Body], frame: Frame, route: &[Vec2]) -> Option<Self> {
+        let points: Vec<Vec2> = route.iter().map(|p| frame.split(*p)).collect();
+        let (first, last) = (points.first()?, points.last()?);
+        let mut draining = Draining { roofs, bodies, frame, legs: Vec::new(), height: first.y };
+        for pair in points.windows(2) {
+            draining.fall(pair[0], pair[1])?;
+        }
+        draining.hang(last.x, last.y);
+        if !draining.legs.iter().any(|leg| matches!(leg, Leg::Lies { .. })) {
+            // Plumb above each other, or in one place: down to what is below both. Down and up again do not cancel: what is over lies there.
+            (draining.height, draining.legs) = (first.y, Vec::new());
+            draining.down(first.x, smaller(first.y, last.y))?;
+            let down = draining.legs.clone();
+            draining.hang(last.x, last.y);
+            // Up again over what it came down on.
+            let lies = down.iter().rposition(|leg| matches!(leg, Leg::Lies { .. })).unwrap_or(0);
+            let from = down.iter().position(|leg| matches!(leg, Leg::Lies { .. })).unwrap_or(0);
+            if lies > from {
+                draining.legs.truncate(down.len());
+                draining.legs.extend(down[from..lies].iter().rev().map(|leg| leg.back()));
+                draining.height = draining.start_of(&down[from]);
+                draining.rise(last.x, last.y);
+            }
+        }
+        Some(Self { legs: draining.legs })
+    }
+
+    /// From a point plumb down, or up to it from there.
+    pub fn plumb(roofs: &Roofs, bodies: &[Body], frame: Frame, (from, up): (Vec2, bool)) -> Option<Self> {
+        let at = frame.split(from);
+        let mut draining = Draining { roofs, bodies, frame, legs: Vec::new(), height: at.y };
+        draining.down(at.x, at.y)?;
+        let mut legs = draining.legs;
+        if up {
+            legs = legs.iter().rev().map(Leg::back).collect();
+        }
+        Some(Self { legs })
+    }
+}
+
+impl Draining<'_> {
+    /// On to the first that is below a point.
+    fn down(&mut self, u: f64, v: f64) -> Option<()> {
+        let here = self.roofs.over(u - NONE_M, u + NONE_M).filter_map(|k| {
+            let roof = self.roofs.all.get(k)?;
+            let u = larger(roof.u[0], smaller(u, roof.u[1]));
+            Some((k, u, roof.height(u))).filter(|f| f.2 <= v + NONE_M)
+        });
+        let (mut roof, on, height) = here.reduce(|a, b| if b.2 > a.2 { b } else { a })?;
+        self.hang(u, height);
+        self.height = height;
+        let mut u = on;
+        // What does not hold there slides on down, to the first that does.
+        for _ in 0..MOST_DOWN {
+            let here = &self.roofs.all[roof];
+            let slope = here.slope(u);
+            if slope.abs() <= here.friction {
+                break;
+            }
+            let end = here.u[usize::from(slope < 0.0)];
+            if (end - u).abs() > NONE_M {
+                self.lie(roof, [u, end]);
+            }
+            let beyond = end + if slope < 0.0 { 2.0 * NONE_M } else { -2.0 * NONE_M };
+            let next = self.roofs.over(beyond - NONE_M, beyond + NONE_M).filter_map(|k| {
+                let other = self.roofs.all.get(k)?;
+                let on = larger(other.u[0], smaller(end, other.u[1]));
+                Some((k, on, other.height(on))).filter(|f| f.2 <= self.height + NONE_M)
+            });
+            let (other, on, height) = next.reduce(|a, b| if b.2 > a.2 { b } else { a })?;
+            self.hang(end, height);
+            // In a kink it stays.
+            let level = (self.height - height).abs() <= NONE_M;
+            let rises = self.roofs.all[other].slope(on) * slope < 0.0;
+            (roof, u) = (other, on);
+            if level && rises {
+                break;
+            }
+        }
+        self.legs.push(Leg::Lies { roof, u: [u; 2] });
+        Some(())
+    }
+
+    /// The height at which a leg begins.
+    fn start_of(&self, leg: &Leg) -> f64 {
+        match *leg {
+            Leg::Hangs { v, .. } => v[0],
+            Leg::Lies { roof, u } => self.roofs.all[roof].height(u[0]),
+        }
+    }
+
+    /// Lets a leg of the route fall.
+    fn fall(&mut self, from: Vec2, to: Vec2) -> Option<()> {
+        let (low, high) = (smaller(from.x, to.x), larger(from.x, to.x));
+        if high - low <= NONE_M {
+            return Some(());
+        }
+        let route = Top::Line { from, slope: (to.y - from.y) / (to.x - from.x) };
+        let over: Vec<usize> = self.roofs.over(low, high).collect();
+        let mut stops = vec![low, high];
+        for k in &over {
+            stops.extend(self.roofs.all[*k].u.iter().filter(|u| **u > low && **u < high));
+        }
+        stops.sort_by(f64::total_cmp);
+        let mut fallen: Vec<(usize, [f64; 2])> = Vec::new();
+        let (mut next, mut active, mut at) = (0, Vec::new(), low);
+        for stop in stops {
+            if stop - at <= NONE_M {
+                continue;
+            }
+            let middle = 0.5 * (at + stop);
+            while next < over.len() && self.roofs.all[over[next]].u[0] <= middle {
+                active.push(over[next]);
+                next += 1;
+            }
+            active.retain(|k| self.roofs.all[*k].u[1] >= middle);
+            self.between((at, stop), &active, &route, &mut fallen)?;
+            at = stop;
+        }
+        if to.x < from.x {
+            fallen.reverse();
+        }
+        for (roof, [a, b]) in fallen {
+            let u = if to.x < from.x { [b, a] } else { [a, b] };
+            self.hang(u[0], self.roofs.all[roof].height(u[0]));
+            self.lie(roof, u);
+        }
+        Some(())
+    }
+
+    /// What it falls on where the same roofs are below and above all the way.
+    fn between(
+        &self,
+        (low, high): (f64, f64),
+        active: &[usize],
+        route: &Top,
+        out: &mut Vec<(usize, [f64; 2])>,
+    ) -> Option<()> {
+        let mut cuts = vec![low, high];
+        for (k, a) in active.iter().enumerate() {
+            let top = &self.roofs.all[*a].top;
+            let others = active[k + 1..].iter().map(|b| &self.roofs.all[*b].top).chain([route]);
+            cuts.extend(others.flat_map(|other| top.crossings(other)).filter(|u| *u > low && *u < high));
+        }
+        cuts.sort_by(f64::total_cmp);
+        let mut at = low;
+        for (k, cut) in cuts.iter().enumerate().skip(1) {
+            // The last one is never too near: the stretch as a whole is not.
+            if cut - at <= NONE_M && k + 1 < cuts.len() {
+                continue;
+            }
+            let middle = 0.5 * (at + cut);
+            let below = active.iter().copied().filter(|k| self.is_below(*k, middle, route.height(middle)));
+            let high = |k: &usize| self.roofs.all[*k].height(middle);
+            let first = below.max_by(|a, b| high(a).total_cmp(&high(b)))?;
+            out.push((first, [at, *cut]));
+            at = *cut;
+        }
+        Some(())
+    }
+
+    /// Whether the route passes above a roof: where it cuts into its body, whether that is from above.
+    fn is_below(&self, roof: usize, u: f64, v: f64) -> bool {
+        let roof = &self.roofs.all[roof];
+        if roof.height(u) <= v {
+            return true;
+        }
+        let Some(body) = self.bodies.get(roof.body) else { return false };
+        let gap = body.signed_gap(self.frame.point(u, v), f64::INFINITY).filter(|g| g.gap_m < 0.0);
+        gap.is_some_and(|g| body.is_ground() || g.normal.dot(&self.frame.up) > 0.0)
+    }
+
+    /// Plumb up, whatever comes before.
+    fn rise(&mut self, u: f64, to: f64) {
+        let v = [self.height, to];
+        if v[1] - v[0] > NONE_M {
+            self.legs.push(Leg::Hangs { u, v });
+        }
+    }
+
+    fn hang(&mut self, u: f64, to: f64) {
+        let v = [self.height, to];
+        if (v[1] - v[0]).abs() <= NONE_M {
+            return;
+        }
+        self.height = to;
+        if let Some(Leg::Hangs { v: before, .. }) = self.legs.last_mut() {
+            before[1] = to;
+            if (before[1] - before[0]).abs() <= NONE_M {
+                self.legs.pop();
+            }
+        } else {
+            self.legs.push(Leg::Hangs { u, v });
+        }
+    }
+
+    fn lie(&mut self, roof: usize, u: [f64; 2]) {
+        self.height = self.roofs.all[roof].height(u[1]);
+        if let Some(Leg::Lies { roof: before, u: known }) = self.legs.last_mut()
+            && *before == roof
+        {
+            known[1] = u[1];
+            if (known[1] - known[0]).abs() <= NONE_M {
+                self.legs.pop();
+            }
+        } else {
+            self.legs.push(Leg::Lies { roof, u });
+        }
+    }
+}

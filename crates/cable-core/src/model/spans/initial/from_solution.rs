@@ -1,0 +1,341 @@
+//! Strands laid where another model's answer has the cable, with the friction it has there.
+//!
+//! Nodes that lie on one chain of a boundary, one after the other, are a contact. On an arc it goes on from its outer nodes to
+//! where the cable beside it is tangent, s by the length of the arc. What friction remembers are the tensions midway between its
+//! nodes: a chain of bars has its tensions there, and jumps at the nodes. Between two of them the one m that leads from one
+//! to the other is called upon, none beyond the cone.
+
+use crate::math::{Vec2, cross, perp};
+use crate::model::spans::boundary::curve::{Curve, Home};
+use crate::model::spans::boundary_conditions::{Instant, Layout, Part};
+use crate::model::spans::changes::ON;
+use crate::model::spans::contact::friction_memory::{Ends, History, Knot, Mode};
+use crate::model::spans::contact::point_load::LIFTS;
+use crate::model::spans::run::{Contact, Course, Strand, Tie};
+use crate::solution::Node;
+
+/// A node this near to a boundary (m) lies on it: a barrier keeps nodes as far off as it reaches, 1e-4 m.
+const NEAR: f64 = 2.5e-4;
+/// Of the material of a strand, what is kept between two contacts at least.
+const CLEAR: f64 = 1e-6;
+
+/// A point of the cable, with the tensions before and after it.
+#[derive(Clone, Copy, Debug)]
+struct Station {
+    s: f64,
+    at: Vec2,
+    tension: [f64; 2],
+    /// Boundary, chain and p, where it lies on one.
+    lies: Option<(usize, Home, f64)>,
+    wheel: Option<usize>,
+}
+
+impl Station {
+    fn jumps(&self) -> bool {
+        self.tension[0] != self.tension[1]
+    }
+}
+
+/// The strands of a cable as an answer has it, with at most a part of the cone of friction called upon; None where they
+/// cannot be told from it.
+pub(in crate::model::spans) fn take(
+    layout: &Layout,
+    course: &Course,
+    instant: &Instant,
+    (nodes, within): (&[Node], f64),
+) -> Option<Vec<Strand>> {
+    let strand = |part: &Part| {
+        let mut stations = stations(nodes, part.material);
+        if stations.len() < 2 {
+            return None;
+        }
+        pulleys(part, course, instant, &mut stations);
+        seat(layout, course, &mut stations);
+        laid(layout, part, (course, instant), &stations, within)
+    };
+    layout.strands.iter().map(strand).collect()
+}
+
+/// The nodes of a stretch of material; of two at one place the tensions before and after.
+fn stations(nodes: &[Node], [from, to]: [f64; 2]) -> Vec<Station> {
+    let mut out: Vec<Station> = Vec::with_capacity(nodes.len());
+    let rounding = 1e-9 * (to - from);
+    for n in nodes.iter().filter(|n| n.arc_length_m >= from - rounding && n.arc_length_m <= to + rounding) {
+        match out.last_mut() {
+            Some(last) if n.arc_length_m <= last.s + rounding => last.tension[1] = n.tension_n,
+            _ => {
+                out.push(Station { s: n.arc_length_m, at: n.at(), tension: [n.tension_n; 2], lies: None, wheel: None })
+            }
+        }
+    }
+    out
+}
+
+/// Marks the station that each pulley holds, with the boundary of its wheel.
+fn pulleys(part: &Part, course: &Course, instant: &Instant, stations: &mut [Station]) {
+    for q in &part.pulleys {
+        let center = instant.places[q.support];
+        let far = |k: &usize| (stations[*k].at - center).norm();
+        let inner = 1..stations.len() - 1;
+        let Some(k) = inner.min_by(|a, b| far(a).total_cmp(&far(b))) else { continue };
+        let (before, after) = (stations[k].at - stations[k - 1].at, stations[k + 1].at - stations[k].at);
+        let clockwise = cross(before, after) <= 0.0;
+        let back = q.facing < 0.0 || (q.facing == 0.0 && !clockwise);
+        let curve = q.curve + usize::from(back);
+        let home = Home { first: 0, last: 0 };
+        let middle = before.normalize() + after.normalize();
+        let p = course.curves.get(curve).map_or(0.0, |c| c.with_tangent(0, middle));
+        stations[k].lies = Some((curve, home, p));
+        stations[k].wheel = Some(q.support);
+    }
+}
+
+/// Finds the boundary that each station lies on.
+fn seat(layout: &Layout, course: &Course, stations: &mut [Station]) {
+    let world = &layout.problem.world;
+    let n = stations.len();
+    let mut before: Option<(usize, Home, f64)> = None;
+    for k in 0..n {
+        let along = stations[(k + 1).min(n - 1)].at - stations[k.saturating_sub(1)].at;
+        let station = &mut stations[k];
+        if station.wheel.is_some() {
+            before = None;
+            continue;
+        }
+        station.lies = world.signed_gap(station.at, NEAR).filter(|g| g.gap_m.abs() <= NEAR).and_then(|gap| {
+            let body = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle)?;
+            let back = cross(along, gap.normal) < 0.0;
+            let index = 2 * body + usize::from(back);
+            let curve = course.curves.get(index)?;
+            let (i, home) = curve.chain(curve.piece_of(gap.feature, station.at)?, course.law.load)?;
+            let mut p = curve.project(i, station.at);
+            if let (true, Some(b)) = (curve.is_round(), before.filter(|b| b.0 == index)) {
+                p += std::f64::consts::TAU * ((b.2 - p) / std::f64::consts::TAU).ceil().max(0.0);
+            }
+            Some((index, home, p))
+        });
+        before = station.lies;
+    }
+}
+
+/// A strand with contacts where its stations lie.
+fn laid(
+    layout: &Layout,
+    part: &Part,
+    (course, instant): (&Course, &Instant),
+    stations: &[Station],
+    within: f64,
+) -> Option<Strand> {
+    let [from, to] = part.material;
+    let ties = [0, 1].map(|side| match part.supports[side] {
+        Some(k) => Tie::Held(instant.places[k]),
+        None => Tie::Hangs(layout.end_force(instant, part.material[side])),
+    });
+    let mut strand = Strand { from, to, ties, contacts: Vec::new(), forces: Vec::new(), loose: None };
+    let last = stations.len() - 1;
+    let mut k = 0;
+    while k <= last {
+        let Some((index, home, p)) = stations[k].lies else {
+            k += 1;
+            continue;
+        };
+        let (first, mut reached) = (k, p);
+        while stations[k].wheel.is_none()
+            && let Some((i, h, p)) = stations.get(k + 1).filter(|s| s.wheel.is_none()).and_then(|s| s.lies)
+            && (i, h) == (index, home)
+            && p >= reached
+        {
+            (k, reached) = (k + 1, p);
+        }
+        let run = Run { curve: &course.curves[index], index, home, first, last: k, within };
+        if let Some(c) = run.contact(&mut strand, course, stations) {
+            strand.contacts.push(c);
+        }
+        k += 1;
+    }
+    keep_apart(&mut strand)?;
+    strand.forces = vec![Vec2::zeros(); strand.contacts.len() + 1];
+    for k in 0..strand.spans() {
+        if strand.has_span(k) {
+            strand.forces[k] = strand.solve_span(course, k)?;
+        }
+    }
+    strand.take_tensions(course);
+    Some(strand)
+}
+
+/// Material in order, some of it in every span.
+fn keep_apart(strand: &mut Strand) -> Option<()> {
+    let least = CLEAR * (strand.to - strand.from);
+    let mut before = strand.from;
+    let mut spanned = strand.ties[0].has_span();
+    for c in &mut strand.contacts {
+        if spanned && c.ends.s[0] < before + least {
+            c.ends.s[0] = before + least;
+        }
+        if c.ends.s[1] < c.ends.s[0] {
+            c.ends.s[1] = c.ends.s[0];
+        }
+        before = c.ends.s[1];
+        spanned = true;
+    }
+    (before < strand.to - least || !strand.ties[1].has_span()).then_some(())
+}
+
+/// Stations, one after the other, that lie on one chain.
+struct Run<'a> {
+    curve: &'a Curve,
+    index: usize,
+    home: Home,
+    first: usize,
+    last: usize,
+    /// Part of the cone that is called upon.
+    within: f64,
+}
+
+impl Run<'_> {
+    /// The contact; the ties of the strand that lie on it do so from now on.
+    fn contact(&self, strand: &mut Strand, course: &Course, stations: &[Station]) -> Option<Contact> {
+        let mut contact = Contact {
+            curve: self.index,
+            home: self.home,
+            ends: Ends { p: [0.0; 2], s: [0.0; 2], t: [0.0; 2] },
+            mode: if self.curve.friction > 0.0 { Mode::Hold } else { Mode::Slide(0.0) },
+            history: History::default(),
+            wheel: stations[self.first].wheel,
+            flips: 0,
+            held: None,
+            smooth: false,
+            pocket: false,
+            joined: false,
+            weight: false,
+            kink: None,
+        };
+        for side in 0..2 {
+            let (p, s, t) = self.end(strand, course, stations, side)?;
+            (contact.ends.p[side], contact.ends.s[side], contact.ends.t[side]) = (p, s, t);
+        }
+        if contact.ends.p[1] < contact.ends.p[0] {
+            let middle = 0.5 * (contact.ends.p[0] + contact.ends.p[1]);
+            contact.ends.p = [middle; 2];
+        }
+        let knot = |side: usize| Knot {
+            p: contact.ends.p[side],
+            s: contact.ends.s[side],
+            tension: contact.ends.t[side],
+            m: 0.0,
+        };
+        let mut knots = vec![knot(0)];
+        for pair in stations[self.first..=self.last].windows(2) {
+            let [a, b] = [&pair[0], &pair[1]];
+            let (Some((_, _, p)), Some((_, _, q))) = (a.lies, b.lies) else { continue };
+            if a.jumps() || b.jumps() {
+                let tension = 0.5 * (a.tension[1] + b.tension[0]);
+                knots.push(Knot { p: 0.5 * (p + q), s: 0.5 * (a.s + b.s), tension, m: 0.0 });
+            }
+            if !b.jumps() && q < contact.ends.p[1] {
+                knots.push(Knot { p: q, s: b.s, tension: b.tension[0], m: 0.0 });
+            }
+        }
+        knots.push(knot(1));
+        let track = course.track(&contact);
+        // What is beyond the cone goes to where the tension is known without friction: away from an end that lies, to one that
+        // is not held.
+        let lies = [0, 1].map(|side| matches!(strand.ties[side], Tie::Lies(_)));
+        let at_end = [self.first == 0, self.last + 1 == stations.len()];
+        let free = strand.ties.map(|t| matches!(t, Tie::Hangs(_) | Tie::Loose(_)));
+        let back = lies[1] && at_end[1] && !(lies[0] && at_end[0]) || free[0] && !free[1];
+        contact.history = if back {
+            History::through_back(&track, &knots, self.within)
+        } else {
+            History::through(&track, &knots, self.within)
+        };
+        // Other models' nodes have their material as their bars have it, not as the tension between them strains it: what that is off goes
+        // to the span beyond, where there is one.
+        if !at_end[usize::from(!back)] {
+            contact.history.measure(&track, back);
+            if let [first, .., last] = contact.history.knots() {
+                contact.ends.s = [first.s, last.s];
+            }
+        }
+        // What the cone has changed at an end that lies is its tension.
+        if let (Some(k), Tie::Lies(_)) = (contact.history.knots().last(), strand.ties[1]) {
+            contact.ends.t[1] = k.tension;
+        }
+        Some(contact)
+    }
+
+    /// Place, material and tension where the contact begins (side 0) or ends.
+    fn end(&self, strand: &mut Strand, course: &Course, stations: &[Station], side: usize) -> Option<(f64, f64, f64)> {
+        let k = if side == 0 { self.first } else { self.last };
+        let station = &stations[k];
+        let (_, _, p) = station.lies?;
+        let tension = station.tension[side];
+        let tip = if side == 0 { k == 0 } else { k + 1 == stations.len() };
+        if tip {
+            let s = if side == 0 { strand.from } else { strand.to };
+            match strand.ties[side] {
+                Tie::Held(at) => match self.curve.on_chain(self.home, at, ON) {
+                    Some(p) => {
+                        strand.ties[side] = Tie::Lies(p);
+                        return Some((p, s, tension));
+                    }
+                    // Held just above: the next node is the first that lies.
+                    None if self.first < self.last => {
+                        let next = &stations[if side == 0 { k + 1 } else { k - 1 }];
+                        return Some((next.lies?.2, next.s, next.tension[side]));
+                    }
+                    None => return None,
+                },
+                Tie::Hangs(force) => {
+                    strand.ties[side] = Tie::Loose(force);
+                    let place = self.curve.place(p, self.home);
+                    let along = force.dot(&place.tangent);
+                    // What is pressed down rubs by itself.
+                    let pressed = self.curve.friction > 0.0 && force.dot(&place.normal) < -LIFTS * force.norm();
+                    return Some((
+                        p,
+                        s,
+                        if pressed {
+                            tension
+                        } else if side == 0 {
+                            -along
+                        } else {
+                            along
+                        },
+                    ));
+                }
+                _ => return None,
+            }
+        }
+        let i = self.curve.locate(p, self.home);
+        if self.curve.place(p, self.home).turn == 0.0 {
+            return Some((p, station.s, tension));
+        }
+        let beside = if side == 0 { stations[k - 1].at } else { stations[k + 1].at };
+        let tangent = self.tangent_from(beside, p, side)?;
+        let mut q = self.curve.with_tangent(i, tangent);
+        if self.curve.is_round() {
+            q += std::f64::consts::TAU * ((p - q) / std::f64::consts::TAU).round();
+        }
+        let beyond = if side == 0 { q < p } else { q > p };
+        if !beyond {
+            return Some((p, station.s, tension));
+        }
+        let way = self.curve.length(p, q, self.home) / course.law.stretch(tension);
+        Some((q, station.s + way, tension))
+    }
+
+    /// Direction of travel of the line that touches the arc at p and goes through a point beside it.
+    fn tangent_from(&self, beside: Vec2, p: f64, side: usize) -> Option<Vec2> {
+        let place = self.curve.place(p, self.home);
+        let center = place.at - place.normal * place.stretch;
+        let way = if side == 0 { center - beside } else { beside - center };
+        let far = way.norm();
+        if !(far > place.stretch) {
+            return None;
+        }
+        let aside = (place.stretch / far).asin() * self.curve.sense * if side == 0 { 1.0 } else { -1.0 };
+        Some((way * aside.cos() + perp(way) * aside.sin()) / far)
+    }
+}

@@ -1,0 +1,44 @@
+//! A strand along its taut string.
+
+use crate::model::spans::contact::friction_memory::History;
+use crate::model::spans::initial::contacts::{measure, spread};
+use crate::model::spans::run::{Contact, Course, Strand};
+
+/// Length of the taut string through what it touches, m.
+pub(in crate::model::spans) fn taut_length(strand: &Strand, course: &Course) -> f64 {
+    let own = |c: &Contact| course.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.home);
+    let spans: f64 = (0..strand.spans())
+        .filter_map(|k| match strand.ends_of(course, k) {
+            [Some(a), Some(b)] => Some((b - a).norm()),
+            _ => None,
+        })
+        .sum();
+    spans + strand.contacts.iter().map(own).sum::<f64>()
+}
+
+/// Spreads the material of a strand that is held at both ends evenly along its taut string.
+pub(in crate::model::spans) fn tighten(strand: &mut Strand, course: &Course) {
+    let stretch = taut_length(strand, course) / (strand.to - strand.from);
+    if !(stretch > 0.0) {
+        return;
+    }
+    measure(strand, course, [false, true], stretch);
+    spread(strand, course);
+    for k in 0..strand.spans() {
+        if strand.has_span(k)
+            && let Some(g) = strand.solve_span(course, k)
+        {
+            strand.forces[k] = g;
+        }
+    }
+    strand.take_tensions(course);
+}
+
+/// Along its taut string, what touches with the tension of the spans beside it.
+pub(in crate::model::spans) fn relay(strand: &mut Strand, course: &Course) {
+    tighten(strand, course);
+    for c in &mut strand.contacts {
+        let even = 0.5 * (c.ends.t[0] + c.ends.t[1]);
+        c.history = History::laid_from_middle(&course.track(c), &c.ends, even);
+    }
+}

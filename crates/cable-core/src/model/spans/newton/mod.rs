@@ -1,0 +1,365 @@
+//! Newton's method for a strand: all spans and contacts at once, never a span solved inside another iteration.
+//!
+//! Six unknowns and six equations for each contact, two more for the last span, in the order span, contact, span …:
+//!
+//! ```text
+//! span     ∫ f(F(s)) ds − (x_b − x_a) = 0,   f(F) = τ(F/T + F/EA)      (2)
+//! contact  F × t = 0 at p₁ and at p₂                                    (2)
+//!          two rows for material and tension, see `rub`                 (2)
+//! ```
+//!
+//! At a lying end the tension takes the place of p among the unknowns, and s = its material that of the tangency.
+
+pub(in crate::model::spans) mod jacobian;
+pub(in crate::model::spans) mod slip_predictor;
+pub(in crate::model::spans) mod stability;
+
+#[cfg(test)]
+mod tests;
+
+use crate::math::{Vec2, larger};
+use crate::model::spans::boundary::capstan::Track;
+use crate::model::spans::boundary_conditions::Instant;
+use crate::model::spans::contact::equations;
+use crate::model::spans::contact::friction_memory::{Held, History, Mode};
+use crate::model::spans::contact::point_load;
+use crate::model::spans::newton::jacobian::{Sheet, assemble, gather, lies, pinned, renew, scatter};
+use crate::model::spans::newton::slip_predictor::Foresight;
+pub(super) use crate::model::spans::newton::stability::stable;
+use crate::model::spans::run::{Course, Strand};
+
+/// Iterations at most. A failure is not cured by more; steps are halved instead.
+const MAX_ITERATIONS: usize = 60;
+/// Iterations without progress before it is given up.
+const MAX_STALLED: usize = 12;
+/// Halvings of one step at most.
+const MAX_HALVINGS: usize = 14;
+/// Residual wanted: of lengths in hundredths of the strand, of angles, of tensions relative.
+const RESIDUAL: f64 = 1e-11;
+/// Residual that rounding leaves where a cable is EA/T times stiffer than it is taut: this times EA/T.
+const STIFF_RESIDUAL: f64 = 2e-14;
+/// A residual that will do is made better by one more step where it is more than this times T/EA: forces are off by a hundredth of this
+/// part then. Smaller: a step more in each solve. Larger: forces of stiff cables are as exact as their tolerance, 1e-8.
+const EXACT: f64 = 1e-8;
+/// Residual that no step makes smaller: rounding.
+const FLOOR: f64 = 5e-15;
+/// Where no step gains anything the residual is rounding if it is below so many times the one wanted. Larger: a step that
+/// was halved often enough is taken without having been solved.
+const ROUNDING: f64 = 20.0;
+/// A contact's end moves by at most so many radians in one iteration. Larger: it jumps a turn of a post.
+const MOST_TURN: f64 = 0.7;
+/// A span keeps at least this part of its material in one iteration.
+const KEEP: f64 = 0.1;
+/// A step to the end of a piece of boundary goes beyond it by this part of p: more than rounding, less than matters.
+const BEYOND: f64 = 1e-9;
+/// Residual below which modes are judged. Larger: a contact slides because an iterate has tensions it will not keep, and
+/// what is held at neither end slides away. Smaller: iterations spent on a mode that will not last.
+const SETTLED: f64 = 1e-3;
+/// Rounding that is let pass where modes cycle at the edge of the cone, in times of what is rounding.
+const PATIENT: f64 = 1e4;
+/// Iterations without progress after which modes are judged all the same.
+const PATIENCE: usize = 3;
+/// Changes of mode of one contact while iterating; after that only between converged states.
+const MOST_FLIPS: u32 = 6;
+
+/// Memory of a solve, kept between steps. A copy has none of its own: what is in it means nothing between two steps.
+#[derive(Debug, Default)]
+pub(super) struct Work {
+    sheet: Sheet,
+    rhs: Vec<f64>,
+    saved: Vec<f64>,
+    best: Vec<f64>,
+    /// What the search for corners passed through counts with.
+    pub turns: Vec<i32>,
+    /// The shape before and after a step.
+    pub shapes: [Vec<Vec2>; 2],
+    /// A strand before a step, and with its ends moved.
+    pub strands: [Strand; 2],
+    /// All of them before a step.
+    pub before: Vec<Strand>,
+    /// Instants: before a step; where a way begins; where a step goes.
+    pub instants: [Instant; 3],
+    /// What a guess at the modes is made with.
+    pub foresight: Foresight,
+    /// A contact's past as it was.
+    pub past: History,
+}
+
+impl Clone for Work {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+/// Newton did not converge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stall {
+    pub iterations: usize,
+    /// Scaled residual left.
+    pub residual: f64,
+    /// The contact or span with the greatest residual, as contacts count.
+    pub at: usize,
+}
+
+/// What a solve took.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Solved {
+    pub iterations: usize,
+    pub residual: f64,
+}
+
+fn norm(r: &[f64]) -> (f64, usize) {
+    let (mut worst, mut at) = (0.0, 0);
+    for (i, v) in r.iter().enumerate() {
+        if v.abs() > worst || v.is_nan() {
+            (worst, at) = (v.abs(), i);
+        }
+        if v.is_nan() {
+            break;
+        }
+    }
+    (worst, at)
+}
+
+fn squares(r: &[f64]) -> f64 {
+    r.iter().map(|v| v * v).sum()
+}
+
+/// The residual that will do, of a strand whose contacts have the tensions of the spans beside them.
+fn tolerance(strand: &Strand, course: &Course) -> f64 {
+    let least = least_tension(strand, course);
+    let stiff = if least.is_finite() && least > 0.0 { STIFF_RESIDUAL * course.law.stiffness / least } else { 0.0 };
+    larger(RESIDUAL, stiff.min(1e3 * RESIDUAL))
+}
+
+/// Whether a residual that will do leaves forces off by more than need be: a length that is missing is strain, and that times EA is
+/// force.
+fn is_rough(strand: &Strand, course: &Course, residual: f64) -> bool {
+    let least = least_tension(strand, course);
+    least.is_finite() && residual > larger(FLOOR, EXACT * least / course.law.stiffness)
+}
+
+/// The least tension at an end of a span, N; infinite where there is no span.
+fn least_tension(strand: &Strand, course: &Course) -> f64 {
+    let mut least = f64::INFINITY;
+    let mut take = |t: f64| {
+        if t < least {
+            least = t;
+        }
+    };
+    let last = strand.contacts.len();
+    for (k, s) in [(0, strand.from), (last, strand.to)] {
+        if strand.has_span(k) {
+            take(strand.force(course, k, s).norm());
+        }
+    }
+    for (j, c) in strand.contacts.iter().enumerate() {
+        for side in 0..2 {
+            if strand.has_span(j + side) {
+                take(c.ends.t[side]);
+            }
+        }
+    }
+    least
+}
+
+/// Largest part of a step that keeps spans and does not jump turns.
+fn room(strand: &Strand, course: &Course, x: &[f64], d: &[f64]) -> f64 {
+    let mut alpha = 1.0f64;
+    for k in 0..strand.spans() {
+        if strand.has_span(k) {
+            let (from, to) = strand.material(k);
+            let first = if k > 0 { d[6 * k - 1] } else { 0.0 };
+            let last = if k < strand.contacts.len() { d[6 * k + 3] } else { 0.0 };
+            let (length, change) = (to - from, last - first);
+            if change < 0.0 && alpha * -change > (1.0 - KEEP) * length {
+                alpha = (1.0 - KEEP) * length / -change;
+            }
+        }
+        let Some(c) = strand.contacts.get(k) else { continue };
+        let track = course.track(c);
+        for side in 0..2 {
+            if lies(strand, k, side) {
+                continue;
+            }
+            let (p, dp) = (x[6 * k + 2 + 2 * side], d[6 * k + 2 + 2 * side]);
+            if alpha * dp.abs() > MOST_TURN && (track.turns(p) || track.turns(p + alpha * dp)) {
+                alpha = MOST_TURN / dp.abs();
+            }
+        }
+    }
+    alpha
+}
+
+/// Parts of a step after which each end of a contact is just beyond the piece of boundary it was on: (index, part) for each
+/// that comes so far.
+///
+/// Round an arc the direction turns by one per rad, along an edge the cable leaves it by w/T per metre: a step that is right
+/// on one of them says nothing of the other, and half of it less.
+fn borders(strand: &Strand, course: &Course, x: &[f64], d: &[f64], mut each: impl FnMut(usize, f64)) {
+    for (k, c) in strand.contacts.iter().enumerate() {
+        let track = course.track(c);
+        for side in 0..2 {
+            let index = 6 * k + 2 + 2 * side;
+            let (p, dp) = (x[index], d[index]);
+            if lies(strand, k, side) || dp == 0.0 {
+                continue;
+            }
+            let i = track.curve.locate(p, c.home);
+            let beyond = BEYOND * (1.0 + p.abs());
+            let way = match dp > 0.0 {
+                true if i < c.home.last => track.curve.end(i) - p + beyond,
+                false if i > c.home.first => track.curve.origin(i) - p - beyond,
+                _ => continue,
+            };
+            each(index, way / dp);
+        }
+    }
+}
+
+/// Solves a strand from where it is. On an error it is left wherever the iteration was.
+pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Result<Solved, Stall> {
+    strand.take_tensions(course);
+    for c in &mut strand.contacts {
+        c.flips = 0;
+        if course.mobilised != 0.0 && c.kink.is_none() {
+            c.mode = Mode::Slide(course.mobilised * course.friction(c));
+        }
+    }
+    let (mut best, mut stalled, mut iterations, mut polished) = (f64::INFINITY, 0, 0, false);
+    assemble(strand, course, &mut work.sheet);
+    loop {
+        let (mut worst, mut at) = norm(&work.sheet.residual);
+        let done = worst <= tolerance(strand, course);
+        if worst <= SETTLED || stalled >= PATIENCE {
+            let (changed, content) =
+                change_modes(strand, course, if done { 4 * MOST_FLIPS } else { MOST_FLIPS }, &mut work.sheet);
+            if changed {
+                (worst, at) = norm(&work.sheet.residual);
+                (best, stalled) = (f64::INFINITY, 0);
+                // In rounding at the edge of the cone another mode changes nothing: nothing is left to solve.
+                if worst <= tolerance(strand, course) {
+                    continue;
+                }
+            } else if done {
+                if content && !polished && is_rough(strand, course, worst) {
+                    (polished, iterations) = (true, iterations + 1);
+                    if step(strand, course, work) {
+                        continue;
+                    }
+                }
+                return if content || agreed(strand, course, &work.sheet) {
+                    Ok(Solved { iterations, residual: worst })
+                } else {
+                    Err(Stall { iterations, residual: worst, at: at / 6 })
+                };
+            }
+        }
+        let stall = move |residual: f64| Stall { iterations, residual, at: at / 6 };
+        if worst < 0.5 * best {
+            (best, stalled) = (worst, 0);
+        } else {
+            stalled += 1;
+        }
+        let over = !worst.is_finite() || iterations == MAX_ITERATIONS || stalled > MAX_STALLED;
+        iterations += usize::from(!over);
+        if over || !step(strand, course, work) {
+            if !over && change_modes(strand, course, MOST_FLIPS, &mut work.sheet).0 {
+                continue;
+            }
+            // Rounding: nothing is gained any more.
+            return if worst <= ROUNDING * tolerance(strand, course) && agreed(strand, course, &work.sheet) {
+                Ok(Solved { iterations, residual: worst })
+            } else {
+                Err(stall(worst))
+            };
+        }
+    }
+}
+
+/// The mode that the state of contact j asks for.
+fn asked(strand: &Strand, course: &Course, (sheet, j): (&Sheet, usize), patience: f64) -> Mode {
+    let c = &strand.contacts[j];
+    if course.mobilised != 0.0 && c.kink.is_none() {
+        return Mode::Slide(course.mobilised * course.friction(c));
+    }
+    if c.weight {
+        return point_load::next_mode(strand, course, j, patience);
+    }
+    // What holds within its cone goes on so, and what is smooth slides.
+    if matches!((c.mode, c.held), (Mode::Hold, Some(Held::Between(_) | Held::Meet(_)))) && course.friction(c) > 0.0 {
+        return c.mode;
+    }
+    let track = Track { pivot: sheet.spots.get(j).map(|s| s.1), ..course.track(c) };
+    equations::next_mode(&track, (&c.history, &c.ends), c.held, (c.mode, pinned(strand, j)), patience)
+}
+
+/// Whether every contact is in the mode that its state asks for; the sheet is that of the state.
+fn agreed(strand: &Strand, course: &Course, sheet: &Sheet) -> bool {
+    // What is rounding grows with the stiffness as the residual does.
+    let patience = PATIENT * tolerance(strand, course) / RESIDUAL;
+    (0..strand.contacts.len()).all(|j| asked(strand, course, (sheet, j), patience) == strand.contacts[j].mode)
+}
+
+/// Gives contacts the mode they ask for; whether any was changed, and whether none asked for another.
+fn change_modes(strand: &mut Strand, course: &Course, most: u32, sheet: &mut Sheet) -> (bool, bool) {
+    let (mut changed, mut content) = (false, true);
+    for j in 0..strand.contacts.len() {
+        let flips = strand.contacts[j].flips;
+        let next = asked(strand, course, (sheet, j), if flips < MOST_FLIPS { 1.0 } else { PATIENT });
+        let c = &mut strand.contacts[j];
+        content &= next == c.mode;
+        if next != c.mode && c.flips < most {
+            c.mode = next;
+            c.flips += 1;
+            changed = true;
+            renew(strand, course, j, sheet);
+        }
+    }
+    (changed, content)
+}
+
+/// One Newton step with a line search on the sum of squares; false where none makes it smaller. The sheet is that of where
+/// the strand then is.
+fn step(strand: &mut Strand, course: &Course, work: &mut Work) -> bool {
+    gather(strand, &mut work.saved);
+    let before = squares(&work.sheet.residual);
+    work.rhs.clear();
+    work.rhs.extend(work.sheet.residual.iter().map(|v| -v));
+    work.sheet.band.scale(&mut work.rhs);
+    if work.sheet.band.solve(&mut work.rhs) && search(strand, course, before, work) {
+        return true;
+    }
+    scatter(strand, course, &work.saved);
+    assemble(strand, course, &mut work.sheet);
+    false
+}
+
+fn search(strand: &mut Strand, course: &Course, before: f64, work: &mut Work) -> bool {
+    let (mut alpha, mut first) = (room(strand, course, &work.saved, &work.rhs), f64::INFINITY);
+    for round in 0..MAX_HALVINGS {
+        if round > 1 {
+            alpha = if first < alpha { first } else { 0.5 * alpha };
+        }
+        work.best.clear();
+        work.best.extend(work.saved.iter().zip(&work.rhs).map(|(x, d)| x + alpha * d));
+        if round == 1 {
+            // At first only what changes its piece of boundary stops there; after that everything does.
+            borders(strand, course, &work.saved, &work.rhs, |index, part| {
+                if part > 0.0 && part < alpha {
+                    first = if part < first { part } else { first };
+                    work.best[index] = work.saved[index] + part * work.rhs[index];
+                }
+            });
+            if first == f64::INFINITY {
+                continue;
+            }
+        }
+        scatter(strand, course, &work.best);
+        assemble(strand, course, &mut work.sheet);
+        if squares(&work.sheet.residual) < (1.0 - 1e-4 * alpha) * before {
+            return true;
+        }
+    }
+    false
+}

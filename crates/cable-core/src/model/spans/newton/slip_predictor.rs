@@ -1,0 +1,361 @@
+//! Which contacts will slide in a step and how far, about, before it is solved.
+//!
+//! Newton's method with a wrong set of sliding contacts ends at a state that shows the next wrong set: of ten contacts in a
+//! row one after the other is found to slide. To first order the whole question is one of scalars. With d the gap that a
+//! span's force leaves after its ends have moved, C its compliance, t the cable's direction and f = λt at its two ends a, b,
+//! and σ the material that has slid back through the contact before and after it (s at a fixed place grows by σ),
+//!
+//! ```text
+//! ΔG = −C⁻¹(d + f_b σ_after − fₐ σ_before),      ΔT_a = tₐ·(ΔG − b σ_before),      ΔT_b = t_b·(ΔG − b σ_after)
+//! contact: σ = 0 where T₂ is within what sliding makes of T₁ at ±μ; σ ≤ 0 at +μ, σ ≥ 0 at −μ
+//! ```
+//!
+//! (that a contact's end moves along the boundary takes as much of the cable as of the chord). This is a linear
+//! complementarity problem with three diagonals, solved by changing what is on the wrong side until nothing is: G. Zoutendijk's
+//! active sets in their simplest form. After each of a few rounds of it the ends of contacts on arcs follow the directions of
+//! their spans, and the next begins from there: with another wrap. All that is a guess: Newton's method for the whole starts
+//! there and judges each contact again.
+
+use crate::math::{Vec2, angle, exp, larger};
+use crate::model::spans::boundary::capstan::Track;
+use crate::model::spans::boundary::curve::Place;
+use crate::model::spans::boundary::segment_cursor::Pivot;
+use crate::model::spans::contact::friction_memory::{Ends, Mode};
+use crate::model::spans::run::{Contact, Course, Strand, Tie};
+
+/// Rounds of changing sides, over two for each contact.
+const MORE_ROUNDS: usize = 6;
+/// Rounds of Newton's method at most, and the change of tension, as part of it, from which another is worth its cost: what is
+/// left after it is about that squared. A round costs a tenth of an iteration of Newton's method for the whole.
+const ROUNDS: usize = 6;
+const ENOUGH: f64 = 2e-3;
+/// Change of tension, as part of it, in the last of all rounds with which its guess is still taken.
+const WORTH: f64 = 0.02;
+/// A span whose tension would change by more than this factor in a round is not foreseen.
+const WILD: f64 = 4.0;
+/// A span whose force changes by no more than this part in a round is where it was. Larger: the guess is off by as much.
+const STILL: f64 = 1e-8;
+/// A contact's end follows its span by at most this angle, rad.
+const FOLLOWS: f64 = 0.2;
+
+/// A span to first order.
+#[derive(Clone, Copy, Debug, Default)]
+struct Bar {
+    /// Where it starts and ends, m; None where it keeps its force.
+    ends: Option<[Vec2; 2]>,
+    /// G, N, and material at both ends, m.
+    force: Vec2,
+    material: [f64; 2],
+    /// Change of G were nothing to slide, and by σ before and after it, N and N/m.
+    change: [Vec2; 3],
+    /// Tension at both ends, and were nothing to slide, N.
+    was: [f64; 2],
+    tension: [f64; 2],
+    /// Change of tension at each end by σ before and after it, N/m.
+    by: [[f64; 2]; 2],
+    /// Whether the last round left it where it was: what is said of it holds on.
+    still: bool,
+}
+
+/// A contact to first order.
+#[derive(Clone, Copy, Debug)]
+struct Link {
+    /// Where it ends, material and tensions there.
+    ends: Ends,
+    /// Tension that sliding with −μ and +μ makes of that, N, and its derivative; None where it is not ours to say.
+    reach: Option<[(f64, f64); 2]>,
+    /// −1, 0, +1: slides back, sticks, slides on.
+    side: i8,
+    /// What slides in a round, and what slid before it, m.
+    sigma: f64,
+    slid: f64,
+}
+
+/// The places of both ends of a contact, and the piece of the first.
+type Spots = ([Place; 2], Pivot);
+
+/// Memory of a guess.
+#[derive(Clone, Debug, Default)]
+pub(in crate::model::spans) struct Foresight {
+    bars: Vec<Bar>,
+    links: Vec<Link>,
+    /// Upper diagonal and right-hand side of the elimination.
+    swept: Vec<(f64, f64)>,
+    spots: Vec<Spots>,
+}
+
+/// Gives each contact the mode that the step will ask for, and contacts and spans their place, as far as that can be foreseen.
+pub(in crate::model::spans) fn foresee(strand: &mut Strand, course: &Course, memory: &mut Foresight) {
+    if course.drag > 0.0 || strand.contacts.is_empty() {
+        return;
+    }
+    strand.take_tensions(course);
+    let Foresight { bars, links, spots, .. } = memory;
+    let seen = |c: &Contact| Pivot::of_ends(&course.curves[c.curve], c.home, &course.law, c.ends.p);
+    spots.clear();
+    spots.extend(strand.contacts.iter().map(seen));
+    bars.clear();
+    bars.extend((0..strand.spans()).map(|k| span(strand, course, (spots, k))));
+    links.clear();
+    links.extend((0..strand.contacts.len()).map(|j| link(strand, course, (spots, j))));
+    let Some(settled) = memory.rounds(strand, course) else { return };
+    for (c, l) in strand.contacts.iter_mut().zip(&memory.links).filter(|(_, l)| l.reach.is_some()) {
+        let friction = course.friction(c);
+        if friction > 0.0 {
+            c.mode = if l.side == 0 { Mode::Hold } else { Mode::Slide(friction * f64::from(l.side)) };
+        }
+        if settled {
+            c.ends = l.ends;
+        }
+    }
+    if settled {
+        for (force, bar) in strand.forces.iter_mut().zip(&memory.bars).filter(|(_, b)| b.ends.is_some()) {
+            *force = bar.force;
+        }
+    }
+}
+
+/// A span as it is, to begin with.
+fn span(strand: &Strand, course: &Course, (spots, k): (&[Spots], usize)) -> Bar {
+    if !strand.has_span(k) {
+        return Bar::default();
+    }
+    let (from, to) = strand.material(k);
+    let forces = [strand.force(course, k, from), strand.force(course, k, to)];
+    let held = |t: &Tie| if let Tie::Held(at) = t { Some(*at) } else { None };
+    let before = k.checked_sub(1).and_then(|j| spots.get(j)).map_or_else(|| held(&strand.ties[0]), |s| Some(s.0[1].at));
+    let after = spots.get(k).map_or_else(|| held(&strand.ties[1]), |s| Some(s.0[0].at));
+    // What hangs keeps its force.
+    let ends = before.zip(after).map(|(a, b)| [a, b]);
+    let tension = forces.map(|f| f.norm());
+    Bar { ends, force: strand.forces[k], material: [from, to], tension, ..Bar::default() }
+}
+
+impl Bar {
+    /// Force at both ends, N.
+    fn pulls(&self, course: &Course, first: f64) -> [Vec2; 2] {
+        let [from, to] = self.material;
+        let start = self.force - course.load_between(first, from);
+        [start, start - course.load_between(from, to)]
+    }
+
+    /// To first order from where it is; false where that cannot be told.
+    fn renew(&mut self, course: &Course, first: f64) -> bool {
+        let Some([a, b]) = self.ends else { return true };
+        if self.still {
+            self.change[0] = Vec2::zeros();
+            return true;
+        }
+        let [from, to] = self.material;
+        let [start, end] = self.pulls(course, first);
+        let (way, compliance) = course.chain(from, to).reach(start);
+        let Some(stiffness) = compliance.try_inverse() else { return false };
+        let [rate, rate_end] = [start, end].map(|f| course.rate(f));
+        self.change = [-(stiffness * (way - (b - a))), stiffness * rate, -(stiffness * rate_end)];
+        for (i, f) in [start, end].into_iter().enumerate() {
+            let (size, load) = (f.norm(), course.law.load);
+            let t = f / size;
+            self.was[i] = size;
+            self.tension[i] = size + t.dot(&self.change[0]);
+            self.by[i] = [t.dot(&self.change[1]), t.dot(&self.change[2])];
+            self.by[i][i] -= t.dot(&load);
+        }
+        self.tension.iter().all(|t| t.is_finite())
+    }
+}
+
+fn link(strand: &Strand, course: &Course, (spots, j): (&[Spots], usize)) -> Link {
+    let c = &strand.contacts[j];
+    let e = &c.ends;
+    let ties = [(j == 0).then(|| strand.ties[0]), (j + 1 == strand.contacts.len()).then(|| strand.ties[1])];
+    let lies = ties.iter().flatten().any(|t| matches!(t, Tie::Lies(_) | Tie::Loose(_)));
+    let mut out = Link { ends: c.ends, reach: None, side: 0, sigma: 0.0, slid: 0.0 };
+    let beside_slack = strand.in_pocket(j, 0) || strand.in_pocket(j, 1);
+    let beside_load = strand.is_marked(j, 0) || strand.is_marked(j, 1);
+    if lies || beside_slack || beside_load || !(e.p[1] > e.p[0] && e.t[0] > 0.0) {
+        return out;
+    }
+    let friction = course.friction(c);
+    let track = Track { pivot: spots.get(j).map(|s| s.1), ..course.track(c) };
+    out.reach = Some([-friction, friction].map(|m| {
+        let way = track.slide(e.p[0], e.p[1], e.t[0], m);
+        (way.tension, way.by_tension)
+    }));
+    // What is smooth always slides.
+    out.side = if friction > 0.0 { 0 } else { 1 };
+    out
+}
+
+impl Foresight {
+    /// Newton's method for what slides: whether it came to an end, None where not even the modes can be told.
+    fn rounds(&mut self, strand: &Strand, course: &Course) -> Option<bool> {
+        let mut last = f64::INFINITY;
+        for round in 0..ROUNDS {
+            if !self.bars.iter_mut().all(|b| b.renew(course, strand.from)) || !self.settle() {
+                return (round > 0).then_some(false);
+            }
+            let Some(change) = self.step() else { return Some(false) };
+            self.turn(strand, course);
+            if change <= ENOUGH {
+                return Some(true);
+            }
+            last = change;
+        }
+        Some(last <= WORTH)
+    }
+
+    /// Lets the ends of contacts on arcs follow the directions of their spans.
+    fn turn(&mut self, strand: &Strand, course: &Course) {
+        let law = &course.law;
+        let pulls = |bar: &Bar, end: usize| bar.ends.map(|_| bar.pulls(course, strand.from)[end]);
+        for (j, c) in strand.contacts.iter().enumerate() {
+            let (l, (places, pivot)) = (&mut self.links[j], &mut self.spots[j]);
+            if l.reach.is_none() || self.bars[j].still && self.bars[j + 1].still {
+                continue;
+            }
+            let old = l.ends;
+            l.ends.s = l.ends.s.map(|s| s + l.sigma);
+            let track = Track { pivot: Some(*pivot), ..course.track(c) };
+            for side in 0..2 {
+                let bar = &mut self.bars[j + side];
+                let Some(force) = pulls(bar, 1 - side) else { continue };
+                let (tension, place) = (force.norm(), &mut places[side]);
+                l.ends.t[side] = tension;
+                let angle = angle(place.tangent, force);
+                if place.turn == 0.0 || !(angle.abs() <= FOLLOWS) {
+                    continue;
+                }
+                let by = angle / place.turn;
+                let p = l.ends.p[side] + by;
+                let turned = if side == 0 { p < l.ends.p[1] } else { p > l.ends.p[0] };
+                if turned && track.turns(p) {
+                    l.ends.p[side] = p;
+                    l.ends.s[side] += by * place.stretch / course.law.stretch(tension);
+                    *place = track.place(p);
+                }
+                bar.material[1 - side] = l.ends.s[side];
+                if let Some(ends) = &mut bar.ends {
+                    ends[1 - side] = place.at;
+                }
+            }
+            // T₂ = T₁ e^{mψ} and the load along it, to first order of what the ends have moved.
+            for (m, (made, by)) in [-track.friction, track.friction].into_iter().zip(l.reach.iter_mut().flatten()) {
+                let load = |place: &Place, t: f64| law.slope(place, t, m) - m * place.turn.abs() * t;
+                let [first, last] = [0, 1].map(|side| l.ends.p[side] - old.p[side]);
+                let grown = exp(m * (last * places[1].turn.abs() - first * places[0].turn.abs()));
+                *made += *by * (l.ends.t[0] - old.t[0] - load(&places[0], old.t[0]) * first);
+                *made = (*made + load(&places[1], *made) * last) * grown;
+                *by *= grown;
+            }
+        }
+    }
+
+    /// Takes what the round has found; the greatest change of tension as part of it, None where that is wild.
+    fn step(&mut self) -> Option<f64> {
+        let mut greatest = 0.0;
+        for k in 0..self.bars.len() {
+            let slide = |j: Option<usize>| j.and_then(|j| self.links.get(j)).map_or(0.0, |l| l.sigma);
+            let (before, after) = (slide(k.checked_sub(1)), slide(Some(k)));
+            let bar = &mut self.bars[k];
+            if bar.ends.is_none() {
+                continue;
+            }
+            let change = bar.change[0] + bar.change[1] * before + bar.change[2] * after;
+            let now = [0, 1].map(|i| bar.tension[i] + bar.by[i][0] * before + bar.by[i][1] * after);
+            for (now, was) in now.into_iter().zip(bar.was) {
+                if !(now <= was * WILD && now >= was / WILD) {
+                    return None;
+                }
+                greatest = larger(greatest, (now - was).abs() / was);
+            }
+            bar.still = before == 0.0 && after == 0.0 && change.norm() <= STILL * bar.was[0];
+            (bar.was, bar.tension) = (now, now);
+            bar.force += change;
+            bar.material = [bar.material[0] + before, bar.material[1] + after];
+            if !(bar.material[1] > bar.material[0]) {
+                return None;
+            }
+        }
+        for l in &mut self.links {
+            l.slid += l.sigma;
+        }
+        Some(greatest)
+    }
+
+    /// Finds sides and slips that agree; false where that comes to no end.
+    fn settle(&mut self) -> bool {
+        for _ in 0..2 * self.links.len() + MORE_ROUNDS {
+            if !self.solve() {
+                return false;
+            }
+            if !self.change() {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// The slips for the sides as they are: three diagonals.
+    fn solve(&mut self) -> bool {
+        self.swept.clear();
+        let mut before = (0.0, 0.0);
+        for (j, l) in self.links.iter().enumerate() {
+            let reach = l.reach.and_then(|r| match l.side {
+                0 => None,
+                side => Some(r[usize::from(side > 0)]),
+            });
+            before = match reach {
+                None => (0.0, -l.slid),
+                Some((made, by)) => {
+                    let (one, two) = (&self.bars[j], &self.bars[j + 1]);
+                    // T₂ − what is made of T₁ = 0.
+                    let lower = -by * one.by[1][0];
+                    let middle = two.by[0][0] - by * one.by[1][1];
+                    let rest = made + by * (one.tension[1] - l.ends.t[0]) - two.tension[0];
+                    let pivot = middle - lower * before.0;
+                    (two.by[0][1] / pivot, (rest - lower * before.1) / pivot)
+                }
+            };
+            self.swept.push(before);
+        }
+        let mut after = 0.0;
+        for (l, (upper, rest)) in self.links.iter_mut().zip(&self.swept).rev() {
+            l.sigma = rest - upper * after;
+            after = l.sigma;
+        }
+        self.links.iter().all(|l| l.sigma.is_finite())
+    }
+
+    /// Changes the sides that disagree with the slips; whether there was any.
+    fn change(&mut self) -> bool {
+        let sigma = |links: &[Link], j: Option<usize>| j.and_then(|j| links.get(j)).map_or(0.0, |l| l.sigma);
+        let mut changed = false;
+        for j in 0..self.links.len() {
+            let l = self.links[j];
+            let Some([(low, by_low), (high, by_high)]) = l.reach else { continue };
+            if low == high {
+                continue;
+            }
+            let side = if l.side == 0 {
+                let (before, after) = (sigma(&self.links, j.checked_sub(1)), sigma(&self.links, Some(j + 1)));
+                let (one, two) = (&self.bars[j], &self.bars[j + 1]);
+                let grown = one.tension[1] + one.by[1][0] * before + one.by[1][1] * l.sigma - l.ends.t[0];
+                let reached = two.tension[0] + two.by[0][0] * l.sigma + two.by[0][1] * after;
+                if reached > high + by_high * grown {
+                    1
+                } else if reached < low + by_low * grown {
+                    -1
+                } else {
+                    0
+                }
+            } else if (l.slid + l.sigma) * f64::from(l.side) > 0.0 {
+                0
+            } else {
+                l.side
+            };
+            changed |= side != l.side;
+            self.links[j].side = side;
+        }
+        changed
+    }
+}

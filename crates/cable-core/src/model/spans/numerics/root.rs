@@ -1,0 +1,51 @@
+//! The root of a function of one variable that is bracketed and has a slope.
+
+/// Roots are found to this part of the interval searched: rounding.
+const ROOT: f64 = 1e-15;
+/// Differences of tension that are rounding, of the tension. Smaller: where old and new tension run alike the search halves
+/// on through rounding. Larger: material is off by this part of the strain.
+pub(in crate::model::spans) const FLOOR: f64 = 1e-14;
+/// Rounds of such a search at most: halving alone takes 52.
+const MAX_ROUNDS: usize = 100;
+
+/// Where f falls from above zero at `a` to zero or below at `b`: Newton's method from the secant, kept inside what brackets
+/// the root. `f`: value and slope; `floor`: a value that is rounding; the values at a and b and a place near the root where
+/// they are known.
+pub(in crate::model::spans) fn crossing(
+    (a, b): (f64, f64),
+    floor: f64,
+    ends: Option<(f64, f64)>,
+    f: impl Fn(f64) -> (f64, f64),
+) -> f64 {
+    let (mut x0, mut x1) = (a, b);
+    let (f0, f1) = ends.unwrap_or_else(|| (f(a).0, f(b).0));
+    if !(f0 > floor) {
+        return a;
+    }
+    if f1.abs() <= floor {
+        return b;
+    }
+    let rounding = ROOT * (a.abs() + b.abs());
+    let (mut x, mut before) = (a + (b - a) * (f0 / (f0 - f1)), f64::INFINITY);
+    for _ in 0..MAX_ROUNDS {
+        let (value, slope) = f(x);
+        if value.abs() <= floor || (x1 - x0).abs() <= rounding {
+            return x;
+        }
+        if value > 0.0 {
+            x0 = x;
+        } else {
+            x1 = x;
+        }
+        let next = x - value / slope;
+        let inside = (next - x0) * (next - x1) < 0.0;
+        // What does not halve is not near enough for Newton.
+        let step = if inside && value.abs() < 0.5 * before { next } else { 0.5 * (x0 + x1) };
+        before = value.abs();
+        if (step - x).abs() <= rounding {
+            return step;
+        }
+        x = step;
+    }
+    x
+}

@@ -1,0 +1,484 @@
+//! The answer: nodes, what supports feel, what obstacles feel.
+
+use crate::catenary::PointForce;
+use crate::math::{GAUSS, Vec2, larger};
+use crate::model::arc_nodes;
+use crate::model::catenary::report::{Nodes, Point, forget_hint};
+use crate::model::spans::boundary::capstan::Track;
+use crate::model::spans::boundary::curve::Place;
+use crate::model::spans::boundary::segment_cursor::{OnPiece, Pivot};
+use crate::model::spans::boundary_conditions::Layout;
+use crate::model::spans::contact::friction_memory::{History, Mode};
+use crate::model::spans::contact::point_load;
+use crate::model::spans::contact::slack_pocket;
+use crate::model::spans::continuation::Network;
+use crate::model::spans::run::{Contact, Course, Strand, Tie};
+use crate::model::spans::verify::penetration;
+use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
+
+/// Nodes on each stretch of an edge.
+const EDGE_NODES: usize = 8;
+
+/// Longest stretch of an arc over which forces are summed with one rule of 5 Gauss points, rad: exact to 1e-11.
+const PANEL: f64 = 1.0;
+/// Longest one for which 3 points are as good, rad.
+const SHORT: f64 = 0.1;
+
+/// Nodes and weights of 3-point Gauss–Legendre quadrature on [0, 1].
+const THREE: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+
+/// Everything a solution shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(in crate::model::spans) struct Report {
+    pub nodes: Vec<Node>,
+    pub supports: Vec<SupportReaction>,
+    pub contacts: Vec<ContactReport>,
+}
+
+/// The answer of a network.
+pub(in crate::model::spans) fn report(layout: &Layout, network: &Network) -> Report {
+    let course = &network.course;
+    let mut greatest = 0.0;
+    for strand in &network.strands {
+        for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
+            let (from, to) = strand.material(k);
+            for s in [from, to] {
+                let t = strand.force(course, k, s).norm();
+                greatest = if t > greatest { t } else { greatest };
+            }
+        }
+        for t in strand.contacts.iter().flat_map(|c| c.ends.t) {
+            greatest = if t > greatest { t } else { greatest };
+        }
+        if let Some(loose) = &strand.loose {
+            greatest = [0, 1].iter().map(|side| loose.end_force(course, *side).norm()).fold(greatest, larger);
+        }
+    }
+    let mut nodes = Nodes::new(&layout.problem, greatest);
+    nodes.turned = layout.turned;
+    let mut contacts = Vec::new();
+    for strand in &network.strands {
+        if let Some(loose) = &strand.loose {
+            let found = loose.report(course, &mut nodes, layout.problem.radius).into_iter();
+            contacts.extend(found.map(|(obstacle, report)| {
+                let obstacle = layout.problem.world.obstacle_name(obstacle).to_owned();
+                ContactReport { obstacle, ..report }
+            }));
+            continue;
+        }
+        for k in 0..strand.spans() {
+            if strand.has_span(k) {
+                penetration::shapes(strand, course, k, |s0, at, shape| nodes.catenary(s0, at, shape));
+            }
+            if let Some(c) = strand.contacts.get(k) {
+                let track = course.track(c).seen_from(c.ends.p[0]);
+                let stretches = stretches((&track, layout.problem.radius), &c.history, c.ends.p);
+                if c.weight {
+                    load_nodes(&mut nodes, (strand, course, k), &track);
+                } else {
+                    contact_nodes(&mut nodes, &track, c, &stretches);
+                }
+                if let Some(obstacle) = track.curve.obstacle {
+                    let name = layout.problem.world.obstacle_name(obstacle);
+                    contacts.push(match c.weight {
+                        true => load((strand, course, k), (&track, name)),
+                        false => contact((&track, name), c, &stretches),
+                    });
+                    if c.pocket {
+                        contacts.extend(heap((strand, course, k), name));
+                    }
+                }
+            }
+        }
+    }
+    let mut nodes = nodes.out;
+    let mut supports = supports(layout, network, &nodes);
+    let hint = network.instant.hint;
+    if hint > 0.0 {
+        forget_hint(&mut nodes, &mut supports, hint);
+        contacts.retain(|c: &ContactReport| Vec2::from(c.force_n).norm() > hint);
+    }
+    Report { nodes, supports, contacts }
+}
+
+/// A stretch of a contact on which tension has one law and the boundary one form.
+#[derive(Clone, Copy)]
+struct Stretch {
+    from: f64,
+    to: f64,
+    /// Tension (N) and material (m) at its start.
+    tension: f64,
+    s: f64,
+    /// Friction coefficient called upon.
+    m: f64,
+    pivot: Pivot,
+    /// Of the cable, m.
+    cable_radius: f64,
+}
+
+impl Stretch {
+    fn new((track, cable_radius): (&Track<'_>, f64), history: &History, [from, to]: [f64; 2]) -> Self {
+        let middle = 0.5 * (from + to);
+        let (tension, s) = history.at(track, from);
+        let pivot = match track.pivot {
+            Some(pivot) if pivot.reaches(from) && pivot.reaches(to) => pivot,
+            _ => Pivot::new(track.curve, track.home, &track.law, middle),
+        };
+        Self { from, to, tension, s, m: history.called(track, middle), pivot, cable_radius }
+    }
+
+    /// Parts that nodes cut it into.
+    fn nodes(&self) -> usize {
+        if self.pivot.turns() {
+            arc_nodes::parts(self.pivot.at.stretch, self.to - self.from, self.cable_radius)
+        } else {
+            EDGE_NODES
+        }
+    }
+
+    /// Tension and material at p.
+    fn at(&self, track: &Track<'_>, p: f64) -> (f64, f64) {
+        let piece = OnPiece { law: &track.law, from: self.pivot.spot(self.from), p0: self.from };
+        let way = piece.slide(p, self.tension, self.m);
+        (way.tension, self.s + way.material)
+    }
+}
+
+fn stretches((track, cable_radius): (&Track<'_>, f64), history: &History, [p1, p2]: [f64; 2]) -> Vec<Stretch> {
+    let knots = history.knots();
+    let mut out = Vec::with_capacity(knots.len() + 1);
+    let (mut p, mut k) = (p1, 0);
+    while p < p2 {
+        let border = track.next_border(p, p2);
+        while knots.get(k).is_some_and(|knot| knot.p <= p) {
+            k += 1;
+        }
+        let next = knots.get(k).map_or(border, |knot| if knot.p < border { knot.p } else { border });
+        out.push(Stretch::new((track, cable_radius), history, [p, next]));
+        p = next;
+    }
+    out
+}
+
+fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, c: &Contact, stretches: &[Stretch]) {
+    let mut push = |place: &Place, (tension, s): (f64, f64)| {
+        let curvature = if place.stretch > 0.0 { place.turn * track.law.stretch(tension) / place.stretch } else { 0.0 };
+        nodes.push(Point { s, at: place.at, force: place.tangent * tension, curvature });
+    };
+    push(&track.place(c.ends.p[0]), (c.ends.t[0], c.ends.s[0]));
+    for stretch in stretches {
+        let (a, b) = (stretch.from, stretch.to);
+        let count = stretch.nodes();
+        let last = if b < c.ends.p[1] { count } else { count - 1 };
+        for i in 1..=last {
+            let p = if i == count { b } else { a + (b - a) * i as f64 / count as f64 };
+            push(&stretch.pivot.place(p), stretch.at(track, p));
+        }
+    }
+    push(&track.place(c.ends.p[1]), (c.ends.t[1], c.ends.s[1]));
+}
+
+/// The nodes of the load that is contact j: what comes down on it from the air pulls as it comes, what lies beside it along the ground.
+fn load_nodes(nodes: &mut Nodes<'_>, (strand, course, j): (&Strand, &Course, usize), track: &Track<'_>) {
+    let c = &strand.contacts[j];
+    let place = track.place(c.ends.p[0]);
+    let pulls = |side: usize| strand.force_at_contact(course, j, side);
+    for side in 0..2 {
+        // Beyond an end there is nothing: it has what comes to it.
+        let ends = (j + side == 0 || j + side == strand.contacts.len()) && !strand.has_span(j + side);
+        let along = || place.tangent * c.ends.t[side];
+        let force = pulls(side).or_else(|| pulls(1 - side).filter(|_| ends)).unwrap_or_else(along);
+        nodes.push(Point { s: c.ends.s[side], at: place.at, force, curvature: 0.0 });
+    }
+}
+
+/// Normal force summed over a contact, its direction, the pull of the load along it, and how far it turns.
+fn pressed(track: &Track<'_>, stretches: &[Stretch]) -> (f64, Vec2, f64, f64) {
+    let (mut normal, mut push, mut along, mut turned) = (0.0, Vec2::zeros(), 0.0, 0.0);
+    for stretch in stretches {
+        let (a, way, turns) = (stretch.from, stretch.to - stretch.from, stretch.pivot.turns());
+        let panels = if turns { (way / PANEL).ceil().max(1.0) } else { 1.0 };
+        let h = way / panels;
+        let rule: &[(f64, f64)] = if turns && h <= SHORT { &THREE } else { &GAUSS };
+        for k in 0..panels as usize {
+            for (u, weight) in rule {
+                let p = a + (k as f64 + u) * h;
+                let (t, place, weight) = (stretch.at(track, p).0, stretch.pivot.place(p), weight * h);
+                let press = track.law.press(&place, t);
+                normal += weight * press;
+                push += place.normal * (weight * press);
+                along += weight * track.law.load.dot(&place.tangent) * place.stretch / track.law.stretch(t);
+                turned += weight * place.turn;
+            }
+        }
+    }
+    (normal, push, along, turned)
+}
+
+fn contact((track, name): (&Track<'_>, &str), c: &Contact, stretches: &[Stretch]) -> ContactReport {
+    let friction = track.friction;
+    let (normal_n, push, along, turned) = pressed(track, stretches);
+    let middle = track.place(0.5 * (c.ends.p[0] + c.ends.p[1]));
+    let unit = if push.norm() > 0.0 { push.normalize() } else { middle.normal };
+    let [t1, t2] = c.ends.t;
+    let slips = friction <= 0.0 || matches!(c.mode, Mode::Slide(_));
+    let mut report = ContactReport {
+        obstacle: name.to_owned(),
+        x_m: middle.at.x,
+        y_m: middle.at.y,
+        arc_length_m: 0.5 * (c.ends.s[0] + c.ends.s[1]),
+        normal: [unit.x, unit.y],
+        normal_n,
+        friction_n: t1 - t2 - along,
+        force_n: held_by(track, c).into(),
+        state: if slips { ContactState::Slip } else { ContactState::Stick },
+        turn_deg: turned.to_degrees(),
+        tension_before_n: t1,
+        tension_after_n: t2,
+        begins_m: c.ends.s[0],
+        ends_m: c.ends.s[1],
+        parts: if slips { Vec::new() } else { parts(c, friction, stretches) },
+        ..ContactReport::default()
+    };
+    report.set_samples(samples(track, stretches));
+    report
+}
+
+/// Forces of the obstacle on the cable between the nodes of a contact: N n on an edge or arc, less the friction called upon, m N t.
+fn samples(track: &Track<'_>, stretches: &[Stretch]) -> Vec<ContactSample> {
+    let mut out = Vec::with_capacity(EDGE_NODES * stretches.len());
+    for stretch in stretches {
+        let count = stretch.nodes();
+        let h = (stretch.to - stretch.from) / count as f64;
+        for k in 0..count {
+            let (mut force, mut middle) = (Vec2::zeros(), stretch.s);
+            for (u, weight) in THREE {
+                let p = stretch.from + (k as f64 + u) * h;
+                let (t, s) = stretch.at(track, p);
+                let place = stretch.pivot.place(p);
+                force += (place.normal - place.tangent * stretch.m) * (weight * h * track.law.press(&place, t));
+                middle = if u == 0.5 { s } else { middle };
+            }
+            out.push(ContactSample::new(middle, force));
+        }
+    }
+    out
+}
+
+/// The force of an obstacle on what lies on it, N: it holds the load there and what the tensions at both ends leave over.
+fn held_by(track: &Track<'_>, c: &Contact) -> Vec2 {
+    let [before, after] = [0, 1].map(|side| track.place(c.ends.p[side]).tangent * c.ends.t[side]);
+    before - after - track.law.load * (c.ends.s[1] - c.ends.s[0])
+}
+
+/// The material that lies loose in the kink behind contact j, m.
+pub(in crate::model::spans) fn loose(strand: &Strand, j: usize) -> Option<[f64; 2]> {
+    let (c, next) = (strand.contacts.get(j)?, strand.contacts.get(j + 1)?);
+    (c.pocket && next.ends.s[0] > c.ends.s[1]).then_some([c.ends.s[1], next.ends.s[0]])
+}
+
+/// Tension at the start, at the end, and the greatest, N.
+pub(in crate::model::spans) fn tensions(network: &Network) -> [f64; 3] {
+    let course = &network.course;
+    let end = |strand: Option<&Strand>, side: usize| {
+        let strand = strand?;
+        let outer = if side == 0 { strand.contacts.first() } else { strand.contacts.last() };
+        Some(match (strand.ties[side], outer) {
+            (Tie::Loose(_), Some(c)) => c.ends.t[side],
+            _ => end_force(network, strand, side).norm(),
+        })
+    };
+    let [start, last] = [end(network.strands.first(), 0), end(network.strands.last(), 1)].map(|t| t.unwrap_or(0.0));
+    let mut greatest = larger(start, last);
+    for strand in &network.strands {
+        for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
+            let (from, to) = strand.material(k);
+            let ends = [from, to].map(|s| strand.force(course, k, s).norm());
+            greatest = larger(greatest, larger(ends[0], ends[1]));
+        }
+        greatest = strand.contacts.iter().flat_map(|c| c.ends.t).fold(greatest, larger);
+    }
+    [start, last, greatest]
+}
+
+/// What is left of all forces on the cable as they are reported, and their size, N: supports and contacts hold weight and loads.
+pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &Network) -> (Vec2, f64) {
+    let (p, course) = (&layout.problem, &network.course);
+    let mut sum = course.law.load * p.length;
+    let mut size = sum.norm();
+    for load in &course.loads {
+        sum += load.force;
+        size += load.force.norm();
+    }
+    let mut add = |force: Vec2| {
+        sum += force;
+        size += force.norm();
+    };
+    for (strand, part) in network.strands.iter().zip(&layout.strands) {
+        for side in 0..2 {
+            if part.supports[side].is_some() {
+                add(end_force(network, strand, side) * if side == 0 { -1.0 } else { 1.0 });
+            }
+        }
+        if let Some(loose) = &strand.loose {
+            add(loose.held(course));
+        }
+        for (j, c) in strand.contacts.iter().enumerate() {
+            add(match (c.wheel, c.weight) {
+                (Some(_), _) => -wheel_force(course, strand, j).0,
+                (None, true) => -point_load::felt(strand, course, j).sum,
+                (None, false) => held_by(&course.track(c), c),
+            });
+            if let (Some([from, to]), None) = (loose(strand, j), c.wheel) {
+                add(-course.load_between(from, to));
+            }
+        }
+    }
+    (sum, size)
+}
+
+/// The contact of the load that is contact j.
+fn load((strand, course, j): (&Strand, &Course, usize), (track, name): (&Track<'_>, &str)) -> ContactReport {
+    let c = &strand.contacts[j];
+    let felt = point_load::felt(strand, course, j);
+    let at = track.place(c.ends.p[0]).at;
+    // The obstacle holds what all else does to the point.
+    let held = felt.normal * felt.press() - felt.tangent * felt.sum.dot(&felt.tangent);
+    let slips = track.friction <= 0.0 || matches!(c.mode, Mode::Slide(_));
+    ContactReport {
+        obstacle: name.to_owned(),
+        x_m: at.x,
+        y_m: at.y,
+        arc_length_m: c.ends.s[0],
+        normal: [felt.normal.x, felt.normal.y],
+        normal_n: felt.press(),
+        friction_n: -felt.sum.dot(&felt.tangent),
+        state: if slips { ContactState::Slip } else { ContactState::Stick },
+        turn_deg: 0.0,
+        tension_before_n: c.ends.t[0],
+        tension_after_n: c.ends.t[1],
+        begins_m: c.ends.s[0],
+        ends_m: c.ends.s[0],
+        force_n: [held.x, held.y],
+        samples: vec![ContactSample::new(c.ends.s[0], held)],
+        ..ContactReport::default()
+    }
+}
+
+/// The contacts of the heap in the pocket after contact j: one with each edge that carries a part of it.
+fn heap((strand, course, j): (&Strand, &Course, usize), name: &str) -> Vec<ContactReport> {
+    let ([before, after], at) = match (&strand.contacts[j], strand.contacts.get(j + 1)) {
+        (c, Some(next)) => ([c.ends.s[1], next.ends.s[0]], course.track(c).place(c.ends.p[1]).at),
+        (_, None) => return Vec::new(),
+    };
+    let edge = |b: slack_pocket::Borne| {
+        let middle = 0.5 * (before + after);
+        let mut report = ContactReport {
+            obstacle: name.to_owned(),
+            x_m: at.x,
+            y_m: at.y,
+            arc_length_m: middle,
+            normal: [b.normal.x, b.normal.y],
+            normal_n: b.press,
+            friction_n: b.friction,
+            begins_m: before,
+            ends_m: after,
+            ..ContactReport::default()
+        };
+        report.set_samples(vec![ContactSample::new(middle, b.normal * b.press + b.tangent * b.friction)]);
+        report
+    };
+    let borne = slack_pocket::heap(strand, course, j + 1).into_iter().flatten();
+    borne.filter(|b| b.press > 0.0).map(edge).collect()
+}
+
+/// Stretches that stick and stretches at the limit of friction, neighbours alike joined; none where all is alike.
+fn parts(c: &Contact, friction: f64, stretches: &[Stretch]) -> Vec<ContactPart> {
+    /// What is called upon of friction counts as all of it from this share on: rounding.
+    const LIMIT: f64 = 1.0 - 1e-9;
+    let state = |s: &Stretch| if s.m.abs() >= LIMIT * friction { ContactState::Slip } else { ContactState::Stick };
+    let Some(first) = stretches.first().map(state).filter(|f| stretches.iter().any(|s| state(s) != *f)) else {
+        return Vec::new();
+    };
+    let mut out = vec![ContactPart { begins_m: c.ends.s[0], ends_m: c.ends.s[1], state: first }];
+    for s in stretches {
+        if let Some(last) = out.last_mut().filter(|last| last.state != state(s)) {
+            last.ends_m = s.s;
+            out.push(ContactPart { begins_m: s.s, ends_m: c.ends.s[1], state: state(s) });
+        }
+    }
+    out
+}
+
+/// Force of the cable at an end of a strand (pulling along growing arc length), N.
+fn end_force(network: &Network, strand: &Strand, side: usize) -> Vec2 {
+    let course = &network.course;
+    if let Some(loose) = &strand.loose {
+        return loose.end_force(course, side);
+    }
+    let (k, s) = if side == 0 { (0, strand.from) } else { (strand.contacts.len(), strand.to) };
+    match strand.ties[side] {
+        Tie::Held(_) | Tie::Hangs(_) => strand.force(course, k, s),
+        Tie::Lies(p) => {
+            let c = if side == 0 { strand.contacts.first() } else { strand.contacts.last() };
+            c.map_or(Vec2::zeros(), |c| course.track(c).place(p).tangent * c.ends.t[side])
+        }
+        Tie::Loose(_) => Vec2::zeros(),
+    }
+}
+
+fn supports(layout: &Layout, network: &Network, nodes: &[Node]) -> Vec<SupportReaction> {
+    let p = &layout.problem;
+    let course = &network.course;
+    let loads_at = |s: f64| -> Vec2 {
+        let here = course.loads.iter().filter(|l: &&PointForce| l.arc_length == s);
+        here.fold(Vec2::zeros(), |sum, l| sum + l.force)
+    };
+    let mut out = Vec::with_capacity(p.supports.len());
+    for (k, s) in p.supports.iter().enumerate() {
+        let mut r = SupportReaction { name: s.name.clone(), ..SupportReaction::default() };
+        let at = network.instant.places[k];
+        if let Some((c, strand)) =
+            network.strands.iter().find_map(|st| st.contacts.iter().find(|c| c.wheel == Some(k)).map(|c| (c, st)))
+        {
+            wheel(&mut r, network, strand, c);
+            (r.x_m, r.y_m) = (at.x, at.y);
+        } else if let Some(arc_length) = s.arc_length {
+            r.arc_length_m = arc_length;
+            let mut force = loads_at(arc_length);
+            if s.at.is_some() {
+                for (strand, part) in network.strands.iter().zip(&layout.strands) {
+                    for side in 0..2 {
+                        if part.supports[side] == Some(k) {
+                            force += end_force(network, strand, side) * if side == 0 { 1.0 } else { -1.0 };
+                        }
+                    }
+                }
+                (r.x_m, r.y_m) = (at.x, at.y);
+            } else {
+                force = -force;
+                let i = nodes.partition_point(|n| n.arc_length_m < arc_length - 1e-12 * p.length);
+                (r.x_m, r.y_m) = nodes.get(i).map_or((0.0, 0.0), |n| (n.x_m, n.y_m));
+            }
+            (r.reaction_x_n, r.reaction_y_n) = (force.x, force.y);
+        }
+        out.push(r);
+    }
+    out
+}
+
+fn wheel(r: &mut SupportReaction, network: &Network, strand: &Strand, c: &Contact) {
+    let j = strand.contacts.iter().position(|d| std::ptr::eq(d, c)).unwrap_or(0);
+    let (sum, [before, after]) = wheel_force(&network.course, strand, j);
+    (r.reaction_x_n, r.reaction_y_n) = (sum.x, sum.y);
+    r.arc_length_m = 0.5 * (c.ends.s[0] + c.ends.s[1]);
+    (r.tension_before_n, r.tension_after_n) = (Some(before.norm()), Some(after.norm()));
+}
+
+/// The force of the cable on the wheel that is contact j, and the forces in the cable before and after it, N.
+fn wheel_force(course: &Course, strand: &Strand, j: usize) -> (Vec2, [Vec2; 2]) {
+    let [before, after] = [0, 1].map(|side| strand.force_at_contact(course, j, side).unwrap_or_default());
+    let [from, to] = strand.contacts[j].ends.s;
+    (after - before + course.load_between(from, to), [before, after])
+}

@@ -1,0 +1,133 @@
+//! A cable counted from its other end.
+//!
+//! Where friction leaves several rests, which one is found must not depend on the end from which a scene counts its cable: it is laid and
+//! followed counted from its *upper* end, and what is found is turned back.
+
+use crate::math::Vec2;
+use crate::model::spans::failure::Trouble;
+use crate::model::spans::results::Report;
+use crate::problem::Problem;
+use crate::scene::FrictionMobilised;
+use crate::solution::{ContactPart, ContactReport, ContactSample, Node, SupportReaction};
+
+/// Heights that differ by less than this part of the cable are one. Smaller: rounding, which is another one in a scene that is moved or
+/// mirrored, says from where it is counted. Larger: a cable whose ends differ by so little is counted from either.
+const LEVEL: f64 = 1e-9;
+
+/// Whether a cable is counted from its end when its rest is sought: that is its upper one; of two that are level the one beside which
+/// the cable is led higher.
+pub(in crate::model::spans) fn is_led_up(p: &Problem) -> bool {
+    let places: Vec<Vec2> = if p.route.len() > 1 {
+        p.route.clone()
+    } else {
+        p.supports.iter().filter_map(|s| s.position_at(0.0).map(|p| p.0)).collect()
+    };
+    let load = p.body_force(0.0);
+    let height = |v: &Vec2| -v.dot(&load) / load.norm();
+    let n = places.len();
+    let pairs = places.iter().zip(places.iter().rev()).take(n / 2);
+    let higher = pairs.map(|(a, b)| height(b) - height(a)).find(|d| d.abs() > LEVEL * p.length);
+    higher.is_some_and(|d| d > 0.0)
+}
+
+/// The same cable counted from its other end.
+pub(in crate::model::spans) fn problem(p: &Problem) -> Problem {
+    let mut out = p.clone();
+    out.supports.reverse();
+    for s in &mut out.supports {
+        s.arc_length = s.arc_length.map(|a| p.length - a);
+        s.angle = s.angle.map(|a| a + std::f64::consts::PI);
+    }
+    out.loads.reverse();
+    for l in &mut out.loads {
+        l.arc_length = p.length - l.arc_length;
+    }
+    out.route.reverse();
+    out.cable.friction_mobilised = mobilised(p.cable.friction_mobilised);
+    out
+}
+
+/// Friction against a cable drawn the other way.
+pub(in crate::model::spans) fn mobilised(m: FrictionMobilised) -> FrictionMobilised {
+    match m {
+        FrictionMobilised::TowardsStart => FrictionMobilised::TowardsEnd,
+        FrictionMobilised::TowardsEnd => FrictionMobilised::TowardsStart,
+        other => other,
+    }
+}
+
+/// Arc lengths of a cable counted from the other end.
+pub(in crate::model::spans) struct Turned<'a> {
+    /// The cable as the scene counts it.
+    pub problem: &'a Problem,
+}
+
+impl Turned<'_> {
+    /// An arc length counted from the other end, m: those of supports and loads come out as they were given.
+    pub fn s(&self, s: f64) -> f64 {
+        let p = self.problem;
+        let marks = p.supports.iter().filter_map(|s| s.arc_length).chain(p.loads.iter().map(|l| l.arc_length));
+        marks.into_iter().find(|mark| p.length - mark == s).unwrap_or(p.length - s)
+    }
+
+    /// Nodes: what the cable beyond one does to it is now what the cable before does.
+    pub fn nodes(&self, nodes: &[Node]) -> Vec<Node> {
+        let turned = |n: &Node| Node {
+            arc_length_m: self.s(n.arc_length_m),
+            curvature_per_m: 0.0 - n.curvature_per_m,
+            force_n: n.force_n.map(|f| 0.0 - f),
+            ..*n
+        };
+        nodes.iter().rev().map(turned).collect()
+    }
+
+    /// An answer.
+    pub fn report(&self, report: &Report) -> Report {
+        let support = |r: &SupportReaction| SupportReaction {
+            arc_length_m: self.s(r.arc_length_m),
+            tension_before_n: r.tension_after_n,
+            tension_after_n: r.tension_before_n,
+            ..r.clone()
+        };
+        Report {
+            nodes: self.nodes(&report.nodes),
+            supports: report.supports.iter().rev().map(support).collect(),
+            contacts: report.contacts.iter().rev().map(|c| self.contact(c)).collect(),
+        }
+    }
+
+    fn contact(&self, c: &ContactReport) -> ContactReport {
+        let part =
+            |p: &ContactPart| ContactPart { begins_m: self.s(p.ends_m), ends_m: self.s(p.begins_m), state: p.state };
+        let sample = |s: &ContactSample| ContactSample { arc_length_m: self.s(s.arc_length_m), ..*s };
+        ContactReport {
+            arc_length_m: self.s(c.arc_length_m),
+            friction_n: 0.0 - c.friction_n,
+            turn_deg: 0.0 - c.turn_deg,
+            tension_before_n: c.tension_after_n,
+            tension_after_n: c.tension_before_n,
+            begins_m: self.s(c.ends_m),
+            ends_m: self.s(c.begins_m),
+            parts: c.parts.iter().rev().map(part).collect(),
+            samples: c.samples.iter().rev().map(sample).collect(),
+            ..c.clone()
+        }
+    }
+
+    /// A trouble.
+    pub fn trouble(&self, trouble: Trouble) -> Trouble {
+        match trouble {
+            Trouble::Stalled { iterations, residual, s } => Trouble::Stalled { iterations, residual, s: self.s(s) },
+            Trouble::Restless { s } => Trouble::Restless { s: self.s(s) },
+            Trouble::Compressed { s, at, tension } => Trouble::Compressed { s: self.s(s), at, tension },
+            Trouble::OffWheel { support } => {
+                Trouble::OffWheel { support: (self.problem.supports.len() - 1).saturating_sub(support) }
+            }
+            Trouble::LoadLies { s } => Trouble::LoadLies { s: self.s(s) },
+            Trouble::NoSeat { s, at } => Trouble::NoSeat { s: self.s(s), at },
+            Trouble::Drawn { s } => Trouble::Drawn { s: self.s(s) },
+            Trouble::Unsound { what, s, at } => Trouble::Unsound { what, s: self.s(s), at },
+            same @ (Trouble::Passed { .. } | Trouble::SupportInside { .. }) => same,
+        }
+    }
+}

@@ -1,0 +1,298 @@
+//! One stretch of cable between two grips: free spans and contacts in a row.
+//!
+//! Unknown are for each span the force G that the cable would carry at the strand's start if its law went on there,
+//! F(s) = G − b(s − s_a) − Σ P_k [s_k < s], and for each contact its interval (p₁, p₂) of the boundary and the material
+//! (s₁, s₂) at both ends. Material sliding through points fixed in space: after S. Sueda, G. L. Jones, D. I. W. Levin and
+//! D. K. Pai, "Large-scale dynamic simulation of highly constrained strands", ACM Transactions on Graphics 30 (2011) 39.
+
+use crate::catenary::{Chain, PointForce};
+use crate::math::Vec2;
+use crate::model::spans::boundary::capstan::{Law, Track};
+use crate::model::spans::boundary::curve::{Curve, Home};
+use crate::model::spans::contact::friction_memory::{Ends, Held, History, Mode};
+use crate::model::spans::contact::kink_load::Kink;
+use crate::model::spans::slack::Loose;
+
+/// Everything given at an instant.
+#[derive(Clone, Debug)]
+pub(in crate::model::spans) struct Course {
+    /// Boundaries: both senses of each body, then both of each wheel.
+    pub curves: Vec<Curve>,
+    pub law: Law,
+    /// What sliding is resisted with besides friction while a cable that runs away is followed, N per m of slip; else 0.
+    pub drag: f64,
+    /// Which way friction is fully mobilised at every contact: 1 against a cable drawn towards its end, −1 towards its start; 0 where
+    /// friction does what the contact's past asks for.
+    pub mobilised: f64,
+    /// Dead loads inside the cable, in order, N.
+    pub loads: Vec<PointForce>,
+}
+
+/// What is at an end of a strand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::model::spans) enum Tie {
+    /// Held in the air at a point, m.
+    Held(Vec2),
+    /// Hangs free, drawn by a dead force, N.
+    Hangs(Vec2),
+    /// Held at p on the boundary of the contact beside it.
+    Lies(f64),
+    /// Lying on the contact beside it, held by nothing but friction, and drawn by a dead force, N.
+    Loose(Vec2),
+}
+
+impl Tie {
+    /// Whether a free span begins here.
+    pub fn has_span(&self) -> bool {
+        matches!(self, Self::Held(_) | Self::Hangs(_))
+    }
+}
+
+/// A contact.
+#[derive(Debug, PartialEq)]
+pub(in crate::model::spans) struct Contact {
+    /// Index of the boundary.
+    pub curve: usize,
+    pub home: Home,
+    pub ends: Ends,
+    pub mode: Mode,
+    /// Where it sticks under the tensions it has, where that was worked out.
+    pub held: Option<Held>,
+    pub history: History,
+    /// The pulley it is, by its support.
+    pub wheel: Option<usize>,
+    /// Times the mode has changed in this solve.
+    pub flips: u32,
+    /// Whether it ends in a kink without tension, as the next begins there: no span between them, see `pocket`.
+    pub pocket: bool,
+    /// Whether the next begins where it ends, as one of the two is a load that lies: no span between them, see `weight`.
+    pub joined: bool,
+    /// Whether it is a load that lies.
+    pub weight: bool,
+    /// The kink that load is in.
+    pub kink: Option<Kink>,
+    /// Smooth for now: found while a rest is sought, where it has not rubbed yet.
+    pub smooth: bool,
+}
+
+/// A strand.
+#[derive(Debug, Default, PartialEq)]
+pub(in crate::model::spans) struct Strand {
+    /// Material at both ends, m.
+    pub from: f64,
+    pub to: f64,
+    pub ties: [Tie; 2],
+    /// In order along the cable.
+    pub contacts: Vec<Contact>,
+    /// G of each span, N; one more than contacts.
+    pub forces: Vec<Vec2>,
+    /// How it lies without tension, where it does: it has neither contacts nor spans then.
+    pub loose: Option<Loose>,
+}
+
+impl Default for Tie {
+    fn default() -> Self {
+        Self::Held(Vec2::zeros())
+    }
+}
+
+// By hand, so that what is copied over keeps its memory.
+impl Clone for Contact {
+    fn clone(&self) -> Self {
+        Self { history: self.history.clone(), ..*self }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        let mut history = std::mem::take(&mut self.history);
+        history.clone_from(&other.history);
+        *self = Self { history, ..*other };
+    }
+}
+
+impl Clone for Strand {
+    fn clone(&self) -> Self {
+        let (contacts, forces) = (self.contacts.clone(), self.forces.clone());
+        Self { contacts, forces, loose: self.loose.clone(), ..*self }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        (self.from, self.to, self.ties) = (other.from, other.to, other.ties);
+        self.loose.clone_from(&other.loose);
+        self.contacts.clone_from(&other.contacts);
+        self.forces.clone_from(&other.forces);
+    }
+}
+
+impl Course {
+    /// The chain a contact lies on.
+    pub fn track(&self, c: &Contact) -> Track<'_> {
+        let curve = &self.curves[c.curve];
+        Track {
+            curve,
+            home: c.home,
+            law: self.law,
+            friction: self.friction(c),
+            drag: self.drag,
+            floored: self.mobilised != 0.0,
+            pivot: None,
+        }
+    }
+
+    /// Friction of a contact.
+    pub fn friction(&self, c: &Contact) -> f64 {
+        if c.smooth { 0.0 } else { self.curves[c.curve].friction }
+    }
+
+    /// Tension a dead force makes at an end that lies, N.
+    pub fn pull(&self, c: &Contact, side: usize, force: Vec2) -> f64 {
+        let along = force.dot(&self.track(c).place(c.ends.p[side]).tangent);
+        if side == 0 { -along } else { along }
+    }
+
+    /// The span of cable between two material points.
+    pub fn chain(&self, from: f64, to: f64) -> Chain<'_> {
+        Chain {
+            from,
+            to,
+            weight: self.law.load,
+            axial_stiffness: self.law.stiffness,
+            thermal_stretch: self.law.thermal,
+            loads: &self.loads,
+        }
+    }
+
+    /// Load at a material point, N.
+    pub fn load_at(&self, s: f64) -> Vec2 {
+        self.loads.iter().filter(|l| l.arc_length == s).fold(Vec2::zeros(), |sum, l| sum + l.force)
+    }
+
+    /// Load between two material points, N.
+    pub fn load_between(&self, from: f64, to: f64) -> Vec2 {
+        let inside = self.loads.iter().filter(|l| l.arc_length > from && l.arc_length < to);
+        inside.fold(self.law.load * (to - from), |sum, l| sum + l.force)
+    }
+
+    /// d(position)/ds for a force in the cable.
+    pub fn rate(&self, force: Vec2) -> Vec2 {
+        force * (self.law.thermal * (1.0 / force.norm() + 1.0 / self.law.stiffness))
+    }
+}
+
+impl Strand {
+    /// Number of spans (those that are missing beside a lying end included).
+    pub fn spans(&self) -> usize {
+        self.contacts.len() + 1
+    }
+
+    /// Whether span k is there.
+    pub fn has_span(&self, k: usize) -> bool {
+        if self.loose.is_some() {
+            return false;
+        }
+        let none = k.checked_sub(1).and_then(|j| self.contacts.get(j)).is_some_and(|c| c.pocket || c.joined);
+        !none && (k > 0 || self.ties[0].has_span()) && (k < self.contacts.len() || self.ties[1].has_span())
+    }
+
+    /// Whether contact j ends in a pocket on a side.
+    pub fn in_pocket(&self, j: usize, side: usize) -> bool {
+        (j + side).checked_sub(1).and_then(|i| self.contacts.get(i)).is_some_and(|c| c.pocket)
+    }
+
+    /// Whether contact j is joined to what is beside it on a side.
+    pub fn is_joined(&self, j: usize, side: usize) -> bool {
+        (j + side).checked_sub(1).and_then(|i| self.contacts.get(i)).is_some_and(|c| c.joined)
+    }
+
+    /// Whether the material at a side of contact j is that of a load.
+    pub fn is_marked(&self, j: usize, side: usize) -> bool {
+        self.contacts[j].weight || self.is_joined(j, side)
+    }
+
+    /// Whether contact j is joined to a load on a side that sticks.
+    pub fn is_pinned(&self, j: usize, side: usize) -> bool {
+        let beside = (j + 2 * side).checked_sub(1).and_then(|i| self.contacts.get(i));
+        self.is_joined(j, side) && beside.is_some_and(|c| c.weight && c.mode == Mode::Hold)
+    }
+
+    /// Material at both ends of span k, m.
+    pub fn material(&self, k: usize) -> (f64, f64) {
+        let from = k.checked_sub(1).and_then(|j| self.contacts.get(j)).map_or(self.from, |c| c.ends.s[1]);
+        let to = self.contacts.get(k).map_or(self.to, |c| c.ends.s[0]);
+        (from, to)
+    }
+
+    /// Force in span k at a material point, N.
+    pub fn force(&self, course: &Course, k: usize, s: f64) -> Vec2 {
+        self.forces.get(k).copied().unwrap_or_default() - course.load_between(self.from, s)
+    }
+
+    /// Where span k starts and ends, m; None where the end hangs.
+    pub fn ends_of(&self, course: &Course, k: usize) -> [Option<Vec2>; 2] {
+        let tie = |t: &Tie| if let Tie::Held(at) = t { Some(*at) } else { None };
+        let point = |c: &Contact, side: usize| Some(course.track(c).place(c.ends.p[side]).at);
+        [
+            match k.checked_sub(1).and_then(|j| self.contacts.get(j)) {
+                Some(c) => point(c, 1),
+                None => tie(&self.ties[0]),
+            },
+            match self.contacts.get(k) {
+                Some(c) => point(c, 0),
+                None => tie(&self.ties[1]),
+            },
+        ]
+    }
+
+    /// G that brings span k from its start to its end.
+    pub fn solve_span(&self, course: &Course, k: usize) -> Option<Vec2> {
+        let (from, to) = self.material(k);
+        match self.ends_of(course, k) {
+            [Some(a), Some(b)] => {
+                let near = self.forces.get(k).map(|g| g - course.load_between(self.from, from));
+                let chain = course.chain(from, to);
+                let near = near.filter(|f| f.norm() > 0.0 && f.iter().all(|v| v.is_finite()));
+                let found = chain.solve(b - a, near).or_else(|_| chain.solve(b - a, None)).ok()?;
+                Some(found.start + course.load_between(self.from, from))
+            }
+            [None, _] => self.hanging(course, 0),
+            [_, None] => self.hanging(course, 1),
+        }
+    }
+
+    /// G of a hanging end.
+    pub fn hanging(&self, course: &Course, side: usize) -> Option<Vec2> {
+        match self.ties[side] {
+            Tie::Hangs(force) if side == 0 => Some(-force),
+            Tie::Hangs(force) => Some(force + course.load_between(self.from, self.to)),
+            _ => None,
+        }
+    }
+
+    /// Writes the end tensions of contacts as the spans beside them have it.
+    pub fn take_tensions(&mut self, course: &Course) {
+        for j in 0..self.contacts.len() {
+            for side in 0..2 {
+                if let Some(force) = self.force_at_contact(course, j, side) {
+                    self.contacts[j].ends.t[side] = force.norm();
+                } else if self.in_pocket(j, side) {
+                    self.contacts[j].ends.t[side] = 0.0;
+                } else if self.is_joined(j, side) {
+                    self.contacts[j].ends.t[side] = self.forces[j + side].x;
+                } else if self.contacts[j].weight {
+                    // Beyond it is nothing.
+                    let k = j + 1 - side;
+                    let inner = self.force_at_contact(course, j, 1 - side);
+                    self.contacts[j].ends.t[side] = inner.map_or(self.forces[k].x, |f| f.norm());
+                } else if let Tie::Loose(force) = self.ties[side] {
+                    self.contacts[j].ends.t[side] = course.pull(&self.contacts[j], side, force);
+                }
+            }
+        }
+    }
+
+    /// Force of the span beside contact j on a side of it; None beside a lying end.
+    pub fn force_at_contact(&self, course: &Course, j: usize, side: usize) -> Option<Vec2> {
+        let k = j + side;
+        let s = self.contacts.get(j)?.ends.s[side];
+        self.has_span(k).then(|| self.force(course, k, s))
+    }
+}

@@ -1,0 +1,81 @@
+//! Folds in one place: where nothing lies without tension but at a foot or in a kink, what is over is a heap there.
+//!
+//! The two edges of a kink carry it pressed alone where its weight is between their normals; else the one it lies on does, within its
+//! cone.
+
+use crate::math::{Vec2, cross};
+use crate::model::spans::boundary::curve::Place;
+use crate::model::spans::initial::drained_route::Frame;
+use crate::model::spans::run::Course;
+use crate::model::spans::slack::{CONE, Line, Part, Stretch};
+
+/// A heap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Heap {
+    pub at: Vec2,
+    /// What carries it.
+    pub edges: [Option<Borne>; 2],
+}
+
+/// What an edge carries of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Borne {
+    /// Index of the boundary.
+    pub curve: usize,
+    pub normal: Vec2,
+    /// Force on the cable along the normal and along the boundary, N.
+    pub press: f64,
+    pub friction: f64,
+    pub tangent: Vec2,
+}
+
+impl Borne {
+    pub fn force(&self) -> Vec2 {
+        self.normal * self.press + self.tangent * self.friction
+    }
+}
+
+/// The lowest place that holds a heap drawn by a force (N), and before which part that is.
+pub(super) fn heap(parts: &[Part], course: &Course, frame: Frame, force: Vec2) -> Option<(usize, Heap)> {
+    let side = |part: Option<&Part>, end: usize| match part.map(|p| (p.form, p.tension[end])) {
+        Some((Line::Lies(s), 0.0)) => Some((s, s.place(course, s.p[end]))),
+        _ => None,
+    };
+    let slack = |part: Option<&Part>, end: usize| part.is_none_or(|p| p.tension[end] == 0.0);
+    let mut best: Option<(f64, usize, Heap)> = None;
+    for k in 0..=parts.len() {
+        let [before, after] = [k.checked_sub(1).and_then(|j| parts.get(j)), parts.get(k)];
+        if !(slack(before, 1) && slack(after, 0)) {
+            continue;
+        }
+        let Some(found) = carried(course, [side(before, 1), side(after, 0)], -force) else { continue };
+        let height = found.at.dot(&frame.up);
+        if best.is_none_or(|b| height < b.0) {
+            best = Some((height, k, found));
+        }
+    }
+    best.map(|(_, k, found)| (k, found))
+}
+
+fn carried(course: &Course, sides: [Option<(Stretch, Place)>; 2], held: Vec2) -> Option<Heap> {
+    let at = sides.iter().flatten().next()?.1.at;
+    let borne = |(s, place): (Stretch, Place)| Borne {
+        curve: s.curve,
+        normal: place.normal,
+        tangent: place.tangent,
+        press: held.dot(&place.normal),
+        friction: held.dot(&place.tangent),
+    };
+    let holds = |side: &(Stretch, Place)| {
+        let b = borne(*side);
+        b.press >= 0.0 && b.friction.abs() <= side.0.friction(course) * b.press + CONE * held.norm()
+    };
+    if let Some(one) = sides.iter().flatten().find(|s| holds(s)) {
+        return Some(Heap { at, edges: [Some(borne(*one)), None] });
+    }
+    let [Some(a), Some(b)] = sides else { return None };
+    let both = cross(a.1.normal, b.1.normal);
+    let press = [cross(held, b.1.normal) / both, cross(a.1.normal, held) / both];
+    let pressed = |side: (Stretch, Place), press: f64| Some(Borne { press, friction: 0.0, ..borne(side) });
+    press.iter().all(|n| *n >= 0.0).then(|| Heap { at, edges: [pressed(a, press[0]), pressed(b, press[1])] })
+}

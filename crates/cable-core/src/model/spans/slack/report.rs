@@ -1,0 +1,203 @@
+//! What lies loose in the answer: nodes, and what carries it.
+
+use crate::math::Vec2;
+use crate::model::arc_nodes;
+use crate::model::catenary::report::{Nodes, Point};
+use crate::model::spans::initial::drained_route::NONE_M;
+use crate::model::spans::run::Course;
+use crate::model::spans::slack::heap::Heap;
+use crate::model::spans::slack::{Line, Loose, Part, Stretch};
+use crate::solution::{ContactReport, ContactSample, ContactState};
+
+/// Nodes of a plumb line and of a straight stretch.
+const NODES: usize = 8;
+
+/// Forces of one obstacle on what lies on it without a break.
+#[derive(Default)]
+struct Run {
+    /// Index of the boundary.
+    curve: usize,
+    samples: Vec<ContactSample>,
+    at: Vec<(f64, Vec2)>,
+    normal: f64,
+    push: Vec2,
+    along: f64,
+    turned: f64,
+    ends: [f64; 2],
+    tension: [f64; 2],
+}
+
+impl Loose {
+    /// Adds its nodes; what it lies on, by the index of the obstacle.
+    pub fn report(&self, course: &Course, nodes: &mut Nodes<'_>, cable_radius: f64) -> Vec<(usize, ContactReport)> {
+        let mut runs: Vec<Run> = Vec::new();
+        let mut goes_on = false;
+        for part in &self.parts {
+            match &part.form {
+                Line::Hangs(ends) => hang(course, part, *ends, nodes),
+                Line::Spans { from, force } => {
+                    let chain = course.chain(part.s[0], part.s[1]);
+                    chain.spans(*force, *from).for_each(|(s, at, shape)| nodes.catenary(s, at, &shape));
+                }
+                Line::Lies(s) => {
+                    if !goes_on || runs.last().is_none_or(|r| r.curve / 2 != s.curve / 2) {
+                        runs.push(Run::new(s.curve, part));
+                    }
+                    if let Some(run) = runs.last_mut() {
+                        run.lie(course, (part, s), nodes, cable_radius);
+                    }
+                }
+                Line::Heap(heap) => {
+                    for s in part.s {
+                        nodes.push(Point { s, at: heap.at, force: Vec2::zeros(), curvature: 0.0 });
+                    }
+                    runs.extend(Run::of_heap(part, heap));
+                }
+            }
+            goes_on = matches!(part.form, Line::Lies(_));
+        }
+        runs.into_iter().filter_map(|run| run.report(course)).collect()
+    }
+}
+
+fn hang(course: &Course, part: &Part, [from, to]: [Vec2; 2], nodes: &mut Nodes<'_>) {
+    let (law, whole) = (&course.law, part.s[1] - part.s[0]);
+    let weight = law.load.norm();
+    let along = (to - from).normalize();
+    // u counts from the foot up: h = λ (s + b s²/2EA).
+    let falls = part.tension[0] > 0.0;
+    for k in 0..=NODES {
+        let s = whole * k as f64 / NODES as f64;
+        let below = if falls { whole - s } else { s };
+        let risen = law.thermal * below * (1.0 + 0.5 * weight * below / law.stiffness);
+        let at = if falls { to - along * risen } else { from + along * risen };
+        nodes.push(Point { s: part.s[0] + s, at, force: along * (weight * below), curvature: 0.0 });
+    }
+}
+
+impl Part {
+    /// Force in the cable at an end of it, N.
+    pub(super) fn force(&self, course: &Course, end: usize) -> Vec2 {
+        match &self.form {
+            Line::Hangs([from, to]) => (to - from).normalize() * self.tension[end],
+            Line::Lies(s) => s.place(course, s.p[end]).tangent * self.tension[end],
+            Line::Heap(_) => Vec2::zeros(),
+            Line::Spans { force, .. } => force - course.law.load * if end == 0 { 0.0 } else { self.s[1] - self.s[0] },
+        }
+    }
+
+    /// The force of what carries it, N.
+    pub(super) fn held(&self, course: &Course) -> Vec2 {
+        match &self.form {
+            Line::Hangs(_) | Line::Spans { .. } => Vec2::zeros(),
+            Line::Lies(_) => self.force(course, 0) - self.force(course, 1) - course.law.load * (self.s[1] - self.s[0]),
+            Line::Heap(heap) => heap.edges.iter().flatten().map(crate::model::spans::slack::heap::Borne::force).sum(),
+        }
+    }
+}
+
+impl Line {
+    pub(super) fn friction(&self, course: &Course) -> f64 {
+        match self {
+            Self::Hangs(_) | Self::Spans { .. } => 0.0,
+            Self::Lies(s) => s.friction(course),
+            Self::Heap(heap) => {
+                heap.edges.iter().flatten().map(|b| course.curves[b.curve].friction).fold(0.0, f64::max)
+            }
+        }
+    }
+}
+
+impl Run {
+    fn new(curve: usize, part: &Part) -> Self {
+        Self { curve, ends: part.s, tension: part.tension, ..Self::default() }
+    }
+
+    fn of_heap<'a>(part: &'a Part, heap: &'a Heap) -> impl Iterator<Item = Self> + 'a {
+        heap.edges.iter().flatten().map(|b| {
+            let middle = 0.5 * (part.s[0] + part.s[1]);
+            Self {
+                at: vec![(middle, heap.at)],
+                samples: vec![ContactSample::new(middle, b.force())],
+                normal: b.press,
+                push: b.normal,
+                along: b.friction,
+                ..Self::new(b.curve, part)
+            }
+        })
+    }
+
+    fn lie(&mut self, course: &Course, (part, s): (&Part, &Stretch), nodes: &mut Nodes<'_>, cable_radius: f64) {
+        let law = &course.law;
+        let [p0, p1] = s.p;
+        let start = s.place(course, p0);
+        let turns = start.turn != 0.0;
+        let count = match turns {
+            true => arc_nodes::parts(start.stretch, p1 - p0, cable_radius),
+            false => NODES,
+        };
+        (self.ends[1], self.tension[1]) = (part.s[1], part.tension[1]);
+        self.turned += start.turn * (p1 - p0);
+        // With more material than its way it is in folds, evenly.
+        let material = part.s[1] - part.s[0];
+        let at = |k: usize| {
+            let f = k as f64 / count as f64;
+            let place = s.place(course, p0 + (p1 - p0) * f);
+            if part.is_loose() {
+                return (place, part.s[0] + material * f, 0.0);
+            }
+            let way = s.slide(course, (p0, p0 + (p1 - p0) * f), part.tension[0], s.m);
+            match k {
+                0 => (place, part.s[0], part.tension[0]),
+                k if k == count => (place, part.s[1], part.tension[1]),
+                _ => (place, part.s[0] + way.material, way.tension),
+            }
+        };
+        let mut before = at(0);
+        for k in 0..=count {
+            let here = at(k);
+            let (place, arc_length, tension) = here;
+            let curvature = if turns { place.turn * law.stretch(tension) / place.stretch } else { 0.0 };
+            nodes.push(Point { s: arc_length, at: place.at, force: place.tangent * tension, curvature });
+            if k > 0 {
+                let own = law.load * (arc_length - before.1);
+                let held = before.0.tangent * before.2 - place.tangent * tension - own;
+                let f = (k as f64 - 0.5) / count as f64;
+                let middle = s.place(course, p0 + (p1 - p0) * f);
+                let press = held.dot(&middle.normal);
+                self.normal += press;
+                self.push += middle.normal * press;
+                self.along += held.dot(&middle.tangent);
+                let s = 0.5 * (before.1 + arc_length);
+                self.samples.push(ContactSample::new(s, held));
+                self.at.push((s, middle.at));
+            }
+            before = here;
+        }
+    }
+
+    fn report(self, course: &Course) -> Option<(usize, ContactReport)> {
+        let curve = &course.curves[self.curve];
+        let middle = 0.5 * (self.ends[0] + self.ends[1]);
+        let nearest = self.at.iter().min_by(|a, b| (a.0 - middle).abs().total_cmp(&(b.0 - middle).abs()));
+        let (_, at) = nearest.filter(|_| self.ends[1] - self.ends[0] > NONE_M * 1e-3)?;
+        let unit = self.push.try_normalize(0.0)?;
+        let mut report = ContactReport {
+            x_m: at.x,
+            y_m: at.y,
+            arc_length_m: middle,
+            normal: [unit.x, unit.y],
+            normal_n: self.normal,
+            friction_n: self.along,
+            state: if curve.friction > 0.0 { ContactState::Stick } else { ContactState::Slip },
+            turn_deg: self.turned.to_degrees(),
+            tension_before_n: self.tension[0],
+            tension_after_n: self.tension[1],
+            begins_m: self.ends[0],
+            ends_m: self.ends[1],
+            ..ContactReport::default()
+        };
+        report.set_samples(self.samples);
+        Some((curve.obstacle?, report))
+    }
+}

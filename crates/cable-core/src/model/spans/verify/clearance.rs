@@ -1,0 +1,177 @@
+//! The check that no answer is inside anything, which shares nothing with the search for contacts (`seek`).
+//!
+//! A stretch of a catenary or of an arc that turns by no more than a right angle is convex: with its ends a, b and its
+//! tangents there it lies in the triangle of a, b and the point where the tangents meet. What is nowhere nearer to that
+//! triangle than the cable's radius is nowhere nearer to the stretch; else the stretch is halved. Distances are those of
+//! points from lines, without a sign: no way into an obstacle leads past its boundary.
+
+use crate::contact::World;
+use crate::contact::geometry::{Body, Edge};
+use crate::math::{Vec2, cross, perp, smaller};
+use crate::model::spans::failure::Trouble;
+use crate::model::spans::run::{Contact, Course, Strand};
+use crate::model::spans::verify::penetration;
+
+/// Depth that is none, m: what is asked of every answer.
+const DEPTH: f64 = 1e-6;
+/// Halvings at most: 2⁻⁴⁰ of any cable is a point.
+const MOST_HALVINGS: u32 = 40;
+/// Longest stretch of an arc taken at once, rad.
+const TURN: f64 = 1.0;
+
+/// A triangle that holds a stretch of cable: its corners, and its sides as (point, unit vector inwards).
+struct Hull {
+    corners: [Vec2; 3],
+    sides: [(Vec2, Vec2); 3],
+}
+
+impl Hull {
+    /// Of a stretch from a to b with these directions of travel there (of any length, 0: straight).
+    fn of([a, b]: [Vec2; 2], along: [Vec2; 2]) -> Self {
+        let d = b - a;
+        let far = d.norm();
+        let straight = if far > 0.0 { d / far } else { Vec2::x() };
+        let [t, u] = along.map(|v| if v.norm() > 0.0 { v / v.norm() } else { straight });
+        // a + x t = b − y u; neither way is longer than the chord.
+        let turn = cross(t, u);
+        let x = cross(d, u) / turn;
+        let apex = a + t * if x > 0.0 && x < far { x } else { 0.5 * far };
+        let inwards = |n: Vec2, v: Vec2| if n.dot(&v) < 0.0 { -n } else { n };
+        let first = inwards(perp(t), d);
+        let chord = perp(straight) * -perp(straight).dot(&first).signum();
+        Self { corners: [a, apex, b], sides: [(a, first), (b, inwards(perp(u), -d)), (a, chord)] }
+    }
+
+    /// The box it lies in, r wider.
+    fn bounds(&self, r: f64) -> (Vec2, Vec2) {
+        let [a, apex, b] = &self.corners;
+        (a.inf(apex).inf(b) - Vec2::repeat(r), a.sup(apex).sup(b) + Vec2::repeat(r))
+    }
+
+    /// Whether a box comes within r of it, as far as its sides tell.
+    fn meets(&self, (low, high): (Vec2, Vec2), r: f64) -> bool {
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        self.sides.iter().all(|(at, n)| (middle - at).dot(n) + half.x * n.x.abs() + half.y * n.y.abs() > -r)
+    }
+
+    /// Whether an edge is nowhere nearer than r, as far as the sides, the edge itself and the ways from its ends tell.
+    fn misses_edge(&self, e: &Edge, r: f64) -> bool {
+        let (n, t) = (e.normal(), e.tangent);
+        self.sides.iter().any(|(at, n)| (e.p - at).dot(n) <= -r && (e.q - at).dot(n) <= -r)
+            || self.beyond(e.p, n, r)
+            || self.beyond(e.p, -n, r)
+            || self.beyond(e.p, -t, r)
+            || self.beyond(e.q, t, r)
+            || self.aside(e.p, |n| n.dot(&t) <= 0.0, r)
+            || self.aside(e.q, |n| n.dot(&t) >= 0.0, r)
+    }
+
+    /// Whether a point is nowhere nearer than r, as far as the sides and the ways to the corners tell.
+    fn misses_point(&self, v: Vec2, r: f64) -> bool {
+        self.sides.iter().any(|(at, n)| (v - at).dot(n) <= -r) || self.aside(v, |_| true, r)
+    }
+
+    /// Whether all of it is at least r from a point in a direction (a unit vector).
+    fn beyond(&self, v: Vec2, n: Vec2, r: f64) -> bool {
+        self.corners.iter().all(|c| (c - v).dot(&n) >= r)
+    }
+
+    /// Whether all of it is at least r from a point in the direction of one of its corners, of those that will do.
+    fn aside(&self, v: Vec2, will_do: impl Fn(Vec2) -> bool, r: f64) -> bool {
+        let unit = self.corners.iter().map(|c| (c - v, (c - v).norm())).filter(|(_, far)| *far >= r && *far > 0.0);
+        unit.map(|(way, far)| way / far).any(|n| will_do(n) && self.beyond(v, n, r))
+    }
+
+    /// Whether it is clear of a body. `beside`: a corner or circle that what it holds runs round at the right distance.
+    fn misses(&self, body: &Body, beside: Option<usize>) -> bool {
+        let r = body.offset - smaller(DEPTH, 0.1 * body.offset);
+        if let Some(center) = body.center {
+            return beside == Some(body.first + 1) || self.misses_point(center, r);
+        }
+        let (first, last) = self.bounds(r);
+        let beside_box =
+            |low: Vec2, high: Vec2| low.x > last.x || low.y > last.y || high.x < first.x || high.y < first.y;
+        let near = |low: Vec2, high: Vec2| !beside_box(low, high) && self.meets((low, high), r);
+        body.candidates_where(near)
+            .filter(|&k| !beside.is_some_and(|feature| body.is_beside(k, feature)))
+            .filter_map(|k| body.edges.get(k))
+            .all(|e| self.misses_edge(e, r))
+    }
+}
+
+/// Whether a strand is clear of everything.
+pub(in crate::model::spans) fn clear(strand: &Strand, course: &Course, world: &World) -> Result<(), Trouble> {
+    let mut inside = None;
+    for k in 0..strand.spans() {
+        if strand.has_span(k) {
+            penetration::shapes(strand, course, k, |s0, at, shape| {
+                let length = shape.span().length;
+                let point = |s: f64| (at + shape.position_at(s), shape.force_at(s));
+                let fold = shape.lowest_s();
+                let parts = [[0.0, fold], [fold, length]];
+                let found =
+                    parts.into_iter().filter(|[a, b]| b > a).find_map(|part| inside_on(world, &point, part, None));
+                inside = inside.or(found.map(|(s, at)| (s0 + s, at)));
+            });
+        }
+        if let Some(c) = strand.contacts.get(k) {
+            inside = inside.or_else(|| contact(c, course, world));
+        }
+        if let Some((s, at)) = inside {
+            return Err(Trouble::Unsound { what: "the cable is inside an obstacle", s, at });
+        }
+    }
+    Ok(())
+}
+
+/// Where a contact is inside something.
+fn contact(c: &Contact, course: &Course, world: &World) -> Option<(f64, Vec2)> {
+    let track = course.track(c).seen_from(c.ends.p[0]);
+    let mut p = c.ends.p[0];
+    while p < c.ends.p[1] {
+        let border = track.next_border(p, c.ends.p[1]);
+        let arc = track.turns(0.5 * (p + border));
+        let q = if arc && border > p + TURN { p + TURN } else { border };
+        let piece = track.curve.piece(track.curve.locate(0.5 * (p + q), c.home));
+        let point = |p: f64| {
+            let place = track.place(p);
+            (place.at, place.tangent)
+        };
+        let found = inside_on(world, &point, [p, q], arc.then_some(piece.feature));
+        if let Some((_, at)) = found {
+            return Some((c.ends.s[0], at));
+        }
+        p = q;
+    }
+    None
+}
+
+/// Where a stretch is inside something.
+fn inside_on(
+    world: &World,
+    point: &dyn Fn(f64) -> (Vec2, Vec2),
+    part: [f64; 2],
+    beside: Option<usize>,
+) -> Option<(f64, Vec2)> {
+    let ends = part.map(point);
+    world.geometry().bodies().iter().find_map(|body| search(body, point, (part, ends), (beside, 0)))
+}
+
+/// Where a stretch is inside a body, halved until it is clear or no stretch any more.
+fn search(
+    body: &Body,
+    point: &dyn Fn(f64) -> (Vec2, Vec2),
+    ([from, to], [a, b]): ([f64; 2], [(Vec2, Vec2); 2]),
+    (beside, depth): (Option<usize>, u32),
+) -> Option<(f64, Vec2)> {
+    if Hull::of([a.0, b.0], [a.1, b.1]).misses(body, beside) {
+        return None;
+    }
+    let s = 0.5 * (from + to);
+    let middle = point(s);
+    if depth >= MOST_HALVINGS || (b.0 - a.0).norm() <= DEPTH * DEPTH {
+        return Some((s, middle.0));
+    }
+    search(body, point, ([from, s], [a, middle]), (beside, depth + 1))
+        .or_else(|| search(body, point, ([s, to], [middle, b]), (beside, depth + 1)))
+}

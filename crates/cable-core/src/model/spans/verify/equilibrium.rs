@@ -1,0 +1,259 @@
+//! The check of an answer that does not use the solver: lengths by quadrature of the law of the free cable, balance of
+//! each contact from its ends, the cone of friction along it. That nothing is inside an obstacle is looked at in `gaps`.
+
+use crate::math::{GAUSS, Vec2, bounded, cross};
+use crate::model::spans::boundary::capstan::{Step, Track};
+use crate::model::spans::boundary_conditions::Layout;
+use crate::model::spans::contact::point_load;
+use crate::model::spans::contact::slack_pocket;
+use crate::model::spans::continuation::Network;
+use crate::model::spans::failure::Trouble;
+use crate::model::spans::results;
+use crate::model::spans::run::{Contact, Course, Strand, Tie};
+
+/// Equations must hold to this part of the length, the tension, the angle. The solver stops at 1e-11.
+const HOLDS: f64 = 1e-7;
+/// Compression that is rounding, of the greatest tension.
+const PUSHES: f64 = 1e-9;
+/// A contact may end so far beyond its chain, m or rad: rounding.
+const BEYOND: f64 = 1e-9;
+/// Points of a contact looked at where its load has changed.
+const SAMPLES: usize = 8;
+/// A span hangs in one line when the force across the load is below this part of its load.
+const FOLDED: f64 = 1e-12;
+/// Panels of a span beside its fold.
+const TAUT_PANELS: usize = 4;
+/// Lengths of a span from which its fold is so far that one panel leaves 1e-12.
+const FAR: f64 = 4.0;
+/// Panels of the quadrature of a span, in v; 5 Gauss points each leave 1e-12.
+const PANEL: f64 = 0.5;
+
+/// Whether an answer is one; its contacts remember it.
+pub(in crate::model::spans) fn sound(strand: &Strand, course: &Course) -> Result<(), Trouble> {
+    let mut before = strand.from;
+    let greatest = strand
+        .contacts
+        .iter()
+        .flat_map(|c| c.ends.t)
+        .chain(
+            (0..strand.spans())
+                .filter(|&k| strand.has_span(k))
+                .map(|k| strand.force(course, k, strand.material(k).0).norm()),
+        )
+        .fold(0.0f64, |m, t| if t > m { t } else { m });
+    for k in 0..strand.spans() {
+        let (from, to) = strand.material(k);
+        let long = strand.to - strand.from;
+        // A pocket that is short by less is not opened.
+        if !(from >= before - HOLDS * long && to >= from - slack_pocket::SHORT * long) {
+            return Err(Trouble::Unsound { what: "material out of order", s: from, at: Vec2::zeros() });
+        }
+        before = to;
+        if strand.has_span(k) {
+            span(strand, course, k)?;
+        }
+        if k < strand.contacts.len() {
+            contact(strand, course, (k, greatest))?;
+        }
+    }
+    Ok(())
+}
+
+/// Whether supports and contacts, as they are reported, hold all of the weight and the loads: what no part of the network asked
+/// for is missed by each part's own check.
+pub(in crate::model::spans) fn balanced(layout: &Layout, network: &Network) -> Result<(), Trouble> {
+    let (left, size) = results::unbalanced(layout, network);
+    if left.norm() <= HOLDS * size {
+        return Ok(());
+    }
+    let strand = network.strands.first();
+    let at = strand.and_then(|s| s.ends_of(&network.course, 0)[0]).unwrap_or_default();
+    Err(Trouble::Unsound { what: "supports and contacts do not hold the weight and the loads", s: 0.0, at })
+}
+
+/// The span closes.
+fn span(strand: &Strand, course: &Course, k: usize) -> Result<(), Trouble> {
+    let (from, to) = strand.material(k);
+    if let [Some(a), Some(b)] = strand.ends_of(course, k) {
+        let (mut at, mut before) = (a, from);
+        let loads = course.loads.iter().map(|l| l.arc_length).filter(|s| *s > from && *s < to);
+        for next in loads.chain(std::iter::once(to)) {
+            at += way(strand, course, k, [before, next]);
+            before = next;
+        }
+        if !((at - b).norm() <= HOLDS * (strand.to - strand.from)) {
+            return Err(Trouble::Unsound { what: "a span does not close", s: from, at });
+        }
+    }
+    Ok(())
+}
+
+/// The way of a catenary by quadrature of f(F) = τ(F/T + F/EA).
+///
+/// With b along the load, H the part of F across it and s* where F is across it, s = s* + (H/b) sinh v makes T = H cosh v:
+/// smooth however sharp the cable folds. Straight up and down (H = 0) the integral is split at the fold.
+fn way(strand: &Strand, course: &Course, k: usize, [from, to]: [f64; 2]) -> Vec2 {
+    // Inside the piece: a load at its start acts before it.
+    let start = strand.force(course, k, 0.5 * (from + to)) + course.law.load * (0.5 * (to - from));
+    let force = |s: f64| start - course.law.load * (s - from);
+    let b = course.law.load.norm();
+    let across = if b > 0.0 { cross(start, course.law.load).abs() / b } else { 0.0 };
+    if !(across > FOLDED * b * (to - from)) {
+        let fold = if b > 0.0 { bounded(from + start.dot(&course.law.load) / (b * b), from, to) } else { to };
+        let straight = |a: f64, c: f64| if c > a { course.rate(force(0.5 * (a + c))) * (c - a) } else { Vec2::zeros() };
+        return straight(from, fold) + straight(fold, to);
+    }
+    let middle = from + start.dot(&course.law.load) / (b * b);
+    // T² = H² + b² (s − s*)²: smooth as it is far from s* ± i H/b.
+    let far = (0.5 * (from + to) - middle).hypot(across / b);
+    if middle < 2.0 * from - to || middle > 2.0 * to - from || far > FAR * (to - from) {
+        let panels = if far > FAR * (to - from) { 1 } else { TAUT_PANELS };
+        let h = (to - from) / panels as f64;
+        let points = (0..panels).flat_map(|j| GAUSS.map(|(u, weight)| (from + (j as f64 + u) * h, weight * h)));
+        return points.fold(Vec2::zeros(), |sum, (s, weight)| sum + course.rate(force(s)) * weight);
+    }
+    let (v0, v1) = ((b * (from - middle) / across).asinh(), (b * (to - middle) / across).asinh());
+    let panels = ((v1 - v0) / PANEL).ceil().max(1.0);
+    let h = (v1 - v0) / panels;
+    let mut sum = Vec2::zeros();
+    for j in 0..panels as usize {
+        for (u, weight) in GAUSS {
+            let v = v0 + (j as f64 + u) * h;
+            sum += course.rate(force(middle + across / b * v.sinh())) * (weight * h * across / b * v.cosh());
+        }
+    }
+    sum
+}
+
+/// A contact presses, does not push along itself, keeps the cone, and the spans leave it along its tangent.
+fn contact(strand: &Strand, course: &Course, (j, greatest): (usize, f64)) -> Result<(), Trouble> {
+    let c = &strand.contacts[j];
+    let (track, e) = (course.track(c).seen_from(c.ends.p[0]), &c.ends);
+    let unsound = |what: &'static str, p: f64, s: f64| Trouble::Unsound { what, s, at: track.place(p).at };
+    let (first, last) = (track.curve.origin(c.home.first), track.curve.end(c.home.last));
+    if !(track.curve.is_round() || e.p[0] >= first - BEYOND && e.p[1] <= last + BEYOND) {
+        return Err(unsound("a contact goes on beyond what it lies on", e.p[0], e.s[0]));
+    }
+    if c.weight {
+        return point_load::sound(strand, course, j);
+    }
+    for side in 0..2 {
+        if let Some(force) = strand.force_at_contact(course, j, side) {
+            let tangent = track.place(e.p[side]).tangent;
+            if !(cross(force, tangent).abs() <= HOLDS * force.norm() && force.dot(&tangent) > 0.0) {
+                return Err(unsound("a span is not tangent to what it leaves", e.p[side], e.s[side]));
+            }
+        } else if strand.in_pocket(j, side) {
+            if e.t[side] != 0.0 {
+                return Err(unsound("slack has tension", e.p[side], e.s[side]));
+            }
+            if side == 1 && slack_pocket::heap(strand, course, j + 1).is_none() {
+                return Err(unsound("what lies loose slides", e.p[side], e.s[side]));
+            }
+        } else if strand.is_joined(j, side) {
+            // The load beside it is looked at by itself.
+        } else if let Tie::Loose(force) = strand.ties[side] {
+            let lifts = force.dot(&track.place(e.p[side]).normal);
+            if !((e.t[side] - course.pull(c, side, force)).abs() <= HOLDS * greatest && lifts <= HOLDS * force.norm()) {
+                return Err(unsound("an end is not what draws it", e.p[side], e.s[side]));
+            }
+        }
+        if !(e.t[side] >= -PUSHES * greatest - 1e-9) {
+            return Err(Trouble::Compressed { s: e.s[side], at: track.place(e.p[side]).at, tension: e.t[side] });
+        }
+    }
+    if let Some(l) =
+        course.loads.iter().find(|l| l.arc_length > e.s[0] && l.arc_length < e.s[1] && l.force.norm() > 0.0)
+    {
+        return Err(Trouble::LoadLies { s: l.arc_length });
+    }
+    along(&track, c, (greatest, strand.to - strand.from))
+}
+
+/// Material that may be missing along a contact, of the strand's length. Smaller: contacts laid along the nodes of another model, which
+/// know their material to the distance of those nodes, are refused; larger: folds are lost (8 cm of 20 m were).
+const LOST: f64 = 1e-4;
+
+/// Along a contact friction keeps its cone, nothing pushes along it and nothing pulls it off. On each stretch between two knots
+/// one part of friction is called upon: what holds for that and at the next knot holds all along. No material of the strand's
+/// `length` (m) is lost between two knots, nor between the ends and the first and last of them.
+fn along(track: &Track<'_>, c: &Contact, (greatest, length): (f64, f64)) -> Result<(), Trouble> {
+    let friction = track.friction;
+    let room = HOLDS * (greatest + 1e-9);
+    let lost = |found: f64, kept: f64| !((found - kept).abs() <= LOST * length);
+    if let (0.0, [first, .., last]) = (track.drag, c.history.knots())
+        && (lost(first.s, c.ends.s[0]) || lost(last.s, c.ends.s[1]))
+    {
+        return Err(Trouble::Unsound {
+            what: "material is lost at an end of a contact",
+            s: first.s,
+            at: track.place(first.p).at,
+        });
+    }
+    for pair in c.history.knots().windows(2) {
+        let (knot, next) = (&pair[0], &pair[1]);
+        let (mut p, mut t, mut s) = (knot.p, knot.tension, knot.s);
+        let unsound = |what: &'static str| Err(Trouble::Unsound { what, s: knot.s, at: track.place(knot.p).at });
+        while p < next.p {
+            let q = track.next_border(p, next.p);
+            let whole = track.slide(p, q, t, knot.m);
+            let look = |x: f64, way: Step| {
+                let place = track.place(x);
+                if !(way.tension >= -PUSHES * greatest - 1e-9) {
+                    return Err(Trouble::Compressed { s: s + way.material, at: place.at, tension: way.tension });
+                }
+                if !(track.law.press(&place, way.tension) >= -room) {
+                    return unsound("a contact pulls");
+                }
+                Ok(())
+            };
+            if !firm(track, (p, q), t, knot.m) {
+                let mut found = look(q, whole);
+                track.loosest((p, q), knot.m, |x| {
+                    found = found.clone().and_then(|()| look(x, track.slide(p, x, t, knot.m)))
+                });
+                found?;
+            }
+            (p, t, s) = (q, whole.tension, s + whole.material);
+        }
+        // On its way under a drag it is no answer yet.
+        if track.drag > 0.0 {
+            continue;
+        }
+        if !(knot.m.abs() <= friction * (1.0 + HOLDS)) {
+            return unsound("friction beyond its cone");
+        }
+        if lost(s, next.s) {
+            return unsound("material is lost along a contact");
+        }
+        if !((t - next.tension).abs() <= room) {
+            return sampled(track, c, friction, room);
+        }
+    }
+    Ok(())
+}
+
+/// Whether tension and pressure cannot vanish on a short way round an arc: dT/dp > −|m|T − 2cb, and N ds/dp > T − cb.
+fn firm(track: &Track<'_>, (p, q): (f64, f64), t: f64, m: f64) -> bool {
+    let place = track.place(p);
+    let load = place.stretch * track.law.load.norm() / track.law.thermal;
+    place.turn != 0.0 && track.law.stiffness > 0.0 && t - (q - p) * (m.abs() * t + 2.0 * load) > load && m.abs() <= 1.0
+}
+
+/// Where the load has changed since something was laid, what sticks has changed by less than friction takes up: the cone from
+/// point to point.
+fn sampled(track: &Track<'_>, c: &Contact, friction: f64, room: f64) -> Result<(), Trouble> {
+    let past = &c.history;
+    let [first, last] = c.ends.p;
+    let (mut p, mut t) = (first, past.at(track, first).0);
+    for i in 1..=SAMPLES {
+        let q = first + (last - first) * i as f64 / SAMPLES as f64;
+        let (next, s) = past.at(track, q);
+        let (low, high) = (track.slide(p, q, t, -friction).tension, track.slide(p, q, t, friction).tension);
+        if !(next >= low - room && next <= high + room) {
+            return Err(Trouble::Unsound { what: "friction beyond its cone", s, at: track.place(q).at });
+        }
+        (p, t) = (q, next);
+    }
+    Ok(())
+}

@@ -1,0 +1,242 @@
+//! Where a free span runs into an obstacle.
+//!
+//! Under an even load a catenary is nowhere deeper in an edge than where it runs along it, F × t = 0, which is one
+//! division; nowhere nearer to a corner or a centre v than where (x − v)·F = 0, which is a root of one variable. Those
+//! points are asked of the obstacle's signed distance, so that a point is inside only if nothing nearer says otherwise.
+
+use crate::catenary::Catenary;
+use crate::contact::geometry::Body;
+use crate::contact::{Gap, World};
+use crate::math::{Vec2, cross, larger, perp};
+use crate::model::spans::run::{Course, Strand};
+
+/// Stretches of a catenary looked through for points nearest to a corner. Fewer: a corner near both branches of a deep
+/// catenary is seen from one only.
+const SAMPLES: usize = 8;
+/// Halvings of a root.
+const MAX_HALVINGS: usize = 60;
+/// Roots are found to this part of the catenary.
+const ROOT: f64 = 1e-12;
+
+/// A cable whose tangent makes less than this angle with its load hangs along it. Smaller: rounding says which side of the
+/// tangent it is on. Larger: steep spans are looked at more closely than they must be.
+const ALONG: f64 = 1e-6;
+
+/// A point of a span inside an obstacle.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::spans) struct Hit {
+    /// Material point, m.
+    pub s: f64,
+    pub at: Vec2,
+    /// Direction of the cable there.
+    pub tangent: Vec2,
+    /// What it is inside of; `gap_m` < 0.
+    pub gap: Gap,
+    /// Index of the body.
+    pub body: usize,
+}
+
+/// A line with the side of it (a unit vector) on which the cable is.
+type Side = (Vec2, Vec2);
+
+/// One catenary at its place.
+struct Arc<'a> {
+    s0: f64,
+    at: Vec2,
+    shape: &'a Catenary,
+    load: Vec2,
+    /// Its tangents at both ends: it bends away from the load, and so lies beyond each of them. None where it hangs along the
+    /// load.
+    sides: [Option<Side>; 2],
+}
+
+/// The tangent of a cable at a point where its force is known.
+pub(in crate::model::spans) fn tangent(at: Vec2, force: Vec2, load: Vec2) -> Option<Side> {
+    let normal = perp(force) * -perp(force).dot(&load).signum() / force.norm();
+    (normal.dot(&load) < -ALONG * load.norm()).then_some((at, normal))
+}
+
+impl<'a> Arc<'a> {
+    fn new((s0, at, shape): (f64, Vec2, &'a Catenary), load: Vec2) -> Self {
+        let (start, end) = (shape.start_force(), shape.end_force());
+        let sides = [tangent(at, start, load), tangent(at + shape.span().chord, end, load)];
+        Self { s0, at, shape, load, sides }
+    }
+
+    /// Whether a point is at least so far from it, seen from the tangents at its ends.
+    fn misses(&self, v: Vec2, by: f64) -> bool {
+        self.sides.iter().flatten().any(|(at, normal)| (at - v).dot(normal) >= by)
+    }
+
+    /// Whether all of edge k and of the one before it face it from at least so far, seen from one of those tangents.
+    fn misses_edges(&self, body: &Body, k: usize, by: f64) -> bool {
+        let before = k.checked_sub(1).or(body.edges.len().checked_sub(1));
+        let edges = [Some(k), before].map(|k| k.and_then(|k| body.edges.get(k)));
+        self.sides.iter().flatten().any(|(at, normal)| {
+            edges.iter().flatten().all(|e| {
+                let far = |v: Vec2| (at - v).dot(normal) >= by;
+                far(e.p) && far(e.q) && perp(e.tangent).dot(normal) > 0.0
+            })
+        })
+    }
+
+    fn length(&self) -> f64 {
+        self.shape.span().length
+    }
+
+    fn point(&self, s: f64) -> Vec2 {
+        self.at + self.shape.position_at(s)
+    }
+
+    /// The box it lies in: it is widest at its ends and where it runs along an axis.
+    fn bounds(&self) -> (Vec2, Vec2) {
+        let (a, b) = (self.at, self.at + self.shape.span().chord);
+        let (mut low, mut high) = (a.inf(&b), a.sup(&b));
+        let f = self.shape.force_at(0.0);
+        for s in [f.x / self.load.x, f.y / self.load.y] {
+            if s > 0.0 && s < self.length() {
+                let p = self.point(s);
+                (low, high) = (low.inf(&p), high.sup(&p));
+            }
+        }
+        (low, high)
+    }
+
+    /// The material point where it runs along a direction.
+    fn along(&self, t: Vec2) -> Option<f64> {
+        let s = cross(self.shape.force_at(0.0), t) / cross(self.load, t);
+        (s > 0.0 && s < self.length()).then_some(s)
+    }
+
+    /// Calls back with each material point inside it that is nearer to `v` than its neighbours.
+    fn nearest(&self, v: Vec2, mut found: impl FnMut(f64)) {
+        let g = |s: f64| (self.point(s) - v).dot(&self.shape.force_at(s));
+        let h = self.length() / SAMPLES as f64;
+        let mut before = g(0.0);
+        for k in 0..SAMPLES {
+            let (mut a, mut b) = (k as f64 * h, (k + 1) as f64 * h);
+            let after = g(b);
+            if before < 0.0 && after >= 0.0 {
+                let (mut ga, mut gb) = (before, after);
+                for round in 0..MAX_HALVINGS {
+                    if b - a <= ROOT * self.length() {
+                        break;
+                    }
+                    let s = if round % 3 == 2 { 0.5 * (a + b) } else { a + (b - a) * (ga / (ga - gb)) };
+                    let gs = g(s);
+                    if gs < 0.0 {
+                        (a, ga) = (s, gs);
+                    } else {
+                        (b, gb) = (s, gs);
+                    }
+                    if gs == 0.0 {
+                        break;
+                    }
+                }
+                found(0.5 * (a + b));
+            }
+            before = after;
+        }
+    }
+}
+
+/// The deepest point of span k inside anything, if deeper than `tolerance` (m).
+pub(in crate::model::spans) fn deepest(
+    strand: &Strand,
+    course: &Course,
+    world: &World,
+    k: usize,
+    tolerance: f64,
+) -> Option<Hit> {
+    if world.is_empty() || !strand.has_span(k) {
+        return None;
+    }
+    let mut best: Option<Hit> = None;
+    shapes(strand, course, k, |s0, at, shape| {
+        let arc = Arc::new((s0, at, shape), course.law.load);
+        let (low, high) = arc.bounds();
+        for (index, body) in world.geometry().bodies().iter().enumerate() {
+            search(&arc, body, (low, high), tolerance, |s| {
+                let at = arc.point(s);
+                let reach = (high - low).norm() + body.offset;
+                let Some(gap) = world.signed_gap(at, reach) else { return };
+                let here = world.geometry().body_of(gap.feature).map(|b| b.obstacle);
+                if gap.gap_m < -tolerance && here == Some(body.obstacle) && best.is_none_or(|b| gap.gap_m < b.gap.gap_m)
+                {
+                    let force = arc.shape.force_at(s);
+                    let tangent = force / force.norm();
+                    best = Some(Hit { s: arc.s0 + s, at, tangent, gap, body: index });
+                }
+            });
+        }
+    });
+    best
+}
+
+/// Calls back with each catenary of span k: its first material point, where that is, and its shape.
+pub(in crate::model::spans) fn shapes(
+    strand: &Strand,
+    course: &Course,
+    k: usize,
+    mut each: impl FnMut(f64, Vec2, &Catenary),
+) {
+    let (from, to) = strand.material(k);
+    let chain = course.chain(from, to);
+    let start = strand.force(course, k, from);
+    let origin = match strand.ends_of(course, k) {
+        [Some(a), _] => a,
+        [None, Some(b)] => b - chain.reach(start).0,
+        [None, None] => return,
+    };
+    for (s0, at, shape) in chain.spans(start, origin) {
+        each(s0, at, &shape);
+    }
+}
+
+/// Calls back with the points of a catenary that may be deepest in a body.
+fn search(arc: &Arc<'_>, body: &Body, (low, high): (Vec2, Vec2), tolerance: f64, mut found: impl FnMut(f64)) {
+    if let Some(center) = body.center {
+        if arc.misses(center, body.offset - tolerance) {
+            return;
+        }
+        let near = |p: Vec2| (p - center).norm() < body.offset - tolerance;
+        let clear = Vec2::repeat(body.offset);
+        if (low - clear).iter().zip(center.iter()).all(|(a, b)| a < b)
+            && (high + clear).iter().zip(center.iter()).all(|(a, b)| a > b)
+        {
+            arc.nearest(center, |s| {
+                if near(arc.point(s)) {
+                    found(s);
+                }
+            });
+        }
+        return;
+    }
+    let r = Vec2::repeat(body.offset);
+    for k in body.candidates(low - r, high + r) {
+        let Some(e) = body.edges.get(k) else { continue };
+        if arc.misses_edges(body, k, body.offset - tolerance) {
+            continue;
+        }
+        if let Some(s) = arc.along(e.tangent) {
+            let d = arc.point(s) - e.p;
+            let (x, height) = (d.dot(&e.tangent), d.dot(&perp(e.tangent)));
+            // What is deep is nearest to an edge, or to the kink beside it, that it does not lie straight below.
+            let aside = larger(body.offset, -height);
+            if height < body.offset - tolerance && x > -aside && x < e.length() + aside {
+                found(s);
+            }
+        }
+        for corner in body.corners_of(k) {
+            if body.juts_out(&corner) {
+                let outward = corner.outward();
+                arc.nearest(corner.at, |s| {
+                    let d = arc.point(s) - corner.at;
+                    if d.norm() < body.offset - tolerance || d.dot(&outward) < 0.0 {
+                        found(s);
+                    }
+                });
+            }
+        }
+    }
+}

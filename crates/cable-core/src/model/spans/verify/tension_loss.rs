@@ -1,0 +1,50 @@
+//! Whether a step failed because the cable lost its tension, and where.
+
+use crate::error::TensionLoss;
+use crate::math::{Vec2, cross};
+use crate::model::spans::failure::Trouble;
+use crate::model::spans::run::{Course, Strand};
+use crate::model::spans::verify::penetration;
+
+/// A span has hardly any tension left when the force across its load is below this part of the load on it: it then hangs
+/// in a hairpin 1/50 as wide as it is long. Smaller: failures of slack spans are put down to the solver. Larger: the other
+/// way round.
+const SLACK: f64 = 5e-3;
+
+/// What was lost, where on the cable (m) and in the plane (m), in the last state that was found.
+pub(in crate::model::spans) fn lost(
+    strands: &[Strand],
+    course: &Course,
+    trouble: &Trouble,
+) -> Option<(TensionLoss, f64, Vec2)> {
+    if let Trouble::Compressed { s, at, .. } = trouble {
+        return Some((TensionLoss::Lay, *s, *at));
+    }
+    if !matches!(trouble, Trouble::Stalled { .. } | Trouble::Restless { .. } | Trouble::Unsound { .. }) {
+        return None;
+    }
+    let b = course.law.load;
+    // What weighs nothing hangs in no bight.
+    if b.norm() == 0.0 {
+        return None;
+    }
+    for strand in strands {
+        for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
+            let (from, to) = strand.material(k);
+            let force = strand.force(course, k, from);
+            let across = cross(force, b).abs() / b.norm();
+            if across > SLACK * b.norm() * (to - from) {
+                continue;
+            }
+            let mut place = None;
+            penetration::shapes(strand, course, k, |s0, at, shape| {
+                let s = shape.lowest_s();
+                place = place.or(Some((s0 + s, at + shape.position_at(s))));
+            });
+            let (s, at) = place?;
+            let end = k == 0 || k == strand.contacts.len();
+            return Some((if end { TensionLoss::Fold } else { TensionLoss::Span }, s, at));
+        }
+    }
+    None
+}

@@ -1,0 +1,96 @@
+//! The cable's shape as points, by which it is told whether it has passed through something (`contact/passed.rs`), and when that need not be asked.
+
+use crate::contact::swept_corners::Corner;
+use crate::math::{Vec2, cross, larger, smaller};
+use crate::model::spans::run::{Contact, Course, Strand};
+use crate::model::spans::verify::penetration;
+
+/// Points of each catenary and contact.
+const POINTS: usize = 24;
+
+/// A contact's end that moves by more than this (m or rad) may have gone round something. Smaller: more is looked at closely.
+const SMALL: f64 = 0.5;
+
+/// A corner this near to a tangent is on it, m: rounding.
+const TOUCHES: f64 = 1e-12;
+
+/// Whether the ends of the spans alone tell that nothing was passed: contacts are the same, and every corner lies on the same
+/// side of each span before and after. A span is convex: above its tangents and below its chord, seen against the load.
+pub(in crate::model::spans) fn clear(old: &Strand, new: &Strand, course: &Course, corners: &[Corner]) -> bool {
+    let load = course.law.load;
+    let same = |(a, b): (&Contact, &Contact)| {
+        let moved = |side: usize| (a.ends.p[side] - b.ends.p[side]).abs();
+        (a.curve, a.home, a.wheel, a.pocket, a.weight) == (b.curve, b.home, b.wheel, b.pocket, b.weight)
+            && moved(0) < SMALL
+            && moved(1) < SMALL
+    };
+    load.x == 0.0
+        && load.y < 0.0
+        && old.contacts.len() == new.contacts.len()
+        && old.contacts.iter().zip(&new.contacts).all(same)
+        && [0, 1].into_iter().all(|k| old.ties[k].has_span() == new.ties[k].has_span())
+        && (0..new.spans()).filter(|&k| new.has_span(k)).all(|k| {
+            let spans = [old, new].map(|strand| Bow::of(strand, course, k));
+            let [Some(a), Some(b)] = spans else { return false };
+            let (low, high) = (smaller(a.low, b.low), larger(a.high, b.high));
+            let first = corners.partition_point(|c| c.at.x < low);
+            corners[first..].iter().take_while(|c| c.at.x <= high).all(|c| {
+                let inside = |bow: &Bow| c.at.x > bow.low && c.at.x < bow.high;
+                inside(&a)
+                    && inside(&b)
+                    && (a.is_above(c.at) && b.is_above(c.at) || a.is_below(c.at) && b.is_below(c.at))
+            })
+        })
+}
+
+/// A span by its ends: from where to where in x, its tangents and its chord.
+struct Bow {
+    low: f64,
+    high: f64,
+    ends: [Vec2; 2],
+    tangents: [Option<(Vec2, Vec2)>; 2],
+}
+
+impl Bow {
+    /// None where an end hangs or loads act on the way.
+    fn of(strand: &Strand, course: &Course, k: usize) -> Option<Self> {
+        let (from, to) = strand.material(k);
+        let [Some(a), Some(b)] = strand.ends_of(course, k) else { return None };
+        if course.loads.iter().any(|l| l.arc_length > from && l.arc_length < to) {
+            return None;
+        }
+        let side = |at: Vec2, s: f64| penetration::tangent(at, strand.force(course, k, s), course.law.load);
+        let (low, high) = (smaller(a.x, b.x), larger(a.x, b.x));
+        Some(Self { low, high, ends: [a, b], tangents: [side(a, from), side(b, to)] })
+    }
+
+    /// Whether a point between its ends lies below it.
+    fn is_above(&self, v: Vec2) -> bool {
+        self.tangents.iter().flatten().any(|(at, normal)| (v - at).dot(normal) <= TOUCHES)
+    }
+
+    /// Whether a point between its ends lies above it.
+    fn is_below(&self, v: Vec2) -> bool {
+        let [a, b] = self.ends;
+        let up = cross(b - a, v - a);
+        if a.x < b.x { up >= 0.0 } else { up <= 0.0 }
+    }
+}
+
+/// A shape of a strand as points.
+pub(in crate::model::spans) fn shape(strand: &Strand, course: &Course, out: &mut Vec<Vec2>) {
+    out.clear();
+    for k in 0..strand.spans() {
+        if strand.has_span(k) {
+            penetration::shapes(strand, course, k, |_, at, c| {
+                let h = c.span().length / POINTS as f64;
+                out.extend((0..=POINTS).map(|i| at + c.position_at(i as f64 * h)));
+            });
+        }
+        if let Some(c) = strand.contacts.get(k) {
+            let track = course.track(c);
+            let [a, b] = c.ends.p;
+            out.extend((0..=POINTS).map(|i| track.place(a + (b - a) * i as f64 / POINTS as f64).at));
+        }
+    }
+}
