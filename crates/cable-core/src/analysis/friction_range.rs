@@ -47,7 +47,7 @@ pub struct FrictionRange {
 
 /// The question: which scene, by what, and for how long.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Query {
+pub struct FrictionQuery {
     /// The scene.
     pub scene: Scene,
     /// The model.
@@ -124,7 +124,10 @@ pub fn with_scaled_friction(scene: &Scene, factor: f64) -> Scene {
 ///
 /// # Errors
 /// The scene is wrong, or one of its resting places was not found.
-pub fn friction_range(query: &Query, mut progress: impl FnMut(f64) -> ControlFlow<()>) -> Result<FrictionRange, Error> {
+pub fn friction_range(
+    query: &FrictionQuery,
+    mut progress: impl FnMut(f64) -> ControlFlow<()>,
+) -> Result<FrictionRange, Error> {
     let [low, high] = query.factors;
     let motion = query.span_s > 0.0;
     // Models without inertia let time run without it, as the window does.

@@ -14,14 +14,14 @@ mod kernel;
 
 pub use chain::{Chain, ChainForce, PointForce};
 
-use kernel::Piece;
+use kernel::ChainPiece;
 
 use crate::error::SolveError;
 use crate::math::{Vec2, bounded, cross, perp};
 
 /// Below this ratio of load to EA the load cannot be told from none on a stretched cable (its square would
 /// leave the range of f64), and the span is a straight bar.
-const WEIGHTLESS: f64 = 1e-120;
+const MIN_LOAD_RATIO: f64 = 1e-120;
 
 /// A cable between two points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -141,8 +141,8 @@ pub struct Catenary {
 
 impl Span {
     /// The first length s of it, as the kernel wants it: length at temperature, same total load.
-    fn piece(&self, s: f64) -> Piece {
-        Piece {
+    fn piece(&self, s: f64) -> ChainPiece {
+        ChainPiece {
             w: self.weight.norm() / self.thermal_stretch,
             l: self.thermal_stretch * s,
             eps: 1.0 / self.axial_stiffness,
@@ -168,14 +168,14 @@ impl Catenary {
         }
         let load = span.weight.norm() * span.length;
         let eps = load / stiff;
-        if load == 0.0 || (eps < WEIGHTLESS && chord > length) {
+        if load == 0.0 || (eps < MIN_LOAD_RATIO && chord > length) {
             return Self::bar(span, chord, length);
         }
         // In units of the load and the length.
         let frame = Frame::new(span.weight, span.chord).facing(span.chord);
         let (x, z) = frame.split(span.chord);
         let d = (x / length, z / length);
-        let piece = Piece { w: 1.0, l: 1.0, eps };
+        let piece = ChainPiece { w: 1.0, l: 1.0, eps };
         let (h, v, iterations) = if d.0 < f64::MIN_POSITIVE {
             (0.0, kernel::vertical(d.1, eps), 0)
         } else {

@@ -23,7 +23,7 @@ use crate::math::{Point, RigidPose, Vec2, cross, perp, vec2};
 use crate::scene::{Obstacle, Shape};
 
 /// Edges that turn by less (rad) are one edge: a corner the cable cannot feel would only cost time.
-const STRAIGHT: f64 = 1e-12;
+const MIN_EDGE_TURN: f64 = 1e-12;
 
 /// The obstacles of a scene with their trees.
 #[derive(Clone, Debug, Default)]
@@ -431,7 +431,7 @@ fn clean(points: &[Point], closed: bool) -> Vec<Vec2> {
             return true;
         }
         let (u, v) = (out[i] - out[(i + n - 1) % n], out[(i + 1) % n] - out[i]);
-        !(cross(u, v).abs() <= STRAIGHT * u.norm() * v.norm() && u.dot(&v) > 0.0)
+        !(cross(u, v).abs() <= MIN_EDGE_TURN * u.norm() * v.norm() && u.dot(&v) > 0.0)
     };
     (0..n).filter(|&i| turns(i)).map(|i| out[i]).collect()
 }

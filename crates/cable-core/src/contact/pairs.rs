@@ -16,7 +16,7 @@ use super::geometry::{Body, Geometry, Part};
 use crate::math::Vec2;
 
 /// What is passed over because it is too far is this many times too far: no rounding decides what touches.
-const ROUNDED_UP: f64 = 1.0 + 1e-9;
+const CULLING_MARGIN: f64 = 1.0 + 1e-9;
 
 /// A contact pair with its sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +58,7 @@ impl Geometry {
                 }
                 continue;
             };
-            let (e, within) = (&body.edges[k], ROUNDED_UP * (reach + body.offset));
+            let (e, within) = (&body.edges[k], CULLING_MARGIN * (reach + body.offset));
             // Nothing of an edge is nearer than the line it lies on.
             if (p - e.p).dot(&e.normal()).abs() > within {
                 continue;
@@ -100,7 +100,7 @@ impl Geometry {
                     }
                 }
                 Some(k) => {
-                    let (e, within) = (&body.edges[k], ROUNDED_UP * (reach + body.offset));
+                    let (e, within) = (&body.edges[k], CULLING_MARGIN * (reach + body.offset));
                     let far = |at: Vec2| {
                         at.x < low.x - within
                             || at.x > high.x + within

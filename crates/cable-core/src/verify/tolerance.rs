@@ -25,10 +25,10 @@ pub const TURN: f64 = 0.25;
 
 /// Part of the turn that the weight of a bar and its neighbours makes, by which a bar beside a contact may be off: weight that lies on a round
 /// is carried half by the bar beside it.
-pub const LUMPED: f64 = 0.5;
+pub const LUMPED_WEIGHT_TURN: f64 = 0.5;
 
 /// Turn of the force between two nodes above which nothing is asked of the direction of their way: the fold of a slack cable.
-pub const FOLD: f64 = 0.5;
+pub const FOLD_TURN: f64 = 0.5;
 
 /// Depth inside an obstacle, of the diameter …
 pub const DEPTH_DIAMETERS: f64 = 0.02;
@@ -41,26 +41,26 @@ pub const REACH_DIAMETERS: f64 = 0.05;
 pub const REACH_M: f64 = 1.2e-3;
 
 /// Friction beyond the cone, of the normal force: contacts of `fem` stop at 1e-4 of their forces.
-pub const CONE: f64 = 1e-3;
+pub const CONE_EXCESS: f64 = 1e-3;
 
 /// Part of the cable's length by which arc lengths at the ends may miss 0 and the length.
-pub const MATERIAL: f64 = 1e-9;
+pub const MATERIAL_TOLERANCE: f64 = 1e-9;
 
 /// Turn between two normals from which on the ground turns there, rad: edges that rounding alone tells apart are one.
-pub const SAME_NORMAL: f64 = 1e-6;
+pub const NORMAL_TOLERANCE: f64 = 1e-6;
 
 /// Strain whose force no residual of a cable without load is smaller than: a cable without weight has no other scale.
-pub const LEAST_STRAIN: f64 = 1e-7;
+pub const MIN_STRAIN: f64 = 1e-7;
 
 /// What contacts and supports as they are reported, and tensions at nodes where something touches, may leave of the whole, of the greatest force. `fem` lags the normal forces that
 /// friction uses by a round, and its contacts at corners are read off bars beside them: up to 1.8e-3 was seen. That every piece is
 /// balanced by what touches it is asked to [`BALANCE`]. Smaller: slow draws under beams by `fem` are refused; larger: a report that
 /// leaves a contact out passes.
-pub const REPORTED: f64 = 2e-3;
+pub const REPORTED_BALANCE: f64 = 2e-3;
 
 /// Distance along a bar that touches by which its ends may be elsewhere, of the diameter: a sagging cable leaves a round a little before
 /// or after the straight bar that stands for it.
-pub const ASIDE: f64 = 1e-2;
+pub const CONTACT_SHIFT_DIAMETERS: f64 = 1e-2;
 
 /// Distance from its support at which a cable is held by it, of the cable's length: what nobody sees.
-pub const HELD: f64 = 1e-6;
+pub const SUPPORT_TOLERANCE: f64 = 1e-6;

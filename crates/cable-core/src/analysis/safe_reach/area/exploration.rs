@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 use std::rc::Rc;
 
 use super::super::{STEP_S, UNREACHABLE_FACTOR, at_rest};
-use super::{Area, Query};
+use super::{Area, ReachQuery};
 use crate::contact::World;
 use crate::math::{Vec2, larger, vec2};
 use crate::simulation::Simulation;
@@ -66,7 +66,7 @@ struct Reached {
 
 /// A search in progress.
 pub(super) struct Exploration<'a> {
-    pub query: &'a Query,
+    pub query: &'a ReachQuery,
     pub world: World,
     /// The other supports of the cable, m.
     pub holds: Vec<Vec2>,
