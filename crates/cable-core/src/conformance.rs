@@ -1,4 +1,5 @@
-//! The suite every model must pass: identities that hold whatever the method, each with the figure reached.
+//! Every model must pass this suite: identities that hold whatever the method, each with the error
+//! reached.
 
 use crate::any_error::Error;
 use crate::math::{Vec2, larger};

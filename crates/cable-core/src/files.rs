@@ -1,5 +1,5 @@
-//! The only file of the core that touches the file system: reading with a limit, saving without a moment in
-//! which neither the old file nor the new one is whole.
+//! No other file of the core touches the file system: it reads with a limit, and saves so that at
+//! every moment either the old file or the new one is whole.
 
 use std::fs;
 use std::io::{self, BufWriter, Read, Write};

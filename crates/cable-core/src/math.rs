@@ -1,4 +1,4 @@
-//! Scalar and vector names of the core: f64 everywhere, x to the right, y up.
+//! The core computes with these scalars and vectors: f64 everywhere, x to the right, y up.
 
 /// A plane vector or point, in the unit the field says.
 pub type Vec2 = nalgebra::Vector2<f64>;
@@ -154,7 +154,7 @@ impl RigidPose {
 
     /// From the plane to the body's own axes, m.
     #[must_use]
-    pub fn to_local(&self, p: Vec2) -> Vec2 {
+    pub(crate) fn to_local(self, p: Vec2) -> Vec2 {
         let (sin, cos) = self.angle.sin_cos();
         let d = p - self.at;
         Vec2::new(cos * d.x + sin * d.y, cos * d.y - sin * d.x)

@@ -1,4 +1,5 @@
-//! A scene, a model and its state: the object users hold.
+//! A simulation is the object that users hold: a scene, a model for each cable, and their state.
+//! `simulation/coupling.rs` steps robot and cables together.
 
 mod coupling;
 

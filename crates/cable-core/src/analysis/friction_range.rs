@@ -1,4 +1,5 @@
-//! How much an answer depends on friction that nobody knows well: the same question with less and with more of it.
+//! This analysis answers one question with less and with more friction, since nobody knows a
+//! friction coefficient well.
 //!
 //! Coulomb's coefficient of a cable on rubble is known to a third at best, and enters tensions as e^{μφ}. So the scene is
 //! answered as it stands and with all its coefficients scaled down and up; between the least and the greatest of the three

@@ -1,4 +1,5 @@
-//! A cable between two points with dead loads on it: catenaries in a row, still one convex problem.
+//! A chain is a cable between two points with dead loads on it: its catenaries in a row are still
+//! one convex problem.
 //!
 //! Between loads the force is that of a catenary, at a load it jumps by it: F(s) = F_a − b s − Σ P_k [s > s_k].
 //! The complementary energy of the whole is a function of F_a alone, two unknowns however many loads there are.
@@ -72,7 +73,7 @@ impl<'a> Chain<'a> {
 
     /// Total load on it, N.
     #[must_use]
-    pub fn total_load(&self) -> Vec2 {
+    pub(crate) fn total_load(&self) -> Vec2 {
         self.pieces().fold(self.weight * (self.to - self.from), |sum, (_, _, p)| sum + p)
     }
 

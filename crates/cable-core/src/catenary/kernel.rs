@@ -1,4 +1,5 @@
-//! One piece of cable under a uniform load, as a function of the force at its start.
+//! The kernel computes one piece of cable under a uniform load as a function of the force at its
+//! start.
 //!
 //! In the frame whose second axis points against the load (load per length w ≥ 0) the force along the piece is
 //! F(s) = (h, v + w s), s from 0 to l, T = |F|. With ε = 1/EA:

@@ -1,4 +1,10 @@
-//! Rung 0: the elastic catenary between two points, under a uniform load of any direction.
+//! An elastic catenary is a cable between two points under a uniform load of any direction.
+//!
+//! | room | content |
+//! |---|---|
+//! | `mod.rs` | [`Catenary`] and [`Span`]: the solved span and its questions |
+//! | `kernel.rs` | the formulas and the Newton iteration of one piece |
+//! | `chain.rs` | several pieces with dead loads between them |
 //!
 //! H. M. Irvine, *Cable Structures*, MIT Press, 1981, gives the elastic catenary in terms of the end force;
 //! M. Ahmadi-Kashani and A. J. Bell, "The analysis of cables subject to uniformly distributed loads",
@@ -228,7 +234,7 @@ impl Catenary {
 
     /// Force the rest of the cable exerts on the part before s, N: along the tangent of growing arc length.
     #[must_use]
-    pub fn force_at(&self, s: f64) -> Vec2 {
+    pub(crate) fn force_at(&self, s: f64) -> Vec2 {
         self.frame.join((self.h, self.v(s)))
     }
 
@@ -269,13 +275,6 @@ impl Catenary {
         self.span.piece(s).stretched(self.h, self.va)
     }
 
-    /// d(angle)/d(unstretched length) at s, 1/m: F × F'/T². A fold (T = 0) has none: 0/0 is NaN.
-    #[must_use]
-    pub fn curvature_at(&self, s: f64) -> f64 {
-        let f = self.force_at(s);
-        -cross(f, self.span.weight) / f.norm_squared()
-    }
-
     /// Arc length of the point farthest along the load (the lowest point under weight), m: inside or at an end.
     #[must_use]
     pub fn lowest_s(&self) -> f64 {
@@ -298,7 +297,7 @@ impl Catenary {
     /// Arc length where the cable is farthest below its chord along the load: V/H = Z/X, m. In a vertical fold
     /// the lowest point.
     #[must_use]
-    pub fn sag_s(&self) -> f64 {
+    pub(crate) fn sag_s(&self) -> f64 {
         let w = self.span.weight.norm();
         let (x, z) = self.frame.split(self.span.chord);
         if w > 0.0 && x > 0.0 {

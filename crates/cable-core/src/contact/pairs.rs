@@ -1,4 +1,5 @@
-//! Contact pairs between a chain of cable segments and the obstacles: smooth in the chain's position.
+//! Contact pairs join a chain of cable segments with the obstacles and are smooth in the chain's
+//! position.
 //!
 //! Two families, each complete for one kind of touch, as in Li et al., "Incremental Potential Contact",
 //! ACM TOG 2020: cable node against boundary edges, and boundary corner (or circle) against cable segments.
@@ -30,7 +31,7 @@ pub struct Pair {
 impl Geometry {
     /// Pairs of one node: against edges and corners within `reach`, and against the corners that lie in the
     /// wedge between its two segments. `before` and `after` are its neighbours in the chain.
-    pub fn node_pairs(
+    pub(crate) fn node_pairs(
         &self,
         before: Option<Vec2>,
         p: Vec2,
@@ -42,7 +43,7 @@ impl Geometry {
     }
 
     /// The same among `parts`, which hold all that are within reach. The chain is the node between its neighbours.
-    pub fn node_pairs_among(
+    pub(crate) fn node_pairs_among(
         &self,
         parts: impl Iterator<Item = Part>,
         chain: [Option<Vec2>; 3],
@@ -78,12 +79,12 @@ impl Geometry {
     }
 
     /// Pairs of the inside of one segment against corners and circles within `reach`.
-    pub fn segment_pairs(&self, a: Vec2, b: Vec2, reach: f64, out: &mut impl FnMut(Pair)) {
+    pub(crate) fn segment_pairs(&self, a: Vec2, b: Vec2, reach: f64, out: &mut impl FnMut(Pair)) {
         self.segment_pairs_among(self.parts(a.inf(&b), a.sup(&b), reach), [a, b], reach, out);
     }
 
     /// The same among `parts`, which hold all that are within reach.
-    pub fn segment_pairs_among(
+    pub(crate) fn segment_pairs_among(
         &self,
         parts: impl Iterator<Item = Part>,
         ends: [Vec2; 2],

@@ -1,4 +1,4 @@
-//! Bending by the turn between two bars, and by the turn out of a clamp.
+//! The bending energy is that of the turn between two bars, or of the turn out of a clamp.
 //!
 //! The turn at a node between the vectors `a` (into it) and `b` (out of it) is ψ = angle(b) − angle(a). With the
 //! length l̄ that belongs to the node the curvature is κ = ψ/l̄ (d(angle)/d(unstretched length)), the moment EI κ:

@@ -113,7 +113,7 @@ const EXTERNAL: ModelInfo = ModelInfo {
 
 impl Model {
     /// The model that takes on what all others refuse.
-    pub const MOST_CAPABLE: Self = Self::Fem;
+    pub(crate) const MOST_CAPABLE: Self = Self::Fem;
 
     /// Its entry in the registry.
     #[must_use]
@@ -127,7 +127,7 @@ impl Model {
 
     /// What it can do.
     #[must_use]
-    pub fn capabilities(self) -> Capabilities {
+    pub(crate) fn capabilities(self) -> Capabilities {
         self.info().capabilities
     }
 

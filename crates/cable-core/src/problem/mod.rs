@@ -1,4 +1,12 @@
-//! One cable of a scene in numerical form: what every model reads.
+//! A problem is one cable of a scene in numerical form: all models read it.
+//!
+//! | room | content |
+//! |---|---|
+//! | `mod.rs` | [`Problem`], resolved from a scene |
+//! | `support_clearance.rs` | supports on a surface are moved off it by a cable radius |
+//! | `ground_route.rs`, `route_check.rs` | routes below the ground are lifted; routes through a beam are refused |
+//! | `robot_outline.rs` | the robot as an obstacle |
+//! | `describe_place.rs`, `rounding_error.rs` | places in words; what rounding leaves of an answer |
 //!
 //! Arc lengths are unstretched at rest temperature; temperature enters as the factor `thermal_stretch` on
 //! unstretched lengths: strain = length/(thermal_stretch·ds) − 1. Weight and wind are per metre of arc length.
@@ -105,19 +113,19 @@ impl SupportPoint {
 
     /// Whether it holds the cable in a step that begins at a time, s.
     #[must_use]
-    pub fn holds_from(&self, time_s: f64) -> bool {
+    pub(crate) fn holds_from(&self, time_s: f64) -> bool {
         self.release.is_none_or(|r| time_s < r - TIME_TOLERANCE_S)
     }
 
     /// Whether it lets go after `from` and before `to` (s), and when.
     #[must_use]
-    pub fn release_between(&self, from: f64, to: f64) -> Option<f64> {
+    pub(crate) fn release_between(&self, from: f64, to: f64) -> Option<f64> {
         self.release.filter(|&r| r > from + TIME_TOLERANCE_S && r < to - TIME_TOLERANCE_S)
     }
 
     /// Position and velocity at a time, m and m/s, whether it holds the cable then or not.
     #[must_use]
-    pub fn place_at(&self, time_s: f64) -> Option<(Vec2, Vec2)> {
+    pub(crate) fn place_at(&self, time_s: f64) -> Option<(Vec2, Vec2)> {
         match (&self.motion, self.at) {
             (Some(m), Some(_)) => Some(m.at(time_s)),
             (None, Some(p)) => Some((p, Vec2::zeros())),
@@ -329,7 +337,7 @@ fn force_series(force: Option<[f64; 2]>, times: &[f64], forces: &[[f64; 2]]) -> 
 impl Problem {
     /// The same for a model that knows nothing of obstacles that move.
     #[must_use]
-    pub fn without_outline(this: Arc<Self>) -> Arc<Self> {
+    pub(crate) fn without_outline(this: Arc<Self>) -> Arc<Self> {
         if this.outline.is_none() {
             return this;
         }
@@ -358,7 +366,7 @@ impl Problem {
     /// What hangs on a free support at a time, N: its load, the weight of its lump, point loads at the same place. At rest the
     /// tension just inside a free end is the size of it, and the cable pulls at it with the opposite of it.
     #[must_use]
-    pub fn hung_on(&self, support: usize, time_s: f64) -> Vec2 {
+    pub(crate) fn hung_on(&self, support: usize, time_s: f64) -> Vec2 {
         let Some(s) = self.supports.get(support) else { return Vec2::zeros() };
         let gravity = if self.linear_density > 0.0 { self.weight / self.linear_density } else { Vec2::zeros() };
         let here = |l: &&PointLoad| s.arc_length.is_some_and(|a| (l.arc_length - a).abs() <= 1e-9 * self.length);
@@ -368,7 +376,7 @@ impl Problem {
 
     /// A force that says how large forces are here, N: the whole distributed load, point loads and the weight of lumps, or EA·1e-6 without one.
     #[must_use]
-    pub fn force_scale(&self) -> f64 {
+    pub(crate) fn force_scale(&self) -> f64 {
         let loads: f64 = self.loads.iter().map(|l| l.force.at(0.0).norm()).sum::<f64>()
             + self.supports.iter().map(|s| s.force.at(0.0).norm()).sum::<f64>();
         let gravity = if self.linear_density > 0.0 { self.weight.norm() / self.linear_density } else { 0.0 };

@@ -1,4 +1,5 @@
-//! Which nodes of a run go into `nodes.csv`, and which of their figures: by far the largest of its tables.
+//! A choice says which nodes of a run go into `nodes.csv`, by far the largest table, and with which
+//! of their figures.
 
 use thiserror::Error;
 

@@ -1,4 +1,4 @@
-//! Rows laid out so that none lies on two pages of a file.
+//! Pages lay out rows so that none crosses the border between two pages of a file.
 //!
 //! A system copies what is written into its memory page by page, and a process that is killed may stop between two: of 200 killed runs
 //! one to five ended within a line. A row that lies on one page is written whole or not at all. So the last row that fits on

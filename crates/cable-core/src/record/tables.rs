@@ -1,4 +1,4 @@
-//! The three tables of a run, written and read.
+//! This file writes and reads the three tables of a run.
 
 use std::io::{Read, Write};
 
@@ -171,7 +171,7 @@ impl<W: Write> RunWriter<W> {
 
     /// With a choice of what goes into `nodes.csv`.
     #[must_use]
-    pub fn with_nodes(self, node_choice: NodeChoice) -> Self {
+    pub(crate) fn with_nodes(self, node_choice: NodeChoice) -> Self {
         Self { node_choice, ..self }
     }
 

@@ -1,4 +1,4 @@
-//! What is left of a table that was cut off somewhere: its whole records.
+//! Whole records are what is left of a table that was cut off somewhere.
 
 use std::io::{self, Read};
 
@@ -42,7 +42,7 @@ impl<R: Read> WholeRecords<R> {
 
     /// Bytes after the last whole record, once everything is read.
     #[must_use]
-    pub fn left_out_bytes(&self) -> usize {
+    pub(crate) fn left_out_bytes(&self) -> usize {
         self.bytes.len() - self.whole
     }
 

@@ -1,4 +1,5 @@
-//! The tracked vehicle in motion: how fast it goes against slope, ground and cable, and why it does not.
+//! The vehicle is the tracked robot in motion: how fast it goes against slope, ground and cable,
+//! and why not faster.
 //!
 //! It is a rigid body on the ground, moved along it by its tracks:
 //! ```text
@@ -199,12 +200,12 @@ impl Vehicle {
 
     /// Where its hitch is when it stands so, m.
     #[must_use]
-    pub fn hitch_at(&self, pose: Pose) -> Vec2 {
+    pub(crate) fn hitch_at(&self, pose: Pose) -> Vec2 {
         vec2(pose.hitch_m(self.preset))
     }
 
     /// It came only there in its last step: the cable was in its way.
-    pub fn hold_back(&mut self, placement: RigidPose) {
+    pub(crate) fn hold_back(&mut self, placement: RigidPose) {
         self.pose = Pose { at_m: [placement.at.x, placement.at.y], pitch: placement.angle, ..self.pose };
         self.report.work.impact_j -= self.kinetic_j();
         (self.speed, self.tipping) = (0.0, 0.0);
@@ -234,7 +235,7 @@ impl Vehicle {
 
     /// Where it is at the end of a step in which it comes to this speed (m/s); None where it cannot stand there.
     #[must_use]
-    pub fn come_to(&self, drive: Drive, speed: f64) -> Option<Pose> {
+    pub(crate) fn come_to(&self, drive: Drive, speed: f64) -> Option<Pose> {
         let way = 0.5 * drive.h * (self.speed + speed);
         if way == 0.0 && self.speed == 0.0 {
             return self.tipped(self.pose.at_m[0], drive.h);
@@ -275,7 +276,7 @@ impl Vehicle {
     }
 
     /// Ends a step at a place with a speed (m/s) that a balance gave, or that it was given beside one.
-    pub fn arrive(
+    pub(crate) fn arrive(
         &mut self,
         drive: Drive,
         (to, led): (Pose, f64),

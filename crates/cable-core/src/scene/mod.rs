@@ -24,7 +24,7 @@ pub mod robot;
 pub mod scaled;
 pub mod support;
 
-pub use cable::{BREAKING_TIME_S, Cable, FrictionMobilised};
+pub use cable::{Cable, FrictionMobilised};
 pub use environment::{Environment, STANDARD_GRAVITY, View};
 pub use library::{catalog, preset};
 pub use load::Load;
@@ -38,7 +38,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The file version this build writes, and the newest it reads.
-pub const VERSION: u32 = 1;
+pub(crate) const VERSION: u32 = 1;
 
 /// A whole scene, as a scene file holds it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

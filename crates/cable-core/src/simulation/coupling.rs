@@ -1,4 +1,4 @@
-//! Robot and cables advanced together.
+//! The coupling advances robot and cables together.
 //!
 //! In a step of h the robot comes from its speed v to v', and its hitch and outline with it; the
 //! cables, from copies that can be gone back to, are advanced to where they then are, and pull with
@@ -264,7 +264,7 @@ impl Simulation {
     ///
     /// # Errors
     /// See [`Mechanics::advance`](crate::model::Mechanics::advance).
-    pub fn lead_robot(&mut self, x_m: f64, (dt_s, inertia): (f64, Inertia)) -> Result<Option<f64>, SolveError> {
+    pub(crate) fn lead_robot(&mut self, x_m: f64, (dt_s, inertia): (f64, Inertia)) -> Result<Option<f64>, SolveError> {
         let Some(vehicle) = &mut self.vehicle else { return Ok(None) };
         let Some(hitch) = vehicle.put(x_m) else { return Ok(None) };
         let to = vehicle.pose().placement();

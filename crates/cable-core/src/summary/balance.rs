@@ -1,4 +1,4 @@
-//! Whether the forces on a whole cable add up to nothing.
+//! The force balance checks whether the forces on a whole cable add up to zero.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,5 +1,14 @@
-//! What an engineer reads first of an answer: forces and angles at the ends, how much of it lies and hangs, sag, length, the tensions
-//! between which all others are, how much of each limit is used, and whether all forces on it add up to nothing.
+//! A summary holds what an engineer reads first of an answer: forces and angles at the ends, lying
+//! and hanging lengths, sag, the range of tensions, the share of each limit that is used, and the
+//! balance of all forces.
+//!
+//! | room | content |
+//! |---|---|
+//! | `mod.rs` | [`CableSummary`] |
+//! | `shape.rs` | sag, heights, lengths, touchdowns |
+//! | `balance.rs` | the sum of all forces on a cable |
+//! | `stiffness.rs` | change of force per metre that an end is moved |
+//! | `bending.rs` | what neglected bending stiffness would change |
 //!
 //! Everything is read from a scene and an answer, so that it is the same for every model; command line, JSON and window only
 //! write it down. Accuracy is that of the answer's nodes: of a free span they leave its line by 1e-5 of its length at most.

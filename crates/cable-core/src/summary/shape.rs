@@ -1,4 +1,4 @@
-//! Where the cable is: sag, heights, lengths, touchdowns.
+//! The shape of a cable is summarised by sag, heights, lengths and touchdowns.
 
 use super::{CablePlace, Sag, TouchKind, Touchdown};
 use crate::scene::{Cable, SupportKind, View};

@@ -1,4 +1,4 @@
-//! How stiffly a cable holds its ends: the change of force per metre that an end is moved.
+//! The end stiffness of a cable is the change of force per metre that an end is moved.
 //!
 //! Each end is moved a little right and left, up and down, without inertia and from the place of rest that was found, so that friction
 //! remembers: contacts that hold go on holding, and what slides on one of the ways there makes the figure the mean of two. The

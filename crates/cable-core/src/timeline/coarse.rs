@@ -1,5 +1,5 @@
-//! The same run on elements twice and three times as long, in steps twice and three times as long, beside it: what the three differ by is what
-//! is said of its errors.
+//! Coarser runs beside a run estimate its errors: the same scene on elements twice and three times
+//! as long, in steps twice and three times as long.
 //!
 //! Bars are of the second order where the cable is free and of the first where it meets things, steps likewise: what two runs differ by, of
 //! which one is twice as fine, is at least what the finer one lacks then (L. F. Richardson and J. A. Gaunt, *The deferred approach to the

@@ -1,4 +1,5 @@
-//! What is known of a run so far: its greatest tensions, and, from coarser runs beside it, the errors of its figures.
+//! The monitor knows a run so far: its greatest tensions and, from coarser runs beside it, the
+//! errors of its figures.
 
 use super::coarse::CoarseRuns;
 use super::{RunPeaks, TensionRanges};

@@ -1,4 +1,4 @@
-//! One function a law, over one cable.
+//! Each law of mechanics is one function over one cable.
 //!
 //! With F(s) the internal force, b the load per metre and d the force of obstacles on a piece of cable from s₁ to s₂,
 //! F(s₂) − F(s₁) + b (s₂ − s₁) + Σ P + d = 0, with P the point forces on it. So d follows from what the answer says of the cable alone,
@@ -145,12 +145,12 @@ impl CheckedCable<'_> {
     }
 
     /// Weight and wind, N/m.
-    pub fn load_per_metre(&self) -> Vec2 {
+    pub(crate) fn load_per_metre(&self) -> Vec2 {
         self.body
     }
 
     /// Where the scene's loads are on the cable, m.
-    pub fn scene_loads(&self) -> Vec<f64> {
+    pub(crate) fn scene_loads(&self) -> Vec<f64> {
         self.scene.loads.iter().filter(|l| l.cable == self.cable.name).map(|l| l.arc_length_m).collect()
     }
 
@@ -615,7 +615,7 @@ impl CheckedCable<'_> {
     }
 
     /// Internal force just before a node that is not the first, as what touches the bar before it is all at its end, N.
-    pub fn force_before(&self, node: usize) -> Vec2 {
+    pub(crate) fn force_before(&self, node: usize) -> Vec2 {
         let [a, b] = [&self.answer.nodes[node - 1], &self.answer.nodes[node]];
         a.force() - self.body * (b.arc_length_m - a.arc_length_m)
     }
@@ -699,7 +699,7 @@ impl CheckedCable<'_> {
     }
 
     /// Whether a node is on a wheel.
-    pub fn is_led(&self, node: usize, center: Vec2, radius: f64) -> bool {
+    pub(crate) fn is_led(&self, node: usize, center: Vec2, radius: f64) -> bool {
         let reach = self.reach() - 0.5 * self.cable.diameter_m;
         (self.answer.nodes[node].at() - center).norm() <= radius + reach
     }

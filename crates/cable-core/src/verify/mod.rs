@@ -1,4 +1,4 @@
-//! Checks answers against the laws they must obey, from scene and [`Solution`] alone.
+//! The verifier checks answers against the laws they must obey, from scene and [`Solution`] alone.
 //!
 //! | room | what is in it |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! Friction of eyes and wheels: between the forces before and after one the tension changes by no more than the capstan allows.
+//! The friction of eyes and wheels limits the change of tension beside them: the capstan law.
 //!
 //! With m from −μ to μ, t the way, n out of the wheel and b the load per metre, dT = m T dθ − (b·t + m b·n) ds: from the
 //! tension before a pulley the greatest that friction can make of it follows with m = μ, the least with m = −μ (L. Euler, "Remarques sur

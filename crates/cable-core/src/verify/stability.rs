@@ -1,4 +1,4 @@
-//! Whether a stiff cable holds what it pushes with, or bends aside.
+//! The stability law asks whether a stiff cable bears its compression or buckles.
 //!
 //! Turned by η(s), a cable that cannot stretch changes its energy by ½ ∫ (EI η'² + T η²) ds, T the force along it, as long as every
 //! part between two places that are held keeps its chord: two conditions each (R. Levien, "The elastica: a mathematical

@@ -1,4 +1,4 @@
-//! What supports do to the cable, and whether it is where they hold it.
+//! The laws of supports ask what supports do to the cable, and whether it is where they hold it.
 
 use super::laws::{CheckedCable, series};
 use super::surroundings::distance;
@@ -67,7 +67,7 @@ impl SupportHold<'_> {
     }
 
     /// What a dead load pulls with, N.
-    pub fn dead_load(&self, scene: &Scene, time_s: f64) -> Vec2 {
+    pub(crate) fn dead_load(&self, scene: &Scene, time_s: f64) -> Vec2 {
         let gravity = match scene.view {
             View::Elevation => Vec2::new(0.0, -scene.environment.gravity_m_per_s2),
             View::Plan => Vec2::zeros(),

@@ -1,4 +1,5 @@
-//! Obstacles and the robot as the checker sees them: edges and rounds, distances by brute force.
+//! The surroundings are obstacles and robot as the checker sees them: edges and rounds, distances
+//! by brute force.
 //!
 //! Edges are sorted by their left end, so that those in a box are found without looking at all; nothing else is clever.
 

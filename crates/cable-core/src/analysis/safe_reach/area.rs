@@ -1,4 +1,4 @@
-//! Where an end of a cable can be taken by a hand or a crane: everywhere in the plane that a way through free space leads to.
+//! This analysis finds where a hand or a crane can take an end of a cable in the free plane.
 //!
 //! From where it is the end is taken outwards from place to place of a grid (`exploration.rs`), each on the shortest way that passes
 //! no obstacle, a coarse grid first and finer ones from its places. Each place goes on from the cable as it was at the one before:

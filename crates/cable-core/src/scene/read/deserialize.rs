@@ -1,4 +1,5 @@
-//! Turns a parsed TOML tree into a scene, keeping the path and the place in the text of whatever is wrong.
+//! The deserialiser turns a parsed TOML tree into a scene and keeps the path and the place in the
+//! text of any fault.
 //!
 //! A serde deserialiser of its own: the one of the `toml` crate names neither the path nor the nearest known
 //! key, and cannot fill what a file leaves out from a preset.

@@ -1,4 +1,5 @@
-//! Whether a line crosses or touches itself: a terrain or beam that does has no inside and outside.
+//! A terrain or beam is refused if its line crosses or touches itself: it then has no inside and
+//! outside.
 //!
 //! Boxes of ever longer runs of edges form a binary tree; pairs of runs whose boxes lie apart cannot meet. The boxes have
 //! eight sides (x, y, x + y, x − y), so that slanting combs come apart too.

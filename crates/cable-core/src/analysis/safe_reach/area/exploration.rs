@@ -1,4 +1,4 @@
-//! Takes an end from place to place, outwards from where it is.
+//! The exploration takes an end from place to place, outwards from where it is.
 //!
 //! On each grid places are reached in the order of how far their way is (E. W. Dijkstra, "A note on two problems in connexion with
 //! graphs", Numerische Mathematik 1, 1959; ways go to the eight neighbours, a diagonal counts 7/5 of a side). The first grid is
