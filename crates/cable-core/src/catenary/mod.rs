@@ -23,7 +23,7 @@ pub use chain::{Chain, ChainForce, PointForce};
 use kernel::ChainPiece;
 
 use crate::error::SolveError;
-use crate::math::{Vec2, bounded, cross, perp};
+use crate::math::{Vec2, bounded, perp};
 
 /// Below this ratio of load to EA the load cannot be told from none on a stretched cable (its square would
 /// leave the range of f64), and the span is a straight bar.
