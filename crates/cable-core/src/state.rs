@@ -37,7 +37,7 @@ impl State {
 
     /// The first node with a number that is not finite.
     #[must_use]
-    pub(crate) fn first_non_finite(&self) -> Option<usize> {
+    pub fn first_non_finite(&self) -> Option<usize> {
         (0..self.position_m.len()).find(|&i| {
             !(self.position_m[i].iter().all(|v| v.is_finite())
                 && self.velocity_m_per_s.get(i).is_none_or(|v| v.iter().all(|c| c.is_finite())))
@@ -46,7 +46,7 @@ impl State {
 
     /// The refusal of a state that holds a number that is not finite.
     #[must_use]
-    pub(crate) fn refuse_non_finite(&self) -> Option<SolveError> {
+    pub fn refuse_non_finite(&self) -> Option<SolveError> {
         let node = self.first_non_finite()?;
         let arc_length_m = self.arc_length_m.get(node).copied().unwrap_or(f64::NAN);
         Some(SolveError::NonFinite { quantity: "position or velocity", arc_length_m, time_s: self.time_s })
@@ -54,7 +54,7 @@ impl State {
 
     /// Arc length of the middle of what lies on a round of a radius (m); nearest to its centre if nothing does.
     #[must_use]
-    pub(crate) fn on_round(&self, center: Vec2, radius: f64) -> Option<f64> {
+    pub fn on_round(&self, center: Vec2, radius: f64) -> Option<f64> {
         let on = |p: &Vec2| radius > 0.0 && ((p - center).norm() - radius).abs() <= ROUND_TOLERANCE * radius;
         let (first, last) = (self.position_m.iter().position(on), self.position_m.iter().rposition(on));
         match (first.and_then(|k| self.arc_length_m.get(k)), last.and_then(|k| self.arc_length_m.get(k))) {
@@ -85,7 +85,7 @@ impl State {
 
     /// Velocity at a material coordinate, linear between nodes, m/s.
     #[must_use]
-    pub(crate) fn velocity_at(&self, arc_length_m: f64) -> Option<Vec2> {
+    pub fn velocity_at(&self, arc_length_m: f64) -> Option<Vec2> {
         self.between(&self.velocity_m_per_s, arc_length_m)
     }
 

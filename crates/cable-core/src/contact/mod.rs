@@ -106,7 +106,7 @@ impl World {
 
     /// Name of an obstacle by its index in the scene; empty if it was dropped.
     #[must_use]
-    pub(crate) fn obstacle_name(&self, obstacle: usize) -> &str {
+    pub fn obstacle_name(&self, obstacle: usize) -> &str {
         self.geometry.bodies().iter().find(|b| b.obstacle == obstacle).map_or("", |b| &b.name)
     }
 

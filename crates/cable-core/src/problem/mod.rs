@@ -113,19 +113,19 @@ impl SupportPoint {
 
     /// Whether it holds the cable in a step that begins at a time, s.
     #[must_use]
-    pub(crate) fn holds_from(&self, time_s: f64) -> bool {
+    pub fn holds_from(&self, time_s: f64) -> bool {
         self.release.is_none_or(|r| time_s < r - TIME_TOLERANCE_S)
     }
 
     /// Whether it lets go after `from` and before `to` (s), and when.
     #[must_use]
-    pub(crate) fn release_between(&self, from: f64, to: f64) -> Option<f64> {
+    pub fn release_between(&self, from: f64, to: f64) -> Option<f64> {
         self.release.filter(|&r| r > from + TIME_TOLERANCE_S && r < to - TIME_TOLERANCE_S)
     }
 
     /// Position and velocity at a time, m and m/s, whether it holds the cable then or not.
     #[must_use]
-    pub(crate) fn place_at(&self, time_s: f64) -> Option<(Vec2, Vec2)> {
+    pub fn place_at(&self, time_s: f64) -> Option<(Vec2, Vec2)> {
         match (&self.motion, self.at) {
             (Some(m), Some(_)) => Some(m.at(time_s)),
             (None, Some(p)) => Some((p, Vec2::zeros())),
@@ -337,7 +337,7 @@ fn force_series(force: Option<[f64; 2]>, times: &[f64], forces: &[[f64; 2]]) -> 
 impl Problem {
     /// The same for a model that knows nothing of obstacles that move.
     #[must_use]
-    pub(crate) fn without_outline(this: Arc<Self>) -> Arc<Self> {
+    pub fn without_outline(this: Arc<Self>) -> Arc<Self> {
         if this.outline.is_none() {
             return this;
         }
@@ -366,7 +366,7 @@ impl Problem {
     /// What hangs on a free support at a time, N: its load, the weight of its lump, point loads at the same place. At rest the
     /// tension just inside a free end is the size of it, and the cable pulls at it with the opposite of it.
     #[must_use]
-    pub(crate) fn hung_on(&self, support: usize, time_s: f64) -> Vec2 {
+    pub fn hung_on(&self, support: usize, time_s: f64) -> Vec2 {
         let Some(s) = self.supports.get(support) else { return Vec2::zeros() };
         let gravity = if self.linear_density > 0.0 { self.weight / self.linear_density } else { Vec2::zeros() };
         let here = |l: &&PointLoad| s.arc_length.is_some_and(|a| (l.arc_length - a).abs() <= 1e-9 * self.length);
@@ -376,7 +376,7 @@ impl Problem {
 
     /// A force that says how large forces are here, N: the whole distributed load, point loads and the weight of lumps, or EA·1e-6 without one.
     #[must_use]
-    pub(crate) fn force_scale(&self) -> f64 {
+    pub fn force_scale(&self) -> f64 {
         let loads: f64 = self.loads.iter().map(|l| l.force.at(0.0).norm()).sum::<f64>()
             + self.supports.iter().map(|s| s.force.at(0.0).norm()).sum::<f64>();
         let gravity = if self.linear_density > 0.0 { self.weight.norm() / self.linear_density } else { 0.0 };
