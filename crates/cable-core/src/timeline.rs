@@ -143,7 +143,7 @@ impl Timeline {
         let mut solution = if self.step.times(self.count) < instant {
             let mut copy = self.simulation.clone();
             advance(&mut copy, instant.seconds(), self.inertia)?;
-            self.monitor.tell_errors(&mut copy);
+            self.monitor.set_error_estimates(&mut copy);
             copy.solution()
         } else {
             self.simulation.solution()

@@ -149,11 +149,11 @@ pub struct RunWriter<W: Write> {
     node_interval: Option<f64>,
     /// Columns of `history.csv`; none before the headers are written.
     columns: Vec<String>,
-    active: Vec<ActiveWarning>,
+    active: Vec<LastingWarning>,
 }
 
 /// Kind, cable and the time since when, in bits, of a warning that lasts.
-type ActiveWarning = (WarningKind, String, Option<u64>);
+type LastingWarning = (WarningKind, String, Option<u64>);
 
 impl<W: Write> RunWriter<W> {
     /// Over three places to write to.
@@ -352,12 +352,12 @@ fn node_rows(rows: &mut Rows, solution: &Solution, columns: NodeColumns) -> Resu
     Ok(())
 }
 
-fn active(w: &Warning) -> ActiveWarning {
+fn active(w: &Warning) -> LastingWarning {
     (w.kind, w.cable.clone(), w.since_s.map(f64::to_bits))
 }
 
 /// Warnings of an instant that did not last already.
-fn began<'a>(solution: &'a Solution, lasting: &'a [ActiveWarning]) -> impl Iterator<Item = &'a Warning> {
+fn began<'a>(solution: &'a Solution, lasting: &'a [LastingWarning]) -> impl Iterator<Item = &'a Warning> {
     solution.warnings.iter().filter(move |w| {
         let since = w.since_s.map(f64::to_bits);
         !lasting.iter().any(|(kind, cable, began)| (*kind, *began) == (w.kind, since) && *cable == w.cable)

@@ -160,7 +160,7 @@ impl Simulation {
                     vehicle.stop(drive, begun, going);
                     self.lead((vehicle.hitch(), vehicle.pose().placement()), step.hitches);
                     self.vehicle = Some(vehicle);
-                    self.each(|c| c.advance(step.h, step.inertia))?;
+                    self.for_each_cable(|c| c.advance(step.h, step.inertia))?;
                     return Ok(iterations + self.cost.iterations);
                 }
             }
@@ -177,7 +177,7 @@ impl Simulation {
         let Some(to) = start.come_to(drive, speed) else { return TrialOutcome::Stuck(Going::Blocked) };
         self.lead((start.hitch_at(to), to.placement()), step.hitches);
         let breaks = self.breaks();
-        if self.each(|c| c.advance(step.h, step.inertia)).is_err() {
+        if self.for_each_cable(|c| c.advance(step.h, step.inertia)).is_err() {
             // The cable cannot get out of its way.
             return TrialOutcome::Stuck(Going::Jammed);
         }
@@ -270,9 +270,9 @@ impl Simulation {
         let to = vehicle.pose().placement();
         self.lead((hitch, to), &self.hitches());
         self.cables.iter_mut().for_each(BreakableCable::forget_peaks);
-        let done = self.each(|c| c.advance(dt_s, inertia));
+        let done = self.for_each_cable(|c| c.advance(dt_s, inertia));
         let left_m = self.hold_vehicle();
-        self.look(true);
+        self.refresh(true);
         done.map(|()| Some(left_m))
     }
 

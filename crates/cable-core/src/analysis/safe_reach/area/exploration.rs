@@ -88,11 +88,11 @@ pub(super) struct Exploration<'a> {
 }
 
 /// What is heard of it.
-type Progress<'a> = &'a mut dyn FnMut(&Area, f64) -> ControlFlow<()>;
+type AreaProgress<'a> = &'a mut dyn FnMut(&Area, f64) -> ControlFlow<()>;
 
 impl Exploration<'_> {
     /// Goes outwards from the start, grid after grid; what is only guessed from coarser grids is not there in the end.
-    pub fn spread(&mut self, laid: Simulation, progress: Progress<'_>) {
+    pub fn spread(&mut self, laid: Simulation, progress: AreaProgress<'_>) {
         self.free = (0..self.found.most_n.len()).map(|k| self.may(k)).collect();
         let most_n = self.tension_n(&laid);
         self.found.most_n[self.first] = most_n;
