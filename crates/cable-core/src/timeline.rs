@@ -19,11 +19,11 @@ use crate::solution::{Solution, TensionPeaks};
 const TICKS_PER_S: f64 = 3e9;
 
 /// Step without inertia, s: that of a display.
-pub(crate) const QUASI_STATIC_STEP_S: f64 = 1.0 / 60.0;
+pub const QUASI_STATIC_STEP_S: f64 = 1.0 / 60.0;
 
 /// Ends of a range of tensions that are no more than so many times each other are those of one tension that is known, if roughly. Less: peaks that
 /// any finer run has as well are called uncertain; more: a cable is chosen by a peak that another mesh does not have.
-pub(crate) const RESOLVED_RATIO: f64 = 1.5;
+pub const RESOLVED_RATIO: f64 = 1.5;
 
 /// An instant: a whole number of ticks after the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]

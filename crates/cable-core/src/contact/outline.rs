@@ -1,6 +1,6 @@
 //! The outline of a robot is an obstacle that moves as a whole.
 //!
-//! In a [`Geometry`](super::geometry::Geometry) it is one body more, the last one, put where it is before every step.
+//! In a `Geometry` it is one body more, the last one, put where it is before every step.
 //! While a step is worked out it stands still.
 
 use super::distance::{point_segment, segment_segment};

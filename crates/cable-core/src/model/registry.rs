@@ -207,7 +207,7 @@ pub(super) fn refuse_mobilised(model: Model, problem: &Problem) -> Result<(), So
 }
 
 /// Builds the mechanics of one cable. `Auto` is resolved for rest (see [`auto::choose`]); where it chooses `spans`, `fem`
-/// stands behind it ([`SwitchingModel`]).
+/// stands behind it (`switching.rs`).
 ///
 /// # Errors
 /// `Setting` when the settings are out of range, `Unsupported` when the model lacks what the scene needs.

@@ -11,7 +11,7 @@
 //!
 //! Numbers are written with the fewest digits that read back to the same bits (in a file some times have zeros after them, so that no row
 //! lies on two pages of it). [`RunWriter`] writes the tables to any
-//! [`std::io::Write`] in whole instants, `history.csv` last; [`read_run`] reads them again, up to the last instant that is whole in
+//! [`std::io::Write`] in whole instants, `history.csv` last; `read_run` reads them again, up to the last instant that is whole in
 //! all of them, wherever they were cut off. [`read_history`], [`read_nodes`] and [`read_events`] read one of them. Folders are made
 //! and read in [`crate::files`].
 

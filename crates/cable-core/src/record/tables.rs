@@ -139,7 +139,7 @@ pub struct SupportColumn {
 
 /// Writes a run's tables as it goes, in whole instants: the rows of an instant go out as one write a table, `history.csv` last.
 /// So an instant with a row there is whole in the other tables too, and what was cut off anywhere is whole up to the last such
-/// row ([`super::read_run`]).
+/// row (`super::read_run`).
 pub struct RunWriter<W: Write> {
     history: W,
     nodes: W,
