@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use cable_core::summary::{CableSummary, EndForce, EndStiffness, NeglectedBending, Place, Touch};
+use cable_core::summary::{CablePlace, CableSummary, EndForce, EndStiffness, NeglectedBending, TouchKind};
 
 use crate::answer::Figures;
 
@@ -33,9 +33,9 @@ fn lines(s: &CableSummary) -> Vec<(&'static str, String)> {
     out.push(("Lying", format!("{:.4} m, suspended {:.4} m", s.lying_m, s.suspended_m)));
     for d in &s.touchdowns {
         let touch = match d.touch {
-            Touch::Begins => "lies on",
-            Touch::Ends => "leaves",
-            Touch::Point => "touches",
+            TouchKind::Begins => "lies on",
+            TouchKind::Ends => "leaves",
+            TouchKind::Point => "touches",
         };
         out.push(("Touchdown", format!("{touch} `{}` with {:.4} N {}", d.obstacle, d.tension_n, at(d.at))));
     }
@@ -62,7 +62,7 @@ fn lines(s: &CableSummary) -> Vec<(&'static str, String)> {
             _ => "its bending stiffness is not known".to_owned(),
         };
         let b = j.bend;
-        let place = Place { arc_length_m: b.arc_length_m, x_m: b.x_m, y_m: b.y_m };
+        let place = CablePlace { arc_length_m: b.arc_length_m, x_m: b.x_m, y_m: b.y_m };
         out.push(("Sharpest led bend", format!("radius {:.4} m {}, {by}", b.radius_m, at(place))));
     }
     if let Some(f) = &s.friction {
@@ -108,7 +108,7 @@ fn stiffness(e: &EndStiffness) -> String {
     )
 }
 
-fn at(p: Place) -> String {
+fn at(p: CablePlace) -> String {
     format!("at {:.4} m ({:.4} m, {:.4} m)", p.arc_length_m, p.x_m, p.y_m)
 }
 

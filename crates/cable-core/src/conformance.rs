@@ -1,4 +1,5 @@
-//! The suite every model must pass: identities that hold whatever the method, each with the figure reached.
+//! Every model must pass this suite: identities that hold whatever the method, each with the error
+//! reached.
 
 use crate::any_error::Error;
 use crate::math::{Vec2, larger};
@@ -31,12 +32,7 @@ impl Check {
 /// # Errors
 /// When the model has no answer to one of the scenes.
 pub fn run(model: Model) -> Result<Vec<Check>, Error> {
-    // Equilibrium is what the iteration is stopped by; the shape is what the mesh limits.
-    let (shape, equilibrium) = match model {
-        Model::Catenary | Model::Spans => (1e-9, 1e-9),
-        Model::MassSpring => (1e-3, 2e-5),
-        Model::Fem | Model::Auto | Model::External => (1e-5, 1e-6),
-    };
+    let [shape, equilibrium] = model.info().accuracy;
     let base = span([0.0, 5.0], [10.0, 4.0]);
     let settled = settle(&base, model)?;
     let mut out = Vec::new();

@@ -348,7 +348,7 @@ impl SolveError {
     /// Of two models' reasons for one cable the one that a user can act on: what is so whatever the model is told alone; where
     /// neither says that, both are.
     #[must_use]
-    pub fn clearer(first: Self, second: Self) -> Self {
+    pub(crate) fn clearer(first: Self, second: Self) -> Self {
         let certain = |e: &Self| matches!(e, Self::NoRestingPlace { .. } | Self::Buried { .. });
         // That a search ended says nothing of the scene.
         let ended = |e: &Self| matches!(e, Self::NotConverged { .. } | Self::TooMuchWork { .. });

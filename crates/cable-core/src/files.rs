@@ -1,5 +1,5 @@
-//! The only file of the core that touches the file system: reading with a limit, saving without a moment in
-//! which neither the old file nor the new one is whole.
+//! No other file of the core touches the file system: it reads with a limit, and saves so that at
+//! every moment either the old file or the new one is whole.
 
 use std::fs;
 use std::io::{self, BufWriter, Read, Write};
@@ -231,19 +231,19 @@ pub fn create_folder(path: impl AsRef<Path>) -> Result<(), FileError> {
 }
 
 /// What a run folder says about itself.
-const MANIFEST: &str = "run.toml";
+const MANIFEST_NAME: &str = "run.toml";
 /// The scene of a run.
-const SCENE: &str = "scene.toml";
+const SCENE_NAME: &str = "scene.toml";
 /// Held while a run is written; an empty file, which stays, since a lock on a file that is removed excludes nobody.
-const LOCK: &str = "run.lock";
+const LOCK_NAME: &str = "run.lock";
 /// The tables of a run, in the order of [`RunWriter::places`].
-const TABLES: [&str; 3] = ["history.csv", "nodes.csv", "events.csv"];
+const TABLE_NAMES: [&str; 3] = ["history.csv", "nodes.csv", "events.csv"];
 /// Files of a run beside its manifest.
-const RUN_FILES: [&str; 4] = [SCENE, "history.csv", "nodes.csv", "events.csv"];
+const RUN_FILES: [&str; 4] = [SCENE_NAME, "history.csv", "nodes.csv", "events.csv"];
 /// Folders, in a run folder, of runs that may one day take the place of the run there.
-const UNFINISHED: &str = "unfinished-";
+const UNFINISHED_PREFIX: &str = "unfinished-";
 /// Most of these folders. More than anybody keeps; without a limit a script that never succeeds fills a disk.
-const MOST_UNFINISHED: usize = 999;
+const MAX_UNFINISHED: usize = 999;
 
 /// A table of a run on the disk: rows that do not fit on it leave it as it was.
 struct TableFile {
@@ -352,10 +352,10 @@ impl RunFolder {
         let text = scene.to_toml();
         let mut hash = Fingerprint::default();
         hash.bytes(text.as_bytes());
-        let manifest = Manifest::new(request, node_choice, FileRecord::new(SCENE, text.len() as u64, hash));
+        let manifest = Manifest::new(request, node_choice, FileRecord::new(SCENE_NAME, text.len() as u64, hash));
         // First that the folder is a run's: a run that dies before its scene is there can be begun again.
-        put(&place, MANIFEST, manifest.to_toml().as_bytes())?;
-        put(&place, SCENE, text.as_bytes())?;
+        put(&place, MANIFEST_NAME, manifest.to_toml().as_bytes())?;
+        put(&place, SCENE_NAME, text.as_bytes())?;
         Ok(Self { folder, place, manifest, node_choice, writer: None, _locks: locks })
     }
 
@@ -409,7 +409,7 @@ impl RunFolder {
                 let open = |table| {
                     TableFile::create(&self.place.join(table)).map_err(|source| WriteError::Io { table, source })
                 };
-                let [history, nodes, events] = TABLES;
+                let [history, nodes, events] = TABLE_NAMES;
                 let writer = RunWriter::new(open(history)?, open(nodes)?, open(events)?).with_nodes(self.node_choice);
                 none.insert(writer)
             }
@@ -430,7 +430,7 @@ impl RunFolder {
     /// end of a complete run could not be noted.
     pub fn finish(mut self, end: RunEnd) -> Result<PathBuf, FileError> {
         if let Some(writer) = &mut self.writer {
-            for (table, name) in writer.places().into_iter().zip(TABLES) {
+            for (table, name) in writer.places().into_iter().zip(TABLE_NAMES) {
                 table.file.sync_all().map_err(|e| FileError::write(&self.place.join(name), &e))?;
                 self.manifest.files.push(FileRecord::new(name, table.bytes, table.hash));
             }
@@ -439,7 +439,7 @@ impl RunFolder {
             RunEnd::Complete => self.manifest.status = RunStatus::Complete,
             RunEnd::Partial(why) => self.manifest.ended = Some(why),
         }
-        put(&self.place, MANIFEST, self.manifest.to_toml().as_bytes())?;
+        put(&self.place, MANIFEST_NAME, self.manifest.to_toml().as_bytes())?;
         if self.manifest.status != RunStatus::Complete || self.place == self.folder {
             return Ok(self.place);
         }
@@ -449,7 +449,7 @@ impl RunFolder {
         check_own(&self.folder, &earlier)?;
         let successor = self.place.file_name().map(|name| name.to_string_lossy().into_owned());
         let earlier = Manifest { status: RunStatus::Replacing, successor, ..earlier };
-        put(&self.folder, MANIFEST, earlier.to_toml().as_bytes())?;
+        put(&self.folder, MANIFEST_NAME, earlier.to_toml().as_bytes())?;
         replace_if_begun(&self.folder, earlier)?;
         remove_unfinished(&self.folder);
         Ok(self.folder)
@@ -476,12 +476,14 @@ fn look(folder: &Path) -> Result<Option<Manifest>, FileError> {
     });
     let mut names = listed.map_err(|e| FileError::write(folder, &e))?;
     names.sort();
-    if names.iter().any(|name| name == MANIFEST) {
-        let foreign = || FileError::folder(folder, RunFolderFault::Foreign { found: MANIFEST.to_owned() });
+    if names.iter().any(|name| name == MANIFEST_NAME) {
+        let foreign = || FileError::folder(folder, RunFolderFault::Foreign { found: MANIFEST_NAME.to_owned() });
         return read_manifest(folder).map(Some).ok_or_else(foreign);
     }
     // A run that died before it had a manifest.
-    names.retain(|name| name != LOCK && !(*name == temporary(MANIFEST) && is_part_of_manifest(&folder.join(name))));
+    names.retain(|name| {
+        name != LOCK_NAME && !(*name == temporary(MANIFEST_NAME) && is_part_of_manifest(&folder.join(name)))
+    });
     match names.into_iter().next() {
         None => Ok(None),
         Some(found) => Err(FileError::folder(folder, RunFolderFault::Foreign { found })),
@@ -489,14 +491,14 @@ fn look(folder: &Path) -> Result<Option<Manifest>, FileError> {
 }
 
 /// Largest manifest read, bytes: one has below 2 kB. More would only cost memory.
-const MANIFEST_BYTES: u64 = 1 << 16;
+const MAX_MANIFEST_BYTES: u64 = 1 << 16;
 
 fn read_manifest(folder: &Path) -> Option<Manifest> {
-    let path = folder.join(MANIFEST);
+    let path = folder.join(MANIFEST_NAME);
     if !is_plain_file(&path) {
         return None;
     }
-    let bytes = read_limited(path, MANIFEST_BYTES).ok()?;
+    let bytes = read_limited(path, MAX_MANIFEST_BYTES).ok()?;
     Manifest::from_toml(std::str::from_utf8(&bytes).ok()?)
 }
 
@@ -504,7 +506,7 @@ fn read_manifest(folder: &Path) -> Option<Manifest> {
 fn is_part_of_manifest(path: &Path) -> bool {
     let head = MANIFEST_HEAD.as_bytes();
     is_plain_file(path)
-        && read_limited(path, MANIFEST_BYTES).is_ok_and(|bytes| bytes.starts_with(head) || head.starts_with(&bytes))
+        && read_limited(path, MAX_MANIFEST_BYTES).is_ok_and(|bytes| bytes.starts_with(head) || head.starts_with(&bytes))
 }
 
 /// Whether it is a file: no link, folder, pipe or device.
@@ -519,13 +521,13 @@ fn exists(path: &Path) -> bool {
 
 /// Locks a folder for one run; the file is unlocked when it is closed. None where the file system knows no locks.
 fn lock(folder: &Path) -> Result<Option<fs::File>, FileError> {
-    let path = folder.join(LOCK);
+    let path = folder.join(LOCK_NAME);
     let mut options = fs::OpenOptions::new();
     options.write(true);
     let made = match options.clone().create_new(true).open(&path) {
         Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
             if !is_plain_file(&path) {
-                return Err(FileError::folder(folder, RunFolderFault::NotAFile { name: LOCK.to_owned() }));
+                return Err(FileError::folder(folder, RunFolderFault::NotAFile { name: LOCK_NAME.to_owned() }));
             }
             options.open(&path)
         }
@@ -590,21 +592,21 @@ fn begins_as_table(path: &Path) -> io::Result<bool> {
 
 /// Whether the run in a folder came to an instant that would be lost.
 fn has_instant(folder: &Path) -> bool {
-    let [history, ..] = TABLES;
+    let [history, ..] = TABLE_NAMES;
     fs::File::open(folder.join(history)).is_ok_and(has_rows)
 }
 
 /// Makes the folder of a run that may take the place of the one there.
 fn new_unfinished(folder: &Path) -> Result<PathBuf, FileError> {
-    for k in 1..=MOST_UNFINISHED {
-        let place = folder.join(format!("{UNFINISHED}{k}"));
+    for k in 1..=MAX_UNFINISHED {
+        let place = folder.join(format!("{UNFINISHED_PREFIX}{k}"));
         match fs::create_dir(&place) {
             Ok(()) => return Ok(place),
             Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {}
             Err(e) => return Err(FileError::write(&place, &e)),
         }
     }
-    Err(FileError::folder(folder, RunFolderFault::Full { count: MOST_UNFINISHED }))
+    Err(FileError::folder(folder, RunFolderFault::Full { count: MAX_UNFINISHED }))
 }
 
 /// Puts a complete successor in the place of a run, where that was begun: each file is in the one folder or in the other, the
@@ -618,13 +620,13 @@ fn replace_if_begun(folder: &Path, manifest: Manifest) -> Result<Manifest, FileE
             fs::rename(&source, &target).map_err(|e| FileError::write(&target, &e))?;
         }
     }
-    let target = folder.join(MANIFEST);
-    fs::rename(from.join(MANIFEST), &target).map_err(|e| FileError::write(&target, &e))?;
+    let target = folder.join(MANIFEST_NAME);
+    fs::rename(from.join(MANIFEST_NAME), &target).map_err(|e| FileError::write(&target, &e))?;
     // What is left of it is its lock.
-    let _ = remove_files(&from, &[LOCK]).map(|()| fs::remove_dir(&from));
+    let _ = remove_files(&from, &[LOCK_NAME]).map(|()| fs::remove_dir(&from));
     sync_folder(folder);
     read_manifest(folder)
-        .ok_or_else(|| FileError::folder(folder, RunFolderFault::Changed { name: MANIFEST.to_owned() }))
+        .ok_or_else(|| FileError::folder(folder, RunFolderFault::Changed { name: MANIFEST_NAME.to_owned() }))
 }
 
 /// The folder of the run that is being put in the place of the one in a folder.
@@ -634,7 +636,8 @@ fn successor(folder: &Path, manifest: &Manifest) -> Option<PathBuf> {
 }
 
 fn is_unfinished(name: &str) -> bool {
-    name.strip_prefix(UNFINISHED).is_some_and(|number| !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()))
+    name.strip_prefix(UNFINISHED_PREFIX)
+        .is_some_and(|number| !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()))
 }
 
 /// Removes the runs in a folder that were not finished and that nobody writes or has changed, as far as that can be done.
@@ -649,7 +652,7 @@ fn remove_unfinished(folder: &Path) {
         let Ok(held) = lock(&place) else { continue };
         if manifest.is_none_or(|manifest| check_own(&place, &manifest).is_ok()) {
             let _ = remove_files(&place, &RUN_FILES)
-                .and_then(|()| remove_files(&place, &[MANIFEST, &temporary(MANIFEST), LOCK]))
+                .and_then(|()| remove_files(&place, &[MANIFEST_NAME, &temporary(MANIFEST_NAME), LOCK_NAME]))
                 .map(|()| fs::remove_dir(&place));
         }
         drop(held);
@@ -745,14 +748,14 @@ pub fn load_run(folder: impl AsRef<Path>, limit_bytes: u64) -> Result<SavedRun, 
     let place =
         |name: &str| from.iter().map(|f| f.join(name)).find(|p| p.exists()).unwrap_or_else(|| folder.join(name));
     let manifest = from.as_deref().and_then(read_manifest).or(manifest);
-    let scene = load_scene(place(SCENE))?;
+    let scene = load_scene(place(SCENE_NAME))?;
     let read = |name: &str| match read_limited(place(name), limit_bytes) {
         // A run that ended before its first instant.
         Err(FileError::Read { kind: io::ErrorKind::NotFound, .. }) if manifest.is_some() => Ok(Vec::new()),
         other => other,
     };
     // In this order: the run may go on while it is read.
-    let [history, nodes, events] = TABLES;
+    let [history, nodes, events] = TABLE_NAMES;
     let (history, nodes, events) = (read(history)?, read(nodes)?, read(events)?);
     let tables = read_run(history.as_slice(), nodes.as_slice(), events.as_slice())
         .map_err(|fault| FileError::Table { path: folder.display().to_string(), fault: fault.to_string() })?;
@@ -763,6 +766,6 @@ pub fn load_run(folder: impl AsRef<Path>, limit_bytes: u64) -> Result<SavedRun, 
 #[must_use]
 pub fn is_run(folder: impl AsRef<Path>) -> bool {
     let folder = folder.as_ref();
-    let [history, ..] = TABLES;
-    is_plain_file(&folder.join(MANIFEST)) || is_plain_file(&folder.join(history))
+    let [history, ..] = TABLE_NAMES;
+    is_plain_file(&folder.join(MANIFEST_NAME)) || is_plain_file(&folder.join(history))
 }

@@ -1,4 +1,4 @@
-//! How far each material point of a cable has come, and how fast its velocity changes.
+//! Displacements and accelerations follow each material point of a cable, whatever the nodes do.
 
 use crate::math::Vec2;
 use crate::solution::Node;

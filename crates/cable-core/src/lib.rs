@@ -25,18 +25,18 @@
 //! simulation → timeline, analysis, summary, conformance`, and `record → files → any_error` beside them.
 
 pub mod analysis;
-pub mod any_error;
+mod any_error;
 mod breakage;
 pub mod catenary;
 pub mod conformance;
 pub mod contact;
-pub mod energy;
+mod energy;
 pub mod error;
 pub mod files;
 mod kinematics;
 pub mod math;
 pub mod model;
-pub mod model_id;
+mod model_id;
 pub mod problem;
 pub mod record;
 pub mod robot;

@@ -1,4 +1,4 @@
-//! Scalar and vector names of the core: f64 everywhere, x to the right, y up.
+//! The core computes with these scalars and vectors: f64 everywhere, x to the right, y up.
 
 /// A plane vector or point, in the unit the field says.
 pub type Vec2 = nalgebra::Vector2<f64>;
@@ -35,7 +35,7 @@ pub fn cross(a: Vec2, b: Vec2) -> f64 {
 }
 
 /// Tangent of the angles whose series of [`angle`] is as exact as numbers are: the next term is r¹¹/11.
-const SERIES: f64 = 0.05;
+const MAX_SERIES_TANGENT: f64 = 0.05;
 
 /// The value brought between two bounds, whatever they are: unlike [`f64::clamp`] it does not panic where they are exchanged or no
 /// numbers, as bounds that a solver works out may be. The upper one wins.
@@ -49,7 +49,7 @@ pub fn bounded(value: f64, low: f64, high: f64) -> f64 {
 #[must_use]
 pub fn angle(a: Vec2, b: Vec2) -> f64 {
     let (sin, cos) = (cross(a, b), a.dot(&b));
-    if !(sin.abs() < SERIES * cos) {
+    if !(sin.abs() < MAX_SERIES_TANGENT * cos) {
         return sin.atan2(cos);
     }
     let r = sin / cos;
@@ -58,19 +58,19 @@ pub fn angle(a: Vec2, b: Vec2) -> f64 {
 }
 
 /// Angles whose sine and cosine [`sin_cos`] takes from a short series, rad: the next terms are 9e-17 and 6e-19 of them.
-const SMALL_ANGLE: f64 = 0.3;
+const MAX_SHORT_SERIES_ANGLE: f64 = 0.3;
 /// … and from a longer one: just over an eighth of a turn, and terms of 1e-18.
-const LARGE_ANGLE: f64 = 0.8;
+const MAX_SERIES_ANGLE: f64 = 0.8;
 /// Quarters of a turn that are taken off in two parts without losing a digit.
-const MOST_QUARTERS: f64 = 64.0;
+const MAX_QUARTER_TURNS: f64 = 64.0;
 /// π/2 as a number of few digits and the rest.
-const QUARTER: [f64; 2] = [1.570_796_325_802_803, 9.920_935_796_805_404e-10];
+const QUARTER_TURN: [f64; 2] = [1.570_796_325_802_803, 9.920_935_796_805_404e-10];
 
 /// Sine and cosine of an angle, rad. Corners turn little: there by the series, as a call of the library is dear.
 #[must_use]
 #[inline]
 pub fn sin_cos(angle: f64) -> (f64, f64) {
-    if !(angle.abs() <= SMALL_ANGLE) {
+    if !(angle.abs() <= MAX_SHORT_SERIES_ANGLE) {
         return sin_cos_of_more(angle);
     }
     let s = angle * angle;
@@ -82,14 +82,14 @@ pub fn sin_cos(angle: f64) -> (f64, f64) {
 }
 
 fn sin_cos_of_more(angle: f64) -> (f64, f64) {
-    if angle.abs() <= LARGE_ANGLE {
+    if angle.abs() <= MAX_SERIES_ANGLE {
         return long_series(angle);
     }
     let quarters = (angle / std::f64::consts::FRAC_PI_2).round();
-    if !(quarters.abs() <= MOST_QUARTERS) {
+    if !(quarters.abs() <= MAX_QUARTER_TURNS) {
         return angle.sin_cos();
     }
-    let (sin, cos) = long_series((angle - quarters * QUARTER[0]) - quarters * QUARTER[1]);
+    let (sin, cos) = long_series((angle - quarters * QUARTER_TURN[0]) - quarters * QUARTER_TURN[1]);
     match (quarters as i64).rem_euclid(4) {
         0 => (sin, cos),
         1 => (cos, -sin),
@@ -110,13 +110,13 @@ fn long_series(angle: f64) -> (f64, f64) {
 }
 
 /// Exponents whose power [`exp`] takes from the series: the next term is 3e-17.
-const SMALL_EXPONENT: f64 = 0.1;
+const MAX_SERIES_EXPONENT: f64 = 0.1;
 
 /// e to the power of x. Friction on small turns multiplies by little: there by the series, as a call of the library is dear.
 #[must_use]
 #[inline]
 pub fn exp(x: f64) -> f64 {
-    if !(x.abs() <= SMALL_EXPONENT) {
+    if !(x.abs() <= MAX_SERIES_EXPONENT) {
         return x.exp();
     }
     let high = 1.0 / 120.0 + x * (1.0 / 720.0 + x * (1.0 / 5040.0 + x * (1.0 / 40_320.0 + x / 362_880.0)));
@@ -154,7 +154,7 @@ impl RigidPose {
 
     /// From the plane to the body's own axes, m.
     #[must_use]
-    pub fn to_local(&self, p: Vec2) -> Vec2 {
+    pub(crate) fn to_local(self, p: Vec2) -> Vec2 {
         let (sin, cos) = self.angle.sin_cos();
         let d = p - self.at;
         Vec2::new(cos * d.x + sin * d.y, cos * d.y - sin * d.x)

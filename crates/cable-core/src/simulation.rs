@@ -1,4 +1,5 @@
-//! A scene, a model and its state: the object users hold.
+//! A simulation is the object that users hold: a scene, a model for each cable, and their state.
+//! `simulation/coupling.rs` steps robot and cables together.
 
 mod coupling;
 
@@ -54,7 +55,7 @@ pub struct Simulation {
     /// The answers of the cables at the present instant.
     answers: Vec<CableSolution>,
     /// Where the cables were when the run began.
-    first: Vec<AlongCable>,
+    initial_places: Vec<AlongCable>,
     warning_monitor: WarningMonitor,
     energy: Energy,
     cost: Cost,
@@ -150,7 +151,7 @@ impl Simulation {
             cables,
             start: None,
             answers,
-            first: Vec::new(),
+            initial_places: Vec::new(),
             warning_monitor: WarningMonitor::default(),
             energy: Energy::default(),
             cost: Cost::default(),
@@ -159,12 +160,12 @@ impl Simulation {
     }
 
     /// Reads the present instant: answers, and what is to be said of them.
-    fn look(&mut self, moving: bool) {
+    fn refresh(&mut self, moving: bool) {
         self.answers = self.cables.iter().map(BreakableCable::answer).collect();
         if !moving {
-            self.first = self.answers.iter().map(|a| AlongCable::places(&a.nodes)).collect();
+            self.initial_places = self.answers.iter().map(|a| AlongCable::places(&a.nodes)).collect();
         }
-        for (answer, first) in self.answers.iter_mut().zip(&self.first) {
+        for (answer, first) in self.answers.iter_mut().zip(&self.initial_places) {
             kinematics::displace(&mut answer.nodes, first);
         }
         self.model = self.cables.iter().map(BreakableCable::model).max_by_key(|m| m.rank()).unwrap_or(self.model);
@@ -188,7 +189,7 @@ impl Simulation {
         } else {
             self.warning_monitor.at_rest(&observed, time_s)
         }
-        self.look_for_robot();
+        self.warn_through_robot();
         self.verification = self.verify(&self.answers);
     }
 
@@ -199,7 +200,7 @@ impl Simulation {
     }
 
     /// Says where an answer lies through the robot: models other than `fem` know nothing of it.
-    fn look_for_robot(&mut self) {
+    fn warn_through_robot(&mut self) {
         self.warnings.retain(|w| w.kind != WarningKind::ThroughRobot);
         let Some(at) = self.vehicle.as_ref().map(|v| v.pose().placement()) else { return };
         for (cable, answer) in self.cables.iter().zip(&self.answers) {
@@ -231,14 +232,14 @@ impl Simulation {
     }
 
     /// What is known of the errors of the present answers.
-    pub(crate) fn tell_errors(&mut self, errors: impl Iterator<Item = ErrorEstimates>) {
+    pub(crate) fn set_error_estimates(&mut self, errors: impl Iterator<Item = ErrorEstimates>) {
         for (answer, errors) in self.answers.iter_mut().zip(errors) {
             (answer.error_estimate, answer.errors) = (errors.relative(answer), errors);
         }
     }
 
     /// What else is to be said of the present instant.
-    pub(crate) fn tell(&mut self, warnings: Vec<Warning>) {
+    pub(crate) fn set_break_warnings(&mut self, warnings: Vec<Warning>) {
         self.warnings.retain(|w| w.kind != WarningKind::MayBreak);
         self.warnings.extend(warnings);
     }
@@ -273,13 +274,13 @@ impl Simulation {
     /// A typed reason when there is no resting place, or none was found; the state is then as before.
     pub fn settle(&mut self) -> Result<Solution, SolveError> {
         let before = self.cables.clone();
-        let found = self.settle_soundly();
+        let found = self.settle_until_sound();
         if found.is_err() {
             self.cables = before;
-            self.look(false);
+            self.refresh(false);
         }
         found?;
-        self.say_where_friction_chose();
+        self.warn_not_unique();
         if self.start.is_none() {
             self.start = Some(self.cables.clone());
         }
@@ -287,12 +288,12 @@ impl Simulation {
     }
 
     /// Settles by one model after the other until the answer obeys every law.
-    fn settle_soundly(&mut self) -> Result<(), SolveError> {
+    fn settle_until_sound(&mut self) -> Result<(), SolveError> {
         let mut first: Option<SolveError> = None;
         loop {
-            let found = self.each(BreakableCable::settle).and_then(|()| {
-                self.look(false);
-                self.sound()
+            let found = self.for_each_cable(BreakableCable::settle).and_then(|()| {
+                self.refresh(false);
+                self.check_sound()
             });
             let Err(error) = found else { return Ok(()) };
             let error = match self.cables.iter().find_map(BreakableCable::refusal) {
@@ -303,7 +304,7 @@ impl Simulation {
             };
             // What is said to have no resting place is not sought one by another model.
             let last = matches!(error, SolveError::NoRestingPlace { .. } | SolveError::Unsupported { .. });
-            let next = !last && self.next_model(&error.to_string());
+            let next = !last && self.switch_model(&error.to_string());
             first = Some(match first {
                 Some(before) => SolveError::clearer(before, error),
                 None => error,
@@ -315,7 +316,7 @@ impl Simulation {
     }
 
     /// What the laws say of the present answers.
-    fn sound(&self) -> Result<(), SolveError> {
+    fn check_sound(&self) -> Result<(), SolveError> {
         // Masses and springs are a quick look and a second opinion, asked for by name: their coarse meshes are told, not refused. A
         // cable that broke at rest is where it was when it broke.
         let told =
@@ -327,7 +328,7 @@ impl Simulation {
     }
 
     /// Gives the scene to the next model, where the user left the choice; returns whether there was one.
-    fn next_model(&mut self, why: &str) -> bool {
+    fn switch_model(&mut self, why: &str) -> bool {
         if self.requested != Model::Auto {
             return false;
         }
@@ -349,7 +350,7 @@ impl Simulation {
 
     /// With friction a resting place is one of many: said of every cable that rubs where it rests, whichever model answered, with what
     /// other histories would have left in it where `spans` knows.
-    fn say_where_friction_chose(&mut self) {
+    fn warn_not_unique(&mut self) {
         for (k, (cable, answer)) in self.cables.iter().zip(&self.answers).enumerate() {
             let problem = cable.problem();
             let said = |w: &Warning| w.kind == WarningKind::NotUnique && w.cable == problem.cable.name;
@@ -362,7 +363,7 @@ impl Simulation {
             let mut known: Vec<Warning> = known.map(|lay| lay.warnings).unwrap_or_default();
             known.retain(said);
             if known.is_empty() {
-                let range = if self.settings.histories { self.histories(k) } else { None };
+                let range = if self.settings.histories { self.describe_histories(k) } else { None };
                 let range = range.unwrap_or_else(|| ", no other was sought".to_owned());
                 let message = format!(
                     "With friction the resting place depends on how the cable was laid: this is the one found from its way{range}"
@@ -376,7 +377,7 @@ impl Simulation {
 
     /// What other histories would have left in a cable, in words: in plan view, where a floor that rubs everywhere chose the rest and
     /// `spans` has no answer; None where none was sought or found.
-    fn histories(&self, k: usize) -> Option<String> {
+    fn describe_histories(&self, k: usize) -> Option<String> {
         let cable = self
             .cables
             .get(k)
@@ -416,10 +417,10 @@ impl Simulation {
         let velocities: Vec<_> = self.answers.iter().map(|a| AlongCable::velocities(&a.nodes)).collect();
         let done = match self.vehicle.is_some() {
             true => self.advance_with_robot(dt_s, inertia),
-            false => self.each(|c| c.advance(dt_s, inertia)),
+            false => self.for_each_cable(|c| c.advance(dt_s, inertia)),
         };
         // A cable alone that fails stays where it came: that is what there is to see then.
-        self.look(true);
+        self.refresh(true);
         done?;
         // In motion nothing else is there to go back to: the verdict stands with the answer.
         if inertia == Inertia::Dynamic {
@@ -428,11 +429,11 @@ impl Simulation {
             }
             return Ok(());
         }
-        let Err(error) = self.sound() else { return Ok(()) };
-        if !self.next_model(&error.to_string()) {
+        let Err(error) = self.check_sound() else { return Ok(()) };
+        if !self.switch_model(&error.to_string()) {
             return Err(error);
         }
-        self.settle_soundly()
+        self.settle_until_sound()
     }
 
     /// The largest tension of some cables now, N (NaN propagates).
@@ -500,7 +501,7 @@ impl Simulation {
 
     /// Asks every cable the same. Where one of several fails, all are as before: never some of them a step ahead. (A
     /// cable alone stays where it came, see [`Mechanics::advance`](crate::model::Mechanics::advance).)
-    fn each(
+    fn for_each_cable(
         &mut self,
         mut f: impl FnMut(&mut BreakableCable) -> Result<StepReport, SolveError>,
     ) -> Result<(), SolveError> {
@@ -596,7 +597,7 @@ impl Simulation {
             self.vehicle = Vehicle::of(&self.scene);
             self.cost = Cost::default();
             self.warnings.clear();
-            self.look(false);
+            self.refresh(false);
         }
     }
 
@@ -618,7 +619,7 @@ impl Simulation {
         for (new, old) in self.cables.iter_mut().zip(&old.cables) {
             new.carry(old)?;
         }
-        self.look(false);
+        self.refresh(false);
         Ok(())
     }
 
@@ -630,7 +631,7 @@ impl Simulation {
         for (c, s) in self.cables.iter_mut().zip(states) {
             c.set_state(s)?;
         }
-        self.look(false);
+        self.refresh(false);
         Ok(())
     }
 

@@ -1,11 +1,11 @@
-//! Where a cable is at an instant, in a form every model can give and take.
+//! A state says where a cable is at an instant, in a form that every model can give and take.
 
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::solution::Node;
 
 /// Part of its radius by which a point on a round may be off it.
-const ON_ROUND: f64 = 1e-6;
+const ROUND_TOLERANCE: f64 = 1e-6;
 
 /// Positions, velocities and material coordinates of one cable at an instant.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -55,7 +55,7 @@ impl State {
     /// Arc length of the middle of what lies on a round of a radius (m); nearest to its centre if nothing does.
     #[must_use]
     pub fn on_round(&self, center: Vec2, radius: f64) -> Option<f64> {
-        let on = |p: &Vec2| radius > 0.0 && ((p - center).norm() - radius).abs() <= ON_ROUND * radius;
+        let on = |p: &Vec2| radius > 0.0 && ((p - center).norm() - radius).abs() <= ROUND_TOLERANCE * radius;
         let (first, last) = (self.position_m.iter().position(on), self.position_m.iter().rposition(on));
         match (first.and_then(|k| self.arc_length_m.get(k)), last.and_then(|k| self.arc_length_m.get(k))) {
             (Some(a), Some(b)) => Some(0.5 * (a + b)),

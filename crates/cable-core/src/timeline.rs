@@ -1,4 +1,4 @@
-//! Steps of a run, and instants that are shown: two things.
+//! A timeline separates the steps of a run from the instants that are shown.
 //!
 //! A run goes in even steps, whatever is looked at. An instant that is asked for between two of them is a step of a copy, which is then
 //! discarded, so no look changes what happens: states at common instants are equal to the bit. Instants are whole ticks of a third of a
@@ -143,7 +143,7 @@ impl Timeline {
         let mut solution = if self.step.times(self.count) < instant {
             let mut copy = self.simulation.clone();
             advance(&mut copy, instant.seconds(), self.inertia)?;
-            self.monitor.tell_errors(&mut copy);
+            self.monitor.set_error_estimates(&mut copy);
             copy.solution()
         } else {
             self.simulation.solution()

@@ -5,17 +5,17 @@
 use std::ops::ControlFlow;
 
 use cable_core::analysis::friction_range::{
-    Action, ActionKind, FrictionRange, Query, friction_range, with_scaled_friction,
+    Action, ActionKind, FrictionQuery, FrictionRange, friction_range, with_scaled_friction,
 };
 use cable_core::scene::catalog;
 use cable_core::{Model, Settings, Simulation};
 
-fn ask(model: Model, span_s: f64) -> Query {
+fn ask(model: Model, span_s: f64) -> FrictionQuery {
     let settings = Settings::default();
-    Query { scene: catalog::draped_slipping(), model, settings, factors: [0.5, 1.5], span_s, hands: Vec::new() }
+    FrictionQuery { scene: catalog::draped_slipping(), model, settings, factors: [0.5, 1.5], span_s, hands: Vec::new() }
 }
 
-fn find(ask: &Query) -> FrictionRange {
+fn find(ask: &FrictionQuery) -> FrictionRange {
     friction_range(ask, |_| ControlFlow::Continue(())).expect("three answers")
 }
 

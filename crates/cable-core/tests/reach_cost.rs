@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use cable_core::Settings;
-use cable_core::analysis::safe_reach::area::{Query, area};
+use cable_core::analysis::safe_reach::area::{ReachQuery, area};
 use cable_core::scene::catalog;
 
 /// CPU time of this thread so far, s; 0 where it is not known. Linux only.
@@ -57,7 +57,7 @@ fn cost_of_a_robot() {
 fn cost_on_the_tank() {
     let across: usize = std::env::var("ACROSS").ok().and_then(|v| v.parse().ok()).unwrap_or(16);
     let (low, high) = ([-14.0, -2.0], [14.0, 12.0]);
-    let ask = Query {
+    let ask = ReachQuery {
         scene: catalog::tank(),
         now: None,
         settings: Settings::default(),

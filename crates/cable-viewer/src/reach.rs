@@ -149,7 +149,7 @@ fn find(order: Order, heard: background::Heard<'_, Found>) -> Result<Found, Stri
             let [low, high] = order.corners_m;
             let spacing_m = (high[0] - low[0]) / order.across.clamp(ACROSS[0], ACROSS[1]) as f64;
             let (now, settings, corners_m) = (order.now, order.settings, order.corners_m);
-            let ask = area::Query {
+            let ask = area::ReachQuery {
                 scene: (*scene).clone(),
                 now,
                 settings,
@@ -161,7 +161,7 @@ fn find(order: Order, heard: background::Heard<'_, Found>) -> Result<Found, Stri
             };
             let told = |area: &Area, share: f64| tell(0.5 * share, &|| Maps::Area(Arc::new(area.clone()), None));
             let there = Arc::new(area::area(&ask, told).map_err(|e| e.to_string())?);
-            let ask = area::Query { spacing_m: COARSER * spacing_m, back: true, ..ask };
+            let ask = area::ReachQuery { spacing_m: COARSER * spacing_m, back: true, ..ask };
             let told = |area: &Area, share: f64| {
                 tell(0.5 + 0.5 * share, &|| Maps::Area(Arc::clone(&there), Some(Arc::new(area.clone()))))
             };

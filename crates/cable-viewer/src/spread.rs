@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cable_core::analysis::friction_range::{self, Action, ActionKind, FrictionRange, Query};
+use cable_core::analysis::friction_range::{self, Action, ActionKind, FrictionQuery, FrictionRange};
 use cable_core::scene::SupportKind;
 use cable_core::{Scene, Solution};
 
@@ -10,7 +10,7 @@ use crate::background;
 use crate::state::AppState;
 
 /// What was found, and what was asked.
-pub type Found = (Arc<FrictionRange>, Arc<Query>);
+pub type Found = (Arc<FrictionRange>, Arc<FrictionQuery>);
 /// How far it is.
 pub type Progress = background::Progress<Found>;
 
@@ -39,13 +39,13 @@ impl Default for View {
 #[derive(Debug)]
 pub struct Job {
     job: background::Job<Found>,
-    ask: Arc<Query>,
+    ask: Arc<FrictionQuery>,
 }
 
 impl Job {
     /// Starts one; `shown` is called whenever there is something new to show.
     #[must_use]
-    pub fn start(ask: Query, shown: impl Fn() + Send + 'static) -> Self {
+    pub fn start(ask: FrictionQuery, shown: impl Fn() + Send + 'static) -> Self {
         let ask = Arc::new(ask);
         let theirs = Arc::clone(&ask);
         let work = move |heard: background::Heard<'_, Found>| {
@@ -57,7 +57,7 @@ impl Job {
 
     /// What was asked.
     #[must_use]
-    pub fn ask(&self) -> &Query {
+    pub fn ask(&self) -> &FrictionQuery {
         &self.ask
     }
 
@@ -70,7 +70,7 @@ impl Job {
 
 /// Whether an ask is the one that what is on screen asks.
 #[must_use]
-pub fn fits(state: &AppState, ask: &Query) -> bool {
+pub fn fits(state: &AppState, ask: &FrictionQuery) -> bool {
     ask.span_s == span_s(state)
         && ask.factors == state.spread.factors
         && ask.model == state.model
@@ -80,10 +80,10 @@ pub fn fits(state: &AppState, ask: &Query) -> bool {
 
 /// What is on screen asks; None while it moves or has no answer.
 #[must_use]
-pub fn asked(state: &AppState) -> Option<Query> {
+pub fn asked(state: &AppState) -> Option<FrictionQuery> {
     let still = state.playback.paused && state.grabbed.is_none() && state.scene_fault.is_none();
     let answered = state.snapshot.solution.is_some() && state.snapshot.error.is_none() && !state.snapshot.draft;
-    (state.spread.on && still && answered).then(|| Query {
+    (state.spread.on && still && answered).then(|| FrictionQuery {
         scene: scene(state).clone(),
         model: state.model,
         settings: state.settings,

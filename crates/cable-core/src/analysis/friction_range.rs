@@ -1,4 +1,5 @@
-//! How much an answer depends on friction that nobody knows well: the same question with less and with more of it.
+//! This analysis answers one question with less and with more friction, since nobody knows a
+//! friction coefficient well.
 //!
 //! Coulomb's coefficient of a cable on rubble is known to a third at best, and enters tensions as e^{μφ}. So the scene is
 //! answered as it stands and with all its coefficients scaled down and up; between the least and the greatest of the three
@@ -47,7 +48,7 @@ pub struct FrictionRange {
 
 /// The question: which scene, by what, and for how long.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Query {
+pub struct FrictionQuery {
     /// The scene.
     pub scene: Scene,
     /// The model.
@@ -124,7 +125,10 @@ pub fn with_scaled_friction(scene: &Scene, factor: f64) -> Scene {
 ///
 /// # Errors
 /// The scene is wrong, or one of its resting places was not found.
-pub fn friction_range(query: &Query, mut progress: impl FnMut(f64) -> ControlFlow<()>) -> Result<FrictionRange, Error> {
+pub fn friction_range(
+    query: &FrictionQuery,
+    mut progress: impl FnMut(f64) -> ControlFlow<()>,
+) -> Result<FrictionRange, Error> {
     let [low, high] = query.factors;
     let motion = query.span_s > 0.0;
     // Models without inertia let time run without it, as the window does.

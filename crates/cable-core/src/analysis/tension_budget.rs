@@ -1,4 +1,5 @@
-//! Where a tension comes from: what the cable gathers between one of its ends and a place on it.
+//! A tension budget tells where a tension comes from: it sums what adds tension between an end of
+//! the cable and a place on it.
 //!
 //! Along a cable at rest dT/ds = −q·t − r, with the weight and wind q per metre of arc length, the tangent t and what friction
 //! takes, r. With dx = (1 + ε) θ t ds, θ = 1 + αΔT, the weight on a piece Δx adds −q·Δx / ((1 + ε) θ): for an inextensible

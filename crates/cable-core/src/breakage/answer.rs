@@ -1,4 +1,5 @@
-//! The pieces of a cable read as one cable again: arc lengths from its start, supports in the scene's order.
+//! The pieces of a cable are read as one cable again: arc lengths from its start, supports in the
+//! scene's order.
 
 use super::{BreakableCable, Piece};
 use crate::problem::SupportPoint;

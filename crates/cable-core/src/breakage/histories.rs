@@ -1,8 +1,9 @@
-//! Where other histories would have left a cable that the floor of a plan view holds.
+//! This file estimates how far other loading histories would have changed a cable that the floor of
+//! a plan view holds.
 //!
-//! What friction holds is what was drawn into it. So each end of the cable is drawn out by a little and put back, and let in and put back, without
-//! inertia, each time from the rest found. What that leaves is a
-//! range that was found: other histories may leave more.
+//! Friction keeps what was drawn into it. So each end of the cable is drawn out by a little and put
+//! back, then let in and put back, without inertia, each time from the rest that was found. The
+//! range of the results is a lower bound: other histories may leave more.
 
 use crate::math::{Vec2, larger, smaller};
 use crate::model::Inertia;

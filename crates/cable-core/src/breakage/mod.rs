@@ -1,8 +1,17 @@
-//! One cable of a scene over time: whole, or the pieces it broke into.
+//! A breakable cable is one cable of a scene over time: whole, or the pieces it broke into.
 //!
-//! A model knows one unbroken cable. Where tension reaches the breaking tension, [`BreakableCable`] stops the model there, distributes
-//! what hangs on the cable over two shorter [`Problem`]s with free ends, and goes on with a model for each, from the
-//! positions and velocities of the moment. Every model breaks, and none knows that it can.
+//! | room | content |
+//! |---|---|
+//! | `mod.rs` | [`BreakableCable`]: steps, and the search for the instant of a break |
+//! | `partition.rs` | which supports and loads belong to which piece |
+//! | `rupture.rs` | where and when the breaking tension is first reached |
+//! | `answer.rs` | the pieces read as one cable |
+//! | `histories.rs` | what other loading histories would leave |
+//!
+//! A model knows one unbroken cable. Where the tension reaches the breaking tension,
+//! [`BreakableCable`] stops the model there, distributes supports and loads over two shorter
+//! [`Problem`]s with free ends, and continues with a model for each, from the positions and
+//! velocities of that instant. Every model can break, and none knows that it can.
 
 mod answer;
 mod histories;
@@ -201,7 +210,7 @@ impl BreakableCable {
     }
 
     /// A new step of the caller begins: the greatest tensions and the account of momentum are those of it from now on.
-    pub fn forget_peaks(&mut self) {
+    pub(crate) fn forget_peaks(&mut self) {
         self.peaks = None;
         self.since_s = self.time_s();
         self.pieces.iter_mut().for_each(|p| p.account = None);
@@ -370,7 +379,7 @@ impl BreakableCable {
     }
 
     /// Leads the outline of the robot: it goes there in the next advance.
-    pub fn set_robot_pose(&mut self, to: RigidPose) {
+    pub(crate) fn set_robot_pose(&mut self, to: RigidPose) {
         self.robot_pose = Some(to);
         for piece in &mut self.pieces {
             piece.mechanics.set_robot_pose(to);
@@ -378,7 +387,7 @@ impl BreakableCable {
     }
 
     /// Gives the whole cable to the next model: see [`Mechanics::fall_back`](crate::model::Mechanics::fall_back).
-    pub fn fall_back(&mut self, why: &str) -> bool {
+    pub(crate) fn fall_back(&mut self, why: &str) -> bool {
         match self.pieces.as_mut_slice() {
             [whole] if self.breaks.is_empty() => whole.mechanics.fall_back(why),
             _ => false,
@@ -386,7 +395,7 @@ impl BreakableCable {
     }
 
     /// What the cable does to the outline of the robot, all pieces together; None where no model knows of it.
-    pub fn robot_contact(&self) -> Option<RobotContact> {
+    pub(crate) fn robot_contact(&self) -> Option<RobotContact> {
         self.pieces
             .iter()
             .filter_map(|p| p.mechanics.robot_contact())
@@ -399,18 +408,18 @@ impl BreakableCable {
     }
 
     /// What it does to a support now, N.
-    pub fn pull_on(&self, support: usize) -> Vec2 {
+    pub(crate) fn pull_on(&self, support: usize) -> Vec2 {
         let r = self.reaction(support);
         Vec2::new(r.reaction_x_n, r.reaction_y_n)
     }
 
     /// A copy to go back to.
-    pub fn checkpoint(&self) -> Self {
+    pub(crate) fn checkpoint(&self) -> Self {
         self.with(self.pieces.iter().map(Piece::checkpoint).collect())
     }
 
     /// Becomes what it was when `kept` was copied from it.
-    pub fn restore(&mut self, kept: &Self) {
+    pub(crate) fn restore(&mut self, kept: &Self) {
         let mut own: Vec<Option<OwnedResources>> = self.pieces.iter_mut().map(|p| p.mechanics.lend()).collect();
         own.resize_with(kept.pieces.len(), || None);
         // What broke since has nothing of the whole.

@@ -1,4 +1,4 @@
-//! What of a cable belongs to which piece, once it has broken.
+//! A partition says which stretch, supports and loads of a broken cable belong to which piece.
 
 use crate::math::Vec2;
 use crate::problem::{Problem, Series, SupportPoint};

@@ -1,4 +1,4 @@
-//! Where and when tension first reaches what the cable stands, between two instants of it.
+//! A rupture is the place and the instant at which the tension first reaches the breaking tension.
 //!
 //! Tension is taken as linear in time between the instants and linear along the cable between nodes: the first place to
 //! reach the breaking tension T_b is then a node, at the fraction f = (T_b − T₀)/(T₁ − T₀) of the step.

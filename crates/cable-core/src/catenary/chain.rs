@@ -1,9 +1,10 @@
-//! A cable between two points with dead loads on it: catenaries in a row, still one convex problem.
+//! A chain is a cable between two points with dead loads on it: its catenaries in a row are still
+//! one convex problem.
 //!
 //! Between loads the force is that of a catenary, at a load it jumps by it: F(s) = F_a − b s − Σ P_k [s > s_k].
 //! The complementary energy of the whole is a function of F_a alone, two unknowns however many loads there are.
 
-use super::kernel::{self, Energy, Piece};
+use super::kernel::{self, ChainPiece, DualEnergy};
 use super::{Catenary, Frame, Span, SpanError};
 use crate::math::{Mat2, Vec2};
 
@@ -62,8 +63,8 @@ impl<'a> Chain<'a> {
         })
     }
 
-    fn piece(&self, length: f64) -> Piece {
-        Piece {
+    fn piece(&self, length: f64) -> ChainPiece {
+        ChainPiece {
             w: self.weight.norm() / self.thermal_stretch,
             l: self.thermal_stretch * length,
             eps: 1.0 / self.axial_stiffness,
@@ -72,7 +73,7 @@ impl<'a> Chain<'a> {
 
     /// Total load on it, N.
     #[must_use]
-    pub fn total_load(&self) -> Vec2 {
+    pub(crate) fn total_load(&self) -> Vec2 {
         self.pieces().fold(self.weight * (self.to - self.from), |sum, (_, _, p)| sum + p)
     }
 
@@ -113,8 +114,8 @@ impl<'a> Chain<'a> {
         (frame.join((e.x, e.z)), turn * Mat2::new(e.k11, e.k12, e.k12, e.k22) * turn.transpose())
     }
 
-    fn energy(&self, frame: Frame, h: f64, v: f64) -> Energy {
-        let mut sum = Energy::default();
+    fn energy(&self, frame: Frame, h: f64, v: f64) -> DualEnergy {
+        let mut sum = DualEnergy::default();
         let (mut h, mut v) = (h, v);
         let w = self.weight.norm();
         for (a, b, load) in self.pieces() {

@@ -1,4 +1,5 @@
-//! One piece of cable under a uniform load, as a function of the force at its start.
+//! The kernel computes one piece of cable under a uniform load as a function of the force at its
+//! start.
 //!
 //! In the frame whose second axis points against the load (load per length w ≥ 0) the force along the piece is
 //! F(s) = (h, v + w s), s from 0 to l, T = |F|. With ε = 1/EA:
@@ -25,15 +26,15 @@
 
 /// Above this r the area tangent loses digits to 1 − r and logarithms are used. At 0.3 the logarithms would
 /// lose as many to their difference; anything between 0.5 and 0.9 gives the same results to 2e-16.
-const LOG_FORM: f64 = 0.7;
+const LOG_FORM_FROM: f64 = 0.7;
 /// Below this r the series of atanh(r)/r to r¹⁴ is exact to round-off: the next term is r¹⁶/17.
-const SERIES_FORM: f64 = 0.1;
+const SERIES_FORM_BELOW: f64 = 0.1;
 /// Smallest force taken apart from zero (relative to the caller's unit): keeps logarithms finite at a fold.
-const TINY: f64 = 1e-300;
+const MIN_FORCE: f64 = 1e-300;
 
 /// The piece: load per length, length, 1/EA, in any consistent units.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Piece {
+pub(super) struct ChainPiece {
     /// Load per length, ≥ 0.
     pub w: f64,
     /// Length.
@@ -44,7 +45,7 @@ pub(super) struct Piece {
 
 /// φ, its gradient and its Hessian.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Energy {
+pub(super) struct DualEnergy {
     pub phi: f64,
     pub x: f64,
     pub z: f64,
@@ -57,7 +58,7 @@ pub(super) struct Energy {
 #[inline]
 fn tension(h: f64, v: f64) -> f64 {
     let t = (h * h + v * v).sqrt();
-    if t < TINY { TINY } else { t }
+    if t < MIN_FORCE { MIN_FORCE } else { t }
 }
 
 /// What a piece is with a force at its start.
@@ -79,7 +80,7 @@ impl Pulled {
     }
 }
 
-impl Piece {
+impl ChainPiece {
     #[inline]
     fn pulled(&self, h: f64, va: f64) -> Pulled {
         let vb = va + self.w * self.l;
@@ -87,15 +88,15 @@ impl Piece {
         let inverse = 1.0 / (ta + tb);
         let r = self.w * self.l * inverse;
         let first = 2.0 * self.l * inverse;
-        let more = if r <= SERIES_FORM {
+        let more = if r <= SERIES_FORM_BELOW {
             let s = r * r;
             let more = 1.0 / 9.0 + s * (1.0 / 11.0 + s * (1.0 / 13.0 + s / 15.0));
             first * s * (1.0 / 3.0 + s * (1.0 / 5.0 + s * (1.0 / 7.0 + s * more)))
-        } else if r <= LOG_FORM {
+        } else if r <= LOG_FORM_FROM {
             (2.0 * r / (1.0 - r)).ln_1p() / self.w - first
         } else {
             // r > 0.7 leaves |v_a| + |v_b| < 1.43 w l: at most one of the sums below is small, never both.
-            let a = if h.abs() < TINY { TINY } else { h.abs() };
+            let a = if h.abs() < MIN_FORCE { MIN_FORCE } else { h.abs() };
             let log = if va >= 0.0 {
                 ((tb + vb) / (ta + va)).ln()
             } else if vb <= 0.0 {
@@ -135,7 +136,7 @@ impl Piece {
 
     /// φ, gradient, Hessian.
     #[inline]
-    pub fn energy(&self, h: f64, va: f64) -> Energy {
+    pub fn energy(&self, h: f64, va: f64) -> DualEnergy {
         let p = self.pulled(h, va);
         let el = self.eps * self.l;
         let Pulled { va, vb, ta, tb, sigma, .. } = p;
@@ -153,7 +154,7 @@ impl Piece {
             tb - vb * sigma
         };
         let rest = (va * tb + vb * ta) / (ta + tb);
-        Energy {
+        DualEnergy {
             phi: self.pull(h, &p) + 0.5 * self.eps * self.squared(h, va),
             x: h * (el + p.q()),
             z: self.l * (0.5 * self.eps * (va + vb) + sigma),
@@ -174,11 +175,11 @@ const ARMIJO: f64 = 1e-4;
 /// progress instead. Too small: the search stalls a few digits short. Too large: a step that climbs may pass.
 const ENERGY_NOISE: f64 = 1e-10;
 /// A step may take a force that must stay positive down to this part of itself. Smaller is no faster.
-const KEEP: f64 = 0.1;
+const MIN_FORCE_RATIO: f64 = 0.1;
 /// Closure wanted, in units of round-off of the lengths involved.
-const CLOSURE: f64 = 4.0 * f64::EPSILON;
+const CLOSURE_TOLERANCE: f64 = 4.0 * f64::EPSILON;
 /// Closure accepted when round-off lets it get no better (stiff, nearly taut spans).
-const CLOSURE_ACCEPTED: f64 = 1e-11;
+const ACCEPTED_CLOSURE: f64 = 1e-11;
 
 /// Where Newton ended.
 #[derive(Clone, Copy, Debug)]
@@ -199,7 +200,7 @@ pub(super) struct Minimum {
 ///
 /// `lengths` says how large lengths are (for round-off), `positive` keeps h > 0 (a single span, X > 0).
 pub(super) fn minimise(
-    energy: impl Fn(f64, f64) -> Energy,
+    energy: impl Fn(f64, f64) -> DualEnergy,
     d: (f64, f64),
     start: (f64, f64),
     lengths: f64,
@@ -212,20 +213,20 @@ pub(super) fn minimise(
     loop {
         let closure = gx.abs() + gz.abs();
         let end = move |converged| Minimum { h, v, iterations, closure, converged };
-        if closure <= CLOSURE * lengths {
+        if closure <= CLOSURE_TOLERANCE * lengths {
             return end(true);
         }
         let det = e.k11 * e.k22 - e.k12 * e.k12;
         let (ph, pv) = ((e.k12 * gz - e.k22 * gx) / det, (e.k12 * gx - e.k11 * gz) / det);
         if iterations == MAX_ITERATIONS || !(ph.is_finite() && pv.is_finite()) {
-            return end(closure <= CLOSURE_ACCEPTED * lengths);
+            return end(closure <= ACCEPTED_CLOSURE * lengths);
         }
         iterations += 1;
         let slope = gx * ph + gz * pv;
         let value = e.phi - h * d.0 - v * d.1;
         let mut alpha = 1.0;
-        if positive && h + ph < KEEP * h {
-            alpha = (1.0 - KEEP) * h / -ph;
+        if positive && h + ph < MIN_FORCE_RATIO * h {
+            alpha = (1.0 - MIN_FORCE_RATIO) * h / -ph;
         }
         let mut accepted = false;
         for _ in 0..MAX_HALVINGS {
@@ -240,13 +241,13 @@ pub(super) fn minimise(
                 break;
             }
             // Halving a Newton step makes any gradient smaller that is more than round-off.
-            if in_noise && closure <= CLOSURE_ACCEPTED * lengths {
+            if in_noise && closure <= ACCEPTED_CLOSURE * lengths {
                 break;
             }
             alpha *= 0.5;
         }
         if !accepted {
-            return end(closure <= CLOSURE_ACCEPTED * lengths);
+            return end(closure <= ACCEPTED_CLOSURE * lengths);
         }
     }
 }
@@ -275,12 +276,12 @@ pub(super) fn guess(d: (f64, f64), eps: f64) -> (f64, f64) {
             }
         }
     }
-    if t > TAUT_GUESS {
+    if t > PARABOLA_ABOVE {
         return (t * dx / chord, t * dz / chord - 0.5);
     }
     // Slack: the inextensible catenary of the length the hanging cable has, √(l² − z²) = 2a sinh(x/2a),
     // λ = x/2a from sinh λ/λ = y.
-    let l = 1.0 + SLACK_STRAIN * eps;
+    let l = 1.0 + SLACK_GUESS_STRAIN * eps;
     let z = dz / l;
     if dx <= f64::MIN_POSITIVE || z.abs() >= 1.0 {
         return (t.max(0.05) * dx / chord.max(f64::MIN_POSITIVE), vertical(dz, eps));
@@ -297,9 +298,9 @@ pub(super) fn guess(d: (f64, f64), eps: f64) -> (f64, f64) {
 
 /// Above this tension (in units of the weight) a span is guessed as a flat parabola. Between 0.3 and 2 the
 /// mean number of iterations over the grid changes by less than one.
-const TAUT_GUESS: f64 = 0.6;
+const PARABOLA_ABOVE: f64 = 0.6;
 /// Mean tension of a slack span in units of its weight, for its stretched length.
-const SLACK_STRAIN: f64 = 0.3;
+const SLACK_GUESS_STRAIN: f64 = 0.3;
 
 /// Vertical force at the start of a piece of unit weight and length hanging in one vertical line.
 pub(super) fn vertical(dz: f64, eps: f64) -> f64 {

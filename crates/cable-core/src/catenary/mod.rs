@@ -1,4 +1,10 @@
-//! Rung 0: the elastic catenary between two points, under a uniform load of any direction.
+//! An elastic catenary is a cable between two points under a uniform load of any direction.
+//!
+//! | room | content |
+//! |---|---|
+//! | `mod.rs` | [`Catenary`] and [`Span`]: the solved span and its questions |
+//! | `kernel.rs` | the formulas and the Newton iteration of one piece |
+//! | `chain.rs` | several pieces with dead loads between them |
 //!
 //! H. M. Irvine, *Cable Structures*, MIT Press, 1981, gives the elastic catenary in terms of the end force;
 //! M. Ahmadi-Kashani and A. J. Bell, "The analysis of cables subject to uniformly distributed loads",
@@ -14,14 +20,14 @@ mod kernel;
 
 pub use chain::{Chain, ChainForce, PointForce};
 
-use kernel::Piece;
+use kernel::ChainPiece;
 
 use crate::error::SolveError;
-use crate::math::{Vec2, bounded, cross, perp};
+use crate::math::{Vec2, bounded, perp};
 
 /// Below this ratio of load to EA the load cannot be told from none on a stretched cable (its square would
 /// leave the range of f64), and the span is a straight bar.
-const WEIGHTLESS: f64 = 1e-120;
+const MIN_LOAD_RATIO: f64 = 1e-120;
 
 /// A cable between two points.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -141,8 +147,8 @@ pub struct Catenary {
 
 impl Span {
     /// The first length s of it, as the kernel wants it: length at temperature, same total load.
-    fn piece(&self, s: f64) -> Piece {
-        Piece {
+    fn piece(&self, s: f64) -> ChainPiece {
+        ChainPiece {
             w: self.weight.norm() / self.thermal_stretch,
             l: self.thermal_stretch * s,
             eps: 1.0 / self.axial_stiffness,
@@ -168,14 +174,14 @@ impl Catenary {
         }
         let load = span.weight.norm() * span.length;
         let eps = load / stiff;
-        if load == 0.0 || (eps < WEIGHTLESS && chord > length) {
+        if load == 0.0 || (eps < MIN_LOAD_RATIO && chord > length) {
             return Self::bar(span, chord, length);
         }
         // In units of the load and the length.
         let frame = Frame::new(span.weight, span.chord).facing(span.chord);
         let (x, z) = frame.split(span.chord);
         let d = (x / length, z / length);
-        let piece = Piece { w: 1.0, l: 1.0, eps };
+        let piece = ChainPiece { w: 1.0, l: 1.0, eps };
         let (h, v, iterations) = if d.0 < f64::MIN_POSITIVE {
             (0.0, kernel::vertical(d.1, eps), 0)
         } else {
@@ -228,7 +234,7 @@ impl Catenary {
 
     /// Force the rest of the cable exerts on the part before s, N: along the tangent of growing arc length.
     #[must_use]
-    pub fn force_at(&self, s: f64) -> Vec2 {
+    pub(crate) fn force_at(&self, s: f64) -> Vec2 {
         self.frame.join((self.h, self.v(s)))
     }
 
@@ -269,13 +275,6 @@ impl Catenary {
         self.span.piece(s).stretched(self.h, self.va)
     }
 
-    /// d(angle)/d(unstretched length) at s, 1/m: F × F'/T². A fold (T = 0) has none: 0/0 is NaN.
-    #[must_use]
-    pub fn curvature_at(&self, s: f64) -> f64 {
-        let f = self.force_at(s);
-        -cross(f, self.span.weight) / f.norm_squared()
-    }
-
     /// Arc length of the point farthest along the load (the lowest point under weight), m: inside or at an end.
     #[must_use]
     pub fn lowest_s(&self) -> f64 {
@@ -298,7 +297,7 @@ impl Catenary {
     /// Arc length where the cable is farthest below its chord along the load: V/H = Z/X, m. In a vertical fold
     /// the lowest point.
     #[must_use]
-    pub fn sag_s(&self) -> f64 {
+    pub(crate) fn sag_s(&self) -> f64 {
         let w = self.span.weight.norm();
         let (x, z) = self.frame.split(self.span.chord);
         if w > 0.0 && x > 0.0 {

@@ -42,7 +42,7 @@ fn hessian_is_the_derivative_of_the_gradient_and_gradient_of_the_energy() {
         [(5.0, -0.5), (0.7, 0.3), (0.3, -0.5), (0.05, -0.2), (0.2, 0.8), (0.2, -1.9), (-0.3, -0.4), (50.0, 9.0)]
     {
         for (w, eps) in [(1.0, 1e-3), (1.0, 0.5), (0.0, 0.1), (0.5, 0.0)] {
-            let p = Piece { w, l: 1.3, eps };
+            let p = ChainPiece { w, l: 1.3, eps };
             let (e, d) = (p.energy(h, v), 1e-5);
             let (r, l) = (p.energy(h + d, v), p.energy(h - d, v));
             let (u, b) = (p.energy(h, v + d), p.energy(h, v - d));

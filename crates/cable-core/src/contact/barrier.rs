@@ -1,4 +1,4 @@
-//! The log barrier that keeps gaps open.
+//! A logarithmic barrier keeps gaps open.
 //!
 //! With u = g/d̂, for 0 < u < 1 (Li, Ferguson, Schneider et al., "Incremental Potential Contact", ACM TOG 2020;
 //! here made dimensionless, so that the stiffness κ is a force):
@@ -51,7 +51,7 @@ impl Barrier {
     /// How much less the normal force at a gap (m) is where the gap is wider by `by` (m), N. The curvature times that is more, as the barrier is convex, and many
     /// times as much where the gap is less than `by`.
     #[must_use]
-    pub fn relief(&self, gap: f64, by: f64) -> f64 {
+    pub(crate) fn relief(&self, gap: f64, by: f64) -> f64 {
         let closed = self.at(gap).slope;
         if closed.is_finite() { self.at(gap + by).slope - closed } else { f64::INFINITY }
     }

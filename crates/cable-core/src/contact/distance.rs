@@ -1,10 +1,11 @@
-//! Distances between points and segments, unsigned, robust for degenerate input.
+//! These functions measure unsigned distances between points and segments, degenerate ones
+//! included.
 
 use crate::math::{Vec2, cross};
 
 /// Position (0 to 1) along the segment `a`–`b` of the point nearest to `p`; 0 for a segment of no length.
 #[must_use]
-pub fn nearest_fraction(p: Vec2, a: Vec2, b: Vec2) -> f64 {
+pub(crate) fn nearest_fraction(p: Vec2, a: Vec2, b: Vec2) -> f64 {
     let d = b - a;
     let dd = d.norm_squared();
     // The test is written so that a segment of no length (0/0) lands on `a`, while NaN input propagates.
@@ -13,19 +14,19 @@ pub fn nearest_fraction(p: Vec2, a: Vec2, b: Vec2) -> f64 {
 
 /// The way to a point from the nearest point of a segment, m.
 #[must_use]
-pub fn from_segment(p: Vec2, a: Vec2, b: Vec2) -> Vec2 {
+pub(crate) fn from_segment(p: Vec2, a: Vec2, b: Vec2) -> Vec2 {
     p - (a + (b - a) * nearest_fraction(p, a, b))
 }
 
 /// Distance of a point from a segment, m.
 #[must_use]
-pub fn point_segment(p: Vec2, a: Vec2, b: Vec2) -> f64 {
+pub(crate) fn point_segment(p: Vec2, a: Vec2, b: Vec2) -> f64 {
     from_segment(p, a, b).norm()
 }
 
 /// The shortest way to the segment `a`–`b` from the segment `p`–`q`, m; none when they cross or touch.
 #[must_use]
-pub fn between_segments(a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> Vec2 {
+pub(crate) fn between_segments(a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> Vec2 {
     if cross_properly(a, b, p, q) {
         return Vec2::zeros();
     }
@@ -44,7 +45,7 @@ pub fn between_segments(a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> Vec2 {
 
 /// Distance between two segments, m; 0 when they cross or touch.
 #[must_use]
-pub fn segment_segment(a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> f64 {
+pub(crate) fn segment_segment(a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> f64 {
     between_segments(a, b, p, q).norm()
 }
 

@@ -1,4 +1,4 @@
-//! Coulomb friction as a potential measured from a stored anchor.
+//! Coulomb friction is a potential here, measured from a stored anchor.
 //!
 //! With y the sliding since the anchor, R = μN the largest friction force and ε the sliding at which it is
 //! reached (the smoothing of Li et al., "Incremental Potential Contact", ACM TOG 2020, but in displacement from
@@ -78,7 +78,7 @@ impl Branch {
 
 /// The same in the plane, isotropic: value, gradient, Hessian by the sliding vector.
 #[must_use]
-pub fn at_plane(y: Vec2, limit_force: f64, epsilon: f64) -> (f64, Vec2, Mat2) {
+pub(crate) fn at_plane(y: Vec2, limit_force: f64, epsilon: f64) -> (f64, Vec2, Mat2) {
     let r = y.norm();
     let (value, slope, curvature) = at(r, limit_force, epsilon);
     if r == 0.0 {
@@ -91,13 +91,13 @@ pub fn at_plane(y: Vec2, limit_force: f64, epsilon: f64) -> (f64, Vec2, Mat2) {
 
 /// Sliding kept after an accepted step.
 #[must_use]
-pub fn return_map(y: f64, epsilon: f64) -> f64 {
+pub(crate) fn return_map(y: f64, epsilon: f64) -> f64 {
     bounded(y, -epsilon, epsilon)
 }
 
 /// Sliding vector kept after an accepted step.
 #[must_use]
-pub fn return_map_plane(y: Vec2, epsilon: f64) -> Vec2 {
+pub(crate) fn return_map_plane(y: Vec2, epsilon: f64) -> Vec2 {
     let r = y.norm();
     if r > epsilon { y * (epsilon / r) } else { y }
 }

@@ -1,4 +1,4 @@
-//! Obstacles as features in trees; the only file that imports parry2d.
+//! The geometry holds the features of all obstacles in search trees; no other file imports parry2d.
 //!
 //! parry2d's own contact calls are two-sided for polylines, so only its bounding volume tree is used, for
 //! candidates; distances and signs are worked out here. A *body* is one obstacle, a *feature* one of its
@@ -23,7 +23,7 @@ use crate::math::{Point, RigidPose, Vec2, cross, perp, vec2};
 use crate::scene::{Obstacle, Shape};
 
 /// Edges that turn by less (rad) are one edge: a corner the cable cannot feel would only cost time.
-const STRAIGHT: f64 = 1e-12;
+const MIN_EDGE_TURN: f64 = 1e-12;
 
 /// The obstacles of a scene with their trees.
 #[derive(Clone, Debug, Default)]
@@ -91,7 +91,7 @@ pub struct Part {
 impl Corner {
     /// Whether the boundary turns away from the outside here (an open end counts).
     #[must_use]
-    pub fn is_convex(&self) -> bool {
+    pub(crate) fn is_convex(&self) -> bool {
         match (self.before, self.after) {
             (Some(t1), Some(t2)) => cross(t1, t2) < 0.0 || (cross(t1, t2) == 0.0 && t1.dot(&t2) < 0.0),
             _ => true,
@@ -100,7 +100,7 @@ impl Corner {
 
     /// Direction outwards: the sum of the normals that meet here (not a unit vector; 0 at the tip of a spike).
     #[must_use]
-    pub fn outward(&self) -> Vec2 {
+    pub(crate) fn outward(&self) -> Vec2 {
         perp(self.before.unwrap_or_default() + self.after.unwrap_or_default())
     }
 
@@ -145,7 +145,7 @@ impl Body {
 
     /// Edge indices whose boxes, from a lowest to a highest point, meet what is asked; `meets` holds for every box around
     /// one for which it holds.
-    pub fn candidates_where(&self, meets: impl Fn(Vec2, Vec2) -> bool + Copy) -> impl Iterator<Item = usize> {
+    pub(crate) fn candidates_where(&self, meets: impl Fn(Vec2, Vec2) -> bool + Copy) -> impl Iterator<Item = usize> {
         let listed = self.bvh.iter().flat_map(move |bvh| {
             bvh.leaves(move |node| {
                 let (n, x) = (node.mins(), node.maxs());
@@ -173,14 +173,14 @@ impl Body {
     }
 
     /// Corners that a candidate edge answers for: its start, and the end of an open line's last edge.
-    pub fn corners_of(&self, k: usize) -> impl Iterator<Item = Corner> {
+    pub(crate) fn corners_of(&self, k: usize) -> impl Iterator<Item = Corner> {
         let last = (k + 1 == self.edges.len() && !self.closed).then_some(k + 1);
         std::iter::once(k).chain(last).filter_map(|k| self.corner(k))
     }
 
     /// Whether an edge ends at the corner or circle `feature`.
     #[must_use]
-    pub fn is_beside(&self, edge: usize, feature: usize) -> bool {
+    pub(crate) fn is_beside(&self, edge: usize, feature: usize) -> bool {
         let n = self.edges.len();
         let Some(local) = feature.checked_sub(self.first).map(|f| f / 2).filter(|&k| k <= n) else { return false };
         local == edge || local == edge + 1 || (self.closed && local == 0 && edge + 1 == n)
@@ -194,13 +194,13 @@ impl Body {
 
     /// Whether it is ground: solid below an open line, so that nothing can go round it.
     #[must_use]
-    pub fn is_ground(&self) -> bool {
+    pub(crate) fn is_ground(&self) -> bool {
         self.solid && !self.closed && self.center.is_none()
     }
 
     /// Whether contact at a corner can be felt by a straight segment: not where a solid recedes from it.
     #[must_use]
-    pub fn juts_out(&self, corner: &Corner) -> bool {
+    pub(crate) fn juts_out(&self, corner: &Corner) -> bool {
         !self.solid || corner.is_convex()
     }
 
@@ -336,7 +336,7 @@ impl Geometry {
     }
 
     /// Adds an outline that can be moved, for a cable of this radius (m); it is the body with the number `obstacle`.
-    pub fn add_outline(&mut self, outline: &Outline, obstacle: usize, cable_radius: f64) {
+    pub(crate) fn add_outline(&mut self, outline: &Outline, obstacle: usize, cable_radius: f64) {
         self.bodies.push(Body {
             obstacle,
             name: outline.name.clone(),
@@ -352,7 +352,7 @@ impl Geometry {
     }
 
     /// Puts the outline that was added last where it is now.
-    pub fn place_outline(&mut self, outline: &Outline, placement: RigidPose) {
+    pub(crate) fn place_outline(&mut self, outline: &Outline, placement: RigidPose) {
         let Some(body) = self.bodies.last_mut().filter(|b| b.moves()) else { return };
         for (edge, [p, q]) in Arc::make_mut(&mut body.edges).iter_mut().zip(outline.edges(placement)) {
             *edge = Edge::between(p, q);
@@ -383,13 +383,13 @@ impl Geometry {
 
     /// The body that a feature belongs to.
     #[must_use]
-    pub fn body_of(&self, feature: usize) -> Option<&Body> {
+    pub(crate) fn body_of(&self, feature: usize) -> Option<&Body> {
         self.bodies.iter().find(|b| b.features().contains(&feature))
     }
 
     /// Direction outwards of the corner that a gap is to; None if it is not to a corner of a solid.
     #[must_use]
-    pub fn outward_of(&self, gap: &Gap) -> Option<Vec2> {
+    pub(crate) fn outward_of(&self, gap: &Gap) -> Option<Vec2> {
         let body = self.body_of(gap.feature).filter(|b| b.solid)?;
         let local = gap.feature - body.first;
         (local % 2 == 1).then(|| body.corner(local / 2)).flatten().map(|c| c.outward())
@@ -431,7 +431,7 @@ fn clean(points: &[Point], closed: bool) -> Vec<Vec2> {
             return true;
         }
         let (u, v) = (out[i] - out[(i + n - 1) % n], out[(i + 1) % n] - out[i]);
-        !(cross(u, v).abs() <= STRAIGHT * u.norm() * v.norm() && u.dot(&v) > 0.0)
+        !(cross(u, v).abs() <= MIN_EDGE_TURN * u.norm() * v.norm() && u.dot(&v) > 0.0)
     };
     (0..n).filter(|&i| turns(i)).map(|i| out[i]).collect()
 }

@@ -1,21 +1,31 @@
-//! The contact seam all models see: where obstacles are, how far away, and how rough.
+//! The contact module tells all models where obstacles are, how far away, and how rough.
+//!
+//! | room | content |
+//! |---|---|
+//! | `geometry.rs`, `distance.rs` | obstacles as features in search trees; distances |
+//! | `sweep.rs` | continuous collision detection by conservative advancement |
+//! | `pairs.rs`, `neighbour_lists.rs` | contact pairs of a chain; what each segment can come near to |
+//! | `self_contact.rs`, `self_crossings.rs` | contact of a cable with itself; crossings of its line |
+//! | `barrier.rs`, `friction.rs` | contact potential and friction potential |
+//! | `outline.rs` | the moving outline of a robot |
+//! | `nearest_corner.rs`, `swept_corners.rs` | the body that a cable wraps; corners that it has passed through |
 //!
 //! [`World`] compiles a scene's obstacles once. Gaps are measured from the cable's *surface*: the distance of
 //! the centre line from the obstacle less the cable radius (and half the thickness of a thin polyline).
 //! Terrain is solid below, polygons inside, circles inside; thin polylines have two sides.
 
-pub mod barrier;
+pub(crate) mod barrier;
 pub mod distance;
-pub mod friction;
-pub mod geometry;
-pub mod nearest_corner;
-pub mod neighbour_lists;
+pub(crate) mod friction;
+pub(crate) mod geometry;
+mod nearest_corner;
+pub(crate) mod neighbour_lists;
 pub mod outline;
-pub mod pairs;
+pub(crate) mod pairs;
 pub mod self_contact;
-pub mod self_crossings;
-pub mod sweep;
-pub mod swept_corners;
+pub(crate) mod self_crossings;
+pub(crate) mod sweep;
+pub(crate) mod swept_corners;
 #[cfg(test)]
 mod tests;
 
@@ -56,7 +66,7 @@ impl World {
 
     /// The same obstacles and an outline that can be moved, for a cable of this radius (m).
     #[must_use]
-    pub fn with_outline(&self, outline: &outline::Outline, cable_radius: f64) -> Self {
+    pub(crate) fn with_outline(&self, outline: &outline::Outline, cable_radius: f64) -> Self {
         let mut geometry = self.geometry.clone();
         let obstacle = geometry.bodies().iter().map(|b| b.obstacle + 1).max().unwrap_or(0);
         geometry.add_outline(outline, obstacle, cable_radius);
@@ -64,7 +74,7 @@ impl World {
     }
 
     /// Puts the outline where it is now.
-    pub fn place_outline(&mut self, outline: &outline::Outline, placement: RigidPose) {
+    pub(crate) fn place_outline(&mut self, outline: &outline::Outline, placement: RigidPose) {
         self.geometry.place_outline(outline, placement);
     }
 

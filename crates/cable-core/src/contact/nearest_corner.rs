@@ -1,4 +1,4 @@
-//! What a cable is led round: corners and circles near a few nodes of it.
+//! This search finds the body, by its nearest corner or circle, that a few nodes of a cable wrap.
 
 use super::distance::from_segment;
 use super::geometry::{Body, Geometry};
@@ -7,7 +7,7 @@ use crate::math::{Vec2, smaller};
 impl Geometry {
     /// The body whose convex corner or circle is nearest to a chain of nodes; None where the gap is not below `reach` (m).
     #[must_use]
-    pub fn nearest_wrap_body(&self, chain: &[Vec2], reach: f64) -> Option<&Body> {
+    pub(crate) fn nearest_wrap_body(&self, chain: &[Vec2], reach: f64) -> Option<&Body> {
         let first = *chain.first()?;
         let (low, high) = chain.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)));
         let distance = |v: Vec2| match chain {

@@ -1,4 +1,5 @@
-//! What each segment of a chain can come near to, remembered while the chain stays about where it was.
+//! A neighbour list (Verlet list) remembers what a segment of a chain can come near to while the
+//! chain stays about where it was.
 //!
 //! A search of the trees for every segment, in every iteration of a step, costs more than the step's equations. So each
 //! segment keeps a list: all parts within R of the box of its ends a₀, b₀. A segment (a, b) whose query reaches r is
@@ -34,7 +35,7 @@ impl NeighbourLists {
     }
 
     /// Makes room for so many lists of one part each.
-    pub fn reserve(&mut self, lists: usize) {
+    pub(crate) fn reserve(&mut self, lists: usize) {
         self.entries.reserve(lists);
         self.parts.reserve(lists);
     }

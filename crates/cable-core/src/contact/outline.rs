@@ -1,6 +1,6 @@
-//! An obstacle that moves as a whole: the outline of a robot.
+//! The outline of a robot is an obstacle that moves as a whole.
 //!
-//! In a [`Geometry`](super::geometry::Geometry) it is one body more, the last one, put where it is before every step.
+//! In a `Geometry` it is one body more, the last one, put where it is before every step.
 //! While a step is worked out it stands still.
 
 use super::distance::{point_segment, segment_segment};
@@ -52,7 +52,7 @@ impl Outline {
 
     /// Whether a chain of points (m) stays farther away than `least` (m) from the outline at a placement.
     #[must_use]
-    pub fn is_clear(&self, placement: RigidPose, chain: impl Iterator<Item = Vec2>, least: f64) -> bool {
+    pub(crate) fn is_clear(&self, placement: RigidPose, chain: impl Iterator<Item = Vec2>, least: f64) -> bool {
         let far = self.corners.iter().map(|c| c.norm()).fold(0.0, larger) + least;
         let mut before: Option<Vec2> = None;
         for p in chain {
@@ -67,7 +67,7 @@ impl Outline {
 
     /// The longest way that a point of it goes between two placements, m.
     #[must_use]
-    pub fn max_displacement(&self, from: &RigidPose, to: &RigidPose) -> f64 {
+    pub(crate) fn max_displacement(&self, from: &RigidPose, to: &RigidPose) -> f64 {
         let ways = self.corners.iter().map(|c| (to.place(*c) - from.place(*c)).norm());
         ways.fold(0.0, larger)
     }

@@ -1,4 +1,5 @@
-//! Contact pairs between a chain of cable segments and the obstacles: smooth in the chain's position.
+//! Contact pairs join a chain of cable segments with the obstacles and are smooth in the chain's
+//! position.
 //!
 //! Two families, each complete for one kind of touch, as in Li et al., "Incremental Potential Contact",
 //! ACM TOG 2020: cable node against boundary edges, and boundary corner (or circle) against cable segments.
@@ -16,7 +17,7 @@ use super::geometry::{Body, Geometry, Part};
 use crate::math::Vec2;
 
 /// What is passed over because it is too far is this many times too far: no rounding decides what touches.
-const ROUNDED_UP: f64 = 1.0 + 1e-9;
+const CULLING_MARGIN: f64 = 1.0 + 1e-9;
 
 /// A contact pair with its sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +31,7 @@ pub struct Pair {
 impl Geometry {
     /// Pairs of one node: against edges and corners within `reach`, and against the corners that lie in the
     /// wedge between its two segments. `before` and `after` are its neighbours in the chain.
-    pub fn node_pairs(
+    pub(crate) fn node_pairs(
         &self,
         before: Option<Vec2>,
         p: Vec2,
@@ -42,7 +43,7 @@ impl Geometry {
     }
 
     /// The same among `parts`, which hold all that are within reach. The chain is the node between its neighbours.
-    pub fn node_pairs_among(
+    pub(crate) fn node_pairs_among(
         &self,
         parts: impl Iterator<Item = Part>,
         chain: [Option<Vec2>; 3],
@@ -58,7 +59,7 @@ impl Geometry {
                 }
                 continue;
             };
-            let (e, within) = (&body.edges[k], ROUNDED_UP * (reach + body.offset));
+            let (e, within) = (&body.edges[k], CULLING_MARGIN * (reach + body.offset));
             // Nothing of an edge is nearer than the line it lies on.
             if (p - e.p).dot(&e.normal()).abs() > within {
                 continue;
@@ -78,12 +79,12 @@ impl Geometry {
     }
 
     /// Pairs of the inside of one segment against corners and circles within `reach`.
-    pub fn segment_pairs(&self, a: Vec2, b: Vec2, reach: f64, out: &mut impl FnMut(Pair)) {
+    pub(crate) fn segment_pairs(&self, a: Vec2, b: Vec2, reach: f64, out: &mut impl FnMut(Pair)) {
         self.segment_pairs_among(self.parts(a.inf(&b), a.sup(&b), reach), [a, b], reach, out);
     }
 
     /// The same among `parts`, which hold all that are within reach.
-    pub fn segment_pairs_among(
+    pub(crate) fn segment_pairs_among(
         &self,
         parts: impl Iterator<Item = Part>,
         ends: [Vec2; 2],
@@ -100,7 +101,7 @@ impl Geometry {
                     }
                 }
                 Some(k) => {
-                    let (e, within) = (&body.edges[k], ROUNDED_UP * (reach + body.offset));
+                    let (e, within) = (&body.edges[k], CULLING_MARGIN * (reach + body.offset));
                     let far = |at: Vec2| {
                         at.x < low.x - within
                             || at.x > high.x + within

@@ -1,4 +1,4 @@
-//! Contact of a cable with itself: its nodes against its own segments.
+//! Self-contact pairs the nodes of a cable with its own segments.
 //!
 //! A line in the plane can only cross itself where a node passes a segment, so pairs of nodes and segments are all
 //! that is needed. As with obstacles, nodes where two segments meet enter by inclusion and exclusion (see `pairs`),
@@ -85,7 +85,7 @@ impl SortedNodes {
 impl SelfContact {
     /// Whether the cable meets itself at all.
     #[must_use]
-    pub fn is_on(&self) -> bool {
+    pub(crate) fn is_on(&self) -> bool {
         self.diameter > 0.0
     }
 

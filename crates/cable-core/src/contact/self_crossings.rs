@@ -1,4 +1,4 @@
-//! Where a line crosses itself: every crossing, in order.
+//! This search finds every crossing of a line with itself, in order.
 //!
 //! Boxes of ever longer runs of segments form a binary tree; two runs whose boxes lie apart cannot cross. A line that does
 //! not fill the plane is searched in O(n log n + crossings).

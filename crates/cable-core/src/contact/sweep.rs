@@ -1,4 +1,4 @@
-//! Conservative advancement: how far a moving segment can go and cross nothing.
+//! Conservative advancement bounds how far a moving segment can go without crossing anything.
 //!
 //! Let n be the unit vector along the shortest way from a feature F to the moving segment (a, b) at t. Both are convex, so for
 //! every later t′
@@ -42,12 +42,12 @@ impl Geometry {
     /// As [`Self::free_fraction`] for a segment that ends tangent to the rounds of the corners or circles `round`,
     /// at one or both ends: near these only its other end can come too close.
     #[must_use]
-    pub fn free_fraction_round(&self, sweep: &Sweep, round: [Option<usize>; 2]) -> f64 {
+    pub(crate) fn free_fraction_round(&self, sweep: &Sweep, round: [Option<usize>; 2]) -> f64 {
         self.free_fraction_among(self.parts(sweep.low, sweep.high, sweep.margin), sweep, round)
     }
 
     /// The same among `parts`, which hold all within the sweep's margin of its box.
-    pub fn free_fraction_among(
+    pub(crate) fn free_fraction_among(
         &self,
         parts: impl Iterator<Item = Part>,
         sweep: &Sweep,
@@ -136,7 +136,7 @@ impl Sweep {
 
     /// The same where no more than `most` (m) need be left of a gap, however wide it was.
     #[must_use]
-    pub fn at_most(self, most: f64) -> Self {
+    pub(crate) fn at_most(self, most: f64) -> Self {
         let whole = most + self.noise;
         Self { most, margin: if whole < self.margin { whole } else { self.margin }, ..self }
     }
@@ -165,7 +165,7 @@ fn way_off([a, b]: [Vec2; 2], p: Vec2, n: Vec2) -> f64 {
 impl Geometry {
     /// Whether every gap of a segment is above `least` (m); `round` as in [`Self::free_fraction_round`].
     #[must_use]
-    pub fn is_clear(&self, [a, b]: [Vec2; 2], least: f64, round: [Option<usize>; 2]) -> bool {
+    pub(crate) fn is_clear(&self, [a, b]: [Vec2; 2], least: f64, round: [Option<usize>; 2]) -> bool {
         let (low, high) = (a.inf(&b), a.sup(&b));
         self.bodies().iter().all(|body| {
             let reach = body.offset + least;

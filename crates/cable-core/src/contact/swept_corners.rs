@@ -1,4 +1,4 @@
-//! Whether a cable has passed through something on its way from one shape to another.
+//! This test tells whether a cable has passed through something between two shapes.
 //!
 //! The old shape and back along the new one is a closed way; what it goes round was passed through. Corners and posts
 //! are looked at: nothing thinner is an obstacle.

@@ -1,4 +1,4 @@
-//! Stretching of a straight bar.
+//! The axial energy is that of stretching a straight bar.
 //!
 //! A bar of unstretched length `l₀` and stiffness EA between `x₀` and `x₁`, with d = x₁ − x₀, l = |d|, t = d/l:
 //! ```text
@@ -31,7 +31,7 @@ impl Bar {
 
     /// ∂²E/∂d² for the vector `d` from the first node to the second, N/m.
     #[must_use]
-    pub fn stiffness_block(&self, d: Vec2, curvature: Curvature) -> Mat2 {
+    pub(crate) fn stiffness_block(&self, d: Vec2, curvature: Curvature) -> Mat2 {
         let length = d.norm();
         if !(length > 0.0) {
             // Both nodes in one place: no direction. The limit over all directions of the material part.

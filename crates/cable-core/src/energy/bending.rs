@@ -1,4 +1,4 @@
-//! Bending by the turn between two bars, and by the turn out of a clamp.
+//! The bending energy is that of the turn between two bars, or of the turn out of a clamp.
 //!
 //! The turn at a node between the vectors `a` (into it) and `b` (out of it) is ψ = angle(b) − angle(a). With the
 //! length l̄ that belongs to the node the curvature is κ = ψ/l̄ (d(angle)/d(unstretched length)), the moment EI κ:
@@ -17,7 +17,7 @@ use crate::math::{Mat2, Vec2, cross};
 
 /// The bend at a node between two bars.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Bend {
+pub struct BendingEnergy {
     /// EI, N·m².
     pub stiffness: f64,
     /// Half the sum of both bars' rest lengths, m.
@@ -61,7 +61,7 @@ fn angle_hessian(v: Vec2) -> Mat2 {
     Mat2::new(twice, mixed, mixed, -twice) / (square * square)
 }
 
-impl Energy<3> for Bend {
+impl Energy<3> for BendingEnergy {
     fn value(&self, x: &[Vec2; 3]) -> f64 {
         let psi = turn(x[1] - x[0], x[2] - x[1]) - self.from;
         0.5 * self.stiffness * psi * psi / self.length
@@ -143,7 +143,7 @@ mod tests {
         fn bend_derivatives_match_differences(
             first in -3.1..3.1f64, psi in -2.9..2.9f64, l1 in 0.2..2.0f64, l2 in 0.2..2.0f64,
         ) {
-            let bend = Bend { stiffness: 5.0, length: 0.5, from: 0.1 };
+            let bend = BendingEnergy { stiffness: 5.0, length: 0.5, from: 0.1 };
             let x0 = Vec2::new(1.0, -2.0);
             let x1 = x0 + polar(l1, first);
             check::derivatives(&bend, &[x0, x1, x1 + polar(l2, first + psi)], 500.0, 1.0);
@@ -158,7 +158,7 @@ mod tests {
 
         #[test]
         fn clipped_is_never_indefinite(psi in -3.0..3.0f64) {
-            let bend = Bend { stiffness: 5.0, length: 1.0, from: 0.0 };
+            let bend = BendingEnergy { stiffness: 5.0, length: 1.0, from: 0.0 };
             let x = [Vec2::zeros(), Vec2::new(1.0, 0.0), Vec2::new(1.0, 0.0) + polar(1.0, psi)];
             prop_assert!(check::smallest_eigenvalue(&bend.hessian(&x, Curvature::Clipped)) > -1e-9);
         }
@@ -171,7 +171,7 @@ mod tests {
         let points: Vec<Vec2> =
             (0..n + 2).map(|k| polar(radius, std::f64::consts::TAU * f64::from(k) / f64::from(n))).collect();
         let length = (points[1] - points[0]).norm();
-        let bend = Bend { stiffness: 2.0, length, from: 0.0 };
+        let bend = BendingEnergy { stiffness: 2.0, length, from: 0.0 };
         let energy: f64 = (0..n as usize).map(|k| bend.value(&[points[k], points[k + 1], points[k + 2]])).sum();
         let exact = 0.5 * 2.0 * std::f64::consts::TAU / radius;
         assert!((energy / exact - 1.0).abs() < 5e-4, "{energy} against {exact}");
@@ -179,7 +179,7 @@ mod tests {
 
     #[test]
     fn nodes_in_one_place_give_finite_numbers() {
-        let bend = Bend { stiffness: 1.0, length: 1.0, from: 0.0 };
+        let bend = BendingEnergy { stiffness: 1.0, length: 1.0, from: 0.0 };
         let x = [Vec2::zeros(), Vec2::zeros(), Vec2::new(1.0, 0.0)];
         assert!(bend.gradient(&x).iter().all(|g| g.iter().all(|v| v.is_finite())));
         assert!(bend.hessian(&x, Curvature::Exact).iter().flatten().all(|b| b.iter().all(|v| v.is_finite())));

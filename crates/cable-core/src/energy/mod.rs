@@ -1,4 +1,5 @@
-//! Energies of a cable's nodes: value (J), gradient (N) and Hessian (N/m), one file each.
+//! The energies of a cable's nodes come as value (J), gradient (N) and Hessian (N/m): `axial.rs`
+//! and `bending.rs`.
 //!
 //! Every energy is a function of the positions of `N` neighbouring nodes. The force on a node is minus the
 //! gradient. Each comes with its derivation above the code and finite-difference tests on random and
@@ -70,7 +71,7 @@ pub(crate) mod check {
     }
 
     /// The smallest eigenvalue of the whole Hessian, N/m.
-    pub fn smallest_eigenvalue<const N: usize>(blocks: &Blocks<N>) -> f64 {
+    pub(crate) fn smallest_eigenvalue<const N: usize>(blocks: &Blocks<N>) -> f64 {
         let dense = nalgebra::DMatrix::from_fn(2 * N, 2 * N, |i, j| blocks[i / 2][j / 2][(i % 2, j % 2)]);
         dense.symmetric_eigen().eigenvalues.min()
     }

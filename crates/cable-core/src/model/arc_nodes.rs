@@ -1,4 +1,5 @@
-//! How many nodes an answer has on an arc: so many that the straight lines between them can be taken for the cable.
+//! An answer has so many nodes on an arc that the straight lines between them can be taken for the
+//! cable.
 //!
 //! A chord of an arc of radius r and turn φ comes inside it by its sagitta, r(1 − cos(φ/2)). With a the greatest one allowed,
 //! φ ≤ 2 acos(1 − a/r) = 4 asin √(a/2r): the second form keeps its digits where a ≪ r.

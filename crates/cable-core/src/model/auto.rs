@@ -1,4 +1,4 @@
-//! Chooses the cheapest model that can answer, and says why.
+//! The chooser takes the cheapest model that can answer, and says why.
 
 use std::sync::Arc;
 
@@ -48,13 +48,13 @@ pub fn choose(problem: &Problem, question: Question) -> (Model, String) {
 
 /// The model for all cables of a scene, the one that takes on most of those chosen, and the reason in one sentence.
 #[must_use]
-pub fn choose_for_all(problems: &[Arc<Problem>], question: Question) -> (Model, String) {
+pub(crate) fn choose_for_all(problems: &[Arc<Problem>], question: Question) -> (Model, String) {
     let chosen = problems.iter().map(|p| choose(p, question));
     chosen.max_by_key(|(model, _)| model.rank()).unwrap_or((Model::Catenary, String::new()))
 }
 
 /// What is built where a model was chosen: `spans` and `fem` take turns.
 #[must_use]
-pub fn built_for(chosen: Model) -> Model {
+pub(crate) fn built_for(chosen: Model) -> Model {
     if chosen == Model::Spans { Model::Auto } else { chosen }
 }

@@ -1,4 +1,4 @@
-//! The tension of a moving cable, gauged after every inner step of a model.
+//! The gauge reads the tension of a moving cable after every inner step of a model.
 //!
 //! A jerk passes between two looks at a cable: the inner steps see it. And an instant of it breaks nothing: fracture under a pulse takes
 //! its time, and happens when the mean over that time reaches the strength (the incubation time criterion: Yu. V. Petrov,
@@ -130,7 +130,7 @@ impl TensionGauge {
     }
 
     /// Adds what was found in the parts of a step before.
-    pub fn add_peaks(&mut self, before: Option<TensionPeaks>) {
+    pub(crate) fn add_peaks(&mut self, before: Option<TensionPeaks>) {
         if let (Some(before), Some(now)) = (before, self.peaks()) {
             let sum = before.with(now);
             (self.greatest, self.held) = (Some(sum.greatest), Some(sum.held));
@@ -144,7 +144,7 @@ impl TensionGauge {
     }
 
     /// From now on a model is gauged that reckons with lengths and times so many times as large.
-    pub fn of_copy(&mut self, [length, time]: [f64; 2]) {
+    pub(crate) fn of_copy(&mut self, [length, time]: [f64; 2]) {
         self.scale = [self.scale[0] / length, self.scale[1] / time];
     }
 

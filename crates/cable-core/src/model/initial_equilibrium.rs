@@ -1,4 +1,5 @@
-//! How a cable is first laid: as `spans` lays it, with the least sliding, whoever goes on from there.
+//! The initial equilibrium of a cable is the one that `spans` finds with the least sliding,
+//! whichever model continues from there.
 
 use std::sync::Arc;
 
@@ -73,7 +74,7 @@ fn of_flexible(warning: &mut Warning) {
 
 /// Whether a flexible cable that slid from where it was laid slides on from where it is said to rest: that was no rest then.
 #[must_use]
-pub fn slides_on(problem: &Arc<Problem>, settings: Settings, answer: &CableSolution) -> bool {
+pub(crate) fn slides_on(problem: &Arc<Problem>, settings: Settings, answer: &CableSolution) -> bool {
     let route = answer.nodes.iter().map(Node::at).collect();
     let there = Arc::new(Problem { route, ..Problem::clone(&Problem::without_outline(problem.clone())) });
     let slides = initial_equilibrium(&there, settings, (&[], None));
@@ -102,7 +103,7 @@ pub fn work(problem: &Problem, from: &State, to: &CableSolution, time_s: f64) ->
 
 /// What there is to say of a rest that was found where a cable slid to.
 #[must_use]
-pub fn slid_first(problem: &Problem, slides: &SolveError) -> Warning {
+pub(crate) fn slid_first(problem: &Problem, slides: &SolveError) -> Warning {
     let message = format!("This is not where the cable was laid: from there {slides}. How it moved there is not shown");
     Warning::new(WarningKind::Stabilised, &problem.cable.name, 0.0, [0.0; 2], message)
 }
@@ -124,14 +125,14 @@ fn as_flexible(problem: &Arc<Problem>) -> Arc<Problem> {
 
 /// Whether the cable is in touch with the robot, or in its place.
 #[must_use]
-pub fn meets_outline(problem: &Problem, robot_pose: Option<RigidPose>, answer: &CableSolution) -> bool {
+pub(crate) fn meets_outline(problem: &Problem, robot_pose: Option<RigidPose>, answer: &CableSolution) -> bool {
     let (Some(outline), Some(at)) = (&problem.outline, robot_pose) else { return false };
     !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius + ROBOT_CLEARANCE_M)
 }
 
 /// Whether it lies in an obstacle, deeper than what the models disagree by.
 #[must_use]
-pub fn is_buried(problem: &Problem, answer: &CableSolution) -> bool {
+pub(crate) fn is_buried(problem: &Problem, answer: &CableSolution) -> bool {
     let gap = |n: &Node| problem.world.signed_gap(n.at(), BURIAL_SEARCH_M).map(|g| g.gap_m);
     answer.nodes.iter().any(|n| gap(n).is_some_and(|g| g < -MAX_BURIAL_M))
 }

@@ -1,5 +1,5 @@
-//! What draws a support: a smooth follower of a jumping target, no faster than a hand (a robot leads its hitch exactly); and a hand, which holds the support by a spring whose free end is
-//! such a follower.
+//! A dragged support follows a filtered target: a point of limited speed behind three lags. A hand
+//! holds a support by a spring whose free end is such a target; a robot leads its hitch exactly.
 //!
 //! The target comes 60 times a second and jumps. Fed straight into a stiff cable it shakes it: piecewise linear
 //! input costs 52–330 % of tension error where a C² curve of the same input costs 1e-4. So the target is
@@ -29,7 +29,7 @@ const TRAILING_S: f64 = 3.0 * LAG_S;
 
 /// Fastest a hand draws a support unless asked otherwise, m/s: that of an arm. Faster: a flick of the mouse over metres of scene, which no
 /// hand could do there, breaks the cable; slower: the support trails a hand that means it.
-pub const HAND_SPEED: f64 = 2.0;
+pub(crate) const HAND_SPEED: f64 = 2.0;
 
 /// The fastest a hand may be asked to be, and a support catches up with its motion after something held it, m/s.
 /// Uncapped, a jump of 10 m in a frame loses 77 to 734 steps.
@@ -51,13 +51,13 @@ const ARRIVED_M: f64 = 1e-9;
 
 /// Whether a support is a robot's: it is where the robot is, and does not follow it.
 #[must_use]
-pub fn is_led(problem: &Problem, support: usize) -> bool {
+pub(crate) fn is_led(problem: &Problem, support: usize) -> bool {
     problem.supports.get(support).is_some_and(|s| s.kind == SupportKind::Robot)
 }
 
 /// Says that a support is behind the hand that draws it.
 #[must_use]
-pub fn held_warning(
+pub(crate) fn held_warning(
     problem: &Problem,
     support: usize,
     arc_length_m: f64,
@@ -204,7 +204,7 @@ impl SmoothedTarget {
 
     /// How far from its target the last step left it because it may be no faster, m; 0 where it was fast enough.
     #[must_use]
-    pub fn behind_m(&self) -> f64 {
+    pub(crate) fn behind_m(&self) -> f64 {
         self.behind_m
     }
 
@@ -235,7 +235,7 @@ impl SmoothedTarget {
     }
 
     /// Where it was stopped instead (m): it starts again from there, at rest.
-    pub fn stop_at(&mut self, at: Vec2) {
+    pub(crate) fn stop_at(&mut self, at: Vec2) {
         *self = Self::at_rest(at);
     }
 }

@@ -13,18 +13,18 @@
 
 mod arc_nodes;
 pub mod auto;
-pub mod catenary;
+pub(crate) mod catenary;
 pub mod fem;
 pub mod gauge;
-pub mod initial_equilibrium;
+pub(crate) mod initial_equilibrium;
 pub mod input_filter;
 pub mod mass_spring;
 pub mod mechanics;
 pub mod registry;
 pub mod settings;
-pub mod similar;
+mod similar;
 pub mod spans;
-pub mod switching;
+mod switching;
 
 pub use self::mechanics::{Inertia, Mechanics, OwnedResources, RobotContact, StepReport};
 use self::registry::refuse_mobilised;

@@ -26,6 +26,10 @@ pub struct Capabilities {
     pub nodes_catch: bool,
     /// It is asked what other histories would have left where a floor rubs everywhere.
     pub explores_histories: bool,
+    /// Its rests can take long: an editor may show a draft on a coarse mesh meanwhile.
+    pub long_rests: bool,
+    /// Its steps can take longer than a display frame: an editor may show a copy on a coarse mesh instead.
+    pub long_steps: bool,
     /// It is a second opinion on a coarse mesh: laws that its answers break are told, and the answers not refused.
     pub findings_are_told: bool,
 }
@@ -37,6 +41,8 @@ const NO_CAPABILITIES: Capabilities = Capabilities {
     mobilised_friction: false,
     nodes_catch: false,
     explores_histories: false,
+    long_rests: false,
+    long_steps: false,
     findings_are_told: false,
 };
 
@@ -52,6 +58,9 @@ pub struct ModelInfo {
     pub summary: &'static str,
     /// What it can do.
     pub capabilities: Capabilities,
+    /// Relative accuracy of its shape, which the mesh limits, and of its equilibrium, by which the iteration stops: what
+    /// [`crate::conformance`] asks of it.
+    pub accuracy: [f64; 2],
     construct: fn(Arc<Problem>, Settings) -> Built,
 }
 
@@ -61,12 +70,14 @@ const SOLVERS: [ModelInfo; 4] = [
         model: Model::Catenary,
         summary: "elastic catenaries between supports: no contact, no motion, no discretisation error",
         capabilities: NO_CAPABILITIES,
+        accuracy: [1e-9, 1e-9],
         construct: |problem, settings| Ok(Box::new(catenary::CatenaryModel::new(problem, settings)?)),
     },
     ModelInfo {
         model: Model::Spans,
         summary: "exact catenaries between contacts that are intervals of a boundary: friction without a mesh, no motion",
-        capabilities: Capabilities { mobilised_friction: true, ..NO_CAPABILITIES },
+        capabilities: Capabilities { mobilised_friction: true, long_rests: true, ..NO_CAPABILITIES },
+        accuracy: [1e-9, 1e-9],
         construct: |problem, settings| Ok(Box::new(spans::SpansModel::new(problem, settings)?)),
     },
     ModelInfo {
@@ -77,14 +88,18 @@ const SOLVERS: [ModelInfo; 4] = [
             robot_contact: true,
             nodes_catch: true,
             explores_histories: true,
+            long_rests: true,
+            long_steps: true,
             ..NO_CAPABILITIES
         },
+        accuracy: [1e-5, 1e-6],
         construct: |problem, settings| Ok(Box::new(fem::FemModel::new(problem, settings)?)),
     },
     ModelInfo {
         model: Model::MassSpring,
         summary: "lumped masses and springs, explicit in time",
         capabilities: Capabilities { inertia: true, findings_are_told: true, ..NO_CAPABILITIES },
+        accuracy: [1e-3, 2e-5],
         construct: |problem, settings| Ok(Box::new(mass_spring::MassSpringModel::new(problem, settings)?)),
     },
 ];
@@ -94,6 +109,7 @@ const AUTO: ModelInfo = ModelInfo {
     model: Model::Auto,
     summary: "the cheapest model that can answer",
     capabilities: Capabilities { inertia: true, robot_contact: true, mobilised_friction: true, ..NO_CAPABILITIES },
+    accuracy: [1e-5, 1e-6],
     construct: |problem, settings| match auto::choose(&problem, Question::Rest).0 {
         Model::Spans => Ok(Box::new(SwitchingModel::new(problem, settings)?)),
         chosen => construct(chosen, problem, settings),
@@ -105,6 +121,7 @@ const EXTERNAL: ModelInfo = ModelInfo {
     model: Model::External,
     summary: "a model that the program brings along",
     capabilities: Capabilities { inertia: true, ..NO_CAPABILITIES },
+    accuracy: [1e-5, 1e-6],
     construct: |_, _| {
         let feature = "it is built by the program that brings it along".to_owned();
         Err(SolveError::Unsupported { model: Model::External, feature })
@@ -190,7 +207,7 @@ pub(super) fn refuse_mobilised(model: Model, problem: &Problem) -> Result<(), So
 }
 
 /// Builds the mechanics of one cable. `Auto` is resolved for rest (see [`auto::choose`]); where it chooses `spans`, `fem`
-/// stands behind it ([`SwitchingModel`]).
+/// stands behind it (`switching.rs`).
 ///
 /// # Errors
 /// `Setting` when the settings are out of range, `Unsupported` when the model lacks what the scene needs.

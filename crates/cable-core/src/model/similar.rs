@@ -1,4 +1,5 @@
-//! Any model at the scale it was made for: it solves a similar copy of the cable ([`Similarity`]), this hands its answers back.
+//! A similar copy brings a cable to the scale that models are made for ([`Similarity`]); this
+//! wrapper scales the answers back.
 //!
 //! Barriers, slips and gaps are lengths that solvers need as numbers, and were found on cables of 1 to 100 m. Instead of making each
 //! of them a part of something, the whole scene is brought there.

@@ -1,8 +1,10 @@
-//! What `auto` builds where a cable can touch something: `spans` while it is taut and slow, `fem` while it is not.
+//! The switching model is what `auto` builds where a cable can touch something: `spans` while it is
+//! taut and slow, else `fem`.
 //!
-//! `spans` goes first. Where it loses the tension, meets what it cannot lay, or finds no answer, `fem` goes on from the last
-//! state, with the friction that acts there ([`Mechanics::warm_start`]); with inertia it is always `fem`. From time to time an
-//! answer of `fem` without inertia is offered back; `spans` takes it where its own answer there is the same to the eye.
+//! `spans` goes first. Where it loses the tension, cannot lay the cable, or finds no answer, `fem`
+//! continues from the last state with the friction that acts there ([`Mechanics::warm_start`]);
+//! with inertia it is always `fem`. From time to time an answer of `fem` without inertia is offered
+//! back; `spans` takes it if its own answer there cannot be distinguished from it.
 
 use std::sync::Arc;
 

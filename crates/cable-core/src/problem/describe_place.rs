@@ -1,4 +1,5 @@
-//! Places of a cable in the words of the scene: metres along it, and what is near by name.
+//! A place of a cable is described in the words of the scene: metres along it, and the name of what
+//! is near.
 
 use super::Problem;
 use crate::error::Place;

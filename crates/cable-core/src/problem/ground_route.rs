@@ -1,4 +1,4 @@
-//! Routes that lead through the ground are lifted onto it.
+//! A route that leads through the ground is lifted onto it.
 //!
 //! Ground is solid below its line, and of its line there is one outside only. A part of a route that is inside says that the cable
 //! lies on the ground there: it is led along the surface from where it goes in to where it comes out. Beams and posts have two
@@ -54,7 +54,7 @@ pub(super) fn lift_route(problem: &mut Problem) {
 
 /// A way with what of it is below the ground led along the surface.
 #[must_use]
-pub fn above_ground(problem: &Problem, way: Vec<Vec2>) -> Vec<Vec2> {
+pub(crate) fn above_ground(problem: &Problem, way: Vec<Vec2>) -> Vec<Vec2> {
     let geometry = problem.world.geometry();
     geometry.bodies().iter().filter(|b| b.is_ground()).take(MAX_GROUNDS).fold(way, |way, body| {
         let stretches = buried(&way, body);

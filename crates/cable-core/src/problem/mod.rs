@@ -1,4 +1,12 @@
-//! One cable of a scene in numerical form: what every model reads.
+//! A problem is one cable of a scene in numerical form: all models read it.
+//!
+//! | room | content |
+//! |---|---|
+//! | `mod.rs` | [`Problem`], resolved from a scene |
+//! | `support_clearance.rs` | supports on a surface are moved off it by a cable radius |
+//! | `ground_route.rs`, `route_check.rs` | routes below the ground are lifted; routes through a beam are refused |
+//! | `robot_outline.rs` | the robot as an obstacle |
+//! | `describe_place.rs`, `rounding_error.rs` | places in words; what rounding leaves of an answer |
 //!
 //! Arc lengths are unstretched at rest temperature; temperature enters as the factor `thermal_stretch` on
 //! unstretched lengths: strain = length/(thermal_stretch·ds) − 1. Weight and wind are per metre of arc length.

@@ -1,4 +1,4 @@
-//! The outline of the robot as an obstacle for a cable.
+//! The outline of the robot is an obstacle for a cable.
 
 use crate::contact::outline::Outline;
 use crate::math::vec2;

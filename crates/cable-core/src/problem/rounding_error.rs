@@ -1,4 +1,5 @@
-//! The error that rounding leaves of an answer without a mesh: lengths off by units in the last place, times the stiffness of the cable.
+//! Rounding limits an answer without a mesh: lengths are off by units in the last place, and forces
+//! by that times the stiffness.
 
 use super::Problem;
 use crate::math::{Mat2, larger};

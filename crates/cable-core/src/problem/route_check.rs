@@ -1,5 +1,5 @@
-//! Whether a cable's route leads through a beam or a post: it then does not say on which side of it the cable lies. Of ground
-//! there is one side only, and what was laid below it is lifted.
+//! A route is refused where it leads through a beam or a post, since it then does not say on which
+//! side the cable lies. The ground has one side only, and a route below it is lifted.
 
 use super::Problem;
 use crate::error::{SceneError, SceneFault};

@@ -1,5 +1,5 @@
-//! Where supports hold the cable: one that a scene puts onto a surface holds the centre line a radius off it, one inside something
-//! solid holds nothing.
+//! A support that a scene puts onto a surface holds the centre line one radius off it; a support
+//! inside something solid is refused.
 //!
 //! The centre line runs one cable radius off every obstacle. A point on the surface of one, or up to a radius above it, is where a
 //! cable that lies there touches it: the centre line at that support is a radius off. A point further in is a slip of the scene, as

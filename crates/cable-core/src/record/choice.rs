@@ -1,4 +1,5 @@
-//! Which nodes of a run go into `nodes.csv`, and which of their figures: by far the largest of its tables.
+//! A choice says which nodes of a run go into `nodes.csv`, by far the largest table, and with which
+//! of their figures.
 
 use thiserror::Error;
 
@@ -134,7 +135,7 @@ impl Default for NodeChoice {
 
 /// An output that comes before the beginning of an interval by less than this part of it is at its beginning: times of outputs are
 /// sums that round. Less than 1e-9 is round-off of long runs; at 0.1 and more, outputs of the interval before would count.
-const EARLY: f64 = 1e-6;
+const TIME_TOLERANCE_FRACTION: f64 = 1e-6;
 
 impl NodeChoice {
     /// Whether nodes are written at a time, s: then the interval that this time is in. `last` is the one of the nodes before.
@@ -142,7 +143,7 @@ impl NodeChoice {
         match self.interval {
             NodeInterval::EveryOutput => Some(time_s),
             NodeInterval::Seconds(every_s) => {
-                let interval = (time_s / every_s + EARLY).floor();
+                let interval = (time_s / every_s + TIME_TOLERANCE_FRACTION).floor();
                 last.is_none_or(|last| interval > last).then_some(interval)
             }
             NodeInterval::Never => None,

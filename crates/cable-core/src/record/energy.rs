@@ -1,4 +1,4 @@
-//! Energy of a cable from its nodes, whichever model gave them.
+//! The energy of a cable is computed from its nodes, whichever model gave them.
 //!
 //! Everything is linear between two nodes, so that products are integrated exactly: ∫ a b ds = ds (2 a₀b₀ + a₀b₁ + a₁b₀ + 2 a₁b₁)/6.
 //! A sagging bar drawn straight is second order. Lumps, pulleys and loads are left out.

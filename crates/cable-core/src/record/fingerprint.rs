@@ -1,4 +1,4 @@
-//! Whether two runs, or two files, are the same, bit for bit.
+//! A fingerprint tells whether two runs, or two files, are the same to the bit.
 
 use crate::solution::{Node, Solution};
 

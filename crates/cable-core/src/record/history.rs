@@ -1,4 +1,4 @@
-//! The course of a simulation in memory, within a stated budget.
+//! The history keeps the course of a simulation in memory, within a stated budget.
 
 use crate::solution::{CableSolution, ContactReport, Node, Solution, SupportReaction, Warning};
 
@@ -31,7 +31,7 @@ impl History {
     }
 
     /// Drops every entry at `time_s` or later.
-    pub fn truncate_from(&mut self, time_s: f64) {
+    pub(crate) fn truncate_from(&mut self, time_s: f64) {
         let keep = self.entries.partition_point(|e| e.time_s < time_s);
         self.bytes -= self.entries[keep..].iter().map(size_of_solution).sum::<usize>();
         self.entries.truncate(keep);

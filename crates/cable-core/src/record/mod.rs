@@ -1,4 +1,4 @@
-//! What a run leaves behind: a history in memory, and tables in CSV.
+//! The record is what a run leaves behind: a history in memory, and tables in CSV.
 //!
 //! A run folder holds `scene.toml`, `run.toml` ([`Manifest`]: what was asked, and whether the run is complete) and three tables,
 //! every number in SI units that its column's name ends in:
@@ -11,7 +11,7 @@
 //!
 //! Numbers are written with the fewest digits that read back to the same bits (in a file some times have zeros after them, so that no row
 //! lies on two pages of it). [`RunWriter`] writes the tables to any
-//! [`std::io::Write`] in whole instants, `history.csv` last; [`read_run`] reads them again, up to the last instant that is whole in
+//! [`std::io::Write`] in whole instants, `history.csv` last; `read_run` reads them again, up to the last instant that is whole in
 //! all of them, wherever they were cut off. [`read_history`], [`read_nodes`] and [`read_events`] read one of them. Folders are made
 //! and read in [`crate::files`].
 
@@ -29,7 +29,8 @@ pub use fingerprint::Fingerprint;
 pub use history::History;
 pub(crate) use page::Pages;
 pub(crate) use run::MANIFEST_HEAD;
-pub use run::{FileRecord, LeftOut, Manifest, NodeSummary, RunRequest, RunStatus, RunTables, read_run};
+pub(crate) use run::read_run;
+pub use run::{FileRecord, LeftOut, Manifest, NodeSummary, RunRequest, RunStatus, RunTables};
 pub(crate) use tables::has_rows;
 pub use tables::{
     Event, Extra, HistoryTable, NodeRow, ReadError, RunWriter, SupportColumn, WriteError, read_events, read_history,

@@ -1,4 +1,4 @@
-//! Rows laid out so that none lies on two pages of a file.
+//! Pages lay out rows so that none crosses the border between two pages of a file.
 //!
 //! A system copies what is written into its memory page by page, and a process that is killed may stop between two: of 200 killed runs
 //! one to five ended within a line. A row that lies on one page is written whole or not at all. So the last row that fits on
@@ -7,10 +7,10 @@
 use super::whole::record_ends;
 
 /// Bytes of a page: 4096 or a multiple everywhere. Smaller numbers would cost more zeros, larger ones leave rows on two pages.
-const PAGE: usize = 4096;
+const PAGE_BYTES: usize = 4096;
 
 /// Most bytes of a number and the comma after it: `-2.2250738585072014e-308,`.
-const NUMBER: usize = 25;
+const MAX_NUMBER_BYTES: usize = 25;
 
 /// How the rows of a table lie on its pages.
 #[derive(Clone, Copy, Debug, Default)]
@@ -34,7 +34,7 @@ impl Pages {
             if row.len() > self.room() {
                 self.fill(&mut parts, row_start, row.len());
                 parts.push(Vec::new());
-            } else if self.room() == PAGE {
+            } else if self.room() == PAGE_BYTES {
                 parts.push(Vec::new());
             }
             if let Some(part) = parts.last_mut() {
@@ -52,15 +52,15 @@ impl Pages {
 
     /// Bytes left on the page.
     fn room(&self) -> usize {
-        PAGE - self.length % PAGE
+        PAGE_BYTES - self.length % PAGE_BYTES
     }
 
     /// Lengthens the last row to the end of its page, unless what follows is longer than a page.
     fn fill(&mut self, parts: &mut [Vec<u8>], row_start: usize, next: usize) {
         let room = self.room();
         if let Some(part) = parts.last_mut()
-            && next <= PAGE
-            && room < PAGE
+            && next <= PAGE_BYTES
+            && room < PAGE_BYTES
             && lengthen(part, row_start, room)
         {
             self.length += room;
@@ -70,7 +70,7 @@ impl Pages {
 
 /// The longest row of this table: its numbers with all their digits.
 fn longest_like(row: &[u8]) -> usize {
-    row.split(|byte| *byte == b',').map(|field| (field.len() + 1).max(NUMBER)).sum()
+    row.split(|byte| *byte == b',').map(|field| (field.len() + 1).max(MAX_NUMBER_BYTES)).sum()
 }
 
 /// Adds zeros after the digits of the number that a row begins with; whether it begins with one.
@@ -110,7 +110,7 @@ mod tests {
                     rows.extend_from_slice(row.as_bytes());
                 }
                 for part in pages.lay_out(&rows) {
-                    prop_assert!(file.len() / PAGE == (file.len() + part.len() - 1) / PAGE, "a part lies on two pages");
+                    prop_assert!(file.len() / PAGE_BYTES == (file.len() + part.len() - 1) / PAGE_BYTES, "a part lies on two pages");
                     file.extend_from_slice(&part);
                     prop_assert_eq!(file.last(), Some(&b'\n'));
                 }
@@ -123,7 +123,7 @@ mod tests {
                 prop_assert_eq!(rest, others);
                 prop_assert_eq!(t.parse::<f64>().unwrap().to_bits(), time.parse::<f64>().unwrap().to_bits());
             }
-            prop_assert!(text.len() < 2 * plain.len() + 2 * PAGE);
+            prop_assert!(text.len() < 2 * plain.len() + 2 * PAGE_BYTES);
         }
     }
 }

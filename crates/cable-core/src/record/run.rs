@@ -1,4 +1,4 @@
-//! A run as a whole: what its folder says about itself, and its three tables read together.
+//! A run is read as a whole: what its folder says about itself, and its three tables together.
 
 use std::fmt;
 use std::io::Read;
@@ -203,7 +203,7 @@ impl fmt::Display for LeftOut {
 ///
 /// # Errors
 /// Where one is not such a table.
-pub fn read_run(history: impl Read, nodes: impl Read, events: impl Read) -> Result<RunTables, ReadError> {
+pub(crate) fn read_run(history: impl Read, nodes: impl Read, events: impl Read) -> Result<RunTables, ReadError> {
     let mut left_out = Vec::new();
     let mut history = WholeRecords::new(history);
     let mut out = RunTables { history: read_history(&mut history)?, ..RunTables::default() };

@@ -1,4 +1,4 @@
-//! The three tables of a run, written and read.
+//! This file writes and reads the three tables of a run.
 
 use std::io::{Read, Write};
 
@@ -139,7 +139,7 @@ pub struct SupportColumn {
 
 /// Writes a run's tables as it goes, in whole instants: the rows of an instant go out as one write a table, `history.csv` last.
 /// So an instant with a row there is whole in the other tables too, and what was cut off anywhere is whole up to the last such
-/// row ([`super::read_run`]).
+/// row (`super::read_run`).
 pub struct RunWriter<W: Write> {
     history: W,
     nodes: W,
@@ -149,11 +149,11 @@ pub struct RunWriter<W: Write> {
     node_interval: Option<f64>,
     /// Columns of `history.csv`; none before the headers are written.
     columns: Vec<String>,
-    active: Vec<ActiveWarning>,
+    active: Vec<LastingWarning>,
 }
 
 /// Kind, cable and the time since when, in bits, of a warning that lasts.
-type ActiveWarning = (WarningKind, String, Option<u64>);
+type LastingWarning = (WarningKind, String, Option<u64>);
 
 impl<W: Write> RunWriter<W> {
     /// Over three places to write to.
@@ -171,7 +171,7 @@ impl<W: Write> RunWriter<W> {
 
     /// With a choice of what goes into `nodes.csv`.
     #[must_use]
-    pub fn with_nodes(self, node_choice: NodeChoice) -> Self {
+    pub(crate) fn with_nodes(self, node_choice: NodeChoice) -> Self {
         Self { node_choice, ..self }
     }
 
@@ -352,12 +352,12 @@ fn node_rows(rows: &mut Rows, solution: &Solution, columns: NodeColumns) -> Resu
     Ok(())
 }
 
-fn active(w: &Warning) -> ActiveWarning {
+fn active(w: &Warning) -> LastingWarning {
     (w.kind, w.cable.clone(), w.since_s.map(f64::to_bits))
 }
 
 /// Warnings of an instant that did not last already.
-fn began<'a>(solution: &'a Solution, lasting: &'a [ActiveWarning]) -> impl Iterator<Item = &'a Warning> {
+fn began<'a>(solution: &'a Solution, lasting: &'a [LastingWarning]) -> impl Iterator<Item = &'a Warning> {
     solution.warnings.iter().filter(move |w| {
         let since = w.since_s.map(f64::to_bits);
         !lasting.iter().any(|(kind, cable, began)| (*kind, *began) == (w.kind, since) && *cable == w.cable)

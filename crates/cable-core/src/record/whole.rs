@@ -1,13 +1,13 @@
-//! What is left of a table that was cut off somewhere: its whole records.
+//! Whole records are what is left of a table that was cut off somewhere.
 
 use std::io::{self, Read};
 
 /// Longest record of a table, bytes: a row of a run is below 1 kB, a warning's words below 10 kB. A longer limit would hold more of a
 /// hostile file without line ends in memory.
-const LONGEST_RECORD: usize = 1 << 20;
+const MAX_RECORD_BYTES: usize = 1 << 20;
 
 /// Bytes read at once.
-const CHUNK: usize = 1 << 16;
+const CHUNK_BYTES: usize = 1 << 16;
 
 /// Where the records of a CSV text end, each after its line end.
 pub(crate) fn record_ends(text: &[u8]) -> impl Iterator<Item = usize> {
@@ -42,7 +42,7 @@ impl<R: Read> WholeRecords<R> {
 
     /// Bytes after the last whole record, once everything is read.
     #[must_use]
-    pub fn left_out_bytes(&self) -> usize {
+    pub(crate) fn left_out_bytes(&self) -> usize {
         self.bytes.len() - self.whole
     }
 
@@ -51,11 +51,11 @@ impl<R: Read> WholeRecords<R> {
         self.whole -= self.passed;
         self.passed = 0;
         let known = self.bytes.len();
-        if known > LONGEST_RECORD {
-            let what = format!("a record has more than {LONGEST_RECORD} bytes");
+        if known > MAX_RECORD_BYTES {
+            let what = format!("a record has more than {MAX_RECORD_BYTES} bytes");
             return Err(io::Error::new(io::ErrorKind::InvalidData, what));
         }
-        let read = (&mut self.from).take(CHUNK as u64).read_to_end(&mut self.bytes)?;
+        let read = (&mut self.from).take(CHUNK_BYTES as u64).read_to_end(&mut self.bytes)?;
         self.ended = read == 0;
         for (k, byte) in self.bytes.iter().enumerate().skip(known) {
             match byte {

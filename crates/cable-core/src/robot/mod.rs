@@ -1,4 +1,5 @@
-//! The tracked vehicle in motion: how fast it goes against slope, ground and cable, and why it does not.
+//! The vehicle is the tracked robot in motion: how fast it goes against slope, ground and cable,
+//! and why not faster.
 //!
 //! It is a rigid body on the ground, moved along it by its tracks:
 //! ```text
@@ -24,7 +25,7 @@
 //! does to the outline is that of the end of the step.
 //!
 //! What the ground does where it tips the vehicle over a corner takes nothing from its speed: on
-//! such ground its weight and the hitch do work that is not along the way, and [`Work::ground_j`]
+//! such ground its weight and the hitch do work that is not along the way, and [`RobotWork::ground_j`]
 //! is that.
 //!
 //! Robot and cable are one system: how their steps are brought together stands in `simulation/coupling.rs`.
@@ -36,41 +37,41 @@ use crate::scene::ground::Ground;
 use crate::scene::preset::{RobotPreset, robot_preset};
 use crate::scene::robot::{Pose, ROLLING_RESISTANCE, TRACK_FRICTION};
 use crate::scene::{Robot, RobotTask, Scene, View};
-pub use crate::solution::robot_report::{Going, RobotReport, Work};
+pub use crate::solution::robot_report::{Going, RobotReport, RobotWork};
 
 /// Longest step of the vehicle, s: that of the cable. The taut spring of 10 m of a 2 MN cable and 1
 /// t swing at 14 rad/s, 17 times slower.
 pub const STEP_S: f64 = 1.0 / 240.0;
 
 /// Steepest slope it climbs, rad: 35°. Makers allow 30° for such machines (remembered; estimated).
-const STEEPEST: f64 = 35.0 * std::f64::consts::PI / 180.0;
+const MAX_SLOPE: f64 = 35.0 * std::f64::consts::PI / 180.0;
 
 /// A leg of its path is driven when it is this near to its end, m.
-const ARRIVED_M: f64 = 1e-3;
+const ARRIVAL_DISTANCE_M: f64 = 1e-3;
 
-/// Near the end of a leg it brakes with half of [`RAMP`], and over the last centimetres its speed is the way left over this
+/// Near the end of a leg it brakes with half of [`MAX_ACCELERATION`], and over the last centimetres its speed is the way left over this
 /// time, s: shorter stops with a jerk, longer creeps.
 const APPROACH_S: f64 = 0.3;
 
 /// Greatest change of speed the governor asks for, m/s²: more, and the tracks slip at every start; less feels dead by hand.
-const RAMP: f64 = 1.0;
+const MAX_ACCELERATION: f64 = 1.0;
 
 /// Fastest it tips over an edge, rad/s: a machine of a metre's length that falls by a hand's breadth takes a fifth of a second.
 /// Faster: its hitch draws the cable along where the ground has a corner; slower: it hangs in the air behind its middle.
-const TIP_RAD_PER_S: f64 = 1.0;
+const MAX_TIP_RAD_PER_S: f64 = 1.0;
 
 /// Greatest change of that, rad/s²: the end of a machine of two metres' length that falls freely. More: its
 /// hitch jerks the cable at every corner, by 1.3 kN where it tips at once; less: it tips late.
-const TIP_RAD_PER_S2: f64 = 10.0;
+const MAX_TIP_RAD_PER_S2: f64 = 10.0;
 
 /// Part of the forces on vehicle and cable by which a trial of a step may be off. The speed is that
 /// of the balance; what is off is the place of the hitch, by less than a millionth of a metre where
 /// a machine of a tonne is off by 100 N. Less: more trials; more: the hitch lags behind the
 /// vehicle.
-const BALANCED: f64 = 5e-3;
+const BALANCE_TOLERANCE: f64 = 5e-3;
 
 /// Slower than this it stands, m/s.
-const STANDS_M_PER_S: f64 = 1e-4;
+const STANDSTILL_M_PER_S: f64 = 1e-4;
 
 /// The vehicle.
 #[derive(Clone, Debug, PartialEq)]
@@ -199,12 +200,12 @@ impl Vehicle {
 
     /// Where its hitch is when it stands so, m.
     #[must_use]
-    pub fn hitch_at(&self, pose: Pose) -> Vec2 {
+    pub(crate) fn hitch_at(&self, pose: Pose) -> Vec2 {
         vec2(pose.hitch_m(self.preset))
     }
 
     /// It came only there in its last step: the cable was in its way.
-    pub fn hold_back(&mut self, placement: RigidPose) {
+    pub(crate) fn hold_back(&mut self, placement: RigidPose) {
         self.pose = Pose { at_m: [placement.at.x, placement.at.y], pitch: placement.angle, ..self.pose };
         self.report.work.impact_j -= self.kinetic_j();
         (self.speed, self.tipping) = (0.0, 0.0);
@@ -234,30 +235,31 @@ impl Vehicle {
 
     /// Where it is at the end of a step in which it comes to this speed (m/s); None where it cannot stand there.
     #[must_use]
-    pub fn come_to(&self, drive: Drive, speed: f64) -> Option<Pose> {
+    pub(crate) fn come_to(&self, drive: Drive, speed: f64) -> Option<Pose> {
         let way = 0.5 * drive.h * (self.speed + speed);
         if way == 0.0 && self.speed == 0.0 {
             return self.tipped(self.pose.at_m[0], drive.h);
         }
         let x_m = self.pose.at_m[0] + way * self.pose.pitch.cos();
         let ground = self.robot.pose_on(&self.ground, self.preset, x_m)?;
-        if ground.pitch * way.signum() <= STEEPEST { self.tipped(x_m, drive.h) } else { None }
+        if ground.pitch * way.signum() <= MAX_SLOPE { self.tipped(x_m, drive.h) } else { None }
     }
 
     fn tipped(&self, x_m: f64, h: f64) -> Option<Pose> {
         let pose = self.robot.pose_on(&self.ground, self.preset, x_m)?;
         let left = pose.pitch - self.pose.pitch;
         // It comes to rest on the ground: no faster than it can still be slowed down, and than it is there.
-        let most =
-            [(2.0 * TIP_RAD_PER_S2 * left.abs()).sqrt(), left.abs() / h].into_iter().fold(TIP_RAD_PER_S, smaller);
-        let change = TIP_RAD_PER_S2 * h;
+        let most = [(2.0 * MAX_TIP_RAD_PER_S2 * left.abs()).sqrt(), left.abs() / h]
+            .into_iter()
+            .fold(MAX_TIP_RAD_PER_S, smaller);
+        let change = MAX_TIP_RAD_PER_S2 * h;
         let tipping = bounded(most.copysign(left), self.tipping - change, self.tipping + change);
         Some(Pose { pitch: self.pose.pitch + tipping * h, ..pose })
     }
 
     /// What its balance makes of the forces of the cable at the end of a step.
     #[must_use]
-    pub fn balance(&self, drive: Drive, pulls: Pulls) -> Balance {
+    pub fn balance(&self, drive: Drive, pulls: Pulls) -> SpeedBalance {
         let (sin, cos) = self.pose.pitch.sin_cos();
         let felt = self.mean(pulls) + pulls.outline;
         let normal = self.weight * cos - (felt.y * cos - felt.x * sin);
@@ -265,7 +267,7 @@ impl Vehicle {
         let normal = if normal > 0.0 { normal } else { 0.0 };
         let (pull, weight) = (felt.x * cos + felt.y * sin, -self.weight * sin);
         let done = self.solve(drive, normal, pull + weight);
-        Balance { normal, pull, weight, ..done }
+        SpeedBalance { normal, pull, weight, ..done }
     }
 
     /// Mean pull on its hitch in a step that ends with `pulls`, N.
@@ -274,9 +276,15 @@ impl Vehicle {
     }
 
     /// Ends a step at a place with a speed (m/s) that a balance gave, or that it was given beside one.
-    pub fn arrive(&mut self, drive: Drive, (to, led): (Pose, f64), (balance, speed): (Balance, f64), pulls: Pulls) {
+    pub(crate) fn arrive(
+        &mut self,
+        drive: Drive,
+        (to, led): (Pose, f64),
+        (balance, speed): (SpeedBalance, f64),
+        pulls: Pulls,
+    ) {
         let way = 0.5 * drive.h * (self.speed + led);
-        let Balance { tracks, rolling, pull, weight, slips, .. } = balance;
+        let SpeedBalance { tracks, rolling, pull, weight, slips, .. } = balance;
         let along = Vec2::new(self.pose.pitch.cos(), self.pose.pitch.sin());
         let cable = self.mean(pulls).dot(&(self.hitch_at(to) - self.hitch())) + pulls.outline.dot(&along) * way;
         let lifted = -self.weight * (to.at_m[1] - self.pose.at_m[1]);
@@ -301,13 +309,13 @@ impl Vehicle {
         let balance = self.balance(drive, pulls);
         self.report.work.impact_j -= self.kinetic_j();
         self.speed = 0.0;
-        self.arrive(drive, (self.pose, 0.0), (Balance { going, ..balance }, 0.0), pulls);
+        self.arrive(drive, (self.pose, 0.0), (SpeedBalance { going, ..balance }, 0.0), pulls);
     }
 
     /// Unbalanced impulse over time (N) that counts as none beside forces of the cable.
     #[must_use]
     pub fn tolerance(&self, pulls: Pulls) -> f64 {
-        BALANCED * (self.weight + pulls.hitch.norm() + pulls.outline.norm())
+        BALANCE_TOLERANCE * (self.weight + pulls.hitch.norm() + pulls.outline.norm())
     }
 
     /// Mass, kg.
@@ -324,7 +332,7 @@ impl Vehicle {
 
     /// The speed v' at which m (v' − v)/h is what acts: `pull` (N) along the ground, and what the
     /// tracks and rolling resistance add to it.
-    fn solve(&self, drive: Drive, normal: f64, pull: f64) -> Balance {
+    fn solve(&self, drive: Drive, normal: f64, pull: f64) -> SpeedBalance {
         let sense = [drive.wanted, self.speed, -pull].into_iter().find(|s| *s != 0.0).map_or(1.0, f64::signum);
         let (v, pull, mass) = (self.speed * sense, pull * sense, self.preset.mass_kg.value);
         let grip = self.grip(drive, normal, sense);
@@ -362,18 +370,18 @@ impl Vehicle {
         };
         let going = grip.going((v, speed), slips);
         let [speed, tracks, rolling, asked] = [speed, tracks, rolling, grip.asked].map(|x| x * sense);
-        Balance { speed, tracks, rolling, asked, slips, going, ..Balance::default() }
+        SpeedBalance { speed, tracks, rolling, asked, slips, going, ..SpeedBalance::default() }
     }
 
     /// What tracks and rolling resistance can do in a step, in the `sense` in which it is asked to go.
-    fn grip(&self, drive: Drive, normal: f64, sense: f64) -> Grip {
+    fn grip(&self, drive: Drive, normal: f64, sense: f64) -> TrackGrip {
         let (v, set, wanted) = (self.speed * sense, self.set * sense, drive.wanted * sense);
         // The governor goes on from the speed that it has given; dragged by its cable the vehicle has none of that.
         let given = if set * v > 0.0 { v.signum() * smaller(set.abs(), v.abs()) } else { 0.0 };
         let goes = larger(v, 0.0);
         let (most, top) = (self.preset.drive_pull_n.value, self.preset.speed_m_per_s.value);
-        Grip {
-            asked: given + (wanted - given).clamp(-RAMP * drive.h, RAMP * drive.h),
+        TrackGrip {
+            asked: given + (wanted - given).clamp(-MAX_ACCELERATION * drive.h, MAX_ACCELERATION * drive.h),
             drives: wanted > 0.0,
             hold: self.track_friction * normal,
             rolling: self.rolling * normal,
@@ -396,8 +404,8 @@ impl Vehicle {
             match self.robot.path.get(self.leg) {
                 Some(RobotTask::Drive { to_x_m, speed_m_per_s }) => {
                     let left = to_x_m - self.pose.at_m[0];
-                    if left.abs() > ARRIVED_M {
-                        let brakes = (RAMP * left.abs()).sqrt();
+                    if left.abs() > ARRIVAL_DISTANCE_M {
+                        let brakes = (MAX_ACCELERATION * left.abs()).sqrt();
                         let speed = (left.abs() / APPROACH_S).min(brakes).min(*speed_m_per_s).min(top);
                         return speed * left.signum();
                     }
@@ -457,7 +465,7 @@ pub struct Drive {
 
 /// How the forces of a step balance; along the ground to the right.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Balance {
+pub struct SpeedBalance {
     /// Speed at the end, m/s.
     pub speed: f64,
     /// Force of the tracks, N.
@@ -481,7 +489,7 @@ pub struct Balance {
 /// 0 the tracks give all their hold (brakes), up to the speed asked for the pull of the drive, and
 /// beyond that they brake with all their hold. Where that jumps it may be anything between.
 #[derive(Clone, Copy, Debug)]
-struct Grip {
+struct TrackGrip {
     /// Speed that the governor asks for at the end, m/s.
     asked: f64,
     /// Whether it is to go; else it comes to a stand.
@@ -495,7 +503,7 @@ struct Grip {
     falls: f64,
 }
 
-impl Grip {
+impl TrackGrip {
     /// Whether a speed, or what is just below or `above` it, is beyond an edge.
     fn is_beyond(q: f64, edge: f64, above: bool) -> bool {
         q > edge || (q == edge && above)
@@ -535,12 +543,12 @@ impl Grip {
     fn going(&self, (from, to): (f64, f64), slips: bool) -> Going {
         let against = if self.drives { -to } else { to.abs() };
         match (self.drives, slips) {
-            (_, true) if against > STANDS_M_PER_S => Going::Dragged,
+            (_, true) if against > STANDSTILL_M_PER_S => Going::Dragged,
             (_, true) => Going::Slipping,
-            (false, _) if to.abs() < STANDS_M_PER_S => Going::Standing,
-            (true, _) if to < self.asked && to < STANDS_M_PER_S => Going::Stalled,
+            (false, _) if to.abs() < STANDSTILL_M_PER_S => Going::Standing,
+            (true, _) if to < self.asked && to < STANDSTILL_M_PER_S => Going::Stalled,
             // While it gains speed with its full drive it is on its way.
-            (true, _) if to < self.asked && to - from < STANDS_M_PER_S => Going::Slowed,
+            (true, _) if to < self.asked && to - from < STANDSTILL_M_PER_S => Going::Slowed,
             _ => Going::Driving,
         }
     }

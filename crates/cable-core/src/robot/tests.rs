@@ -71,7 +71,7 @@ fn half_speed_asked_is_half_speed_driven() {
     run(&mut v, 5.0, Vec2::zeros());
     assert!((v.speed + 0.3).abs() < 1e-12 && v.report.going == Going::Driving);
     // It gains its speed u within u/a, on the way u²/2a.
-    let way = 0.3 * 5.0 - 0.3 * 0.3 / (2.0 * RAMP);
+    let way = 0.3 * 5.0 - 0.3 * 0.3 / (2.0 * MAX_ACCELERATION);
     assert!((v.pose.at_m[0] + way * v.pose.pitch.cos()).abs() < 0.3 * STEP_S, "{:?}", v.pose);
 }
 
@@ -138,9 +138,9 @@ fn a_path_is_driven_leg_by_leg_and_again() {
     let path = vec![drive(1.0, 0.5), RobotTask::Wait { wait_s: 3.0 }, drive(0.0, 0.5)];
     let mut v = on_slope(0.0, |r| r.path = path.clone());
     run(&mut v, 6.0, Vec2::zeros());
-    assert!((v.pose.at_m[0] - 1.0).abs() < 2.0 * ARRIVED_M, "{:?}", v.report);
+    assert!((v.pose.at_m[0] - 1.0).abs() < 2.0 * ARRIVAL_DISTANCE_M, "{:?}", v.report);
     run(&mut v, 10.0, Vec2::zeros());
-    assert!(v.pose.at_m[0].abs() < 2.0 * ARRIVED_M && v.report.leg.is_none(), "{:?}", v.report);
+    assert!(v.pose.at_m[0].abs() < 2.0 * ARRIVAL_DISTANCE_M && v.report.leg.is_none(), "{:?}", v.report);
 
     let mut again = on_slope(0.0, |r| (r.path, r.repeat) = (path.clone(), true));
     run(&mut again, 16.0, Vec2::zeros());
@@ -196,9 +196,9 @@ fn it_tips_over_an_edge_and_does_not_jump() {
     let (mut before, mut most, mut rate) = (v.pose.pitch, 0.0_f64, 0.0);
     for _ in 0..(12.0 / STEP_S) as usize {
         step(&mut v, Vec2::zeros());
-        assert!((v.pose.pitch - before).abs() <= TIP_RAD_PER_S * STEP_S * (1.0 + 1e-9));
+        assert!((v.pose.pitch - before).abs() <= MAX_TIP_RAD_PER_S * STEP_S * (1.0 + 1e-9));
         let now = (v.pose.pitch - before) / STEP_S;
-        assert!((now - rate).abs() <= TIP_RAD_PER_S2 * STEP_S * (1.0 + 1e-9), "{rate} {now} rad/s");
+        assert!((now - rate).abs() <= MAX_TIP_RAD_PER_S2 * STEP_S * (1.0 + 1e-9), "{rate} {now} rad/s");
         (before, rate) = (v.pose.pitch, now);
         most = most.max(before);
     }

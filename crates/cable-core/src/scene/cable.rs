@@ -1,4 +1,4 @@
-//! A cable's properties, supports and first route.
+//! A cable of a scene has properties, supports and a first route.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -68,7 +68,7 @@ pub struct Cable {
 /// Breaking time of a cable of which none is stated, s. No measurement of cables stands behind it (incubation times of metals are
 /// microseconds): it is the time over which means of tension agree between meshes, 4 % in a drop on rubble, whose instants differ by 30 %.
 /// Shorter: whether the cable breaks in a jerk hangs on the mesh; longer: what is seen of a jerk is less than what the cable feels.
-pub const BREAKING_TIME_S: f64 = 4e-3;
+pub(crate) const BREAKING_TIME_S: f64 = 4e-3;
 
 fn default_breaking_time_s() -> f64 {
     BREAKING_TIME_S
@@ -93,7 +93,7 @@ impl FrictionMobilised {
 
     /// Whether it is what a scene that says nothing asks for.
     #[must_use]
-    pub fn is_default(&self) -> bool {
+    pub(crate) fn is_default(&self) -> bool {
         *self == Self::LeastSliding
     }
 

@@ -1,4 +1,4 @@
-//! The ground a vehicle stands on: the highest terrain of a scene, and how a rigid track rests on it.
+//! The ground is the highest terrain of a scene; a rigid track rests on it.
 
 use super::{Scene, Shape};
 use crate::math::Point;

@@ -1,4 +1,4 @@
-//! Lines for terrain and beams from what people have: tables of x and y, and SVG paths.
+//! An import turns tables of x and y, and SVG paths, into lines for terrain and beams.
 //!
 //! A table has two numbers a line, between them a tab, a semicolon, a comma or spaces. Where something else stands between them
 //! a comma is a decimal mark: `1,5;2,25`. Lines without numbers before the first point are headings.

@@ -1,4 +1,4 @@
-//! A force on a point of a cable.
+//! A load is a force on a point of a cable.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

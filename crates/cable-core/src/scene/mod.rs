@@ -24,7 +24,7 @@ pub mod robot;
 pub mod scaled;
 pub mod support;
 
-pub use cable::{BREAKING_TIME_S, Cable, FrictionMobilised};
+pub use cable::{Cable, FrictionMobilised};
 pub use environment::{Environment, STANDARD_GRAVITY, View};
 pub use library::{catalog, preset};
 pub use load::Load;

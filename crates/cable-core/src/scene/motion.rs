@@ -1,4 +1,4 @@
-//! How a support moves: knots in time, followed by a C² curve.
+//! A motion moves a support: knots in time, followed by a C² curve.
 //!
 //! A piecewise quintic with zero acceleration at every knot. In Bernstein form its derivative on an interval
 //! of length h from p₀ to p₁ with end velocities v₀, v₁ has the control values

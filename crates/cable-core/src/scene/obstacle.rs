@@ -1,4 +1,4 @@
-//! What a cable can touch: terrain, beams, posts, thin lines.
+//! Obstacles are what a cable can touch: terrain, beams, posts, thin lines.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

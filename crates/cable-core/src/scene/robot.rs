@@ -1,4 +1,4 @@
-//! The tracked vehicle as a scene describes it.
+//! A scene describes the tracked vehicle: its preset, where it stands, and its path.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -102,7 +102,7 @@ impl Robot {
 
     /// How it stands with its tracks' middle at `x_m`: None where the ground ends below its tracks.
     #[must_use]
-    pub fn pose_on(&self, ground: &Ground, preset: &RobotPreset, x_m: f64) -> Option<Pose> {
+    pub(crate) fn pose_on(&self, ground: &Ground, preset: &RobotPreset, x_m: f64) -> Option<Pose> {
         let stand = ground.stand(x_m, preset.track_half_length_m())?;
         Some(Pose { at_m: [x_m, stand.y], pitch: stand.pitch, heading: self.heading })
     }

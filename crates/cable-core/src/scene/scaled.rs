@@ -1,4 +1,4 @@
-//! A scene and its similar copy at another scale.
+//! A similar copy is a scene at another scale.
 //!
 //! Froude similarity (W. Froude, 1868): lengths by λ, times by √λ, forces and gravity as they are. Masses then stay, mass per metre,
 //! weight and wind per metre go by 1/λ, EI by λ², EA stays; strain, angle and friction have no unit. A cable and its copy do the same

@@ -1,4 +1,4 @@
-//! What holds a cable: fixed points, clamps, pulleys, loads, the robot's hitch.
+//! Supports hold a cable: fixed points, clamps, pulleys, loads, the robot's hitch.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

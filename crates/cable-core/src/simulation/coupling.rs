@@ -1,4 +1,4 @@
-//! Robot and cables advanced together.
+//! The coupling advances robot and cables together.
 //!
 //! In a step of h the robot comes from its speed v to v', and its hitch and outline with it; the
 //! cables, from copies that can be gone back to, are advanced to where they then are, and pull with
@@ -27,18 +27,18 @@ use crate::solution::Cost;
 
 /// Trials of a step. Fewer: a robot that squeezes its cable against a wall is stopped a little
 /// early; more: that takes longer.
-const TRIALS: usize = 12;
+const MAX_TRIALS: usize = 12;
 
 /// Speeds that come out too slow and too fast are the same when they are this near to each other,
 /// m/s: what presses between robot and wall jumps there.
-const SAME_SPEED: f64 = 1e-4;
+const SPEED_TOLERANCE: f64 = 1e-4;
 
 /// Longest step of a robot whose cables have no inertia, s: they pull evenly.
-const SLOW_STEP_S: f64 = 1.0 / 120.0;
+const QUASI_STATIC_STEP_S: f64 = 1.0 / 120.0;
 
 /// A step of robot and cables.
 #[derive(Clone, Copy, Debug)]
-struct Step<'a> {
+struct CoupledStep<'a> {
     /// Its length, s.
     h: f64,
     inertia: Inertia,
@@ -47,7 +47,7 @@ struct Step<'a> {
 }
 
 /// What became of a trial.
-enum Tried {
+enum TrialOutcome {
     /// The robot at the end of the step.
     Ends(Box<Vehicle>),
     /// The speed to try next, m/s.
@@ -77,7 +77,7 @@ struct Search {
 
 impl Search {
     fn new() -> Self {
-        Self { left: TRIALS, last: None, low: None, high: None }
+        Self { left: MAX_TRIALS, last: None, low: None, high: None }
     }
 
     /// The next speed to try after a trial, m/s; None where nothing is left between, or no trial.
@@ -89,7 +89,7 @@ impl Search {
             false => self.high = Some(now.speed),
         }
         if let (Some(low), Some(high)) = (self.low, self.high)
-            && high - low < SAME_SPEED
+            && high - low < SPEED_TOLERANCE
         {
             return None;
         }
@@ -114,11 +114,11 @@ impl Simulation {
         while left > 0.0 {
             let longest = match inertia {
                 Inertia::Dynamic => self.cables.iter().map(BreakableCable::inner_step_s).fold(robot::STEP_S, smaller),
-                Inertia::QuasiStatic => SLOW_STEP_S,
+                Inertia::QuasiStatic => QUASI_STATIC_STEP_S,
             };
             let pieces = (left / longest - 1e-9).ceil().max(1.0);
             let h = left / pieces;
-            let iterations = self.couple(&Step { h, inertia, hitches: &hitches })?;
+            let iterations = self.couple(&CoupledStep { h, inertia, hitches: &hitches })?;
             left = if pieces > 1.0 { left - h } else { 0.0 };
             cost = Cost {
                 iterations: cost.iterations + iterations,
@@ -133,7 +133,7 @@ impl Simulation {
     }
 
     /// A step of robot and cables; returns the iterations that it took.
-    fn couple(&mut self, step: &Step<'_>) -> Result<usize, SolveError> {
+    fn couple(&mut self, step: &CoupledStep<'_>) -> Result<usize, SolveError> {
         let begun = self.pulls(step.hitches);
         let Some(vehicle) = &mut self.vehicle else { return Ok(0) };
         let drive = vehicle.begin(step.h, begun);
@@ -145,22 +145,22 @@ impl Simulation {
             let tried = self.try_speed(step, (&start, drive, speed), &mut search);
             iterations += self.cost.iterations;
             match tried {
-                Tried::Ends(vehicle) => {
+                TrialOutcome::Ends(vehicle) => {
                     self.vehicle = Some(*vehicle);
                     self.hold_vehicle();
                     return Ok(iterations);
                 }
-                Tried::Again(next) => {
+                TrialOutcome::Again(next) => {
                     self.go_back(&kept);
                     speed = next;
                 }
-                Tried::Stuck(going) => {
+                TrialOutcome::Stuck(going) => {
                     self.go_back(&kept);
                     let mut vehicle = start;
                     vehicle.stop(drive, begun, going);
                     self.lead((vehicle.hitch(), vehicle.pose().placement()), step.hitches);
                     self.vehicle = Some(vehicle);
-                    self.each(|c| c.advance(step.h, step.inertia))?;
+                    self.for_each_cable(|c| c.advance(step.h, step.inertia))?;
                     return Ok(iterations + self.cost.iterations);
                 }
             }
@@ -170,16 +170,16 @@ impl Simulation {
     /// The step with the robot at this speed (m/s) at its end.
     fn try_speed(
         &mut self,
-        step: &Step<'_>,
+        step: &CoupledStep<'_>,
         (start, drive, speed): (&Vehicle, Drive, f64),
         search: &mut Search,
-    ) -> Tried {
-        let Some(to) = start.come_to(drive, speed) else { return Tried::Stuck(Going::Blocked) };
+    ) -> TrialOutcome {
+        let Some(to) = start.come_to(drive, speed) else { return TrialOutcome::Stuck(Going::Blocked) };
         self.lead((start.hitch_at(to), to.placement()), step.hitches);
         let breaks = self.breaks();
-        if self.each(|c| c.advance(step.h, step.inertia)).is_err() {
+        if self.for_each_cable(|c| c.advance(step.h, step.inertia)).is_err() {
             // The cable cannot get out of its way.
-            return Tried::Stuck(Going::Jammed);
+            return TrialOutcome::Stuck(Going::Jammed);
         }
         let pulls = self.pulls(step.hitches);
         let balance = start.balance(drive, pulls);
@@ -190,13 +190,13 @@ impl Simulation {
             && !(self.left_m() > 0.0)
             && let Some(next) = search.next(Trial { speed, off })
         {
-            return Tried::Again(next);
+            return TrialOutcome::Again(next);
         }
         let mut vehicle = start.clone();
         // Where forces jump the robot has the speed at which they do.
         let ends = if even { balance.speed } else { speed };
         vehicle.arrive(drive, (to, speed), (balance, ends), pulls);
-        Tried::Ends(Box::new(vehicle))
+        TrialOutcome::Ends(Box::new(vehicle))
     }
 
     /// How many times the cables have broken.
@@ -264,15 +264,15 @@ impl Simulation {
     ///
     /// # Errors
     /// See [`Mechanics::advance`](crate::model::Mechanics::advance).
-    pub fn lead_robot(&mut self, x_m: f64, (dt_s, inertia): (f64, Inertia)) -> Result<Option<f64>, SolveError> {
+    pub(crate) fn lead_robot(&mut self, x_m: f64, (dt_s, inertia): (f64, Inertia)) -> Result<Option<f64>, SolveError> {
         let Some(vehicle) = &mut self.vehicle else { return Ok(None) };
         let Some(hitch) = vehicle.put(x_m) else { return Ok(None) };
         let to = vehicle.pose().placement();
         self.lead((hitch, to), &self.hitches());
         self.cables.iter_mut().for_each(BreakableCable::forget_peaks);
-        let done = self.each(|c| c.advance(dt_s, inertia));
+        let done = self.for_each_cable(|c| c.advance(dt_s, inertia));
         let left_m = self.hold_vehicle();
-        self.look(true);
+        self.refresh(true);
         done.map(|()| Some(left_m))
     }
 

@@ -42,7 +42,7 @@ impl ErrorEstimates {
 
     /// Forces known to a part of the greatest tension; of the shape nothing is.
     #[must_use]
-    pub fn of_forces(answer: &CableSolution, part: Option<f64>) -> Self {
+    pub(crate) fn of_forces(answer: &CableSolution, part: Option<f64>) -> Self {
         let force = part.map(|p| p * greatest(answer));
         let touches = !answer.contacts.is_empty();
         let contact_force_n = force.filter(|_| touches);
@@ -59,7 +59,7 @@ impl ErrorEstimates {
 
     /// Each the larger of two; what one of them does not know is not known.
     #[must_use]
-    pub fn or_larger(&self, other: &Self) -> Self {
+    pub(crate) fn or_larger(&self, other: &Self) -> Self {
         self.with(other, larger)
     }
 

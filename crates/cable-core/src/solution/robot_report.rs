@@ -42,10 +42,10 @@ impl Going {
     }
 }
 
-/// Work of each force on the vehicle, force times way, J.
+/// RobotWork of each force on the vehicle, force times way, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Work {
+pub struct RobotWork {
     /// Of its tracks while they hold: the drive, less what it brakes.
     pub drive_j: f64,
     /// Of its tracks while they slip.
@@ -62,7 +62,7 @@ pub struct Work {
     pub impact_j: f64,
 }
 
-impl Work {
+impl RobotWork {
     /// Of all forces: the change of its kinetic energy.
     #[must_use]
     pub fn total_j(&self) -> f64 {
@@ -101,7 +101,7 @@ pub struct RobotReport {
     pub push_y_n: f64,
     /// What the forces on it have done since it began.
     #[serde(default)]
-    pub work: Work,
+    pub work: RobotWork,
     /// Why it is as fast as it is.
     pub going: Going,
     /// The leg of its path it is on; None by hand or at the end.

@@ -1,4 +1,4 @@
-//! Whether the forces on a whole cable add up to nothing.
+//! The force balance checks whether the forces on a whole cable add up to zero.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ use crate::solution::CableSolution;
 
 /// The forces on a cable, N, right and up. In motion what is left is what accelerates it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Balance {
+pub struct ForceBalance {
     /// Of its supports, dead loads and lumps at its ends among them.
     pub supports_n: [f64; 2],
     /// Of the obstacles.
@@ -26,7 +26,7 @@ pub struct Balance {
 }
 
 /// The balance of a cable at a time (s).
-pub(super) fn balance(scene: &Scene, cable: &Cable, answer: &CableSolution, time_s: f64) -> Option<Balance> {
+pub(super) fn balance(scene: &Scene, cable: &Cable, answer: &CableSolution, time_s: f64) -> Option<ForceBalance> {
     let environment = &scene.environment;
     let weight_per_m = cable.linear_density_kg_per_m * environment.gravity_m_per_s2;
     if scene.view == View::Plan && weight_per_m > 0.0 && cable.friction > 0.0 {
@@ -48,7 +48,7 @@ pub(super) fn balance(scene: &Scene, cable: &Cable, answer: &CableSolution, time
     let loads = scene.loads.iter().filter(|l| l.cable == cable.name && !hangs_at_a_support(cable, l.arc_length_m));
     let loads = sum(&mut loads.map(|l| series(l.force_n, &l.times_s, &l.forces_n).at(time_s)));
     let residual = supports + contacts + loads + weight;
-    Some(Balance {
+    Some(ForceBalance {
         supports_n: supports.into(),
         contacts_n: contacts.into(),
         loads_n: loads.into(),

@@ -1,4 +1,4 @@
-//! What it changes that a cable was taken as perfectly flexible.
+//! This file estimates how neglected bending stiffness would change an answer of a flexible cable.
 //!
 //! A scene that says nothing of bending stiffness is answered without it: at rest that is exact to √(EI/T) beside spans and radii, and
 //! much cheaper. Where the preset of the cable says which stiffness is likely, the same scene is answered with it, and what the figures

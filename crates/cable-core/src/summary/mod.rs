@@ -1,5 +1,14 @@
-//! What an engineer reads first of an answer: forces and angles at the ends, how much of it lies and hangs, sag, length, the tensions
-//! between which all others are, how much of each limit is used, and whether all forces on it add up to nothing.
+//! A summary holds what an engineer reads first of an answer: forces and angles at the ends, lying
+//! and hanging lengths, sag, the range of tensions, the share of each limit that is used, and the
+//! balance of all forces.
+//!
+//! | room | content |
+//! |---|---|
+//! | `mod.rs` | [`CableSummary`] |
+//! | `shape.rs` | sag, heights, lengths, touchdowns |
+//! | `balance.rs` | the sum of all forces on a cable |
+//! | `stiffness.rs` | change of force per metre that an end is moved |
+//! | `bending.rs` | what neglected bending stiffness would change |
 //!
 //! Everything is read from a scene and an answer, so that it is the same for every model; command line, JSON and window only
 //! write it down. Accuracy is that of the answer's nodes: of a free span they leave its line by 1e-5 of its length at most.
@@ -17,7 +26,7 @@ use crate::math::Vec2;
 use crate::scene::{Cable, Scene, View};
 use crate::solution::{Bend, CableSolution, JudgedBend, Node, Pressure, Solution};
 
-pub use balance::Balance;
+pub use balance::ForceBalance;
 pub use bending::{Bending, NeglectedBending, neglected_bending, settle_with_bending};
 pub use shape::{sag, stretched_length_m};
 pub use stiffness::{EndStiffness, end_stiffness};
@@ -47,9 +56,9 @@ pub struct CableSummary {
     /// supports stand apart.
     pub sag: Option<Sag>,
     /// Its lowest point.
-    pub lowest: Place,
+    pub lowest: CablePlace,
     /// Its highest point.
-    pub highest: Place,
+    pub highest: CablePlace,
     /// The sharpest bend of its line; None = nearly straight.
     pub tightest_bend: Option<Bend>,
     /// The sharpest bend where something leads it, as its bending stiffness lets it; None = nothing leads it round anything.
@@ -61,7 +70,7 @@ pub struct CableSummary {
     /// How much of the friction of its contacts is called upon; None where nothing rubs.
     pub friction: Option<FrictionUse>,
     /// Whether all forces on it add up to nothing; None in a plan view with a floor that rubs, whose force no answer holds.
-    pub balance: Option<Balance>,
+    pub balance: Option<ForceBalance>,
 }
 
 /// What happens at an end.
@@ -83,7 +92,7 @@ pub struct EndForce {
 
 /// A point of the cable.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Place {
+pub struct CablePlace {
     /// Arc length, m.
     pub arc_length_m: f64,
     /// Where it is, m.
@@ -92,7 +101,7 @@ pub struct Place {
     pub y_m: f64,
 }
 
-impl Place {
+impl CablePlace {
     pub(super) fn of(n: &Node) -> Self {
         Self { arc_length_m: n.arc_length_m, x_m: n.x_m, y_m: n.y_m }
     }
@@ -105,7 +114,7 @@ pub struct TensionAt {
     pub tension_n: f64,
     /// Where.
     #[serde(flatten)]
-    pub at: Place,
+    pub at: CablePlace,
 }
 
 /// A depth and its place.
@@ -115,13 +124,13 @@ pub struct Sag {
     pub sag_m: f64,
     /// Where.
     #[serde(flatten)]
-    pub at: Place,
+    pub at: CablePlace,
 }
 
 /// Which side of a touchdown lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Touch {
+pub enum TouchKind {
     /// It lies from here on, along growing arc length.
     Begins,
     /// It lies up to here.
@@ -136,12 +145,12 @@ pub struct Touchdown {
     /// What it touches.
     pub obstacle: String,
     /// Which side lies.
-    pub touch: Touch,
+    pub touch: TouchKind,
     /// Tension there, N.
     pub tension_n: f64,
     /// Where.
     #[serde(flatten)]
-    pub at: Place,
+    pub at: CablePlace,
 }
 
 /// Figures over their limits: 1 = the limit.
@@ -230,7 +239,7 @@ fn thermal_stretch(scene: &Scene, cable: &Cable) -> f64 {
 
 /// The least and the greatest tension; zero without nodes.
 fn tensions(answer: &CableSolution) -> (TensionAt, TensionAt) {
-    let at = |n: &Node| TensionAt { tension_n: n.tension_n, at: Place::of(n) };
+    let at = |n: &Node| TensionAt { tension_n: n.tension_n, at: CablePlace::of(n) };
     let Some(first) = answer.nodes.first().map(at) else { return Default::default() };
     answer.nodes.iter().map(at).fold((first, first), |(least, most), t| {
         (if t.tension_n < least.tension_n { t } else { least }, if t.tension_n > most.tension_n { t } else { most })
@@ -275,7 +284,7 @@ fn leaves([end, next]: [&Node; 2]) -> Option<Vec2> {
 
 /// Contacts whose normal force is below this part of the greatest are not asked how much of their friction they use: both are rounding.
 /// Larger: light contacts that slide are not seen. Smaller: nothing divided by nothing is the greatest share.
-const LEAST_PRESS: f64 = 1e-6;
+const MIN_NORMAL_FRACTION: f64 = 1e-6;
 
 fn friction(scene: &Scene, cable: &Cable, answer: &CableSolution) -> Option<FrictionUse> {
     let coefficient = |name: &str| {
@@ -284,7 +293,7 @@ fn friction(scene: &Scene, cable: &Cable, answer: &CableSolution) -> Option<Fric
     };
     let pressed = answer.contacts.iter().map(|c| c.normal_n).fold(0.0, f64::max);
     let mut out: Option<FrictionUse> = None;
-    for c in answer.contacts.iter().filter(|c| c.normal_n > LEAST_PRESS * pressed) {
+    for c in answer.contacts.iter().filter(|c| c.normal_n > MIN_NORMAL_FRACTION * pressed) {
         let (used, available) = (c.friction_n.abs(), coefficient(&c.obstacle) * c.normal_n);
         if !(available > 0.0) {
             continue;

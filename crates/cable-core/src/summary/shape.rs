@@ -1,6 +1,6 @@
-//! Where the cable is: sag, heights, lengths, touchdowns.
+//! The shape of a cable is summarised by sag, heights, lengths and touchdowns.
 
-use super::{Place, Sag, Touch, Touchdown};
+use super::{CablePlace, Sag, TouchKind, Touchdown};
 use crate::scene::{Cable, SupportKind, View};
 use crate::solution::{CableSolution, ContactReport, Node};
 
@@ -34,7 +34,7 @@ pub fn sag(cable: &Cable, answer: &CableSolution, view: View) -> Option<Sag> {
                 View::Plan => cross.abs() / span,
             };
             if sag_m.is_finite() && best.is_none_or(|b| sag_m > b.sag_m) {
-                best = Some(Sag { sag_m, at: Place::of(n) });
+                best = Some(Sag { sag_m, at: CablePlace::of(n) });
             }
         }
     }
@@ -51,9 +51,9 @@ pub fn stretched_length_m(cable: &CableSolution, thermal_stretch: f64) -> f64 {
 }
 
 /// The lowest and the highest point.
-pub(super) fn heights(answer: &CableSolution) -> (Place, Place) {
-    let Some(first) = answer.nodes.first().map(Place::of) else { return Default::default() };
-    answer.nodes.iter().map(Place::of).fold((first, first), |(low, high), p| {
+pub(super) fn heights(answer: &CableSolution) -> (CablePlace, CablePlace) {
+    let Some(first) = answer.nodes.first().map(CablePlace::of) else { return Default::default() };
+    answer.nodes.iter().map(CablePlace::of).fold((first, first), |(low, high), p| {
         (if p.y_m < low.y_m { p } else { low }, if p.y_m > high.y_m { p } else { high })
     })
 }
@@ -92,35 +92,35 @@ pub(super) fn touchdowns(cable: &Cable, answer: &CableSolution) -> Vec<Touchdown
             let others = contacts.iter().enumerate().filter(|(j, _)| *j != k);
             others.map(|(_, o)| o.extent_m()).any(|[a, b]| b - a > same && a <= s + same && s <= b + same)
         };
-        let mut push = |s: f64, touch: Touch| {
+        let mut push = |s: f64, touch: TouchKind| {
             if let Some((at, tension_n)) = at(&answer.nodes, s) {
                 out.push(Touchdown { obstacle: c.obstacle.clone(), touch, tension_n, at });
             }
         };
         if to - from <= same {
             if !goes_on(from) {
-                push(c.arc_length_m, Touch::Point);
+                push(c.arc_length_m, TouchKind::Point);
             }
             continue;
         }
         if from > same && !goes_on(from) {
-            push(from, Touch::Begins);
+            push(from, TouchKind::Begins);
         }
         if to < cable.length_m - same && !goes_on(to) {
-            push(to, Touch::Ends);
+            push(to, TouchKind::Ends);
         }
     }
     out.sort_by(|a, b| a.at.arc_length_m.total_cmp(&b.at.arc_length_m));
     out
 }
 
-/// Place and tension at a material point (m), on the straight line between two nodes.
-fn at(nodes: &[Node], s: f64) -> Option<(Place, f64)> {
+/// CablePlace and tension at a material point (m), on the straight line between two nodes.
+fn at(nodes: &[Node], s: f64) -> Option<(CablePlace, f64)> {
     let k = nodes.partition_point(|n| n.arc_length_m < s);
     let b = nodes.get(k).or(nodes.last())?;
     let a = k.checked_sub(1).and_then(|k| nodes.get(k)).unwrap_or(b);
     let ds = b.arc_length_m - a.arc_length_m;
     let f = if ds > 0.0 { ((s - a.arc_length_m) / ds).clamp(0.0, 1.0) } else { 0.0 };
     let mix = |of: fn(&Node) -> f64| of(a) + (of(b) - of(a)) * f;
-    Some((Place { arc_length_m: s, x_m: mix(|n| n.x_m), y_m: mix(|n| n.y_m) }, mix(|n| n.tension_n)))
+    Some((CablePlace { arc_length_m: s, x_m: mix(|n| n.x_m), y_m: mix(|n| n.y_m) }, mix(|n| n.tension_n)))
 }

@@ -1,4 +1,4 @@
-//! How stiffly a cable holds its ends: the change of force per metre that an end is moved.
+//! The end stiffness of a cable is the change of force per metre that an end is moved.
 //!
 //! Each end is moved a little right and left, up and down, without inertia and from the place of rest that was found, so that friction
 //! remembers: contacts that hold go on holding, and what slides on one of the ways there makes the figure the mean of two. The
@@ -17,14 +17,14 @@ use crate::simulation::Simulation;
 
 /// The force changes by this part of the greatest tension on the way. Larger: the difference is no longer the derivative (its error is
 /// the square of this); smaller: what the solver leaves unbalanced, 1e-8 of the tension, is seen.
-const CHANGE: f64 = 1e-3;
+const FORCE_CHANGE_FRACTION: f64 = 1e-3;
 /// The first move, which tells how far the others go, in lengths of the cable. Larger: taut ropes of steel are overloaded; smaller: the
 /// answers of the mesh do not change.
-const PROBE: f64 = 1e-7;
+const FIRST_MOVE_FRACTION: f64 = 1e-7;
 /// Longest move, in lengths of the cable: what gives way so easily is not stiff.
-const FARTHEST: f64 = 1e-3;
+const MAX_MOVE_FRACTION: f64 = 1e-3;
 /// Time for a move, s: without inertia any will do.
-const MOVE_S: f64 = 0.01;
+const MOVE_TIME_S: f64 = 0.01;
 
 /// The stiffness of one end.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -63,16 +63,16 @@ pub fn end_stiffness(scene: &Scene, model: Model, settings: Settings) -> Result<
             let moved = |by: Vec2| -> Result<Vec2, Error> {
                 let mut run = rest.clone();
                 run.drag_support(k, support, vec2(at) + by);
-                run.step_quasi_static(MOVE_S)?;
+                run.step_quasi_static(MOVE_TIME_S)?;
                 let answer = run.solution();
                 let reaction = answer.cables.get(k).and_then(|c| c.supports.get(support));
                 Ok(reaction.map_or_else(Vec2::zeros, |r| Vec2::new(r.reaction_x_n, r.reaction_y_n)))
             };
             let difference = |way: Vec2, h: f64| Ok::<_, Error>((moved(way * -h)? - moved(way * h)?) / (2.0 * h));
-            let probe = PROBE * cable.length_m;
+            let probe = FIRST_MOVE_FRACTION * cable.length_m;
             let stiffest = larger(difference(Vec2::x(), probe)?.norm(), difference(Vec2::y(), probe)?.norm());
-            let far = FARTHEST * cable.length_m;
-            let wanted = CHANGE * top / stiffest;
+            let far = MAX_MOVE_FRACTION * cable.length_m;
+            let wanted = FORCE_CHANGE_FRACTION * top / stiffest;
             let h = if wanted < probe {
                 probe
             } else if wanted < far {

@@ -178,8 +178,8 @@ fn a_cable_on_the_floor_lies_between_its_touchdowns() {
     let scene = catalog::slack_to_floor();
     let s = first(&scene, Model::Auto);
     assert!(s.lying_m > 0.0 && s.suspended_m > 0.0, "{s:?}");
-    let places: Vec<(Touch, f64)> = s.touchdowns.iter().map(|t| (t.touch, t.at.arc_length_m)).collect();
-    assert!(matches!(places.first(), Some((Touch::Begins, _))), "{places:?}");
+    let places: Vec<(TouchKind, f64)> = s.touchdowns.iter().map(|t| (t.touch, t.at.arc_length_m)).collect();
+    assert!(matches!(places.first(), Some((TouchKind::Begins, _))), "{places:?}");
 }
 
 #[test]
@@ -264,7 +264,7 @@ fn lying_length_is_that_of_the_union_of_all_contacts() {
     assert!((shape::lying_m(&cable, &answer) - 0.4).abs() < 1e-12);
     let downs = shape::touchdowns(&cable, &answer);
     let seen: Vec<_> = downs.iter().map(|d| (d.obstacle.as_str(), d.touch, d.at.arc_length_m)).collect();
-    assert_eq!(seen, [("c", Touch::Ends, 0.4), ("d", Touch::Point, 0.6)]);
+    assert_eq!(seen, [("c", TouchKind::Ends, 0.4), ("d", TouchKind::Point, 0.6)]);
 }
 
 /// A cable whose preset is known to bend stiffly: what that changes is what the same scene says with the stiffness written down. It is

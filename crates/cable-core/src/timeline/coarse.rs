@@ -1,5 +1,5 @@
-//! The same run on elements twice and three times as long, in steps twice and three times as long, beside it: what the three differ by is what
-//! is said of its errors.
+//! Coarser runs beside a run estimate its errors: the same scene on elements twice and three times
+//! as long, in steps twice and three times as long.
 //!
 //! Bars are of the second order where the cable is free and of the first where it meets things, steps likewise: what two runs differ by, of
 //! which one is twice as fine, is at least what the finer one lacks then (L. F. Richardson and J. A. Gaunt, *The deferred approach to the
@@ -13,11 +13,11 @@ use crate::simulation::Simulation;
 use crate::solution::ErrorEstimates;
 
 /// How many times as long elements and steps are.
-const TIMES: [u64; 2] = [2, 3];
+const COARSENING: [u64; 2] = [2, 3];
 /// Steps after which all runs are at one instant.
-const COMMON: u64 = 6;
+const COMMON_STEPS: u64 = 6;
 /// Part of a time by which a sum of steps may be short of it.
-const ROUNDING: f64 = 1e-9;
+const TENSION_ROUNDING: f64 = 1e-9;
 
 /// A difference is forgotten with this time, s. Less: errors vanish wherever two runs cross; more: what once struck is uncertain long after
 /// it lies still.
@@ -37,9 +37,9 @@ const CONVERGENCE_RATIO: f64 = 0.5;
 const PEAK_FACTORS: [f64; 2] = [3.0, 2.5];
 /// It is no further down and up than this where they are far apart, half as much and 3.7 times: the whip of a flexible cable grows with the mesh. With
 /// [0.6, 1.1] the greatest tensions of 6 in 100 runs are outside, and means of 8; with these of 5, with [0.8, 1.5] no fewer.
-const UNRESOLVED: [f64; 2] = [0.7, 1.3];
+const UNRESOLVED_FACTORS: [f64; 2] = [0.7, 1.3];
 /// Tensions below this part of the greatest so far are none.
-const LEAST_TENSION: f64 = 1e-9;
+const MIN_TENSION_FRACTION: f64 = 1e-9;
 
 /// The coarse runs beside a fine one.
 #[derive(Debug)]
@@ -95,8 +95,8 @@ impl CoarseRuns {
         if inertia != Inertia::Dynamic {
             return None;
         }
-        let mut runs = Vec::with_capacity(TIMES.len());
-        for times in TIMES {
+        let mut runs = Vec::with_capacity(COARSENING.len());
+        for times in COARSENING {
             let mut simulation = fine.resolved(1.0 / times as f64).ok().flatten()?;
             simulation.settle().ok()?;
             let cables = fine.answers().iter().zip(simulation.answers());
@@ -122,7 +122,9 @@ impl CoarseRuns {
             run.follow(fine, self.inertia)?;
         }
         // Sums of steps round.
-        if self.count.is_multiple_of(COMMON) && fine.time_s() - self.window_began_s >= WINDOW_S * (1.0 - ROUNDING) {
+        if self.count.is_multiple_of(COMMON_STEPS)
+            && fine.time_s() - self.window_began_s >= WINDOW_S * (1.0 - TENSION_ROUNDING)
+        {
             self.window_began_s = fine.time_s();
             self.before = (0..self.own.len()).map(|cable| self.ranges(cable)).collect();
             self.own.iter_mut().zip(tops(fine)).for_each(|(own, tops)| own.turn(tops));
@@ -144,7 +146,7 @@ impl CoarseRuns {
 
     fn range(&self, cable: usize, which: usize, before: [f64; 2]) -> [f64; 2] {
         let of = |all: &[RecentPeaks]| all.get(cable).map_or(0.0, |recent| recent.greatest(which));
-        let none = LEAST_TENSION * larger(of(&self.own), before[1]);
+        let none = MIN_TENSION_FRACTION * larger(of(&self.own), before[1]);
         let own = larger(of(&self.own), none);
         let others = self.runs.iter().map(|run| larger(of(&run.recent), none));
         let (least, most) =
@@ -152,7 +154,7 @@ impl CoarseRuns {
         // Of a cable that no run pulls nothing is apart.
         let apart = if own > 0.0 { larger((own / least).ln(), (most / own).ln()) } else { 0.0 };
         // That they converge is not enough: then the greatest tensions of 6 in 100 runs more are outside.
-        let [down, up] = [0, 1].map(|j| smaller(PEAK_FACTORS[j] * apart, UNRESOLVED[j]));
+        let [down, up] = [0, 1].map(|j| smaller(PEAK_FACTORS[j] * apart, UNRESOLVED_FACTORS[j]));
         let here = [own * (-down).exp(), own * up.exp()];
         [larger(before[0], here[0]), larger(before[1], here[1])]
     }

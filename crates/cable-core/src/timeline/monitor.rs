@@ -1,4 +1,5 @@
-//! What is known of a run so far: its greatest tensions, and, from coarser runs beside it, the errors of its figures.
+//! The monitor knows a run so far: its greatest tensions and, from coarser runs beside it, the
+//! errors of its figures.
 
 use super::coarse::CoarseRuns;
 use super::{RunPeaks, TensionRanges};
@@ -65,15 +66,15 @@ impl RunMonitor {
     }
 
     /// Has a simulation say the errors that are known now.
-    pub(super) fn tell_errors(&self, simulation: &mut Simulation) {
+    pub(super) fn set_error_estimates(&self, simulation: &mut Simulation) {
         if let Some(coarse) = &self.coarse {
-            simulation.tell_errors(coarse.errors());
+            simulation.set_error_estimates(coarse.errors());
         }
     }
 
     /// Notes what the last step adds to what is known, and says it.
     fn note(&mut self, simulation: &mut Simulation) {
-        self.tell_errors(simulation);
+        self.set_error_estimates(simulation);
         let mut warnings = Vec::new();
         let cables = simulation.scene().cables.iter().zip(simulation.answers());
         for (k, (run, (cable, answer))) in self.peaks.iter_mut().zip(cables).enumerate() {
@@ -83,7 +84,7 @@ impl RunMonitor {
             let force = answer.errors.max_tension_n.zip(answer.errors.support_force_n).map(|(a, b)| larger(a, b));
             self.worst_n = self.worst_n.zip(force).map(|(a, b)| larger(a, b));
         }
-        simulation.tell(warnings);
+        simulation.set_break_warnings(warnings);
     }
 }
 

@@ -1,15 +1,16 @@
-//! One function a law, over one cable.
+//! Each law of mechanics is one function over one cable.
 //!
 //! With F(s) the internal force, b the load per metre and d the force of obstacles on a piece of cable from s₁ to s₂,
 //! F(s₂) − F(s₁) + b (s₂ − s₁) + Σ P + d = 0, with P the point forces on it. So d follows from what the answer says of the cable alone,
 //! and must be nothing in the air, and within the cone about the normals of what touches the piece elsewhere. Beyond its ends
 //! the cable has no internal force.
 
-use super::supports::{self, Hold, Role};
-use super::surroundings::{Near, Neighbours, Surroundings};
+use super::supports::{self, Role, SupportHold};
+use super::surroundings::{NearestFeature, Neighbours, Surroundings};
 use super::tolerance::{
-    ASIDE, BALANCE, COMPRESSION, CONE, DEPTH_DIAMETERS, DEPTH_M, FOLD, LEAST_STRAIN, LENGTH, LUMPED, MATERIAL, MOMENT,
-    MOMENTUM, REACH_DIAMETERS, REACH_M, REPORTED, SAME_NORMAL, TURN,
+    BALANCE, COMPRESSION, CONE_EXCESS, CONTACT_SHIFT_DIAMETERS, DEPTH_DIAMETERS, DEPTH_M, FOLD_TURN, LENGTH,
+    LUMPED_WEIGHT_TURN, MATERIAL_TOLERANCE, MIN_STRAIN, MOMENT, MOMENTUM, NORMAL_TOLERANCE, REACH_DIAMETERS, REACH_M,
+    REPORTED_BALANCE, TURN,
 };
 use super::{Balance, Depth, Finding, Law, Verification};
 use crate::math::{Vec2, cross, larger, smaller, vec2};
@@ -17,17 +18,17 @@ use crate::scene::{Cable, Scene, View};
 use crate::solution::{CableSolution, ContactReport, Node, SupportReaction};
 
 /// One cable with what there is to know of it.
-pub(super) struct Subject<'a> {
+pub(super) struct CheckedCable<'a> {
     surroundings: &'a Surroundings<'a>,
     scene: &'a Scene,
     pub cable: &'a Cable,
     pub answer: &'a CableSolution,
     /// What its supports do to it.
-    pub holds: Vec<Hold<'a>>,
+    pub holds: Vec<SupportHold<'a>>,
     /// Centre, radius of the centre line and friction of the wheels that lead the cable now.
     pub wheels: Vec<(Vec2, f64, f64)>,
     /// Supports and loads. Wheels are among the obstacles.
-    points: Vec<PointForce>,
+    points: Vec<AppliedForce>,
     /// Weight and wind, N/m.
     body: Vec2,
     /// 1 + αΔT.
@@ -37,14 +38,14 @@ pub(super) struct Subject<'a> {
 }
 
 /// A force on a point of the cable, N.
-struct PointForce {
+struct AppliedForce {
     arc_length: f64,
     force: Vec2,
 }
 
 /// The cable from a node to the next.
 #[derive(Clone, Copy, Debug)]
-struct Bar<'a> {
+struct CheckedBar<'a> {
     /// Index of the first node.
     k: usize,
     from: &'a Node,
@@ -67,14 +68,14 @@ struct Lengths {
 
 /// A piece of the cable between nodes, its ends counted in.
 #[derive(Clone, Debug, Default)]
-struct Piece {
+struct CheckedPiece {
     /// First and last node.
     nodes: [usize; 2],
     /// What obstacles must do to it, N.
     contact: Vec2,
 }
 
-pub(super) fn check(found: &mut Verification, mut subject: Subject<'_>, depth: Depth) {
+pub(super) fn check(found: &mut Verification, mut subject: CheckedCable<'_>, depth: Depth) {
     let (cable, answer) = (subject.cable, subject.answer);
     found.ask(Law::Finite);
     if let Some(finding) = subject.not_finite() {
@@ -110,7 +111,7 @@ pub(super) fn check(found: &mut Verification, mut subject: Subject<'_>, depth: D
     }
 }
 
-impl<'a> Subject<'a> {
+impl<'a> CheckedCable<'a> {
     /// The answer for a cable of a scene at a time, s.
     pub fn new(
         surroundings: &'a Surroundings<'a>,
@@ -127,7 +128,7 @@ impl<'a> Subject<'a> {
         let wind = series(Some(env.wind_n_per_m), &env.wind_times_s, &env.winds_n_per_m, time_s);
         let thermal = 1.0 + cable.thermal_expansion_per_k * env.temperature_change_k;
         let holds = supports::holds(cable, answer, time_s);
-        let led = |hold: &Hold<'_>| match hold.role {
+        let led = |hold: &SupportHold<'_>| match hold.role {
             Role::Wheel { radius } => Some((hold.at, radius, hold.support.friction.unwrap_or(0.0))),
             _ => None,
         };
@@ -137,19 +138,19 @@ impl<'a> Subject<'a> {
     }
 }
 
-impl Subject<'_> {
+impl CheckedCable<'_> {
     /// Greatest of the forces, N.
     pub fn scale(&self) -> f64 {
         self.scale
     }
 
     /// Weight and wind, N/m.
-    pub fn load_per_metre(&self) -> Vec2 {
+    pub(crate) fn load_per_metre(&self) -> Vec2 {
         self.body
     }
 
     /// Where the scene's loads are on the cable, m.
-    pub fn scene_loads(&self) -> Vec<f64> {
+    pub(crate) fn scene_loads(&self) -> Vec<f64> {
         self.scene.loads.iter().filter(|l| l.cable == self.cable.name).map(|l| l.arc_length_m).collect()
     }
 
@@ -204,13 +205,13 @@ impl Subject<'_> {
         let square = self.answer.nodes.iter().map(|n| n.force().norm_squared()).fold(0.0, f64::max);
         let loads = self.points.iter().map(|p| p.force.norm()).fold(0.0, larger);
         let load = self.body.norm() * self.cable.length_m;
-        larger(larger(square.sqrt(), loads), larger(load, LEAST_STRAIN * self.cable.axial_stiffness_n))
+        larger(larger(square.sqrt(), loads), larger(load, MIN_STRAIN * self.cable.axial_stiffness_n))
     }
 
     /// Forces of what is no obstacle of the scene (the cable itself), as they are reported.
-    fn foreign(&self) -> impl Iterator<Item = PointForce> {
+    fn foreign(&self) -> impl Iterator<Item = AppliedForce> {
         let foreign = self.answer.contacts.iter().filter(|c| self.surroundings.find(&c.obstacle).is_none());
-        foreign.flat_map(|c| &c.samples).map(|s| PointForce { arc_length: s.arc_length_m, force: vec2(s.force_n) })
+        foreign.flat_map(|c| &c.samples).map(|s| AppliedForce { arc_length: s.arc_length_m, force: vec2(s.force_n) })
     }
 
     /// Whether the nodes run along the material: without that nothing else can be asked.
@@ -218,7 +219,7 @@ impl Subject<'_> {
         found.ask(Law::Material);
         let before = found.findings.len();
         let nodes = &self.answer.nodes;
-        let limit = MATERIAL * self.cable.length_m;
+        let limit = MATERIAL_TOLERANCE * self.cable.length_m;
         let first = nodes.first().map_or(f64::NAN, |n| n.arc_length_m.abs());
         let last = nodes.last().map_or(f64::NAN, |n| (n.arc_length_m - self.cable.length_m).abs());
         for (node, value) in [(0, first), (nodes.len() - 1, last)] {
@@ -253,7 +254,7 @@ impl Subject<'_> {
         let nodes = &self.answer.nodes;
         // Where the scene itself holds the axis on a surface, the cable is as deep there as it is thick.
         let held = self.held_at();
-        let on_surface = MATERIAL * self.cable.length_m;
+        let on_surface = MATERIAL_TOLERANCE * self.cable.length_m;
         for (k, n) in nodes.iter().enumerate() {
             // From a bar that nothing is near it is as far inside as the node before.
             if k > 0 && near.of(k - 1).is_empty() {
@@ -313,17 +314,17 @@ impl Subject<'_> {
                 }
             };
             tell(Law::Push, -c.normal_n, noise);
-            tell(Law::Friction, c.friction_n.abs() - friction * c.normal_n, CONE * c.normal_n.abs() + noise);
+            tell(Law::Friction, c.friction_n.abs() - friction * c.normal_n, CONE_EXCESS * c.normal_n.abs() + noise);
         }
     }
 
     /// The pieces from node to node. What acts at a node belongs to the piece that ends there, as internal forces are those just
     /// beyond nodes.
-    fn pieces(&self) -> impl Iterator<Item = Piece> {
+    fn pieces(&self) -> impl Iterator<Item = CheckedPiece> {
         let nodes = &self.answer.nodes;
         let last = nodes.len() - 1;
-        let same = MATERIAL * self.cable.length_m;
-        let foreign: Vec<PointForce> = self.foreign().collect();
+        let same = MATERIAL_TOLERANCE * self.cable.length_m;
+        let foreign: Vec<AppliedForce> = self.foreign().collect();
         // The last of the nodes at that material, and never before the first piece.
         let node = |s: f64| nodes.partition_point(|n| n.arc_length_m <= s + same).clamp(2, nodes.len()) - 1;
         let mut known: Vec<_> = self.points.iter().chain(&foreign).map(|p| (node(p.arc_length), p.force)).collect();
@@ -350,7 +351,7 @@ impl Subject<'_> {
             while let Some((_, force)) = known.next_if(|p| p.0 <= to) {
                 contact -= force;
             }
-            let piece = Piece { nodes: [from, to], contact };
+            let piece = CheckedPiece { nodes: [from, to], contact };
             from = to;
             Some(piece)
         })
@@ -388,7 +389,7 @@ impl Subject<'_> {
             }
         }
         sums.residual_n = larger(larger(sums.residual_n, in_air.sqrt()), beyond);
-        let allowed = limit + CONE * pressed;
+        let allowed = limit + CONE_EXCESS * pressed;
         let allowed = if beyond <= allowed { allowed } else { allowed + self.lumped_friction(near) };
         if !(beyond <= allowed) {
             let mut finding = self.finding(Law::Friction, worst.1, (beyond, allowed));
@@ -400,8 +401,8 @@ impl Subject<'_> {
     }
 
     /// What obstacles and the floor would do to a piece beyond what their friction allows, N; None where nothing touches it.
-    fn excess(&self, near: &Neighbours, piece: &Piece, rays: &mut Vec<Vec2>) -> Option<f64> {
-        let within = |n: &Near| {
+    fn excess(&self, near: &Neighbours, piece: &CheckedPiece, rays: &mut Vec<Vec2>) -> Option<f64> {
+        let within = |n: &NearestFeature| {
             let pushes = piece.contact.dot(&n.normal);
             let friction = self.surroundings.friction(n.body, self.cable.friction);
             pushes > 0.0 && cross(n.normal, piece.contact).abs() <= friction * pushes
@@ -421,13 +422,14 @@ impl Subject<'_> {
         let known_here = |c: &&ContactReport| self.surroundings.find(&c.obstacle).is_some();
         let reported: Vec2 = self.answer.contacts.iter().filter(known_here).map(|c| vec2(c.force_n)).sum::<Vec2>()
             + self.foreign().map(|p| p.force).sum::<Vec2>();
-        let led: Vec2 = self.holds.iter().filter(|h| matches!(h.role, Role::Wheel { .. })).map(Hold::force).sum();
+        let led: Vec2 =
+            self.holds.iter().filter(|h| matches!(h.role, Role::Wheel { .. })).map(SupportHold::force).sum();
         let known: Vec2 = self.points.iter().map(|p| p.force).sum();
         let weight = self.body * self.cable.length_m;
         let whole = known + weight + led + reported;
         let off = if self.floor_rubs() { (wheels - led).norm() } else { whole.norm() };
         sums.residual_n = larger(sums.residual_n, off);
-        let limit = if self.answer.contacts.is_empty() { limit } else { REPORTED * self.scale };
+        let limit = if self.answer.contacts.is_empty() { limit } else { REPORTED_BALANCE * self.scale };
         if !(off <= limit) {
             let mut finding = self.finding(Law::Balance, 0, (off, limit));
             "the whole cable".clone_into(&mut finding.with);
@@ -443,7 +445,7 @@ impl Subject<'_> {
 
     /// Forces of supports on the cable that are neither dead loads nor wheels, N.
     fn support_forces(&self) -> Vec2 {
-        self.holds.iter().filter(|h| matches!(h.role, Role::Held | Role::Pulley)).map(Hold::force).sum()
+        self.holds.iter().filter(|h| matches!(h.role, Role::Held | Role::Pulley)).map(SupportHold::force).sum()
     }
 
     /// Whether a floor rubs on the whole cable.
@@ -461,7 +463,7 @@ impl Subject<'_> {
     }
 
     /// What is beyond the floor's friction, too, N.
-    fn floor_excess(&self, piece: &Piece, excess: f64) -> f64 {
+    fn floor_excess(&self, piece: &CheckedPiece, excess: f64) -> f64 {
         if !self.floor_rubs() {
             return excess;
         }
@@ -476,7 +478,7 @@ impl Subject<'_> {
         larger(excess - self.cable.friction * weight * share, 0.0)
     }
 
-    fn on_wheel(&self, piece: &Piece) -> bool {
+    fn on_wheel(&self, piece: &CheckedPiece) -> bool {
         self.wheels.iter().any(|&(center, radius, _)| piece.nodes.iter().any(|&k| self.is_led(k, center, radius)))
     }
 
@@ -486,14 +488,14 @@ impl Subject<'_> {
         let nodes = &self.answer.nodes;
         let last = nodes.len() - 1;
         let mut rays = Vec::new();
-        let of_piece = |piece: Piece| {
+        let of_piece = |piece: CheckedPiece| {
             let [from, to] = [piece.nodes[0].saturating_sub(1), (piece.nodes[1] + 1).min(last)];
             let weight = self.body.norm() * (nodes[to].arc_length_m - nodes[from].arc_length_m);
             let force = larger(nodes[piece.nodes[0]].force().norm(), nodes[piece.nodes[1]].force().norm());
             let turn = if weight < force { weight / force } else { 1.0 };
             if self.rays(near, &piece, &mut rays) { weight * turn } else { 0.0 }
         };
-        LUMPED * self.greatest_friction() * self.pieces().map(of_piece).sum::<f64>()
+        LUMPED_WEIGHT_TURN * self.greatest_friction() * self.pieces().map(of_piece).sum::<f64>()
     }
 
     /// The greatest friction coefficient that the cable may meet.
@@ -503,7 +505,7 @@ impl Subject<'_> {
 
     /// Gathers unit vectors that bound the friction cones of all that touches a piece, its neighbours counted in: a force that is
     /// known at nodes only is known to a node's neighbourhood. Returns whether their normals differ, as at a corner.
-    fn rays(&self, near: &Neighbours, piece: &Piece, out: &mut Vec<Vec2>) -> bool {
+    fn rays(&self, near: &Neighbours, piece: &CheckedPiece, out: &mut Vec<Vec2>) -> bool {
         out.clear();
         let (mut first, mut turns, mut before) = (None, false, (Vec2::zeros(), 0.0));
         let mut add = |normal: Vec2, friction: f64| {
@@ -511,7 +513,7 @@ impl Subject<'_> {
                 return;
             }
             before = (normal, friction);
-            turns |= cross(*first.get_or_insert(normal), normal).abs() > SAME_NORMAL;
+            turns |= cross(*first.get_or_insert(normal), normal).abs() > NORMAL_TOLERANCE;
             let along = Vec2::new(normal.y, -normal.x) * friction;
             let shorten = 1.0 / (1.0 + friction * friction).sqrt();
             for ray in [(normal + along) * shorten, (normal - along) * shorten] {
@@ -545,33 +547,33 @@ impl Subject<'_> {
         }
         if let Some(bar) = before {
             let (k, from, forces) = (bar.k + 1, bar.to, [bar.forces[1]; 2]);
-            self.tension(found, before, &Bar { k, from, forces, length: 0.0, way: Vec2::zeros(), ..bar });
+            self.tension(found, before, &CheckedBar { k, from, forces, length: 0.0, way: Vec2::zeros(), ..bar });
         }
     }
 
     /// From each node to the next.
-    fn bars(&self) -> impl Iterator<Item = Bar<'_>> {
+    fn bars(&self) -> impl Iterator<Item = CheckedBar<'_>> {
         let mut first = self.answer.nodes[0].force().norm();
         self.answer.nodes.windows(2).enumerate().map(move |(k, pair)| {
             let [from, to] = [&pair[0], &pair[1]];
             let forces = [first, to.force().norm()];
             first = forces[1];
-            Bar { k, from, to, length: to.arc_length_m - from.arc_length_m, way: to.at() - from.at(), forces }
+            CheckedBar { k, from, to, length: to.arc_length_m - from.arc_length_m, way: to.at() - from.at(), forces }
         })
     }
 
     /// The tension of a flexible cable is the size of the force in it: at the node between two bars one of those between just before
     /// and just beyond it.
-    fn tension(&self, found: &mut Verification, before: Option<Bar<'_>>, bar: &Bar<'_>) {
+    fn tension(&self, found: &mut Verification, before: Option<CheckedBar<'_>>, bar: &CheckedBar<'_>) {
         let tension = bar.from.tension_n;
-        let limit = REPORTED * self.scale;
+        let limit = REPORTED_BALANCE * self.scale;
         // Most nodes have it from the bar that begins there.
         if (tension - bar.forces[0]).abs() <= limit {
             return;
         }
         // `fem` reads it off the middles of the bars beside a node: half of their weight, or of the floor's friction on them, is in between.
         let beside = bar.length + before.map_or(0.0, |b| b.length);
-        let limit = limit + LUMPED * self.spread_load() * beside;
+        let limit = limit + LUMPED_WEIGHT_TURN * self.spread_load() * beside;
         let after = bar.from.force();
         let before = before.map_or(after, |_| self.force_before(bar.k));
         let most = larger(before.norm(), bar.forces[0]);
@@ -598,9 +600,9 @@ impl Subject<'_> {
     }
 
     /// A flexible cable pulls along its way.
-    fn compression(&self, found: &mut Verification, bar: &Bar<'_>) {
+    fn compression(&self, found: &mut Verification, bar: &CheckedBar<'_>) {
         // Nodes of one material point have no way between them.
-        if bar.length <= MATERIAL * self.cable.length_m {
+        if bar.length <= MATERIAL_TOLERANCE * self.cable.length_m {
             return;
         }
         let pulls = self.forces_at_end(bar).map(|end| (bar.from.force() + end).dot(&bar.way));
@@ -617,18 +619,18 @@ impl Subject<'_> {
     }
 
     /// Internal force at the end of a bar, N: as what touches it is spread along it, and as it is all at the end.
-    fn forces_at_end(&self, bar: &Bar<'_>) -> [Vec2; 2] {
+    fn forces_at_end(&self, bar: &CheckedBar<'_>) -> [Vec2; 2] {
         [bar.to.force(), bar.from.force() - self.body * bar.length]
     }
 
     /// Internal force just before a node that is not the first, as what touches the bar before it is all at its end, N.
-    pub fn force_before(&self, node: usize) -> Vec2 {
+    pub(crate) fn force_before(&self, node: usize) -> Vec2 {
         let [a, b] = [&self.answer.nodes[node - 1], &self.answer.nodes[node]];
         a.force() - self.body * (b.arc_length_m - a.arc_length_m)
     }
 
     /// The way of a bar is what its material and force make of it.
-    fn flexible_length(&self, found: &mut Verification, near: &Neighbours, bar: &Bar<'_>) {
+    fn flexible_length(&self, found: &mut Verification, near: &Neighbours, bar: &CheckedBar<'_>) {
         let touches = self.touches(near, bar.k);
         let [spread, at_end] = self.forces_at_end(bar);
         let spread = self.strained(bar, (spread, bar.forces[1]), touches);
@@ -648,7 +650,7 @@ impl Subject<'_> {
         self.tell_length(found, bar, if off(&at_end) < off(&spread) { at_end } else { spread });
     }
 
-    fn tell_length(&self, found: &mut Verification, bar: &Bar<'_>, lengths: Lengths) {
+    fn tell_length(&self, found: &mut Verification, bar: &CheckedBar<'_>, lengths: Lengths) {
         found.folded_m += lengths.folded;
         if !(lengths.value <= lengths.limit) {
             found.report(self.finding(Law::Length, bar.k, (lengths.value, lengths.limit)));
@@ -657,19 +659,19 @@ impl Subject<'_> {
 
     /// How far a way may be from what it should be by rounding, and beside what touches, m.
     fn length_slack(&self, material: f64, touches: bool) -> f64 {
-        let aside = if touches { ASIDE * self.cable.diameter_m } else { 0.0 };
-        LENGTH * material + MATERIAL * self.cable.length_m + aside
+        let aside = if touches { CONTACT_SHIFT_DIAMETERS * self.cable.diameter_m } else { 0.0 };
+        LENGTH * material + MATERIAL_TOLERANCE * self.cable.length_m + aside
     }
 
     /// How far the way of a bar of a flexible cable, whose internal force is `end` (N) of size `q` (N) at its end, is from what it
     /// should be, and how far it may, m; None where the force has no direction.
     #[inline]
-    fn strained(&self, bar: &Bar<'_>, (end, q): (Vec2, f64), touches: bool) -> Option<(Vec2, f64)> {
+    fn strained(&self, bar: &CheckedBar<'_>, (end, q): (Vec2, f64), touches: bool) -> Option<(Vec2, f64)> {
         let (compliance, start, p) = (1.0 / self.cable.axial_stiffness_n, bar.from.force(), bar.forces[0]);
         let (least, most) = if p < q { (p, q) } else { (q, p) };
         let turn = (end - start).norm_squared() / (least * least);
         // A force no greater than what is let pass unbalanced has no direction, and may be none.
-        if !(turn < FOLD * FOLD && least > BALANCE * self.scale) {
+        if !(turn < FOLD_TURN * FOLD_TURN && least > BALANCE * self.scale) {
             return None;
         }
         // Simpson's rule for ∫ F/|F| (1 + |F|/EA) ds with F linear in s.
@@ -679,13 +681,13 @@ impl Subject<'_> {
             + end * (1.0 / q + compliance);
         let material = self.thermal * bar.length;
         // Weight that a bar carries beyond its straight part turns it by as much.
-        let lumped = if touches { LUMPED * self.weight_beside(bar.k) / most } else { 0.0 };
+        let lumped = if touches { LUMPED_WEIGHT_TURN * self.weight_beside(bar.k) / most } else { 0.0 };
         let limit = self.length_slack(material, touches) + (TURN * turn + lumped) * material;
         Some((bar.way - rates * (material / 6.0), limit))
     }
 
     /// A bar whose force, of size `q` (N) at its end, has no direction: it is no longer than its material.
-    fn folded(&self, bar: &Bar<'_>, q: f64, touches: bool) -> Lengths {
+    fn folded(&self, bar: &CheckedBar<'_>, q: f64, touches: bool) -> Lengths {
         let material = self.thermal * bar.length;
         let stretched = material * (1.0 + larger(bar.forces[0], q) / self.cable.axial_stiffness_n);
         let (way, limit) = (bar.way.norm(), self.length_slack(material, touches));
@@ -706,7 +708,7 @@ impl Subject<'_> {
     }
 
     /// Whether a node is on a wheel.
-    pub fn is_led(&self, node: usize, center: Vec2, radius: f64) -> bool {
+    pub(crate) fn is_led(&self, node: usize, center: Vec2, radius: f64) -> bool {
         let reach = self.reach() - 0.5 * self.cable.diameter_m;
         (self.answer.nodes[node].at() - center).norm() <= radius + reach
     }
@@ -733,7 +735,7 @@ impl Subject<'_> {
     }
 
     /// The way of a bar of a stiff cable is an arc.
-    fn stiff_length(&self, bar: &Bar<'_>) -> Lengths {
+    fn stiff_length(&self, bar: &CheckedBar<'_>) -> Lengths {
         let (a, b) = (bar.from, bar.to);
         let material = self.thermal * bar.length;
         let bend = larger(a.curvature_per_m.abs(), b.curvature_per_m.abs()) * material;
@@ -792,18 +794,18 @@ fn outside_cone(force: Vec2, rays: &[Vec2]) -> f64 {
 }
 
 /// Supports and loads on a cable at a time, s.
-fn point_forces(scene: &Scene, cable: &Cable, holds: &[Hold<'_>], time_s: f64) -> Vec<PointForce> {
+fn point_forces(scene: &Scene, cable: &Cable, holds: &[SupportHold<'_>], time_s: f64) -> Vec<AppliedForce> {
     let held = holds.iter().filter_map(|hold| {
         let force = match hold.role {
             Role::Load => hold.dead_load(scene, time_s),
             Role::Held | Role::Pulley => hold.force(),
             Role::Wheel { .. } | Role::Released => return None,
         };
-        Some(PointForce { arc_length: hold.arc_length, force })
+        Some(AppliedForce { arc_length: hold.arc_length, force })
     });
     let loads = scene.loads.iter().filter(|l| l.cable == cable.name).map(|l| {
         let force = series(l.force_n, &l.times_s, &l.forces_n, time_s);
-        PointForce { arc_length: l.arc_length_m, force }
+        AppliedForce { arc_length: l.arc_length_m, force }
     });
     held.chain(loads).collect()
 }

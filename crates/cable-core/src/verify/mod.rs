@@ -1,4 +1,4 @@
-//! Checks answers against the laws they must obey, from scene and [`Solution`] alone.
+//! The verifier checks answers against the laws they must obey, from scene and [`Solution`] alone.
 //!
 //! | room | what is in it |
 //! |---|---|
@@ -74,7 +74,7 @@ impl Verifier {
         let mut found = Verification::default();
         let surroundings = self.obstacles.at(robot);
         for (cable, answer) in scene.cables.iter().zip(answers) {
-            laws::check(&mut found, laws::Subject::new(&surroundings, scene, cable, answer, time_s), depth);
+            laws::check(&mut found, laws::CheckedCable::new(&surroundings, scene, cable, answer, time_s), depth);
         }
         found
     }

@@ -1,18 +1,18 @@
-//! Friction of eyes and wheels: between the forces before and after one the tension changes by no more than the capstan allows.
+//! The friction of eyes and wheels limits the change of tension beside them: the capstan law.
 //!
 //! With m from −μ to μ, t the way, n out of the wheel and b the load per metre, dT = m T dθ − (b·t + m b·n) ds: from the
 //! tension before a pulley the greatest that friction can make of it follows with m = μ, the least with m = −μ (L. Euler, "Remarques sur
 //! l'effet du frottement dans l'équilibre", Mém. Acad. Berlin 1762, with the weight on the wheel).
 
-use super::laws::Subject;
+use super::laws::CheckedCable;
 use super::supports::Role;
-use super::tolerance::{BALANCE, CONE, MATERIAL, REPORTED};
+use super::tolerance::{BALANCE, CONE_EXCESS, MATERIAL_TOLERANCE, REPORTED_BALANCE};
 use super::{Law, Verification};
 use crate::math::{Vec2, cross, larger};
 use crate::solution::SupportReaction;
 
 /// Part of its radius by which a node may be off a wheel and lie on it: rounding.
-const ON: f64 = 1e-9;
+const WHEEL_TOLERANCE: f64 = 1e-9;
 
 /// A pulley that leads the cable, with what it does.
 struct Led<'a> {
@@ -24,7 +24,7 @@ struct Led<'a> {
     nodes: [usize; 2],
 }
 
-impl Subject<'_> {
+impl CheckedCable<'_> {
     /// Friction of pulleys, and the tensions reported beside them.
     pub fn pulleys(&self, found: &mut Verification) {
         let nodes = &self.answer.nodes;
@@ -39,7 +39,7 @@ impl Subject<'_> {
             let after = nodes[last].force();
             let [least, most] = [-led.friction, led.friction].map(|m| self.passed(&led, before, m));
             let value = larger(after.norm() - most, least - after.norm());
-            let limit = CONE * larger(most, after.norm()) + BALANCE * self.scale();
+            let limit = CONE_EXCESS * larger(most, after.norm()) + BALANCE * self.scale();
             let mut tell = |law: Law, value: f64, limit: f64| {
                 if !(value <= limit) {
                     let mut finding = self.finding(law, first, (value, limit));
@@ -49,14 +49,14 @@ impl Subject<'_> {
             };
             tell(Law::Friction, value, limit);
             // Nodes just off the wheel count as on it: from there to the wheel the cable carries its weight.
-            let on = |k: &usize| led.wheel.is_none_or(|(c, r)| (nodes[*k].at() - c).norm() <= r + ON * r);
+            let on = |k: &usize| led.wheel.is_none_or(|(c, r)| (nodes[*k].at() - c).norm() <= r + WHEEL_TOLERANCE * r);
             let touches = [(first..=last).find(on).unwrap_or(last), (first..=last).rev().find(on).unwrap_or(first)];
             for (told, force, beside) in [
                 (led.reaction.tension_before_n, before, [first - 1, touches[0]]),
                 (led.reaction.tension_after_n, after, [touches[1], last + 1]),
             ] {
                 let [a, b] = beside.map(|k| nodes[k].arc_length_m);
-                let limit = REPORTED * self.scale() + self.load_per_metre().norm() * (b - a);
+                let limit = REPORTED_BALANCE * self.scale() + self.load_per_metre().norm() * (b - a);
                 tell(Law::Tension, told.map_or(0.0, |t| (t - force.norm()).abs()), limit);
             }
         }
@@ -84,7 +84,7 @@ impl Subject<'_> {
     /// Pulleys that lead the cable now, with the nodes on them.
     fn led(&self) -> Vec<Led<'_>> {
         let nodes = &self.answer.nodes;
-        let same = MATERIAL * self.cable.length_m;
+        let same = MATERIAL_TOLERANCE * self.cable.length_m;
         let loads = self.scene_loads();
         let mut out = Vec::new();
         for hold in &self.holds {

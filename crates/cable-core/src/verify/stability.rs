@@ -1,18 +1,18 @@
-//! Whether a stiff cable holds what it pushes with, or bends aside.
+//! The stability law asks whether a stiff cable bears its compression or buckles.
 //!
 //! Turned by η(s), a cable that cannot stretch changes its energy by ½ ∫ (EI η'² + T η²) ds, T the force along it, as long as every
 //! part between two places that are held keeps its chord: two conditions each (R. Levien, "The elastica: a mathematical
 //! history", 2008; J. H. Maddocks, "Stability of nonlinearly elastic rods", Arch. Rational Mech. Anal. 85, 1984). As many directions
 //! as there are conditions may lower the energy without being open to the cable; one more, and it leaves.
 
-use super::laws::Subject;
+use super::laws::CheckedCable;
 use super::supports::Role;
 use super::surroundings::Neighbours;
 use super::{Law, Verification};
 use crate::math::larger;
 use crate::scene::SupportKind;
 
-impl Subject<'_> {
+impl CheckedCable<'_> {
     /// Whether what pushes stays.
     pub fn stability(&self, found: &mut Verification, near: &Neighbours) {
         found.ask(Law::Stability);
@@ -36,7 +36,7 @@ impl Subject<'_> {
                 continue;
             };
             let pulls = [pair[1].force(), self.force_before(k + 1)].map(|end| (pair[0].force() + end).dot(&way) * 0.5);
-            bars.push(Bar {
+            bars.push(CompressedBar {
                 length,
                 pull: larger(pulls[0], pulls[1]),
                 held: self.touches(near, k),
@@ -55,7 +55,7 @@ impl Subject<'_> {
 
 /// A part of the cable between two nodes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bar {
+pub(super) struct CompressedBar {
     /// Material, m.
     pub length: f64,
     /// Force along it, N; negative: it pushes.
@@ -70,7 +70,7 @@ pub(super) struct Bar {
 
 /// The push of the bar that pushes most, N, and how much of that the cable can hold at most; None where it holds all. `ends`: whether
 /// the cable's ends are held in their places.
-pub(super) fn excess(bars: &[Bar], stiffness: f64, ends: [bool; 2]) -> Option<(usize, f64, f64)> {
+pub(super) fn excess(bars: &[CompressedBar], stiffness: f64, ends: [bool; 2]) -> Option<(usize, f64, f64)> {
     let (worst, most) = bars.iter().enumerate().min_by(|a, b| a.1.pull.total_cmp(&b.1.pull))?;
     if !(most.pull < 0.0) || bars.iter().any(|b| !(b.length > 0.0)) {
         return None;
@@ -90,7 +90,7 @@ pub(super) fn excess(bars: &[Bar], stiffness: f64, ends: [bool; 2]) -> Option<(u
 }
 
 /// Two for each part between places that are held.
-fn conditions(bars: &[Bar], ends: [bool; 2]) -> usize {
+fn conditions(bars: &[CompressedBar], ends: [bool; 2]) -> usize {
     let mut count = 0;
     let mut begun = ends[0];
     for (k, bar) in bars.iter().enumerate() {
@@ -109,14 +109,14 @@ fn conditions(bars: &[Bar], ends: [bool; 2]) -> usize {
 }
 
 /// Directions in which the energy falls, with that part of each push: negative pivots of the tridiagonal second variation (Sylvester).
-fn lowered(bars: &[Bar], stiffness: f64, part: f64) -> usize {
+fn lowered(bars: &[CompressedBar], stiffness: f64, part: f64) -> usize {
     let (mut count, mut before) = (0, None);
     for (k, bar) in bars.iter().enumerate() {
         if bar.held {
             before = None;
             continue;
         }
-        let spring = |other: Option<&Bar>| other.map_or(0.0, |o| 2.0 * stiffness / (bar.length + o.length));
+        let spring = |other: Option<&CompressedBar>| other.map_or(0.0, |o| 2.0 * stiffness / (bar.length + o.length));
         let [left, right] = [spring(k.checked_sub(1).and_then(|i| bars.get(i))), spring(bars.get(k + 1))];
         let clamp = |on: bool, beside: f64| if on { 2.0 * stiffness / bar.length } else { beside };
         let pull = if bar.pull < 0.0 { part * bar.pull } else { bar.pull };
@@ -136,8 +136,9 @@ fn lowered(bars: &[Bar], stiffness: f64, part: f64) -> usize {
 mod tests {
     use super::*;
 
-    fn straight(n: usize, length: f64, push: f64, clamped: bool) -> Vec<Bar> {
-        let bar = Bar { length: length / n as f64, pull: -push, held: false, pinned: false, clamped: [false; 2] };
+    fn straight(n: usize, length: f64, push: f64, clamped: bool) -> Vec<CompressedBar> {
+        let bar =
+            CompressedBar { length: length / n as f64, pull: -push, held: false, pinned: false, clamped: [false; 2] };
         let mut bars = vec![bar; n];
         if clamped {
             (bars[0].clamped[0], bars[n - 1].clamped[1]) = (true, true);

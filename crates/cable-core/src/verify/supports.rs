@@ -1,8 +1,8 @@
-//! What supports do to the cable, and whether it is where they hold it.
+//! The laws of supports ask what supports do to the cable, and whether it is where they hold it.
 
-use super::laws::{Subject, series};
+use super::laws::{CheckedCable, series};
 use super::surroundings::distance;
-use super::tolerance::HELD;
+use super::tolerance::SUPPORT_TOLERANCE;
 use super::{Law, Verification};
 use crate::math::{Vec2, larger, smaller};
 use crate::scene::{Cable, Scene, Support, SupportKind, View};
@@ -28,7 +28,7 @@ pub(super) enum Role {
 
 /// A support as the scene gives it and the answer reports it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Hold<'a> {
+pub(super) struct SupportHold<'a> {
     pub support: &'a Support,
     pub role: Role,
     /// Place, m.
@@ -39,7 +39,7 @@ pub(super) struct Hold<'a> {
 }
 
 /// The supports of a cable at a time, s.
-pub(super) fn holds<'a>(cable: &'a Cable, answer: &'a CableSolution, time_s: f64) -> Vec<Hold<'a>> {
+pub(super) fn holds<'a>(cable: &'a Cable, answer: &'a CableSolution, time_s: f64) -> Vec<SupportHold<'a>> {
     let last = cable.supports.len().saturating_sub(1);
     let hold = |(k, (support, reaction)): (usize, (&'a Support, &'a SupportReaction))| {
         let released = support.release_s.is_some_and(|t| time_s >= t - 1e-9);
@@ -55,19 +55,19 @@ pub(super) fn holds<'a>(cable: &'a Cable, answer: &'a CableSolution, time_s: f64
             k if k == last => cable.length_m,
             _ => reaction.arc_length_m,
         };
-        Hold { support, role, at: Vec2::new(reaction.x_m, reaction.y_m), arc_length, reaction }
+        SupportHold { support, role, at: Vec2::new(reaction.x_m, reaction.y_m), arc_length, reaction }
     };
     cable.supports.iter().zip(&answer.supports).enumerate().map(hold).collect()
 }
 
-impl Hold<'_> {
+impl SupportHold<'_> {
     /// Its force on the cable as it is reported, N.
     pub fn force(&self) -> Vec2 {
         -Vec2::new(self.reaction.reaction_x_n, self.reaction.reaction_y_n)
     }
 
     /// What a dead load pulls with, N.
-    pub fn dead_load(&self, scene: &Scene, time_s: f64) -> Vec2 {
+    pub(crate) fn dead_load(&self, scene: &Scene, time_s: f64) -> Vec2 {
         let gravity = match scene.view {
             View::Elevation => Vec2::new(0.0, -scene.environment.gravity_m_per_s2),
             View::Plan => Vec2::zeros(),
@@ -77,12 +77,12 @@ impl Hold<'_> {
     }
 }
 
-impl Subject<'_> {
+impl CheckedCable<'_> {
     /// The cable is where its supports hold it, and runs past its pulleys.
     pub fn supports(&self, found: &mut Verification) {
         found.ask(Law::Support);
         let nodes = &self.answer.nodes;
-        let limit = HELD * self.cable.length_m;
+        let limit = SUPPORT_TOLERANCE * self.cable.length_m;
         for hold in &self.holds {
             let to_bar = |p: &[Node]| distance(hold.at, hold.at, p[0].at(), p[1].at());
             // Most are there where the cable says that it runs past them.

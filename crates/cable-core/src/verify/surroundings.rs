@@ -1,4 +1,5 @@
-//! Obstacles and the robot as the checker sees them: edges and rounds, distances by brute force.
+//! The surroundings are obstacles and robot as the checker sees them: edges and rounds, distances
+//! by brute force.
 //!
 //! Edges are sorted by their left end, so that those in a box are found without looking at all; nothing else is clever.
 
@@ -10,7 +11,7 @@ use crate::scene::{Obstacle, Scene, Shape};
 
 /// An edge of an obstacle, or a round (both ends in its centre).
 #[derive(Clone, Copy, Debug)]
-struct Edge {
+struct SolidEdge {
     from: Vec2,
     to: Vec2,
     /// Distance of the surface from the line or centre, m.
@@ -22,7 +23,7 @@ struct Edge {
     high: Vec2,
 }
 
-impl Edge {
+impl SolidEdge {
     fn new(from: Vec2, to: Vec2, thickness: f64, body: usize) -> Self {
         let around = Vec2::repeat(thickness);
         Self { from, to, thickness, body, low: from.inf(&to) - around, high: from.sup(&to) + around }
@@ -32,7 +33,7 @@ impl Edge {
 /// Edges by their left ends.
 #[derive(Clone, Debug)]
 struct Edges {
-    sorted: Vec<Edge>,
+    sorted: Vec<SolidEdge>,
     /// Greatest reach of an edge and its thickness along x, m: how far left of a box edges that meet it begin.
     widest: f64,
     /// Lower left and upper right corner of the box about them all, m.
@@ -41,7 +42,7 @@ struct Edges {
 }
 
 impl Edges {
-    fn new(mut sorted: Vec<Edge>) -> Self {
+    fn new(mut sorted: Vec<SolidEdge>) -> Self {
         sorted.sort_by(|a, b| a.low.x.total_cmp(&b.low.x));
         let widest = sorted.iter().map(|e| e.high.x - e.low.x).fold(0.0, f64::max);
         let (low, high) = bounds(sorted.iter().flat_map(|e| [e.low, e.high]));
@@ -54,7 +55,7 @@ impl Edges {
     }
 
     /// Those whose boxes meet a box from `low` to `high`, m.
-    fn meeting(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = &Edge> {
+    fn meeting(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = &SolidEdge> {
         let all = if self.apart(low, high) { &[][..] } else { &self.sorted[..] };
         let first = all.partition_point(|e| e.low.x < low.x - self.widest);
         let begun = all[first..].iter().take_while(move |e| e.low.x <= high.x);
@@ -67,7 +68,7 @@ impl Edges {
 pub(super) struct Neighbours {
     /// The first of `all` that belongs to each bar, and their number at the end.
     begins: Vec<usize>,
-    all: Vec<Near>,
+    all: Vec<NearestFeature>,
 }
 
 impl Neighbours {
@@ -92,16 +93,16 @@ impl Neighbours {
     }
 
     /// What is near a bar.
-    pub fn of(&self, bar: usize) -> &[Near] {
+    pub fn of(&self, bar: usize) -> &[NearestFeature] {
         self.between(bar, bar + 1)
     }
 
     /// What is near the bars between two nodes, and near the bar before and the bar after them.
-    pub fn around(&self, from_node: usize, to_node: usize) -> &[Near] {
+    pub fn around(&self, from_node: usize, to_node: usize) -> &[NearestFeature] {
         self.between(from_node.saturating_sub(1), to_node + 1)
     }
 
-    fn between(&self, from: usize, to: usize) -> &[Near] {
+    fn between(&self, from: usize, to: usize) -> &[NearestFeature] {
         let begin = |bar: usize| self.begins.get(bar).copied().unwrap_or(self.all.len());
         if self.all.is_empty() { &[] } else { self.all.get(begin(from)..begin(to)).unwrap_or_default() }
     }
@@ -109,7 +110,7 @@ impl Neighbours {
 
 /// An obstacle.
 #[derive(Clone, Debug)]
-struct Body {
+struct SolidBody {
     name: String,
     /// Its own friction coefficient, where it has one.
     friction: Option<f64>,
@@ -129,7 +130,7 @@ enum Kind {
 
 /// An obstacle near a piece of cable.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Near {
+pub(super) struct NearestFeature {
     /// Index of the obstacle.
     pub body: usize,
     /// Distance of the centre line from the surface, m; 0 where they cross.
@@ -143,7 +144,7 @@ pub(super) struct Near {
 /// The obstacles of a scene, and last of all its robot.
 #[derive(Clone, Debug)]
 pub(super) struct Obstacles {
-    bodies: Vec<Body>,
+    bodies: Vec<SolidBody>,
     /// Of those that stand still.
     edges: Edges,
     outline: Option<Outline>,
@@ -152,10 +153,11 @@ pub(super) struct Obstacles {
 impl Obstacles {
     pub fn new(scene: &Scene) -> Self {
         let mut edges = Vec::new();
-        let mut bodies: Vec<Body> = scene.obstacles.iter().enumerate().map(|(k, o)| body(o, k, &mut edges)).collect();
+        let mut bodies: Vec<SolidBody> =
+            scene.obstacles.iter().enumerate().map(|(k, o)| body(o, k, &mut edges)).collect();
         // A cable rubs on it by its own coefficient.
         let outline = scene.robot_outline(0.0);
-        bodies.extend(outline.as_ref().map(|o| Body { name: o.name.clone(), friction: None, kind: Kind::Inside }));
+        bodies.extend(outline.as_ref().map(|o| SolidBody { name: o.name.clone(), friction: None, kind: Kind::Inside }));
         Self { bodies, edges: Edges::new(edges), outline }
     }
 
@@ -165,7 +167,7 @@ impl Obstacles {
         let edges = self.outline.iter().flat_map(|outline| {
             let body = self.bodies.len() - 1;
             let edges = outline.edges(reported.unwrap_or(outline.placement));
-            edges.map(move |[from, to]| Edge::new(from, to, 0.0, body))
+            edges.map(move |[from, to]| SolidEdge::new(from, to, 0.0, body))
         });
         Surroundings { bodies: &self.bodies, fixed: &self.edges, moving: Edges::new(edges.collect()) }
     }
@@ -174,7 +176,7 @@ impl Obstacles {
 /// What is there at an instant.
 #[derive(Debug)]
 pub(super) struct Surroundings<'a> {
-    bodies: &'a [Body],
+    bodies: &'a [SolidBody],
     fixed: &'a Edges,
     moving: Edges,
 }
@@ -186,7 +188,7 @@ impl Surroundings<'_> {
     }
 
     /// Edges whose boxes meet a box from `low` to `high`, m.
-    fn meeting(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = &Edge> {
+    fn meeting(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = &SolidEdge> {
         self.fixed.meeting(low, high).chain(self.moving.meeting(low, high))
     }
 
@@ -206,12 +208,12 @@ impl Surroundings<'_> {
 
     /// Appends what is within `reach` (m) of the straight line between two points, nearest point by nearest point: for each edge the
     /// nearest points of both, and those seen from the two ends.
-    pub fn near(&self, a: Vec2, b: Vec2, reach: f64, out: &mut Vec<Near>) {
+    pub fn near(&self, a: Vec2, b: Vec2, reach: f64, out: &mut Vec<NearestFeature>) {
         let (low, high) = (a.inf(&b) - Vec2::repeat(reach), a.sup(&b) + Vec2::repeat(reach));
         for e in self.meeting(low, high) {
             let t = e.thickness;
             if crosses(a, b, e.from, e.to) {
-                out.push(Near { body: e.body, distance: -t, normal: Vec2::zeros(), at: crossing(a, b, e) });
+                out.push(NearestFeature { body: e.body, distance: -t, normal: Vec2::zeros(), at: crossing(a, b, e) });
                 continue;
             }
             let far = (reach + t) * (reach + t);
@@ -224,7 +226,7 @@ impl Surroundings<'_> {
                 }
                 let apart = square.sqrt();
                 let normal = if apart > 0.0 { way / apart } else { Vec2::zeros() };
-                out.push(Near { body: e.body, distance: apart - t, normal, at: *p });
+                out.push(NearestFeature { body: e.body, distance: apart - t, normal, at: *p });
             }
         }
     }
@@ -267,7 +269,7 @@ impl Surroundings<'_> {
             _ => false,
         };
         let (body, _) = all.into_iter().find(solid)?;
-        let distance = |e: &Edge| {
+        let distance = |e: &SolidEdge| {
             let q = nearest(p, e.from, e.to);
             (p - q).norm() - e.thickness
         };
@@ -283,12 +285,12 @@ fn bounds(points: impl Iterator<Item = Vec2>) -> (Vec2, Vec2) {
     points.fold(nowhere, |(low, high), p| (low.inf(&p), high.sup(&p)))
 }
 
-fn body(o: &Obstacle, index: usize, edges: &mut Vec<Edge>) -> Body {
+fn body(o: &Obstacle, index: usize, edges: &mut Vec<SolidEdge>) -> SolidBody {
     let mut line = |points: &[[f64; 2]], closed: bool, thickness: f64| {
         let n = points.len();
         for k in 0..if closed { n } else { n.saturating_sub(1) } {
             let (from, to) = (vec2(points[k]), vec2(points[(k + 1) % n]));
-            edges.push(Edge::new(from, to, thickness, index));
+            edges.push(SolidEdge::new(from, to, thickness, index));
         }
     };
     let kind = match &o.shape {
@@ -305,11 +307,11 @@ fn body(o: &Obstacle, index: usize, edges: &mut Vec<Edge>) -> Body {
             Kind::Line
         }
         Shape::Circle { center_m, radius_m } => {
-            edges.push(Edge::new(vec2(*center_m), vec2(*center_m), *radius_m, index));
+            edges.push(SolidEdge::new(vec2(*center_m), vec2(*center_m), *radius_m, index));
             Kind::Line
         }
     };
-    Body { name: o.name.clone(), friction: o.friction, kind }
+    SolidBody { name: o.name.clone(), friction: o.friction, kind }
 }
 
 /// The point of a straight line nearest to another, m.
@@ -331,7 +333,7 @@ fn crosses(a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> bool {
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }
 
-fn crossing(a: Vec2, b: Vec2, e: &Edge) -> Vec2 {
+fn crossing(a: Vec2, b: Vec2, e: &SolidEdge) -> Vec2 {
     let (d, g) = (b - a, e.to - e.from);
     a + d * (cross(e.from - a, g) / cross(d, g))
 }

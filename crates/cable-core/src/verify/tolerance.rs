@@ -1,4 +1,5 @@
-//! Every tolerance of the checker. They are pinned: an answer that fails is wrong or its model coarse, never the tolerance.
+//! Every tolerance of the checker stands here. They are pinned: an answer that fails is wrong or
+//! its model coarse, never the tolerance.
 
 /// Unbalanced force of the whole and of any piece, of the greatest force in the scene. Smaller: the models' own stopping rules
 /// (1e-6 of the whole load for `fem`, over some tens of nodes) are refused; larger: cables that slide away pass (0.3 % were missing).
@@ -6,11 +7,11 @@ pub const BALANCE: f64 = 1e-5;
 
 /// Momentum that came from nowhere in a step, of the greatest impulse. Smaller: what `fem` leaves unbalanced in a step (1e-6 of the whole load at each
 /// node: up to 1.2e-5 was seen in steps of 600 violent scenes) is refused; larger: what one node of a thousand does is not seen.
-pub const MOMENTUM: f64 = 1e-4;
+pub(crate) const MOMENTUM: f64 = 1e-4;
 
 /// Unbalanced moment of a piece, of the greatest moment. A discrete rod balances moments about its nodes exactly, the mean of forces
 /// beside a node is of the second order: 5 % for ten nodes on a bend.
-pub const MOMENT: f64 = 5e-2;
+pub(crate) const MOMENT: f64 = 5e-2;
 
 /// Compression of a flexible cable, of the greatest force: as the balance.
 pub const COMPRESSION: f64 = 1e-5;
@@ -21,46 +22,46 @@ pub const LENGTH: f64 = 1e-6;
 
 /// Part of the square of the turn of the force between two nodes, by which their way may differ from the exact one: straight bars and
 /// linear forces are of the second order with 1/24, arcs with 1/8.
-pub const TURN: f64 = 0.25;
+pub(crate) const TURN: f64 = 0.25;
 
 /// Part of the turn that the weight of a bar and its neighbours makes, by which a bar beside a contact may be off: weight that lies on a round
 /// is carried half by the bar beside it.
-pub const LUMPED: f64 = 0.5;
+pub(crate) const LUMPED_WEIGHT_TURN: f64 = 0.5;
 
 /// Turn of the force between two nodes above which nothing is asked of the direction of their way: the fold of a slack cable.
-pub const FOLD: f64 = 0.5;
+pub(crate) const FOLD_TURN: f64 = 0.5;
 
 /// Depth inside an obstacle, of the diameter …
-pub const DEPTH_DIAMETERS: f64 = 0.02;
+pub(crate) const DEPTH_DIAMETERS: f64 = 0.02;
 /// … and at most this, m (RELIABILITY: what a picture to scale does not show, and less than the cable's own roundness).
 pub const DEPTH_M: f64 = 1e-3;
 
 /// Gap up to which an obstacle may push, of the diameter: barriers push from 1e-4 m off, jackets give way by more.
-pub const REACH_DIAMETERS: f64 = 0.05;
+pub(crate) const REACH_DIAMETERS: f64 = 0.05;
 /// … and at least this, m: the reach of a barrier in motion.
-pub const REACH_M: f64 = 1.2e-3;
+pub(crate) const REACH_M: f64 = 1.2e-3;
 
 /// Friction beyond the cone, of the normal force: contacts of `fem` stop at 1e-4 of their forces.
-pub const CONE: f64 = 1e-3;
+pub(crate) const CONE_EXCESS: f64 = 1e-3;
 
 /// Part of the cable's length by which arc lengths at the ends may miss 0 and the length.
-pub const MATERIAL: f64 = 1e-9;
+pub(crate) const MATERIAL_TOLERANCE: f64 = 1e-9;
 
 /// Turn between two normals from which on the ground turns there, rad: edges that rounding alone tells apart are one.
-pub const SAME_NORMAL: f64 = 1e-6;
+pub(crate) const NORMAL_TOLERANCE: f64 = 1e-6;
 
 /// Strain whose force no residual of a cable without load is smaller than: a cable without weight has no other scale.
-pub const LEAST_STRAIN: f64 = 1e-7;
+pub(crate) const MIN_STRAIN: f64 = 1e-7;
 
 /// What contacts and supports as they are reported, and tensions at nodes where something touches, may leave of the whole, of the greatest force. `fem` lags the normal forces that
 /// friction uses by a round, and its contacts at corners are read off bars beside them: up to 1.8e-3 was seen. That every piece is
 /// balanced by what touches it is asked to [`BALANCE`]. Smaller: slow draws under beams by `fem` are refused; larger: a report that
 /// leaves a contact out passes.
-pub const REPORTED: f64 = 2e-3;
+pub(crate) const REPORTED_BALANCE: f64 = 2e-3;
 
 /// Distance along a bar that touches by which its ends may be elsewhere, of the diameter: a sagging cable leaves a round a little before
 /// or after the straight bar that stands for it.
-pub const ASIDE: f64 = 1e-2;
+pub(crate) const CONTACT_SHIFT_DIAMETERS: f64 = 1e-2;
 
 /// Distance from its support at which a cable is held by it, of the cable's length: what nobody sees.
-pub const HELD: f64 = 1e-6;
+pub(crate) const SUPPORT_TOLERANCE: f64 = 1e-6;

@@ -1,4 +1,4 @@
-//! Bends: how sharp, where, and what leads the cable there.
+//! A bend is judged by how sharp it is, where, and what leads the cable there.
 //!
 //! The tightest bend of an answer is the greatest curvature anywhere on its line, free or led. Where the cable is led round a wheel
 //! or a post its line has the radius of that, round a sharp corner its own radius (the corner's turn per element says only how

@@ -1,4 +1,4 @@
-//! Energy that grows from nowhere: more of it than what moves the cable can have given.
+//! Energy grows from nowhere if a cable gains more of it than what moves the cable can have given.
 //!
 //! With E the kinetic, potential and elastic energy of a cable and W the work of what moves it, friction, impacts and loss only take, so that
 //! E − W never rises. E is read from an answer, and from two of them what W can have been at most between them:
@@ -79,7 +79,7 @@ struct Snapshot {
 
 impl EnergyGrowth {
     /// Follows the energy, and appends a warning where it has grown from nowhere.
-    pub fn update(&mut self, observed: &Observed<'_>, time_s: f64, out: &mut Vec<Warning>) {
+    pub(crate) fn update(&mut self, observed: &Observed<'_>, time_s: f64, out: &mut Vec<Warning>) {
         let (now, forms) = Snapshot::of(observed, time_s);
         let before = self.before.replace(now);
         let Some(now) = &self.before else { return };

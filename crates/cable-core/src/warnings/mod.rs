@@ -1,7 +1,18 @@
-//! What becomes of a cable beyond its shape: limits it exceeds, breaks, bends, slack, tangles, snags, energy from nowhere.
+//! Warnings tell what a cable suffers beyond its shape: limits exceeded, breaks, bends, slack,
+//! tangles, snags, energy from nowhere.
 //!
-//! Each part looks at one answer of one cable ([`CableSolution`]) and says what it finds; [`WarningMonitor`] adds time: since when,
-//! and no flicker. Models know nothing of it, so all of them get it.
+//! | room | content |
+//! |---|---|
+//! | `mod.rs` | [`WarningMonitor`]: warnings that persist |
+//! | `tension.rs` | tension limits, breaks, slack |
+//! | `bend.rs` | bend radii and sidewall pressure |
+//! | `tangle.rs` | loops, curls and wraps |
+//! | `snag.rs` | an obstacle that holds the cable while the pull grows |
+//! | `energy_growth.rs` | energy that nothing has given |
+//!
+//! Each part looks at one answer of one cable ([`CableSolution`]) and reports what it finds;
+//! [`WarningMonitor`] adds time: since when, and no flicker. Models know nothing of it, so all of
+//! them get it.
 
 mod bend;
 mod energy_growth;

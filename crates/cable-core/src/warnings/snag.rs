@@ -1,4 +1,4 @@
-//! SnagDetector: an obstacle that holds the cable fast while it is pulled harder and harder.
+//! A snag is an obstacle that holds the cable fast while it is pulled harder and harder.
 
 use super::Observed;
 use crate::solution::{ContactReport, ContactState, Warning, WarningKind};
@@ -38,7 +38,7 @@ struct StickingContact {
 
 impl SnagDetector {
     /// Follows the contacts, and appends those that have become snags.
-    pub fn update(&mut self, observed: &Observed<'_>, time_s: f64, out: &mut Vec<Warning>) {
+    pub(crate) fn update(&mut self, observed: &Observed<'_>, time_s: f64, out: &mut Vec<Warning>) {
         let near = MATCH_DIAMETERS * observed.problem.cable.diameter_m;
         let mut next = Vec::with_capacity(self.sticking.len());
         for c in observed.answer.contacts.iter().filter(|c| c.state == ContactState::Stick) {

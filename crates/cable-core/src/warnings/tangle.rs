@@ -1,4 +1,4 @@
-//! Tangles: loops, curls and wraps, by the shape of the cable alone.
+//! Tangles are loops, curls and wraps, found by the shape of the cable alone.
 //!
 //! In the plane nobody can tell which strand of a crossing lies on top, so a knot cannot be told from a loop: crossings are
 //! named, knots are not.

@@ -1,4 +1,4 @@
-//! Tension: above what the cable stands, broken, or none.
+//! Tension warnings tell of tension above a limit, of breaks, and of slack.
 
 use crate::breakage::Break;
 use crate::math::Vec2;

@@ -28,8 +28,7 @@ const UNBREAKABLE_N: f64 = 1e15;
 /// A draft of `edit` that goes on where `old` is; None where this kind of draft does not apply or fails.
 pub fn falling(edit: &Edit, old: &Simulation) -> Option<Simulation> {
     // An answer without a mesh is drafted with one: laying the cable anew takes as long however it is asked.
-    let shaped = matches!(old.model(), Model::Fem | Model::Spans);
-    if !shaped || !same_cables(edit, old) || buried(edit, old) {
+    if !old.model().capabilities().long_rests || !same_cables(edit, old) || buried(edit, old) {
         return None;
     }
     let mut settings = edit.settings;
@@ -38,7 +37,7 @@ pub fn falling(edit: &Edit, old: &Simulation) -> Option<Simulation> {
     for cable in &mut scene.cables {
         cable.breaking_tension_n = UNBREAKABLE_N;
     }
-    let mut draft = Simulation::with_settings(scene, Model::Fem, settings).ok()?;
+    let mut draft = Simulation::with_settings(scene, Model::MOST_CAPABLE, settings).ok()?;
     carry(&mut draft, old).ok()?;
     pass(&mut draft).ok()?;
     Some(draft)
@@ -74,7 +73,7 @@ pub fn coarse(edit: &Edit, old: &Simulation) -> Edit {
 /// A simulation in motion with few segments (or with those asked for) that goes on where `old` is; None where it cannot, and for
 /// other models than `fem`, whose frames are short.
 pub fn moving(edit: &Edit, old: &Simulation, coarse: bool) -> Option<Simulation> {
-    if old.model() != Model::Fem || !same_cables(edit, old) {
+    if !old.model().capabilities().long_steps || !same_cables(edit, old) {
         return None;
     }
     let answer = old.solution();
@@ -93,7 +92,7 @@ pub fn moving(edit: &Edit, old: &Simulation, coarse: bool) -> Option<Simulation>
     if coarse {
         settings.segments = Some(SEGMENTS);
     }
-    let mut next = Simulation::with_settings(scene, Model::Fem, settings).ok()?;
+    let mut next = Simulation::with_settings(scene, Model::MOST_CAPABLE, settings).ok()?;
     next.carry(old).ok()?;
     for (cable, support, at) in targets {
         next.drag_support(cable, support, vec2(at));

@@ -526,7 +526,7 @@ impl Engine {
 /// Whether a model that was asked for by name lets time run without inertia: it has none.
 #[must_use]
 pub fn slow(model: Model) -> bool {
-    matches!(model, Model::Catenary | Model::Spans)
+    !model.capabilities().inertia
 }
 
 /// The simulation that moves from where the one stands that `auto` chose for rest, and whether it has come to rest there on its own mesh.

@@ -1,4 +1,4 @@
-//! Where an end of a cable can be taken by a hand or a crane: everywhere in the plane that a way through free space leads to.
+//! This analysis finds where a hand or a crane can take an end of a cable in the free plane.
 //!
 //! From where it is the end is taken outwards from place to place of a grid (`exploration.rs`), each on the shortest way that passes
 //! no obstacle, a coarse grid first and finer ones from its places. Each place goes on from the cable as it was at the one before:
@@ -34,7 +34,7 @@ const REACH_FACTOR: f64 = 1.1;
 
 /// What is asked.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Query {
+pub struct ReachQuery {
     /// The scene.
     pub scene: Scene,
     /// How its cables lie now; None: as the scene lays them.
@@ -104,7 +104,7 @@ impl Area {
 ///
 /// # Errors
 /// The scene is wrong, the support is none that has a place, or its start has no answer.
-pub fn area(query: &Query, mut progress: impl FnMut(&Area, f64) -> ControlFlow<()>) -> Result<Area, Error> {
+pub fn area(query: &ReachQuery, mut progress: impl FnMut(&Area, f64) -> ControlFlow<()>) -> Result<Area, Error> {
     let (mut exploration, laid) = begin(query)?;
     // Ended early, what is known so far is the answer.
     exploration.spread(laid, &mut progress);
@@ -112,7 +112,7 @@ pub fn area(query: &Query, mut progress: impl FnMut(&Area, f64) -> ControlFlow<(
 }
 
 /// The search before its first step, and the cable as it is laid.
-fn begin(query: &Query) -> Result<(Exploration<'_>, Simulation), Error> {
+fn begin(query: &ReachQuery) -> Result<(Exploration<'_>, Simulation), Error> {
     let still = unmanned(&stilled(&query.scene, query.now.as_deref()))?;
     let cable = still.cables.get(query.cable).ok_or_else(|| unsupported("a cable that is not there"))?;
     let start = cable.supports.get(query.support).and_then(|s| s.at_m);

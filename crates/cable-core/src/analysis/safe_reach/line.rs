@@ -1,4 +1,4 @@
-//! Where a robot can go along its ground.
+//! This analysis finds where a robot can go along its ground.
 //!
 //! It is put where its tracks stand, place after place; its outline is an obstacle for its cable. No drive, slope or traction
 //! limits it here: [`crate::robot::Vehicle`] answers whether the robot could pull so hard.
@@ -176,7 +176,7 @@ struct Traverse<'a> {
 }
 
 /// What is heard of the map, and how much farther it went, m.
-type Progress<'a> = &'a mut dyn FnMut(&ReachMap, f64) -> ControlFlow<()>;
+type LineProgress<'a> = &'a mut dyn FnMut(&ReachMap, f64) -> ControlFlow<()>;
 
 impl Traverse<'_> {
     /// Goes from place to place away from the start; stays ready at each for the way back.
@@ -185,7 +185,7 @@ impl Traverse<'_> {
         start: &Simulation,
         (xs, stands): (&[f64], impl Fn(f64) -> Option<Point>),
         map: &mut ReachMap,
-        progress: Progress<'_>,
+        progress: LineProgress<'_>,
     ) -> ControlFlow<(), Vec<VisitedPlace>> {
         let (mut there, mut at) = (start.clone(), map.start_x_m);
         let mut most = Ok(there.largest_n(self.cables.iter().copied()));
@@ -215,7 +215,7 @@ impl Traverse<'_> {
         side: &mut [VisitedPlace],
         stride: usize,
         map: &mut ReachMap,
-        progress: Progress<'_>,
+        progress: LineProgress<'_>,
     ) -> ControlFlow<()> {
         let place = |map: &ReachMap, s: &VisitedPlace| map.places.iter().position(|p| p.at_m == s.at_m);
         // Counted from the farthest one: its way back leads past all others.

@@ -1,4 +1,10 @@
-//! Where the end of a cable can be taken: what the cable pulls there, and on the way there and back.
+//! This analysis finds where the end of a cable can be taken: the tension there, and on the way
+//! there and back.
+//!
+//! | room | content |
+//! |---|---|
+//! | `line.rs` | a robot is led along its ground |
+//! | `area.rs` | an end is taken through the free plane; `area/exploration.rs` visits the places |
 //!
 //! Histories without inertia, with friction: a robot is led along its ground ([`mod@line`]), an end that a hand or a crane moves
 //! through the free plane ([`mod@area`]). From each place it goes back to where it started: a cable that was drawn round an edge on

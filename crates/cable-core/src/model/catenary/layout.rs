@@ -140,12 +140,12 @@ impl Layout {
     }
 
     /// Loads that act at a held material point, where the support takes them, N.
-    pub fn loads_at(&self, arc_length: f64) -> Vec2 {
+    pub(crate) fn loads_at(&self, arc_length: f64) -> Vec2 {
         self.loads.iter().filter(|l| l.arc_length == arc_length).fold(Vec2::zeros(), |sum, l| sum + l.force)
     }
 
     /// Total load between two material points, N.
-    pub fn load_between(&self, from: f64, to: f64) -> Vec2 {
+    pub(crate) fn load_between(&self, from: f64, to: f64) -> Vec2 {
         let inside = self.loads.iter().filter(|l| l.arc_length > from && l.arc_length < to);
         inside.fold(self.weight * (to - from), |sum, l| sum + l.force)
     }

@@ -1,7 +1,7 @@
 //! Bending forces of the chain: see [`crate::energy::bending`]. A pulley bends the cable without a moment of its own.
 
 use crate::energy::Energy;
-use crate::energy::bending::{Bend, ClampBend};
+use crate::energy::bending::{BendingEnergy, ClampBend};
 use crate::math::Vec2;
 use crate::model::mass_spring::MassSpringModel;
 use crate::model::mass_spring::pulleys::pulley::NONE;
@@ -17,9 +17,9 @@ impl MassSpringModel {
     }
 
     /// The bend at an inner node, if it resists.
-    pub(super) fn bend_at(&self, n: usize) -> Option<Bend> {
+    pub(super) fn bend_at(&self, n: usize) -> Option<BendingEnergy> {
         let inner = n > 0 && n + 1 < self.x.len() && self.pulley_at[n] == NONE;
-        inner.then(|| Bend {
+        inner.then(|| BendingEnergy {
             stiffness: self.problem.bending_stiffness,
             length: 0.5 * (self.rest[n - 1] + self.rest[n]),
             from: 0.0,

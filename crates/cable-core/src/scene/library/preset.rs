@@ -1,4 +1,5 @@
-//! Presets of cables, robots and maps from `assets/`, embedded; every number with its source and confidence.
+//! Presets of cables, robots and maps are embedded from `assets/`; every number has its source and
+//! confidence.
 
 use std::sync::OnceLock;
 

@@ -1,4 +1,5 @@
-//! Turns a parsed TOML tree into a scene, keeping the path and the place in the text of whatever is wrong.
+//! The deserialiser turns a parsed TOML tree into a scene and keeps the path and the place in the
+//! text of any fault.
 //!
 //! A serde deserialiser of its own: the one of the `toml` crate names neither the path nor the nearest known
 //! key, and cannot fill what a file leaves out from a preset.
@@ -17,7 +18,7 @@ use toml::de::{DeTable, DeValue};
 use crate::error::SceneFault;
 use crate::scene::preset;
 
-type Node<'a> = Spanned<DeValue<'a>>;
+type TomlNode<'a> = Spanned<DeValue<'a>>;
 
 /// A fault on its way up the tree, gathering its path.
 #[derive(Debug)]
@@ -27,11 +28,11 @@ pub(super) struct Refusal {
     /// Bytes of the text it is about.
     pub(super) span: Option<Range<usize>>,
     /// Path, innermost first.
-    steps: Vec<Step>,
+    steps: Vec<PathStep>,
 }
 
 #[derive(Debug)]
-enum Step {
+enum PathStep {
     Key(String),
     Index(usize),
 }
@@ -41,7 +42,7 @@ impl Refusal {
         Self { fault, span: None, steps: Vec::new() }
     }
 
-    fn inside(mut self, step: Step, span: Range<usize>) -> Self {
+    fn inside(mut self, step: PathStep, span: Range<usize>) -> Self {
         self.steps.push(step);
         self.spanned(span)
     }
@@ -56,12 +57,12 @@ impl Refusal {
         let mut path = String::new();
         for step in self.steps.iter().rev() {
             match step {
-                Step::Key(key) if path.is_empty() => path.push_str(key),
-                Step::Key(key) => {
+                PathStep::Key(key) if path.is_empty() => path.push_str(key),
+                PathStep::Key(key) => {
                     path.push('.');
                     path.push_str(key);
                 }
-                Step::Index(index) => path.push_str(&format!("[{index}]")),
+                PathStep::Index(index) => path.push_str(&format!("[{index}]")),
             }
         }
         path
@@ -116,7 +117,7 @@ impl serde::de::Error for Refusal {
 
     fn missing_field(field: &'static str) -> Self {
         let mut refusal = Self::new(SceneFault::Shape { what: "is missing".to_owned() });
-        refusal.steps.push(Step::Key(field.to_owned()));
+        refusal.steps.push(PathStep::Key(field.to_owned()));
         refusal
     }
 }
@@ -163,7 +164,7 @@ impl<'de> Deserializer<'de> for Document<'de> {
 }
 
 /// A deserialiser over one value.
-struct Value<'a>(&'a Node<'a>);
+struct Value<'a>(&'a TomlNode<'a>);
 
 impl<'de> Deserializer<'de> for Value<'de> {
     type Error = Refusal;
@@ -243,7 +244,7 @@ fn cable_defaults(table: &DeTable<'_>) -> Result<Vec<(&'static str, f64)>, Refus
     let DeValue::String(id) = value.get_ref() else { return Ok(Vec::new()) };
     let Some(preset) = preset::cable_preset(id) else {
         let fault = preset::unknown("cable preset", id, preset::cable_presets().iter().map(|p| p.id));
-        return Err(Refusal::new(fault).inside(Step::Key("preset".to_owned()), value.span()));
+        return Err(Refusal::new(fault).inside(PathStep::Key("preset".to_owned()), value.span()));
     };
     Ok(preset.values().into_iter().filter(|(key, _)| table.get(*key).is_none()).collect())
 }
@@ -282,7 +283,7 @@ impl<'de> VariantAccess<'de> for Word<'_> {
 }
 
 struct Items<'a> {
-    items: &'a [Node<'a>],
+    items: &'a [TomlNode<'a>],
     next: usize,
 }
 
@@ -293,7 +294,7 @@ impl<'de> SeqAccess<'de> for &mut Items<'de> {
         let Some(item) = self.items.get(self.next) else { return Ok(None) };
         let index = self.next;
         self.next += 1;
-        seed.deserialize(Value(item)).map(Some).map_err(|e| e.inside(Step::Index(index), item.span()))
+        seed.deserialize(Value(item)).map(Some).map_err(|e| e.inside(PathStep::Index(index), item.span()))
     }
 
     fn size_hint(&self) -> Option<usize> {
@@ -304,7 +305,7 @@ impl<'de> SeqAccess<'de> for &mut Items<'de> {
 /// The entries of a table, then what a preset adds.
 struct Entries<'a, I> {
     entries: I,
-    value: Option<(&'a str, &'a Node<'a>)>,
+    value: Option<(&'a str, &'a TomlNode<'a>)>,
     defaults: std::vec::IntoIter<(&'static str, f64)>,
     default: f64,
 }
@@ -313,14 +314,14 @@ impl<'a> Entries<'a, ()> {
     fn new(
         table: &'a DeTable<'a>,
         defaults: Vec<(&'static str, f64)>,
-    ) -> Entries<'a, impl Iterator<Item = (&'a Spanned<std::borrow::Cow<'a, str>>, &'a Node<'a>)>> {
+    ) -> Entries<'a, impl Iterator<Item = (&'a Spanned<std::borrow::Cow<'a, str>>, &'a TomlNode<'a>)>> {
         Entries { entries: table.iter(), value: None, defaults: defaults.into_iter(), default: 0.0 }
     }
 }
 
 impl<'de, I> MapAccess<'de> for Entries<'de, I>
 where
-    I: Iterator<Item = (&'de Spanned<std::borrow::Cow<'de, str>>, &'de Node<'de>)>,
+    I: Iterator<Item = (&'de Spanned<std::borrow::Cow<'de, str>>, &'de TomlNode<'de>)>,
 {
     type Error = Refusal;
 
@@ -329,7 +330,7 @@ where
             let name: &'de str = key.get_ref();
             self.value = Some((name, value));
             let word: StrDeserializer<'_, Refusal> = name.into_deserializer();
-            return seed.deserialize(word).map(Some).map_err(|e| e.inside(Step::Key(name.to_owned()), key.span()));
+            return seed.deserialize(word).map(Some).map_err(|e| e.inside(PathStep::Key(name.to_owned()), key.span()));
         }
         let Some((name, value)) = self.defaults.next() else { return Ok(None) };
         self.value = None;
@@ -341,7 +342,7 @@ where
     fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Refusal> {
         match self.value.take() {
             Some((key, value)) => {
-                seed.deserialize(Value(value)).map_err(|e| e.inside(Step::Key(key.to_owned()), value.span()))
+                seed.deserialize(Value(value)).map_err(|e| e.inside(PathStep::Key(key.to_owned()), value.span()))
             }
             None => seed.deserialize(self.default.into_deserializer()),
         }

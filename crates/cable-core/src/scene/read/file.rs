@@ -1,4 +1,4 @@
-//! Scene files: TOML in and out.
+//! Scene files are TOML, read and written here.
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -11,7 +11,7 @@ use crate::scene::{Scene, VERSION, preset};
 
 /// Longest scene text, bytes: about 240 000 terrain points. A hostile one takes a hundred times its size in
 /// memory while it is read (measured: 800 MB for 8 MiB of `1,1,1,…`), an honest one fifty times.
-pub const MAX_TEXT_BYTES: usize = 4 << 20;
+pub(crate) const MAX_TEXT_BYTES: usize = 4 << 20;
 
 impl Scene {
     /// Reads and validates a scene. A byte order mark and CRLF line ends are accepted.

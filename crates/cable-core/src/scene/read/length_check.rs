@@ -1,4 +1,4 @@
-//! Whether a cable is long enough for the straight way through its supports.
+//! A cable is refused if it is too short for the straight way through its supports.
 
 use super::path::Path;
 use super::validate::Checked;

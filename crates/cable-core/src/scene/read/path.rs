@@ -1,4 +1,5 @@
-//! Names places in a scene, such as `cables[0].supports[1].at_m`, without allocating until one is printed.
+//! A path names a place in a scene, such as `cables[0].supports[1].at_m`, and allocates only when
+//! it is printed.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! The range of every number of a scene, with its unit.
+//! Every number of a scene has its range here, with its unit.
 
 /// A range of allowed numbers.
 #[derive(Clone, Copy)]

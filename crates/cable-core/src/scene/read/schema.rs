@@ -1,4 +1,4 @@
-//! The JSON Schema of a scene file.
+//! The JSON Schema describes a scene file.
 
 use serde_json::{Value, json};
 

@@ -1,4 +1,5 @@
-//! Whether a line crosses or touches itself: a terrain or beam that does has no inside and outside.
+//! A terrain or beam is refused if its line crosses or touches itself: it then has no inside and
+//! outside.
 //!
 //! Boxes of ever longer runs of edges form a binary tree; pairs of runs whose boxes lie apart cannot meet. The boxes have
 //! eight sides (x, y, x + y, x − y), so that slanting combs come apart too.
@@ -23,7 +24,7 @@ pub(super) enum SelfTouch {
 /// Least and greatest along x, y, x + y, x − y.
 type Sides = [[f64; 2]; 4];
 
-struct Line<'a> {
+struct EdgeTree<'a> {
     points: &'a [Point],
     edges: usize,
     closed: bool,
@@ -37,10 +38,10 @@ pub(super) fn first_self_touch(points: &[Point], closed: bool) -> Option<SelfTou
     if !closed && (rises(0) || rises(1)) {
         return None;
     }
-    Line::new(points, closed).search()
+    EdgeTree::new(points, closed).search()
 }
 
-impl<'a> Line<'a> {
+impl<'a> EdgeTree<'a> {
     fn new(points: &'a [Point], closed: bool) -> Self {
         let edges = if closed { points.len() } else { points.len().saturating_sub(1) };
         let leaves = edges.div_ceil(LEAF_EDGES).next_power_of_two();
@@ -201,7 +202,7 @@ mod tests {
                 })
                 .collect();
             for closed in [false, true] {
-                let line = Line::new(&points, closed);
+                let line = EdgeTree::new(&points, closed);
                 let any = (0..line.edges).any(|i| (i + 1..line.edges).any(|j| line.edges_meet(i, j)));
                 let found = first_self_touch(&points, closed);
                 assert_eq!(found.is_some(), any, "{points:?}");

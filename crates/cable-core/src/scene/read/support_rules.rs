@@ -1,4 +1,5 @@
-//! Which keys belong to which kind of support, and where along the cable each kind may sit.
+//! The rules of supports say which keys belong to which kind, and where along the cable each kind
+//! may sit.
 
 use super::path::Path;
 use super::range;

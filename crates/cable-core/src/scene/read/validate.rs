@@ -1,4 +1,5 @@
-//! Whether a scene can be solved: every number finite and in range, every name known, every key where it belongs.
+//! A scene is valid if every number is finite and in range, every name known, and every key where
+//! it belongs.
 //!
 //! The ranges are wide: they keep out what is surely a slip or would hurt the program, not what is unusual.
 

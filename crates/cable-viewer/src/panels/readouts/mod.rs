@@ -6,7 +6,7 @@ mod reactions;
 use cable_core::Cable;
 use cable_core::scene::View;
 use cable_core::solution::{CableSolution, ContactState, Node};
-use cable_core::summary::{CableSummary, EndForce, Place, summary};
+use cable_core::summary::{CablePlace, CableSummary, EndForce, summary};
 use cable_core::timeline::{RunPeaks, TensionRanges};
 use egui::{Color32, Grid, ProgressBar, RichText, Ui};
 
@@ -127,7 +127,7 @@ fn place(ui: &mut Ui, label: &str, node: &Node, commands: &mut Vec<Command>) {
 }
 
 /// A place of a summary as what a row's button shows.
-fn node(at: Place) -> Node {
+fn node(at: CablePlace) -> Node {
     Node { arc_length_m: at.arc_length_m, x_m: at.x_m, y_m: at.y_m, ..Node::default() }
 }
 
@@ -207,7 +207,8 @@ fn material(ui: &mut Ui, (cable, solved): (&Cable, &CableSolution), first: &Cabl
             Some((&node, &mut *commands)),
         );
     }
-    let place = |b: cable_core::solution::Bend| node(Place { arc_length_m: b.arc_length_m, x_m: b.x_m, y_m: b.y_m });
+    let place =
+        |b: cable_core::solution::Bend| node(CablePlace { arc_length_m: b.arc_length_m, x_m: b.x_m, y_m: b.y_m });
     let Some(bend) = first.tightest_bend else {
         figure(ui, "Min bend radius", "straight".to_owned(), "No bend anywhere", None);
         return;
@@ -236,7 +237,7 @@ fn material(ui: &mut Ui, (cable, solved): (&Cable, &CableSolution), first: &Cabl
         figure(ui, "  allowed", format!("≥ {}", unit::length(limit)), "The cable's smallest allowed bend radius", None);
     }
     if let (Some(p), Some(ratio)) = (first.sidewall_pressure, first.utilisation.sidewall_pressure_ratio) {
-        let at = node(Place { arc_length_m: p.arc_length_m, x_m: p.x_m, y_m: p.y_m });
+        let at = node(CablePlace { arc_length_m: p.arc_length_m, x_m: p.x_m, y_m: p.y_m });
         let help = "Pressure on what leads it round, of the most it stands";
         figure(ui, "Sidewall pressure", unit::percent(ratio), help, Some((&at, commands)));
     }

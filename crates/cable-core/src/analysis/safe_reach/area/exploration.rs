@@ -1,4 +1,4 @@
-//! Takes an end from place to place, outwards from where it is.
+//! The exploration takes an end from place to place, outwards from where it is.
 //!
 //! On each grid places are reached in the order of how far their way is (E. W. Dijkstra, "A note on two problems in connexion with
 //! graphs", Numerische Mathematik 1, 1959; ways go to the eight neighbours, a diagonal counts 7/5 of a side). The first grid is
@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 use std::rc::Rc;
 
 use super::super::{STEP_S, UNREACHABLE_FACTOR, at_rest};
-use super::{Area, Query};
+use super::{Area, ReachQuery};
 use crate::contact::World;
 use crate::math::{Vec2, larger, vec2};
 use crate::simulation::Simulation;
@@ -66,7 +66,7 @@ struct Reached {
 
 /// A search in progress.
 pub(super) struct Exploration<'a> {
-    pub query: &'a Query,
+    pub query: &'a ReachQuery,
     pub world: World,
     /// The other supports of the cable, m.
     pub holds: Vec<Vec2>,
@@ -88,11 +88,11 @@ pub(super) struct Exploration<'a> {
 }
 
 /// What is heard of it.
-type Progress<'a> = &'a mut dyn FnMut(&Area, f64) -> ControlFlow<()>;
+type AreaProgress<'a> = &'a mut dyn FnMut(&Area, f64) -> ControlFlow<()>;
 
 impl Exploration<'_> {
     /// Goes outwards from the start, grid after grid; what is only guessed from coarser grids is not there in the end.
-    pub fn spread(&mut self, laid: Simulation, progress: Progress<'_>) {
+    pub fn spread(&mut self, laid: Simulation, progress: AreaProgress<'_>) {
         self.free = (0..self.found.most_n.len()).map(|k| self.may(k)).collect();
         let most_n = self.tension_n(&laid);
         self.found.most_n[self.first] = most_n;

@@ -2,13 +2,13 @@ use super::*;
 use crate::scene::catalog;
 use crate::scene::{Obstacle, Shape};
 
-fn look(query: &Query) -> Area {
+fn look(query: &ReachQuery) -> Area {
     area(query, |_, _| ControlFlow::Continue(())).unwrap()
 }
 
-fn query(scene: Scene, corners_m: [Point; 2], spacing_m: f64) -> Query {
+fn query(scene: Scene, corners_m: [Point; 2], spacing_m: f64) -> ReachQuery {
     let support = scene.cables[0].supports.len() - 1;
-    Query { scene, now: None, settings: Settings::default(), cable: 0, support, corners_m, spacing_m, back: false }
+    ReachQuery { scene, now: None, settings: Settings::default(), cable: 0, support, corners_m, spacing_m, back: false }
 }
 
 /// What is known of the place nearest to a point, and where that is.
@@ -89,7 +89,7 @@ fn the_way_back_over_an_edge_pulls_more_than_the_place() {
     scene.obstacles = vec![block("beam", [4.0, 3.0], [4.6, 3.4])];
     scene.cables[0].route_m = vec![[0.0, 5.0], [4.3, 3.7], [9.0, 0.5]];
     let there = query(scene, [[7.5, 0.0], [10.0, 1.6]], 0.5);
-    let both = look(&Query { back: true, ..there.clone() });
+    let both = look(&ReachQuery { back: true, ..there.clone() });
     let there = look(&there);
     let mut more = 0;
     for (out_n, back_n) in there.most_n.iter().zip(&both.most_n) {
@@ -166,14 +166,14 @@ fn it_begins_where_the_cable_lies_now() {
     moved.drag_support(0, 1, vec2([7.5, 2.0]));
     moved.step_quasi_static(1.0).unwrap();
     let now = Some(Arc::new(moved.solution()));
-    let there = Query { now, ..query(scene, [[6.0, 0.0], [10.0, 4.0]], 1.0) };
+    let there = ReachQuery { now, ..query(scene, [[6.0, 0.0], [10.0, 4.0]], 1.0) };
     let found = look(&there);
     assert!((vec2(found.start_m) - vec2([7.5, 2.0])).norm() < 1e-9, "{:?}", found.start_m);
     let (at, n) = place(&found, [7.5, 2.0]);
     assert!((vec2(at) - vec2(found.start_m)).norm() < 1e-9 && (n - moved.largest_n([0])).abs() < 1e-3 * n, "{n}");
     let mut broken = moved.solution();
     broken.cables[0].breaks.push(3);
-    assert!(area(&Query { now: Some(Arc::new(broken)), ..there }, |_, _| ControlFlow::Continue(())).is_err());
+    assert!(area(&ReachQuery { now: Some(Arc::new(broken)), ..there }, |_, _| ControlFlow::Continue(())).is_err());
 }
 
 /// Over heaps of slack finite elements catch on corners: on these two ways they pulled by 16 and 5 kN. None of that is on the map.
@@ -194,11 +194,11 @@ fn ways_over_heaps_of_slack_pull_by_no_more_than_weight() {
 fn what_has_no_place_is_refused_in_words() {
     let there = query(free(), [[7.0, 0.0], [10.0, 2.0]], 0.5);
     for wrong in [
-        Query { cable: 3, ..there.clone() },
-        Query { support: 9, ..there.clone() },
-        Query { spacing_m: 0.0, ..there.clone() },
-        Query { spacing_m: 1e-4, ..there.clone() },
-        Query { corners_m: [[0.0; 2], [f64::NAN; 2]], ..there },
+        ReachQuery { cable: 3, ..there.clone() },
+        ReachQuery { support: 9, ..there.clone() },
+        ReachQuery { spacing_m: 0.0, ..there.clone() },
+        ReachQuery { spacing_m: 1e-4, ..there.clone() },
+        ReachQuery { corners_m: [[0.0; 2], [f64::NAN; 2]], ..there },
     ] {
         assert!(area(&wrong, |_, _| ControlFlow::Continue(())).is_err(), "{wrong:?}");
     }

@@ -13,7 +13,7 @@
 
 use crate::contact::Gap;
 use crate::contact::pairs::Pair;
-use crate::energy::bending::{Bend, ClampBend, turn};
+use crate::energy::bending::{BendingEnergy, ClampBend, turn};
 use crate::energy::{Curvature, Energy};
 use crate::linalg::{BandFactor, BandMatrix};
 use crate::math::{Mat2, Vec2, larger, perp};
@@ -638,7 +638,7 @@ impl<'a> Chain<'a> {
             if self.clamps.iter().any(|c| c.0 == k) {
                 continue;
             }
-            let bend = Bend { stiffness: ei, length: 0.5 * (self.whole[k - 1] + self.whole[k]), from: 0.0 };
+            let bend = BendingEnergy { stiffness: ei, length: 0.5 * (self.whole[k - 1] + self.whole[k]), from: 0.0 };
             let x = [self.x[k - 1], self.x[k], self.x[k + 1]];
             let (g, h) = (bend.gradient(&x), bend.hessian(&x, curvature));
             for i in 0..3 {

@@ -6,7 +6,7 @@
 //! on its support.
 
 use crate::energy::axial::Bar;
-use crate::energy::bending::{Bend, ClampBend, turn};
+use crate::energy::bending::{BendingEnergy, ClampBend, turn};
 use crate::energy::{Curvature, Energy};
 use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH, BandMatrix};
 use crate::math::{Mat2, Vec2};
@@ -299,7 +299,7 @@ impl System {
                 }
             } else if node > 0 && node < rest.len() && bends(mesh, node) {
                 let from = from.map_or(0.0, |x| turn(x[node] - x[node - 1], x[node + 1] - x[node]));
-                let bend = Bend { stiffness, length: 0.5 * (rest[node - 1] + rest[node]), from };
+                let bend = BendingEnergy { stiffness, length: 0.5 * (rest[node - 1] + rest[node]), from };
                 value += self.add_energy(&bend, [node - 1, node, node + 1], x, curvature);
             }
         }
