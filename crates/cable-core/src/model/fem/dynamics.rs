@@ -9,6 +9,7 @@ use super::contact_start::{lay, push_out, way};
 use super::contact_step::Workspace;
 use super::free_step::FreeStep;
 use super::integrate::PULLED;
+use super::loss::Loss;
 use super::motion::{Motion, Saved};
 use super::pace::Pace;
 use super::prepare::{load_scale, tolerance};
@@ -113,6 +114,10 @@ pub struct Dynamics {
     pub(super) loads: Vec<(usize, Series)>,
     pub(super) memory: Memory,
     pub(super) free: FreeStep,
+    /// Loss of taut bars where the cable can touch nothing.
+    pub(super) loss: Loss,
+    /// Room for what a step leaves of each branch.
+    pub(super) decay: Vec<f64>,
     pub(super) sleep: Sleep,
     pub(super) pace: Pace,
     /// Part of its frequency that a vibration may be off by.
@@ -204,6 +209,8 @@ impl Dynamics {
             bar_weight: normal_per_m * even,
             memory: Memory(None),
             free: FreeStep::default(),
+            loss: if mesh.spread.is_lumped() { Loss::default() } else { Loss::of(&problem, even) },
+            decay: Vec::new(),
             sleep: Sleep::default(),
             pace: Pace::new(settings.inner_step_s.unwrap_or(INNER_STEP)),
             tolerance: settings.tolerance,
@@ -281,6 +288,7 @@ impl Dynamics {
         m.w_before.clone_from(&m.w);
         m.s_before.clone_from(&self.mesh.arc_length);
         m.step_before = 0.0;
+        m.branch.clear();
         self.pace.forget();
         self.forget_account();
     }

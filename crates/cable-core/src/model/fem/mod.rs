@@ -31,6 +31,7 @@ mod handover;
 mod hands;
 mod integrate;
 mod layout;
+mod loss;
 mod marks;
 pub mod mass;
 mod mesh_edit;
