@@ -37,6 +37,10 @@ pub struct Problem {
     pub cable_index: usize,
     /// Unstretched length at rest temperature, m.
     pub length: f64,
+    /// Length of the whole cable, m, of whose first axial mode the damping ratio is where loss is viscous.
+    pub damped_length: f64,
+    /// Times of this problem in parts of those of the scene (see `similar`).
+    pub time_scale: f64,
     /// 1 + αΔT.
     pub thermal_stretch: f64,
     /// Mass per metre of arc length, kg/m.
@@ -240,6 +244,7 @@ fn placed(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneEr
         let scaled = scene.scaled(&by);
         if let Some(cable) = scaled.cables.get(index) {
             let mut copy = problem(&scaled, index, cable)?;
+            copy.time_scale = by.time;
             support_clearance::clear_supports(&mut copy)?;
             ground_route::lift_route(&mut copy);
             this.similar = Some((by, Arc::new(copy)));
@@ -307,6 +312,8 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
     Ok(Problem {
         cable_index,
         length: cable.length_m,
+        damped_length: cable.length_m,
+        time_scale: 1.0,
         thermal_stretch: 1.0 + cable.thermal_expansion_per_k * env.temperature_change_k,
         linear_density: cable.linear_density_kg_per_m,
         weight,

@@ -29,15 +29,24 @@ impl Energy {
     }
 }
 
+/// ∫ a b ds between two nodes.
+fn product(a: [f64; 2], b: [f64; 2], ds: f64) -> f64 {
+    ds * (2.0 * a[0] * b[0] + a[0] * b[1] + a[1] * b[0] + 2.0 * a[1] * b[1]) / 6.0
+}
+
 fn element(problem: &Problem, a: &Node, b: &Node) -> Energy {
     let ds = b.arc_length_m - a.arc_length_m;
     let speed = squared(a.vx_m_per_s, b.vx_m_per_s, ds) + squared(a.vy_m_per_s, b.vy_m_per_s, ds);
+    let stretch = squared(a.tension_n, b.tension_n, ds) / problem.axial_stiffness;
+    // Of a spring T ε with ε = T/EA. Relaxation branches pull beside it, and what they hold is at most their pull times the strain.
+    let beside = [a, b].map(|n| n.tension_n / problem.axial_stiffness - n.strain);
+    let relaxed = product([a.tension_n, b.tension_n], beside, ds);
     let height = 0.5 * ds * (a.y_m + b.y_m);
     Energy {
         kinetic_j: 0.5 * problem.linear_density * speed,
         gravity_j: -problem.weight.y * height,
         // Strain by tension is T/EA of a length that temperature has changed.
-        stretch_j: 0.5 * problem.thermal_stretch * squared(a.tension_n, b.tension_n, ds) / problem.axial_stiffness,
+        stretch_j: 0.5 * problem.thermal_stretch * (stretch - relaxed),
         bending_j: 0.5 * problem.bending_stiffness * squared(a.curvature_per_m, b.curvature_per_m, ds),
     }
 }

@@ -26,7 +26,12 @@ pub struct Cable {
     pub bending_stiffness_n_m2: f64,
     /// Outside diameter, m.
     pub diameter_m: f64,
-    /// Material damping, fraction of critical at the cable's first axial mode.
+    /// Material damping in stretching, fraction of critical: half of the loss factor.
+    ///
+    /// `fem` has it at every frequency from 0.1 Hz to the highest of its bars where the cable can touch nothing and slides over nothing. A constant loss
+    /// stiffens with frequency: the axial stiffness is that of slow motion, and grows by three times this ratio from decade to decade beyond 0.1 Hz.
+    /// What is asked beyond 0.1, `fem` where something can be touched, and `mass_spring` have a viscous loss, which is of this ratio at the first axial mode
+    /// of the cable and in proportion to the frequency; a `fem` cable that can touch something has a time constant of at least 1 ms.
     #[serde(default)]
     pub damping_ratio: f64,
     /// Thermal expansion, 1/K.

@@ -14,6 +14,7 @@ use crate::model::fem::newton::step_setup::{load_scale, tolerance};
 use crate::model::fem::obstacle::moving_outline::Rider;
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::friction_state::{ContactSet, SLIDE, Touch, slip_at_rest};
+use crate::model::fem::system::loss::Loss;
 use crate::model::fem::time::bdf2::PULLED;
 use crate::model::fem::time::history::{Motion, Saved};
 use crate::model::fem::time::sleeping::Sleep;
@@ -114,6 +115,10 @@ pub struct Dynamics {
     pub(super) loads: Vec<(usize, Series)>,
     pub(super) memory: Memory,
     pub(super) free: FreeStep,
+    /// Loss of taut bars where the cable can touch nothing.
+    pub(super) loss: Loss,
+    /// Room for what a step leaves of each branch.
+    pub(super) decay: Vec<f64>,
     pub(super) sleep: Sleep,
     pub(super) pace: Pace,
     /// Part of its frequency that a vibration may be off by.
@@ -205,6 +210,8 @@ impl Dynamics {
             bar_weight: normal_per_m * even,
             memory: Memory(None),
             free: FreeStep::default(),
+            loss: if mesh.spread.is_lumped() { Loss::default() } else { Loss::of(&problem, even) },
+            decay: Vec::new(),
             sleep: Sleep::default(),
             pace: Pace::new(settings.inner_step_s.unwrap_or(INNER_STEP)),
             tolerance: settings.tolerance,
@@ -282,6 +289,7 @@ impl Dynamics {
         m.w_before.clone_from(&m.w);
         m.s_before.clone_from(&self.mesh.arc_length);
         m.step_before = 0.0;
+        m.branch.clear();
         self.pace.forget();
         self.forget_account();
     }

@@ -59,6 +59,7 @@ impl Dynamics {
             let mesh = &self.mesh;
             gauged.bars.extend(x.windows(2).enumerate().map(|(e, pair)| {
                 let t = mesh.bar(e).tension((pair[1] - pair[0]).norm());
+                let t = if t > 0.0 { t + self.held_by_branches(e) } else { t };
                 if t < 0.0 && mesh.is_flexible() { 0.0 } else { t }
             }));
         } else {
@@ -134,6 +135,7 @@ fn bar_tension(d: &Dynamics, x: &[Vec2], e: usize) -> f64 {
         let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
         return Weight::of(&d.mesh, e, &path, d.task.body).in_the_middle(t, material, flexible);
     }
+    let t = if t > 0.0 || !flexible { t + d.held_by_branches(e) } else { t };
     if t < 0.0 && flexible { 0.0 } else { t }
 }
 
@@ -320,7 +322,12 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
         while out.last().is_some_and(|l: &Node| l.arc_length_m >= mesh.arc_length[k]) {
             out.pop();
         }
-        out.push(node(mesh.arc_length[k], (x[k], v[k]), t, (curvature_at(mesh, k, x), force)));
+        let node = node(mesh.arc_length[k], (x[k], v[k]), t, (curvature_at(mesh, k, x), force));
+        // Relaxation branches pull beside what the strain makes.
+        let beside = if k == 0 { 0..1 } else { k - 1..if k + 1 < n { k + 1 } else { k } };
+        let count = beside.len() as f64;
+        let branches = beside.map(|e| if tension[e] > 0.0 { d.held_by_branches(e) } else { 0.0 }).sum::<f64>() / count;
+        out.push(Node { strain: node.strain - branches / d.problem.axial_stiffness, ..node });
     }
     out
 }

@@ -177,7 +177,7 @@ fn apart(p: &Problem, slid: &[f64], least: f64) -> Vec<f64> {
 /// ζ_k = ζ·ω_k/ω₁, which for the fastest one is kept between [`MIN_MODE_DAMPING`] and [`MAX_MODE_DAMPING`].
 fn damping_time(p: &Problem, rest: &[f64]) -> f64 {
     let c = (p.axial_stiffness / p.linear_density).sqrt();
-    let first = std::f64::consts::PI / p.length * c;
+    let first = std::f64::consts::PI / p.damped_length * c;
     let shortest = rest.iter().copied().fold(f64::INFINITY, f64::min);
     let fastest = 2.0 * c / shortest;
     let own = 2.0 * p.cable.damping_ratio / first;

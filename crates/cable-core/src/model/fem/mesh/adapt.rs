@@ -163,7 +163,7 @@ impl Dynamics {
         // What a step balances is the pull with its loss.
         let loss = |e: usize, p: f64, l: f64| {
             let ratio = self.task.predicted_length[e] / mesh.rest_length[e];
-            self.task.damping / mesh.rest_length[e] * (p - ratio * l)
+            self.task.damping(e) / mesh.rest_length[e] * (p - ratio * l)
         };
         let tension = [0, 1].map(|j| {
             let t = mesh.axial_stiffness * (path[j].length / rest[j] - 1.0);

@@ -4,7 +4,7 @@
 //! the finer the mesh, the more iterations (6, 18 and 47 a step at 100, 1000 and 10 000 bars). Carried as unknowns, the
 //! pulls Q change only as the linear equations say, and the count stays at 2 to 4:
 //! ```text
-//! mᵢ a² (x − x̃) − f + Σ ± Q t = 0,     Q = k (P − L) + c (P − P̂),     k = EA/L,  c = EA τ a/L
+//! mᵢ a² (x − x̃) − f + Σ ± Q t = 0,     Q = k (P − L) + c (P − P̂),     k = EA/L,  c = EA τ a/L or that of `loss`
 //! [A + Bᵀ(k + c)B] δx = −(residual with Q of the present lengths),     Q ← Q(P) + (k + c) t·δ(x₂ − x₁)
 //! A = m a² + Q/P (I − t tᵀ)
 //! ```
@@ -139,8 +139,8 @@ impl FreeStep {
             let (d, l) = (x[e + 1] - x[e], mesh.rest_length[e]);
             let p = d.norm();
             let elastic = bar_energy::stiffness(mesh, self.taut[e]) / l;
-            let stiffness = elastic + task.damping / l;
-            let now = elastic * (p - l) + task.damping / l * (p - task.predicted_length[e]);
+            let (loss, slope) = task.loss_at((e, self.taut[e] || !mesh.is_flexible()), l, p);
+            let (stiffness, now) = (elastic + slope, elastic * (p - l) + loss);
             let t = if p > 0.0 { d / p } else { Vec2::x() };
             let pull = self.pull[e];
             let off = (now - pull).abs() - ROUNDING * f64::EPSILON * stiffness * x[e].norm();

@@ -26,8 +26,8 @@ pub struct Task {
     pub predicted: Vec<Vec2>,
     /// Of each bar what couples the inertia of its nodes (m a², N/m) and its predicted chord (m); empty: nothing does.
     pub coupling: Vec<(f64, Vec2)>,
-    /// EA τ a, N (0: no damping).
-    pub damping: f64,
+    /// Stiffness of the loss of each bar where it is taut, and where it is slack, N: EA τ a of a viscous one (0: no loss).
+    pub loss: Vec<[f64; 2]>,
     /// EI τ/h, N m² (0: no damping).
     pub bending_damping: f64,
     /// Predicted length of each bar, m.
@@ -65,6 +65,36 @@ pub struct Task {
 }
 
 impl Task {
+    /// What the loss of bar `e` of rest length `l` pulls with at a length `p` (m), and its slope by that, N and N/m: c (P − P̂)/L, and where it
+    /// is slack that of P = L with the slope of a slack bar from there on.
+    #[must_use]
+    pub fn loss_at(&self, (e, taut): (usize, bool), l: f64, p: f64) -> (f64, f64) {
+        let [c, slack] = self.loss.get(e).copied().unwrap_or_default();
+        let late = self.predicted_length[e];
+        if taut || c == slack {
+            (c / l * (p - late), c / l)
+        } else {
+            (c / l * (l - late) + slack / l * (p - l), slack / l)
+        }
+    }
+
+    /// The energy of which that is the slope, J.
+    #[must_use]
+    pub fn loss_energy(&self, (e, taut): (usize, bool), l: f64, p: f64) -> f64 {
+        let [c, slack] = self.loss.get(e).copied().unwrap_or_default();
+        let late = self.predicted_length[e];
+        if taut || c == slack {
+            return 0.5 * (c / l) * (p - late) * (p - late);
+        }
+        (0.5 * c * (l - late) * (l - late) + c * (l - late) * (p - l) + 0.5 * slack * (p - l) * (p - l)) / l
+    }
+
+    /// EA τ a of a bar with a sliding node, N.
+    #[must_use]
+    pub fn damping(&self, e: usize) -> f64 {
+        self.loss.get(e).map_or(0.0, |c| c[0])
+    }
+
     /// Where the iteration begins, m.
     #[must_use]
     pub fn begins(&self) -> &[Vec2] {

@@ -139,7 +139,8 @@ impl Dynamics {
         task.max_move = 2.0 * INNER_STEP * 100.0;
         task.moves = false;
         task.shift = 0.0;
-        task.damping = 0.0;
+        task.loss.clear();
+        task.loss.resize(mesh.rest_length.len(), [0.0; 2]);
         task.bending_damping = 0.0;
         task.most_noise = f64::INFINITY;
         task.inertia.clear();
@@ -357,9 +358,11 @@ pub(in crate::model::fem) fn tolerance(problem: &Problem, whole: f64) -> f64 {
     (TOLERANCE * whole).max(rounding)
 }
 
+/// Time constant of viscous loss, s: that of the damping ratio at the first axial mode of the whole cable, and where it `rubs` no less than
+/// [`MATERIAL_DAMPING`]. Taut bars of a cable that can touch nothing have relaxation branches in its place (`loss`).
 pub(in crate::model::fem) fn damping_time(problem: &Problem, rubs: bool) -> f64 {
     let wave = (problem.axial_stiffness / problem.linear_density).sqrt();
-    let first_mode = std::f64::consts::PI * wave / problem.length;
+    let first_mode = std::f64::consts::PI * wave / problem.damped_length;
     let own = 2.0 * problem.cable.damping_ratio / first_mode;
     if rubs { MATERIAL_DAMPING.max(own) } else { own }
 }

@@ -8,7 +8,8 @@
 //! At a node that moves with the material P depends on where the node is; at a sliding node L depends on its slide.
 //! The weight of the bar acts at the centroid c of its way (`weight.rs`), so a change δL of the material adds −b·(c − x₀) δL, with x₀
 //! the sliding node it came through.
-//! Damping with time constant τ is a second bar of stiffness EA τ a whose strain is measured from the one predicted.
+//! Viscous loss with time constant τ is a second bar of stiffness EA τ a whose strain is measured from the one predicted; so is that of
+//! relaxation branches in a taut bar (`loss.rs`).
 
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
@@ -47,7 +48,7 @@ pub fn pull_at_slide((mesh, task): (&Mesh, &Task), e: usize, j: usize, x: &[Vec2
     let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
     let strain = p / l - 1.0;
     let ratio = task.predicted_length[e] / mesh.rest_length[e];
-    let loss = task.damping / mesh.rest_length[e] * (p - ratio * l) * ratio;
+    let loss = task.damping(e) / mesh.rest_length[e] * (p - ratio * l) * ratio;
     let tension = stiffness(mesh, !(strain < 0.0)) * strain;
     mesh.thermal_stretch * (tension * (1.0 + 0.5 * strain) + loss) + lifted((mesh, task.body), (e, j), x)
 }
@@ -58,7 +59,7 @@ pub fn pull_on((mesh, task): (&Mesh, &Task), e: usize, x: &[Vec2], slide: &[f64]
     let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
     let strain = p / l - 1.0;
     let ratio = task.predicted_length[e] / mesh.rest_length[e];
-    stiffness(mesh, !(strain < 0.0)) * strain + task.damping / mesh.rest_length[e] * (p - ratio * l)
+    stiffness(mesh, !(strain < 0.0)) * strain + task.damping(e) / mesh.rest_length[e] * (p - ratio * l)
 }
 
 /// What it takes to lift the weight from the centroid of a bar to its start (`j` 0) or end (1), N.
@@ -72,8 +73,8 @@ pub fn lifted((mesh, body): (&Mesh, Vec2), (e, j): (usize, usize), x: &[Vec2]) -
 pub fn pull(mesh: &Mesh, task: &Task, (e, taut): (usize, bool), p: f64) -> (f64, f64) {
     let l = mesh.rest_length[e];
     let stiffness = stiffness(mesh, taut);
-    let c = task.damping / l;
-    (stiffness * (p / l - 1.0) + c * (p - task.predicted_length[e]), stiffness / l + c)
+    let (loss, slope) = task.loss_at((e, taut || !mesh.is_flexible()), l, p);
+    (stiffness * (p / l - 1.0) + loss, stiffness / l + slope)
 }
 
 /// Adds the bar `e`; returns its energy and the size of what was summed (its rounding counted in), J. The stiffness across
@@ -93,9 +94,9 @@ pub fn add(
     let t = if p > 0.0 { d / p } else { Vec2::x() };
     let taut = carried.map_or(!(p < l), |c| c.taut);
     let stiffness = stiffness(mesh, taut) / l;
-    let c = task.damping / l;
-    let late = p - task.predicted_length[e];
-    let pull = stiffness * (p - l) + c * late;
+    let lossy = (e, taut || !mesh.is_flexible());
+    let (loss, c) = task.loss_at(lossy, l, p);
+    let pull = stiffness * (p - l) + loss;
     let across = carried.map_or(pull, |c| c.pull);
     let clip = curvature == Curvature::Clipped && across < 0.0;
     let geometric = if p > 0.0 && !clip { scale * across / p } else { 0.0 };
@@ -103,7 +104,7 @@ pub fn add(
     s.add_gradient(e, -t * (pull * scale));
     s.add_gradient(e + 1, t * (pull * scale));
     s.hessian.add_spring(2 * e, [along * t.x * t.x + geometric, along * t.x * t.y, along * t.y * t.y + geometric]);
-    let energy = 0.5 * scale * (stiffness * (p - l) * (p - l) + c * late * late);
+    let energy = 0.5 * scale * (stiffness * (p - l) * (p - l) + 2.0 * task.loss_energy(lossy, l, p));
     // In a hurry nobody asks how well the energy is known.
     let rounding = if carried.is_some() { 0.0 } else { scale * ROUNDED * pull.abs() * pose.x[e].norm() };
     (energy, energy + rounding)
@@ -123,7 +124,7 @@ fn add_sliding(
     let stiffness = stiffness(mesh, !(strain < 0.0));
     let tension = stiffness * strain;
     // Damping: ½ c (P − p̂ L)², c = EA τ a/L₀, p̂ the predicted ratio P/L.
-    let c = task.damping / mesh.rest_length[e];
+    let c = task.damping(e) / mesh.rest_length[e];
     let ratio = task.predicted_length[e] / mesh.rest_length[e];
     let late = p - ratio * l;
     let pull = tension + c * late;

@@ -6,5 +6,6 @@ pub(in crate::model::fem) mod bar_weight;
 pub(in crate::model::fem) mod contact_energy;
 pub(in crate::model::fem) mod floor_friction;
 pub mod friction_state;
+pub(in crate::model::fem) mod loss;
 pub mod mass;
 pub(in crate::model::fem) mod self_contact;

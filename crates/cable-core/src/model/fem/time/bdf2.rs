@@ -213,6 +213,7 @@ impl Dynamics {
         self.note_balanced(&pose);
         let given = self.forces_in_step(&pose);
         let slid = self.sliding_momentum();
+        self.relax_branches(h, &pose.x);
         self.contacts.commit(&self.problem, &self.mesh, &pose.x, &self.motion.x, &pose.slide);
         let (m, mesh) = (&mut self.motion, &self.mesh);
         for k in 0..pose.x.len() {
@@ -402,7 +403,7 @@ impl Dynamics {
         }
         task.moves = true;
         let (rate, time) = (if jumps { 1.0 / h } else { a }, damping_time(&self.problem, rubs));
-        task.damping = self.problem.axial_stiffness * time * rate;
+        task.loss.fill([self.problem.axial_stiffness * time * rate; 2]);
         task.bending_damping = mesh.bending_stiffness * time / h;
         for e in 0..mesh.rest_length.len() {
             task.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
@@ -413,6 +414,7 @@ impl Dynamics {
                 length(&m.x) * now - length(&m.x_before) * past + older
             };
         }
+        self.add_branches(h, rate);
     }
 
     /// The present pose.

@@ -20,6 +20,8 @@ pub(in crate::model::fem) struct Motion {
     pub(in crate::model::fem) v_older: Vec<Vec2>,
     /// Arc length at sliding nodes one step ago, m.
     pub(in crate::model::fem) s_before: Vec<f64>,
+    /// What the relaxation branches of each bar pull with, one bar after the other, N; empty: nothing (see `loss`).
+    pub(in crate::model::fem) branch: Vec<f64>,
     /// Rate of the arc length at sliding nodes, m/s.
     pub(in crate::model::fem) w: Vec<f64>,
     pub(in crate::model::fem) w_before: Vec<f64>,
@@ -40,8 +42,11 @@ pub(in crate::model::fem) struct Motion {
 impl Motion {
     /// Becomes a copy without new memory where there is room.
     pub(in crate::model::fem) fn copy_from(&mut self, other: &Self) {
-        let Self { x, v, x_before, v_before, x_older, v_older, s_before, w, w_before, followers, hands, .. } = other;
+        let Self {
+            x, v, x_before, v_before, x_older, v_older, s_before, w, w_before, followers, hands, branch, ..
+        } = other;
         self.x.clone_from(x);
+        self.branch.clone_from(branch);
         self.v.clone_from(v);
         self.x_before.clone_from(x_before);
         self.v_before.clone_from(v_before);
