@@ -9,16 +9,16 @@ use crate::model::fem::equilibrium::initial_guess::{lay, push_out, way};
 use crate::model::fem::mesh::sliding_node::Seat;
 use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::newton::mixed_free::FreeStep;
-use crate::model::fem::newton::step_input::{Done, Failure, Pose, Task};
+use crate::model::fem::newton::step_input::{Converged, Failure, Pose, StepInput};
 use crate::model::fem::newton::step_setup::{load_scale, tolerance};
-use crate::model::fem::obstacle::moving_outline::Rider;
+use crate::model::fem::obstacle::moving_outline::MovingOutline;
 use crate::model::fem::system::assembly::Mesh;
-use crate::model::fem::system::friction_state::{ContactSet, SLIDE, Touch, slip_at_rest};
+use crate::model::fem::system::friction_state::{ContactPair, ContactSet, SLIDE, slip_at_rest};
 use crate::model::fem::system::loss::Loss;
 use crate::model::fem::time::bdf2::PULLED;
-use crate::model::fem::time::history::{Motion, Saved};
+use crate::model::fem::time::history::{Checkpoint, Motion};
 use crate::model::fem::time::sleeping::Sleep;
-use crate::model::fem::time::step_size::Pace;
+use crate::model::fem::time::step_size::StepSizeController;
 use crate::model::fem::touches_nothing;
 use crate::model::gauge::TensionGauge;
 use crate::model::input_filter::held_warning;
@@ -92,11 +92,11 @@ pub struct Dynamics {
     pub(super) problem: Arc<Problem>,
     pub(super) mesh: Mesh,
     pub(super) contacts: ContactSet,
-    pub(super) task: Task,
+    pub(super) task: StepInput,
     /// Force of the cable on each node that is held, N.
     pub(super) reaction: Vec<Vec2>,
     pub(super) motion: Motion,
-    pub(super) saved: Option<Box<Saved>>,
+    pub(super) saved: Option<Box<Checkpoint>>,
     pub(super) can_restore: bool,
     /// Memory of the pose of a step.
     pub(super) pose: Pose,
@@ -120,7 +120,7 @@ pub struct Dynamics {
     /// Room for what a step leaves of each branch.
     pub(super) decay: Vec<f64>,
     pub(super) sleep: Sleep,
-    pub(super) pace: Pace,
+    pub(super) pace: StepSizeController,
     /// Part of its frequency that a vibration may be off by.
     pub(super) tolerance: f64,
     /// Fastest hand, m/s.
@@ -143,11 +143,11 @@ pub struct Dynamics {
     /// Room for where hands draw supports in a part of a step.
     aims: Vec<Option<Vec2>>,
     /// The outline of the robot, if there is one.
-    pub(super) rider: Option<Rider>,
+    pub(super) rider: Option<MovingOutline>,
     /// Tension after the last step, on the mesh that it balanced.
     pub(super) gauged: Gauged,
     /// Room for the contacts among which corners are looked for.
-    pub(super) touches: Vec<Touch>,
+    pub(super) touches: Vec<ContactPair>,
 }
 
 impl Dynamics {
@@ -156,7 +156,7 @@ impl Dynamics {
     /// # Errors
     /// None today: what it cannot do is refused when asked for.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
-        let (rider, problem) = Rider::of(problem);
+        let (rider, problem) = MovingOutline::of(problem);
         let way = way(&problem);
         let segments = segments(&problem, settings);
         let even = problem.length / segments as f64;
@@ -180,7 +180,7 @@ impl Dynamics {
         let loads = problem.loads.iter().filter_map(|l| Some((mesh.node_at(l.arc_length)?, l.force.clone()))).collect();
         let (normal_per_m, whole) = load_scale(&problem);
         let barrier = Barrier { reach: REACH, stiffness: STIFFNESS * normal_per_m * even };
-        let task = Task { tolerance: tolerance(&problem, whole), ..Task::default() };
+        let task = StepInput { tolerance: tolerance(&problem, whole), ..StepInput::default() };
         let mut this = Self {
             contacts: ContactSet::new(barrier, SLIDE, n),
             reaction: vec![Vec2::zeros(); n],
@@ -213,7 +213,7 @@ impl Dynamics {
             loss: if mesh.spread.is_lumped() { Loss::default() } else { Loss::of(&problem, even) },
             decay: Vec::new(),
             sleep: Sleep::default(),
-            pace: Pace::new(settings.inner_step_s.unwrap_or(INNER_STEP)),
+            pace: StepSizeController::new(settings.inner_step_s.unwrap_or(INNER_STEP)),
             tolerance: settings.tolerance,
             hand_speed: settings.hand_speed_m_per_s,
             hand_stiffness: settings.hand_stiffness_n_per_m,
@@ -345,7 +345,7 @@ impl Dynamics {
         if inertia == Inertia::Dynamic && self.sleeps_until(end, dragged) {
             self.motion.time = end;
             gauge.stay(end);
-            return Ok(self.report(Done::default(), 0, 0.0));
+            return Ok(self.report(Converged::default(), 0, 0.0));
         }
         if inertia == Inertia::Dynamic && self.motion.step_before == 0.0 && self.meets_nothing() {
             self.open_folds();
@@ -355,10 +355,10 @@ impl Dynamics {
             Inertia::QuasiStatic => self.pieces(end, dragged),
         };
         let h = dt_s / pieces;
-        let (mut total, mut halved) = (Done::default(), 0);
+        let (mut total, mut halved) = (Converged::default(), 0);
         for _ in 0..pieces as usize {
             let done = self.halving((h, end), (inertia, dragged), &mut halved, gauge)?;
-            total = Done { iterations: total.iterations + done.iterations, ..done };
+            total = Converged { iterations: total.iterations + done.iterations, ..done };
         }
         self.motion.time = end;
         if inertia == Inertia::Dynamic {
@@ -412,9 +412,9 @@ impl Dynamics {
         (inertia, dragged): (Inertia, &[Option<Vec2>]),
         halved: &mut usize,
         gauge: &mut TensionGauge,
-    ) -> Result<Done, SolveError> {
+    ) -> Result<Converged, SolveError> {
         let (mut left, mut size, mut depth) = (h, h, 0);
-        let mut total = Done::default();
+        let mut total = Converged::default();
         // What was left when a motion without history began.
         let mut began = None;
         loop {
@@ -450,7 +450,7 @@ impl Dynamics {
             let finite = self.motion.x.iter().chain(&self.motion.v).all(|p| p.iter().all(|c| c.is_finite()));
             match tried {
                 Ok(done) if finite => {
-                    total = Done { iterations: total.iterations + done.iterations, ..done };
+                    total = Converged { iterations: total.iterations + done.iterations, ..done };
                     if inertia == Inertia::Dynamic {
                         gauge.note(to, &self.gauged.arc_length, |k| self.gauged.tension[k]);
                         gauge.keep();
@@ -509,7 +509,7 @@ impl Dynamics {
         self.problem.place(arc_length, at, self.motion.time)
     }
 
-    pub(super) fn report(&self, done: Done, halved_steps: usize, inner_step_s: f64) -> StepReport {
+    pub(super) fn report(&self, done: Converged, halved_steps: usize, inner_step_s: f64) -> StepReport {
         let cost = Cost { iterations: done.iterations, halved_steps, residual_n: done.residual, inner_step_s };
         let node_of = |k: usize| {
             let seat = Seat::Pulley(k);

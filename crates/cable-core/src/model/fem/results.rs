@@ -6,13 +6,13 @@ use crate::math::{Vec2, bounded, larger, perp, smaller};
 use crate::model::arc_nodes;
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::arc_nodes::SMALL;
-use crate::model::fem::mesh::sliding_node::{Balanced, Load, Seat, Sliding};
+use crate::model::fem::mesh::sliding_node::{Balanced, Load, Seat, SlidingNode};
 use crate::model::fem::mesh::tangent_path::angle_between;
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::floor_friction::OverRound;
-use crate::model::fem::system::friction_state::{ContactSet, Rub, Touch};
+use crate::model::fem::system::friction_state::{ContactPair, ContactSet, FrictionContact};
 use crate::problem::Problem;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
@@ -104,7 +104,7 @@ impl Dynamics {
             let lying = if radius > 0.0 { 0.5 * mesh.bending_stiffness / (radius * radius) } else { point };
             take(if lying < point { lying } else { point }, k);
         }
-        let mut touches: Vec<Touch> = Vec::new();
+        let mut touches: Vec<ContactPair> = Vec::new();
         self.contacts.find(&self.problem, mesh, x, &mut touches);
         for t in touches.iter().filter(|t| !t.on_segment && t.node > 0 && t.node + 1 < mesh.nodes()) {
             let bend = turn(mesh.path(t.node - 1, x).direction, mesh.path(t.node, x).direction);
@@ -246,7 +246,7 @@ pub(in crate::model::fem) fn unbalanced(d: &Dynamics, x: &[Vec2], time_s: f64) -
         |s: f64| problem.supports.iter().any(|p| p.arc_length.is_some_and(|a| (a - s).abs() <= 1e-9 * problem.length));
     let loads: Vec2 = problem.loads.iter().filter(|l| !at_support(l.arc_length)).map(|l| l.force.at(time_s)).sum();
     let mut sum = problem.body_force(time_s) * problem.length + hung + loads;
-    let mut touches: Vec<Touch> = Vec::new();
+    let mut touches: Vec<ContactPair> = Vec::new();
     d.contacts.find(problem, &d.mesh, x, &mut touches);
     for touch in &touches {
         sum += touch.pair.gap.normal * touch.load(&d.contacts.barrier);
@@ -271,7 +271,7 @@ pub(in crate::model::fem) fn unbalanced(d: &Dynamics, x: &[Vec2], time_s: f64) -
 }
 
 /// Friction force on the cable, N.
-pub(in crate::model::fem) fn rub_force(contacts: &ContactSet, rub: &Rub, x: &[Vec2]) -> Vec2 {
+pub(in crate::model::fem) fn rub_force(contacts: &ContactSet, rub: &FrictionContact, x: &[Vec2]) -> Vec2 {
     -rub.tangent * friction::at(rub.sliding(x), rub.limit, contacts.slip).1
 }
 
@@ -360,7 +360,7 @@ struct OnRound {
 
 /// The cable round a corner, post or pulley, from where it meets the round, or from halfway to the sliding node before, to where it
 /// leaves it, or halfway to the next. Its tension is that of its weight, and beyond that grows evenly in its logarithm, as friction makes it.
-fn on_round(d: &Dynamics, (k, node, load): (usize, &Sliding, &Load), x: &[Vec2], tension: &[f64]) -> Vec<OnRound> {
+fn on_round(d: &Dynamics, (k, node, load): (usize, &SlidingNode, &Load), x: &[Vec2], tension: &[f64]) -> Vec<OnRound> {
     let mesh = &d.mesh;
     let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
     let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(node)));
@@ -577,14 +577,14 @@ fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<
 
 /// One report for each stretch of neighbouring contacts with one obstacle.
 fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64], lain: &[Option<Lain>; 2]) -> Vec<ContactReport> {
-    let mut touches: Vec<Touch> = Vec::new();
+    let mut touches: Vec<ContactPair> = Vec::new();
     d.contacts.find(&d.problem, &d.mesh, x, &mut touches);
     let mut obstacles: Vec<usize> = touches.iter().map(|t| t.pair.gap.obstacle).collect();
     obstacles.sort_unstable();
     obstacles.dedup();
     let mut out = Vec::new();
     for obstacle in obstacles {
-        let mut stretch: Vec<Touch> = Vec::new();
+        let mut stretch: Vec<ContactPair> = Vec::new();
         for t in touches.iter().filter(|t| t.pair.gap.obstacle == obstacle) {
             if stretch.last().is_some_and(|l| t.node > l.node + 1) {
                 out.push(report(d, x, (tension, lain), &stretch));
@@ -691,7 +691,12 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
     }
 }
 
-fn report(d: &Dynamics, x: &[Vec2], (tension, lain): (&[f64], &[Option<Lain>; 2]), stretch: &[Touch]) -> ContactReport {
+fn report(
+    d: &Dynamics,
+    x: &[Vec2],
+    (tension, lain): (&[f64], &[Option<Lain>; 2]),
+    stretch: &[ContactPair],
+) -> ContactReport {
     let (Some(first), Some(last)) = (stretch.first(), stretch.last()) else {
         return ContactReport::default();
     };
@@ -701,7 +706,7 @@ fn report(d: &Dynamics, x: &[Vec2], (tension, lain): (&[f64], &[Option<Lain>; 2]
     let (mut normal, mut normal_n, mut friction_n) = (Vec2::zeros(), 0.0, 0.0);
     // What presses on a node that stays where it is, over a round or as an end that lies, is of that round, or of the end.
     let stays = |k: usize| d.mesh.sliding[k].is_some() || lain.iter().flatten().any(|l| l.node == k);
-    let part = |t: &Touch| {
+    let part = |t: &ContactPair| {
         let [a, b] = t.shares();
         (if stays(t.node) { 0.0 } else { a }) + (if b != 0.0 && !stays(t.node + 1) { b } else { 0.0 })
     };
@@ -724,7 +729,7 @@ fn report(d: &Dynamics, x: &[Vec2], (tension, lain): (&[f64], &[Option<Lain>; 2]
     }
     let limit: f64 = stretch.iter().map(|t| t.load(&d.contacts.barrier) * t.pair.gap.friction).sum();
     let (a, b) = (first.interpolate(x), last.interpolate(x));
-    let arc = |t: &Touch| {
+    let arc = |t: &ContactPair| {
         let s = &d.mesh.arc_length;
         s[t.node] + if t.on_segment { t.pair.gap.fraction * (s[t.node + 1] - s[t.node]) } else { 0.0 }
     };
@@ -752,7 +757,7 @@ fn report(d: &Dynamics, x: &[Vec2], (tension, lain): (&[f64], &[Option<Lain>; 2]
         ends_m: arc(last),
         ..ContactReport::default()
     };
-    let press = |t: &Touch| t.pair.gap.normal * (t.load(&d.contacts.barrier) * part(t));
+    let press = |t: &ContactPair| t.pair.gap.normal * (t.load(&d.contacts.barrier) * part(t));
     let mut samples: Vec<ContactSample> = stretch.iter().map(|t| ContactSample::new(arc(t), press(t))).collect();
     for rub in rubs {
         samples.push(ContactSample::new(arc(&rub.touch), rub_force(&d.contacts, rub, x) * part(&rub.touch)));

@@ -44,8 +44,8 @@ use crate::scene::SupportKind;
 use crate::solution::ErrorEstimates;
 use crate::solution::{CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
-use dynamics::rollback::Kept;
-use equilibrium::error_estimate::Beside;
+use dynamics::rollback::Rollback;
+use equilibrium::error_estimate::ErrorEstimator;
 use pulleys::pulley::Pulley;
 
 /// The model's mechanics of one cable.
@@ -111,9 +111,9 @@ pub struct MassSpringModel {
     settings: Settings,
     /// Fastest any support has moved, m/s.
     driven: f64,
-    kept: Kept,
+    kept: Rollback,
     /// Who goes on beside it to tell its errors, and what they are.
-    beside: Beside,
+    beside: ErrorEstimator,
     /// What became of the momentum since the caller's step began.
     account: dynamics::momentum::Account,
     errors: ErrorEstimates,

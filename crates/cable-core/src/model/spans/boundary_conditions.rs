@@ -10,14 +10,14 @@ use crate::model::Model;
 use crate::model::catenary::layout::hint_of_weight;
 use crate::model::spans::boundary::capstan::Law;
 use crate::model::spans::boundary::curve::Curve;
-use crate::model::spans::failure::Trouble;
-use crate::model::spans::run::{Course, Strand, Tie};
+use crate::model::spans::failure::Failure;
+use crate::model::spans::run::{CableRun, Course, Tie};
 use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 
 /// Supports, loads and temperature at an instant; two of them can be mixed.
 #[derive(Debug, Default, PartialEq)]
-pub(in crate::model::spans) struct Instant {
+pub(in crate::model::spans) struct BoundaryConditions {
     /// Place of each support, m (unused where it has none).
     pub places: Vec<Vec2>,
     /// Load per metre, N/m.
@@ -172,7 +172,7 @@ impl Layout {
     }
 
     /// What is given at a time, with supports dragged by hand where they are.
-    pub fn instant(&self, dragged: &[Option<Vec2>], time_s: f64, out: &mut Instant) {
+    pub fn instant(&self, dragged: &[Option<Vec2>], time_s: f64, out: &mut BoundaryConditions) {
         let p = &self.problem;
         let gravity = if p.linear_density > 0.0 { p.weight / p.linear_density } else { Vec2::zeros() };
         let place = |(k, s): (usize, &crate::problem::SupportPoint)| {
@@ -195,7 +195,7 @@ impl Layout {
     }
 
     /// The course at an instant; the boundaries are those of `self.curves()`.
-    pub fn course(&self, curves: Vec<Curve>, instant: &Instant) -> Course {
+    pub fn course(&self, curves: Vec<Curve>, instant: &BoundaryConditions) -> Course {
         let loads = self.loads.iter().map(|l| PointForce { arc_length: l.arc_length, force: Vec2::zeros() });
         let law = Law::new(instant.load, instant.thermal, self.problem.axial_stiffness);
         let mut course = Course {
@@ -210,7 +210,7 @@ impl Layout {
     }
 
     /// Takes the numbers of an instant into a course.
-    pub fn give(&self, course: &mut Course, instant: &Instant) {
+    pub fn give(&self, course: &mut Course, instant: &BoundaryConditions) {
         course.law.load = instant.load;
         course.law.thermal = instant.thermal;
         for (l, force) in course.loads.iter_mut().zip(&instant.forces) {
@@ -235,13 +235,13 @@ impl Layout {
     }
 
     /// Dead force on an end of the cable, N.
-    pub fn end_force(&self, instant: &Instant, at: f64) -> Vec2 {
+    pub fn end_force(&self, instant: &BoundaryConditions, at: f64) -> Vec2 {
         let here = self.loads.iter().zip(&instant.forces).filter(|(l, _)| l.arc_length == at);
         here.fold(Vec2::zeros(), |sum, (_, f)| sum + f)
     }
 }
 
-impl Clone for Instant {
+impl Clone for BoundaryConditions {
     fn clone(&self) -> Self {
         Self { places: self.places.clone(), forces: self.forces.clone(), ..*self }
     }
@@ -254,7 +254,7 @@ impl Clone for Instant {
     }
 }
 
-impl Instant {
+impl BoundaryConditions {
     /// Becomes part f of the way from `from` to `to`.
     pub fn between(&mut self, from: &Self, to: &Self, f: f64) {
         self.clone_from(to);
@@ -281,10 +281,10 @@ impl Instant {
 pub(in crate::model::spans) fn place_ends(
     layout: &Layout,
     index: usize,
-    strand: &mut Strand,
+    strand: &mut CableRun,
     course: &Course,
-    instant: &Instant,
-) -> Result<(), Trouble> {
+    instant: &BoundaryConditions,
+) -> Result<(), Failure> {
     let part = &layout.strands[index];
     for side in 0..2 {
         let Some(support) = part.supports[side] else {
@@ -297,7 +297,7 @@ pub(in crate::model::spans) fn place_ends(
         let world = &layout.problem.world;
         let gap = world.signed_gap(at, layout.problem.radius).map(|g| g.gap_m);
         if gap.is_some_and(|g| g < -crate::model::spans::changes::ON) {
-            return Err(Trouble::SupportInside { at });
+            return Err(Failure::SupportInside { at });
         }
         crate::model::spans::contact::support_contact::place(strand, course, side, at);
     }

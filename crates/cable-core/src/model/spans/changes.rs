@@ -8,19 +8,19 @@ use crate::contact::swept_corners::{self, Corner};
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, perp, smaller};
 use crate::model::spans::boundary::capstan::Track;
-use crate::model::spans::boundary::curve::{Curve, Home};
-use crate::model::spans::contact::friction_memory::{Ends, History, Knot, Mode};
+use crate::model::spans::boundary::curve::{ChainRange, Curve};
+use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
 use crate::model::spans::contact::kink_load;
 use crate::model::spans::contact::load_landing;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::release_below;
 use crate::model::spans::contact::slack_pocket;
-use crate::model::spans::failure::Trouble;
+use crate::model::spans::failure::Failure;
 use crate::model::spans::newton;
 use crate::model::spans::newton::{Solved, Work};
-use crate::model::spans::run::{Contact, Course, Strand, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Tie};
 use crate::model::spans::verify::penetration;
-use crate::model::spans::verify::penetration::Hit;
+use crate::model::spans::verify::penetration::Penetration;
 use crate::model::spans::verify::tunnelling;
 
 /// Events in one solve at most. A cold start over 24 corners takes 60.
@@ -49,12 +49,12 @@ pub(in crate::model::spans) const ON: f64 = 1e-9;
 ///
 /// `came`: the shape it comes from, of a rest that is sought far away; what lies between is met.
 pub(in crate::model::spans) fn solve(
-    strand: &mut Strand,
+    strand: &mut CableRun,
     course: &mut Course,
     (world, corners): (&World, &[Corner]),
     came: Option<&[Vec2]>,
     work: &mut Work,
-) -> Result<Solved, Trouble> {
+) -> Result<Solved, Failure> {
     let (mut sum, mut caught) = (Solved::default(), 0);
     for _ in 0..MAX_EVENTS {
         point_load::join(strand, course)?;
@@ -70,10 +70,10 @@ pub(in crate::model::spans) fn solve(
                     continue;
                 }
                 if let Some(support) = lifted(strand, course) {
-                    return Err(Trouble::OffWheel { support });
+                    return Err(Failure::OffWheel { support });
                 }
                 let s = strand.material(stall.at).0;
-                return Err(Trouble::Stalled { iterations: sum.iterations, residual: stall.residual, s });
+                return Err(Failure::Stalled { iterations: sum.iterations, residual: stall.residual, s });
             }
         };
         sum.iterations += found.iterations;
@@ -92,14 +92,14 @@ pub(in crate::model::spans) fn solve(
             || meet(strand, course, world, came.is_some())?;
         if !changed {
             // What else holds the cable may press it on to its wheel again: it is off when nothing else changes.
-            return lifted(strand, course).map_or(Ok(sum), |support| Err(Trouble::OffWheel { support }));
+            return lifted(strand, course).map_or(Ok(sum), |support| Err(Failure::OffWheel { support }));
         }
     }
-    Err(Trouble::Restless { s: strand.from })
+    Err(Failure::Restless { s: strand.from })
 }
 
 /// R: lets go of what no longer presses.
-fn release(strand: &mut Strand, course: &mut Course) -> Result<bool, Trouble> {
+fn release(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> {
     let turned = |c: &Contact| c.ends.p[1] - c.ends.p[0];
     let worst = (0..strand.contacts.len())
         .filter(|&j| !is_round_wheel(&strand.contacts[j], course))
@@ -114,7 +114,7 @@ fn is_round_wheel(c: &Contact, course: &Course) -> bool {
 }
 
 /// The wheel that the cable has turned round on most: it would have to pull there.
-fn lifted(strand: &Strand, course: &Course) -> Option<usize> {
+fn lifted(strand: &CableRun, course: &Course) -> Option<usize> {
     let wheels = strand.contacts.iter().filter(|c| is_round_wheel(c, course));
     let turned = |c: &&Contact| c.ends.p[1] - c.ends.p[0];
     wheels.min_by(|a, b| turned(a).total_cmp(&turned(b))).filter(|c| turned(c) < -TURNED)?.wheel
@@ -122,7 +122,7 @@ fn lifted(strand: &Strand, course: &Course) -> Option<usize> {
 
 /// S: lets go of what has shrunk to next to nothing beside a load, whose weight a span that turned round past it would count;
 /// whether there was any.
-fn shed(strand: &mut Strand, course: &mut Course) -> Result<bool, Trouble> {
+fn shed(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> {
     let least = SHED * (strand.to - strand.from);
     let small = |c: &Contact| !c.weight && c.ends.s[1] - c.ends.s[0] < least;
     let beside = |j: usize| strand.is_joined(j, 0) || strand.is_joined(j, 1);
@@ -132,10 +132,10 @@ fn shed(strand: &mut Strand, course: &mut Course) -> Result<bool, Trouble> {
     let_go(strand, course, j)
 }
 
-fn let_go(strand: &mut Strand, course: &mut Course, j: usize) -> Result<bool, Trouble> {
+fn let_go(strand: &mut CableRun, course: &mut Course, j: usize) -> Result<bool, Failure> {
     if let Some(support) = strand.contacts[j].wheel {
         if is_round_wheel(&strand.contacts[j], course) {
-            return Err(Trouble::OffWheel { support });
+            return Err(Failure::OffWheel { support });
         }
         turn_eye(&mut strand.contacts[j]);
         return Ok(true);
@@ -151,7 +151,7 @@ fn let_go(strand: &mut Strand, course: &mut Course, j: usize) -> Result<bool, Tr
         let (k, other) = if contact.joined { (j + 1, j) } else { (j, j + 1) };
         let ends = (other == 0 && !strand.ties[0].has_span()) || (other > m && !strand.ties[1].has_span());
         if ends {
-            return Err(Trouble::LoadLies { s: contact.ends.s[0] });
+            return Err(Failure::LoadLies { s: contact.ends.s[0] });
         }
         strand.forces.remove(k);
         resolve(strand, course, j);
@@ -180,7 +180,7 @@ fn let_go(strand: &mut Strand, course: &mut Course, j: usize) -> Result<bool, Tr
 }
 
 /// The force of a span that has changed.
-pub(in crate::model::spans) fn resolve(strand: &mut Strand, course: &Course, k: usize) {
+pub(in crate::model::spans) fn resolve(strand: &mut CableRun, course: &Course, k: usize) {
     if let Some(g) = strand.solve_span(course, k) {
         strand.forces[k] = g;
     }
@@ -195,7 +195,7 @@ fn turn_eye(c: &mut Contact) {
     let knot = |k: usize| Knot { p: c.ends.p[k], s, tension: c.ends.t[k], m: 0.0 };
     // Nothing is left between: it holds what it has.
     let held = c.history.knots().first().map_or(s, |k| k.s);
-    c.history = History::new(Knot { s: held, ..knot(0) }, Knot { s: held, ..knot(1) });
+    c.history = TensionProfile::new(Knot { s: held, ..knot(0) }, Knot { s: held, ..knot(1) });
     if let Mode::Slide(m) = c.mode
         && m != 0.0
     {
@@ -204,7 +204,7 @@ fn turn_eye(c: &mut Contact) {
 }
 
 /// M: two contacts of one chain, one after the other, are one.
-fn join(strand: &mut Strand, course: &Course) -> bool {
+fn join(strand: &mut CableRun, course: &Course) -> bool {
     for j in 1..strand.contacts.len() {
         let (a, b) = (&strand.contacts[j - 1], &strand.contacts[j]);
         let loads = a.weight || b.weight;
@@ -236,7 +236,7 @@ fn join(strand: &mut Strand, course: &Course) -> bool {
 }
 
 /// P: meets the deepest obstacle of each span.
-fn meet(strand: &mut Strand, course: &Course, world: &World, resting: bool) -> Result<bool, Trouble> {
+fn meet(strand: &mut CableRun, course: &Course, world: &World, resting: bool) -> Result<bool, Failure> {
     if world.is_empty() {
         return Ok(false);
     }
@@ -259,11 +259,11 @@ fn meet(strand: &mut Strand, course: &Course, world: &World, resting: bool) -> R
 
 /// Lays the cable on a corner it has passed through on its way.
 fn passed(
-    strand: &mut Strand,
+    strand: &mut CableRun,
     course: &Course,
     (corners, came): (&[Corner], &[Vec2]),
     work: &mut Work,
-) -> Result<bool, Trouble> {
+) -> Result<bool, Failure> {
     let mut shape = Vec::new();
     tunnelling::shape(strand, course, &mut shape);
     let Some(corner) = swept_corners::through(corners, came, &shape, &mut work.turns) else { return Ok(false) };
@@ -293,7 +293,7 @@ fn passed(
         obstacle: 0,
         feature: corner.feature,
     };
-    touch(strand, course, k, &Hit { s, at: corner.at, tangent, gap, body: corner.body }, true)?;
+    touch(strand, course, k, &Penetration { s, at: corner.at, tangent, gap, body: corner.body }, true)?;
     Ok(true)
 }
 
@@ -303,8 +303,8 @@ const PASSED_POINTS: usize = 64;
 /// Lays span k down where it hit.
 ///
 /// `resting`: a rest is sought, and what is found on the way has not rubbed.
-fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit, resting: bool) -> Result<(), Trouble> {
-    let no_seat = Trouble::NoSeat { s: hit.s, at: hit.at };
+fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, resting: bool) -> Result<(), Failure> {
+    let no_seat = Failure::NoSeat { s: hit.s, at: hit.at };
     let back = hit.gap.normal.dot(&perp(hit.tangent)) < 0.0;
     let curve_index = 2 * hit.body + usize::from(back);
     let Some(curve) = course.curves.get(curve_index) else { return Err(no_seat) };
@@ -353,7 +353,7 @@ fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit, resting: boo
         home,
         ends: Ends { p: [p, p], s: [hit.s, hit.s], t: [force, force] },
         mode: if curve.friction > 0.0 && !resting { Mode::Hold } else { Mode::Slide(0.0) },
-        history: History::default(),
+        history: TensionProfile::default(),
         wheel: None,
         flips: 0,
         held: None,
@@ -382,7 +382,7 @@ fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit, resting: boo
         }
     }
     let knot = |side: usize| Knot { p: contact.ends.p[side], s: contact.ends.s[side], tension: force, m: 0.0 };
-    contact.history = History::new(knot(0), knot(1));
+    contact.history = TensionProfile::new(knot(0), knot(1));
     let g = strand.forces[k];
     strand.contacts.insert(k, contact);
     strand.forces.insert(k, g);
@@ -399,7 +399,7 @@ fn touch(strand: &mut Strand, course: &Course, k: usize, hit: &Hit, resting: boo
 
 /// From p, where a contact ends on a side, on to the corner behind each edge that the way to the far end of the span there
 /// leads into: along an edge nothing turns, and Newton's method does not find across it.
-fn beyond_edges(curve: &Curve, home: Home, (mut p, side): (f64, usize), far: Option<Vec2>) -> f64 {
+fn beyond_edges(curve: &Curve, home: ChainRange, (mut p, side): (f64, usize), far: Option<Vec2>) -> f64 {
     let (step, forward) = if side == 0 { (-1, -1.0) } else { (1, 1.0) };
     let Some(far) = far else { return p };
     let inside = |i: i64| i >= home.first && i <= home.last;
@@ -428,7 +428,7 @@ fn beyond_edges(curve: &Curve, home: Home, (mut p, side): (f64, usize), far: Opt
 }
 
 /// What has been laid down in span k leads the contacts beside it over their edges.
-fn lead(strand: &mut Strand, course: &Course, k: usize) {
+fn lead(strand: &mut CableRun, course: &Course, k: usize) {
     for (j, side) in [(k.checked_sub(1), 1), (Some(k + 1), 0)] {
         if let Some(j) = j.filter(|&j| strand.contacts.get(j).is_some_and(|c| c.wheel.is_none() && !c.weight)) {
             lead_end(strand, course, j, side);
@@ -437,7 +437,7 @@ fn lead(strand: &mut Strand, course: &Course, k: usize) {
 }
 
 /// Leads an end of contact j over edges; whether there was one.
-fn lead_end(strand: &mut Strand, course: &Course, j: usize, side: usize) -> bool {
+fn lead_end(strand: &mut CableRun, course: &Course, j: usize, side: usize) -> bool {
     let far = strand.ends_of(course, j + side)[side];
     let c = &mut strand.contacts[j];
     let p = beyond_edges(&course.curves[c.curve], c.home, (c.ends.p[side], side), far);
@@ -451,7 +451,7 @@ fn lead_end(strand: &mut Strand, course: &Course, j: usize, side: usize) -> bool
 
 /// Takes an end of contact j that lies at the start of an arc, seen along the contact, back over the edge before it where its span
 /// leaves that edge; whether it did.
-fn lift_end(strand: &mut Strand, course: &Course, j: usize, side: usize) -> bool {
+fn lift_end(strand: &mut CableRun, course: &Course, j: usize, side: usize) -> bool {
     let Some(far) = strand.ends_of(course, j + side)[side] else { return false };
     let c = &mut strand.contacts[j];
     let (curve, p) = (&course.curves[c.curve], c.ends.p[side]);
@@ -478,7 +478,7 @@ fn lift_end(strand: &mut Strand, course: &Course, j: usize, side: usize) -> bool
 /// G: contacts that came to the end of an arc, with their span turned on into the edge behind it, go on to the corner at the
 /// edge's far end, those that came to its start, with their span lifted off the edge before it, back to the near one; whether there
 /// was one. A stiff taut cable turns by w/T a metre along an edge: next to nothing.
-fn grow(strand: &mut Strand, course: &Course) -> bool {
+fn grow(strand: &mut CableRun, course: &Course) -> bool {
     let mut any = false;
     for j in 0..strand.contacts.len() {
         for side in 0..2 {

@@ -2,12 +2,12 @@
 
 use crate::contact::swept_corners;
 use crate::math::{Vec2, larger};
-use crate::model::spans::boundary_conditions::{Instant, Layout, place_ends};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, place_ends};
 use crate::model::spans::changes;
 use crate::model::spans::contact::friction_memory::Mode;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::slack_pocket;
-use crate::model::spans::failure::Trouble;
+use crate::model::spans::failure::Failure;
 use crate::model::spans::initial::contacts;
 use crate::model::spans::initial::from_solution;
 use crate::model::spans::initial::shortest_path::{RINGS, Ring};
@@ -15,7 +15,7 @@ use crate::model::spans::initial::tension;
 use crate::model::spans::newton;
 use crate::model::spans::newton::slip_predictor::foresee;
 use crate::model::spans::newton::{Solved, Work};
-use crate::model::spans::run::{Course, Strand};
+use crate::model::spans::run::{CableRun, Course};
 use crate::model::spans::slack;
 use crate::model::spans::slack::Loose;
 use crate::model::spans::verify::clearance;
@@ -74,14 +74,14 @@ const MOBILISED: f64 = 2e-2;
 
 /// All strands of a cable at an instant.
 #[derive(Clone, Debug)]
-pub(in crate::model::spans) struct Network {
-    pub strands: Vec<Strand>,
+pub(in crate::model::spans) struct CableEquilibrium {
+    pub strands: Vec<CableRun>,
     pub course: Course,
-    pub instant: Instant,
+    pub instant: BoundaryConditions,
 }
 
 /// Why no rest was found, and how far the cable was let out.
-pub(in crate::model::spans) type Unfound = (Trouble, Option<Box<Network>>);
+pub(in crate::model::spans) type Unfound = (Failure, Option<Box<CableEquilibrium>>);
 
 /// How a route is seen: what stands for a post, and the tension (of the weight) to which the cable is shrunk at first.
 #[derive(Clone, Copy, Debug)]
@@ -100,7 +100,7 @@ impl Default for Seen {
 
 /// What a step took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(in crate::model::spans) struct Taken {
+pub(in crate::model::spans) struct StepStats {
     pub solved: Solved,
     pub halved: usize,
     /// Times it ran away from where it was to another place that holds it.
@@ -111,21 +111,26 @@ pub(in crate::model::spans) struct Taken {
     pub fresh: f64,
 }
 
-impl Network {
+impl CableEquilibrium {
     /// The rest of a cable laid along its route.
     ///
     /// # Errors
     /// Why none was found, and how far the cable was let out where that stopped the search.
-    pub fn rest(layout: &Layout, instant: &Instant, work: &mut Work) -> Result<(Self, Taken), Unfound> {
+    pub fn rest(layout: &Layout, instant: &BoundaryConditions, work: &mut Work) -> Result<(Self, StepStats), Unfound> {
         Self::rest_of(layout, instant, true, work)
     }
 
     /// The same, `eased`: whether it may begin without friction.
-    pub fn rest_of(layout: &Layout, instant: &Instant, eased: bool, work: &mut Work) -> Result<(Self, Taken), Unfound> {
+    pub fn rest_of(
+        layout: &Layout,
+        instant: &BoundaryConditions,
+        eased: bool,
+        work: &mut Work,
+    ) -> Result<(Self, StepStats), Unfound> {
         let curves = layout.curves();
         let course = layout.course(curves, instant);
         // As it is laid; else where it needs no friction; either may have to begin taut.
-        let smooth = Instant { friction: 0.0, ..instant.clone() };
+        let smooth = BoundaryConditions { friction: 0.0, ..instant.clone() };
         let ways =
             [(instant, None), (&smooth, None), (&smooth, Some(TAUT)), (instant, Some(TAUT)), (&smooth, Some(TAUTER))];
         // What is not held at both ends would run to where it needs no friction.
@@ -138,7 +143,7 @@ impl Network {
             let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
             match network.laid(layout, begin, seen, work).and_then(|taken| {
                 if begin.friction < instant.friction {
-                    network.rub(layout, instant, work).map(|more| Taken { eased: true, ..taken.and(more) })
+                    network.rub(layout, instant, work).map(|more| StepStats { eased: true, ..taken.and(more) })
                 } else {
                     Ok(taken)
                 }
@@ -152,11 +157,11 @@ impl Network {
                 }
             }
         }
-        Err(stopped.or(first).unwrap_or((Trouble::Restless { s: 0.0 }, None)))
+        Err(stopped.or(first).unwrap_or((Failure::Restless { s: 0.0 }, None)))
     }
 
     /// A cable that comes down in a heap and hangs over crests, without tension where it lies.
-    pub fn heaped(layout: &Layout, instant: &Instant) -> Option<Self> {
+    pub fn heaped(layout: &Layout, instant: &BoundaryConditions) -> Option<Self> {
         let course = layout.course(layout.curves(), instant);
         let strands = strands_of(layout, |k| slack::lay(layout, k, (&course, instant)))?;
         Some(Self { strands, course, instant: instant.clone() })
@@ -185,10 +190,10 @@ impl Network {
     ///
     /// With less than that part every contact of the strand slides the same way: that, found just above it, is what proves that it
     /// is friction that is missing, not an answer.
-    pub fn friction_needed(layout: &Layout, instant: &Instant, work: &mut Work) -> Option<f64> {
+    pub fn friction_needed(layout: &Layout, instant: &BoundaryConditions, work: &mut Work) -> Option<f64> {
         let course = layout.course(layout.curves(), instant);
         let mut rests = |part: f64, seen: Seen| {
-            let begin = Instant { friction: part, ..instant.clone() };
+            let begin = BoundaryConditions { friction: part, ..instant.clone() };
             let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
             let taken = network.laid(layout, &begin, seen, work).ok()?;
             (taken.ran == 0).then_some(network)
@@ -217,7 +222,7 @@ impl Network {
         }
         let found = rests(high, seen)?;
         let near = MOBILISED * (1.0 + NEEDED * (high - 1.0));
-        let slides = |s: &Strand| [1.0, -1.0].iter().any(|way| point_load::mobilised(s, &found.course, *way, near));
+        let slides = |s: &CableRun| [1.0, -1.0].iter().any(|way| point_load::mobilised(s, &found.course, *way, near));
         let loose = layout.strands.iter().zip(&found.strands).filter(|(p, _)| p.supports.iter().all(Option::is_none));
         loose.map(|(_, s)| s).any(slides).then_some(high)
     }
@@ -226,7 +231,12 @@ impl Network {
     ///
     /// # Errors
     /// Why it does not hold there.
-    pub fn taken(layout: &Layout, instant: &Instant, nodes: &[Node], work: &mut Work) -> Result<Self, Trouble> {
+    pub fn taken(
+        layout: &Layout,
+        instant: &BoundaryConditions,
+        nodes: &[Node],
+        work: &mut Work,
+    ) -> Result<Self, Failure> {
         let mut first = None;
         for within in WITHIN {
             let course = layout.course(layout.curves(), instant);
@@ -238,11 +248,17 @@ impl Network {
             }
         }
         let at = nodes.first().map_or(Vec2::zeros(), Node::at);
-        Err(first.unwrap_or(Trouble::NoSeat { s: 0.0, at }))
+        Err(first.unwrap_or(Failure::NoSeat { s: 0.0, at }))
     }
 
     /// Lays it along the route as it is, or shrunk until it is taut and then let out again.
-    fn laid(&mut self, layout: &Layout, goal: &Instant, seen: Seen, work: &mut Work) -> Result<Taken, Trouble> {
+    fn laid(
+        &mut self,
+        layout: &Layout,
+        goal: &BoundaryConditions,
+        seen: Seen,
+        work: &mut Work,
+    ) -> Result<StepStats, Failure> {
         let taut = seen.cooled;
         let mut begin = goal.clone();
         layout.give(&mut self.course, &begin);
@@ -257,7 +273,7 @@ impl Network {
                 continue;
             }
             let laid = contacts::lay(layout, k, (&self.course, &begin), seen.ring);
-            let no_way = Trouble::NoSeat { s: layout.strands[k].material[0], at: goal.places[0] };
+            let no_way = Failure::NoSeat { s: layout.strands[k].material[0], at: goal.places[0] };
             let (strand, way) = laid.ok_or(no_way)?;
             self.strands.push(strand);
             came.push(way);
@@ -290,13 +306,13 @@ impl Network {
         if taut.is_none() {
             return Ok(taken);
         }
-        let heavy = Instant { thermal: begin.thermal, ..goal.clone() };
+        let heavy = BoundaryConditions { thermal: begin.thermal, ..goal.clone() };
         taken = taken.and(self.travel(layout, &heavy, FIRST_STEP, work)?);
         Ok(taken.and(self.travel(layout, goal, FIRST_STEP, work)?))
     }
 
     /// The factor on lengths at which the cable is taut along the string of its route.
-    fn shrunk_thermal(&self, layout: &Layout, goal: &Instant, taut: f64) -> f64 {
+    fn shrunk_thermal(&self, layout: &Layout, goal: &BoundaryConditions, taut: f64) -> f64 {
         let p = &layout.problem;
         let drawn: f64 = goal.forces.iter().map(|f| f.norm()).sum();
         let tension = taut * goal.load.norm() * p.length + drawn;
@@ -312,7 +328,7 @@ impl Network {
     }
 
     /// Friction acts from now on; what rests without it rests with it.
-    fn rub(&mut self, layout: &Layout, goal: &Instant, work: &mut Work) -> Result<Taken, Trouble> {
+    fn rub(&mut self, layout: &Layout, goal: &BoundaryConditions, work: &mut Work) -> Result<StepStats, Failure> {
         layout.give(&mut self.course, goal);
         for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts) {
             if self.course.friction(c) > 0.0 {
@@ -323,7 +339,7 @@ impl Network {
     }
 
     /// One step to an instant; on an error nothing has changed.
-    pub fn step(&mut self, layout: &Layout, to: &Instant, work: &mut Work) -> Result<Taken, Trouble> {
+    pub fn step(&mut self, layout: &Layout, to: &BoundaryConditions, work: &mut Work) -> Result<StepStats, Failure> {
         self.step_from(layout, to, &[], work)
     }
 
@@ -331,11 +347,11 @@ impl Network {
     fn step_from(
         &mut self,
         layout: &Layout,
-        to: &Instant,
+        to: &BoundaryConditions,
         came: &[Vec<Vec2>],
         work: &mut Work,
-    ) -> Result<Taken, Trouble> {
-        let mut taken = Taken::default();
+    ) -> Result<StepStats, Failure> {
+        let mut taken = StepStats::default();
         work.before.clone_from(&self.strands);
         work.instants[0].clone_from(&self.instant);
         self.instant.clone_from(to);
@@ -363,7 +379,13 @@ impl Network {
         layout.give(&mut self.course, &self.instant);
     }
 
-    fn solve(&mut self, layout: &Layout, k: usize, came: Option<&[Vec2]>, work: &mut Work) -> Result<Taken, Trouble> {
+    fn solve(
+        &mut self,
+        layout: &Layout,
+        k: usize,
+        came: Option<&[Vec2]>,
+        work: &mut Work,
+    ) -> Result<StepStats, Failure> {
         let [mut start, mut moved] = std::mem::take(&mut work.strands);
         start.clone_from(&self.strands[k]);
         let found = self.solve_from(layout, k, came, ([&mut start, &mut moved], work));
@@ -380,8 +402,8 @@ impl Network {
         layout: &Layout,
         k: usize,
         came: Option<&[Vec2]>,
-        ([start, moved], work): ([&mut Strand; 2], &mut Work),
-    ) -> Result<Taken, Trouble> {
+        ([start, moved], work): ([&mut CableRun; 2], &mut Work),
+    ) -> Result<StepStats, Failure> {
         if self.strands[k].loose.is_some() {
             return self.lie(layout, k);
         }
@@ -425,7 +447,7 @@ impl Network {
                 }
             }
         }
-        let mut taken = Taken { solved: found?, ..Taken::default() };
+        let mut taken = StepStats { solved: found?, ..StepStats::default() };
         if came.is_none() {
             taken.fresh = point_load::fresh(&self.strands[k], &self.course);
         }
@@ -460,7 +482,7 @@ impl Network {
             }
             tunnelling::shape(&self.strands[k], &self.course, new);
             if let Some(corner) = swept_corners::through(&layout.corners, old, new, &mut work.turns) {
-                return Err(Trouble::Passed { at: corner.at });
+                return Err(Failure::Passed { at: corner.at });
             }
         }
         Ok(taken)
@@ -468,14 +490,14 @@ impl Network {
 
     /// A strand that lies loose goes on lying so while its supports stay where they are: as they move they draw its folds over
     /// the ground, and what that takes is not known here.
-    fn lie(&mut self, layout: &Layout, k: usize) -> Result<Taken, Trouble> {
+    fn lie(&mut self, layout: &Layout, k: usize) -> Result<StepStats, Failure> {
         let found = slack::lay(layout, k, (&self.course, &self.instant));
         let strand = &mut self.strands[k];
         let Some(found) = found.filter(|f| f.ties == strand.ties) else {
-            return Err(Trouble::Drawn { s: strand.from });
+            return Err(Failure::Drawn { s: strand.from });
         };
         *strand = found;
-        Ok(Taken::default())
+        Ok(StepStats::default())
     }
 
     /// Material that lies loose and the length of ground it lies on, m; None where none does.
@@ -493,10 +515,10 @@ impl Network {
     ///
     /// Each step is one of implicit Euler of η ds/dt = T₂ − T₁, which falls in energy; η is lowered as far as it goes
     /// (pseudo-transient continuation: C. T. Kelley and D. E. Keyes, SIAM J. Numer. Anal. 35, 1998).
-    fn follow(&mut self, layout: &Layout, to: &Instant, work: &mut Work) -> Result<Taken, Trouble> {
+    fn follow(&mut self, layout: &Layout, to: &BoundaryConditions, work: &mut Work) -> Result<StepStats, Failure> {
         let (before, old) = (self.strands.clone(), self.instant.clone());
         let size = to.load.norm();
-        let (mut drag, mut taken, mut raised) = (DRAG * size, Taken::default(), 0);
+        let (mut drag, mut taken, mut raised) = (DRAG * size, StepStats::default(), 0);
         let mut pushed = None;
         for _ in 0..MOST_DRAGGED {
             self.course.drag = drag;
@@ -515,7 +537,7 @@ impl Network {
                     }
                 }
                 Err(trouble) => {
-                    pushed = matches!(trouble, Trouble::Compressed { .. }).then_some(trouble);
+                    pushed = matches!(trouble, Failure::Compressed { .. }).then_some(trouble);
                     drag *= 8.0;
                     raised += 1;
                 }
@@ -527,7 +549,7 @@ impl Network {
         self.strands = before;
         layout.give(&mut self.course, &old);
         self.instant = old;
-        Err(pushed.unwrap_or(Trouble::Restless { s: 0.0 }))
+        Err(pushed.unwrap_or(Failure::Restless { s: 0.0 }))
     }
 
     /// Whether every strand is a rest and not a balance that runs away.
@@ -536,9 +558,9 @@ impl Network {
     }
 
     /// Why a step was not taken: it would have to push however much it is held back, or nothing better than the trouble of the step.
-    fn reason(&self, step: Trouble, held_back: Trouble) -> Trouble {
-        let found_nothing = matches!(step, Trouble::Stalled { .. } | Trouble::Restless { .. });
-        let pushes = matches!(held_back, Trouble::Compressed { .. });
+    fn reason(&self, step: Failure, held_back: Failure) -> Failure {
+        let found_nothing = matches!(step, Failure::Stalled { .. } | Failure::Restless { .. });
+        let pushes = matches!(held_back, Failure::Compressed { .. });
         if found_nothing && pushes && tension_loss::lost(&self.strands, &self.course, &step).is_none() {
             held_back
         } else {
@@ -547,7 +569,7 @@ impl Network {
     }
 
     /// A cable that lies loose along its route with a free end, as it is drawn: under hardly any tension instead, so that it can be followed.
-    fn take_up(&mut self, layout: &Layout, to: &Instant, work: &mut Work) {
+    fn take_up(&mut self, layout: &Layout, to: &BoundaryConditions, work: &mut Work) {
         let held = |k: usize| layout.strands[k].supports.iter().all(Option::is_some);
         let lies = |k: usize| self.strands[k].loose.as_ref().is_some_and(Loose::spreads);
         let follows = (0..self.strands.len()).all(|k| self.strands[k].loose.is_none() || (lies(k) && !held(k)));
@@ -565,10 +587,10 @@ impl Network {
     pub fn travel(
         &mut self,
         layout: &Layout,
-        to: &Instant,
+        to: &BoundaryConditions,
         first: f64,
         work: &mut Work,
-    ) -> Result<Taken, (Trouble, f64)> {
+    ) -> Result<StepStats, (Failure, f64)> {
         self.take_up(layout, to, work);
         let [old, mut from, mut at] = std::mem::take(&mut work.instants);
         work.instants[0] = old;
@@ -582,11 +604,11 @@ impl Network {
     fn travel_from(
         &mut self,
         layout: &Layout,
-        (from, to, at): (&Instant, &Instant, &mut Instant),
+        (from, to, at): (&BoundaryConditions, &BoundaryConditions, &mut BoundaryConditions),
         first: f64,
         work: &mut Work,
-    ) -> Result<Taken, (Trouble, f64)> {
-        let (mut done, mut step, mut taken) = (0.0, first, Taken::default());
+    ) -> Result<StepStats, (Failure, f64)> {
+        let (mut done, mut step, mut taken) = (0.0, first, StepStats::default());
         let mut halvings: u32 = 0;
         // Not on the way to a first rest; and the step that was taken but had something come down in it.
         let (mut moves, mut whole) = (first >= 1.0, None);
@@ -638,17 +660,17 @@ impl Network {
 }
 
 /// All strands, where each is found.
-fn strands_of(layout: &Layout, lay: impl Fn(usize) -> Option<Strand>) -> Option<Vec<Strand>> {
+fn strands_of(layout: &Layout, lay: impl Fn(usize) -> Option<CableRun>) -> Option<Vec<CableRun>> {
     (0..layout.strands.len()).map(lay).collect()
 }
 
-impl From<(Trouble, f64)> for Trouble {
-    fn from((trouble, _): (Trouble, f64)) -> Self {
+impl From<(Failure, f64)> for Failure {
+    fn from((trouble, _): (Failure, f64)) -> Self {
         trouble
     }
 }
 
-impl Taken {
+impl StepStats {
     fn and(self, more: Self) -> Self {
         Self {
             solved: self.solved.and(more.solved),

@@ -4,7 +4,7 @@ use crate::math::Vec2;
 
 /// What went wrong.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::model::spans) enum Trouble {
+pub(in crate::model::spans) enum Failure {
     /// Newton stopped short: iterations, scaled residual, material point of the worst equation, m.
     Stalled { iterations: usize, residual: f64, s: f64 },
     /// Events went on and on.

@@ -41,9 +41,9 @@ use crate::error::{Place, SolveError};
 use crate::math::{Vec2, larger, smaller};
 use crate::model::catenary::slack_without_weight;
 use crate::model::gauge::TensionGauge;
-use crate::model::spans::boundary_conditions::{Instant, Layout, unsupported};
-use crate::model::spans::continuation::{Network, Taken, Unfound};
-use crate::model::spans::failure::Trouble;
+use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, unsupported};
+use crate::model::spans::continuation::{CableEquilibrium, StepStats, Unfound};
+use crate::model::spans::failure::Failure;
 use crate::model::spans::newton::Work;
 use crate::model::spans::results::Report;
 use crate::model::spans::reversed::Turned;
@@ -70,10 +70,10 @@ pub struct SpansModel {
     time_s: f64,
     /// In the order of the layout.
     dragged: Vec<Option<Vec2>>,
-    network: Option<Network>,
+    network: Option<CableEquilibrium>,
     work: Work,
     /// Where a step starts, where it goes, and a piece of it.
-    instants: [Instant; 3],
+    instants: [BoundaryConditions; 3],
     /// What is shown while there is no network.
     shown: Report,
 }
@@ -103,7 +103,7 @@ impl SpansModel {
         };
         let nodes = points.iter().enumerate().map(node).collect();
         let shown = Report { nodes, ..Report::default() };
-        let (work, instants) = (Work::default(), <[Instant; 3]>::default());
+        let (work, instants) = (Work::default(), <[BoundaryConditions; 3]>::default());
         let (histories, dragged) = (settings.histories, vec![None; n]);
         Ok(Self { problem, histories, layout, time_s: 0.0, dragged, network: None, work, instants, shown })
     }
@@ -130,12 +130,12 @@ impl SpansModel {
     }
 
     /// How far any support moves between two instants, m.
-    fn travel(from: &Instant, to: &Instant) -> f64 {
+    fn travel(from: &BoundaryConditions, to: &BoundaryConditions) -> f64 {
         from.places.iter().zip(&to.places).map(|(a, b)| (b - a).norm()).fold(0.0, |m, d| if d > m { d } else { m })
     }
 
     /// A trouble as an error: a loss of tension where the last state found, `stopped` or the present one, shows one.
-    fn said(&self, stopped: Option<&Network>, trouble: Trouble) -> SolveError {
+    fn said(&self, stopped: Option<&CableEquilibrium>, trouble: Failure) -> SolveError {
         if let Some(network) = stopped.or(self.network.as_ref())
             && let Some((loss, arc_length_m, at_m)) =
                 verify::tension_loss::lost(&network.strands, &network.course, &trouble)
@@ -147,7 +147,7 @@ impl SpansModel {
     }
 
     /// A trouble of the layout in the words everyone uses.
-    fn in_words(&self, trouble: Trouble) -> SolveError {
+    fn in_words(&self, trouble: Failure) -> SolveError {
         said(&self.problem, if self.layout.turned { self.turned().trouble(trouble) } else { trouble })
     }
 
@@ -157,22 +157,22 @@ impl SpansModel {
     }
 
     /// A rest of the cable laid along its way, counted from its upper end; where none is found so, from the other; else as it comes down.
-    fn lay(&mut self, instant: &mut Instant, work: &mut Work) -> Result<Taken, Unfound> {
-        let (network, taken) = match Network::rest(&self.layout, instant, work) {
+    fn lay(&mut self, instant: &mut BoundaryConditions, work: &mut Work) -> Result<StepStats, Unfound> {
+        let (network, taken) = match CableEquilibrium::rest(&self.layout, instant, work) {
             Ok(found) => found,
             Err(unfound) => {
-                let (mut there, mut dragged) = (Instant::default(), self.dragged.clone());
+                let (mut there, mut dragged) = (BoundaryConditions::default(), self.dragged.clone());
                 dragged.reverse();
                 let other = counted(&self.problem, !self.layout.turned).ok().and_then(|other| {
                     other.instant(&dragged, self.time_s, &mut there);
-                    Some((Network::rest(&other, &there, work).ok()?, other))
+                    Some((CableEquilibrium::rest(&other, &there, work).ok()?, other))
                 });
-                match (other, Network::heaped(&self.layout, instant)) {
+                match (other, CableEquilibrium::heaped(&self.layout, instant)) {
                     (Some((found, other)), _) => {
                         (self.layout, self.dragged, *instant) = (other, dragged, there);
                         found
                     }
-                    (None, Some(heap)) => (heap, Taken::default()),
+                    (None, Some(heap)) => (heap, StepStats::default()),
                     (None, None) => return Err(unfound),
                 }
             }
@@ -181,7 +181,7 @@ impl SpansModel {
         Ok(taken)
     }
 
-    fn report_of(&self, taken: Taken) -> StepReport {
+    fn report_of(&self, taken: StepStats) -> StepReport {
         let scale = self.layout.problem.force_scale();
         StepReport {
             cost: Cost {
@@ -200,7 +200,7 @@ impl SpansModel {
     fn histories(&self, eased: bool, work: &mut Work) -> String {
         let Some(network) = &self.network else { return String::new() };
         let turned = self.layout.turned;
-        let tensions = |network: &Network| {
+        let tensions = |network: &CableEquilibrium| {
             let [start, end, greatest] = results::tensions(network);
             if turned { [end, start, greatest] } else { [start, end, greatest] }
         };
@@ -233,11 +233,11 @@ impl SpansModel {
     }
 
     /// The cable laid anew along its way while it is drawn.
-    fn laid_anew(&self, drawn: FrictionMobilised, eased: bool, work: &mut Work) -> Option<Network> {
+    fn laid_anew(&self, drawn: FrictionMobilised, eased: bool, work: &mut Work) -> Option<CableEquilibrium> {
         let mut layout = self.layout.clone();
         Arc::make_mut(&mut layout.problem).cable.friction_mobilised = drawn;
         let instant = self.network.as_ref()?.instant.clone();
-        Network::rest_of(&layout, &instant, !eased, work).ok().map(|n| n.0).filter(|n| n.loose().is_none())
+        CableEquilibrium::rest_of(&layout, &instant, !eased, work).ok().map(|n| n.0).filter(|n| n.loose().is_none())
     }
 
     /// Whether some of the cable is held by nothing but friction.
@@ -272,32 +272,32 @@ fn counted(problem: &Arc<Problem>, turned: bool) -> Result<Layout, SolveError> {
 }
 
 /// A trouble in the words everyone uses.
-fn said(problem: &Problem, trouble: Trouble) -> SolveError {
+fn said(problem: &Problem, trouble: Failure) -> SolveError {
     let name = |k: usize| problem.supports.get(k).map_or("", |s| s.name.as_str());
     match trouble {
-        Trouble::Stalled { iterations, residual, s } => SolveError::NotConverged {
+        Failure::Stalled { iterations, residual, s } => SolveError::NotConverged {
             model: Model::Spans,
             iterations,
             residual_n: residual * problem.force_scale(),
             place: Box::new(Place { arc_length_m: s, at_m: Vec2::repeat(f64::NAN), near: None }),
         },
-        Trouble::Compressed { s, at, tension } => {
+        Failure::Compressed { s, at, tension } => {
             SolveError::Compressed { model: Model::Spans, tension_n: tension, place: problem.place(s, at, 0.0) }
         }
-        Trouble::Restless { s } => unsupported(format!("contacts come and go without end near {s:.3} m")),
-        Trouble::OffWheel { support } => unsupported(format!("the cable lifts off the wheel of `{}`", name(support))),
-        Trouble::Passed { at } => {
+        Failure::Restless { s } => unsupported(format!("contacts come and go without end near {s:.3} m")),
+        Failure::OffWheel { support } => unsupported(format!("the cable lifts off the wheel of `{}`", name(support))),
+        Failure::Passed { at } => {
             unsupported(format!("the cable springs past a corner at ({:.3} m, {:.3} m)", at.x, at.y))
         }
-        Trouble::SupportInside { at } => {
+        Failure::SupportInside { at } => {
             unsupported(format!("a support is inside an obstacle at ({:.3} m, {:.3} m)", at.x, at.y))
         }
-        Trouble::LoadLies { s } => unsupported(format!("the load at {s:.3} m lies on an obstacle")),
-        Trouble::NoSeat { s, at } => {
+        Failure::LoadLies { s } => unsupported(format!("the load at {s:.3} m lies on an obstacle")),
+        Failure::NoSeat { s, at } => {
             unsupported(format!("an obstacle is met {s:.3} m along the cable at ({:.3} m, {:.3} m)", at.x, at.y))
         }
-        Trouble::Drawn { s } => unsupported(format!("the cable lies loose and is drawn along, from {s:.3} m")),
-        Trouble::Unsound { what, s, at } => {
+        Failure::Drawn { s } => unsupported(format!("the cable lies loose and is drawn along, from {s:.3} m")),
+        Failure::Unsound { what, s, at } => {
             unsupported(format!("{what} {s:.3} m along it at ({:.3} m, {:.3} m)", at.x, at.y))
         }
     }
@@ -316,7 +316,7 @@ impl Mechanics for SpansModel {
         if self.layout.strands.is_empty() {
             return Err(unsupported("no support holds the cable: two loads or loose ends, and obstacles at most"));
         }
-        let mut instant = Instant::default();
+        let mut instant = BoundaryConditions::default();
         self.layout.instant(&self.dragged, self.time_s, &mut instant);
         let mut work = std::mem::take(&mut self.work);
         // What lies loose remembers nothing.
@@ -327,8 +327,8 @@ impl Mechanics for SpansModel {
         };
         let stable = self.network.as_ref().is_none_or(|n| n.stable(&mut work));
         let slides = found.is_err() && self.network.is_none() && self.hangs_by_friction();
-        let needed = if slides { Network::friction_needed(&self.layout, &instant, &mut work) } else { None };
-        let loose = self.network.as_ref().and_then(Network::loose);
+        let needed = if slides { CableEquilibrium::friction_needed(&self.layout, &instant, &mut work) } else { None };
+        let loose = self.network.as_ref().and_then(CableEquilibrium::loose);
         let seeks = self.histories && found.is_ok() && loose.is_none() && self.rubs();
         let eased = found.as_ref().is_ok_and(|taken| taken.eased);
         let range = if seeks { self.histories(eased, &mut work) } else { String::new() };
@@ -350,7 +350,7 @@ impl Mechanics for SpansModel {
         if let Some([material, ground]) = loose {
             let name = &self.problem.cable.name;
             // Whatever the history, nothing but friction on what lies can hold more.
-            let held = self.network.as_ref().map_or(0.0, Network::friction_of_loose);
+            let held = self.network.as_ref().map_or(0.0, CableEquilibrium::friction_of_loose);
             let message = format!(
                 "The cable lies loose: {material:.3} m of it on {ground:.3} m of ground, without tension, and its ends feel only what hangs on them. How it is folded there is not known: it is shown spread evenly. Laid otherwise it may pull at its ends by what friction on it holds, {held:.2} N at most"
             );
@@ -456,12 +456,12 @@ impl Mechanics for SpansModel {
     }
 
     fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
-        let mut instant = Instant::default();
+        let mut instant = BoundaryConditions::default();
         self.layout.instant(&self.dragged, time_s, &mut instant);
         let mut work = std::mem::take(&mut self.work);
         let nodes = self.layout.turned.then(|| self.turned().nodes(&answer.nodes));
         let nodes = nodes.as_ref().unwrap_or(&answer.nodes);
-        let taken = Network::taken(&self.layout, &instant, nodes, &mut work);
+        let taken = CableEquilibrium::taken(&self.layout, &instant, nodes, &mut work);
         self.work = work;
         self.network = Some(taken.map_err(|t| self.in_words(t))?);
         self.time_s = time_s;

@@ -6,13 +6,13 @@ use crate::model::arc_nodes;
 use crate::model::catenary::report::{Nodes, Point, forget_hint};
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::curve::Place;
-use crate::model::spans::boundary::segment_cursor::{OnPiece, Pivot};
+use crate::model::spans::boundary::segment_cursor::{Pivot, SegmentCursor};
 use crate::model::spans::boundary_conditions::Layout;
-use crate::model::spans::contact::friction_memory::{History, Mode};
+use crate::model::spans::contact::friction_memory::{Mode, TensionProfile};
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::slack_pocket;
-use crate::model::spans::continuation::Network;
-use crate::model::spans::run::{Contact, Course, Strand, Tie};
+use crate::model::spans::continuation::CableEquilibrium;
+use crate::model::spans::run::{CableRun, Contact, Course, Tie};
 use crate::model::spans::verify::penetration;
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
@@ -37,7 +37,7 @@ pub(in crate::model::spans) struct Report {
 }
 
 /// The answer of a network.
-pub(in crate::model::spans) fn report(layout: &Layout, network: &Network) -> Report {
+pub(in crate::model::spans) fn report(layout: &Layout, network: &CableEquilibrium) -> Report {
     let course = &network.course;
     let mut greatest = 0.0;
     for strand in &network.strands {
@@ -118,7 +118,7 @@ struct Stretch {
 }
 
 impl Stretch {
-    fn new((track, cable_radius): (&Track<'_>, f64), history: &History, [from, to]: [f64; 2]) -> Self {
+    fn new((track, cable_radius): (&Track<'_>, f64), history: &TensionProfile, [from, to]: [f64; 2]) -> Self {
         let middle = 0.5 * (from + to);
         let (tension, s) = history.at(track, from);
         let pivot = match track.pivot {
@@ -139,13 +139,13 @@ impl Stretch {
 
     /// Tension and material at p.
     fn at(&self, track: &Track<'_>, p: f64) -> (f64, f64) {
-        let piece = OnPiece { law: &track.law, from: self.pivot.spot(self.from), p0: self.from };
+        let piece = SegmentCursor { law: &track.law, from: self.pivot.spot(self.from), p0: self.from };
         let way = piece.slide(p, self.tension, self.m);
         (way.tension, self.s + way.material)
     }
 }
 
-fn stretches((track, cable_radius): (&Track<'_>, f64), history: &History, [p1, p2]: [f64; 2]) -> Vec<Stretch> {
+fn stretches((track, cable_radius): (&Track<'_>, f64), history: &TensionProfile, [p1, p2]: [f64; 2]) -> Vec<Stretch> {
     let knots = history.knots();
     let mut out = Vec::with_capacity(knots.len() + 1);
     let (mut p, mut k) = (p1, 0);
@@ -180,7 +180,7 @@ fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, c: &Contact, stretche
 }
 
 /// The nodes of the load that is contact j: what comes down on it from the air pulls as it comes, what lies beside it along the ground.
-fn load_nodes(nodes: &mut Nodes<'_>, (strand, course, j): (&Strand, &Course, usize), track: &Track<'_>) {
+fn load_nodes(nodes: &mut Nodes<'_>, (strand, course, j): (&CableRun, &Course, usize), track: &Track<'_>) {
     let c = &strand.contacts[j];
     let place = track.place(c.ends.p[0]);
     let pulls = |side: usize| strand.force_at_contact(course, j, side);
@@ -273,15 +273,15 @@ fn held_by(track: &Track<'_>, c: &Contact) -> Vec2 {
 }
 
 /// The material that lies loose in the kink behind contact j, m.
-pub(in crate::model::spans) fn loose(strand: &Strand, j: usize) -> Option<[f64; 2]> {
+pub(in crate::model::spans) fn loose(strand: &CableRun, j: usize) -> Option<[f64; 2]> {
     let (c, next) = (strand.contacts.get(j)?, strand.contacts.get(j + 1)?);
     (c.pocket && next.ends.s[0] > c.ends.s[1]).then_some([c.ends.s[1], next.ends.s[0]])
 }
 
 /// Tension at the start, at the end, and the greatest, N.
-pub(in crate::model::spans) fn tensions(network: &Network) -> [f64; 3] {
+pub(in crate::model::spans) fn tensions(network: &CableEquilibrium) -> [f64; 3] {
     let course = &network.course;
-    let end = |strand: Option<&Strand>, side: usize| {
+    let end = |strand: Option<&CableRun>, side: usize| {
         let strand = strand?;
         let outer = if side == 0 { strand.contacts.first() } else { strand.contacts.last() };
         Some(match (strand.ties[side], outer) {
@@ -303,7 +303,7 @@ pub(in crate::model::spans) fn tensions(network: &Network) -> [f64; 3] {
 }
 
 /// What is left of all forces on the cable as they are reported, and their size, N: supports and contacts hold weight and loads.
-pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &Network) -> (Vec2, f64) {
+pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquilibrium) -> (Vec2, f64) {
     let (p, course) = (&layout.problem, &network.course);
     let mut sum = course.law.load * p.length;
     let mut size = sum.norm();
@@ -339,7 +339,7 @@ pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &Network) ->
 }
 
 /// The contact of the load that is contact j.
-fn load((strand, course, j): (&Strand, &Course, usize), (track, name): (&Track<'_>, &str)) -> ContactReport {
+fn load((strand, course, j): (&CableRun, &Course, usize), (track, name): (&Track<'_>, &str)) -> ContactReport {
     let c = &strand.contacts[j];
     let felt = point_load::felt(strand, course, j);
     let at = track.place(c.ends.p[0]).at;
@@ -367,7 +367,7 @@ fn load((strand, course, j): (&Strand, &Course, usize), (track, name): (&Track<'
 }
 
 /// The contacts of the heap in the pocket after contact j: one with each edge that carries a part of it.
-fn heap((strand, course, j): (&Strand, &Course, usize), name: &str) -> Vec<ContactReport> {
+fn heap((strand, course, j): (&CableRun, &Course, usize), name: &str) -> Vec<ContactReport> {
     let ([before, after], at) = match (&strand.contacts[j], strand.contacts.get(j + 1)) {
         (c, Some(next)) => ([c.ends.s[1], next.ends.s[0]], course.track(c).place(c.ends.p[1]).at),
         (_, None) => return Vec::new(),
@@ -412,7 +412,7 @@ fn parts(c: &Contact, friction: f64, stretches: &[Stretch]) -> Vec<ContactPart> 
 }
 
 /// Force of the cable at an end of a strand (pulling along growing arc length), N.
-fn end_force(network: &Network, strand: &Strand, side: usize) -> Vec2 {
+fn end_force(network: &CableEquilibrium, strand: &CableRun, side: usize) -> Vec2 {
     let course = &network.course;
     if let Some(loose) = &strand.loose {
         return loose.end_force(course, side);
@@ -428,7 +428,7 @@ fn end_force(network: &Network, strand: &Strand, side: usize) -> Vec2 {
     }
 }
 
-fn supports(layout: &Layout, network: &Network, nodes: &[Node]) -> Vec<SupportReaction> {
+fn supports(layout: &Layout, network: &CableEquilibrium, nodes: &[Node]) -> Vec<SupportReaction> {
     let p = &layout.problem;
     let course = &network.course;
     let loads_at = |s: f64| -> Vec2 {
@@ -468,7 +468,7 @@ fn supports(layout: &Layout, network: &Network, nodes: &[Node]) -> Vec<SupportRe
     out
 }
 
-fn wheel(r: &mut SupportReaction, network: &Network, strand: &Strand, c: &Contact) {
+fn wheel(r: &mut SupportReaction, network: &CableEquilibrium, strand: &CableRun, c: &Contact) {
     let j = strand.contacts.iter().position(|d| std::ptr::eq(d, c)).unwrap_or(0);
     let (sum, [before, after]) = wheel_force(&network.course, strand, j);
     (r.reaction_x_n, r.reaction_y_n) = (sum.x, sum.y);
@@ -477,7 +477,7 @@ fn wheel(r: &mut SupportReaction, network: &Network, strand: &Strand, c: &Contac
 }
 
 /// The force of the cable on the wheel that is contact j, and the forces in the cable before and after it, N.
-fn wheel_force(course: &Course, strand: &Strand, j: usize) -> (Vec2, [Vec2; 2]) {
+fn wheel_force(course: &Course, strand: &CableRun, j: usize) -> (Vec2, [Vec2; 2]) {
     let [before, after] = [0, 1].map(|side| strand.force_at_contact(course, j, side).unwrap_or_default());
     let [from, to] = strand.contacts[j].ends.s;
     (after - before + course.load_between(from, to), [before, after])

@@ -4,7 +4,7 @@
 //! followed counted from its *upper* end, and what is found is turned back.
 
 use crate::math::Vec2;
-use crate::model::spans::failure::Trouble;
+use crate::model::spans::failure::Failure;
 use crate::model::spans::results::Report;
 use crate::problem::Problem;
 use crate::scene::FrictionMobilised;
@@ -115,19 +115,19 @@ impl Turned<'_> {
     }
 
     /// A trouble.
-    pub fn trouble(&self, trouble: Trouble) -> Trouble {
+    pub fn trouble(&self, trouble: Failure) -> Failure {
         match trouble {
-            Trouble::Stalled { iterations, residual, s } => Trouble::Stalled { iterations, residual, s: self.s(s) },
-            Trouble::Restless { s } => Trouble::Restless { s: self.s(s) },
-            Trouble::Compressed { s, at, tension } => Trouble::Compressed { s: self.s(s), at, tension },
-            Trouble::OffWheel { support } => {
-                Trouble::OffWheel { support: (self.problem.supports.len() - 1).saturating_sub(support) }
+            Failure::Stalled { iterations, residual, s } => Failure::Stalled { iterations, residual, s: self.s(s) },
+            Failure::Restless { s } => Failure::Restless { s: self.s(s) },
+            Failure::Compressed { s, at, tension } => Failure::Compressed { s: self.s(s), at, tension },
+            Failure::OffWheel { support } => {
+                Failure::OffWheel { support: (self.problem.supports.len() - 1).saturating_sub(support) }
             }
-            Trouble::LoadLies { s } => Trouble::LoadLies { s: self.s(s) },
-            Trouble::NoSeat { s, at } => Trouble::NoSeat { s: self.s(s), at },
-            Trouble::Drawn { s } => Trouble::Drawn { s: self.s(s) },
-            Trouble::Unsound { what, s, at } => Trouble::Unsound { what, s: self.s(s), at },
-            same @ (Trouble::Passed { .. } | Trouble::SupportInside { .. }) => same,
+            Failure::LoadLies { s } => Failure::LoadLies { s: self.s(s) },
+            Failure::NoSeat { s, at } => Failure::NoSeat { s: self.s(s), at },
+            Failure::Drawn { s } => Failure::Drawn { s: self.s(s) },
+            Failure::Unsound { what, s, at } => Failure::Unsound { what, s: self.s(s), at },
+            same @ (Failure::Passed { .. } | Failure::SupportInside { .. }) => same,
         }
     }
 }

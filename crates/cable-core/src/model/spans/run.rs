@@ -8,8 +8,8 @@
 use crate::catenary::{Chain, PointForce};
 use crate::math::Vec2;
 use crate::model::spans::boundary::capstan::{Law, Track};
-use crate::model::spans::boundary::curve::{Curve, Home};
-use crate::model::spans::contact::friction_memory::{Ends, Held, History, Mode};
+use crate::model::spans::boundary::curve::{ChainRange, Curve};
+use crate::model::spans::contact::friction_memory::{Ends, Held, Mode, TensionProfile};
 use crate::model::spans::contact::kink_load::Kink;
 use crate::model::spans::slack::Loose;
 
@@ -53,12 +53,12 @@ impl Tie {
 pub(in crate::model::spans) struct Contact {
     /// Index of the boundary.
     pub curve: usize,
-    pub home: Home,
+    pub home: ChainRange,
     pub ends: Ends,
     pub mode: Mode,
     /// Where it sticks under the tensions it has, where that was worked out.
     pub held: Option<Held>,
-    pub history: History,
+    pub history: TensionProfile,
     /// The pulley it is, by its support.
     pub wheel: Option<usize>,
     /// Times the mode has changed in this solve.
@@ -77,7 +77,7 @@ pub(in crate::model::spans) struct Contact {
 
 /// A strand.
 #[derive(Debug, Default, PartialEq)]
-pub(in crate::model::spans) struct Strand {
+pub(in crate::model::spans) struct CableRun {
     /// Material at both ends, m.
     pub from: f64,
     pub to: f64,
@@ -109,7 +109,7 @@ impl Clone for Contact {
     }
 }
 
-impl Clone for Strand {
+impl Clone for CableRun {
     fn clone(&self) -> Self {
         let (contacts, forces) = (self.contacts.clone(), self.forces.clone());
         Self { contacts, forces, loose: self.loose.clone(), ..*self }
@@ -178,7 +178,7 @@ impl Course {
     }
 }
 
-impl Strand {
+impl CableRun {
     /// Number of spans (those that are missing beside a lying end included).
     pub fn spans(&self) -> usize {
         self.contacts.len() + 1

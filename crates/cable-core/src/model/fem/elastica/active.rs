@@ -88,7 +88,7 @@ impl Elastica {
         let line = |k: usize| from.contacts.get(k).is_some_and(|c| c.radius.is_none());
         let inner = |k: usize| k > 0 && k + 1 < from.pieces.len();
         let stretch = (0..from.pieces.len()).find(|&k| inner(k) && from.pieces[k].lies.is_some_and(line));
-        let point = from.joints.iter().position(|j| matches!(j, Joint::Touch(k) if line(*k)));
+        let point = from.joints.iter().position(|j| matches!(j, Joint::ContactPair(k) if line(*k)));
         if stretch.is_none() && point.is_none() {
             return false;
         }
@@ -98,7 +98,7 @@ impl Elastica {
             let middle = self.pieces[k].nodes.len() / 2;
             let (before, after) = split(&self.pieces[k], middle);
             self.pieces.splice(k..=k, [before, after]);
-            self.joints.insert(k, Joint::Touch(contact));
+            self.joints.insert(k, Joint::ContactPair(contact));
             self.release(k + 1);
             self.release(k - 1);
         } else if let Some(j) = point {
@@ -122,7 +122,7 @@ impl Elastica {
         let Some(contact) = self.pieces[k].lies else { return };
         self.pieces.remove(k);
         self.joints.remove(k);
-        self.joints[k - 1] = Joint::Touch(contact);
+        self.joints[k - 1] = Joint::ContactPair(contact);
     }
 
     /// A point becomes a stretch.
@@ -160,7 +160,7 @@ impl Elastica {
 
     /// Force of the contact at a joint along its normal, N.
     pub(super) fn push(&self, joint: usize) -> f64 {
-        let (Joint::Touch(k) | Joint::Begin(k) | Joint::End(k)) = self.joints[joint] else { return 0.0 };
+        let (Joint::ContactPair(k) | Joint::Begin(k) | Joint::End(k)) = self.joints[joint] else { return 0.0 };
         let ends = (self.pieces[joint].nodes.last(), self.pieces[joint + 1].nodes.first());
         let (Some(a), Some(b)) = ends else { return 0.0 };
         let normal = perp(tangent(a)) * -self.contacts[k].sense;
@@ -171,7 +171,7 @@ impl Elastica {
     fn exchange(&mut self, problem: &Problem, points: &[usize]) -> Option<bool> {
         let size = self.scale + self.bending / (self.length * self.length);
         for j in 0..self.joints.len() {
-            let Joint::Touch(k) = self.joints[j] else { continue };
+            let Joint::ContactPair(k) = self.joints[j] else { continue };
             let c = self.contacts[k];
             let u = *self.pieces[j].nodes.last()?;
             let pulley = matches!(c.owner, Owner::Pulley(_));
@@ -293,7 +293,7 @@ impl Elastica {
         self.contacts.push(contact);
         let (before, after) = split(&self.pieces[k], i);
         self.pieces.splice(k..=k, [before, after]);
-        self.joints.insert(k, Joint::Touch(self.contacts.len() - 1));
+        self.joints.insert(k, Joint::ContactPair(self.contacts.len() - 1));
         Some(true)
     }
 }

@@ -150,8 +150,10 @@ impl Elastica {
                 }
             }
             let pulley = |c: usize| self.contacts.get(c).is_some_and(|c| c.owner == Owner::Pulley(k));
-            let begins = self.joints.iter().position(|j| matches!(j, Joint::Touch(c) | Joint::Begin(c) if pulley(*c)));
-            let stops = self.joints.iter().rposition(|j| matches!(j, Joint::Touch(c) | Joint::End(c) if pulley(*c)));
+            let begins =
+                self.joints.iter().position(|j| matches!(j, Joint::ContactPair(c) | Joint::Begin(c) if pulley(*c)));
+            let stops =
+                self.joints.iter().rposition(|j| matches!(j, Joint::ContactPair(c) | Joint::End(c) if pulley(*c)));
             if let (Some(i), Some(j)) = (begins, stops)
                 && let ((Some(a), _), (_, Some(b))) = (ends(i), ends(j))
             {
@@ -169,7 +171,7 @@ impl Elastica {
         let mut out = Vec::new();
         for (j, joint) in self.joints.iter().enumerate() {
             let (k, stretch) = match *joint {
-                Joint::Touch(k) => (k, None),
+                Joint::ContactPair(k) => (k, None),
                 Joint::Begin(k) => (k, self.pieces.get(j + 1)),
                 // The stretch that the cable begins with.
                 Joint::End(k) if j == 0 => (k, self.pieces.first()),

@@ -4,7 +4,7 @@
 //! there, its force before and after differ by what the corner does, and its moment balances as before.
 
 use crate::math::{Vec2, larger, perp};
-use crate::model::fem::elastica::relax::{Chain, Touch};
+use crate::model::fem::elastica::relax::{Chain, ContactPair};
 use crate::scene::SupportKind;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
@@ -13,7 +13,7 @@ const APART: f64 = 2.5;
 
 impl Chain<'_> {
     /// Force of a contact on the cable, N.
-    fn force_of(&self, t: &Touch) -> Vec2 {
+    fn force_of(&self, t: &ContactPair) -> Vec2 {
         let along = (self.x[t.node + 1] - self.x[t.node]).normalize();
         t.gap.normal * t.push + along * (t.mobilised * t.push)
     }
@@ -53,7 +53,7 @@ impl Chain<'_> {
         }
     }
 
-    fn answer_nodes(&self, moments: &[f64], forces: &[Vec2], pushes: &[Touch]) -> Vec<Node> {
+    fn answer_nodes(&self, moments: &[f64], forces: &[Vec2], pushes: &[ContactPair]) -> Vec<Node> {
         let p = self.problem;
         let area = p.cable.area_m2();
         let last = self.x.len() - 1;
@@ -73,7 +73,7 @@ impl Chain<'_> {
             let (a, b) = (self.x[k], self.x[k + 1]);
             let t = (b - a).normalize();
             let half = self.body * (0.5 * (self.arc[k + 1] - self.arc[k]));
-            let mut inside: Vec<&Touch> =
+            let mut inside: Vec<&ContactPair> =
                 pushes.iter().filter(|t| t.node == k && t.gap.fraction > 0.0 && t.gap.fraction < 1.0).collect();
             inside.sort_by(|a, b| a.gap.fraction.total_cmp(&b.gap.fraction));
             // Before the first of the contacts on this bar.
@@ -131,9 +131,9 @@ impl Chain<'_> {
         p.supports.iter().enumerate().map(reaction).collect()
     }
 
-    fn reports(&self, pushes: &[Touch]) -> Vec<ContactReport> {
+    fn reports(&self, pushes: &[ContactPair]) -> Vec<ContactReport> {
         let mut out = Vec::new();
-        let mut left: Vec<&Touch> = pushes.iter().collect();
+        let mut left: Vec<&ContactPair> = pushes.iter().collect();
         while let Some(first) = left.first().copied() {
             let (mut group, mut rest, mut to) = (vec![first], Vec::new(), first.arc);
             for t in left.into_iter().skip(1) {
@@ -147,7 +147,7 @@ impl Chain<'_> {
             left = rest;
             let (Some(a), Some(b)) = (group.first(), group.last()) else { break };
             let middle = group[group.len() / 2];
-            let at = |t: &Touch| self.x[t.node] + (self.x[t.node + 1] - self.x[t.node]) * t.gap.fraction;
+            let at = |t: &ContactPair| self.x[t.node] + (self.x[t.node + 1] - self.x[t.node]) * t.gap.fraction;
             let x = at(middle);
             let normal_n: f64 = group.iter().map(|t| t.push).sum();
             let friction_n: f64 = group.iter().map(|t| t.mobilised * t.push).sum();

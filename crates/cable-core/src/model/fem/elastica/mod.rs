@@ -135,7 +135,7 @@ struct Piece {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Joint {
     /// A contact in one point.
-    Touch(usize),
+    ContactPair(usize),
     /// A stretch of contact begins.
     Begin(usize),
     /// It ends.
@@ -343,14 +343,14 @@ impl Elastica {
         };
         let (xa, xb) = (place(a), place(b));
         match joint {
-            Joint::Touch(k) | Joint::Begin(k) | Joint::End(k) => {
+            Joint::ContactPair(k) | Joint::Begin(k) | Joint::End(k) => {
                 out.extend((0..=MOMENT).map(|i| b[i] - a[i]));
                 out.push(b[ARC] - a[ARC]);
                 let Some(c) = self.contacts.get(k) else { return };
                 out.push(jump(c));
                 match joint {
-                    Joint::Touch(_) if c.is_point() => out.extend([(xa - c.at).x, (xa - c.at).y]),
-                    Joint::Touch(_) => out.extend([c.gap(xa).0, slant(c, a)]),
+                    Joint::ContactPair(_) if c.is_point() => out.extend([(xa - c.at).x, (xa - c.at).y]),
+                    Joint::ContactPair(_) => out.extend([c.gap(xa).0, slant(c, a)]),
                     Joint::Begin(_) => self.lie(c, b, out),
                     _ => {}
                 }

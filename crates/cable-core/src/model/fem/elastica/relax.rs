@@ -86,7 +86,7 @@ const HALF_BAND: usize = 5;
 
 /// A place of the chain that is near an obstacle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Touch {
+pub(super) struct ContactPair {
     /// The gap; `fraction` is its place on the bar after `node`.
     pub gap: Gap,
     pub node: usize,
@@ -99,7 +99,7 @@ pub(super) struct Touch {
     pub mobilised: f64,
 }
 
-impl Touch {
+impl ContactPair {
     /// Nodes with their shares in its place.
     pub fn shares(&self) -> [(usize, f64); 2] {
         [(self.node, 1.0 - self.gap.fraction), (self.node + 1, self.gap.fraction)]
@@ -123,7 +123,7 @@ pub(super) struct Chain<'a> {
     /// Nodes with a direction, and whether the bar after them has it.
     clamps: Vec<(usize, bool, Vec2)>,
     pub(super) load: Vec<Vec2>,
-    pub(super) touches: Vec<Touch>,
+    pub(super) touches: Vec<ContactPair>,
     scale: f64,
     /// Length of a bar, m.
     pub bar: f64,
@@ -355,7 +355,7 @@ impl<'a> Chain<'a> {
     }
 
     fn find_touches(&mut self) {
-        let mut found: Vec<Touch> = Vec::with_capacity(self.touches.len());
+        let mut found: Vec<ContactPair> = Vec::with_capacity(self.touches.len());
         let known = std::mem::take(&mut self.touches);
         self.pairs(&self.x, self.bar, |node, p| {
             if p.weight <= 0.0 {
@@ -374,7 +374,7 @@ impl<'a> Chain<'a> {
             };
             let push = old.map_or(0.0, |t| t.push);
             let active = p.gap.gap_m < 0.0 || old.is_some_and(|t| t.active);
-            found.push(Touch { gap: p.gap, node, arc: s, push, active, mobilised });
+            found.push(ContactPair { gap: p.gap, node, arc: s, push, active, mobilised });
         });
         self.touches = found;
     }
@@ -563,7 +563,7 @@ impl<'a> Chain<'a> {
     }
 
     /// Direction of the bar that a contact is on.
-    fn along(&self, t: &Touch) -> Vec2 {
+    fn along(&self, t: &ContactPair) -> Vec2 {
         (self.x[t.node + 1] - self.x[t.node]).normalize()
     }
 
@@ -598,7 +598,7 @@ impl<'a> Chain<'a> {
 
     /// −p ∂²g of a contact that pushes with p: of a node against a round −p/D, of a bar that turns by φ about a point at distance D and slides
     /// along itself by m, −p g = p (Dφ²/2 + φm).
-    fn add_round(&self, matrix: &mut BandMatrix, t: &Touch, at_node: &mut Mat2) {
+    fn add_round(&self, matrix: &mut BandMatrix, t: &ContactPair, at_node: &mut Mat2) {
         let round = !t.gap.feature.is_multiple_of(2);
         let far = t.gap.gap_m + self.offset(&t.gap);
         let f = t.gap.fraction;
@@ -713,9 +713,9 @@ impl<'a> Chain<'a> {
     }
 
     /// What pushes, in order along the cable.
-    pub fn pushes(&self) -> Vec<Touch> {
+    pub fn pushes(&self) -> Vec<ContactPair> {
         let least = 1e-7 * self.scale;
-        let mut out: Vec<Touch> = self.touches.iter().filter(|t| t.active && t.push > least).copied().collect();
+        let mut out: Vec<ContactPair> = self.touches.iter().filter(|t| t.active && t.push > least).copied().collect();
         out.sort_by(|a, b| a.arc.total_cmp(&b.arc));
         out
     }

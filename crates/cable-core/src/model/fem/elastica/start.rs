@@ -3,7 +3,7 @@
 use crate::contact::Gap;
 use crate::math::{Vec2, cross, perp};
 use crate::model::fem::beam::mesh::places;
-use crate::model::fem::elastica::relax::{Chain, Touch};
+use crate::model::fem::elastica::relax::{Chain, ContactPair};
 use crate::model::fem::elastica::{
     ANGLE, ARC, Contact, Elastica, End, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, tangent,
 };
@@ -168,7 +168,7 @@ impl Elastica {
         problem: &Problem,
         answer: &CableSolution,
         curve: &Curve<'_>,
-        (bar, pushes): (f64, &[Touch]),
+        (bar, pushes): (f64, &[ContactPair]),
         events: &mut Vec<Event>,
     ) {
         let mut done = vec![false; pushes.len()];
@@ -200,7 +200,7 @@ impl Elastica {
             let k = self.contacts.len();
             self.contacts.push(contact);
             let [from, to] = if long { [a.arc, to] } else { [s, s] };
-            events.push(Event { from, to, joint: if long { Joint::Begin(k) } else { Joint::Touch(k) } });
+            events.push(Event { from, to, joint: if long { Joint::Begin(k) } else { Joint::ContactPair(k) } });
         }
     }
 
@@ -209,7 +209,7 @@ impl Elastica {
         (time_s, dragged): (f64, &[Option<Vec2>]),
         answer: &CableSolution,
         bar: Option<f64>,
-        pushes: Option<&[Touch]>,
+        pushes: Option<&[ContactPair]>,
     ) -> Option<Self> {
         let alone = problem.outline.is_none() && problem.floor_friction.is_none() && !problem.cable.self_contact;
         if !alone || answer.nodes.len() < 2 || !answer.breaks.is_empty() {
@@ -309,7 +309,7 @@ impl Elastica {
             let to = if long && self.length - to < bar { self.length } else { to };
             let from = if long && from < bar { 0.0 } else { from };
             let [from, to] = if long { [from, to] } else { [s, s] };
-            events.push(Event { from, to, joint: if long { Joint::Begin(k) } else { Joint::Touch(k) } });
+            events.push(Event { from, to, joint: if long { Joint::Begin(k) } else { Joint::ContactPair(k) } });
         }
     }
 
@@ -397,7 +397,7 @@ impl Elastica {
             self.mobilise(problem, answer, &mut contact, 0.5 * (from + to));
             let k = self.contacts.len();
             self.contacts.push(contact);
-            events.push(Event { from, to, joint: if to > from { Joint::Begin(k) } else { Joint::Touch(k) } });
+            events.push(Event { from, to, joint: if to > from { Joint::Begin(k) } else { Joint::ContactPair(k) } });
         }
     }
 
@@ -495,7 +495,7 @@ impl Elastica {
                 };
                 if point {
                     let middle = 0.5 * (e.from + e.to);
-                    *e = Event { from: middle, to: middle, joint: Joint::Touch(k) };
+                    *e = Event { from: middle, to: middle, joint: Joint::ContactPair(k) };
                 }
             }
         }
@@ -504,7 +504,7 @@ impl Elastica {
             let Joint::Begin(k) = events[i].joint else { return false };
             let beside = |j: Option<usize>| {
                 let e = events.get(j?)?;
-                let (Joint::Begin(k) | Joint::Touch(k)) = e.joint else { return None };
+                let (Joint::Begin(k) | Joint::ContactPair(k)) = e.joint else { return None };
                 self.contacts[k].radius?;
                 Some((curve.angle(e.from, [0.0, e.from]) - curve.angle(e.to, [e.to, length])).abs())
             };
@@ -599,7 +599,7 @@ impl Elastica {
                     turns[k][1] = *angle - a[ANGLE];
                     turns[k + 1][0] = *angle - b[ANGLE];
                 }
-                Joint::Touch(c) if self.contacts[*c].is_point() => {
+                Joint::ContactPair(c) if self.contacts[*c].is_point() => {
                     // The side on which a point is passed is that to which the cable turns.
                     let turn = cross(tangent(&a), tangent(&b));
                     self.contacts[*c].sense = if turn < 0.0 { -1.0 } else { 1.0 };

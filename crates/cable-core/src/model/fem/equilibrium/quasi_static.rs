@@ -5,9 +5,9 @@ use crate::math::{Vec2, bounded, larger};
 use crate::model::fem::dynamics::{Dynamics, REACH};
 use crate::model::fem::equilibrium::initial_guess::push_out;
 use crate::model::fem::newton::minimize::{DRIFT, WORK_SPENT};
-use crate::model::fem::newton::step_input::{Done, Failure, Pose, Task};
-use crate::model::fem::newton::step_setup::{Grips, load_scale, tolerance};
-use crate::model::fem::obstacle::moving_outline::Rider;
+use crate::model::fem::newton::step_input::{Converged, Failure, Pose, StepInput};
+use crate::model::fem::newton::step_setup::{StickSlipChanges, load_scale, tolerance};
+use crate::model::fem::obstacle::moving_outline::MovingOutline;
 use crate::model::fem::results;
 use crate::model::fem::system::friction_state::SLIDE;
 use crate::model::fem::time::bdf2::{NOT_FOUND, PULLED, ROUNDS_EACH};
@@ -71,22 +71,22 @@ const LEAST_PULL: f64 = 1e-4;
 /// What was found with refreshed normal forces, grips and factors.
 #[derive(Clone, Copy, Debug)]
 struct Lagged {
-    done: Done,
-    grips: Grips,
+    done: Converged,
+    grips: StickSlipChanges,
     /// By how much the friction of a contact changed in the last round, N.
     off: f64,
 }
 
 impl Lagged {
     /// Whether friction is what the normal forces allow, at sliding nodes and elsewhere.
-    fn is_lawful(&self, task: &Task) -> bool {
+    fn is_lawful(&self, task: &StepInput) -> bool {
         self.grips.hold() && self.off <= DRIFT * task.tolerance
     }
 }
 
 impl Dynamics {
     /// A step without inertia to the time `to`; friction remembers.
-    pub(in crate::model::fem) fn rest_step(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Done, Failure> {
+    pub(in crate::model::fem) fn rest_step(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
         self.rest_rounds(to, dragged, f64::INFINITY)
     }
 
@@ -94,12 +94,16 @@ impl Dynamics {
     ///
     /// # Errors
     /// `PULLED` where a corner would have to pull, before anything is accepted: what slides meanwhile would keep what that did.
-    pub(in crate::model::fem) fn quiet_step(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Done, Failure> {
+    pub(in crate::model::fem) fn quiet_step(
+        &mut self,
+        to: f64,
+        dragged: &[Option<Vec2>],
+    ) -> Result<Converged, Failure> {
         self.rest_rounds(to, dragged, LEAST_PULL)
     }
 
-    fn rest_rounds(&mut self, to: f64, dragged: &[Option<Vec2>], pull: f64) -> Result<Done, Failure> {
-        let (mut total, mut settled) = (Done::default(), false);
+    fn rest_rounds(&mut self, to: f64, dragged: &[Option<Vec2>], pull: f64) -> Result<Converged, Failure> {
+        let (mut total, mut settled) = (Converged::default(), false);
         for round in 0..CORNER_ROUNDS {
             self.prepare_way([to, to], Some(dragged));
             self.adapt_slip();
@@ -122,7 +126,7 @@ impl Dynamics {
                 return Err(Failure { node, residual, cause: PULLED });
             }
             let done = done?;
-            total = Done { iterations: total.iterations + done.iterations, ..done };
+            total = Converged { iterations: total.iterations + done.iterations, ..done };
             self.accept_pose(&pose, to);
             // Where corners are met and left by turns to the last, the mesh stays as it balances.
             if settled || round + 1 == CORNER_ROUNDS {
@@ -140,7 +144,7 @@ impl Dynamics {
 
     /// Brings what is left unbalanced at a rest, which adds up along the cable, down to what can be told from rounding: on from where
     /// the cable lies, or not at all where that does not come to an end.
-    pub(in crate::model::fem) fn polish(&mut self, found: Done, dragged: &[Option<Vec2>]) -> Done {
+    pub(in crate::model::fem) fn polish(&mut self, found: Converged, dragged: &[Option<Vec2>]) -> Converged {
         let kept = (self.saved.clone(), self.can_restore);
         let (exact, to) = (self.task.tolerance, self.motion.time);
         let mut all = found;
@@ -154,7 +158,7 @@ impl Dynamics {
                 self.restore();
                 break;
             };
-            all = Done { iterations: all.iterations + done.iterations, ..done };
+            all = Converged { iterations: all.iterations + done.iterations, ..done };
             // With the bars it balances on: new ones would have to be brought to rest again.
             self.accept_pose(&pose, to);
         }
@@ -180,13 +184,13 @@ impl Dynamics {
     }
 
     /// Minimises again and again with refreshed normal forces, grips and factors until nothing changes.
-    fn lag(&mut self, pose: &mut Pose, rounds: usize) -> Result<Done, Failure> {
+    fn lag(&mut self, pose: &mut Pose, rounds: usize) -> Result<Converged, Failure> {
         self.lag_until(pose, rounds).map(|found| found.done)
     }
 
     /// The same; says what was found.
     fn lag_until(&mut self, pose: &mut Pose, rounds: usize) -> Result<Lagged, Failure> {
-        let (mut total, mut grips) = (Done::default(), Grips::FOUND);
+        let (mut total, mut grips) = (Converged::default(), StickSlipChanges::FOUND);
         let (mut fewest, mut spare) = (usize::MAX, PLAIN_ROUNDS);
         let (mut off, mut part) = (0.0, 1.0);
         let mut before = Vec::with_capacity(self.contacts.rubs.capacity());
@@ -208,7 +212,7 @@ impl Dynamics {
             }
             self.task.shift = self.soft_shift();
             let done = self.minimise(pose)?;
-            total = Done { iterations: total.iterations + done.iterations, ..done };
+            total = Converged { iterations: total.iterations + done.iterations, ..done };
             grips = self.update_grips(pose, spare == 0);
             if grips.wrong < fewest {
                 (fewest, spare) = (grips.wrong, PLAIN_ROUNDS);
@@ -225,7 +229,7 @@ impl Dynamics {
     }
 
     /// The same, until the law holds at every sliding node.
-    fn lag_wholly(&mut self, pose: &mut Pose) -> Result<Done, Failure> {
+    fn lag_wholly(&mut self, pose: &mut Pose) -> Result<Converged, Failure> {
         let sliding = self.mesh.sliding.iter().flatten().count();
         let found = self.lag_until(pose, LAG_ROUNDS + ROUNDS_EACH * sliding)?;
         if found.is_lawful(&self.task) {
@@ -269,7 +273,7 @@ impl Dynamics {
 
     /// Follows the way down with ever weaker viscous resistance, then finds the resting place itself. On the way what rounding
     /// hides may be any force: a cable laid in touch begins there. Where that ends in no rest, it may not.
-    pub(in crate::model::fem) fn relax(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Done, Failure> {
+    pub(in crate::model::fem) fn relax(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
         let kept = (self.saved.clone(), self.can_restore);
         self.save();
         let mut found = self.relax_within(f64::INFINITY, to, dragged);
@@ -282,7 +286,7 @@ impl Dynamics {
     }
 
     /// The same; `noise` is the greatest force, in tolerances, that rounding may hide on the way.
-    fn relax_within(&mut self, noise: f64, to: f64, dragged: &[Option<Vec2>]) -> Result<Done, Failure> {
+    fn relax_within(&mut self, noise: f64, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
         // What the outline moves into goes out of its way before anything slides.
         self.prepare_way([to, to], Some(dragged));
         self.motion.x.clone_from_slice(self.task.begins());
@@ -339,12 +343,12 @@ impl Dynamics {
                         && done.residual <= NEGLIGIBLE * exact
                     {
                         self.motion.time = to;
-                        return Ok(Done { iterations: total, residual: done.residual + resists });
+                        return Ok(Converged { iterations: total, residual: done.residual + resists });
                     }
                     resistance *= if moved < 0.3 { 0.6 } else { 1.0 };
                     if resistance < floor || (moved < 1e-4 && round % 8 == 7) || moved < 1e-7 {
                         match self.rest_step(to, dragged) {
-                            Ok(done) => return Ok(Done { iterations: total + done.iterations, ..done }),
+                            Ok(done) => return Ok(Converged { iterations: total + done.iterations, ..done }),
                             Err(failure) if failure.cause == WORK_SPENT => return Err(failure),
                             Err(failure) => {
                                 last = failure;
@@ -457,7 +461,7 @@ impl Dynamics {
 
     /// The resting place; one that the cable reaches without ever touching itself is found as if it could pass itself, for
     /// its first lay is no shape it could have.
-    fn find_rest(&mut self, dragged: &[Option<Vec2>]) -> Result<Result<Done, Failure>, SolveError> {
+    fn find_rest(&mut self, dragged: &[Option<Vec2>]) -> Result<Result<Converged, Failure>, SolveError> {
         let time = self.motion.time;
         let shape = self.contacts.own.shape;
         if !shape.is_on() {
@@ -542,7 +546,7 @@ impl Dynamics {
                 most = most.max((at - now).norm());
             }
         }
-        let carried = self.rider.as_ref().map_or(0.0, Rider::pieces);
+        let carried = self.rider.as_ref().map_or(0.0, MovingOutline::pieces);
         larger(most / (0.5 * even), carried).ceil().clamp(1.0, 1e4)
     }
 }

@@ -12,7 +12,7 @@
 use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp};
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::mesh::sliding_node::{Grip, Load, Seat, Sliding, round_of};
+use crate::model::fem::mesh::sliding_node::{Load, Seat, SlidingNode, StickSlip, round_of};
 use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
 use crate::model::fem::newton::step_setup::load_scale;
 use crate::model::fem::system::bar_weight::Weight;
@@ -223,11 +223,11 @@ impl Dynamics {
     }
 
     /// A node that moves with its material becomes a sliding one.
-    fn pin_down(&mut self, k: usize, arc_length: f64, sliding: Sliding) {
+    fn pin_down(&mut self, k: usize, arc_length: f64, sliding: SlidingNode) {
         self.as_of(sliding.seat, |d| d.put_on_seat(k, arc_length, sliding));
     }
 
-    fn put_on_seat(&mut self, k: usize, arc_length: f64, sliding: Sliding) {
+    fn put_on_seat(&mut self, k: usize, arc_length: f64, sliding: SlidingNode) {
         self.keep_answer();
         let along = self.mesh.path(k - 1, &self.motion.x).direction;
         let (mesh, m) = (&mut self.mesh, &mut self.motion);
@@ -397,7 +397,7 @@ impl Dynamics {
 
     /// How the material between two nodes is shared by a cable in motion where a sliding node comes between them; None where the cable is
     /// not taut, pulled by less than what its own speed across, hitting something, would make of it, or where the node would stretch it.
-    fn share_of_sliding(&self, [before, after]: [usize; 2], sliding: &Sliding) -> Option<Share> {
+    fn share_of_sliding(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> Option<Share> {
         let (mesh, x) = (&self.mesh, &self.motion.x);
         let ways =
             [Path::between(&mesh.end(before, x), &sliding.end), Path::between(&sliding.end, &mesh.end(after, x))];
@@ -442,7 +442,7 @@ impl Dynamics {
     }
 
     /// Whether a sliding node between two nodes would bend the cable the right way and its bars would meet nothing.
-    fn fits(&self, [before, after]: [usize; 2], sliding: &Sliding) -> bool {
+    fn fits(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> bool {
         let x = &self.motion.x;
         let paths = [
             Path::between(&self.mesh.end(before, x), &sliding.end),
@@ -467,7 +467,7 @@ impl Dynamics {
     }
 
     /// The sliding node that a corner or circle pressing on a bar or node asks for: its bar, arc length and itself.
-    fn seat_for(&self, node: usize, on_segment: bool, gap: &crate::contact::Gap) -> Option<(usize, f64, Sliding)> {
+    fn seat_for(&self, node: usize, on_segment: bool, gap: &crate::contact::Gap) -> Option<(usize, f64, SlidingNode)> {
         let (mesh, x, last) = (&self.mesh, &self.motion.x, self.mesh.nodes() - 1);
         let (center, radius) =
             round_of(self.problem.world.geometry(), gap.feature, self.contacts.barrier.reach, LEAST_TURN)?;
@@ -506,11 +506,11 @@ impl Dynamics {
         let before = path.arcs[0] * mesh.end(bar, x).radius;
         let part = if path.length > 0.0 { (before + fraction * path.straight) / path.length } else { fraction };
         let arc_length = s[0] + bounded(part, LEAST_PART, 1.0 - LEAST_PART) * (s[1] - s[0]);
-        let sliding = Sliding {
+        let sliding = SlidingNode {
             end: End { center, radius, mark: gap.normal, sense },
             friction: gap.friction,
             seat: Seat::Obstacle { obstacle: gap.obstacle, feature: gap.feature },
-            grip: Grip::Stick,
+            grip: StickSlip::Stick,
             factor: 1.0,
             exponent: 0.0,
             floor_factor: 1.0,

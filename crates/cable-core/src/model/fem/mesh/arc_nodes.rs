@@ -3,7 +3,7 @@
 use crate::math::{Vec2, smaller};
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::adapt::{MAX_CHANGES, NEAR};
-use crate::model::fem::mesh::sliding_node::Sliding;
+use crate::model::fem::mesh::sliding_node::SlidingNode;
 use crate::model::fem::mesh::tangent_path::End;
 
 /// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
@@ -62,7 +62,8 @@ impl Dynamics {
     /// Turns the mark of a node by an angle (rad), past material (m).
     fn turn_mark(&mut self, k: usize, shift: f64, material: f64) {
         let Some(node) = self.mesh.sliding[k] else { return };
-        let turned = Sliding { end: End { mark: rotate(node.end.mark, node.end.sense * shift), ..node.end }, ..node };
+        let turned =
+            SlidingNode { end: End { mark: rotate(node.end.mark, node.end.sense * shift), ..node.end }, ..node };
         self.mesh.sliding[k] = Some(turned);
         self.mesh.arc_length[k] += material;
         self.motion.s_before[k] += material;
@@ -118,7 +119,7 @@ impl Dynamics {
         let s = [self.mesh.arc_length[bar], self.mesh.arc_length[bar + 1]];
         let part = angle * node.end.radius / length * (s[1] - s[0]);
         let arc_length = if side == 0 { s[1] - part } else { s[0] + part };
-        self.insert(bar + 1, arc_length, Some(Sliding { end: End { mark, ..node.end }, ..node }));
+        self.insert(bar + 1, arc_length, Some(SlidingNode { end: End { mark, ..node.end }, ..node }));
     }
 }
 

@@ -2,12 +2,12 @@
 
 use crate::math::Vec2;
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::mesh::sliding_node::Sliding;
+use crate::model::fem::mesh::sliding_node::SlidingNode;
 use crate::model::fem::system::floor_friction;
 
 impl Dynamics {
     /// Puts a node at an arc length (m) between nodes `k` − 1 and `k`.
-    pub(in crate::model::fem) fn insert(&mut self, k: usize, arc_length: f64, sliding: Option<Sliding>) {
+    pub(in crate::model::fem) fn insert(&mut self, k: usize, arc_length: f64, sliding: Option<SlidingNode>) {
         let beside = [k - 1, k].into_iter().find_map(|j| self.mesh.sliding.get(j).copied().flatten());
         match sliding.or(beside) {
             Some(node) => self.as_of(node.seat, |d| d.put_in(k, arc_length, sliding)),
@@ -15,7 +15,7 @@ impl Dynamics {
         }
     }
 
-    fn put_in(&mut self, k: usize, arc_length: f64, sliding: Option<Sliding>) {
+    fn put_in(&mut self, k: usize, arc_length: f64, sliding: Option<SlidingNode>) {
         self.keep_answer();
         let mesh = &mut self.mesh;
         let path = mesh.path(k - 1, &self.motion.x);

@@ -33,7 +33,7 @@ pub enum Seat {
 
 /// What friction does at a sliding node.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Grip {
+pub enum StickSlip {
     /// It holds.
     #[default]
     Stick,
@@ -45,7 +45,7 @@ pub enum Grip {
 
 /// A sliding node.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sliding {
+pub struct SlidingNode {
     /// The round it sits on.
     pub end: End,
     /// Coulomb friction.
@@ -53,7 +53,7 @@ pub struct Sliding {
     /// What it runs over.
     pub seat: Seat,
     /// What friction does.
-    pub grip: Grip,
+    pub grip: StickSlip,
     /// γ.
     pub factor: f64,
     /// μφ with the turn last seen.
@@ -66,7 +66,7 @@ pub struct Sliding {
     pub balanced: Option<Balanced>,
 }
 
-impl Sliding {
+impl SlidingNode {
     /// Where it is, m.
     #[must_use]
     pub fn position(&self) -> Vec2 {
@@ -76,7 +76,7 @@ impl Sliding {
     /// Whether its arc length is held in the present step.
     #[must_use]
     pub fn sticks(&self) -> bool {
-        self.friction > 0.0 && self.grip == Grip::Stick
+        self.friction > 0.0 && self.grip == StickSlip::Stick
     }
 
     /// The feature it runs over.
@@ -135,7 +135,7 @@ impl Load {
     /// dF/ds = −b: the tension force at the node is that of the bar's middle ∓ b·share, and the turn is from one to
     /// the other.
     #[must_use]
-    pub fn new(node: &Sliding, tension: [f64; 2], path: [&Path; 2], (body, share): (Vec2, [f64; 2])) -> Self {
+    pub fn new(node: &SlidingNode, tension: [f64; 2], path: [&Path; 2], (body, share): (Vec2, [f64; 2])) -> Self {
         let t = [path[0].direction, path[1].direction];
         let force = [t[0] * tension[0] - body * share[0], t[1] * tension[1] + body * share[1]];
         let ends = [force[0].norm(), force[1].norm()];
@@ -174,37 +174,37 @@ impl Load {
     /// (N) that its inertia adds to the slope, `stiffness` is EA (N). A node holds or slips by the very slope that the step balances: with
     /// another, however near to it, one that is about to slip is said to slip where it holds and to hold where it slips, for ever.
     #[must_use]
-    pub fn grip(&self, node: &Sliding, slid: f64, [inertia, slack]: [f64; 2], stiffness: f64) -> Grip {
+    pub fn grip(&self, node: &SlidingNode, slid: f64, [inertia, slack]: [f64; 2], stiffness: f64) -> StickSlip {
         let cone = node.exponent.exp();
         let [before, after] = self.at_material;
-        let slope = |grip: Grip| {
+        let slope = |grip: StickSlip| {
             let (ratio, factor) = (self.ratio(grip, node.exponent), self.factor(grip, node.exponent, stiffness));
             let floor = self.floor[0] + self.floor[1] * floor_friction::mean_factor(ratio) + self.floor[2] * ratio;
             after * factor + floor - before + inertia
         };
         match node.grip {
-            Grip::Stick if slope(Grip::ToStart) < -slack => Grip::ToStart,
-            Grip::Stick if slope(Grip::ToEnd) > slack => Grip::ToEnd,
+            StickSlip::Stick if slope(StickSlip::ToStart) < -slack => StickSlip::ToStart,
+            StickSlip::Stick if slope(StickSlip::ToEnd) > slack => StickSlip::ToEnd,
             // Without friction both ways are one.
-            Grip::ToStart if slid < 0.0 && cone > 1.0 => Grip::Stick,
-            Grip::ToEnd if slid > 0.0 && cone > 1.0 => Grip::Stick,
+            StickSlip::ToStart if slid < 0.0 && cone > 1.0 => StickSlip::Stick,
+            StickSlip::ToEnd if slid > 0.0 && cone > 1.0 => StickSlip::Stick,
             same => same,
         }
     }
 
     /// Tension before over tension after the round for a grip.
     #[must_use]
-    pub fn ratio(&self, grip: Grip, exponent: f64) -> f64 {
+    pub fn ratio(&self, grip: StickSlip, exponent: f64) -> f64 {
         match grip {
-            Grip::Stick => 1.0,
-            Grip::ToStart => exponent.exp(),
-            Grip::ToEnd => (-exponent).exp(),
+            StickSlip::Stick => 1.0,
+            StickSlip::ToStart => exponent.exp(),
+            StickSlip::ToEnd => (-exponent).exp(),
         }
     }
 
     /// γ for a grip, for a cable of axial stiffness `stiffness` (N).
     #[must_use]
-    pub fn factor(&self, grip: Grip, exponent: f64, stiffness: f64) -> f64 {
+    pub fn factor(&self, grip: StickSlip, exponent: f64, stiffness: f64) -> f64 {
         let ratio = self.ratio(grip, exponent);
         let after = self.pull[1];
         ratio * (1.0 + ratio * after / (2.0 * stiffness)) / (1.0 + after / (2.0 * stiffness))

@@ -23,7 +23,7 @@ use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::newton::step_bound::longest;
 use crate::model::fem::newton::step_input::Pose;
 use crate::model::fem::system::assembly::{Mesh, System};
-use crate::model::fem::system::friction_state::{ContactSet, Touch};
+use crate::model::fem::system::friction_state::{ContactPair, ContactSet};
 use crate::model::fem::system::self_contact::Coupling;
 use crate::problem::Problem;
 
@@ -45,8 +45,8 @@ const CLOSER: f64 = 0.45;
 
 /// What a step is about to touch.
 #[derive(Clone, Debug)]
-pub struct Ahead {
-    touches: Vec<Touch>,
+pub struct PredictedContacts {
+    touches: Vec<ContactPair>,
     stops: Vec<Stop>,
     pairs: Vec<SelfPair>,
     order: SortedNodes,
@@ -54,7 +54,7 @@ pub struct Ahead {
     step: Vec<f64>,
 }
 
-impl Ahead {
+impl PredictedContacts {
     /// Room for a mesh of so many nodes that each touch one thing.
     #[must_use]
     pub fn new(nodes: usize) -> Self {
@@ -187,7 +187,7 @@ fn landing(gap: f64, reach: f64) -> f64 {
 }
 
 /// How far the touching point goes in a step.
-fn moved(touch: &Touch, step: &[f64]) -> Vec2 {
+fn moved(touch: &ContactPair, step: &[f64]) -> Vec2 {
     let shares = touch.shares();
     let at = |k: usize| Vec2::new(step[2 * k], step[2 * k + 1]);
     if touch.on_segment { at(touch.node) * shares[0] + at(touch.node + 1) * shares[1] } else { at(touch.node) }

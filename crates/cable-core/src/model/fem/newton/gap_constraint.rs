@@ -3,7 +3,7 @@
 use crate::contact::self_contact::SelfPair;
 use crate::math::{Vec2, cross, larger};
 use crate::model::fem::system::assembly::{Mesh, System};
-use crate::model::fem::system::friction_state::Touch;
+use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::self_contact::{Coupling, couple};
 
 /// Stiffness of a constraint in units of the largest stiffness at its nodes. Softer: nodes still run into the barrier; much
@@ -42,7 +42,7 @@ pub struct Stop {
 
 impl Stop {
     /// The contact of an obstacle.
-    pub fn of(touch: &Touch, (mesh, system): (&Mesh, &System), least: f64) -> Self {
+    pub fn of(touch: &ContactPair, (mesh, system): (&Mesh, &System), least: f64) -> Self {
         let (gap, [a, b]) = (&touch.pair.gap, touch.shares());
         let next = touch.node + usize::from(touch.on_segment);
         let turns = touch.on_segment && [touch.node, next].iter().all(|&k| mesh.sliding[k].is_none());

@@ -13,12 +13,12 @@ use crate::contact::self_contact::{SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger, smaller};
-use crate::model::fem::newton::active_set::Ahead;
-use crate::model::fem::newton::step_input::{Done, Failure, Pose, Task};
+use crate::model::fem::newton::active_set::PredictedContacts;
+use crate::model::fem::newton::step_input::{Converged, Failure, Pose, StepInput};
 use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::contact_energy::{add_floor, add_rubs, add_touch};
-use crate::model::fem::system::friction_state::{ContactSet, Touch};
+use crate::model::fem::system::friction_state::{ContactPair, ContactSet};
 use crate::model::fem::system::self_contact;
 use crate::model::fem::system::self_contact::Coupling;
 use crate::problem::Problem;
@@ -101,7 +101,7 @@ pub struct Workspace {
     pub(in crate::model::fem) plain: Vec<f64>,
     pub(in crate::model::fem) trial: Pose,
     /// The contacts of the last assembly.
-    pub(in crate::model::fem) touches: Vec<Touch>,
+    pub(in crate::model::fem) touches: Vec<ContactPair>,
     magnitude: f64,
     /// Rounding of contact forces in the last assembly.
     pub(in crate::model::fem) rounding: Rounding,
@@ -111,7 +111,7 @@ pub struct Workspace {
     pub(in crate::model::fem) order: SortedNodes,
     /// Entries of the Hessian outside its band, from contacts of the cable with itself.
     pub(in crate::model::fem) coupling: Coupling,
-    pub(in crate::model::fem) ahead: Ahead,
+    pub(in crate::model::fem) ahead: PredictedContacts,
     /// Pulls carried as unknowns; empty: those of the present lengths.
     pub(in crate::model::fem) carried: Vec<bar_energy::Carried>,
     /// Branches of the friction of `rubs`, where that is being found out; empty: those of the present pose.
@@ -145,7 +145,7 @@ impl Workspace {
             own_pairs: Vec::new(),
             order: SortedNodes::default(),
             coupling: Coupling::new(),
-            ahead: Ahead::new(mesh.nodes()),
+            ahead: PredictedContacts::new(mesh.nodes()),
             carried: Vec::with_capacity(mesh.nodes()),
             branches: Vec::with_capacity(mesh.nodes()),
             slid: Vec::with_capacity(mesh.nodes()),
@@ -176,7 +176,7 @@ impl Workspace {
         problem: &Problem,
         mesh: &Mesh,
         contacts: &ContactSet,
-        (task, pose): (&Task, &Pose),
+        (task, pose): (&StepInput, &Pose),
         curvature: Curvature,
     ) -> f64 {
         let x = &pose.x;
@@ -256,7 +256,7 @@ impl Workspace {
 
     /// The unbalanced force (N) that is farthest beyond what is accepted, where, and by how many times: the tolerance, or where contact forces are
     /// known no better their rounding. At rest what is left at the nodes of a stretch adds up to a force of its own.
-    pub(in crate::model::fem) fn residual(&self, mesh: &Mesh, task: &Task) -> Residual {
+    pub(in crate::model::fem) fn residual(&self, mesh: &Mesh, task: &StepInput) -> Residual {
         let mut worst = Residual { force: 0.0, node: 0, excess: 0.0, drift: 0.0 };
         // On the way to a rest any force may be hidden, for what is laid in touch begins there, and where an outline squeezes the cable.
         let hidden = if task.moves && !task.outlined { self.rounding.relief } else { self.rounding.noise };
@@ -284,7 +284,7 @@ impl Workspace {
     }
 
     /// Sets `direction` to the Newton step; false if the matrix is not positive definite.
-    pub(in crate::model::fem) fn solve(&mut self, mesh: &Mesh, task: &Task, (x, shift): (&[Vec2], f64)) -> bool {
+    pub(in crate::model::fem) fn solve(&mut self, mesh: &Mesh, task: &StepInput, (x, shift): (&[Vec2], f64)) -> bool {
         let s = &mut self.system;
         for (d, g) in self.direction.iter_mut().zip(&s.gradient) {
             *d = -g;
@@ -342,13 +342,13 @@ impl Workspace {
         &mut self,
         (problem, mesh): (&Problem, &Mesh),
         contacts: &ContactSet,
-        task: &Task,
+        task: &StepInput,
         pose: &mut Pose,
-    ) -> Result<Done, Failure> {
+    ) -> Result<Converged, Failure> {
         self.goal.clone_from(&task.target);
         let mut shift = task.shift;
         let mut pushes = 0;
-        let mut done = Done::default();
+        let mut done = Converged::default();
         let mut value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Exact);
         loop {
             let Residual { force: residual, node, excess, drift } = self.residual(mesh, task);
@@ -442,7 +442,7 @@ impl Workspace {
         &mut self,
         (problem, mesh): (&Problem, &Mesh),
         contacts: &ContactSet,
-        (task, moving): (&Task, bool),
+        (task, moving): (&StepInput, bool),
         (pose, value, slope): (&mut Pose, f64, f64),
     ) -> Option<(f64, f64)> {
         let n = mesh.nodes();
@@ -480,7 +480,7 @@ impl Workspace {
 
 /// What the inertia of nodes loses by being coupled over the bars (see `mass`): adds gradient and Hessian, returns the energy, J.
 #[inline(never)]
-fn add_coupling(s: &mut System, task: &Task, x: &[Vec2]) -> f64 {
+fn add_coupling(s: &mut System, task: &StepInput, x: &[Vec2]) -> f64 {
     let mut value = 0.0;
     for (e, (coupling, chord)) in task.coupling.iter().enumerate() {
         let (late, k) = (x[e + 1] - x[e] - chord, coupling * task.scale[e]);
@@ -493,11 +493,11 @@ fn add_coupling(s: &mut System, task: &Task, x: &[Vec2]) -> f64 {
 }
 
 /// Factor of the equations of a node.
-pub(in crate::model::fem) fn node_scale(task: &Task, node: usize) -> f64 {
+pub(in crate::model::fem) fn node_scale(task: &StepInput, node: usize) -> f64 {
     task.scale.get(node.saturating_sub(1)).copied().unwrap_or(1.0)
 }
 
-fn grow(shift: f64, task: &Task) -> f64 {
+fn grow(shift: f64, task: &StepInput) -> f64 {
     let least = if task.shift > 0.0 { task.shift } else { 1.0 };
     if shift > 0.0 { 4.0 * shift } else { least }
 }

@@ -12,7 +12,7 @@ use crate::contact::friction::Branch;
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::newton::minimize::Workspace;
-use crate::model::fem::newton::step_input::{Done, Failure, Pose, Task};
+use crate::model::fem::newton::step_input::{Converged, Failure, Pose, StepInput};
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::friction_state::ContactSet;
@@ -44,9 +44,9 @@ impl Workspace {
         &mut self,
         (problem, mesh): (&Problem, &Mesh),
         contacts: &ContactSet,
-        task: &Task,
+        task: &StepInput,
         pose: &mut Pose,
-    ) -> Result<Done, Failure> {
+    ) -> Result<Converged, Failure> {
         if !task.moves {
             return self.descend((problem, mesh), contacts, task, pose);
         }
@@ -67,7 +67,7 @@ impl Workspace {
                 in_a_hurry += self.hurried;
             }
         }
-        done.map(|d| Done { iterations: d.iterations + in_a_hurry, ..d })
+        done.map(|d| Converged { iterations: d.iterations + in_a_hurry, ..d })
     }
 
     /// The pose at the end of a step; None where this does not find it, the pose then as it was or not far from it. Unless it
@@ -76,9 +76,9 @@ impl Workspace {
         &mut self,
         (problem, mesh): (&Problem, &Mesh),
         contacts: &ContactSet,
-        (task, meets): (&Task, bool),
+        (task, meets): (&StepInput, bool),
         pose: &mut Pose,
-    ) -> Option<Done> {
+    ) -> Option<Converged> {
         self.begun.x.clone_from(&pose.x);
         self.begun.slide.clone_from(&pose.slide);
         self.goal.clone_from(&task.target);
@@ -109,7 +109,13 @@ impl Workspace {
     }
 
     /// Moves a pose that is still where the step began to where its speed carries it, as far as nothing is in the way.
-    fn move_on(&mut self, (problem, mesh): (&Problem, &Mesh), contacts: &ContactSet, task: &Task, pose: &mut Pose) {
+    fn move_on(
+        &mut self,
+        (problem, mesh): (&Problem, &Mesh),
+        contacts: &ContactSet,
+        task: &StepInput,
+        pose: &mut Pose,
+    ) {
         if pose.x != task.begins() {
             return;
         }
@@ -131,9 +137,9 @@ impl Workspace {
         &mut self,
         (problem, mesh): (&Problem, &Mesh),
         contacts: &ContactSet,
-        (task, meets): (&Task, bool),
+        (task, meets): (&StepInput, bool),
         pose: &mut Pose,
-    ) -> Option<Done> {
+    ) -> Option<Converged> {
         self.move_on((problem, mesh), contacts, task, pose);
         self.branches.clear();
         self.branches.extend(contacts.rubs.iter().map(|r| Branch::at(r.sliding(&pose.x), contacts.slip)));
@@ -153,7 +159,7 @@ impl Workspace {
             }
             let sound = value.is_finite() && residual.is_finite() && self.rounding.noise <= task.tolerance;
             if sound && residual <= task.tolerance && !left && self.flags_hold(mesh, contacts, &pose.x) {
-                return Some(Done { iterations, residual });
+                return Some(Converged { iterations, residual });
             }
             self.near_enough = sound && residual < NEAR_ENOUGH * first;
             if iterations == MAX_STEPS || !sound {
@@ -180,7 +186,7 @@ impl Workspace {
     /// The direction again where bars that push make the matrix indefinite: with less and less of their push counted, until it is
     /// definite. None of it is what the minimiser takes, but that is a different matrix, far from the equations, and what it finds
     /// goes to and fro. False where that does not help; the system is pinned, and what it held is lost.
-    fn ease(&mut self, mesh: &Mesh, task: &Task, x: &[Vec2]) -> bool {
+    fn ease(&mut self, mesh: &Mesh, task: &StepInput, x: &[Vec2]) -> bool {
         if !self.coupling.is_empty() || mesh.bending_stiffness > 0.0 {
             return false;
         }
@@ -230,7 +236,7 @@ impl Workspace {
     }
 
     /// Moves pose and pulls by a part of the direction.
-    fn walk(&mut self, mesh: &Mesh, task: &Task, pose: &mut Pose, part: f64) {
+    fn walk(&mut self, mesh: &Mesh, task: &StepInput, pose: &mut Pose, part: f64) {
         let direction = &self.direction;
         let step = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]) * part;
         for (e, carried) in self.carried.iter_mut().enumerate() {

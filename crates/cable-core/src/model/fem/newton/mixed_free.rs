@@ -17,7 +17,7 @@
 
 use crate::energy::Curvature;
 use crate::math::{Vec2, larger};
-use crate::model::fem::newton::step_input::{Done, Pose, Task};
+use crate::model::fem::newton::step_input::{Converged, Pose, StepInput};
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
 
@@ -60,7 +60,7 @@ struct Balance {
 
 impl FreeStep {
     /// Finds the pose at the end of a step; None (and the pose as it was) where it does not converge.
-    pub fn solve(&mut self, mesh: &Mesh, task: &Task, pose: &mut Pose) -> Option<Done> {
+    pub fn solve(&mut self, mesh: &Mesh, task: &StepInput, pose: &mut Pose) -> Option<Converged> {
         self.start.clone_from(&pose.x);
         self.make_room(mesh);
         let done = self.newton(mesh, task, &mut pose.x);
@@ -88,7 +88,7 @@ impl FreeStep {
         self.step.resize(nodes, Vec2::zeros());
     }
 
-    fn newton(&mut self, mesh: &Mesh, task: &Task, x: &mut [Vec2]) -> Option<Done> {
+    fn newton(&mut self, mesh: &Mesh, task: &StepInput, x: &mut [Vec2]) -> Option<Converged> {
         for iterations in 0..=MAX_STEPS {
             if iterations == 0 {
                 self.begin(mesh, task);
@@ -99,7 +99,7 @@ impl FreeStep {
                 return None;
             }
             if balance.force <= task.tolerance && balance.pull <= task.tolerance && !left {
-                return Some(Done { iterations, residual: balance.force });
+                return Some(Converged { iterations, residual: balance.force });
             }
             if iterations == MAX_STEPS {
                 return None;
@@ -116,7 +116,7 @@ impl FreeStep {
     }
 
     /// The pulls with which the step begins: nearer to those it ends with than those of bars moved on each by itself.
-    fn begin(&mut self, mesh: &Mesh, task: &Task) {
+    fn begin(&mut self, mesh: &Mesh, task: &StepInput) {
         for (e, (pull, taut)) in self.pull.iter_mut().zip(&mut self.taut).enumerate() {
             let strain = (task.start[e + 1] - task.start[e]).norm() / mesh.rest_length[e] - 1.0;
             *taut = strain >= 0.0;
@@ -126,7 +126,7 @@ impl FreeStep {
 
     /// Gradient with the pulls carried into `gradient`, matrix into the blocks, the force of the present lengths (the right
     /// side) into `step`.
-    fn assemble(&mut self, mesh: &Mesh, task: &Task, x: &[Vec2], curvature: Curvature) -> Balance {
+    fn assemble(&mut self, mesh: &Mesh, task: &StepInput, x: &[Vec2], curvature: Curvature) -> Balance {
         for i in 0..x.len() {
             let (k, away) = (task.inertia[i], x[i] - task.predicted[i]);
             let rest = away * k - task.force[i];
@@ -171,7 +171,7 @@ impl FreeStep {
     }
 
     /// Block elimination from the first node on: D ← D − C D₋⁻¹ C, then back. False where a block is not positive definite.
-    fn factor_and_solve(&mut self, mesh: &Mesh, task: &Task, x: &[Vec2]) -> bool {
+    fn factor_and_solve(&mut self, mesh: &Mesh, task: &StepInput, x: &[Vec2]) -> bool {
         let n = x.len();
         for k in 0..n {
             if mesh.held[k] {
@@ -220,7 +220,7 @@ impl FreeStep {
     }
 
     /// Moves the nodes and the pulls by the step, or by the part of it that moves no node too far.
-    fn walk(&mut self, mesh: &Mesh, task: &Task, x: &mut [Vec2]) {
+    fn walk(&mut self, mesh: &Mesh, task: &StepInput, x: &mut [Vec2]) {
         let mut longest = 0.0;
         for s in &self.step {
             longest = larger(longest, s.norm());

@@ -4,7 +4,7 @@ use crate::contact::sweep::Sweep;
 use crate::math::{Vec2, larger};
 use crate::model::fem::mesh::tangent_path::{End, Path};
 use crate::model::fem::newton::minimize::Workspace;
-use crate::model::fem::newton::step_input::{Pose, Task};
+use crate::model::fem::newton::step_input::{Pose, StepInput};
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::friction_state::ContactSet;
 use crate::problem::Problem;
@@ -21,7 +21,7 @@ const LEAVE: f64 = 0.3;
 
 impl Workspace {
     /// The part of the direction in which no node moves too far.
-    pub(in crate::model::fem) fn whole(&self, task: &Task) -> f64 {
+    pub(in crate::model::fem) fn whole(&self, task: &StepInput) -> f64 {
         let largest = longest(&self.direction);
         if largest > task.max_move { task.max_move / largest } else { 1.0 }
     }

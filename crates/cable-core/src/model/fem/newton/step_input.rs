@@ -13,7 +13,7 @@ pub struct Pose {
 
 /// What a step is about.
 #[derive(Clone, Debug, Default)]
-pub struct Task {
+pub struct StepInput {
     /// Factor of each bar's energy (see `sliding`); 1 without friction at sliding nodes.
     pub scale: Vec<f64>,
     /// Distributed force, N/m.
@@ -64,7 +64,7 @@ pub struct Task {
     pub shift: f64,
 }
 
-impl Task {
+impl StepInput {
     /// What the loss of bar `e` of rest length `l` pulls with at a length `p` (m), and its slope by that, N and N/m: c (P − P̂)/L, and where it
     /// is slack that of P = L with the slope of a slack bar from there on.
     #[must_use]
@@ -115,7 +115,7 @@ pub struct Failure {
 
 /// What a step did.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Done {
+pub struct Converged {
     /// Newton iterations.
     pub iterations: usize,
     /// Largest unbalanced force left, N.

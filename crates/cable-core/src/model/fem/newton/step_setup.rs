@@ -4,7 +4,7 @@ use crate::math::Vec2;
 use crate::model::fem::dynamics::{Dynamics, INNER_STEP, REACH};
 use crate::model::fem::mesh::sliding_node::Seat;
 use crate::model::fem::newton::minimize::Workspace;
-use crate::model::fem::newton::step_input::{Done, Failure, Pose};
+use crate::model::fem::newton::step_input::{Converged, Failure, Pose};
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::floor_friction;
 use crate::model::input_filter::MAX_SPEED;
@@ -39,7 +39,7 @@ const LAWFUL: f64 = 2e-4;
 
 /// What a pose says of the friction of sliding nodes with which it was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::model::fem) struct Grips {
+pub(in crate::model::fem) struct StickSlipChanges {
     /// Nodes that hold where they should slip, or slip where they should hold.
     pub(in crate::model::fem) wrong: usize,
     /// Whether what slips has the friction that belongs to its turn, as nearly as anyone sees.
@@ -48,7 +48,7 @@ pub(in crate::model::fem) struct Grips {
     pub(in crate::model::fem) same: bool,
 }
 
-impl Grips {
+impl StickSlipChanges {
     /// Nothing slides.
     pub(in crate::model::fem) const FOUND: Self = Self { wrong: 0, lawful: true, same: true };
 
@@ -200,11 +200,12 @@ impl Dynamics {
     /// more the less they pull.
     ///
     /// What slid the wrong way until its grip was seen to be wrong has not slid at all.
-    pub(in crate::model::fem) fn update_grips(&mut self, pose: &mut Pose, one: bool) -> Grips {
+    pub(in crate::model::fem) fn update_grips(&mut self, pose: &mut Pose, one: bool) -> StickSlipChanges {
         if self.never_slides {
-            return Grips::FOUND;
+            return StickSlipChanges::FOUND;
         }
-        let mut grips = Grips { same: !self.press_on_floor(&pose.x, Some(&pose.slide)), ..Grips::FOUND };
+        let mut grips =
+            StickSlipChanges { same: !self.press_on_floor(&pose.x, Some(&pose.slide)), ..StickSlipChanges::FOUND };
         for k in 0..self.mesh.nodes() {
             let (Some(node), Some(load)) = (self.mesh.sliding[k], self.load_at(k, &pose.x, Some(&pose.slide))) else {
                 continue;
@@ -269,7 +270,7 @@ impl Dynamics {
             || (!self.contacts.own.shape.is_on() && self.contacts.out_of_reach(&self.mesh, [&self.task.start, to]))
     }
 
-    pub(in crate::model::fem) fn minimise(&mut self, pose: &mut Pose) -> Result<Done, Failure> {
+    pub(in crate::model::fem) fn minimise(&mut self, pose: &mut Pose) -> Result<Converged, Failure> {
         if self.moves_freely(&pose.x)
             && let Some(done) = self.free.solve(&self.mesh, &self.task, pose)
         {

@@ -9,7 +9,7 @@ use crate::error::SolveError;
 use crate::math::{Vec2, perp};
 use crate::model::Model;
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::mesh::sliding_node::{Seat, Sliding};
+use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode};
 use crate::model::fem::mesh::tangent_path::Path;
 
 /// Gap (parts of the barrier's reach) that a bar must have when a node is taken out: less, and the barrier throws it.
@@ -31,7 +31,7 @@ impl Dynamics {
 
     /// Whether a point on the round of a corner lies over one of the corner's edges, nearer to it than `least` (parts of the
     /// barrier's reach): a way that is tangent there runs through the edge.
-    pub(in crate::model::fem) fn is_over_an_edge(&self, node: &Sliding, p: Vec2, least: f64) -> bool {
+    pub(in crate::model::fem) fn is_over_an_edge(&self, node: &SlidingNode, p: Vec2, least: f64) -> bool {
         let geometry = self.problem.world.geometry();
         let body = node.feature().and_then(|f| Some((f, geometry.body_of(f)?)));
         let Some((f, body)) = body.filter(|b| b.1.center.is_none()) else { return false };
@@ -43,9 +43,9 @@ impl Dynamics {
     }
 
     /// Whether the straight part of a way between two nodes meets nothing, nor the edges of the corners it is tangent to.
-    pub(in crate::model::fem) fn way_is_clear(&self, way: &Path, nodes: [Option<&Sliding>; 2]) -> bool {
+    pub(in crate::model::fem) fn way_is_clear(&self, way: &Path, nodes: [Option<&SlidingNode>; 2]) -> bool {
         let geometry = self.problem.world.geometry();
-        let rounds = nodes.map(|s| s.and_then(Sliding::feature));
+        let rounds = nodes.map(|s| s.and_then(SlidingNode::feature));
         (0..2).all(|j| nodes[j].is_none_or(|s| !self.is_over_an_edge(s, way.ends[j], LEAST_GAP)))
             && geometry.is_clear(way.ends, LEAST_GAP * self.contacts.barrier.reach, rounds)
     }
@@ -66,7 +66,7 @@ impl Dynamics {
         let (mesh, geometry) = (&self.mesh, self.problem.world.geometry());
         (0..mesh.rest_length.len()).find(|&e| {
             let nodes = [e, e + 1].map(|k| mesh.sliding[k].as_ref());
-            let slides = |s: Option<&Sliding>| s.is_some_and(|s| matches!(s.seat, Seat::Obstacle { .. }));
+            let slides = |s: Option<&SlidingNode>| s.is_some_and(|s| matches!(s.seat, Seat::Obstacle { .. }));
             if !nodes.into_iter().any(slides) {
                 return false;
             }

@@ -26,7 +26,7 @@ use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::newton::step_setup::clear_way;
 use crate::model::fem::results::rub_force;
 use crate::model::fem::system::assembly::Mesh;
-use crate::model::fem::system::friction_state::Touch;
+use crate::model::fem::system::friction_state::ContactPair;
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 
@@ -69,7 +69,7 @@ fn is_passed_by(geometry: &Geometry, part: Part, from: [Vec2; 2], to: [Vec2; 2])
 
 /// The outline of a robot as a cable meets it.
 #[derive(Clone, Debug)]
-pub(in crate::model::fem) struct Rider {
+pub(in crate::model::fem) struct MovingOutline {
     shape: Arc<Outline>,
     /// Its number among the obstacles.
     pub(in crate::model::fem) obstacle: usize,
@@ -84,7 +84,7 @@ pub(in crate::model::fem) struct Rider {
 
 /// How the outline moved in the present step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Carriage {
+pub struct OutlineMotion {
     /// Its number among the obstacles.
     pub obstacle: usize,
     /// From where.
@@ -93,7 +93,7 @@ pub struct Carriage {
     pub to: RigidPose,
 }
 
-impl Carriage {
+impl OutlineMotion {
     /// Where a point that was at `p` (m) would be now if it had gone with the outline.
     #[must_use]
     pub fn carried(&self, p: Vec2) -> Vec2 {
@@ -109,10 +109,10 @@ impl Carriage {
 
 /// The problem with the outline of the robot among its obstacles.
 pub(in crate::model::fem) fn with_outline(problem: Arc<Problem>) -> Arc<Problem> {
-    Rider::of(problem).1
+    MovingOutline::of(problem).1
 }
 
-impl Rider {
+impl MovingOutline {
     /// That of a problem, and the problem with it among its obstacles.
     pub(in crate::model::fem) fn of(problem: Arc<Problem>) -> (Option<Self>, Arc<Problem>) {
         let Some(shape) = problem.outline.clone() else { return (None, problem) };
@@ -197,13 +197,13 @@ impl Dynamics {
         let (Some(rider), Some(from)) = (&self.rider, self.motion.placement) else { return };
         let (goal, obstacle) = (rider.goal(times[1]), rider.obstacle);
         if rider.waits || !(rider.shape.max_displacement(&from, &goal) > STANDS_M) {
-            self.hitch_on(&Carriage { obstacle, from, to: from });
+            self.hitch_on(&OutlineMotion { obstacle, from, to: from });
             return;
         }
         let ends: Vec<[Vec2; 2]> =
             (0..self.mesh.rest_length.len()).map(|e| self.mesh.straight(e, &self.motion.x)).collect();
         for part in PARTS {
-            let carriage = Carriage { obstacle, from, to: from.towards(&goal, part) };
+            let carriage = OutlineMotion { obstacle, from, to: from.towards(&goal, part) };
             self.ride(&carriage);
             self.prepare_step(times, dragged);
             let comes = self.hitch_on(&carriage);
@@ -212,10 +212,10 @@ impl Dynamics {
                 self.contacts.carriage = Some(carriage);
                 return;
             }
-            self.ride(&Carriage { from: carriage.to, to: from, ..carriage });
+            self.ride(&OutlineMotion { from: carriage.to, to: from, ..carriage });
         }
         self.prepare_step(times, dragged);
-        self.hitch_on(&Carriage { obstacle, from, to: from });
+        self.hitch_on(&OutlineMotion { obstacle, from, to: from });
     }
 
     /// Node of the hitch.
@@ -226,7 +226,7 @@ impl Dynamics {
     }
 
     /// Puts the hitch where it is on the outline. Returns whether it can come along.
-    fn hitch_on(&mut self, carriage: &Carriage) -> bool {
+    fn hitch_on(&mut self, carriage: &OutlineMotion) -> bool {
         let (Some(k), Some(rider)) = (self.hitch(), &self.rider) else { return true };
         let on_it = carriage.to.place(rider.shape.hitch);
         if (self.task.target[k] - on_it).norm() > STANDS_M {
@@ -244,13 +244,13 @@ impl Dynamics {
     }
 
     /// Moves the outline and nothing else.
-    fn ride(&mut self, carriage: &Carriage) {
+    fn ride(&mut self, carriage: &OutlineMotion) {
         self.motion.placement = Some(carriage.to);
         self.place_outline();
     }
 
     /// Where the nodes go out of the way of the outline; `ends` are those of the bars before it moved. None where they cannot.
-    fn laid(&self, carriage: &Carriage, ends: &[[Vec2; 2]]) -> Option<Vec<Vec2>> {
+    fn laid(&self, carriage: &OutlineMotion, ends: &[[Vec2; 2]]) -> Option<Vec<Vec2>> {
         let Some(rider) = &self.rider else { return Some(Vec::new()) };
         let way = rider.shape.max_displacement(&carriage.from, &carriage.to);
         let near: Vec<bool> =
@@ -284,14 +284,15 @@ impl Dynamics {
     }
 
     /// Gives back the gaps that were lost; see the module.
-    fn give_back(&self, carriage: &Carriage, within: f64, x: &mut [Vec2]) {
+    fn give_back(&self, carriage: &OutlineMotion, within: f64, x: &mut [Vec2]) {
         let (mesh, start) = (&self.mesh, &self.task.start);
         let gone: Vec<Vec2> = start.iter().map(|p| carriage.carried(*p)).collect();
-        let mut kept: Vec<(Touch, Vec2)> = Vec::new();
-        let mut found: Vec<Touch> = Vec::new();
+        let mut kept: Vec<(ContactPair, Vec2)> = Vec::new();
+        let mut found: Vec<ContactPair> = Vec::new();
         for (from, of_outline) in [(&gone, true), (start, false)] {
             self.contacts.find_within(&self.problem, mesh, from, within, &mut found);
-            let wanted = |t: &&Touch| t.pair.weight > 0.0 && (t.pair.gap.obstacle == carriage.obstacle) == of_outline;
+            let wanted =
+                |t: &&ContactPair| t.pair.weight > 0.0 && (t.pair.gap.obstacle == carriage.obstacle) == of_outline;
             kept.extend(found.iter().filter(wanted).map(|t| (*t, t.interpolate(from))));
         }
         for _ in 0..ROUNDS {
@@ -321,7 +322,7 @@ impl Dynamics {
     }
 
     /// Whether nothing is passed on the way to `x`: neither what stands nor, seen from it, the outline.
-    fn is_free_way(&self, carriage: &Carriage, (ends, x): (&[[Vec2; 2]], &[Vec2]), near: &[bool]) -> bool {
+    fn is_free_way(&self, carriage: &OutlineMotion, (ends, x): (&[[Vec2; 2]], &[Vec2]), near: &[bool]) -> bool {
         let (mesh, geometry) = (&self.mesh, self.problem.world.geometry());
         let own = geometry.bodies().len().saturating_sub(1);
         let swept = |e: usize, from: [Vec2; 2], of_outline: bool| {

@@ -10,7 +10,7 @@ use crate::energy::bending::{BendingEnergy, ClampBend, turn};
 use crate::energy::{Curvature, Energy};
 use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH, BandMatrix};
 use crate::math::{Mat2, Vec2};
-use crate::model::fem::mesh::sliding_node::Sliding;
+use crate::model::fem::mesh::sliding_node::SlidingNode;
 use crate::model::fem::mesh::tangent_path::{End, Path};
 use crate::model::fem::system::mass::Spread;
 use crate::problem::Problem;
@@ -36,7 +36,7 @@ pub struct Mesh {
     /// Directions prescribed.
     pub clamps: Vec<Clamp>,
     /// What each node slides over; None: it moves with the material.
-    pub sliding: Vec<Option<Sliding>>,
+    pub sliding: Vec<Option<SlidingNode>>,
     /// 1 + αΔT: unstretched length of a metre of arc length.
     pub thermal_stretch: f64,
     /// EA, N.
@@ -133,7 +133,7 @@ impl Mesh {
     /// Features that the ends of bar `e` run round.
     #[must_use]
     pub fn rounds(&self, e: usize) -> [Option<usize>; 2] {
-        [e, e + 1].map(|k| self.sliding[k].as_ref().and_then(Sliding::feature))
+        [e, e + 1].map(|k| self.sliding[k].as_ref().and_then(SlidingNode::feature))
     }
 
     /// Whether a node moves with the material and nothing prescribes where it is.

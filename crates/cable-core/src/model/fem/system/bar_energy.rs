@@ -14,7 +14,7 @@
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::newton::minimize::ROUNDED;
-use crate::model::fem::newton::step_input::{Pose, Task};
+use crate::model::fem::newton::step_input::{Pose, StepInput};
 use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::bar_weight::Weight;
 
@@ -44,7 +44,7 @@ pub fn rest_length(mesh: &Mesh, e: usize, slide: &[f64]) -> f64 {
 /// What a bar pulls at the material of the sliding node at its start (`j` 0) or end (1), as the slope of its energy by the slide of that node
 /// sees it (without the factor of its energy), N: Θ, the loss, and the weight that comes over with the material.
 #[must_use]
-pub fn pull_at_slide((mesh, task): (&Mesh, &Task), e: usize, j: usize, x: &[Vec2], slide: &[f64]) -> f64 {
+pub fn pull_at_slide((mesh, task): (&Mesh, &StepInput), e: usize, j: usize, x: &[Vec2], slide: &[f64]) -> f64 {
     let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
     let strain = p / l - 1.0;
     let ratio = task.predicted_length[e] / mesh.rest_length[e];
@@ -55,7 +55,7 @@ pub fn pull_at_slide((mesh, task): (&Mesh, &Task), e: usize, j: usize, x: &[Vec2
 
 /// What a bar with a sliding node at an end pulls with along its way, N.
 #[must_use]
-pub fn pull_on((mesh, task): (&Mesh, &Task), e: usize, x: &[Vec2], slide: &[f64]) -> f64 {
+pub fn pull_on((mesh, task): (&Mesh, &StepInput), e: usize, x: &[Vec2], slide: &[f64]) -> f64 {
     let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
     let strain = p / l - 1.0;
     let ratio = task.predicted_length[e] / mesh.rest_length[e];
@@ -70,7 +70,7 @@ pub fn lifted((mesh, body): (&Mesh, Vec2), (e, j): (usize, usize), x: &[Vec2]) -
 
 /// The pull at the present length P of a bar between nodes that move with the material, and its slope by P, N and N/m.
 #[must_use]
-pub fn pull(mesh: &Mesh, task: &Task, (e, taut): (usize, bool), p: f64) -> (f64, f64) {
+pub fn pull(mesh: &Mesh, task: &StepInput, (e, taut): (usize, bool), p: f64) -> (f64, f64) {
     let l = mesh.rest_length[e];
     let stiffness = stiffness(mesh, taut);
     let (loss, slope) = task.loss_at((e, taut || !mesh.is_flexible()), l, p);
@@ -81,7 +81,7 @@ pub fn pull(mesh: &Mesh, task: &Task, (e, taut): (usize, bool), p: f64) -> (f64,
 /// the bar is that of the pull `carried`, if there is one, not that of its present length.
 pub fn add(
     s: &mut System,
-    (mesh, task): (&Mesh, &Task),
+    (mesh, task): (&Mesh, &StepInput),
     (e, pose): (usize, &Pose),
     curvature: Curvature,
     carried: Option<Carried>,
@@ -113,7 +113,7 @@ pub fn add(
 /// The same for a bar that has a sliding node at one end or both.
 fn add_sliding(
     s: &mut System,
-    (mesh, task): (&Mesh, &Task),
+    (mesh, task): (&Mesh, &StepInput),
     (e, pose): (usize, &Pose),
     curvature: Curvature,
 ) -> (f64, f64) {

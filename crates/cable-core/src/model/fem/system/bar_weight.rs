@@ -187,7 +187,7 @@ pub fn on_node(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::fem::mesh::sliding_node::{Grip, Seat, Sliding};
+    use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode, StickSlip};
     use crate::model::fem::mesh::tangent_path::End;
     use proptest::prelude::*;
 
@@ -197,10 +197,10 @@ mod tests {
         Vec2::new(angle.cos(), angle.sin())
     }
 
-    fn on(end: End) -> Sliding {
+    fn on(end: End) -> SlidingNode {
         let seat = Seat::Obstacle { obstacle: 0, feature: 0 };
-        let (grip, balanced) = (Grip::Stick, None);
-        Sliding {
+        let (grip, balanced) = (StickSlip::Stick, None);
+        SlidingNode {
             end,
             friction: 0.3,
             seat,
@@ -292,7 +292,7 @@ mod tests {
         ) {
             use crate::model::fem::system::assembly::System;
             use crate::model::fem::system::bar_energy;
-            use crate::model::fem::newton::step_input::{Pose, Task};
+            use crate::model::fem::newton::step_input::{Pose, StepInput};
             use crate::energy::Curvature;
             let (j, sense) = (usize::from(first), if round.1 { 1.0 } else { -1.0 });
             let (mut mesh, x) = bar(j, unit(place.1) * place.0, (round.0, sense, round.2));
@@ -300,7 +300,7 @@ mod tests {
             mesh.rest_length = vec![0.8 * mesh.path(0, &x).length];
             mesh.arc_length[1] = mesh.rest_length[0];
             prop_assume!(mesh.rest_length[0] > 0.5);
-            let task = Task { body: BODY, scale: vec![1.4], predicted_length: mesh.rest_length.clone(), ..Task::default() };
+            let task = StepInput { body: BODY, scale: vec![1.4], predicted_length: mesh.rest_length.clone(), ..StepInput::default() };
             let energy = |x: &[Vec2], slide: &[f64]| {
                 let mut s = System::new(&mesh);
                 let pose = Pose { x: x.to_vec(), slide: slide.to_vec() };

@@ -4,12 +4,12 @@ use crate::contact::friction::{self, Branch};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::newton::minimize::node_scale;
-use crate::model::fem::newton::step_input::{Pose, Task};
+use crate::model::fem::newton::step_input::{Pose, StepInput};
 use crate::model::fem::system::assembly::{Mesh, System};
-use crate::model::fem::system::friction_state::{ContactSet, Touch};
+use crate::model::fem::system::friction_state::{ContactPair, ContactSet};
 
 /// Adds a force gradient and a block shared by the nodes of a touch; those that slide feel neither.
-pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &Touch, gradient: Vec2, block: &Mat2) {
+pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &ContactPair, gradient: Vec2, block: &Mat2) {
     let (node, [a, b]) = (touch.node, touch.shares());
     let moves = |k: usize| mesh.sliding[k].is_none();
     if moves(node) {
@@ -34,7 +34,7 @@ pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &Touch, gradient: Vec2, bloc
 pub fn add_touch(
     s: &mut System,
     mesh: &Mesh,
-    (touch, scale): (&Touch, f64),
+    (touch, scale): (&ContactPair, f64),
     contacts: &ContactSet,
     x: &[Vec2],
     curvature: Curvature,
@@ -81,7 +81,7 @@ pub fn add_touch(
 /// Friction of the contacts with obstacles, on these branches or, where there are none, where it is; returns its energy, J.
 pub fn add_rubs(
     s: &mut System,
-    (mesh, task): (&Mesh, &Task),
+    (mesh, task): (&Mesh, &StepInput),
     contacts: &ContactSet,
     branches: &[Branch],
     x: &[Vec2],
@@ -102,7 +102,7 @@ pub fn add_rubs(
 }
 
 /// Plan view: friction of every node on the floor; returns its energy, J.
-pub fn add_floor(s: &mut System, (mesh, task): (&Mesh, &Task), contacts: &ContactSet, pose: &Pose) -> f64 {
+pub fn add_floor(s: &mut System, (mesh, task): (&Mesh, &StepInput), contacts: &ContactSet, pose: &Pose) -> f64 {
     let mut value = 0.0;
     for (i, &limit) in task.floor_limit.iter().enumerate() {
         let scale = node_scale(task, i);

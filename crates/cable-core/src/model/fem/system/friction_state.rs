@@ -5,7 +5,7 @@ use crate::contact::friction;
 use crate::contact::neighbour_lists::NeighbourLists;
 use crate::contact::pairs::Pair;
 use crate::math::{Vec2, bounded, larger};
-use crate::model::fem::obstacle::moving_outline::Carriage;
+use crate::model::fem::obstacle::moving_outline::OutlineMotion;
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::self_contact::Own;
 use crate::problem::Problem;
@@ -42,7 +42,7 @@ const SPARE_MOVE: f64 = 2e-3;
 
 /// One contact pair of the mesh: a node, or the inside of a segment (from `node` to `node + 1`).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Touch {
+pub struct ContactPair {
     /// Node, or first node of the segment.
     pub node: usize,
     /// Whether the segment's inside touches (a corner or a circle).
@@ -51,7 +51,7 @@ pub struct Touch {
     pub pair: Pair,
 }
 
-impl Touch {
+impl ContactPair {
     /// Weights of the two nodes that carry it.
     #[must_use]
     pub fn shares(&self) -> [f64; 2] {
@@ -108,9 +108,9 @@ struct Memory {
 
 /// Friction of one contact during a step: the normal force and direction are frozen, the sliding is not.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rub {
+pub struct FrictionContact {
     /// The contact.
-    pub touch: Touch,
+    pub touch: ContactPair,
     /// Unit vector of positive sliding.
     pub tangent: Vec2,
     /// Largest friction force μN, N.
@@ -121,10 +121,10 @@ pub struct Rub {
     pub origin: Vec2,
 }
 
-impl Rub {
+impl FrictionContact {
     /// Whether it is the friction of a touch, wherever that is now.
-    fn is_of(&self, touch: &Touch) -> bool {
-        let key = |t: &Touch| (t.node, t.on_segment, t.pair.gap.feature);
+    fn is_of(&self, touch: &ContactPair) -> bool {
+        let key = |t: &ContactPair| (t.node, t.on_segment, t.pair.gap.feature);
         key(&self.touch) == key(touch)
     }
 
@@ -136,7 +136,7 @@ impl Rub {
 }
 
 /// Those of a node, of a list by node.
-fn of_node(rubs: &[Rub], node: usize) -> impl Iterator<Item = &Rub> {
+fn of_node(rubs: &[FrictionContact], node: usize) -> impl Iterator<Item = &FrictionContact> {
     let low = rubs.partition_point(|r| r.touch.node < node);
     rubs[low..].iter().take_while(move |r| r.touch.node == node)
 }
@@ -149,14 +149,14 @@ pub struct ContactSet {
     /// Sliding at which friction is fully mobilised (ε), m.
     pub slip: f64,
     /// Friction of the present step.
-    pub rubs: Vec<Rub>,
+    pub rubs: Vec<FrictionContact>,
     /// What it was before its normal forces were taken anew.
-    before: Vec<Rub>,
+    before: Vec<FrictionContact>,
     /// By node; of one node the newest first.
     memory: Vec<Memory>,
     /// Room for the next memory.
     spare: Vec<Memory>,
-    scratch: Vec<Touch>,
+    scratch: Vec<ContactPair>,
     /// What each bar can come near to in this step.
     pub near: NeighbourLists,
     /// Plan view: sliding of each node remembered, m.
@@ -164,7 +164,7 @@ pub struct ContactSet {
     /// Contacts of the cable with itself.
     pub own: Own,
     /// How the outline of the robot moved in this step.
-    pub carriage: Option<Carriage>,
+    pub carriage: Option<OutlineMotion>,
 }
 
 impl ContactSet {
@@ -223,7 +223,7 @@ impl ContactSet {
     }
 
     /// A contact is to have slid by so much, m.
-    pub fn remember(&mut self, touch: &Touch, slid: f64) {
+    pub fn remember(&mut self, touch: &ContactPair, slid: f64) {
         let gap = &touch.pair.gap;
         let (node, on_segment) = (touch.node, touch.on_segment);
         self.memory.push(Memory { node, on_segment, feature: gap.feature, obstacle: gap.obstacle, slid, age: 0 });
@@ -231,12 +231,12 @@ impl ContactSet {
     }
 
     /// Finds the contacts of the mesh at `x` (m), in order of arc length. Held nodes push on nothing.
-    pub fn find(&self, problem: &Problem, mesh: &Mesh, x: &[Vec2], out: &mut Vec<Touch>) {
+    pub fn find(&self, problem: &Problem, mesh: &Mesh, x: &[Vec2], out: &mut Vec<ContactPair>) {
         self.find_within(problem, mesh, x, self.barrier.reach, out);
     }
 
     /// The same for contacts nearer than `reach` (m).
-    pub fn find_within(&self, problem: &Problem, mesh: &Mesh, x: &[Vec2], reach: f64, out: &mut Vec<Touch>) {
+    pub fn find_within(&self, problem: &Problem, mesh: &Mesh, x: &[Vec2], reach: f64, out: &mut Vec<ContactPair>) {
         out.clear();
         if problem.world.is_empty() {
             return;
@@ -255,7 +255,7 @@ impl ContactSet {
                 continue;
             }
             if mesh.is_free(node) {
-                let mut keep = |pair| out.push(Touch { node, on_segment: false, pair });
+                let mut keep = |pair| out.push(ContactPair { node, on_segment: false, pair });
                 match listed {
                     Some(parts) => geometry.node_pairs_among(parts.iter().copied(), chain, reach, &mut keep),
                     None => geometry.node_pairs(chain[0], x[node], chain[2], reach, &mut keep),
@@ -265,7 +265,7 @@ impl ContactSet {
             let rounds = mesh.rounds(node);
             let mut keep = |pair: Pair| {
                 if !rounds.contains(&Some(pair.gap.feature)) {
-                    out.push(Touch { node, on_segment: true, pair });
+                    out.push(ContactPair { node, on_segment: true, pair });
                 }
             };
             match listed {
@@ -328,7 +328,7 @@ impl ContactSet {
                 let was = touch.interpolate(start);
                 let carried = self.carriage.filter(|c| c.obstacle == touch.pair.gap.obstacle);
                 let origin = carried.map_or(was, |c| c.carried(was));
-                self.rubs.push(Rub { touch: *touch, tangent: touch.tangent(), limit, slid, origin });
+                self.rubs.push(FrictionContact { touch: *touch, tangent: touch.tangent(), limit, slid, origin });
             }
         }
         self.rubs.retain(|r| r.limit != 0.0);
@@ -345,8 +345,9 @@ impl ContactSet {
     ) -> bool {
         std::mem::swap(&mut self.rubs, &mut self.before);
         self.rub(problem, mesh, now, start);
-        let limit =
-            |all: &[Rub], touch: &Touch| of_node(all, touch.node).find(|r| r.is_of(touch)).map_or(0.0, |r| r.limit);
+        let limit = |all: &[FrictionContact], touch: &ContactPair| {
+            of_node(all, touch.node).find(|r| r.is_of(touch)).map_or(0.0, |r| r.limit)
+        };
         let (mut change, mut most) = (0.0, 0.0);
         for rub in self.rubs.iter().chain(&self.before) {
             let (was, is) = (limit(&self.before, &rub.touch), limit(&self.rubs, &rub.touch));
@@ -363,13 +364,13 @@ impl ContactSet {
     }
 
     /// The contacts that were found last, each with its normal force, N.
-    pub fn pressing(&self) -> impl Iterator<Item = (&Touch, f64)> {
-        let same = |a: &Touch, b: &Touch| {
+    pub fn pressing(&self) -> impl Iterator<Item = (&ContactPair, f64)> {
+        let same = |a: &ContactPair, b: &ContactPair| {
             (a.node, a.on_segment, a.pair.gap.feature) == (b.node, b.on_segment, b.pair.gap.feature)
         };
         self.scratch.iter().enumerate().filter_map(move |(k, touch)| {
             // Parts of the same contact are taken together, with the first of them.
-            let of_node = |t: &&Touch| t.node == touch.node;
+            let of_node = |t: &&ContactPair| t.node == touch.node;
             let first = !self.scratch[..k].iter().rev().take_while(of_node).any(|t| same(t, touch));
             let all = self.scratch[k..].iter().take_while(of_node).filter(|t| same(t, touch));
             let load: f64 = all.map(|t| t.load(&self.barrier)).sum();
@@ -378,17 +379,18 @@ impl ContactSet {
     }
 
     /// Friction force of a contact along its tangent at `x` (m), N.
-    pub fn rubs(&self, touch: &Touch, x: &[Vec2]) -> f64 {
+    pub fn rubs(&self, touch: &ContactPair, x: &[Vec2]) -> f64 {
         let rub = of_node(&self.rubs, touch.node).find(|r| r.is_of(touch));
         rub.map_or(0.0, |r| -friction::at(r.sliding(x), r.limit, self.slip).1)
     }
 
     /// Takes the friction of every contact by a `part` of the way from what it had `before` to what it has now, none where it was not or is no
     /// longer; returns by how much it was off at most, N.
-    pub fn ease(&mut self, before: &[Rub], part: f64) -> f64 {
-        let gone = |now: &[Rub], b: &Rub| !of_node(now, b.touch.node).any(|n| n.is_of(&b.touch));
-        let gone: Vec<Rub> = before.iter().filter(|b| gone(&self.rubs, b)).copied().collect();
-        self.rubs.extend(gone.iter().map(|b| Rub { limit: 0.0, ..*b }));
+    pub fn ease(&mut self, before: &[FrictionContact], part: f64) -> f64 {
+        let gone =
+            |now: &[FrictionContact], b: &FrictionContact| !of_node(now, b.touch.node).any(|n| n.is_of(&b.touch));
+        let gone: Vec<FrictionContact> = before.iter().filter(|b| gone(&self.rubs, b)).copied().collect();
+        self.rubs.extend(gone.iter().map(|b| FrictionContact { limit: 0.0, ..*b }));
         self.rubs.sort_by_key(|r| r.touch.node);
         let mut off = 0.0;
         for rub in &mut self.rubs {
@@ -402,7 +404,7 @@ impl ContactSet {
 
     /// The sliding a contact starts with: its own, else that of the same material on the same obstacle (it crossed
     /// a corner), else that of a neighbour at the same feature (the material moved past it), else none.
-    fn remembered(&self, touch: &Touch) -> f64 {
+    fn remembered(&self, touch: &ContactPair) -> f64 {
         let low = self.memory.partition_point(|m| m.node + 2 < touch.node);
         let near = self.memory[low..].iter().take_while(|m| m.node <= touch.node + 2);
         let gap = &touch.pair.gap;

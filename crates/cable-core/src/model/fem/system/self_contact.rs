@@ -16,7 +16,7 @@ use crate::solution::{ContactReport, ContactSample, ContactState};
 
 /// Friction of one contact of the cable with itself during a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OwnRub {
+pub struct SelfFriction {
     /// The contact.
     pub pair: SelfPair,
     /// Largest friction force μN, N.
@@ -27,7 +27,7 @@ pub struct OwnRub {
     origin: Vec2,
 }
 
-impl OwnRub {
+impl SelfFriction {
     /// Sliding of the node along the segment since the anchor, m.
     #[must_use]
     pub fn sliding(&self, x: &[Vec2]) -> f64 {
@@ -43,7 +43,7 @@ pub struct Own {
     /// Coulomb friction of the cable on itself.
     pub friction: f64,
     /// Friction of the present step.
-    pub rubs: Vec<OwnRub>,
+    pub rubs: Vec<SelfFriction>,
     memory: Vec<(usize, usize, f64)>,
     scratch: Vec<SelfPair>,
     order: SortedNodes,
@@ -76,7 +76,7 @@ impl Own {
                 let known = |m: &&(usize, usize, f64)| (m.0, m.1) == (pair.node, pair.segment);
                 let slid = self.memory.iter().find(known).map_or(0.0, |m| m.2);
                 let origin = pair.difference(start);
-                self.rubs.push(OwnRub { pair: *pair, limit: self.friction * load, slid, origin });
+                self.rubs.push(SelfFriction { pair: *pair, limit: self.friction * load, slid, origin });
             }
         }
     }

@@ -14,8 +14,8 @@
 
 use crate::math::{Vec2, bounded, larger, perp};
 use crate::model::fem::dynamics::{Dynamics, STIFFNESS_CHANGE};
-use crate::model::fem::mesh::sliding_node::{Balanced, Grip};
-use crate::model::fem::newton::step_input::{Done, Failure, Pose};
+use crate::model::fem::mesh::sliding_node::{Balanced, StickSlip};
+use crate::model::fem::newton::step_input::{Converged, Failure, Pose};
 use crate::model::fem::newton::step_setup::damping_time;
 use crate::model::fem::system::friction_state::SLIDE;
 use crate::model::fem::time::history::Motion;
@@ -196,7 +196,11 @@ impl Dynamics {
         weights
     }
 
-    pub(in crate::model::fem) fn dynamic_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Result<Done, Failure> {
+    pub(in crate::model::fem) fn dynamic_step(
+        &mut self,
+        h: f64,
+        dragged: &[Option<Vec2>],
+    ) -> Result<Converged, Failure> {
         let weights = self.begin_step(h, dragged);
         let Weights { now, past, a, .. } = weights;
         let (mut pose, exact) = (self.moving_pose(h), self.task.tolerance);
@@ -266,7 +270,7 @@ impl Dynamics {
                 let stretch = 1.0 + 0.5 * (comes + leaves) / self.mesh.axial_stiffness;
                 let pulls = match node.grip {
                     _ if load.floor != [0.0; 3] => comes - inertia,
-                    Grip::Stick => leaves + (before - inertia - after) / stretch,
+                    StickSlip::Stick => leaves + (before - inertia - after) / stretch,
                     slips => load.ratio(slips, node.exponent) * leaves,
                 };
                 node.balanced = Some(Balanced { pull: [pulls, leaves], turn: load.turn });
@@ -311,7 +315,7 @@ impl Dynamics {
 
     /// Minimises until contacts rub by the normal forces that the step itself has. By those at its start an impact would rub in the step after it, by
     /// a force that is no longer there: up to nine times the cone, along the cable.
-    fn rub_and_minimise(&mut self, pose: &mut Pose) -> Result<Done, Failure> {
+    fn rub_and_minimise(&mut self, pose: &mut Pose) -> Result<Converged, Failure> {
         let mut done = self.grip_and_minimise(pose)?;
         for _ in 0..RUB_ROUNDS {
             let same = |change: f64, most: f64| change <= larger(RUB_CHANGE * most, self.bar_weight);
@@ -319,7 +323,7 @@ impl Dynamics {
                 break;
             }
             let more = self.grip_and_minimise(pose)?;
-            done = Done { iterations: done.iterations + more.iterations, ..more };
+            done = Converged { iterations: done.iterations + more.iterations, ..more };
         }
         Ok(done)
     }
@@ -328,7 +332,7 @@ impl Dynamics {
     ///
     /// All grips that are wrong are changed at once while that makes them fewer; then one at a time (J. Júdice, F. Pires, "A block principal
     /// pivoting algorithm for large-scale strictly monotone linear complementarity problems", Computers & Operations Research 21, 1994).
-    fn grip_and_minimise(&mut self, pose: &mut Pose) -> Result<Done, Failure> {
+    fn grip_and_minimise(&mut self, pose: &mut Pose) -> Result<Converged, Failure> {
         let mut done = self.minimise(pose)?;
         let sliding = self.mesh.sliding.iter().flatten().count();
         let (mut fewest, mut spare) = (usize::MAX, GRIP_ROUNDS);
@@ -343,7 +347,7 @@ impl Dynamics {
                 spare = spare.saturating_sub(1);
             }
             let more = self.minimise(pose)?;
-            done = Done { iterations: done.iterations + more.iterations, ..more };
+            done = Converged { iterations: done.iterations + more.iterations, ..more };
         }
         let node = self.mesh.sliding.iter().position(Option::is_some).unwrap_or(0);
         Err(Failure { node, residual: done.residual, cause: NOT_FOUND })

@@ -65,7 +65,7 @@ impl Motion {
 
 /// A state to go back to.
 #[derive(Clone, Debug)]
-pub(in crate::model::fem) struct Saved {
+pub(in crate::model::fem) struct Checkpoint {
     motion: Motion,
     mesh: Mesh,
     contacts: ContactSet,
@@ -109,7 +109,7 @@ impl Dynamics {
                 s.load_node.extend(self.loads.iter().map(|l| l.0));
             }
             None => {
-                self.saved = Some(Box::new(Saved {
+                self.saved = Some(Box::new(Checkpoint {
                     motion: self.motion.clone(),
                     mesh: self.mesh.clone(),
                     contacts: self.contacts.clone(),

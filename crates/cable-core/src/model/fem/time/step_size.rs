@@ -26,7 +26,7 @@ const MEMORY: f64 = 0.25;
 
 /// What was seen of the motion, and the step that follows from it.
 #[derive(Clone, Debug)]
-pub(in crate::model::fem) struct Pace {
+pub(in crate::model::fem) struct StepSizeController {
     /// ∫ Σ l |a|² dt, m³/s³, ∫ Σ l |v|² dt, m³/s, and ∫ dt, s.
     seen: [f64; 3],
     /// Longest step of the next frame, s.
@@ -35,7 +35,7 @@ pub(in crate::model::fem) struct Pace {
     longest: f64,
 }
 
-impl Pace {
+impl StepSizeController {
     /// Nothing was seen yet.
     pub(in crate::model::fem) fn new(longest: f64) -> Self {
         Self { seen: [0.0; 3], step: longest, longest }

@@ -13,9 +13,9 @@ use crate::model::fem::dynamics::REACH;
 use crate::model::fem::equilibrium::initial_guess::push_out;
 use crate::model::fem::mesh::adapt::LEAST_TURN;
 use crate::model::fem::mesh::arc_nodes::{SMALL, WIDE, rotate};
-use crate::model::fem::mesh::sliding_node::{Grip, Seat, Sliding, round_of};
+use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode, StickSlip, round_of};
 use crate::model::fem::mesh::tangent_path::{End, angle_between};
-use crate::model::fem::system::friction_state::Touch;
+use crate::model::fem::system::friction_state::ContactPair;
 use crate::solution::{CableSolution, Node};
 use crate::state::State;
 
@@ -36,9 +36,9 @@ const MARKS: f64 = 1.5;
 const LEAST_BAR: f64 = 0.35;
 
 /// An answer's nodes read as a curve.
-struct Told<'a>(&'a [Node]);
+struct SolutionCurve<'a>(&'a [Node]);
 
-impl Told<'_> {
+impl SolutionCurve<'_> {
     /// The nodes on either side of a material point (m), and how far it is from the first to the second.
     fn around(&self, s: f64) -> Option<(&Node, &Node, f64)> {
         let nodes = self.0;
@@ -105,7 +105,7 @@ impl Dynamics {
         time_s: f64,
         dragged: &[Option<Vec2>],
     ) -> Result<(), SolveError> {
-        let told = Told(&answer.nodes);
+        let told = SolutionCurve(&answer.nodes);
         let state = self.as_told(&told, &State::of_nodes(&answer.nodes, time_s));
         self.set_state(&state)?;
         let moves = answer.nodes.iter().any(|n| n.vx_m_per_s != 0.0 || n.vy_m_per_s != 0.0);
@@ -132,7 +132,7 @@ impl Dynamics {
     }
 
     /// A state with the nodes of this mesh where the answer has them.
-    fn as_told(&self, told: &Told<'_>, whole: &State) -> State {
+    fn as_told(&self, told: &SolutionCurve<'_>, whole: &State) -> State {
         let mut s = whole.arc_length_m.clone();
         s.extend(&self.mesh.arc_length);
         s.sort_by(f64::total_cmp);
@@ -156,7 +156,7 @@ impl Dynamics {
     }
 
     /// Puts sliding nodes on the rounds that the answer lies on.
-    fn seat_as_told(&mut self, told: &Told<'_>) {
+    fn seat_as_told(&mut self, told: &SolutionCurve<'_>) {
         if !self.slides {
             return;
         }
@@ -173,14 +173,14 @@ impl Dynamics {
                 let end = arc.node.end;
                 let mark = rotate(end.mark, end.sense * part * arc.turn);
                 let at = told.at_turn(&arc, part * arc.turn);
-                self.seat(at, Sliding { end: End { mark, ..end }, ..arc.node });
+                self.seat(at, SlidingNode { end: End { mark, ..end }, ..arc.node });
             }
             self.clear_of_nodes(arc.material);
         }
     }
 
     /// A sliding node at a material point (m).
-    fn seat(&mut self, s: f64, node: Sliding) {
+    fn seat(&mut self, s: f64, node: SlidingNode) {
         let near = LEAST_BAR * self.even();
         let k = self.mesh.arc_length.partition_point(|&a| a <= s);
         for j in [k, k.wrapping_sub(1)] {
@@ -209,7 +209,7 @@ impl Dynamics {
     }
 
     /// The rounds that the answer lies on, in order.
-    fn arcs_told(&self, told: &Told<'_>) -> Vec<Arc> {
+    fn arcs_told(&self, told: &SolutionCurve<'_>) -> Vec<Arc> {
         let geometry = self.problem.world.geometry();
         let mut out: Vec<Arc> = Vec::new();
         for (i, n) in told.0.iter().enumerate() {
@@ -227,11 +227,11 @@ impl Dynamics {
                 nodes: [i, i],
                 turn: 0.0,
                 material: [n.arc_length_m; 2],
-                node: Sliding {
+                node: SlidingNode {
                     end: End { center, radius, mark: gap.normal, sense: 1.0 },
                     friction: gap.friction,
                     seat,
-                    grip: Grip::Stick,
+                    grip: StickSlip::Stick,
                     factor: 1.0,
                     exponent: 0.0,
                     floor_factor: 1.0,
@@ -250,7 +250,7 @@ impl Dynamics {
     /// Gives every bar between two nodes in contact the material that makes its tension that of the answer: rounds are the
     /// barrier's reach wider than the answer's, which between two corners that hold would be a great strain. What that takes is
     /// given by the spans on either side as they can: a loose end all of it, two spans by their lengths.
-    fn stretch_as_told(&mut self, told: &Told<'_>) {
+    fn stretch_as_told(&mut self, told: &SolutionCurve<'_>) {
         let on = |d: &Self, k: usize| {
             d.mesh.sliding[k].is_some()
                 || (d.removable(k) && d.problem.world.signed_gap(d.motion.x[k], 2.0 * REACH).is_some())
@@ -275,7 +275,7 @@ impl Dynamics {
     }
 
     /// The same for nodes in contact one after the other; `next` is the next that is held or in contact.
-    fn stretch_run(&mut self, told: &Told<'_>, [first, last]: [usize; 2], next: usize) {
+    fn stretch_run(&mut self, told: &SolutionCurve<'_>, [first, last]: [usize; 2], next: usize) {
         let s = self.mesh.arc_length.clone();
         let mut lengths = vec![0.0; last + 1 - first];
         for e in first..last {
@@ -305,7 +305,7 @@ impl Dynamics {
     }
 
     /// Plan view: every node remembers the sliding with which the floor does what the answer asks for there, as far as it can.
-    fn lie_on_floor_as_told(&mut self, told: &Told<'_>) {
+    fn lie_on_floor_as_told(&mut self, told: &SolutionCurve<'_>) {
         if self.problem.floor_friction.is_none() {
             return;
         }
@@ -330,8 +330,8 @@ impl Dynamics {
     }
 
     /// Every contact remembers the sliding that gives the friction of the answer.
-    fn hold_as_told(&mut self, told: &Told<'_>) {
-        let mut touches: Vec<Touch> = Vec::new();
+    fn hold_as_told(&mut self, told: &SolutionCurve<'_>) {
+        let mut touches: Vec<ContactPair> = Vec::new();
         self.contacts.find(&self.problem, &self.mesh, &self.motion.x, &mut touches);
         let s = &self.mesh.arc_length;
         let near = NEAR * self.even();
@@ -364,12 +364,12 @@ struct Arc {
     turn: f64,
     /// Material at both ends, m.
     material: [f64; 2],
-    node: Sliding,
+    node: SlidingNode,
 }
 
 impl Arc {
     /// Takes in all nodes before and after that lie on a round of this radius (m).
-    fn grow(&mut self, told: &Told<'_>, radius: f64) {
+    fn grow(&mut self, told: &SolutionCurve<'_>, radius: f64) {
         let center = self.node.end.center;
         let lies = |n: &Node| ((n.at() - center).norm() - radius).abs() <= ON_ROUND * radius;
         let before = told.0[..self.nodes[0]].iter().rev().take_while(|n| lies(n)).count();

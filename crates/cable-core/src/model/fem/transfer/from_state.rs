@@ -7,7 +7,7 @@ use crate::math::{Vec2, perp};
 use crate::model::fem::dynamics::{Dynamics, REACH};
 use crate::model::fem::equilibrium::initial_guess::push_out;
 use crate::model::fem::free::stations::{Hold, Layout};
-use crate::model::fem::mesh::sliding_node::{Grip, Seat, Sliding};
+use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode, StickSlip};
 use crate::model::fem::mesh::tangent_path::End;
 use crate::scene::PulleySide;
 use crate::state::State;
@@ -31,11 +31,11 @@ impl Dynamics {
             let up = if wheel.side == PulleySide::Over { 1.0 } else { -1.0 };
             let right = if passing.x < 0.0 { -1.0 } else { 1.0 };
             let end = End { center: wheel.center, radius: wheel.radius, mark: Vec2::new(0.0, up), sense: -up * right };
-            let sliding = Sliding {
+            let sliding = SlidingNode {
                 end,
                 friction: wheel.friction,
                 seat: Seat::Pulley(support),
-                grip: Grip::Stick,
+                grip: StickSlip::Stick,
                 factor: 1.0,
                 exponent: 0.0,
                 floor_factor: 1.0,

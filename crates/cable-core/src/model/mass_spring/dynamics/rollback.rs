@@ -4,9 +4,9 @@ use crate::model::mass_spring::MassSpringModel;
 
 /// A copy of the model, if one was made; copies of the model make their own.
 #[derive(Debug, Default)]
-pub(in crate::model::mass_spring) struct Kept(Option<Box<MassSpringModel>>);
+pub(in crate::model::mass_spring) struct Rollback(Option<Box<MassSpringModel>>);
 
-impl Clone for Kept {
+impl Clone for Rollback {
     fn clone(&self) -> Self {
         Self(None)
     }

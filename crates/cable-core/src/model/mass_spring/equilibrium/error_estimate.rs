@@ -19,7 +19,7 @@ const COARSER: f64 = 0.5;
 
 /// Who goes on beside a chain.
 #[derive(Clone, Debug, Default)]
-pub(in crate::model::mass_spring) enum Beside {
+pub(in crate::model::mass_spring) enum ErrorEstimator {
     /// Nobody: nothing is known.
     #[default]
     Nobody,
@@ -34,18 +34,18 @@ pub(in crate::model::mass_spring) enum Beside {
 impl MassSpringModel {
     /// Looks at the place where it rests; `first`, as the cable was laid.
     pub(in crate::model::mass_spring) fn look_beside(&mut self, first: bool) {
-        (self.beside, self.errors) = (Beside::Nobody, ErrorEstimates::default());
+        (self.beside, self.errors) = (ErrorEstimator::Nobody, ErrorEstimates::default());
         let flexible = self.problem.bending_stiffness == 0.0;
         if first
             && flexible
             && let Ok(Some(lay)) = initial_equilibrium(&self.problem, self.settings, (&self.drag, None))
         {
             self.errors = self.apart(&lay.answer);
-            self.beside = Beside::Exact(lay.spans);
+            self.beside = ErrorEstimator::Exact(lay.spans);
             return;
         }
         if first && let Some(errors) = self.beside_fem() {
-            (self.beside, self.errors) = (Beside::AtRest, errors);
+            (self.beside, self.errors) = (ErrorEstimator::AtRest, errors);
             return;
         }
         let Some(coarse) = self.coarser(2, first) else { return };
@@ -56,7 +56,7 @@ impl MassSpringModel {
             let change = ErrorEstimates::between(&coarsest.answer(), &other);
             self.errors = self.errors.or_larger(&change.times(COARSER));
         }
-        self.beside = Beside::Coarse(Box::new(coarse));
+        self.beside = ErrorEstimator::Coarse(Box::new(coarse));
     }
 
     /// Goes on beside it without inertia; with inertia nothing is known.
@@ -66,13 +66,13 @@ impl MassSpringModel {
             return;
         }
         match beside {
-            Beside::Nobody => {}
-            Beside::AtRest => {
+            ErrorEstimator::Nobody => {}
+            ErrorEstimator::AtRest => {
                 if let Some(coarse) = self.coarser(2, false) {
                     self.keep_beside(before, coarse);
                 }
             }
-            Beside::Exact(mut spans) => {
+            ErrorEstimator::Exact(mut spans) => {
                 for (k, at) in self.drag.iter().enumerate() {
                     if let Some(at) = at {
                         spans.drag_support(k, *at);
@@ -80,12 +80,12 @@ impl MassSpringModel {
                 }
                 if spans.advance(dt_s, inertia).is_ok() {
                     self.errors = self.apart(&spans.solution());
-                    self.beside = Beside::Exact(spans);
+                    self.beside = ErrorEstimator::Exact(spans);
                 } else if let Some(coarse) = self.coarser(2, false) {
                     self.keep_beside(before, coarse);
                 }
             }
-            Beside::Coarse(mut coarse) => {
+            ErrorEstimator::Coarse(mut coarse) => {
                 coarse.drag.clone_from(&self.drag);
                 if coarse.advance(dt_s, inertia).is_ok() {
                     self.keep_beside(before, *coarse);
@@ -97,7 +97,7 @@ impl MassSpringModel {
     /// What friction remembers is as wrong as the steps were that it remembers.
     fn keep_beside(&mut self, before: ErrorEstimates, coarse: Self) {
         self.errors = before.or_larger(&ErrorEstimates::between(&coarse.answer(), &self.answer()));
-        self.beside = Beside::Coarse(Box::new(coarse));
+        self.beside = ErrorEstimator::Coarse(Box::new(coarse));
     }
 
     /// Errors beside the answer of `fem` on a mesh of its own, where that is known to better than was asked for.

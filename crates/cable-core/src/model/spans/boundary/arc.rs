@@ -16,7 +16,7 @@
 //! between.
 
 use crate::math::{exp, sin_cos};
-use crate::model::spans::boundary::capstan::{Law, Spot, Step};
+use crate::model::spans::boundary::capstan::{Law, LocalLoad, Step};
 
 /// Longest stretch taken at once, rad: the rule leaves h⁶/100 800 of what 1/λ changes along it, itself of the order of T/EA.
 const PANEL: f64 = 0.3;
@@ -55,7 +55,7 @@ pub(in crate::model::spans) struct Rates {
 
 impl Way {
     /// From a place so far along its arc (either way).
-    pub fn new(from: &Spot, way: f64) -> Self {
+    pub fn new(from: &LocalLoad, way: f64) -> Self {
         let (h, count) = if way.abs() <= PANEL {
             (way, 1)
         } else if !(way.abs() <= MOST_TURN) {

@@ -80,7 +80,7 @@ pub(in crate::model::spans) struct Curve {
 
 /// Pieces of a chain, counted on over the turns of a closed boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::model::spans) struct Home {
+pub(in crate::model::spans) struct ChainRange {
     pub first: i64,
     pub last: i64,
 }
@@ -206,7 +206,7 @@ impl Curve {
     }
 
     /// The piece at p, of those of a chain: its first or last beyond their ends.
-    pub fn locate(&self, p: f64, home: Home) -> i64 {
+    pub fn locate(&self, p: f64, home: ChainRange) -> i64 {
         let (mut i, mut last) = (home.first, home.last);
         while i < last {
             let middle = i + (last - i + 1) / 2;
@@ -220,7 +220,7 @@ impl Curve {
     }
 
     /// The point at p.
-    pub fn place(&self, p: f64, home: Home) -> Place {
+    pub fn place(&self, p: f64, home: ChainRange) -> Place {
         let i = self.locate(p, home);
         self.place_on(i, p - self.origin(i))
     }
@@ -244,7 +244,7 @@ impl Curve {
     }
 
     /// Length from `a` to `b` along the curve, m.
-    pub fn length(&self, a: f64, b: f64, home: Home) -> f64 {
+    pub fn length(&self, a: f64, b: f64, home: ChainRange) -> f64 {
         let (i, j) = (self.locate(a, home), self.locate(b, home));
         let weight = |k: i64| match self.piece(k).form {
             Form::Edge { .. } => 1.0,
@@ -273,7 +273,7 @@ impl Curve {
 
     /// The chain a piece belongs to and the number of the piece in it; None if it cannot hold a cable. A chain of a closed
     /// boundary is always counted from the same turn.
-    pub fn chain(&self, i: i64, load: Vec2) -> Option<(i64, Home)> {
+    pub fn chain(&self, i: i64, load: Vec2) -> Option<(i64, ChainRange)> {
         if !self.holds(i, load) {
             return None;
         }
@@ -292,11 +292,11 @@ impl Curve {
             last += 1;
         }
         let turn = first.rem_euclid(n) - first;
-        Some((i + turn, Home { first: first + turn, last: last + turn }))
+        Some((i + turn, ChainRange { first: first + turn, last: last + turn }))
     }
 
     /// The piece beyond the kink at the start (side 0) or the end of a chain; None where there is none.
-    pub fn beyond_kink(&self, home: Home, side: usize) -> Option<i64> {
+    pub fn beyond_kink(&self, home: ChainRange, side: usize) -> Option<i64> {
         let (i, after) = if side == 0 { (home.first - 1, home.first) } else { (home.last + 1, home.last + 1) };
         let there = self.period.is_some() || (i >= 0 && i < self.pieces.len() as i64);
         (there && !self.is_round() && self.piece(after).kink_before).then_some(i)
@@ -325,7 +325,7 @@ impl Curve {
     }
 
     /// p of a point that lies on a chain, within a distance (m).
-    pub fn on_chain(&self, home: Home, at: Vec2, within: f64) -> Option<f64> {
+    pub fn on_chain(&self, home: ChainRange, at: Vec2, within: f64) -> Option<f64> {
         (home.first..=home.last).find_map(|i| {
             let p = self.project(i, at);
             ((self.place_on(i, p - self.origin(i)).at - at).norm() <= within).then_some(p)

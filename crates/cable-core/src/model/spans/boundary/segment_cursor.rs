@@ -5,8 +5,8 @@ use std::cell::Cell;
 
 use crate::math::{Vec2, sin_cos};
 use crate::model::spans::boundary::arc::{HAIR, Way};
-use crate::model::spans::boundary::capstan::{Law, Spot, Step};
-use crate::model::spans::boundary::curve::{Curve, Home, Place};
+use crate::model::spans::boundary::capstan::{Law, LocalLoad, Step};
+use crate::model::spans::boundary::curve::{ChainRange, Curve, Place};
 use crate::model::spans::numerics::root::{FLOOR, crossing};
 
 /// Where two tensions are about one before this part of a piece it is not asked whether they are so on it. Larger: asked after
@@ -29,7 +29,7 @@ pub(in crate::model::spans) struct Pivot {
 
 impl Pivot {
     /// The piece at p.
-    pub fn new(curve: &Curve, home: Home, law: &Law, p: f64) -> Self {
+    pub fn new(curve: &Curve, home: ChainRange, law: &Law, p: f64) -> Self {
         let i = curve.locate(p, home);
         let origin = curve.origin(i);
         let at = curve.place_on(i, p - origin);
@@ -39,7 +39,7 @@ impl Pivot {
     }
 
     /// The places of both ends of a contact, and the piece of the first.
-    pub fn of_ends(curve: &Curve, home: Home, law: &Law, [first, last]: [f64; 2]) -> ([Place; 2], Self) {
+    pub fn of_ends(curve: &Curve, home: ChainRange, law: &Law, [first, last]: [f64; 2]) -> ([Place; 2], Self) {
         let pivot = Self::new(curve, home, law, first);
         ([pivot.at, if pivot.holds(last) { pivot.place(last) } else { curve.place(last, home) }], pivot)
     }
@@ -76,13 +76,13 @@ impl Pivot {
     }
 
     /// As the law sees the point at p.
-    pub fn spot(&self, p: f64) -> Spot {
-        let spot = Spot { stretch: self.at.stretch, turns: self.turns(), load: self.load };
+    pub fn spot(&self, p: f64) -> LocalLoad {
+        let spot = LocalLoad { stretch: self.at.stretch, turns: self.turns(), load: self.load };
         spot.on(p - self.p)
     }
 }
 
-impl Spot {
+impl LocalLoad {
     /// So far on along its piece.
     fn on(self, way: f64) -> Self {
         if !self.turns || way == 0.0 {
@@ -94,13 +94,13 @@ impl Spot {
 }
 
 /// One piece of a track, from a point on it.
-pub(in crate::model::spans) struct OnPiece<'a> {
+pub(in crate::model::spans) struct SegmentCursor<'a> {
     pub law: &'a Law,
-    pub from: Spot,
+    pub from: LocalLoad,
     pub p0: f64,
 }
 
-impl OnPiece<'_> {
+impl SegmentCursor<'_> {
     /// Slides with m from its point, where the tension is `t`, to p.
     pub fn slide(&self, p: f64, t: f64, m: f64) -> Step {
         self.law.along(&self.from, p - self.p0, t, m)

@@ -13,7 +13,7 @@
 use crate::math::larger;
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::curve::Place;
-use crate::model::spans::contact::friction_memory::{Ends, Front, Held, History, Mode};
+use crate::model::spans::contact::friction_memory::{Ends, Front, Held, Mode, TensionProfile};
 
 /// Residuals and their derivatives by (p₁, s₁, T₁, p₂, s₂, T₂).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,7 +29,7 @@ pub(in crate::model::spans) struct Rows {
 /// `pinned`: which ends are held on the boundary, so that their tension is unknown by itself; `spots`: the places of its ends.
 pub(in crate::model::spans) fn rows(
     track: &Track<'_>,
-    (history, e): (&History, &Ends),
+    (history, e): (&TensionProfile, &Ends),
     spots: &[Place; 2],
     (mode, pinned): (Mode, [bool; 2]),
 ) -> (Rows, Option<Held>) {
@@ -64,7 +64,7 @@ pub(in crate::model::spans) fn rows(
 /// Near the old tension what a change x of it moves is φ = ∓ k x|x|, k = 1/(2·D·EA·τ), D the difference of the slopes
 /// of tension at the front: flat at x = 0, where Newton starts. Its root √|φ| is straight. Where the end has not moved
 /// the answer is x = 0, with nothing to solve.
-fn pin(out: &mut Rows, (track, history, e): (&Track<'_>, &History, &Ends), side: usize, front: &Front) {
+fn pin(out: &mut Rows, (track, history, e): (&Track<'_>, &TensionProfile, &Ends), side: usize, front: &Front) {
     let (old_t, old_s) = history.at(track, e.p[side]);
     let gap = e.s[side] - old_s;
     let x = e.t[side] - old_t;
@@ -116,7 +116,7 @@ fn pin(out: &mut Rows, (track, history, e): (&Track<'_>, &History, &Ends), side:
 }
 
 /// Where a cable runs away it is followed with a drag η: T₂ less what the law makes of T₁ is η (s_old(p₁) − s₁), the slip.
-fn sliding(track: &Track<'_>, (history, e): (&History, &Ends), [a, b]: &[Place; 2], m: f64) -> Rows {
+fn sliding(track: &Track<'_>, (history, e): (&TensionProfile, &Ends), [a, b]: &[Place; 2], m: f64) -> Rows {
     let way = track.slide(e.p[0], e.p[1], e.t[0], m);
     let slope = track.law.slope(a, e.t[0], m);
     let (mut held, mut held_by) = (0.0, 0.0);
@@ -191,7 +191,7 @@ fn holding(track: &Track<'_>, e: &Ends, spots: &[Place; 2], fronts: &[Front; 2])
 /// the new one.
 fn meeting(
     out: &mut Rows,
-    (track, history, e): (&Track<'_>, &History, &Ends),
+    (track, history, e): (&Track<'_>, &TensionProfile, &Ends),
     spots: &[Place; 2],
     fronts: &[Front; 2],
 ) {
@@ -220,7 +220,7 @@ fn meeting(
 /// `held`: where it sticks; `patience`: how many times rounding that is; 1 while it costs nothing to change.
 pub(in crate::model::spans) fn next_mode(
     track: &Track<'_>,
-    (history, e): (&History, &Ends),
+    (history, e): (&TensionProfile, &Ends),
     held: Option<Held>,
     (mode, pinned): (Mode, [bool; 2]),
     patience: f64,

@@ -39,7 +39,7 @@ pub(in crate::model::spans) struct Knot {
 
 /// Tension and material along a contact as they were last.
 #[derive(Debug, Default, PartialEq)]
-pub(in crate::model::spans) struct History {
+pub(in crate::model::spans) struct TensionProfile {
     knots: Vec<Knot>,
 }
 
@@ -84,7 +84,7 @@ pub(in crate::model::spans) enum Held {
     Beyond(f64, [Front; 2]),
 }
 
-impl Clone for History {
+impl Clone for TensionProfile {
     fn clone(&self) -> Self {
         Self { knots: self.knots.clone() }
     }
@@ -94,7 +94,7 @@ impl Clone for History {
     }
 }
 
-impl History {
+impl TensionProfile {
     /// Material laid with one tension law from a point.
     pub fn new(start: Knot, end: Knot) -> Self {
         Self { knots: if end.p > start.p { vec![start, end] } else { vec![start] } }

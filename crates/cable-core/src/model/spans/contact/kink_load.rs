@@ -6,10 +6,10 @@
 
 use crate::math::{Vec2, larger};
 use crate::model::spans::changes::resolve;
-use crate::model::spans::contact::friction_memory::{History, Knot, Mode};
-use crate::model::spans::contact::point_load::{Felt, felt};
-use crate::model::spans::failure::Trouble;
-use crate::model::spans::run::{Contact, Course, Strand};
+use crate::model::spans::contact::friction_memory::{Knot, Mode, TensionProfile};
+use crate::model::spans::contact::point_load::{LoadBalance, felt};
+use crate::model::spans::failure::Failure;
+use crate::model::spans::run::{CableRun, Contact, Course};
 
 /// A load so far beyond the end of its chain (m or rad) is in the kink there. Smaller: rounding.
 const BEYOND: f64 = 1e-12;
@@ -57,7 +57,7 @@ fn other(course: &Course, c: &Contact, kink: Kink) -> Option<(Vec2, Vec2)> {
 }
 
 /// The way V pushes the load out of its kink: away along its own edge, or on along the other (`true`).
-fn leaves(course: &Course, c: &Contact, (kink, f): (Kink, &Felt), room: f64) -> Option<bool> {
+fn leaves(course: &Course, c: &Contact, (kink, f): (Kink, &LoadBalance), room: f64) -> Option<bool> {
     let out = |along: f64, press: f64| along > course.friction(c) * larger(press, 0.0) + room * f.size;
     if out(-kink.sign() * f.sum.dot(&f.tangent), -f.sum.dot(&f.normal)) {
         return Some(false);
@@ -67,7 +67,7 @@ fn leaves(course: &Course, c: &Contact, (kink, f): (Kink, &Felt), room: f64) -> 
 }
 
 /// N of both edges together.
-pub(in crate::model::spans) fn press(course: &Course, c: &Contact, f: &Felt) -> f64 {
+pub(in crate::model::spans) fn press(course: &Course, c: &Contact, f: &LoadBalance) -> f64 {
     match c.kink.and_then(|kink| other(course, c, kink)) {
         Some((_, normal)) => -f.sum.dot(&(f.normal + normal).normalize()),
         None => f.press(),
@@ -75,19 +75,19 @@ pub(in crate::model::spans) fn press(course: &Course, c: &Contact, f: &Felt) -> 
 }
 
 /// Whether the load keeps its kink, to a part of its forces.
-pub(in crate::model::spans) fn holds(course: &Course, c: &Contact, (kink, f): (Kink, &Felt), room: f64) -> bool {
+pub(in crate::model::spans) fn holds(course: &Course, c: &Contact, (kink, f): (Kink, &LoadBalance), room: f64) -> bool {
     leaves(course, c, (kink, f), room).is_none()
 }
 
 /// K: loads that have come into a kink stay there; whether there was one.
-pub(in crate::model::spans) fn enter(strand: &mut Strand, course: &Course) -> bool {
+pub(in crate::model::spans) fn enter(strand: &mut CableRun, course: &Course) -> bool {
     for c in strand.contacts.iter_mut().filter(|c| c.weight && c.kink.is_none()) {
         for kink in [Kink::Back, Kink::Ahead] {
             let Some((_, p)) = beyond(course, c, kink) else { continue };
             if (c.ends.p[0] - p) * kink.sign() > BEYOND {
                 let knot = Knot { p, s: c.ends.s[0], tension: c.ends.t[0], m: 0.0 };
                 c.ends.p = [p; 2];
-                c.history = History::new(knot, knot);
+                c.history = TensionProfile::new(knot, knot);
                 (c.kink, c.mode, c.smooth) = (Some(kink), Mode::Hold, false);
                 return true;
             }
@@ -97,7 +97,7 @@ pub(in crate::model::spans) fn enter(strand: &mut Strand, course: &Course) -> bo
 }
 
 /// Lets the load that is contact j out of its kink; whether it left.
-pub(in crate::model::spans) fn leave(strand: &mut Strand, course: &Course, j: usize) -> Result<bool, Trouble> {
+pub(in crate::model::spans) fn leave(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Failure> {
     let f = felt(strand, course, j);
     let c = &strand.contacts[j];
     let Some(kink) = c.kink else { return Ok(false) };
@@ -106,7 +106,7 @@ pub(in crate::model::spans) fn leave(strand: &mut Strand, course: &Course, j: us
     let mut home = c.home;
     if on {
         let found = beyond(course, c, kink).and_then(|(i, _)| curve.chain(i, course.law.load));
-        home = found.ok_or(Trouble::LoadLies { s: c.ends.s[0] })?.1;
+        home = found.ok_or(Failure::LoadLies { s: c.ends.s[0] })?.1;
     }
     let p = match (kink, on) {
         (Kink::Ahead, true) => curve.origin(home.first),
@@ -115,7 +115,7 @@ pub(in crate::model::spans) fn leave(strand: &mut Strand, course: &Course, j: us
     };
     let c = &mut strand.contacts[j];
     let knot = Knot { p, s: c.ends.s[0], tension: c.ends.t[0], m: 0.0 };
-    (c.home, c.ends.p, c.history, c.kink) = (home, [p; 2], History::new(knot, knot), None);
+    (c.home, c.ends.p, c.history, c.kink) = (home, [p; 2], TensionProfile::new(knot, knot), None);
     c.mode = Mode::Slide(friction * if on { kink.sign() } else { -kink.sign() });
     for side in 0..2 {
         part(strand, course, (j, side));
@@ -124,7 +124,7 @@ pub(in crate::model::spans) fn leave(strand: &mut Strand, course: &Course, j: us
 }
 
 /// What is joined to the load that is contact j but lies on another chain leaves it by a span.
-fn part(strand: &mut Strand, course: &Course, (j, side): (usize, usize)) {
+fn part(strand: &mut CableRun, course: &Course, (j, side): (usize, usize)) {
     if !strand.is_joined(j, side) {
         return;
     }
@@ -138,7 +138,7 @@ fn part(strand: &mut Strand, course: &Course, (j, side): (usize, usize)) {
 }
 
 /// An end of contact i gives way by a little, for a span to begin there.
-pub(in crate::model::spans) fn give_way(strand: &mut Strand, (i, end): (usize, usize)) {
+pub(in crate::model::spans) fn give_way(strand: &mut CableRun, (i, end): (usize, usize)) {
     let gives = GIVES * (strand.to - strand.from);
     let e = &mut strand.contacts[i].ends;
     let (most, sign) = (0.5 * (e.s[1] - e.s[0]), if end == 0 { 1.0 } else { -1.0 });

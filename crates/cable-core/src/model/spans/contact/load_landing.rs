@@ -3,10 +3,10 @@
 
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, larger, perp};
-use crate::model::spans::contact::friction_memory::{Ends, History, Knot, Mode};
+use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
 use crate::model::spans::contact::point_load::LIFTS;
-use crate::model::spans::failure::Trouble;
-use crate::model::spans::run::{Contact, Course, Strand, Tie};
+use crate::model::spans::failure::Failure;
+use crate::model::spans::run::{CableRun, Contact, Course, Tie};
 use crate::model::spans::verify::penetration;
 
 /// A load of span k, or the tip of it, that is deeper inside something than `deep` (m).
@@ -24,7 +24,7 @@ pub(in crate::model::spans) struct Landing {
 
 /// What of span k is inside something.
 pub(in crate::model::spans) fn find(
-    strand: &Strand,
+    strand: &CableRun,
     course: &Course,
     world: &World,
     (k, deep): (usize, f64),
@@ -62,12 +62,12 @@ pub(in crate::model::spans) fn find(
 
 /// Lays down what has landed of span k.
 pub(in crate::model::spans) fn touch(
-    strand: &mut Strand,
+    strand: &mut CableRun,
     course: &Course,
     k: usize,
     l: &Landing,
-) -> Result<(), Trouble> {
-    let no_seat = Trouble::NoSeat { s: l.s, at: l.at };
+) -> Result<(), Failure> {
+    let no_seat = Failure::NoSeat { s: l.s, at: l.at };
     let drawn = match l.tip.map(|side| strand.ties[side]) {
         Some(Tie::Hangs(force)) => force,
         _ => Vec2::zeros(),
@@ -92,7 +92,7 @@ pub(in crate::model::spans) fn touch(
         ends: Ends { p: [p; 2], s: [l.s, l.s.next_up()], t: [tension; 2] },
         mode: Mode::Slide(0.0),
         held: None,
-        history: History::new(knot(p, l.s, tension), knot(p, l.s, tension)),
+        history: TensionProfile::new(knot(p, l.s, tension), knot(p, l.s, tension)),
         wheel: None,
         flips: 0,
         pocket: false,
@@ -113,7 +113,7 @@ pub(in crate::model::spans) fn touch(
         let (press, pull) = (-load.dot(&place.normal), load.dot(&place.tangent).abs());
         let rate = pull - curve.friction * press;
         if !(rate > 0.0) {
-            return Err(Trouble::Compressed { s: l.s, at: l.at, tension: 0.0 });
+            return Err(Failure::Compressed { s: l.s, at: l.at, tension: 0.0 });
         }
         // So much of it hangs below the surface, and lies along it.
         let hangs = if l.along.norm() > 0.0 { l.along } else { load };
@@ -127,7 +127,7 @@ pub(in crate::model::spans) fn touch(
         (c.ends.t[side], c.ends.t[inner]) = (0.0, tension);
         c.mode = Mode::Slide(sign * curve.friction);
         let e = c.ends;
-        c.history = History::new(knot(e.p[0], e.s[0], e.t[0]), knot(e.p[1], e.s[1], e.t[1]));
+        c.history = TensionProfile::new(knot(e.p[0], e.s[0], e.t[0]), knot(e.p[1], e.s[1], e.t[1]));
         strand.forces[k] = place.tangent * tension + course.load_between(strand.from, e.s[inner]);
     }
     strand.ties[side] = Tie::Loose(drawn);

@@ -16,11 +16,11 @@ use crate::catenary::PointForce;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::changes::resolve;
-use crate::model::spans::contact::friction_memory::{Ends, History, Knot, Mode};
+use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
 use crate::model::spans::contact::kink_load;
-use crate::model::spans::failure::Trouble;
+use crate::model::spans::failure::Failure;
 use crate::model::spans::numerics::root::{FLOOR, crossing};
-use crate::model::spans::run::{Contact, Course, Strand, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Tie};
 
 /// Part of the forces at a load that is rounding. Smaller: chatter at the edge of the cone. Larger: creep.
 const CONE: f64 = 1e-12;
@@ -36,7 +36,7 @@ const CATCHES: f64 = 0.02;
 
 /// What a load feels.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::model::spans) struct Felt {
+pub(in crate::model::spans) struct LoadBalance {
     /// V, N, and what of it does not turn with the boundary.
     pub sum: Vec2,
     pub fixed: Vec2,
@@ -46,7 +46,7 @@ pub(in crate::model::spans) struct Felt {
     pub size: f64,
 }
 
-impl Felt {
+impl LoadBalance {
     /// N.
     pub fn press(&self) -> f64 {
         -self.sum.dot(&self.normal)
@@ -54,7 +54,7 @@ impl Felt {
 }
 
 /// What the load that is contact j feels.
-pub(in crate::model::spans) fn felt(strand: &Strand, course: &Course, j: usize) -> Felt {
+pub(in crate::model::spans) fn felt(strand: &CableRun, course: &Course, j: usize) -> LoadBalance {
     let c = &strand.contacts[j];
     let place = course.track(c).place(c.ends.p[0]);
     let own = load(strand, course, j);
@@ -73,11 +73,11 @@ pub(in crate::model::spans) fn felt(strand: &Strand, course: &Course, j: usize) 
             }
         }
     }
-    Felt { sum: fixed + place.tangent * along, fixed, tangent: place.tangent, normal: place.normal, size }
+    LoadBalance { sum: fixed + place.tangent * along, fixed, tangent: place.tangent, normal: place.normal, size }
 }
 
 /// P of the load that is contact j, N.
-fn load(strand: &Strand, course: &Course, j: usize) -> Vec2 {
+fn load(strand: &CableRun, course: &Course, j: usize) -> Vec2 {
     let s = strand.contacts[j].ends.s[0];
     for (side, end) in [(0, 0), (1, strand.contacts.len() - 1)] {
         if let (true, Tie::Loose(force)) = (j == end, strand.ties[side]) {
@@ -88,7 +88,7 @@ fn load(strand: &Strand, course: &Course, j: usize) -> Vec2 {
 }
 
 /// The mode that the load that is contact j asks for.
-pub(in crate::model::spans) fn next_mode(strand: &Strand, course: &Course, j: usize, patience: f64) -> Mode {
+pub(in crate::model::spans) fn next_mode(strand: &CableRun, course: &Course, j: usize, patience: f64) -> Mode {
     let c = &strand.contacts[j];
     let friction = course.friction(c);
     if c.kink.is_some() {
@@ -114,7 +114,7 @@ pub(in crate::model::spans) fn next_mode(strand: &Strand, course: &Course, j: us
 
 /// The friction of what came down in a step that is not remembered yet, of the force there: loads have had none, and cable rubs
 /// as if it had come down where it was found.
-pub(in crate::model::spans) fn fresh(strand: &Strand, course: &Course) -> f64 {
+pub(in crate::model::spans) fn fresh(strand: &CableRun, course: &Course) -> f64 {
     let missing = |j: usize| {
         let c = &strand.contacts[j];
         if c.weight && c.smooth {
@@ -130,7 +130,7 @@ pub(in crate::model::spans) fn fresh(strand: &Strand, course: &Course) -> f64 {
 
 /// Whether all of a strand is about to slide one way (1: towards its end, −1: towards its start): at each contact the tensions are
 /// those of sliding, but for this part of them.
-pub(in crate::model::spans) fn mobilised(strand: &Strand, course: &Course, way: f64, near: f64) -> bool {
+pub(in crate::model::spans) fn mobilised(strand: &CableRun, course: &Course, way: f64, near: f64) -> bool {
     let slides = |(j, c): (usize, &Contact)| {
         let m = way * course.friction(c);
         if c.weight {
@@ -151,11 +151,11 @@ pub(in crate::model::spans) fn held_at(c: &Contact) -> f64 {
 }
 
 /// Whether an answer holds at the load that is contact j.
-pub(in crate::model::spans) fn sound(strand: &Strand, course: &Course, j: usize) -> Result<(), Trouble> {
+pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course, j: usize) -> Result<(), Failure> {
     let c = &strand.contacts[j];
     let f = felt(strand, course, j);
     let unsound =
-        |what: &'static str| Trouble::Unsound { what, s: c.ends.s[0], at: course.track(c).place(c.ends.p[0]).at };
+        |what: &'static str| Failure::Unsound { what, s: c.ends.s[0], at: course.track(c).place(c.ends.p[0]).at };
     let room = HOLDS * f.size;
     if !(kink_load::press(course, c, &f) >= -room) {
         return Err(unsound("a load is held down"));
@@ -178,7 +178,7 @@ pub(in crate::model::spans) fn sound(strand: &Strand, course: &Course, j: usize)
 
 /// L: loads that lift are let go, those within a contact are set down there, ends that are pressed down rub, and what lies
 /// on one chain beside a load is joined to it; whether there was any.
-pub(in crate::model::spans) fn settle(strand: &mut Strand, course: &Course) -> Result<bool, Trouble> {
+pub(in crate::model::spans) fn settle(strand: &mut CableRun, course: &Course) -> Result<bool, Failure> {
     for j in 0..strand.contacts.len() {
         if strand.contacts[j].weight {
             let f = felt(strand, course, j);
@@ -197,7 +197,7 @@ pub(in crate::model::spans) fn settle(strand: &mut Strand, course: &Course) -> R
 }
 
 /// Lets the load that is contact j go.
-fn lift(strand: &mut Strand, course: &Course, j: usize) {
+fn lift(strand: &mut CableRun, course: &Course, j: usize) {
     for side in 0..2 {
         if strand.is_joined(j, side) {
             kink_load::give_way(strand, (j + 2 * side - 1, 1 - side));
@@ -224,7 +224,7 @@ fn lift(strand: &mut Strand, course: &Course, j: usize) {
 }
 
 /// Joins loads to what lies on their chains beside them.
-pub(in crate::model::spans) fn join(strand: &mut Strand, course: &Course) -> Result<(), Trouble> {
+pub(in crate::model::spans) fn join(strand: &mut CableRun, course: &Course) -> Result<(), Failure> {
     let mut j = 0;
     while j < strand.contacts.len() {
         while strand.contacts[j].weight && join_one(strand, course, j)? {}
@@ -234,7 +234,7 @@ pub(in crate::model::spans) fn join(strand: &mut Strand, course: &Course) -> Res
 }
 
 /// Whether there was one more beside the load that is contact j.
-fn join_one(strand: &mut Strand, course: &Course, j: usize) -> Result<bool, Trouble> {
+fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Failure> {
     let load = strand.contacts[j].clone();
     for side in 0..2 {
         let Some(i) = (j + 2 * side).checked_sub(1).filter(|&i| i < strand.contacts.len()) else { continue };
@@ -249,12 +249,12 @@ fn join_one(strand: &mut Strand, course: &Course, j: usize) -> Result<bool, Trou
             // What lies between two loads of one chain lies, too.
             let [a, b] = [first, first + 1].map(|k| strand.contacts[k].ends);
             if !same || !(b.p[0] > a.p[0]) {
-                return Err(Trouble::LoadLies { s: load.ends.s[side] });
+                return Err(Failure::LoadLies { s: load.ends.s[side] });
             }
             let tension = strand.force(course, k, a.s[1]).norm();
             let ends = Ends { p: [a.p[0], b.p[0]], s: [a.s[1], b.s[0]], t: [tension; 2] };
             let knot = |side: usize| Knot { p: ends.p[side], s: ends.s[side], tension, m: 0.0 };
-            let history = History::new(knot(0), knot(1));
+            let history = TensionProfile::new(knot(0), knot(1));
             let mode = Mode::Slide(0.0);
             let between = Contact { ends, history, mode, weight: false, smooth: true, joined: true, ..load };
             strand.contacts[first].joined = true;
@@ -275,7 +275,7 @@ fn join_one(strand: &mut Strand, course: &Course, j: usize) -> Result<bool, Trou
 
 /// C: where Newton stalls an end of a contact may have come to a load: it ends there, whatever the load rests with. The load
 /// that is nearest to an end is set down; whether there was one.
-pub(in crate::model::spans) fn catch(strand: &mut Strand, course: &Course) -> bool {
+pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> bool {
     let mut best: Option<(f64, usize, usize, f64)> = None;
     let lies = |s: f64| strand.contacts.iter().any(|c| c.weight && c.ends.s[0] == s);
     for (j, c) in strand.contacts.iter().enumerate() {
@@ -337,7 +337,7 @@ fn walk(track: &Track<'_>, mut p: f64, way: f64) -> f64 {
 }
 
 /// Sets a load within contact j down where it lies.
-fn set_down(strand: &mut Strand, course: &Course, j: usize) -> bool {
+fn set_down(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     let c = &strand.contacts[j];
     // What is at an end of the strand draws that end.
     let [from, to] = [larger(c.ends.s[0], strand.from), smaller(c.ends.s[1], strand.to)];
@@ -375,7 +375,7 @@ fn set_down(strand: &mut Strand, course: &Course, j: usize) -> bool {
 }
 
 /// An end that lies on contact j and is pressed down by what draws it rubs by itself.
-fn press_end(strand: &mut Strand, course: &Course, j: usize) -> bool {
+fn press_end(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     for (side, end) in [(0, 0), (1, strand.contacts.len() - 1)] {
         let Tie::Loose(force) = strand.ties[side] else { continue };
         let c = &strand.contacts[j];
@@ -400,7 +400,7 @@ fn lying(on: &Contact, (p, s): (f64, [f64; 2]), tension: f64, fresh: bool) -> Co
         ends: Ends { p: [p; 2], s, t: [tension; 2] },
         mode: if fresh { Mode::Slide(0.0) } else { Mode::Hold },
         held: None,
-        history: History::new(Knot { p, s: s[0], tension, m: 0.0 }, Knot { p, s: s[0], tension, m: 0.0 }),
+        history: TensionProfile::new(Knot { p, s: s[0], tension, m: 0.0 }, Knot { p, s: s[0], tension, m: 0.0 }),
         flips: 0,
         pocket: false,
         joined: false,

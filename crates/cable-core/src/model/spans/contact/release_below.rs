@@ -7,9 +7,9 @@
 
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::changes::resolve;
-use crate::model::spans::contact::friction_memory::{Ends, History, Mode};
+use crate::model::spans::contact::friction_memory::{Ends, Mode, TensionProfile};
 use crate::model::spans::numerics::root::{FLOOR, crossing};
-use crate::model::spans::run::{Contact, Course, Strand};
+use crate::model::spans::run::{CableRun, Contact, Course};
 
 /// Pull on a post that is none, of the tensions at the ends of the contact: rounding. Larger than what the check lets pass: contacts
 /// that it refuses are not parted.
@@ -28,8 +28,8 @@ pub(in crate::model::spans) fn nearest_turn(p: f64, to: f64) -> f64 {
 }
 
 /// L: parts the contact that pulls most about the place where it does; whether there was one.
-pub(in crate::model::spans) fn part(strand: &mut Strand, course: &Course) -> bool {
-    let mut worst: Option<(f64, usize, f64, History)> = None;
+pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> bool {
+    let mut worst: Option<(f64, usize, f64, TensionProfile)> = None;
     for (j, c) in strand.contacts.iter().enumerate() {
         let track = course.track(c);
         let [first, last] = c.ends.p;
@@ -93,14 +93,14 @@ pub(in crate::model::spans) fn part(strand: &mut Strand, course: &Course) -> boo
 }
 
 /// What the contact remembers after the present state.
-fn after(track: &Track<'_>, c: &Contact) -> History {
+fn after(track: &Track<'_>, c: &Contact) -> TensionProfile {
     let mut past = c.history.clone();
-    past.commit(track, &c.ends, (c.mode, c.held), &mut History::default());
+    past.commit(track, &c.ends, (c.mode, c.held), &mut TensionProfile::default());
     past
 }
 
 /// P and dP/dp.
-fn press(track: &Track<'_>, past: &History, p: f64) -> (f64, f64) {
+fn press(track: &Track<'_>, past: &TensionProfile, p: f64) -> (f64, f64) {
     let place = track.place(p);
     let tension = past.at(track, p).0;
     let pressed = track.law.press(&place, tension);

@@ -14,7 +14,7 @@
 //! e = x (2 − δ/tan(δ/2)), the tension being w x/tan(δ/2).
 
 use crate::math::{Vec2, cross};
-use crate::model::spans::run::{Contact, Course, Strand};
+use crate::model::spans::run::{CableRun, Contact, Course};
 
 /// A pocket opens when material is short by this part of the strand. Smaller: rounding opens it. Larger: the cable there is
 /// too short by as much.
@@ -30,7 +30,7 @@ const CONE: f64 = 1e-9;
 const PART: f64 = 0.3;
 
 /// Where the ends of the contacts before and after span k would lie in a kink: p on both, the turn, rad.
-fn kink(strand: &Strand, course: &Course, k: usize) -> Option<([f64; 2], f64)> {
+fn kink(strand: &CableRun, course: &Course, k: usize) -> Option<([f64; 2], f64)> {
     let (a, b) = (strand.contacts.get(k.checked_sub(1)?)?, strand.contacts.get(k)?);
     if a.curve != b.curve || a.wheel.is_some() || b.wheel.is_some() || a.weight || b.weight {
         return None;
@@ -43,7 +43,7 @@ fn kink(strand: &Strand, course: &Course, k: usize) -> Option<([f64; 2], f64)> {
 }
 
 /// Spans that may become pockets, those of the least tension first.
-pub(in crate::model::spans) fn candidates(strand: &Strand, course: &Course, out: &mut Vec<(f64, usize)>) {
+pub(in crate::model::spans) fn candidates(strand: &CableRun, course: &Course, out: &mut Vec<(f64, usize)>) {
     out.clear();
     let most = LOOSE * course.law.load.norm() * (strand.to - strand.from);
     for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
@@ -56,7 +56,7 @@ pub(in crate::model::spans) fn candidates(strand: &Strand, course: &Course, out:
 }
 
 /// Lays span k into its kink.
-pub(in crate::model::spans) fn fill(strand: &mut Strand, course: &Course, k: usize) {
+pub(in crate::model::spans) fn fill(strand: &mut CableRun, course: &Course, k: usize) {
     let Some((p, _)) = kink(strand, course, k) else { return };
     let stretch = course.law.stretch(0.0);
     for (side, p) in p.into_iter().enumerate() {
@@ -83,7 +83,7 @@ pub(in crate::model::spans) struct Borne {
 }
 
 /// What carries the heap between contacts k − 1 and k; None where nothing does, and it slides.
-pub(in crate::model::spans) fn heap(strand: &Strand, course: &Course, k: usize) -> Option<[Borne; 2]> {
+pub(in crate::model::spans) fn heap(strand: &CableRun, course: &Course, k: usize) -> Option<[Borne; 2]> {
     let (a, b) = (&strand.contacts[k - 1], &strand.contacts[k]);
     let edge = |c: &Contact, contact: usize, end: usize| {
         let place = course.track(c).place(c.ends.p[end]);
@@ -109,7 +109,7 @@ pub(in crate::model::spans) fn heap(strand: &Strand, course: &Course, k: usize) 
 }
 
 /// U: draws a span across the kink whose material is shortest.
-pub(in crate::model::spans) fn open(strand: &mut Strand, course: &Course) -> bool {
+pub(in crate::model::spans) fn open(strand: &mut CableRun, course: &Course) -> bool {
     let surplus = |k: usize| strand.contacts[k].ends.s[0] - strand.contacts[k - 1].ends.s[1];
     let pockets = (1..strand.contacts.len()).filter(|&k| strand.contacts[k - 1].pocket);
     let Some(k) = pockets.min_by(|&a, &b| surplus(a).total_cmp(&surplus(b))) else { return false };

@@ -2,13 +2,13 @@
 
 use crate::math::Vec2;
 use crate::model::spans::changes::ON;
-use crate::model::spans::run::{Course, Strand, Tie};
+use crate::model::spans::run::{CableRun, Course, Tie};
 
 /// Part of a contact that the first guess of a lifted end leaves lying at least.
 const LEFT: f64 = 0.02;
 
 /// Moves an end that is held to `at`, m.
-pub(in crate::model::spans) fn place(strand: &mut Strand, course: &Course, side: usize, at: Vec2) {
+pub(in crate::model::spans) fn place(strand: &mut CableRun, course: &Course, side: usize, at: Vec2) {
     let outer = if side == 0 { 0 } else { strand.contacts.len().wrapping_sub(1) };
     let on = strand.contacts.get(outer).filter(|c| c.wheel.is_none() && !c.weight).and_then(|c| {
         let curve = course.track(c).curve;
@@ -33,13 +33,13 @@ pub(in crate::model::spans) fn place(strand: &mut Strand, course: &Course, side:
 }
 
 /// Whether p lies outside contact `j` on that side.
-fn beyond(strand: &Strand, j: usize, side: usize, p: f64) -> bool {
+fn beyond(strand: &CableRun, j: usize, side: usize, p: f64) -> bool {
     let e = &strand.contacts[j].ends;
     if side == 0 { p <= e.p[0] } else { p >= e.p[1] }
 }
 
 /// An end that comes down to lie on the boundary: its span is gone.
-fn lay(strand: &mut Strand, side: usize, (j, p): (usize, f64)) {
+fn lay(strand: &mut CableRun, side: usize, (j, p): (usize, f64)) {
     strand.ties[side] = Tie::Lies(p);
     let s = if side == 0 { strand.from } else { strand.to };
     let e = &mut strand.contacts[j].ends;
@@ -48,7 +48,7 @@ fn lay(strand: &mut Strand, side: usize, (j, p): (usize, f64)) {
 
 /// An end that leaves the boundary: a span begins where a parabola of the height h and tension T there would,
 /// x = √(2Th/w_n).
-fn lift(strand: &mut Strand, course: &Course, side: usize, (j, at): (usize, Vec2)) {
+fn lift(strand: &mut CableRun, course: &Course, side: usize, (j, at): (usize, Vec2)) {
     let c = &mut strand.contacts[j];
     let track = course.track(c);
     let curve = track.curve;

@@ -5,12 +5,12 @@
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::capstan::{Law, Track};
-use crate::model::spans::boundary::curve::{Curve, Home};
+use crate::model::spans::boundary::curve::{ChainRange, Curve};
 use crate::model::spans::contact::equations;
-use crate::model::spans::contact::friction_memory::{Ends, Held, History, Knot, Mode};
+use crate::model::spans::contact::friction_memory::{Ends, Held, Knot, Mode, TensionProfile};
 
 /// A wheel is one arc.
-const ROUND: Home = Home { first: 0, last: 0 };
+const ROUND: ChainRange = ChainRange { first: 0, last: 0 };
 /// Part of the cone within which a cable taken over counts as sliding. Less: rounding of the answer decides; more: a cable that holds
 /// is let slide, for as much of its tension.
 const FULL: f64 = 1e-7;
@@ -44,7 +44,7 @@ pub(in crate::model) struct WheelRows {
 #[derive(Clone, Debug)]
 pub(in crate::model) struct WheelFriction {
     curve: Curve,
-    history: History,
+    history: TensionProfile,
     mode: Mode,
     held: Option<Held>,
 }
@@ -59,7 +59,7 @@ impl WheelFriction {
     /// A wheel of a radius (of the centre line, m) that the cable passes clockwise (`facing` +1) or the other way (−1).
     pub fn new(radius: f64, friction: f64, facing: f64) -> Self {
         let mode = if friction > 0.0 { Mode::Hold } else { Mode::Slide(0.0) };
-        Self { curve: Curve::wheel(radius, friction, facing), history: History::default(), mode, held: None }
+        Self { curve: Curve::wheel(radius, friction, facing), history: TensionProfile::default(), mode, held: None }
     }
 
     fn track(&self, on: &OnWheel) -> Track<'_> {
@@ -91,7 +91,7 @@ impl WheelFriction {
     pub fn begin(&mut self, on: &OnWheel, points: &[[f64; 3]]) {
         let knots: Vec<Knot> = points.iter().map(|&[p, s, tension]| Knot { p, s, tension, m: 0.0 }).collect();
         let friction = self.curve.friction;
-        self.history = History::through(&self.track(on), &knots, 1.0);
+        self.history = TensionProfile::through(&self.track(on), &knots, 1.0);
         self.held = None;
         if let (Some(a), Some(b), true) = (knots.first(), knots.last(), friction > 0.0)
             && b.p > a.p
@@ -125,7 +125,7 @@ impl WheelFriction {
     pub fn commit(&mut self, on: &OnWheel, ends: &WheelEnds) {
         let e = Ends::from(ends);
         let mut history = std::mem::take(&mut self.history);
-        history.commit(&self.track(on), &e, (self.mode, None), &mut History::default());
+        history.commit(&self.track(on), &e, (self.mode, None), &mut TensionProfile::default());
         self.history = history;
     }
 

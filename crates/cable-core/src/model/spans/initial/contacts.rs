@@ -4,15 +4,15 @@
 use crate::contact::World;
 use crate::math::{Vec2, cross, smaller};
 use crate::model::spans::boundary::capstan::Track;
-use crate::model::spans::boundary::curve::Home;
-use crate::model::spans::boundary_conditions::{Instant, Layout, Part, Pulley};
-use crate::model::spans::contact::friction_memory::{Ends, History, Knot, Mode};
+use crate::model::spans::boundary::curve::ChainRange;
+use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part, Pulley};
+use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
 use crate::model::spans::contact::point_load::LIFTS;
 use crate::model::spans::initial::route::{Way, way};
 use crate::model::spans::initial::shortest_path;
 use crate::model::spans::initial::shortest_path::{Bend, Ring};
 use crate::model::spans::initial::tension;
-use crate::model::spans::run::{Contact, Course, Strand, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Tie};
 
 /// Ends of a route this near to a boundary lie on it, of the cable's radius.
 const LIES: f64 = 0.05;
@@ -45,7 +45,7 @@ const CLEAR: f64 = 1e-4;
 #[derive(Clone, Debug)]
 struct Seat {
     curve: usize,
-    home: Home,
+    home: ChainRange,
     /// First and last piece.
     pieces: [i64; 2],
     wheel: Option<usize>,
@@ -59,9 +59,9 @@ struct Seat {
 pub(in crate::model::spans) fn lay(
     layout: &Layout,
     index: usize,
-    (course, instant): (&Course, &Instant),
+    (course, instant): (&Course, &BoundaryConditions),
     ring: Ring,
-) -> Option<(Strand, Vec<Vec2>)> {
+) -> Option<(CableRun, Vec<Vec2>)> {
     let way = way(layout, layout.strands.get(index)?, instant);
     Some((along(layout, index, (course, instant), (&way, ring))?, way.points))
 }
@@ -69,9 +69,9 @@ pub(in crate::model::spans) fn lay(
 fn along(
     layout: &Layout,
     index: usize,
-    (course, instant): (&Course, &Instant),
+    (course, instant): (&Course, &BoundaryConditions),
     (way, ring): (&Way, Ring),
-) -> Option<Strand> {
+) -> Option<CableRun> {
     let part = layout.strands.get(index)?;
     let [from, to] = part.material;
     let total = way.total();
@@ -107,7 +107,7 @@ fn along(
         (false, true) => from + w / stretch,
         _ => from + (to - from) * w / total,
     };
-    let mut strand = Strand { from, to, ties, contacts: Vec::new(), forces: Vec::new(), loose: None };
+    let mut strand = CableRun { from, to, ties, contacts: Vec::new(), forces: Vec::new(), loose: None };
     let slack = total / ((to - from) * course.law.thermal) - 1.0;
     let tension = if loose(0) || loose(1) {
         drawn
@@ -158,7 +158,7 @@ fn along(
 }
 
 /// Forces of spans whose ends and material are known.
-fn solve_spans(strand: &mut Strand, course: &Course) -> Option<()> {
+fn solve_spans(strand: &mut CableRun, course: &Course) -> Option<()> {
     for k in 0..strand.spans() {
         if strand.has_span(k) {
             strand.forces[k] = strand.solve_span(course, k)?;
@@ -169,7 +169,7 @@ fn solve_spans(strand: &mut Strand, course: &Course) -> Option<()> {
 }
 
 /// A strand that lies on one boundary from end to end.
-fn lies_whole(mut strand: Strand, course: &Course, [a, b]: [&Head; 2], tension: f64) -> Strand {
+fn lies_whole(mut strand: CableRun, course: &Course, [a, b]: [&Head; 2], tension: f64) -> CableRun {
     let mut c = contact(course, (a.curve, a.home), ([a.p[0], b.p[1]], [strand.from, strand.to]), tension);
     c.wheel = None;
     strand.ties = [0, 1].map(|side| end_tie(strand.ties[side], if side == 0 { a.p[0] } else { b.p[1] }));
@@ -202,7 +202,7 @@ fn joint(course: &Course, heads: &[Option<Head>; 2], (meet, tension): (bool, f64
 fn bends(
     layout: &Layout,
     part: &Part,
-    (course, instant): (&Course, &Instant),
+    (course, instant): (&Course, &BoundaryConditions),
     (way, first, last, ring): (&Way, usize, usize, Ring),
     (at, tension): (&dyn Fn(f64) -> f64, f64),
 ) -> Option<Vec<Contact>> {
@@ -239,11 +239,11 @@ fn bends(
 }
 
 /// A strand whose ends are in one place: nothing but a span.
-fn bare(part: &Part, instant: &Instant) -> Option<Strand> {
+fn bare(part: &Part, instant: &BoundaryConditions) -> Option<CableRun> {
     let [a, b] = part.supports;
     let [from, to] = part.material;
     let ties = [Tie::Held(instant.places[a?]), Tie::Held(instant.places[b?])];
-    part.pulleys.is_empty().then(|| Strand {
+    part.pulleys.is_empty().then(|| CableRun {
         from,
         to,
         ties,
@@ -255,10 +255,10 @@ fn bare(part: &Part, instant: &Instant) -> Option<Strand> {
 
 /// Material as it lies along the taut string, strained by `stretch`, from the end that is held; from the first contact as
 /// the route has it where none is.
-pub(in crate::model::spans) fn measure(strand: &mut Strand, course: &Course, loose: [bool; 2], stretch: f64) {
+pub(in crate::model::spans) fn measure(strand: &mut CableRun, course: &Course, loose: [bool; 2], stretch: f64) {
     let n = strand.contacts.len();
-    let point = |strand: &Strand, k: usize, side: usize| strand.ends_of(course, k)[side];
-    let chord = |strand: &Strand, k: usize| match (point(strand, k, 0), point(strand, k, 1)) {
+    let point = |strand: &CableRun, k: usize, side: usize| strand.ends_of(course, k)[side];
+    let chord = |strand: &CableRun, k: usize| match (point(strand, k, 0), point(strand, k, 1)) {
         (Some(a), Some(b)) => (b - a).norm() / stretch,
         _ => 0.0,
     };
@@ -285,7 +285,7 @@ pub(in crate::model::spans) fn measure(strand: &mut Strand, course: &Course, loo
 }
 
 /// Length of a route from an end that hangs to the highest of its points, about where it is first held, m.
-fn tail(part: &Part, instant: &Instant, way: &Way, side: usize) -> f64 {
+fn tail(part: &Part, instant: &BoundaryConditions, way: &Way, side: usize) -> f64 {
     let up = -instant.load;
     let high = |k: &usize| way.points[*k].dot(&up);
     // Of several the one nearest to that end.
@@ -310,7 +310,7 @@ fn end_tie(tie: Tie, p: f64) -> Tie {
 }
 
 /// Keeps material in order, and some of it in each span.
-pub(in crate::model::spans) fn spread(strand: &mut Strand, course: &Course) {
+pub(in crate::model::spans) fn spread(strand: &mut CableRun, course: &Course) {
     let least = CLEAR * (strand.to - strand.from);
     let n = strand.contacts.len();
     let mut before = strand.from;
@@ -357,25 +357,25 @@ pub(in crate::model::spans) fn spread(strand: &mut Strand, course: &Course) {
 
 /// A contact as it is laid: from its end that is free, where its tension is known, or held, where its material is; else from its middle.
 /// With two free ends it is laid with the tension of the one that draws less.
-fn lay_down(track: &Track<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> History {
+fn lay_down(track: &Track<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> TensionProfile {
     let end = |side: usize| Knot { p: e.p[side], s: e.s[side], tension: e.t[side], m: 0.0 };
     let start = match (free, held) {
         ([true, false], _) | ([false, false], [true, false]) => end(0),
         ([false, true], _) | ([false, false], [false, true]) => end(1),
-        ([true, true], _) => return History::laid_from_middle(track, e, smaller(e.t[0], e.t[1])),
-        ([false, false], _) => return History::laid_from_middle(track, e, 0.5 * (e.t[0] + e.t[1])),
+        ([true, true], _) => return TensionProfile::laid_from_middle(track, e, smaller(e.t[0], e.t[1])),
+        ([false, false], _) => return TensionProfile::laid_from_middle(track, e, 0.5 * (e.t[0] + e.t[1])),
     };
-    History::laid(track, start, e.p)
+    TensionProfile::laid(track, start, e.p)
 }
 
-fn contact(course: &Course, (curve, home): (usize, Home), (p, s): ([f64; 2], [f64; 2]), tension: f64) -> Contact {
+fn contact(course: &Course, (curve, home): (usize, ChainRange), (p, s): ([f64; 2], [f64; 2]), tension: f64) -> Contact {
     let knot = |k: usize| Knot { p: p[k], s: s[k], tension, m: 0.0 };
     Contact {
         curve,
         home,
         ends: Ends { p, s, t: [tension; 2] },
         mode: if course.curves[curve].friction > 0.0 { Mode::Hold } else { Mode::Slide(0.0) },
-        history: History::new(knot(0), knot(1)),
+        history: TensionProfile::new(knot(0), knot(1)),
         wheel: None,
         flips: 0,
         held: None,
@@ -390,7 +390,7 @@ fn contact(course: &Course, (curve, home): (usize, Home), (p, s): ([f64; 2], [f6
 /// An end of a route that lies on a boundary.
 struct Head {
     curve: usize,
-    home: Home,
+    home: ChainRange,
     p: [f64; 2],
     /// Points of the route that lie, the end included.
     count: usize,
@@ -419,7 +419,7 @@ fn lying(course: &Course, world: &World, near: [f64; 2], (points, side): (&[Vec2
 fn seats(
     layout: &Layout,
     part: &Part,
-    (course, instant): (&Course, &Instant),
+    (course, instant): (&Course, &BoundaryConditions),
     (way, first, last): (&Way, usize, usize),
     ring: Ring,
 ) -> Option<Vec<Seat>> {
@@ -453,7 +453,7 @@ fn seats(
         }
         if let Some(q) = pulley {
             let curve = q.curve + usize::from(q.facing < 0.0);
-            let home = Home { first: 0, last: 0 };
+            let home = ChainRange { first: 0, last: 0 };
             // Tangents say how far it turns but for whole turns. A wheel passed on its side turns it by −90° (it lifts off, almost) to
             // 270°: half a turn, two tails that hang from it, lies in the middle of that.
             let turn = if q.facing == 0.0 { 0.0 } else { std::f64::consts::FRAC_PI_2 };

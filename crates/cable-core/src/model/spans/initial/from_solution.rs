@@ -6,12 +6,12 @@
 //! to the other is called upon, none beyond the cone.
 
 use crate::math::{Vec2, cross, perp};
-use crate::model::spans::boundary::curve::{Curve, Home};
-use crate::model::spans::boundary_conditions::{Instant, Layout, Part};
+use crate::model::spans::boundary::curve::{ChainRange, Curve};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part};
 use crate::model::spans::changes::ON;
-use crate::model::spans::contact::friction_memory::{Ends, History, Knot, Mode};
+use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
 use crate::model::spans::contact::point_load::LIFTS;
-use crate::model::spans::run::{Contact, Course, Strand, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Tie};
 use crate::solution::Node;
 
 /// A node this near to a boundary (m) lies on it: a barrier keeps nodes as far off as it reaches, 1e-4 m.
@@ -26,7 +26,7 @@ struct Station {
     at: Vec2,
     tension: [f64; 2],
     /// Boundary, chain and p, where it lies on one.
-    lies: Option<(usize, Home, f64)>,
+    lies: Option<(usize, ChainRange, f64)>,
     wheel: Option<usize>,
 }
 
@@ -41,9 +41,9 @@ impl Station {
 pub(in crate::model::spans) fn take(
     layout: &Layout,
     course: &Course,
-    instant: &Instant,
+    instant: &BoundaryConditions,
     (nodes, within): (&[Node], f64),
-) -> Option<Vec<Strand>> {
+) -> Option<Vec<CableRun>> {
     let strand = |part: &Part| {
         let mut stations = stations(nodes, part.material);
         if stations.len() < 2 {
@@ -72,7 +72,7 @@ fn stations(nodes: &[Node], [from, to]: [f64; 2]) -> Vec<Station> {
 }
 
 /// Marks the station that each pulley holds, with the boundary of its wheel.
-fn pulleys(part: &Part, course: &Course, instant: &Instant, stations: &mut [Station]) {
+fn pulleys(part: &Part, course: &Course, instant: &BoundaryConditions, stations: &mut [Station]) {
     for q in &part.pulleys {
         let center = instant.places[q.support];
         let far = |k: &usize| (stations[*k].at - center).norm();
@@ -82,7 +82,7 @@ fn pulleys(part: &Part, course: &Course, instant: &Instant, stations: &mut [Stat
         let clockwise = cross(before, after) <= 0.0;
         let back = q.facing < 0.0 || (q.facing == 0.0 && !clockwise);
         let curve = q.curve + usize::from(back);
-        let home = Home { first: 0, last: 0 };
+        let home = ChainRange { first: 0, last: 0 };
         let middle = before.normalize() + after.normalize();
         let p = course.curves.get(curve).map_or(0.0, |c| c.with_tangent(0, middle));
         stations[k].lies = Some((curve, home, p));
@@ -94,7 +94,7 @@ fn pulleys(part: &Part, course: &Course, instant: &Instant, stations: &mut [Stat
 fn seat(layout: &Layout, course: &Course, stations: &mut [Station]) {
     let world = &layout.problem.world;
     let n = stations.len();
-    let mut before: Option<(usize, Home, f64)> = None;
+    let mut before: Option<(usize, ChainRange, f64)> = None;
     for k in 0..n {
         let along = stations[(k + 1).min(n - 1)].at - stations[k.saturating_sub(1)].at;
         let station = &mut stations[k];
@@ -122,16 +122,16 @@ fn seat(layout: &Layout, course: &Course, stations: &mut [Station]) {
 fn laid(
     layout: &Layout,
     part: &Part,
-    (course, instant): (&Course, &Instant),
+    (course, instant): (&Course, &BoundaryConditions),
     stations: &[Station],
     within: f64,
-) -> Option<Strand> {
+) -> Option<CableRun> {
     let [from, to] = part.material;
     let ties = [0, 1].map(|side| match part.supports[side] {
         Some(k) => Tie::Held(instant.places[k]),
         None => Tie::Hangs(layout.end_force(instant, part.material[side])),
     });
-    let mut strand = Strand { from, to, ties, contacts: Vec::new(), forces: Vec::new(), loose: None };
+    let mut strand = CableRun { from, to, ties, contacts: Vec::new(), forces: Vec::new(), loose: None };
     let last = stations.len() - 1;
     let mut k = 0;
     while k <= last {
@@ -165,7 +165,7 @@ fn laid(
 }
 
 /// Material in order, some of it in every span.
-fn keep_apart(strand: &mut Strand) -> Option<()> {
+fn keep_apart(strand: &mut CableRun) -> Option<()> {
     let least = CLEAR * (strand.to - strand.from);
     let mut before = strand.from;
     let mut spanned = strand.ties[0].has_span();
@@ -186,7 +186,7 @@ fn keep_apart(strand: &mut Strand) -> Option<()> {
 struct Run<'a> {
     curve: &'a Curve,
     index: usize,
-    home: Home,
+    home: ChainRange,
     first: usize,
     last: usize,
     /// Part of the cone that is called upon.
@@ -195,13 +195,13 @@ struct Run<'a> {
 
 impl Run<'_> {
     /// The contact; the ties of the strand that lie on it do so from now on.
-    fn contact(&self, strand: &mut Strand, course: &Course, stations: &[Station]) -> Option<Contact> {
+    fn contact(&self, strand: &mut CableRun, course: &Course, stations: &[Station]) -> Option<Contact> {
         let mut contact = Contact {
             curve: self.index,
             home: self.home,
             ends: Ends { p: [0.0; 2], s: [0.0; 2], t: [0.0; 2] },
             mode: if self.curve.friction > 0.0 { Mode::Hold } else { Mode::Slide(0.0) },
-            history: History::default(),
+            history: TensionProfile::default(),
             wheel: stations[self.first].wheel,
             flips: 0,
             held: None,
@@ -246,9 +246,9 @@ impl Run<'_> {
         let free = strand.ties.map(|t| matches!(t, Tie::Hangs(_) | Tie::Loose(_)));
         let back = lies[1] && at_end[1] && !(lies[0] && at_end[0]) || free[0] && !free[1];
         contact.history = if back {
-            History::through_back(&track, &knots, self.within)
+            TensionProfile::through_back(&track, &knots, self.within)
         } else {
-            History::through(&track, &knots, self.within)
+            TensionProfile::through(&track, &knots, self.within)
         };
         // Other models' nodes have their material as their bars have it, not as the tension between them strains it: what that is off goes
         // to the span beyond, where there is one.
@@ -266,7 +266,13 @@ impl Run<'_> {
     }
 
     /// Place, material and tension where the contact begins (side 0) or ends.
-    fn end(&self, strand: &mut Strand, course: &Course, stations: &[Station], side: usize) -> Option<(f64, f64, f64)> {
+    fn end(
+        &self,
+        strand: &mut CableRun,
+        course: &Course,
+        stations: &[Station],
+        side: usize,
+    ) -> Option<(f64, f64, f64)> {
         let k = if side == 0 { self.first } else { self.last };
         let station = &stations[k];
         let (_, _, p) = station.lies?;

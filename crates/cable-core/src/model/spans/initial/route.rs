@@ -2,7 +2,7 @@
 
 use crate::contact::World;
 use crate::math::{Vec2, bounded};
-use crate::model::spans::boundary_conditions::{Instant, Layout, Part};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part};
 
 /// Part of the way from one end to the other by which a route that is led over things keeps clear of them. Smaller: rounding may let it touch.
 /// Larger: it goes round more than it needs to.
@@ -115,7 +115,7 @@ fn leaves(a: Vec2, d: Vec2, radius: f64) -> f64 {
 }
 
 /// The route of a strand, and where its pulleys are on it.
-pub(in crate::model::spans) fn way(layout: &Layout, part: &Part, instant: &Instant) -> Way {
+pub(in crate::model::spans) fn way(layout: &Layout, part: &Part, instant: &BoundaryConditions) -> Way {
     let p = &layout.problem;
     let place = |k: usize| instant.places[k];
     let ends = part.supports.map(|s| s.map(place));

@@ -1,11 +1,11 @@
 //! A strand along its taut string.
 
-use crate::model::spans::contact::friction_memory::History;
+use crate::model::spans::contact::friction_memory::TensionProfile;
 use crate::model::spans::initial::contacts::{measure, spread};
-use crate::model::spans::run::{Contact, Course, Strand};
+use crate::model::spans::run::{CableRun, Contact, Course};
 
 /// Length of the taut string through what it touches, m.
-pub(in crate::model::spans) fn taut_length(strand: &Strand, course: &Course) -> f64 {
+pub(in crate::model::spans) fn taut_length(strand: &CableRun, course: &Course) -> f64 {
     let own = |c: &Contact| course.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.home);
     let spans: f64 = (0..strand.spans())
         .filter_map(|k| match strand.ends_of(course, k) {
@@ -17,7 +17,7 @@ pub(in crate::model::spans) fn taut_length(strand: &Strand, course: &Course) -> 
 }
 
 /// Spreads the material of a strand that is held at both ends evenly along its taut string.
-pub(in crate::model::spans) fn tighten(strand: &mut Strand, course: &Course) {
+pub(in crate::model::spans) fn tighten(strand: &mut CableRun, course: &Course) {
     let stretch = taut_length(strand, course) / (strand.to - strand.from);
     if !(stretch > 0.0) {
         return;
@@ -35,10 +35,10 @@ pub(in crate::model::spans) fn tighten(strand: &mut Strand, course: &Course) {
 }
 
 /// Along its taut string, what touches with the tension of the spans beside it.
-pub(in crate::model::spans) fn relay(strand: &mut Strand, course: &Course) {
+pub(in crate::model::spans) fn relay(strand: &mut CableRun, course: &Course) {
     tighten(strand, course);
     for c in &mut strand.contacts {
         let even = 0.5 * (c.ends.t[0] + c.ends.t[1]);
-        c.history = History::laid_from_middle(&course.track(c), &c.ends, even);
+        c.history = TensionProfile::laid_from_middle(&course.track(c), &c.ends, even);
     }
 }

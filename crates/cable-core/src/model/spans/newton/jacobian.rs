@@ -8,13 +8,13 @@ use crate::model::spans::contact::equations;
 use crate::model::spans::contact::friction_memory::Mode;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::numerics::band_lu::Band;
-use crate::model::spans::run::{Contact, Course, Strand, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Tie};
 
-fn count(strand: &Strand) -> usize {
+fn count(strand: &CableRun) -> usize {
     6 * strand.contacts.len() + 2
 }
 
-pub(super) fn gather(strand: &Strand, out: &mut Vec<f64>) {
+pub(super) fn gather(strand: &CableRun, out: &mut Vec<f64>) {
     out.resize(count(strand), 0.0);
     let mut blocks = out.chunks_exact_mut(6);
     for ((k, c), block) in strand.contacts.iter().enumerate().zip(&mut blocks) {
@@ -27,28 +27,28 @@ pub(super) fn gather(strand: &Strand, out: &mut Vec<f64>) {
 }
 
 /// Whether the tension of that side of contact j is an unknown of its own.
-pub(super) fn lies(strand: &Strand, j: usize, side: usize) -> bool {
+pub(super) fn lies(strand: &CableRun, j: usize, side: usize) -> bool {
     let outer = if side == 0 { j == 0 } else { j + 1 == strand.contacts.len() };
     outer && matches!(strand.ties[side], Tie::Lies(_))
 }
 
 /// Which ends of contact j are held on the boundary.
-pub(super) fn pinned(strand: &Strand, j: usize) -> [bool; 2] {
+pub(super) fn pinned(strand: &CableRun, j: usize) -> [bool; 2] {
     [0, 1].map(|side| lies(strand, j, side) || strand.is_pinned(j, side))
 }
 
 /// Whether that side of contact j is an end of the strand that lies.
-fn is_end(strand: &Strand, j: usize, side: usize) -> bool {
+fn is_end(strand: &CableRun, j: usize, side: usize) -> bool {
     let outer = if side == 0 { j == 0 } else { j + 1 == strand.contacts.len() };
     outer && !strand.ties[side].has_span()
 }
 
-fn slot(strand: &Strand, j: usize, side: usize) -> f64 {
+fn slot(strand: &CableRun, j: usize, side: usize) -> f64 {
     let e = &strand.contacts[j].ends;
     if lies(strand, j, side) { e.t[side] } else { e.p[side] }
 }
 
-pub(super) fn scatter(strand: &mut Strand, course: &Course, x: &[f64]) {
+pub(super) fn scatter(strand: &mut CableRun, course: &Course, x: &[f64]) {
     for k in 0..strand.spans() {
         let x = &x[6 * k..];
         strand.forces[k] = Vec2::new(x[0], x[1]);
@@ -75,7 +75,7 @@ pub(super) fn scatter(strand: &mut Strand, course: &Course, x: &[f64]) {
 
 /// The equations of a strand at a state.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Sheet {
+pub(super) struct System {
     pub residual: Vec<f64>,
     /// The Jacobian.
     pub band: Band,
@@ -84,7 +84,7 @@ pub(super) struct Sheet {
 }
 
 /// Works out the equations of a strand where it is, and where each of its contacts sticks.
-pub(super) fn assemble(strand: &mut Strand, course: &Course, sheet: &mut Sheet) {
+pub(super) fn assemble(strand: &mut CableRun, course: &Course, sheet: &mut System) {
     let n = count(strand);
     sheet.residual.clear();
     sheet.residual.resize(n, 0.0);
@@ -101,7 +101,7 @@ pub(super) fn assemble(strand: &mut Strand, course: &Course, sheet: &mut Sheet) 
 }
 
 /// As [`assemble`], where nothing but the mode of contact j has changed since.
-pub(super) fn renew(strand: &mut Strand, course: &Course, j: usize, sheet: &mut Sheet) {
+pub(super) fn renew(strand: &mut CableRun, course: &Course, j: usize, sheet: &mut System) {
     if strand.contacts[j].weight {
         // What is joined to it is held or let go with it.
         return assemble(strand, course, sheet);
@@ -114,11 +114,11 @@ pub(super) fn renew(strand: &mut Strand, course: &Course, j: usize, sheet: &mut 
 }
 
 /// Lengths in hundredths of the strand.
-fn scale(strand: &Strand) -> f64 {
+fn scale(strand: &CableRun) -> f64 {
     100.0 / (strand.to - strand.from)
 }
 
-fn span_rows(strand: &Strand, course: &Course, k: usize, sheet: &mut Sheet) {
+fn span_rows(strand: &CableRun, course: &Course, k: usize, sheet: &mut System) {
     let (row, scale) = (6 * k, scale(strand));
     let (r, band) = (&mut sheet.residual, &mut sheet.band);
     let m = strand.contacts.len();
@@ -184,7 +184,7 @@ fn span_rows(strand: &Strand, course: &Course, k: usize, sheet: &mut Sheet) {
 }
 
 /// The rows of a load that lies, see `weight`.
-fn weight_rows(strand: &Strand, course: &Course, j: usize, sheet: &mut Sheet) {
+fn weight_rows(strand: &CableRun, course: &Course, j: usize, sheet: &mut System) {
     let (r, b, scale) = (&mut sheet.residual, &mut sheet.band, scale(strand));
     let (c, place) = (&strand.contacts[j], &sheet.spots[j].0[0]);
     let (row, p) = (6 * j + 2, c.ends.p[0]);
@@ -217,7 +217,7 @@ fn weight_rows(strand: &Strand, course: &Course, j: usize, sheet: &mut Sheet) {
     }
 }
 
-fn contact_rows(strand: &mut Strand, course: &Course, j: usize, sheet: &mut Sheet) {
+fn contact_rows(strand: &mut CableRun, course: &Course, j: usize, sheet: &mut System) {
     if strand.contacts[j].weight {
         return weight_rows(strand, course, j, sheet);
     }

@@ -19,14 +19,14 @@ mod tests;
 
 use crate::math::{Vec2, larger};
 use crate::model::spans::boundary::capstan::Track;
-use crate::model::spans::boundary_conditions::Instant;
+use crate::model::spans::boundary_conditions::BoundaryConditions;
 use crate::model::spans::contact::equations;
-use crate::model::spans::contact::friction_memory::{Held, History, Mode};
+use crate::model::spans::contact::friction_memory::{Held, Mode, TensionProfile};
 use crate::model::spans::contact::point_load;
-use crate::model::spans::newton::jacobian::{Sheet, assemble, gather, lies, pinned, renew, scatter};
+use crate::model::spans::newton::jacobian::{System, assemble, gather, lies, pinned, renew, scatter};
 use crate::model::spans::newton::slip_predictor::Foresight;
 pub(super) use crate::model::spans::newton::stability::stable;
-use crate::model::spans::run::{Course, Strand};
+use crate::model::spans::run::{CableRun, Course};
 
 /// Iterations at most. A failure is not cured by more; steps are halved instead.
 const MAX_ITERATIONS: usize = 60;
@@ -65,7 +65,7 @@ const MOST_FLIPS: u32 = 6;
 /// Memory of a solve, kept between steps. A copy has none of its own: what is in it means nothing between two steps.
 #[derive(Debug, Default)]
 pub(super) struct Work {
-    sheet: Sheet,
+    sheet: System,
     rhs: Vec<f64>,
     saved: Vec<f64>,
     best: Vec<f64>,
@@ -74,15 +74,15 @@ pub(super) struct Work {
     /// The shape before and after a step.
     pub shapes: [Vec<Vec2>; 2],
     /// A strand before a step, and with its ends moved.
-    pub strands: [Strand; 2],
+    pub strands: [CableRun; 2],
     /// All of them before a step.
-    pub before: Vec<Strand>,
+    pub before: Vec<CableRun>,
     /// Instants: before a step; where a way begins; where a step goes.
-    pub instants: [Instant; 3],
+    pub instants: [BoundaryConditions; 3],
     /// What a guess at the modes is made with.
     pub foresight: Foresight,
     /// A contact's past as it was.
-    pub past: History,
+    pub past: TensionProfile,
 }
 
 impl Clone for Work {
@@ -126,7 +126,7 @@ fn squares(r: &[f64]) -> f64 {
 }
 
 /// The residual that will do, of a strand whose contacts have the tensions of the spans beside them.
-fn tolerance(strand: &Strand, course: &Course) -> f64 {
+fn tolerance(strand: &CableRun, course: &Course) -> f64 {
     let least = least_tension(strand, course);
     let stiff = if least.is_finite() && least > 0.0 { STIFF_RESIDUAL * course.law.stiffness / least } else { 0.0 };
     larger(RESIDUAL, stiff.min(1e3 * RESIDUAL))
@@ -134,13 +134,13 @@ fn tolerance(strand: &Strand, course: &Course) -> f64 {
 
 /// Whether a residual that will do leaves forces off by more than need be: a length that is missing is strain, and that times EA is
 /// force.
-fn is_rough(strand: &Strand, course: &Course, residual: f64) -> bool {
+fn is_rough(strand: &CableRun, course: &Course, residual: f64) -> bool {
     let least = least_tension(strand, course);
     least.is_finite() && residual > larger(FLOOR, EXACT * least / course.law.stiffness)
 }
 
 /// The least tension at an end of a span, N; infinite where there is no span.
-fn least_tension(strand: &Strand, course: &Course) -> f64 {
+fn least_tension(strand: &CableRun, course: &Course) -> f64 {
     let mut least = f64::INFINITY;
     let mut take = |t: f64| {
         if t < least {
@@ -164,7 +164,7 @@ fn least_tension(strand: &Strand, course: &Course) -> f64 {
 }
 
 /// Largest part of a step that keeps spans and does not jump turns.
-fn room(strand: &Strand, course: &Course, x: &[f64], d: &[f64]) -> f64 {
+fn room(strand: &CableRun, course: &Course, x: &[f64], d: &[f64]) -> f64 {
     let mut alpha = 1.0f64;
     for k in 0..strand.spans() {
         if strand.has_span(k) {
@@ -196,7 +196,7 @@ fn room(strand: &Strand, course: &Course, x: &[f64], d: &[f64]) -> f64 {
 ///
 /// Round an arc the direction turns by one per rad, along an edge the cable leaves it by w/T per metre: a step that is right
 /// on one of them says nothing of the other, and half of it less.
-fn borders(strand: &Strand, course: &Course, x: &[f64], d: &[f64], mut each: impl FnMut(usize, f64)) {
+fn borders(strand: &CableRun, course: &Course, x: &[f64], d: &[f64], mut each: impl FnMut(usize, f64)) {
     for (k, c) in strand.contacts.iter().enumerate() {
         let track = course.track(c);
         for side in 0..2 {
@@ -218,7 +218,7 @@ fn borders(strand: &Strand, course: &Course, x: &[f64], d: &[f64], mut each: imp
 }
 
 /// Solves a strand from where it is. On an error it is left wherever the iteration was.
-pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Result<Solved, Stall> {
+pub(super) fn solve(strand: &mut CableRun, course: &Course, work: &mut Work) -> Result<Solved, Stall> {
     strand.take_tensions(course);
     for c in &mut strand.contacts {
         c.flips = 0;
@@ -278,7 +278,7 @@ pub(super) fn solve(strand: &mut Strand, course: &Course, work: &mut Work) -> Re
 }
 
 /// The mode that the state of contact j asks for.
-fn asked(strand: &Strand, course: &Course, (sheet, j): (&Sheet, usize), patience: f64) -> Mode {
+fn asked(strand: &CableRun, course: &Course, (sheet, j): (&System, usize), patience: f64) -> Mode {
     let c = &strand.contacts[j];
     if course.mobilised != 0.0 && c.kink.is_none() {
         return Mode::Slide(course.mobilised * course.friction(c));
@@ -295,14 +295,14 @@ fn asked(strand: &Strand, course: &Course, (sheet, j): (&Sheet, usize), patience
 }
 
 /// Whether every contact is in the mode that its state asks for; the sheet is that of the state.
-fn agreed(strand: &Strand, course: &Course, sheet: &Sheet) -> bool {
+fn agreed(strand: &CableRun, course: &Course, sheet: &System) -> bool {
     // What is rounding grows with the stiffness as the residual does.
     let patience = PATIENT * tolerance(strand, course) / RESIDUAL;
     (0..strand.contacts.len()).all(|j| asked(strand, course, (sheet, j), patience) == strand.contacts[j].mode)
 }
 
 /// Gives contacts the mode they ask for; whether any was changed, and whether none asked for another.
-fn change_modes(strand: &mut Strand, course: &Course, most: u32, sheet: &mut Sheet) -> (bool, bool) {
+fn change_modes(strand: &mut CableRun, course: &Course, most: u32, sheet: &mut System) -> (bool, bool) {
     let (mut changed, mut content) = (false, true);
     for j in 0..strand.contacts.len() {
         let flips = strand.contacts[j].flips;
@@ -321,7 +321,7 @@ fn change_modes(strand: &mut Strand, course: &Course, most: u32, sheet: &mut She
 
 /// One Newton step with a line search on the sum of squares; false where none makes it smaller. The sheet is that of where
 /// the strand then is.
-fn step(strand: &mut Strand, course: &Course, work: &mut Work) -> bool {
+fn step(strand: &mut CableRun, course: &Course, work: &mut Work) -> bool {
     gather(strand, &mut work.saved);
     let before = squares(&work.sheet.residual);
     work.rhs.clear();
@@ -335,7 +335,7 @@ fn step(strand: &mut Strand, course: &Course, work: &mut Work) -> bool {
     false
 }
 
-fn search(strand: &mut Strand, course: &Course, before: f64, work: &mut Work) -> bool {
+fn search(strand: &mut CableRun, course: &Course, before: f64, work: &mut Work) -> bool {
     let (mut alpha, mut first) = (room(strand, course, &work.saved, &work.rhs), f64::INFINITY);
     for round in 0..MAX_HALVINGS {
         if round > 1 {

@@ -21,7 +21,7 @@ use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::curve::Place;
 use crate::model::spans::boundary::segment_cursor::Pivot;
 use crate::model::spans::contact::friction_memory::{Ends, Mode};
-use crate::model::spans::run::{Contact, Course, Strand, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Tie};
 
 /// Rounds of changing sides, over two for each contact.
 const MORE_ROUNDS: usize = 6;
@@ -85,7 +85,7 @@ pub(in crate::model::spans) struct Foresight {
 }
 
 /// Gives each contact the mode that the step will ask for, and contacts and spans their place, as far as that can be foreseen.
-pub(in crate::model::spans) fn foresee(strand: &mut Strand, course: &Course, memory: &mut Foresight) {
+pub(in crate::model::spans) fn foresee(strand: &mut CableRun, course: &Course, memory: &mut Foresight) {
     if course.drag > 0.0 || strand.contacts.is_empty() {
         return;
     }
@@ -116,7 +116,7 @@ pub(in crate::model::spans) fn foresee(strand: &mut Strand, course: &Course, mem
 }
 
 /// A span as it is, to begin with.
-fn span(strand: &Strand, course: &Course, (spots, k): (&[Spots], usize)) -> Bar {
+fn span(strand: &CableRun, course: &Course, (spots, k): (&[Spots], usize)) -> Bar {
     if !strand.has_span(k) {
         return Bar::default();
     }
@@ -164,7 +164,7 @@ impl Bar {
     }
 }
 
-fn link(strand: &Strand, course: &Course, (spots, j): (&[Spots], usize)) -> Link {
+fn link(strand: &CableRun, course: &Course, (spots, j): (&[Spots], usize)) -> Link {
     let c = &strand.contacts[j];
     let e = &c.ends;
     let ties = [(j == 0).then(|| strand.ties[0]), (j + 1 == strand.contacts.len()).then(|| strand.ties[1])];
@@ -188,7 +188,7 @@ fn link(strand: &Strand, course: &Course, (spots, j): (&[Spots], usize)) -> Link
 
 impl Foresight {
     /// Newton's method for what slides: whether it came to an end, None where not even the modes can be told.
-    fn rounds(&mut self, strand: &Strand, course: &Course) -> Option<bool> {
+    fn rounds(&mut self, strand: &CableRun, course: &Course) -> Option<bool> {
         let mut last = f64::INFINITY;
         for round in 0..ROUNDS {
             if !self.bars.iter_mut().all(|b| b.renew(course, strand.from)) || !self.settle() {
@@ -205,7 +205,7 @@ impl Foresight {
     }
 
     /// Lets the ends of contacts on arcs follow the directions of their spans.
-    fn turn(&mut self, strand: &Strand, course: &Course) {
+    fn turn(&mut self, strand: &CableRun, course: &Course) {
         let law = &course.law;
         let pulls = |bar: &Bar, end: usize| bar.ends.map(|_| bar.pulls(course, strand.from)[end]);
         for (j, c) in strand.contacts.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use crate::model::spans::contact::friction_memory::Mode;
 use crate::model::spans::newton::{Work, assemble, lies};
-use crate::model::spans::run::{Course, Strand, Tie};
+use crate::model::spans::run::{CableRun, Course, Tie};
 
 /// Whether a balance without friction is a rest: what is pushed comes back.
 ///
@@ -11,14 +11,14 @@ use crate::model::spans::run::{Course, Strand, Tie};
 /// 1: each sliding contact that is stable turns the sign of the Jacobian's determinant once (one that lies to its start
 /// does not: there T₁ takes the place of s₁). An even number of unstable ways is not seen, and nothing is said of what
 /// friction holds: that came there by its own motion.
-pub(in crate::model::spans) fn stable(strand: &Strand, course: &Course, work: &mut Work) -> bool {
+pub(in crate::model::spans) fn stable(strand: &CableRun, course: &Course, work: &mut Work) -> bool {
     let rubs = strand.contacts.iter().any(|c| course.friction(c) > 0.0);
     let pockets = strand.contacts.iter().any(|c| c.pocket || c.weight);
     if rubs || pockets || strand.contacts.is_empty() || strand.ties.iter().any(|t| matches!(t, Tie::Loose(_))) {
         return true;
     }
     let count = (0..strand.contacts.len()).filter(|&j| !lies(strand, j, 0)).count();
-    let mut sign = |strand: &mut Strand| {
+    let mut sign = |strand: &mut CableRun| {
         assemble(strand, course, &mut work.sheet);
         work.rhs.clear();
         work.rhs.resize(work.sheet.residual.len(), 1.0);

@@ -1,5 +1,5 @@
-use crate::model::spans::boundary_conditions::{Instant, Layout};
-use crate::model::spans::continuation::Network;
+use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout};
+use crate::model::spans::continuation::CableEquilibrium;
 use crate::model::spans::newton::*;
 use crate::problem::problems;
 use crate::scene::obstacle::{Obstacle, Shape};
@@ -9,7 +9,12 @@ use crate::scene::{Load, Support, catalog};
 const CLOSE: f64 = 1e-4;
 
 /// A flexible cable over shapes, at rest, then moved.
-fn strand(shapes: Vec<Shape>, route_m: Vec<[f64; 2]>, (length, friction): (f64, f64), moved: Vec2) -> (Strand, Course) {
+fn strand(
+    shapes: Vec<Shape>,
+    route_m: Vec<[f64; 2]>,
+    (length, friction): (f64, f64),
+    moved: Vec2,
+) -> (CableRun, Course) {
     loaded(shapes, (route_m, Vec::new()), (length, friction), moved)
 }
 
@@ -19,7 +24,7 @@ fn loaded(
     (route_m, loads): (Vec<[f64; 2]>, Vec<Load>),
     (length, friction): (f64, f64),
     moved: Vec2,
-) -> (Strand, Course) {
+) -> (CableRun, Course) {
     let mut scene = catalog::hanging_span();
     scene.loads = loads;
     let name = scene.cables[0].name.clone();
@@ -33,10 +38,10 @@ fn loaded(
     c.supports = vec![Support::fixed("A", route_m[0]), Support::fixed("B", *route_m.last().unwrap())];
     c.route_m = route_m;
     let layout = Layout::new(&problems(&scene).unwrap().remove(0), false).unwrap();
-    let mut instant = Instant::default();
+    let mut instant = BoundaryConditions::default();
     layout.instant(&[None, None], 0.0, &mut instant);
     let mut work = Work::default();
-    let (mut network, _) = Network::rest(&layout, &instant, &mut work).map_err(|e| e.0).unwrap();
+    let (mut network, _) = CableEquilibrium::rest(&layout, &instant, &mut work).map_err(|e| e.0).unwrap();
     instant.places[1] += moved;
     network.travel(&layout, &instant, 0.1, &mut work).unwrap();
     (network.strands.remove(0), network.course)
@@ -48,7 +53,7 @@ fn noise(k: usize) -> f64 {
 }
 
 /// Every entry of the Jacobian beside a difference of residuals, at a state a little off the answer.
-fn compare(strand: &Strand, course: &Course, seed: usize) {
+fn compare(strand: &CableRun, course: &Course, seed: usize) {
     let mut x = Vec::new();
     gather(strand, &mut x);
     let force = strand.forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
@@ -63,11 +68,11 @@ fn compare(strand: &Strand, course: &Course, seed: usize) {
         moved
     };
     let residual = |x: &[f64]| {
-        let mut sheet = Sheet::default();
+        let mut sheet = System::default();
         assemble(&mut at(x), course, &mut sheet);
         sheet.residual
     };
-    let mut sheet = Sheet::default();
+    let mut sheet = System::default();
     assemble(&mut at(&x), course, &mut sheet);
     let (r, band) = (sheet.residual, sheet.band);
     let n = x.len();

@@ -27,10 +27,10 @@ mod report;
 use crate::math::{Vec2, cross, larger};
 use crate::model::spans::boundary::capstan::Step;
 use crate::model::spans::boundary::curve::Place;
-use crate::model::spans::boundary_conditions::{Instant, Layout};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout};
 use crate::model::spans::initial::drained_route::{Drained, Frame, Leg, NONE_M, Roofs};
 use crate::model::spans::initial::route::way;
-use crate::model::spans::run::{Course, Strand, Tie};
+use crate::model::spans::run::{CableRun, Course, Tie};
 use crate::model::spans::slack::heap::{Heap, heap};
 
 /// Part of the weight of the cable by which a crest may be beyond its cone: rounding.
@@ -109,8 +109,8 @@ impl Part {
 pub(in crate::model::spans) fn lay(
     layout: &Layout,
     index: usize,
-    (course, instant): (&Course, &Instant),
-) -> Option<Strand> {
+    (course, instant): (&Course, &BoundaryConditions),
+) -> Option<CableRun> {
     let part = layout.strands.get(index)?;
     let (load, [from, to]) = (course.law.load, part.material);
     let loaded = course.loads.iter().any(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0);
@@ -131,7 +131,7 @@ pub(in crate::model::spans) fn lay(
         let parts = pay_out(parts, course, frame, (part.material, drawn, ends))?;
         let ties = [0, 1].map(|k| held[k].map_or(Tie::Loose(drawn), Tie::Held));
         let loose = Some(Loose { parts, drawn });
-        Some(Strand { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()], loose })
+        Some(CableRun { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()], loose })
     };
     let along_route = || Drained::new(&roofs, bodies, frame, &way(layout, part, instant).points);
     match held {

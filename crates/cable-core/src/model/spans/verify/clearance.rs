@@ -8,8 +8,8 @@
 use crate::contact::World;
 use crate::contact::geometry::{Body, Edge};
 use crate::math::{Vec2, cross, perp, smaller};
-use crate::model::spans::failure::Trouble;
-use crate::model::spans::run::{Contact, Course, Strand};
+use crate::model::spans::failure::Failure;
+use crate::model::spans::run::{CableRun, Contact, Course};
 use crate::model::spans::verify::penetration;
 
 /// Depth that is none, m: what is asked of every answer.
@@ -100,7 +100,7 @@ impl Hull {
 }
 
 /// Whether a strand is clear of everything.
-pub(in crate::model::spans) fn clear(strand: &Strand, course: &Course, world: &World) -> Result<(), Trouble> {
+pub(in crate::model::spans) fn clear(strand: &CableRun, course: &Course, world: &World) -> Result<(), Failure> {
     let mut inside = None;
     for k in 0..strand.spans() {
         if strand.has_span(k) {
@@ -118,7 +118,7 @@ pub(in crate::model::spans) fn clear(strand: &Strand, course: &Course, world: &W
             inside = inside.or_else(|| contact(c, course, world));
         }
         if let Some((s, at)) = inside {
-            return Err(Trouble::Unsound { what: "the cable is inside an obstacle", s, at });
+            return Err(Failure::Unsound { what: "the cable is inside an obstacle", s, at });
         }
     }
     Ok(())

@@ -6,10 +6,10 @@ use crate::model::spans::boundary::capstan::{Step, Track};
 use crate::model::spans::boundary_conditions::Layout;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::slack_pocket;
-use crate::model::spans::continuation::Network;
-use crate::model::spans::failure::Trouble;
+use crate::model::spans::continuation::CableEquilibrium;
+use crate::model::spans::failure::Failure;
 use crate::model::spans::results;
-use crate::model::spans::run::{Contact, Course, Strand, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Tie};
 
 /// Equations must hold to this part of the length, the tension, the angle. The solver stops at 1e-11.
 const HOLDS: f64 = 1e-7;
@@ -29,7 +29,7 @@ const FAR: f64 = 4.0;
 const PANEL: f64 = 0.5;
 
 /// Whether an answer is one; its contacts remember it.
-pub(in crate::model::spans) fn sound(strand: &Strand, course: &Course) -> Result<(), Trouble> {
+pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course) -> Result<(), Failure> {
     let mut before = strand.from;
     let greatest = strand
         .contacts
@@ -46,7 +46,7 @@ pub(in crate::model::spans) fn sound(strand: &Strand, course: &Course) -> Result
         let long = strand.to - strand.from;
         // A pocket that is short by less is not opened.
         if !(from >= before - HOLDS * long && to >= from - slack_pocket::SHORT * long) {
-            return Err(Trouble::Unsound { what: "material out of order", s: from, at: Vec2::zeros() });
+            return Err(Failure::Unsound { what: "material out of order", s: from, at: Vec2::zeros() });
         }
         before = to;
         if strand.has_span(k) {
@@ -61,18 +61,18 @@ pub(in crate::model::spans) fn sound(strand: &Strand, course: &Course) -> Result
 
 /// Whether supports and contacts, as they are reported, hold all of the weight and the loads: what no part of the network asked
 /// for is missed by each part's own check.
-pub(in crate::model::spans) fn balanced(layout: &Layout, network: &Network) -> Result<(), Trouble> {
+pub(in crate::model::spans) fn balanced(layout: &Layout, network: &CableEquilibrium) -> Result<(), Failure> {
     let (left, size) = results::unbalanced(layout, network);
     if left.norm() <= HOLDS * size {
         return Ok(());
     }
     let strand = network.strands.first();
     let at = strand.and_then(|s| s.ends_of(&network.course, 0)[0]).unwrap_or_default();
-    Err(Trouble::Unsound { what: "supports and contacts do not hold the weight and the loads", s: 0.0, at })
+    Err(Failure::Unsound { what: "supports and contacts do not hold the weight and the loads", s: 0.0, at })
 }
 
 /// The span closes.
-fn span(strand: &Strand, course: &Course, k: usize) -> Result<(), Trouble> {
+fn span(strand: &CableRun, course: &Course, k: usize) -> Result<(), Failure> {
     let (from, to) = strand.material(k);
     if let [Some(a), Some(b)] = strand.ends_of(course, k) {
         let (mut at, mut before) = (a, from);
@@ -82,7 +82,7 @@ fn span(strand: &Strand, course: &Course, k: usize) -> Result<(), Trouble> {
             before = next;
         }
         if !((at - b).norm() <= HOLDS * (strand.to - strand.from)) {
-            return Err(Trouble::Unsound { what: "a span does not close", s: from, at });
+            return Err(Failure::Unsound { what: "a span does not close", s: from, at });
         }
     }
     Ok(())
@@ -92,7 +92,7 @@ fn span(strand: &Strand, course: &Course, k: usize) -> Result<(), Trouble> {
 ///
 /// With b along the load, H the part of F across it and s* where F is across it, s = s* + (H/b) sinh v makes T = H cosh v:
 /// smooth however sharp the cable folds. Straight up and down (H = 0) the integral is split at the fold.
-fn way(strand: &Strand, course: &Course, k: usize, [from, to]: [f64; 2]) -> Vec2 {
+fn way(strand: &CableRun, course: &Course, k: usize, [from, to]: [f64; 2]) -> Vec2 {
     // Inside the piece: a load at its start acts before it.
     let start = strand.force(course, k, 0.5 * (from + to)) + course.law.load * (0.5 * (to - from));
     let force = |s: f64| start - course.law.load * (s - from);
@@ -126,10 +126,10 @@ fn way(strand: &Strand, course: &Course, k: usize, [from, to]: [f64; 2]) -> Vec2
 }
 
 /// A contact presses, does not push along itself, keeps the cone, and the spans leave it along its tangent.
-fn contact(strand: &Strand, course: &Course, (j, greatest): (usize, f64)) -> Result<(), Trouble> {
+fn contact(strand: &CableRun, course: &Course, (j, greatest): (usize, f64)) -> Result<(), Failure> {
     let c = &strand.contacts[j];
     let (track, e) = (course.track(c).seen_from(c.ends.p[0]), &c.ends);
-    let unsound = |what: &'static str, p: f64, s: f64| Trouble::Unsound { what, s, at: track.place(p).at };
+    let unsound = |what: &'static str, p: f64, s: f64| Failure::Unsound { what, s, at: track.place(p).at };
     let (first, last) = (track.curve.origin(c.home.first), track.curve.end(c.home.last));
     if !(track.curve.is_round() || e.p[0] >= first - BEYOND && e.p[1] <= last + BEYOND) {
         return Err(unsound("a contact goes on beyond what it lies on", e.p[0], e.s[0]));
@@ -159,13 +159,13 @@ fn contact(strand: &Strand, course: &Course, (j, greatest): (usize, f64)) -> Res
             }
         }
         if !(e.t[side] >= -PUSHES * greatest - 1e-9) {
-            return Err(Trouble::Compressed { s: e.s[side], at: track.place(e.p[side]).at, tension: e.t[side] });
+            return Err(Failure::Compressed { s: e.s[side], at: track.place(e.p[side]).at, tension: e.t[side] });
         }
     }
     if let Some(l) =
         course.loads.iter().find(|l| l.arc_length > e.s[0] && l.arc_length < e.s[1] && l.force.norm() > 0.0)
     {
-        return Err(Trouble::LoadLies { s: l.arc_length });
+        return Err(Failure::LoadLies { s: l.arc_length });
     }
     along(&track, c, (greatest, strand.to - strand.from))
 }
@@ -177,14 +177,14 @@ const LOST: f64 = 1e-4;
 /// Along a contact friction keeps its cone, nothing pushes along it and nothing pulls it off. On each stretch between two knots
 /// one part of friction is called upon: what holds for that and at the next knot holds all along. No material of the strand's
 /// `length` (m) is lost between two knots, nor between the ends and the first and last of them.
-fn along(track: &Track<'_>, c: &Contact, (greatest, length): (f64, f64)) -> Result<(), Trouble> {
+fn along(track: &Track<'_>, c: &Contact, (greatest, length): (f64, f64)) -> Result<(), Failure> {
     let friction = track.friction;
     let room = HOLDS * (greatest + 1e-9);
     let lost = |found: f64, kept: f64| !((found - kept).abs() <= LOST * length);
     if let (0.0, [first, .., last]) = (track.drag, c.history.knots())
         && (lost(first.s, c.ends.s[0]) || lost(last.s, c.ends.s[1]))
     {
-        return Err(Trouble::Unsound {
+        return Err(Failure::Unsound {
             what: "material is lost at an end of a contact",
             s: first.s,
             at: track.place(first.p).at,
@@ -193,14 +193,14 @@ fn along(track: &Track<'_>, c: &Contact, (greatest, length): (f64, f64)) -> Resu
     for pair in c.history.knots().windows(2) {
         let (knot, next) = (&pair[0], &pair[1]);
         let (mut p, mut t, mut s) = (knot.p, knot.tension, knot.s);
-        let unsound = |what: &'static str| Err(Trouble::Unsound { what, s: knot.s, at: track.place(knot.p).at });
+        let unsound = |what: &'static str| Err(Failure::Unsound { what, s: knot.s, at: track.place(knot.p).at });
         while p < next.p {
             let q = track.next_border(p, next.p);
             let whole = track.slide(p, q, t, knot.m);
             let look = |x: f64, way: Step| {
                 let place = track.place(x);
                 if !(way.tension >= -PUSHES * greatest - 1e-9) {
-                    return Err(Trouble::Compressed { s: s + way.material, at: place.at, tension: way.tension });
+                    return Err(Failure::Compressed { s: s + way.material, at: place.at, tension: way.tension });
                 }
                 if !(track.law.press(&place, way.tension) >= -room) {
                     return unsound("a contact pulls");
@@ -242,7 +242,7 @@ fn firm(track: &Track<'_>, (p, q): (f64, f64), t: f64, m: f64) -> bool {
 
 /// Where the load has changed since something was laid, what sticks has changed by less than friction takes up: the cone from
 /// point to point.
-fn sampled(track: &Track<'_>, c: &Contact, friction: f64, room: f64) -> Result<(), Trouble> {
+fn sampled(track: &Track<'_>, c: &Contact, friction: f64, room: f64) -> Result<(), Failure> {
     let past = &c.history;
     let [first, last] = c.ends.p;
     let (mut p, mut t) = (first, past.at(track, first).0);
@@ -251,7 +251,7 @@ fn sampled(track: &Track<'_>, c: &Contact, friction: f64, room: f64) -> Result<(
         let (next, s) = past.at(track, q);
         let (low, high) = (track.slide(p, q, t, -friction).tension, track.slide(p, q, t, friction).tension);
         if !(next >= low - room && next <= high + room) {
-            return Err(Trouble::Unsound { what: "friction beyond its cone", s, at: track.place(q).at });
+            return Err(Failure::Unsound { what: "friction beyond its cone", s, at: track.place(q).at });
         }
         (p, t) = (q, next);
     }

@@ -8,7 +8,7 @@ use crate::catenary::Catenary;
 use crate::contact::geometry::Body;
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, larger, perp};
-use crate::model::spans::run::{Course, Strand};
+use crate::model::spans::run::{CableRun, Course};
 
 /// Stretches of a catenary looked through for points nearest to a corner. Fewer: a corner near both branches of a deep
 /// catenary is seen from one only.
@@ -24,7 +24,7 @@ const ALONG: f64 = 1e-6;
 
 /// A point of a span inside an obstacle.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::model::spans) struct Hit {
+pub(in crate::model::spans) struct Penetration {
     /// Material point, m.
     pub s: f64,
     pub at: Vec2,
@@ -142,16 +142,16 @@ impl<'a> Arc<'a> {
 
 /// The deepest point of span k inside anything, if deeper than `tolerance` (m).
 pub(in crate::model::spans) fn deepest(
-    strand: &Strand,
+    strand: &CableRun,
     course: &Course,
     world: &World,
     k: usize,
     tolerance: f64,
-) -> Option<Hit> {
+) -> Option<Penetration> {
     if world.is_empty() || !strand.has_span(k) {
         return None;
     }
-    let mut best: Option<Hit> = None;
+    let mut best: Option<Penetration> = None;
     shapes(strand, course, k, |s0, at, shape| {
         let arc = Arc::new((s0, at, shape), course.law.load);
         let (low, high) = arc.bounds();
@@ -165,7 +165,7 @@ pub(in crate::model::spans) fn deepest(
                 {
                     let force = arc.shape.force_at(s);
                     let tangent = force / force.norm();
-                    best = Some(Hit { s: arc.s0 + s, at, tangent, gap, body: index });
+                    best = Some(Penetration { s: arc.s0 + s, at, tangent, gap, body: index });
                 }
             });
         }
@@ -175,7 +175,7 @@ pub(in crate::model::spans) fn deepest(
 
 /// Calls back with each catenary of span k: its first material point, where that is, and its shape.
 pub(in crate::model::spans) fn shapes(
-    strand: &Strand,
+    strand: &CableRun,
     course: &Course,
     k: usize,
     mut each: impl FnMut(f64, Vec2, &Catenary),

@@ -2,8 +2,8 @@
 
 use crate::error::TensionLoss;
 use crate::math::{Vec2, cross};
-use crate::model::spans::failure::Trouble;
-use crate::model::spans::run::{Course, Strand};
+use crate::model::spans::failure::Failure;
+use crate::model::spans::run::{CableRun, Course};
 use crate::model::spans::verify::penetration;
 
 /// A span has hardly any tension left when the force across its load is below this part of the load on it: it then hangs
@@ -13,14 +13,14 @@ const SLACK: f64 = 5e-3;
 
 /// What was lost, where on the cable (m) and in the plane (m), in the last state that was found.
 pub(in crate::model::spans) fn lost(
-    strands: &[Strand],
+    strands: &[CableRun],
     course: &Course,
-    trouble: &Trouble,
+    trouble: &Failure,
 ) -> Option<(TensionLoss, f64, Vec2)> {
-    if let Trouble::Compressed { s, at, .. } = trouble {
+    if let Failure::Compressed { s, at, .. } = trouble {
         return Some((TensionLoss::Lay, *s, *at));
     }
-    if !matches!(trouble, Trouble::Stalled { .. } | Trouble::Restless { .. } | Trouble::Unsound { .. }) {
+    if !matches!(trouble, Failure::Stalled { .. } | Failure::Restless { .. } | Failure::Unsound { .. }) {
         return None;
     }
     let b = course.law.load;

@@ -2,7 +2,7 @@
 
 use crate::contact::swept_corners::Corner;
 use crate::math::{Vec2, cross, larger, smaller};
-use crate::model::spans::run::{Contact, Course, Strand};
+use crate::model::spans::run::{CableRun, Contact, Course};
 use crate::model::spans::verify::penetration;
 
 /// Points of each catenary and contact.
@@ -16,7 +16,7 @@ const TOUCHES: f64 = 1e-12;
 
 /// Whether the ends of the spans alone tell that nothing was passed: contacts are the same, and every corner lies on the same
 /// side of each span before and after. A span is convex: above its tangents and below its chord, seen against the load.
-pub(in crate::model::spans) fn clear(old: &Strand, new: &Strand, course: &Course, corners: &[Corner]) -> bool {
+pub(in crate::model::spans) fn clear(old: &CableRun, new: &CableRun, course: &Course, corners: &[Corner]) -> bool {
     let load = course.law.load;
     let same = |(a, b): (&Contact, &Contact)| {
         let moved = |side: usize| (a.ends.p[side] - b.ends.p[side]).abs();
@@ -53,7 +53,7 @@ struct Bow {
 
 impl Bow {
     /// None where an end hangs or loads act on the way.
-    fn of(strand: &Strand, course: &Course, k: usize) -> Option<Self> {
+    fn of(strand: &CableRun, course: &Course, k: usize) -> Option<Self> {
         let (from, to) = strand.material(k);
         let [Some(a), Some(b)] = strand.ends_of(course, k) else { return None };
         if course.loads.iter().any(|l| l.arc_length > from && l.arc_length < to) {
@@ -78,7 +78,7 @@ impl Bow {
 }
 
 /// A shape of a strand as points.
-pub(in crate::model::spans) fn shape(strand: &Strand, course: &Course, out: &mut Vec<Vec2>) {
+pub(in crate::model::spans) fn shape(strand: &CableRun, course: &Course, out: &mut Vec<Vec2>) {
     out.clear();
     for k in 0..strand.spans() {
         if strand.has_span(k) {

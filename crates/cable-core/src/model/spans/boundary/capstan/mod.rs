@@ -22,8 +22,8 @@
 
 use crate::math::{Vec2, bounded, exp, perp};
 use crate::model::spans::boundary::arc::{MOST_TURN, Way};
-use crate::model::spans::boundary::curve::{Curve, Home, Place};
-use crate::model::spans::boundary::segment_cursor::{OnPiece, Pivot};
+use crate::model::spans::boundary::curve::{ChainRange, Curve, Place};
+use crate::model::spans::boundary::segment_cursor::{Pivot, SegmentCursor};
 
 /// Load and stiffness of a cable at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +40,7 @@ pub(in crate::model::spans) struct Law {
 
 /// A point of the boundary as the law sees it.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::model::spans) struct Spot {
+pub(in crate::model::spans) struct LocalLoad {
     /// d(length)/dp, m.
     pub stretch: f64,
     /// Whether it is on an arc.
@@ -85,9 +85,9 @@ impl Law {
     }
 
     /// A place as the law sees it.
-    pub fn spot(&self, place: &Place) -> Spot {
+    pub fn spot(&self, place: &Place) -> LocalLoad {
         let load = (self.load.dot(&place.tangent), self.load.dot(&place.normal));
-        Spot { stretch: place.stretch, turns: place.turn != 0.0, load }
+        LocalLoad { stretch: place.stretch, turns: place.turn != 0.0, load }
     }
 
     /// dT/dp at a place where it slides with m.
@@ -96,13 +96,13 @@ impl Law {
     }
 
     /// As [`Self::slope`].
-    pub fn slope_at(&self, spot: &Spot, t: f64, m: f64) -> f64 {
+    pub fn slope_at(&self, spot: &LocalLoad, t: f64, m: f64) -> f64 {
         let turned = if spot.turns { m * t } else { 0.0 };
         turned - spot.stretch * (spot.load.0 + m * spot.load.1) / self.stretch(t)
     }
 
     /// dΘ/dp on an edge.
-    pub fn edge_rate(&self, spot: &Spot, m: f64) -> f64 {
+    pub fn edge_rate(&self, spot: &LocalLoad, m: f64) -> f64 {
         -(spot.load.0 + m * spot.load.1) / self.thermal
     }
 
@@ -114,7 +114,7 @@ impl Law {
     }
 
     /// From a place, with tension `t`, so far (`way`) along the piece it lies on.
-    pub fn along(&self, from: &Spot, way: f64, t: f64, m: f64) -> Step {
+    pub fn along(&self, from: &LocalLoad, way: f64, t: f64, m: f64) -> Step {
         if !from.turns {
             return self.on_edge(self.edge_rate(from, m), way, t);
         }
@@ -157,7 +157,7 @@ impl Step {
 #[derive(Clone, Copy)]
 pub(in crate::model::spans) struct Track<'a> {
     pub curve: &'a Curve,
-    pub home: Home,
+    pub home: ChainRange,
     pub law: Law,
     /// μ.
     pub friction: f64,
@@ -192,7 +192,7 @@ impl Track<'_> {
     }
 
     /// The piece between p₀ and p₁, which lie on one.
-    pub fn on(&self, p0: f64, p1: f64) -> OnPiece<'_> {
+    pub fn on(&self, p0: f64, p1: f64) -> SegmentCursor<'_> {
         let from = match &self.pivot {
             Some(pivot) if pivot.reaches(p0) && pivot.reaches(p1) => pivot.spot(p0),
             _ => {
@@ -200,7 +200,7 @@ impl Track<'_> {
                 self.law.spot(&self.curve.place_on(i, p0 - self.curve.origin(i)))
             }
         };
-        OnPiece { law: &self.law, from, p0 }
+        SegmentCursor { law: &self.law, from, p0 }
     }
 
     /// Slides with m from p₀, where the tension is `t`, to p₁ (either way).

@@ -7,9 +7,9 @@ fn law(stiffness: f64) -> Law {
     Law::new(Vec2::new(0.7, -9.0), 1.001, stiffness)
 }
 
-const ROUND: Home = Home { first: 0, last: 0 };
+const ROUND: ChainRange = ChainRange { first: 0, last: 0 };
 
-fn on(curve: &Curve, home: Home, law: Law, friction: f64) -> Track<'_> {
+fn on(curve: &Curve, home: ChainRange, law: Law, friction: f64) -> Track<'_> {
     Track { curve, home, law, friction, drag: 0.0, floored: false, pivot: None }
 }
 
