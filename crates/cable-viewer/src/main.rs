@@ -5,9 +5,11 @@ use std::process::ExitCode;
 
 use cable_core::scene::catalog;
 use cable_core::{Model, Scene};
+use cable_viewer::ViewerApp;
+use cable_viewer::app::screenshot;
 use cable_viewer::command::Command;
-use cable_viewer::software::Software;
-use cable_viewer::{ViewerApp, autosave, scene_file, screenshot};
+use cable_viewer::io::{autosave, scene_file};
+use cable_viewer::render::software::Software;
 use clap::Parser;
 
 /// The cable simulator's window.

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use egui::{Context, Id, Modal, Ui};
 
 use crate::command::{Command, FileCommand};
-use crate::dialog::Dialog;
 use crate::state::AppState;
+use crate::state::dialog::Dialog;
 
 /// Draws the dialog, if one is open.
 pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
@@ -38,9 +38,9 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
                     commands.push(Command::File(command));
                 }
             }
-            Dialog::Feedback { answers, path } => super::feedback::ui(ui, answers, path, commands),
+            Dialog::Feedback { answers, path } => crate::app::feedback_form::ui(ui, answers, path, commands),
             Dialog::About => about(ui, commands),
-            Dialog::Palette { text } => super::palette::ui(ui, text, commands),
+            Dialog::Palette { text } => crate::app::palette::ui(ui, text, commands),
             Dialog::ImportMap { path, text, unit_m } => import_map(ui, [path, text, unit_m], commands),
             Dialog::Unsaved { then } => unsaved(ui, &name, then, commands),
             Dialog::Recover { scene } => recover(ui, scene, commands),

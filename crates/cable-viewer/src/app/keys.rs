@@ -2,11 +2,12 @@
 
 use egui::{Context, Event, Key, KeyboardShortcut, Modifiers};
 
-use crate::canvas::{grid, place};
+use crate::canvas::layers::grid;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use crate::dialog::Dialog;
+use crate::geometry::handles;
 use crate::panels::robot;
 use crate::state::AppState;
+use crate::state::dialog::Dialog;
 
 /// Ctrl or ⌘ with a key.
 const fn with_command(key: Key) -> KeyboardShortcut {
@@ -147,7 +148,7 @@ fn clipboard(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
 
 /// N picks the next thing, M one more, Alt with an arrow moves what is picked by a grid line, Ctrl+A picks everything.
 fn pick_and_move(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
-    let all = place::all(state);
+    let all = handles::all(state);
     for (modifiers, forward) in [(Modifiers::SHIFT, false), (Modifiers::NONE, true)] {
         if ctx.input_mut(|i| i.consume_key(modifiers, Key::N)) && !all.is_empty() {
             let here = state.selected.and_then(|s| all.iter().position(|i| *i == s));
@@ -179,7 +180,7 @@ fn pick_and_move(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
         (Key::ArrowDown, [0.0, -step]),
     ] {
         if ctx.input_mut(|i| i.consume_key(Modifiers::ALT, key)) {
-            commands.push(Command::Scene(SceneCommand::MoveAll(place::moved(state, item, by))));
+            commands.push(Command::Scene(SceneCommand::MoveAll(handles::moved(state, item, by))));
         }
     }
 }

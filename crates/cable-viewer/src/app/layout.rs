@@ -2,7 +2,7 @@
 
 use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, RichText, ScrollArea, Ui};
 
-use super::{guide, menu};
+use crate::app::{menu, tutorial_bar};
 use crate::canvas;
 use crate::command::Command;
 use crate::panels;
@@ -22,12 +22,12 @@ const EDIT: &[Section] = &[
 /// What is read off. Where a place on the cable is marked its tension stands above the readouts, else at the end.
 const READ: &[Section] = &[
     ("Warnings", panels::warnings::ui),
-    (MARKED, panels::origin::ui),
+    (MARKED, panels::analysis::tension_budget::ui),
     ("Readouts", panels::readouts::ui),
-    ("Safe reach", panels::reach::ui),
-    ("Compare", panels::compare::ui),
-    (UNMARKED, panels::origin::ui),
-    ("Friction range", panels::spread::ui),
+    ("Safe reach", panels::analysis::safe_reach::ui),
+    ("Compare", panels::analysis::compare::ui),
+    (UNMARKED, panels::analysis::tension_budget::ui),
+    ("Friction range", panels::analysis::friction_range::ui),
 ];
 
 const MARKED: &str = "Tension at the marked place";
@@ -44,7 +44,7 @@ const LEAST_GRAPHS: f32 = 130.0;
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     Panel::top("menu").show(ui, |ui| menu::ui(ui, state, commands));
     if state.guide.is_some() {
-        Panel::top("guide").show(ui, |ui| guide::strip(ui, state, commands));
+        Panel::top("guide").show(ui, |ui| tutorial_bar::strip(ui, state, commands));
     }
     Panel::bottom("status").show(ui, |ui| menu::status(ui, state));
     Panel::bottom("playback").show(ui, |ui| {

@@ -4,14 +4,14 @@ use cable_core::scene::catalog;
 use cable_core::verify::Verification;
 use egui::{Button, Color32, KeyboardShortcut, MenuBar, Sense, Ui, Vec2};
 
-use super::keys;
-use crate::colour::{ColourMap, Quantity};
+use crate::app::keys;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use crate::dialog::Dialog;
-use crate::panels::system::System;
-use crate::panels::translate;
+use crate::render::colour::{ColourMap, Quantity};
+use crate::state::dialog::Dialog;
 use crate::state::{AppState, WorkerStatus};
-use crate::units;
+use crate::units::labels;
+use crate::units::system::System;
+use crate::units::translate;
 
 /// The menu bar.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -20,7 +20,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.menu_button("Edit", |ui| edit(ui, state, commands));
         ui.menu_button("View", |ui| view(ui, state, commands));
         ui.menu_button("Scenes", |ui| scenes(ui, commands));
-        ui.menu_button("Learn", |ui| super::guide::menu(ui, commands));
+        ui.menu_button("Learn", |ui| crate::app::tutorial_bar::menu(ui, commands));
         if ui.button("Help").on_hover_text("Pointer and keys (F1)").clicked() {
             commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::Help))));
         }
@@ -37,7 +37,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 /// Asks what the user thinks.
 pub fn feedback() -> FileCommand {
-    let (answers, path) = (crate::feedback::Answers::default(), "feedback.csv".to_owned());
+    let (answers, path) = (crate::io::feedback::Answers::default(), "feedback.csv".to_owned());
     FileCommand::SetDialog(Some(Dialog::Feedback { answers, path }))
 }
 
@@ -251,7 +251,7 @@ fn light(ui: &mut Ui, verification: &Verification) {
 /// The status line: cursor, model, time taken.
 pub fn status(ui: &mut Ui, state: &AppState) {
     ui.horizontal(|ui| {
-        let (length, si) = units::of_length();
+        let (length, si) = labels::of_length();
         match state.cursor_m.map(|p| p.map(|v| v / si)) {
             Some([x, y]) => ui.monospace(format!("x {x:9.3} {length}   y {y:9.3} {length}")),
             None => ui.monospace(format!("x         – {length}   y         – {length}")),

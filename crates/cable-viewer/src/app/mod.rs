@@ -1,12 +1,19 @@
-//! The window: takes in the worker's answers, lays out panels and canvas, applies what they push.
+//! The window takes in the worker's answers, lays out panels and canvas and applies what they push.
+//!
+//! - `layout`, `menu`, `keys`, `palette`: where panels are, and every command by menu, key or name
+//! - `dialogs`, `feedback_form`: what the user is asked
+//! - [`tutorials`], `tutorial_bar`: guided scenes, and the bar that leads through one
+//! - [`screenshot`]: the window as a picture file
 
 mod dialogs;
-mod feedback;
-mod guide;
+mod feedback_form;
 mod keys;
 mod layout;
 mod menu;
 mod palette;
+pub mod screenshot;
+mod tutorial_bar;
+pub mod tutorials;
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -14,17 +21,18 @@ use std::time::Instant;
 
 use cable_core::Scene;
 
-use crate::autosave::Autosave;
-use crate::bending;
-use crate::command::{self, Command, Effects};
-use crate::dialog::Dialog;
-use crate::history::Sample;
-use crate::models;
-use crate::panels::system;
-use crate::reach;
-use crate::spread;
+use crate::command;
+use crate::command::{Command, Effects};
+use crate::io::autosave::Autosave;
+use crate::jobs::friction_range;
+use crate::jobs::model_comparison;
+use crate::jobs::neglected_bending;
+use crate::jobs::safe_reach;
+use crate::record::samples::Sample;
+use crate::render::theme;
+use crate::state::dialog::Dialog;
 use crate::state::{AppState, WorkerStatus};
-use crate::theme;
+use crate::units::system;
 use crate::worker::Worker;
 use crate::worker::engine::Report;
 
@@ -44,13 +52,13 @@ pub struct ViewerApp {
     /// Numbers of the edits not yet answered and when they were sent, oldest first; at most [`MOST_ASKED`].
     asked: VecDeque<(u64, Instant)>,
     /// The map of where the robot can go, while it is computed.
-    reach: Option<reach::Job>,
+    reach: Option<safe_reach::Job>,
     /// Every model being asked.
-    models: Option<models::Job>,
+    models: Option<model_comparison::Job>,
     /// What neglecting bending stiffness changes, computed or being computed.
-    bending: Option<bending::Job>,
+    bending: Option<neglected_bending::Job>,
     /// The ribbon of less and more friction, computed or being computed.
-    spread: Option<spread::Job>,
+    spread: Option<friction_range::Job>,
 }
 
 impl ViewerApp {
@@ -136,11 +144,11 @@ impl ViewerApp {
         }
         if let Some(order) = effects.reach {
             let shown = ctx.clone();
-            self.reach = order.map(|o| reach::start(*o, move || shown.request_repaint()));
+            self.reach = order.map(|o| safe_reach::start(*o, move || shown.request_repaint()));
         }
         if let Some(scene) = effects.models {
             let (shown, settings) = (ctx.clone(), self.state.settings);
-            self.models = scene.map(|s| models::start(*s, settings, move || shown.request_repaint()));
+            self.models = scene.map(|s| model_comparison::start(*s, settings, move || shown.request_repaint()));
         }
         if effects.restart_worker {
             self.worker = new_worker(ctx, self.threaded);
@@ -167,16 +175,16 @@ impl ViewerApp {
         }
         if let Some(job) = &self.reach {
             self.state.reach.progress = job.progress();
-            if !matches!(self.state.reach.progress, reach::Progress::Running(..)) {
+            if !matches!(self.state.reach.progress, safe_reach::Progress::Running(..)) {
                 self.reach = None;
             }
         }
         if let Some(job) = &self.models {
             self.state.models = job.progress();
-            if let models::Progress::Done(found) = self.state.models.clone() {
-                models::hold(&mut self.state.held, &found);
+            if let model_comparison::Progress::Done(found) = self.state.models.clone() {
+                model_comparison::hold(&mut self.state.held, &found);
             }
-            if !matches!(self.state.models, models::Progress::Running(..)) {
+            if !matches!(self.state.models, model_comparison::Progress::Running(..)) {
                 self.models = None;
             }
         }
@@ -195,33 +203,35 @@ impl ViewerApp {
 
     /// Looks after what neglecting bending stiffness changes: a question about what is no longer on screen is forgotten.
     fn keep_bending(&mut self, ctx: &egui::Context) {
-        if !bending::fits(&self.state) {
-            self.state.bending = bending::View::default();
+        if !neglected_bending::fits(&self.state) {
+            self.state.bending = neglected_bending::View::default();
         }
         let Some(ask) = self.state.bending.ask.clone() else { return };
-        let runs = |job: &bending::Job| matches!(job.progress(), bending::Progress::Running(..));
+        let runs = |job: &neglected_bending::Job| matches!(job.progress(), neglected_bending::Progress::Running(..));
         // One that still runs cannot be stopped within its solve: the next waits for it.
         if self.bending.as_ref().is_none_or(|job| !job.is_of(&ask) && !runs(job)) {
             let shown = ctx.clone();
-            self.bending = Some(bending::Job::start(ask.clone(), move || shown.request_repaint()));
+            self.bending = Some(neglected_bending::Job::start(ask.clone(), move || shown.request_repaint()));
         }
         let own = self.bending.as_ref().filter(|job| job.is_of(&ask));
-        self.state.bending.progress = own.map_or(bending::Progress::Running(0.0, None), bending::Job::progress);
+        self.state.bending.progress =
+            own.map_or(neglected_bending::Progress::Running(0.0, None), neglected_bending::Job::progress);
     }
 
     /// Looks after the ribbon of less and more friction: one of another question ends, a missing one begins.
     fn keep_spread(&mut self, ctx: &egui::Context) {
         let state = &mut self.state;
-        if self.spread.as_ref().is_some_and(|job| !state.spread.on || !spread::fits(state, job.ask())) {
+        if self.spread.as_ref().is_some_and(|job| !state.spread.on || !friction_range::fits(state, job.ask())) {
             self.spread = None;
         }
         if self.spread.is_none()
-            && let Some(ask) = spread::asked(state)
+            && let Some(ask) = friction_range::asked(state)
         {
             let shown = ctx.clone();
-            self.spread = Some(spread::Job::start(ask, move || shown.request_repaint()));
+            self.spread = Some(friction_range::Job::start(ask, move || shown.request_repaint()));
         }
-        state.spread.progress = self.spread.as_ref().map_or(spread::Progress::None, spread::Job::progress);
+        state.spread.progress =
+            self.spread.as_ref().map_or(friction_range::Progress::None, friction_range::Job::progress);
     }
 
     /// Lets what was recorded go on while it is replayed.

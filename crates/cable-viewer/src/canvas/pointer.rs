@@ -3,9 +3,10 @@
 use cable_core::scene::Shape;
 use egui::{CursorIcon, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui};
 
-use super::view::View;
-use super::{grid, pick, place};
+use crate::canvas::layers::grid;
+use crate::canvas::view::View;
 use crate::command::{Command, SceneCommand, ViewCommand};
+use crate::geometry::{handles, hit_test};
 use crate::state::{AppState, Grab, Item, Probe};
 
 /// How near to the cable a double-click adds a waypoint, points.
@@ -25,9 +26,9 @@ pub fn read(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<C
     } else if response.clicked()
         && let Some(p) = response.interact_pointer_pos()
     {
-        let item = pick::item_at(state, canvas, p);
+        let item = hit_test::item_at(state, canvas, p);
         if matches!(item, Some(Item::Cable(_)))
-            && let Some((cable, arc_length_m, _)) = pick::cable_at(state, canvas, p, WAYPOINT_REACH)
+            && let Some((cable, arc_length_m, _)) = hit_test::cable_at(state, canvas, p, WAYPOINT_REACH)
         {
             let from = state.probe.map(|p| p.from).unwrap_or_default();
             commands.push(Command::View(ViewCommand::Probe(Some(Probe { cable, arc_length_m, from }))));
@@ -47,10 +48,10 @@ fn adds(ui: &Ui) -> bool {
 
 /// A waypoint on the cable; on the ground a leg of the robot's path to there.
 fn double_click(state: &AppState, canvas: Rect, p: Pos2, commands: &mut Vec<Command>) {
-    if let Some((cable, arc_length_m, at_m)) = pick::cable_at(state, canvas, p, WAYPOINT_REACH) {
+    if let Some((cable, arc_length_m, at_m)) = hit_test::cable_at(state, canvas, p, WAYPOINT_REACH) {
         commands.push(Command::Scene(SceneCommand::AddWaypoint { cable, arc_length_m, at_m }));
     } else if state.scene.robot.is_some()
-        && let Some(Item::Obstacle(k)) = pick::item_at(state, canvas, p)
+        && let Some(Item::Obstacle(k)) = hit_test::item_at(state, canvas, p)
         && state.scene.obstacles.get(k).is_some_and(|o| matches!(o.shape, Shape::Terrain { .. }))
     {
         let [to_x_m, _] = state.camera.to_world(canvas, p);
@@ -62,7 +63,7 @@ fn hover(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comm
     let pointer = response.hover_pos();
     let item = match &state.grabbed {
         Some(grab) => Some(grab.item),
-        None => pointer.and_then(|p| pick::item_at(state, response.rect, p)),
+        None => pointer.and_then(|p| hit_test::item_at(state, response.rect, p)),
     };
     let cursor_m = pointer.map(|p| state.camera.to_world(response.rect, p));
     if item != state.hovered || cursor_m != state.cursor_m {
@@ -74,7 +75,7 @@ fn hover(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comm
     let icon = match (state.grabbed.is_some(), item) {
         (true, _) => CursorIcon::Grabbing,
         (false, Some(Item::Cable(_))) => CursorIcon::PointingHand,
-        (false, Some(item)) if place::of(state, item).is_some() => CursorIcon::Grab,
+        (false, Some(item)) if handles::of(state, item).is_some() => CursorIcon::Grab,
         (false, Some(_)) => CursorIcon::PointingHand,
         (false, None) if response.dragged() => CursorIcon::AllScroll,
         (false, None) => CursorIcon::Default,
@@ -97,7 +98,7 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
     if response.drag_started_by(PointerButton::Primary)
         && let Some(p) = ui.input(|i| i.pointer.press_origin())
     {
-        let Some(item) = pick::item_at(state, canvas, p) else {
+        let Some(item) = hit_test::item_at(state, canvas, p) else {
             if adds(ui) {
                 let at = state.camera.to_world(canvas, p);
                 commands.push(Command::View(ViewCommand::Frame(Some([at, at]))));
@@ -107,7 +108,7 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
         if !state.picked(item) {
             commands.push(Command::View(ViewCommand::Select(Some(item))));
         }
-        if let Some(at) = place::of(state, item) {
+        if let Some(at) = handles::of(state, item) {
             let w = state.camera.to_world(canvas, p);
             let grab = Grab { item, offset_m: [at[0] - w[0], at[1] - w[1]] };
             commands.push(Command::View(ViewCommand::Grab(Some(grab))));
@@ -143,7 +144,7 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
 fn move_to(state: &AppState, grab: &Grab, canvas: egui::Rect, p: Pos2, commands: &mut Vec<Command>) {
     if let Item::Load(k) = grab.item {
         // A load slides along its cable.
-        if let Some((cable, arc_length_m, _)) = pick::cable_at(state, canvas, p, f32::INFINITY)
+        if let Some((cable, arc_length_m, _)) = hit_test::cable_at(state, canvas, p, f32::INFINITY)
             && let Some(mut value) = state.scene.loads.get(k).cloned()
             && state.scene.cables.get(cable).is_some_and(|c| c.name == value.cable)
         {
@@ -159,9 +160,9 @@ fn move_to(state: &AppState, grab: &Grab, canvas: egui::Rect, p: Pos2, commands:
         to_m = to_m.map(|v| (v / step).round() * step);
     }
     let item = grab.item;
-    let from_m = place::of(state, item).filter(|_| state.picked(item) && !state.also.is_empty());
+    let from_m = handles::of(state, item).filter(|_| state.picked(item) && !state.also.is_empty());
     commands.push(Command::Scene(match from_m {
-        Some(from) => SceneCommand::MoveAll(place::moved(state, item, [to_m[0] - from[0], to_m[1] - from[1]])),
+        Some(from) => SceneCommand::MoveAll(handles::moved(state, item, [to_m[0] - from[0], to_m[1] - from[1]])),
         None => SceneCommand::Move { item, to_m },
     }));
 }
@@ -171,7 +172,7 @@ fn frame_to(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<C
     let Some([from, to]) = state.frame_m else { return };
     let to = response.interact_pointer_pos().map_or(to, |p| state.camera.to_world(response.rect, p));
     if response.drag_stopped() || !ui.input(|i| i.pointer.primary_down()) {
-        commands.push(Command::View(ViewCommand::SelectAll(place::within(state, [from, to]))));
+        commands.push(Command::View(ViewCommand::SelectAll(handles::within(state, [from, to]))));
         commands.push(Command::View(ViewCommand::Frame(None)));
     } else {
         commands.push(Command::View(ViewCommand::Frame(Some([from, to]))));

@@ -3,8 +3,8 @@
 use cable_core::math::Point;
 use egui::{Align2, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec2};
 
-use crate::camera::Camera;
-use crate::theme::Palette;
+use crate::render::theme::Palette;
+use crate::state::camera::Camera;
 
 /// One frame's picture.
 pub struct View<'a> {

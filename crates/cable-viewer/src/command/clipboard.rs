@@ -6,10 +6,11 @@ use cable_core::math::Point;
 use cable_core::scene::{Shape, Support, SupportKind};
 use cable_core::{Cable, Load, Obstacle};
 
-use super::Effects;
-use super::items::shifted;
-use super::scene::{unique, waypoint_place};
-use crate::canvas::{pick, supports};
+use crate::canvas::layers::supports;
+use crate::command::Effects;
+use crate::command::items::shifted;
+use crate::command::scene::{unique, waypoint_place};
+use crate::geometry::hit_test;
 use crate::panels::scene::support_kind::of_kind;
 use crate::state::{AppState, Item};
 
@@ -88,7 +89,7 @@ fn thing(state: &AppState, item: Item) -> Option<(Thing, Vec<Point>)> {
             (Thing::Obstacle(value.clone()), points)
         }
         Item::Load(k) | Item::Head(k) => {
-            let (at_m, _) = crate::canvas::forces::load_at(state, k)?;
+            let (at_m, _) = crate::canvas::layers::forces::load_at(state, k)?;
             (Thing::Load(scene.loads.get(k)?.clone()), vec![at_m])
         }
         Item::Robot | Item::Leg(_) => return None,
@@ -156,7 +157,7 @@ fn put_obstacle(state: &mut AppState, mut obstacle: Obstacle, shift: &impl Fn(Po
 
 /// A support between the ends of a cable, where the cable is nearest to it. What can only be an end becomes a waypoint.
 fn put_support(state: &mut AppState, cable: usize, support: &Support, at_m: Point) -> Option<Item> {
-    let arc_length_m = pick::nearest_on(state, cable, at_m)?;
+    let arc_length_m = hit_test::nearest_on(state, cable, at_m)?;
     let place = waypoint_place(state, cable, arc_length_m);
     let c = state.scene.cables.get_mut(cable).filter(|c| c.supports.len() >= 2)?;
     let kind = match support.kind {

@@ -8,14 +8,17 @@ use cable_core::files::{RunEnd, RunFolder};
 use cable_core::record::{NodeChoice, RunRequest};
 use cable_core::scene::catalog;
 
-use super::{Command, Effects, SceneCommand, import, submit_scene};
-use crate::dialog::Dialog;
-use crate::feedback::{self, Answers};
-use crate::guide::{GUIDES, Place};
-use crate::history::Sample;
-use crate::plot::export::{self, Sheet};
-use crate::run::{self, Run};
-use crate::scene_file;
+use crate::app::tutorials::{GUIDES, Place};
+use crate::command::{Command, Effects, SceneCommand, import, submit_scene};
+use crate::io::feedback;
+use crate::io::feedback::Answers;
+use crate::io::graph_file;
+use crate::io::graph_file::Sheet;
+use crate::io::scene_file;
+use crate::record::run;
+use crate::record::run::Run;
+use crate::record::samples::Sample;
+use crate::state::dialog::Dialog;
 use crate::state::{AppState, Held};
 
 /// Files and the window.
@@ -100,14 +103,14 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
             None => state.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
         },
         FileCommand::SaveAs(path) => save(state, &path),
-        FileCommand::Export(path, sheet) => match export::save(&path, &sheet) {
+        FileCommand::Export(path, sheet) => match graph_file::save(&path, &sheet) {
             Ok(()) => state.dialog = None,
             Err(text) => complain(state, &format!("“{}” was not written", path.display()), text),
         },
         FileCommand::ImportMap { path, text, unit_m } => {
             match import::add(&state.scene, path.as_deref(), &text, unit_m) {
                 Ok((scene, report)) => {
-                    super::apply(state, Command::Scene(SceneCommand::SetScene(Box::new(scene))), effects);
+                    crate::command::apply(state, Command::Scene(SceneCommand::SetScene(Box::new(scene))), effects);
                     state.camera.fit_wanted = true;
                     state.dialog = Some(Dialog::Message { title: "Imported".to_owned(), text: report });
                 }
@@ -147,7 +150,7 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
             state.dialog = None;
             match *then {
                 Command::File(command) => carry_out(state, command, effects),
-                other => super::apply(state, other, effects),
+                other => crate::command::apply(state, other, effects),
             }
         }
         FileCommand::RestartWorker => {
@@ -184,9 +187,9 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
     state.robot_order = None;
     state.reopened = Vec::new();
     state.guide = None;
-    state.reach = crate::reach::View::default();
+    state.reach = crate::jobs::safe_reach::View::default();
     effects.reach = Some(None);
-    state.models = crate::models::Progress::None;
+    state.models = crate::jobs::model_comparison::Progress::None;
     effects.models = Some(None);
     effects.request.robot = Some(None);
     state.camera.fit_wanted = true;

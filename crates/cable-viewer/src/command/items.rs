@@ -5,7 +5,7 @@ use cable_core::scene::ground::Ground;
 use cable_core::scene::{RobotTask, Shape, Support, SupportKind};
 use cable_core::{Robot, Scene};
 
-use super::scene::set;
+use crate::command::scene::set;
 use crate::state::{AppState, Item};
 
 /// Puts a thing at a point, m.
@@ -54,8 +54,9 @@ pub fn move_item(state: &mut AppState, item: Item, to_m: Point) {
             }
         }
         Item::Head(index) => {
-            let Some((tail, _)) = crate::canvas::forces::load_at(state, index) else { return };
-            let force = crate::canvas::forces::force_of_arrow([to_m[0] - tail[0], to_m[1] - tail[1]], &state.camera);
+            let Some((tail, _)) = crate::canvas::layers::forces::load_at(state, index) else { return };
+            let force =
+                crate::canvas::layers::forces::force_of_arrow([to_m[0] - tail[0], to_m[1] - tail[1]], &state.camera);
             if let Some(load) = state.scene.loads.get_mut(index).filter(|l| l.force_n.is_some()) {
                 load.force_n = Some(force);
             }

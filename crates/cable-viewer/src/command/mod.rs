@@ -10,14 +10,14 @@ mod route;
 pub mod scene;
 pub mod view;
 
-pub use file::FileCommand;
-pub use playback::PlaybackCommand;
-pub use scene::SceneCommand;
-pub use view::ViewCommand;
+pub use crate::command::file::FileCommand;
+pub use crate::command::playback::PlaybackCommand;
+pub use crate::command::scene::SceneCommand;
+pub use crate::command::view::ViewCommand;
 
 use cable_core::{Model, Scene, Settings};
 
-use crate::reach::Order;
+use crate::jobs::safe_reach::Order;
 use crate::state::AppState;
 use crate::worker::request::{Edit, Request};
 

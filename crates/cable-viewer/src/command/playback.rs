@@ -2,10 +2,10 @@
 
 use cable_core::scene::SupportKind;
 
-use super::{Effects, next_number};
-use crate::dialog::Dialog;
+use crate::command::{Effects, next_number};
+use crate::state::dialog::Dialog;
+use crate::state::undo::EditKind;
 use crate::state::{AppState, Playback};
-use crate::undo::EditKind;
 use crate::worker::request::{Edit, Request, Resume};
 
 /// A support that is farther than this from where it was has been moved since, m. Less: rounding counts as moving.

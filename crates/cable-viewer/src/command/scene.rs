@@ -4,10 +4,10 @@ use cable_core::math::Point;
 use cable_core::scene::{Environment, RobotTask, Support};
 use cable_core::{Cable, Load, Obstacle, Robot, Scene};
 
-use super::items::{drop_lost_selection, hitched, move_item, remove_all, set_robot};
-use super::{Effects, clipboard, next_number, route, submit_scene};
+use crate::command::items::{drop_lost_selection, hitched, move_item, remove_all, set_robot};
+use crate::command::{Effects, clipboard, next_number, route, submit_scene};
+use crate::state::undo::EditKind;
 use crate::state::{AppState, Item};
-use crate::undo::EditKind;
 use crate::worker::engine::slow;
 use crate::worker::request::{Drag, Request};
 

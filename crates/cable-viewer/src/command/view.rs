@@ -4,15 +4,16 @@ use std::sync::Arc;
 
 use cable_core::math::Point;
 
-use super::Effects;
-use crate::bending;
-use crate::colour::ColourScale;
-use crate::guide;
-use crate::models;
-use crate::panels::system::System;
-use crate::reach::{self, Moved, Order, Progress};
-use crate::run::Run;
+use crate::app::tutorials;
+use crate::command::Effects;
+use crate::jobs::model_comparison;
+use crate::jobs::neglected_bending;
+use crate::jobs::safe_reach;
+use crate::jobs::safe_reach::{Moved, Order, Progress};
+use crate::record::run::Run;
+use crate::render::colour::ColourScale;
 use crate::state::{AppState, Grab, Held, Item, Layers, Probe};
+use crate::units::system::System;
 
 /// Changes what is shown.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,13 +56,13 @@ pub enum ViewCommand {
     /// Looks for where the robot or an end can be taken, or ends that and forgets it.
     Reach(bool),
     /// What of it is asked and shown.
-    SetReach(reach::Choice),
+    SetReach(safe_reach::Choice),
     /// Shows what less and more friction does, or not any more; least and greatest friction over that of the scene.
     Spread(bool, [f64; 2]),
     /// Ask what neglecting bending stiffness changes.
     AskBending,
     /// Leads to a step of a guided scene, or not any more.
-    Guide(Option<guide::Place>),
+    Guide(Option<tutorials::Place>),
     /// SI or US units; files stay SI.
     SetUnits(System),
     /// Keeps the answer on screen to compare with.
@@ -99,14 +100,14 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
         ViewCommand::Grab(grab) => {
             state.grabbed = grab;
             if grab.is_none() {
-                super::scene::let_go(state, effects);
+                crate::command::scene::let_go(state, effects);
             }
         }
         ViewCommand::Pan(delta) => state.camera.pan(delta),
         ViewCommand::Zoom { about_m, factor } => state.camera.zoom(about_m, factor),
         ViewCommand::Fit => state.camera.fit_wanted = true,
         ViewCommand::Recentre => {
-            let [low, high] = crate::canvas::bounds::cables(state);
+            let [low, high] = crate::geometry::bounds::cables(state);
             state.camera.centre_m = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
         }
         ViewCommand::CentreOn(p) => {
@@ -119,13 +120,13 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
         ViewCommand::SetTheme(theme) => state.theme = theme,
         ViewCommand::Reach(false) => (state.reach.progress, effects.reach) = (Progress::None, Some(None)),
         ViewCommand::Reach(true) => {
-            let Some(moved) = reach::moved(state) else {
+            let Some(moved) = safe_reach::moved(state) else {
                 state.reach.progress = Progress::Failed("nothing here has a place to be taken from".to_owned());
                 return;
             };
             state.reach.progress = Progress::Running(0.0, None);
             let corners_m = match moved {
-                Moved::Robot => crate::canvas::bounds::ground(state).map(|x| [x, 0.0]),
+                Moved::Robot => crate::geometry::bounds::ground(state).map(|x| [x, 0.0]),
                 Moved::Support { .. } => state.visible_m,
             };
             let (scene, settings, across) = (state.scene.clone(), state.settings, state.reach.choice.across);
@@ -142,7 +143,8 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             }
         }
         ViewCommand::AskBending => {
-            state.bending = bending::View { ask: bending::asked(state), ..bending::View::default() }
+            state.bending =
+                neglected_bending::View { ask: neglected_bending::asked(state), ..neglected_bending::View::default() }
         }
         ViewCommand::Guide(place) => state.guide = place.filter(|p| p.step().is_some()),
         ViewCommand::SetUnits(units) => state.units = units,
@@ -158,10 +160,12 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             }
         }
         ViewCommand::HoldModels(true) => {
-            state.models = models::Progress::Running(0.0, None);
+            state.models = model_comparison::Progress::Running(0.0, None);
             effects.models = Some(Some(Box::new(state.scene.clone())));
         }
-        ViewCommand::HoldModels(false) => (state.models, effects.models) = (models::Progress::None, Some(None)),
+        ViewCommand::HoldModels(false) => {
+            (state.models, effects.models) = (model_comparison::Progress::None, Some(None))
+        }
         ViewCommand::LetGo(None) => state.held.clear(),
         ViewCommand::LetGo(Some(k)) => {
             if k < state.held.len() {

@@ -3,13 +3,15 @@
 use cable_core::scene::{Environment, View};
 use egui::Ui;
 
-use super::cable::labelled;
-use super::property::{Known, Quantity, row};
-use super::times::{self, Knots, Table};
-use super::unit::Unit;
-use super::{fault, field};
 use crate::command::{Command, SceneCommand};
+use crate::panels::cable::labelled;
+use crate::panels::scene_errors;
 use crate::state::AppState;
+use crate::units::unit::Unit;
+use crate::widgets::field;
+use crate::widgets::property::{Known, Quantity, row};
+use crate::widgets::time_table;
+use crate::widgets::time_table::{Knots, Table};
 
 /// What the environment panel edits: how it is shown, its key, how it is read and written.
 type Entry = (Quantity, &'static str, fn(&Environment) -> f64, fn(&mut Environment, f64));
@@ -88,7 +90,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
         let component = if quantity.name == WIND_X.0.name { "[0]" } else { "[1]" };
         let path = format!("environment.{key}{}", if wind { component } else { "" });
-        fault::inline(ui, state, &path, commands);
+        scene_errors::inline(ui, state, &path, commands);
     }
     wind(ui, state, commands);
 }
@@ -102,12 +104,12 @@ fn wind(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let on = !environment.winds_n_per_m.is_empty();
     let (mut faults, mut changed) = (Vec::new(), None);
     let help = "A wind at each of several times, linear in between";
-    if let Some(on) = times::toggle(ui, "Wind changes with time", on, help) {
+    if let Some(on) = time_table::toggle(ui, "Wind changes with time", on, help) {
         let steady = Knots::steady(environment.wind_n_per_m, FIRST_SPAN_S);
         changed = Some(if on { steady } else { Knots::default() });
     } else if on {
         let table = Table { of: "wind", columns: ["Right", "Up"], unit: Unit::N_PER_M, least: 1 };
-        changed = times::ui(ui, &table, &knots, &mut faults);
+        changed = time_table::ui(ui, &table, &knots, &mut faults);
     }
     if let Some(Knots { times_s, values }) = changed {
         let environment = Environment { wind_times_s: times_s, winds_n_per_m: values, ..environment.clone() };
@@ -118,7 +120,7 @@ fn wind(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         field::fault(ui, &text);
     }
     for path in ["environment.wind_times_s", "environment.winds_n_per_m"] {
-        fault::inline(ui, state, path, commands);
+        scene_errors::inline(ui, state, path, commands);
     }
 }
 
@@ -135,7 +137,7 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
         side
     });
-    if let Some(found) = fault::at(state, "view") {
-        field::fault(ui, &fault::sentence(&found.fault));
+    if let Some(found) = scene_errors::at(state, "view") {
+        field::fault(ui, &scene_errors::sentence(&found.fault));
     }
 }

@@ -2,11 +2,13 @@
 
 use egui::{Button, Slider, SliderClamping, Ui};
 
-use super::field;
-use super::icon::{self, Icon};
-use super::unit::{self, Unit};
 use crate::command::{Command, PlaybackCommand};
 use crate::state::{AppState, Playback};
+use crate::units::unit;
+use crate::units::unit::Unit;
+use crate::widgets::field;
+use crate::widgets::icon;
+use crate::widgets::icon::Icon;
 
 /// Below this share of the speed asked for, the shortfall is named: smaller ones are jitter of the clock.
 const KEEPS_UP: f64 = 0.9;

@@ -2,14 +2,14 @@
 
 use egui::{ComboBox, Id, Ui};
 
-use super::field;
-use crate::colour::Quantity;
 use crate::command::{Command, FileCommand};
-use crate::dialog::Dialog;
-use crate::plot::measure::Measure;
+use crate::jobs::friction_range;
 use crate::plot::{Touched, View, along, time};
-use crate::spread;
+use crate::record::measure::Measure;
+use crate::render::colour::Quantity;
 use crate::state::AppState;
+use crate::state::dialog::Dialog;
+use crate::widgets::field;
 
 /// Below this width the graphs stand one under the other, points.
 const SIDE_BY_SIDE: f32 = 480.0;
@@ -113,7 +113,7 @@ fn along_cable(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touche
         (Some(cable), Some(solved)) => {
             // The ribbon is of the end of the run.
             let present = state.snapshot.solution.as_ref().map(|s| s.time_s);
-            let found = spread::shown(state).filter(|(_, ask)| present == Some(ask.span_s));
+            let found = friction_range::shown(state).filter(|(_, ask)| present == Some(ask.span_s));
             let ribbon = found.and_then(|(s, _)| s.along.get(index)).map_or(&[][..], Vec::as_slice);
             along::ui(ui, cable, (solved, ribbon), view, height)
         }

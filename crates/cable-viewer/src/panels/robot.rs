@@ -7,12 +7,15 @@ use cable_core::scene::preset::robot_preset;
 use cable_core::scene::robot::{ROLLING_RESISTANCE, TRACK_FRICTION};
 use egui::{Grid, Ui};
 
-use super::cable::labelled;
-use super::icon::{self, Icon};
-use super::unit::{self, Unit};
-use super::{fault, field};
 use crate::command::{Command, PlaybackCommand, SceneCommand};
+use crate::panels::cable::labelled;
+use crate::panels::scene_errors;
 use crate::state::AppState;
+use crate::units::unit;
+use crate::units::unit::Unit;
+use crate::widgets::field;
+use crate::widgets::icon;
+use crate::widgets::icon::Icon;
 
 /// Width of a number, points: “12.34 m/s” fits.
 const WIDTH: f32 = 72.0;
@@ -34,7 +37,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     figures(ui, robot, commands);
     path(ui, robot, commands);
-    fault::inline(ui, state, "robot.path", commands);
+    scene_errors::inline(ui, state, "robot.path", commands);
 }
 
 /// Speed of the robot by hand, m/s: what was set, else its greatest.

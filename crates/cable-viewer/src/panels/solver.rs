@@ -5,10 +5,11 @@ use cable_core::problem::problems;
 use cable_core::{Model, Settings, Solution};
 use egui::{Grid, Ui};
 
-use super::property::{Known, Quantity, row};
-use super::unit::{self, Unit};
 use crate::command::Command;
 use crate::state::{AppState, WorkerStatus};
+use crate::units::unit;
+use crate::units::unit::Unit;
+use crate::widgets::property::{Known, Quantity, row};
 use crate::worker;
 
 const TOLERANCE: Quantity = Quantity {

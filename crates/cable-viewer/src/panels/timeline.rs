@@ -3,10 +3,10 @@
 use cable_core::solution::WarningKind;
 use egui::{Color32, Rect, Sense, Slider, Stroke, Ui, pos2, vec2};
 
-use super::field;
-use super::{translate, unit};
 use crate::command::{Command, PlaybackCommand};
 use crate::state::AppState;
+use crate::units::{translate, unit};
+use crate::widgets::field;
 
 /// Room for the buttons beside it, points.
 const BESIDE: f32 = 250.0;

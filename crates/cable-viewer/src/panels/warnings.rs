@@ -5,11 +5,13 @@ use cable_core::solution::{Warning, WarningKind};
 use cable_core::{Settings, Solution};
 use egui::{Color32, Frame, RichText, ScrollArea, Ui};
 
-use super::fault::{self, Fix};
-use super::icon::{self, Icon};
-use super::{translate, unit};
 use crate::command::{Command, FileCommand, SceneCommand, ViewCommand};
+use crate::panels::scene_errors;
+use crate::panels::scene_errors::Fix;
 use crate::state::{AppState, Item, WorkerStatus};
+use crate::units::{translate, unit};
+use crate::widgets::icon;
+use crate::widgets::icon::Icon;
 
 /// Most warnings drawn; the rest is counted. A cable that is too tight everywhere can have one a node.
 const MOST: usize = 30;
@@ -98,10 +100,10 @@ fn dead_worker(state: &AppState) -> Option<Entry> {
 }
 
 fn scene_fault(state: &AppState) -> Option<Entry> {
-    let found = fault::whole(state)?;
+    let found = scene_errors::whole(state)?;
     let text = format!("{found}. The picture and the figures are of the last scene that could be solved.");
     let title = "The scene cannot be solved".to_owned();
-    Some(Entry { title, fix: fault::fix(state), ..entry(Severity::Stop, text) })
+    Some(Entry { title, fix: scene_errors::fix(state), ..entry(Severity::Stop, text) })
 }
 
 fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
@@ -240,7 +242,7 @@ fn card(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) 
 fn actions(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
     if let Some(at_m) = entry.at_m {
         let show = ui.button("Show").on_hover_text(format!("Centres the picture on {}", unit::position(at_m)));
-        super::field::name(&show, &format!("Show warning {}", number + 1));
+        crate::widgets::field::name(&show, &format!("Show warning {}", number + 1));
         if show.clicked() {
             commands.push(Command::View(ViewCommand::CentreOn(at_m)));
             if entry.item.is_some() {

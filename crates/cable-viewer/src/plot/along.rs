@@ -5,11 +5,11 @@ use cable_core::analysis::friction_range::TensionRange;
 use cable_core::solution::CableSolution;
 use egui::Ui;
 
-use crate::panels::unit::Unit;
+use crate::units::unit::Unit;
 
-use super::measure::Measure;
-use super::series::{Series, thin};
-use super::{Graph, Touched, View, limits, per_newton, show};
+use crate::plot::{Graph, Touched, View, limits, per_newton, show};
+use crate::record::measure::Measure;
+use crate::record::series::{Series, thin};
 
 /// The group of graphs along the cable.
 pub const GROUP: &str = "along";

@@ -2,8 +2,8 @@
 
 use egui::{Id, Ui};
 
-use super::series::{Series, value_at};
-use crate::panels::unit::{DIGITS, significant};
+use crate::record::series::{Series, value_at};
+use crate::units::unit::{DIGITS, significant};
 
 /// Places of the cursors of a graph.
 #[derive(Clone, Debug, Default, PartialEq)]

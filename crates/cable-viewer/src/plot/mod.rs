@@ -1,25 +1,24 @@
-//! Graphs: tension, stress and strain along the cable; these, the robot and energies against time.
+//! The graphs show quantities along the cable, and these, the robot and energies against time.
+//!
+//! - [`along`], [`time`]: what each graph shows
+//! - `cursors`, `keys`: reading values off it, and steering it without a pointer
 
 pub mod along;
 mod cursors;
-pub mod export;
 mod keys;
-pub mod measure;
-pub mod pyramid;
-pub mod series;
 pub mod time;
 
 use cable_core::Cable;
 use egui::{Align2, Color32, Id, RichText, Sense, Stroke, TextStyle, Ui, vec2};
 use egui_plot::{GridInput, GridMark, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
 
-use crate::colour::Quantity;
-use crate::panels::field;
-use crate::panels::unit::{DIGITS, Unit, significant};
-use cursors::Cursors;
-use export::Sheet;
-use measure::Measure;
-use series::{Series, value_at};
+use crate::io::graph_file::Sheet;
+use crate::plot::cursors::Cursors;
+use crate::record::measure::Measure;
+use crate::record::series::{Series, value_at};
+use crate::render::colour::Quantity;
+use crate::units::unit::{DIGITS, Unit, significant};
+use crate::widgets::field;
 
 /// Colours of the lines, distinct to colour-blind eyes (after M. Okabe and K. Ito, “Color Universal Design”, 2008).
 pub const LINES: [Color32; 4] = [
@@ -279,7 +278,7 @@ fn draw_ribbon(plot: &mut PlotUi<'_>, ribbon: &[[f64; 3]], [x_si, si]: [f64; 2])
 }
 
 /// Colour and style of the `k`-th line of a graph.
-fn look(line: &Series, k: usize) -> (Color32, LineStyle) {
+pub fn look(line: &Series, k: usize) -> (Color32, LineStyle) {
     match line.held {
         Some(held) => (LINES[held % LINES.len()], LineStyle::dashed_loose()),
         None => (LINES[k % LINES.len()], LineStyle::Solid),
@@ -347,7 +346,7 @@ fn draw_marks(plot: &mut PlotUi<'_>, mark: Option<f64>, cursors: &[f64], text: O
 }
 
 /// The round step (1, 2 or 5 times a power of ten) that cuts a range into about so many parts.
-fn round_step(range: f64, parts: f64) -> f64 {
+pub fn round_step(range: f64, parts: f64) -> f64 {
     let raw = range / parts;
     if !(raw.is_finite() && raw > 0.0) {
         return 1.0;

@@ -3,14 +3,14 @@
 use cable_core::{Cable, Scene};
 use egui::Ui;
 
-use super::measure::Measure;
-use super::series::{Series, thin};
-use super::{Graph, Touched, View, in_view, per_newton, show};
-use crate::colour::Quantity;
-use crate::history::Sample;
-use crate::panels::unit::Unit;
-use crate::spread;
+use crate::jobs::friction_range;
+use crate::plot::{Graph, Touched, View, in_view, per_newton, show};
+use crate::record::measure::Measure;
+use crate::record::samples::Sample;
+use crate::record::series::{Series, thin};
+use crate::render::colour::Quantity;
 use crate::state::AppState;
+use crate::units::unit::Unit;
 
 /// Between two columns of a line of more samples than can be told apart, points: lines are as wide. Less: twice the triangles for the same
 /// picture; more: peaks look blunt.
@@ -71,7 +71,9 @@ fn graph(ui: &mut Ui, state: &AppState, view: View, (title, height): (&str, f32)
 
 /// The largest tension with less and more friction, and what follows from it.
 fn ribbon(state: &AppState, cable: &Cable, measure: Measure) -> Vec<[f64; 3]> {
-    let (Measure::Cable(quantity), Some((found, _))) = (measure, spread::shown(state)) else { return Vec::new() };
+    let (Measure::Cable(quantity), Some((found, _))) = (measure, friction_range::shown(state)) else {
+        return Vec::new();
+    };
     let scale = per_newton(quantity, cable);
     found.over_time.iter().map(|b| [b.at, b.low_n * scale, b.high_n * scale]).collect()
 }

@@ -9,9 +9,9 @@ use cable_core::model::auto::Question;
 use cable_core::timeline::RunMonitor;
 use cable_core::{Error, Model, Scene, Settings, Simulation, Solution};
 
-use super::draft;
-use super::request::{Drag, Edit, Request, Resume};
 use crate::state::{Playback, Snapshot};
+use crate::worker::draft;
+use crate::worker::request::{Drag, Edit, Request, Resume};
 
 /// One frame of simulated time at normal speed, s.
 pub const FRAME_S: f64 = 1.0 / 60.0;

@@ -12,8 +12,8 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use engine::{Engine, FRAME_S, QUIET_S, Report};
-use request::Request;
+use crate::worker::engine::{Engine, FRAME_S, QUIET_S, Report};
+use crate::worker::request::Request;
 
 use crate::state::WorkerStatus;
 

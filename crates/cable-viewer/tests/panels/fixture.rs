@@ -8,8 +8,9 @@ use cable_core::solution::{
     CableSolution, ContactReport, ContactState, Cost, Energy, Node, Solution, SupportReaction, Warning, WarningKind,
 };
 use cable_core::{Load, Model, Scene};
-use cable_viewer::command::{self, Command, Effects};
-use cable_viewer::history::Sample;
+use cable_viewer::command;
+use cable_viewer::command::{Command, Effects};
+use cable_viewer::record::samples::Sample;
 use cable_viewer::state::{AppState, Held, Snapshot};
 use egui_kittest::Harness;
 
@@ -237,7 +238,7 @@ pub fn with_pulley(state: &mut AppState) {
 pub fn bench(state: AppState, panel: PanelUi, size: [f32; 2]) -> Harness<'static, Bench> {
     Harness::builder().with_size(size).with_theme(egui::Theme::Light).with_render_cursor(false).build_ui_state(
         move |ui, bench: &mut Bench| {
-            cable_viewer::theme::install(ui.ctx());
+            cable_viewer::render::theme::install(ui.ctx());
             egui::Frame::central_panel(ui.style()).show(ui, |ui| {
                 ui.set_min_size(ui.available_size());
                 let mut commands = Vec::new();

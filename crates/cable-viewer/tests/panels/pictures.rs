@@ -1,8 +1,9 @@
 //! A picture of each panel at the width it has in the window. They need a graphics adapter (software will do):
 //! without one they are skipped with a notice, where CI=true they fail.
 
+use cable_viewer::jobs::{friction_range, model_comparison, safe_reach};
+use cable_viewer::panels;
 use cable_viewer::state::{AppState, Item};
-use cable_viewer::{models, panels, reach, spread};
 use egui_kittest::{SnapshotOptions, SnapshotResults};
 
 use crate::fixture::{PanelUi, bench, compared, driven, recorded, state, warn, with_pulley, wrapped};
@@ -92,7 +93,7 @@ fn robot() {
 
 #[test]
 fn compare() {
-    picture("compare", compared, panels::compare::ui, [320.0, 240.0]);
+    picture("compare", compared, panels::analysis::compare::ui, [320.0, 240.0]);
 }
 
 /// After every model was asked, with one that has no answer.
@@ -101,12 +102,12 @@ fn compare_models() {
     let asked = || {
         let mut state = compared();
         let why = "catenary cannot answer this scene: the cable reaches an obstacle 4.894 m along it".to_owned();
-        let answers = vec![models::Answer { model: cable_core::Model::Catenary, result: Err(why) }];
+        let answers = vec![model_comparison::Answer { model: cable_core::Model::Catenary, result: Err(why) }];
         let scene = std::sync::Arc::new(state.scene.clone());
-        state.models = models::Progress::Done(models::Found { scene, answers });
+        state.models = model_comparison::Progress::Done(model_comparison::Found { scene, answers });
         state
     };
-    picture("compare_models", asked, panels::compare::ui, [320.0, 280.0]);
+    picture("compare_models", asked, panels::analysis::compare::ui, [320.0, 280.0]);
 }
 
 /// On its way: progress, and how to end it.
@@ -114,10 +115,10 @@ fn compare_models() {
 fn reach() {
     let searching = || {
         let mut state = state();
-        state.reach.progress = reach::Progress::Running(0.4, None);
+        state.reach.progress = safe_reach::Progress::Running(0.4, None);
         state
     };
-    picture("reach", searching, panels::reach::ui, [320.0, 130.0]);
+    picture("reach", searching, panels::analysis::safe_reach::ui, [320.0, 130.0]);
 }
 
 #[test]
@@ -125,10 +126,10 @@ fn friction_range() {
     let computing = || {
         let mut state = state();
         state.spread.on = true;
-        state.spread.progress = spread::Progress::Running(0.3, None);
+        state.spread.progress = friction_range::Progress::Running(0.3, None);
         state
     };
-    picture("friction_range", computing, panels::spread::ui, [320.0, 130.0]);
+    picture("friction_range", computing, panels::analysis::friction_range::ui, [320.0, 130.0]);
 }
 
 /// Every panel of the window has a picture here.
@@ -175,7 +176,7 @@ fn origin() {
         state.probe = Some(cable_viewer::state::Probe { cable: 0, arc_length_m: 12.0, from });
         state
     };
-    picture("origin", probed, panels::origin::ui, [320.0, 260.0]);
+    picture("origin", probed, panels::analysis::tension_budget::ui, [320.0, 260.0]);
 }
 
 #[test]

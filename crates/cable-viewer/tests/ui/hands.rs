@@ -5,8 +5,8 @@ use cable_core::scene::catalog;
 use cable_core::solution::{ContactState, Node};
 use cable_core::{Model, Solution};
 use cable_viewer::ViewerApp;
-use cable_viewer::dialog::Dialog;
 use cable_viewer::state::Item;
+use cable_viewer::state::dialog::Dialog;
 use egui::{Event, Key, Modifiers, Role, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -306,7 +306,7 @@ fn a_whole_session_by_keys_alone() {
     harness.run_steps(3);
     let file = folder.path().join("keys.toml");
     path(&mut harness, file.display().to_string());
-    assert_eq!(cable_viewer::scene_file::load(&file).unwrap(), state(&harness).scene);
+    assert_eq!(cable_viewer::io::scene_file::load(&file).unwrap(), state(&harness).scene);
     command(&mut harness, "save run");
     let run = folder.path().join("run");
     path(&mut harness, run.display().to_string());

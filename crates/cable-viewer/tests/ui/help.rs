@@ -2,8 +2,8 @@
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
+use cable_viewer::app::tutorials::GUIDES;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use cable_viewer::guide::GUIDES;
 use cable_viewer::state::{AppState, Item};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Order, Pos2};
@@ -304,7 +304,7 @@ fn t01_every_step_of_every_guide_can_be_done_as_it_says() {
     next(&mut harness);
     harness.get_by_label("Find safe reach").click();
     harness.run_steps(2);
-    assert!(matches!(state(&harness).reach.progress, cable_viewer::reach::Progress::Running(..)));
+    assert!(matches!(state(&harness).reach.progress, cable_viewer::jobs::safe_reach::Progress::Running(..)));
 
     // 6. Compare.
     let mut harness = start(5);

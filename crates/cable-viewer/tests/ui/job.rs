@@ -5,7 +5,7 @@ use cable_core::scene::{SupportKind, catalog, preset};
 use cable_core::{Model, Scene};
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, ViewCommand};
-use cable_viewer::models::Progress;
+use cable_viewer::jobs::model_comparison::Progress;
 use cable_viewer::state::AppState;
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
@@ -128,7 +128,7 @@ fn s16_every_model_of_a_scene_is_held_with_its_cost_and_refusals_are_told() {
     assert!(most.iter().all(|n| (n / most[0] - 1.0).abs() < 0.1), "{most:?}");
     for held in &state(&harness).held {
         assert!(held.wall_s > 0.0 && held.solution.time_s == 0.0);
-        let cost = cable_viewer::panels::unit::duration(held.wall_s);
+        let cost = cable_viewer::units::unit::duration(held.wall_s);
         assert!(harness.query_all_by_label(&cost).next().is_some(), "{cost}");
     }
     // Again: in their place, not beside them.

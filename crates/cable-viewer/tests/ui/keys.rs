@@ -4,7 +4,7 @@ use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::Command;
 use cable_viewer::command::FileCommand;
-use cable_viewer::dialog::Dialog;
+use cable_viewer::state::dialog::Dialog;
 use cable_viewer::state::{AppState, Item};
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
@@ -108,7 +108,7 @@ fn several_things_are_picked_by_keys() {
     for _ in 0..20 {
         press(&mut harness, Modifiers::NONE, Key::M);
     }
-    let mut all = cable_viewer::canvas::place::all(state(&harness));
+    let mut all = cable_viewer::geometry::handles::all(state(&harness));
     let mut picks = state(&harness).picks();
     all.sort_by_key(|i| format!("{i:?}"));
     picks.sort_by_key(|i| format!("{i:?}"));
@@ -124,7 +124,7 @@ fn dialogs_have_their_buttons_in_sight_in_the_smallest_window() {
             (Dialog::About, "Close"),
             (Dialog::Help, "Close"),
             (
-                Dialog::Feedback { answers: cable_viewer::feedback::Answers::default(), path: "f.csv".to_owned() },
+                Dialog::Feedback { answers: cable_viewer::io::feedback::Answers::default(), path: "f.csv".to_owned() },
                 "Cancel",
             ),
             (Dialog::ImportMap { path: String::new(), text: "0 0\n".repeat(40), unit_m: "1".to_owned() }, "Cancel"),

@@ -244,7 +244,9 @@ fn t01_a_file_that_is_no_scene_leaves_the_scene_and_says_where() {
     apply(&mut harness, Command::File(cable_viewer::command::FileCommand::Open(path)));
     let state = &harness.state().state;
     assert_eq!(state.scene, before);
-    let Some(cable_viewer::dialog::Dialog::Message { text, .. }) = &state.dialog else { panic!("{:?}", state.dialog) };
+    let Some(cable_viewer::state::dialog::Dialog::Message { text, .. }) = &state.dialog else {
+        panic!("{:?}", state.dialog)
+    };
     assert!(text.contains("line 2"), "{text}");
 }
 
@@ -258,7 +260,7 @@ fn a_saved_scene_is_no_longer_marked_unsaved_and_opens_again() {
     assert!(harness.state().state.unsaved());
     apply(&mut harness, Command::File(cable_viewer::command::FileCommand::SaveAs(path.clone())));
     assert!(!harness.state().state.unsaved());
-    assert_eq!(cable_viewer::scene_file::load(&path).unwrap(), harness.state().state.scene);
+    assert_eq!(cable_viewer::io::scene_file::load(&path).unwrap(), harness.state().state.scene);
 }
 
 #[test]

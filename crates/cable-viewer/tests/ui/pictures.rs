@@ -4,9 +4,11 @@
 use cable_core::scene::catalog;
 use cable_core::solution::{CableSolution, ContactReport, ContactState, Cost, Node};
 use cable_core::{Model, Solution};
+use cable_viewer::app::screenshot;
+use cable_viewer::canvas;
 use cable_viewer::command::{Command, PlaybackCommand};
+use cable_viewer::render::theme;
 use cable_viewer::state::{AppState, Item};
-use cable_viewer::{canvas, screenshot, theme};
 use egui::{Theme, Vec2};
 use egui_kittest::Harness;
 
@@ -169,8 +171,8 @@ fn safe_reach_and_path_dark() {
     };
     let map = ReachMap { places: (0..41).map(place).collect(), start_x_m: 10.0, service_n: 800.0, breaking_n: 1e4 };
     let scene = std::sync::Arc::new(state.scene.clone());
-    let maps = cable_viewer::reach::Maps::Line(std::sync::Arc::new(map));
-    state.reach.progress = cable_viewer::reach::Progress::Done((maps, scene));
+    let maps = cable_viewer::jobs::safe_reach::Maps::Line(std::sync::Arc::new(map));
+    state.reach.progress = cable_viewer::jobs::safe_reach::Progress::Done((maps, scene));
     state.reach.choice.back = true;
     state.selected = Some(Item::Leg(2));
     compare("safe_reach_and_path_dark", state, Theme::Dark);
@@ -241,8 +243,8 @@ fn end_reached() -> AppState {
         })
         .collect();
     let scene = std::sync::Arc::new(state.scene.clone());
-    let maps = cable_viewer::reach::Maps::Area(std::sync::Arc::new(area), None);
-    state.reach.progress = cable_viewer::reach::Progress::Done((maps, scene));
+    let maps = cable_viewer::jobs::safe_reach::Maps::Area(std::sync::Arc::new(area), None);
+    state.reach.progress = cable_viewer::jobs::safe_reach::Progress::Done((maps, scene));
     state
 }
 
@@ -264,9 +266,9 @@ fn several_picked_in_us_units_light() {
     state.frame_m = Some([[2.0, 1.0], [6.0, 4.0]]);
     state.layers.components = true;
     // The window says this at the start of each frame.
-    cable_viewer::panels::system::show(cable_viewer::panels::system::System::Us);
+    cable_viewer::units::system::show(cable_viewer::units::system::System::Us);
     compare("several_picked_in_us_units_light", state, Theme::Light);
-    cable_viewer::panels::system::show(cable_viewer::panels::system::System::Si);
+    cable_viewer::units::system::show(cable_viewer::units::system::System::Si);
 }
 
 #[test]

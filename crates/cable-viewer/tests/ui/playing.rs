@@ -4,7 +4,7 @@ use cable_core::scene::catalog;
 use cable_core::solution::WarningKind;
 use cable_core::{Model, Scene, Solution};
 use cable_viewer::ViewerApp;
-use cable_viewer::canvas::supports;
+use cable_viewer::canvas::layers::supports;
 use cable_viewer::command::{Command, PlaybackCommand, SceneCommand};
 use cable_viewer::state::{Item, WorkerStatus};
 use egui::Key;

@@ -3,8 +3,8 @@
 use cable_core::Robot;
 use cable_core::scene::{SupportKind, catalog};
 use cable_viewer::command::{Command, SceneCommand};
-use cable_viewer::dialog::Dialog;
 use cable_viewer::state::Item;
+use cable_viewer::state::dialog::Dialog;
 use egui_kittest::kittest::Queryable;
 
 use crate::{apply, open};
@@ -15,7 +15,7 @@ fn kept_changes_are_offered_and_taken_over_as_unsaved() {
     let path = folder.path().join("recovery.toml");
     let mut kept = catalog::over_beam();
     kept.name = "Worked on for hours".to_owned();
-    cable_viewer::scene_file::save(&path, &kept).unwrap();
+    cable_viewer::io::scene_file::save(&path, &kept).unwrap();
     let mut harness = open(catalog::hanging_span());
     harness.state_mut().keep_changes_in(path.clone());
     harness.run_steps(2);
@@ -34,7 +34,7 @@ fn kept_changes_are_offered_and_taken_over_as_unsaved() {
 fn kept_changes_can_be_deleted() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("recovery.toml");
-    cable_viewer::scene_file::save(&path, &catalog::over_beam()).unwrap();
+    cable_viewer::io::scene_file::save(&path, &catalog::over_beam()).unwrap();
     let mut harness = open(catalog::hanging_span());
     harness.state_mut().keep_changes_in(path.clone());
     harness.run_steps(2);

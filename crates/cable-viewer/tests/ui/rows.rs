@@ -6,8 +6,8 @@ use cable_core::scene::{Shape, Support, catalog};
 use cable_core::solution::WarningKind;
 use cable_core::{Model, Robot, Scene, Solution};
 use cable_viewer::ViewerApp;
-use cable_viewer::colour::{ColourMap, Quantity};
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand};
+use cable_viewer::render::colour::{ColourMap, Quantity};
 use cable_viewer::state::AppState;
 use egui::Vec2;
 use egui_kittest::Harness;
@@ -206,7 +206,7 @@ fn s07_robots_are_drawn_as_large_as_published() {
         scene.robot = Some(robot);
         let harness = open(scene);
         assert_eq!(state(&harness).scene_fault, None, "{}", preset.id);
-        let outline = cable_viewer::canvas::robot::outline(state(&harness));
+        let outline = cable_viewer::canvas::layers::robot::outline(state(&harness));
         let span = |k: usize| {
             let values = || outline.iter().map(|p| p[k]);
             values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min)
@@ -225,8 +225,8 @@ fn s10_stress_and_strain_are_told_with_their_units() {
     let cable = &answer(&harness).cables[0];
     let most = |of: fn(&cable_core::solution::Node) -> f64| cable.nodes.iter().map(of).fold(0.0, f64::max);
     for (label, text) in [
-        ("Max stress", cable_viewer::panels::unit::stress(most(|n| n.stress_pa))),
-        ("Max strain", cable_viewer::panels::unit::strain(most(|n| n.strain))),
+        ("Max stress", cable_viewer::units::unit::stress(most(|n| n.stress_pa))),
+        ("Max strain", cable_viewer::units::unit::strain(most(|n| n.strain))),
     ] {
         harness.get_by_label(label);
         harness.get_by_label(&text);

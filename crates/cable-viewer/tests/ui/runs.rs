@@ -7,9 +7,9 @@ use cable_core::scene::catalog;
 use cable_core::solution::Node;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use cable_viewer::history::Sample;
-use cable_viewer::plot::measure::Measure;
-use cable_viewer::run::Run;
+use cable_viewer::record::measure::Measure;
+use cable_viewer::record::run::Run;
+use cable_viewer::record::samples::Sample;
 use cable_viewer::state::AppState;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -68,7 +68,7 @@ fn a_folder_that_is_no_run_changes_nothing_and_is_named() {
     let before = state(&harness).scene.clone();
     let folder = tempfile::tempdir().unwrap();
     apply(&mut harness, Command::File(FileCommand::OpenRun(folder.path().to_owned())));
-    let Some(cable_viewer::dialog::Dialog::Message { text, .. }) = &state(&harness).dialog else { panic!() };
+    let Some(cable_viewer::state::dialog::Dialog::Message { text, .. }) = &state(&harness).dialog else { panic!() };
     assert!(text.contains("scene.toml"), "{text}");
     assert_eq!(state(&harness).scene, before);
 }
@@ -101,7 +101,7 @@ fn s16_whole_runs_are_overlaid_and_compared() {
     apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.2))));
     let time_s = state(&harness).snapshot.solution.as_ref().unwrap().time_s;
     assert!((state(&harness).held[0].picture(time_s).time_s - time_s).abs() < 0.02);
-    let told = cable_viewer::panels::compare::differences(&state(&harness).held[0], state(&harness));
+    let told = cable_viewer::panels::analysis::compare::differences(&state(&harness).held[0], state(&harness));
     assert!(told.iter().any(|l| l.contains("linear_density_kg_per_m")), "{told:?}");
 }
 

@@ -5,8 +5,8 @@ use cable_core::scene::catalog;
 use cable_core::solution::WarningKind;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand};
-use cable_viewer::dialog::Dialog;
 use cable_viewer::state::AppState;
+use cable_viewer::state::dialog::Dialog;
 use egui::{Event, Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -95,7 +95,7 @@ fn a_session_from_opening_a_file_to_exporting_a_run() {
 
     // Compare.
     harness.get_by_label("Whole runs");
-    let told = cable_viewer::panels::compare::differences(&state(&harness).held[0], state(&harness));
+    let told = cable_viewer::panels::analysis::compare::differences(&state(&harness).held[0], state(&harness));
     assert!(told.iter().any(|l| l.contains("breaking_tension_n")), "{told:?}");
 
     // Export the graph and the run, and read both again.

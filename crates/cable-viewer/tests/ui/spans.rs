@@ -102,7 +102,7 @@ fn a_click_on_the_cable_shows_where_its_tension_comes_from() {
         figure.accesskit_node().description().unwrap_or_default()
     };
     let said = words(&harness);
-    assert!(said.starts_with(&cable_viewer::panels::unit::force(found.tension_n)), "{said}");
+    assert!(said.starts_with(&cable_viewer::units::unit::force(found.tension_n)), "{said}");
     assert!(said.contains("Friction on beam") && said.contains("Weight") && said.contains("Pull at the end"), "{said}");
     harness.get_by_label("Friction on beam");
     // The other end, and another place, without the pointer on the canvas.
@@ -160,7 +160,7 @@ fn a_recorded_drag_over_a_right_angle_has_no_sawtooth() {
 fn ribbon(
     harness: &mut egui_kittest::Harness<'_, cable_viewer::ViewerApp>,
 ) -> std::sync::Arc<cable_core::analysis::friction_range::FrictionRange> {
-    use cable_viewer::background::Progress;
+    use cable_viewer::jobs::background::Progress;
     for _ in 0..6000 {
         harness.run_steps(1);
         match &state(harness).spread.progress {
@@ -225,11 +225,11 @@ fn friction_that_is_not_known_well_is_a_ribbon_of_tension() {
     ] {
         let figure = harness.get_by_role_and_label(Role::Figure, title);
         let said = figure.accesskit_node().description().unwrap_or_default();
-        let figures = [low, high].map(|v| cable_viewer::panels::unit::significant(v, 4));
+        let figures = [low, high].map(|v| cable_viewer::units::unit::significant(v, 4));
         let expected = format!("with less and more friction {} to {} N", figures[0], figures[1]);
         assert!(said.contains(&expected), "{title}: {said}, not {expected}");
     }
-    harness.get_by_label(&cable_viewer::panels::unit::force(high));
+    harness.get_by_label(&cable_viewer::units::unit::force(high));
     // It follows what is edited, and goes.
     apply(&mut harness, Command::View(cable_viewer::command::ViewCommand::Spread(true, [1.0, 1.0])));
     let found = ribbon(&mut harness);
@@ -242,7 +242,7 @@ fn friction_that_is_not_known_well_is_a_ribbon_of_tension() {
 /// What neglecting bending stiffness changes is told on request, of the answer on screen only.
 #[test]
 fn a_flexible_answer_is_compared_with_a_stiff_one() {
-    use cable_viewer::background::Progress;
+    use cable_viewer::jobs::background::Progress;
     let mut harness = open(catalog::round_post());
     harness.set_size(Vec2::new(1400.0, 1800.0));
     harness.run_steps(3);

@@ -7,9 +7,10 @@ use std::time::Instant;
 
 use cable_core::scene::{Obstacle, Shape, catalog};
 use cable_core::{Model, Scene};
+use cable_viewer::ViewerApp;
+use cable_viewer::app::screenshot;
 use cable_viewer::command::{Command, ViewCommand};
-use cable_viewer::software::Software;
-use cable_viewer::{ViewerApp, screenshot};
+use cable_viewer::render::software::Software;
 use eframe::egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, wgpu};
 use egui::Vec2;
 use egui_kittest::{Harness, TestRenderer};
@@ -254,7 +255,7 @@ fn software_drawing_looks_the_same_at(scale: f32) {
         harness.run_steps(6);
         // A popup is drawn over the rest, and a font of another size makes the atlas grow.
         let state = &mut harness.state_mut().state;
-        state.dialog = Some(cable_viewer::dialog::Dialog::About);
+        state.dialog = Some(cable_viewer::state::dialog::Dialog::About);
         // The time it took is another every time.
         (state.snapshot.solve_wall_s, state.live.solve_wall_s) = (1e-3, 1e-3);
         harness.run_steps(3);
@@ -276,8 +277,8 @@ fn software_drawing_looks_the_same_at(scale: f32) {
 /// 60th of a second is 16.7 ms.
 #[test]
 fn speed_of_graphs() {
-    use cable_viewer::history::{History, Sample};
-    use cable_viewer::run::Run;
+    use cable_viewer::record::run::Run;
+    use cable_viewer::record::samples::{History, Sample};
     let sample = |k: u32| {
         let t = f64::from(k) / 240.0;
         let pull = 500.0 + 80.0 * (0.7 * t).sin() + 20.0 * (31.0 * t).sin();
@@ -310,7 +311,7 @@ fn speed_of_graphs() {
             let run = Run::of(samples.iter(), &[(*solution).clone(), (*solution).clone()], 0).map(std::sync::Arc::new);
             assert_eq!(
                 run.as_ref()
-                    .map(|r| r.line(cable_viewer::plot::measure::Measure::ALL[0]).map_or(0, |l| l.points().len())),
+                    .map(|r| r.line(cable_viewer::record::measure::Measure::ALL[0]).map_or(0, |l| l.points().len())),
                 Some(held as usize)
             );
             let scene = state.snapshot.scene.clone().expect("a scene");

@@ -5,7 +5,7 @@ use cable_core::robot::{Going, RobotReport};
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand};
-use cable_viewer::dialog::Dialog;
+use cable_viewer::state::dialog::Dialog;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -213,7 +213,7 @@ fn s12_a_graph_is_zoomed_read_with_cursors_and_exported() {
         assert_eq!(harness.state().state.dialog, None, "{name}");
         assert!(std::fs::read_to_string(path).unwrap().contains(if name.ends_with("csv") { "time_s" } else { "<svg" }));
     }
-    if cable_viewer::screenshot::renderer().is_ok() {
+    if cable_viewer::app::screenshot::renderer().is_ok() {
         let path = folder.path().join("graph.png");
         apply(&mut harness, Command::File(FileCommand::Export(path.clone(), sheet)));
         assert!(std::fs::read(path).unwrap().starts_with(b"\x89PNG"));
@@ -283,7 +283,7 @@ fn s16_four_answers_are_held_and_their_differences_told() {
     }
     let state = &harness.state().state;
     assert_eq!(state.held.len(), 4);
-    let told = cable_viewer::panels::compare::differences(&state.held[0], state);
+    let told = cable_viewer::panels::analysis::compare::differences(&state.held[0], state);
     assert!(told.iter().any(|l| l.starts_with("length_m 12")), "{told:?}");
     assert!(harness.get_all_by_label_contains(" %").count() >= 8, "differences of tension and sag");
     click(&mut harness, "Let go 2");

@@ -3,7 +3,7 @@
 use cable_core::Model;
 use cable_core::scene::catalog;
 use cable_viewer::command::{Command, ViewCommand};
-use cable_viewer::panels::system::System;
+use cable_viewer::units::system::System;
 use egui_kittest::kittest::{NodeT, Queryable};
 
 use crate::rows::{answer, set_cable, state};

@@ -6,10 +6,11 @@ use std::path::PathBuf;
 
 use cable_core::Scene;
 use cable_core::scene::catalog;
+use cable_viewer::ViewerApp;
+use cable_viewer::app::screenshot;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use cable_viewer::dialog::Dialog;
+use cable_viewer::state::dialog::Dialog;
 use cable_viewer::state::{Item, Probe};
-use cable_viewer::{ViewerApp, screenshot};
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -116,7 +117,7 @@ fn walk_a_span() {
         Dialog::Palette { text: "hold".to_owned() },
         Dialog::Open { path: "scene.toml".to_owned() },
         Dialog::ImportMap { path: String::new(), text: "0;0\n1;0,5\n2;0".to_owned(), unit_m: "1".to_owned() },
-        Dialog::Feedback { answers: cable_viewer::feedback::Answers::default(), path: "feedback.csv".to_owned() },
+        Dialog::Feedback { answers: cable_viewer::io::feedback::Answers::default(), path: "feedback.csv".to_owned() },
         Dialog::SaveRun { path: "run".to_owned() },
         Dialog::Recover { scene: Box::new(catalog::tank()) },
         Dialog::Unsaved { then: Box::new(Command::File(FileCommand::Quit)) },
@@ -144,7 +145,7 @@ fn walk_b_faults_and_loads() {
     walk.view(ViewCommand::Select(Some(Item::Load(0))));
     walk.look("b03-loads");
     walk.light();
-    walk.view(ViewCommand::SetUnits(cable_viewer::panels::system::System::Us));
+    walk.view(ViewCommand::SetUnits(cable_viewer::units::system::System::Us));
     walk.look("b04-loads-us");
     let Some(mut walk) = Walk::open(catalog::pile(), WINDOW) else { return };
     walk.look("b05-pile");
@@ -245,7 +246,7 @@ fn walk_f_tall_panels() {
         walk.view(ViewCommand::Hold);
         walk.look(&format!("f-tall-{name}-dark"));
         walk.light();
-        walk.view(ViewCommand::SetUnits(cable_viewer::panels::system::System::Us));
+        walk.view(ViewCommand::SetUnits(cable_viewer::units::system::System::Us));
         walk.look(&format!("f-tall-{name}-light-us"));
         let node = walk.harness.get_by_label("Canvas");
         println!("{name}: {}", node.accesskit_node().data().description().unwrap_or_default());

@@ -4,7 +4,7 @@ use cable_core::Model;
 use cable_core::scene::catalog;
 use cable_core::scene::preset::cable_presets;
 use cable_core::solution::WarningKind;
-use cable_viewer::canvas::grid;
+use cable_viewer::canvas::layers::grid;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use cable_viewer::state::Item;
 use egui::Vec2;
@@ -41,7 +41,7 @@ fn u04_sag_and_tension_stand_in_the_window() {
     let harness = open_span();
     harness.get_by_label("Max tension");
     harness.get_by_label("Sag");
-    let text = cable_viewer::panels::unit::force(answer(&harness).max_tension().tension_n);
+    let text = cable_viewer::units::unit::force(answer(&harness).max_tension().tension_n);
     assert!(harness.get_all_by_label(&text).count() >= 1, "{text}");
 }
 
@@ -115,7 +115,7 @@ fn u15_density_is_per_metre_and_presets_say_where_theirs_is_from() {
     assert!(text.ends_with(" kg/m"), "{text}");
     assert!(cable_presets().len() >= 3);
     for preset in cable_presets() {
-        let value = cable_viewer::panels::cable::known::with_preset(&state(&harness).scene.cables[0], preset);
+        let value = cable_viewer::panels::cable::provenance::with_preset(&state(&harness).scene.cables[0], preset);
         let density = value.linear_density_kg_per_m;
         apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(value) }));
         assert_eq!(state(&harness).scene_fault, None, "{}", preset.id);
@@ -246,7 +246,7 @@ fn t04_fast_moves_of_the_camera_neither_lose_it_nor_touch_the_scene() {
 /// screen.
 #[test]
 fn t05_marks_are_kept_and_a_low_one_with_what_confused() {
-    use cable_viewer::feedback::QUESTIONS;
+    use cable_viewer::io::feedback::QUESTIONS;
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("feedback.csv");
     let mut harness = open(catalog::round_post());
@@ -256,7 +256,8 @@ fn t05_marks_are_kept_and_a_low_one_with_what_confused() {
         for ((_, question), k) in QUESTIONS.iter().zip(marks) {
             click(harness, &format!("{question}: {k}"));
         }
-        let Some(cable_viewer::dialog::Dialog::Feedback { path: typed, .. }) = &mut harness.state_mut().state.dialog
+        let Some(cable_viewer::state::dialog::Dialog::Feedback { path: typed, .. }) =
+            &mut harness.state_mut().state.dialog
         else {
             panic!("no dialog");
         };

@@ -1,17 +1,18 @@
 //! Cable panel: the properties of the current cable.
 
-pub mod known;
 pub mod property;
+pub mod provenance;
 
 use cable_core::Cable;
 use cable_core::scene::preset;
 use egui::{ComboBox, Response, Ui};
 
-use super::property::{Known, row};
-use super::{fault, field};
 use crate::command::{Command, SceneCommand, ViewCommand};
+use crate::panels::cable::property::{PROPERTIES, SEGMENTS};
+use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
-use property::{PROPERTIES, SEGMENTS};
+use crate::widgets::field;
+use crate::widgets::property::{Known, row};
 
 /// Height of the list of presets, points: all of them are seen at once.
 const POPUP_HEIGHT: f32 = 360.0;
@@ -30,7 +31,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         // The loaded scene's cable of this name is what reset returns to without a preset.
         let loaded = state.document.saved.cables.iter().find(|c| c.name == cable.name);
         for property in &PROPERTIES {
-            let known = known::known(property, cable, loaded);
+            let known = provenance::known(property, cable, loaded);
             let change = row(ui, &property.quantity, &known);
             if let Some(value) = change.value {
                 commands.push(changed(index, cable, |c| (property.set)(c, value)));
@@ -38,7 +39,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             if change.done {
                 commands.push(Command::Scene(SceneCommand::EditDone));
             }
-            fault::inline(ui, state, &format!("cables[{index}].{}", property.key), commands);
+            scene_errors::inline(ui, state, &format!("cables[{index}].{}", property.key), commands);
         }
         segments(ui, state, index, loaded, commands);
         self_contact(ui, index, cable, commands);
@@ -79,7 +80,7 @@ fn picker(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Comman
     if let Some(wrong) = wrong {
         field::fault(ui, &wrong);
     }
-    fault::inline(ui, state, &format!("cables[{index}].name"), commands);
+    scene_errors::inline(ui, state, &format!("cables[{index}].name"), commands);
 }
 
 /// The scene with a cable and everything that names it renamed.
@@ -103,7 +104,7 @@ fn presets(ui: &mut Ui, index: usize, cable: &Cable, commands: &mut Vec<Command>
             for p in preset::cable_presets() {
                 let entry = ui.selectable_label(present.is_some_and(|q| q.id == p.id), &p.name);
                 if entry.on_hover_text(&p.note).clicked() {
-                    commands.push(changed(index, cable, |c| *c = known::with_preset(cable, p)));
+                    commands.push(changed(index, cable, |c| *c = provenance::with_preset(cable, p)));
                     commands.push(Command::Scene(SceneCommand::EditDone));
                 }
             }
@@ -136,7 +137,7 @@ fn segments(ui: &mut Ui, state: &AppState, index: usize, loaded: Option<&Cable>,
     if change.done {
         commands.push(Command::Scene(SceneCommand::EditDone));
     }
-    fault::inline(ui, state, &format!("cables[{index}].segments"), commands);
+    scene_errors::inline(ui, state, &format!("cables[{index}].segments"), commands);
 }
 
 fn solved_segments(state: &AppState, index: usize) -> Option<usize> {
@@ -176,10 +177,11 @@ pub fn labelled(ui: &mut Ui, text: &str, name: &str, contents: impl FnOnce(&mut 
         ui.spacing_mut().item_spacing.x = 4.0;
         let height = ui.spacing().interact_size.y;
         let layout = egui::Layout::left_to_right(egui::Align::Center);
-        let label = ui.allocate_ui_with_layout(egui::vec2(super::property::NAME_WIDTH, height), layout, |ui| {
-            ui.set_min_width(super::property::NAME_WIDTH);
-            ui.add(egui::Label::new(text).truncate().selectable(false))
-        });
+        let label =
+            ui.allocate_ui_with_layout(egui::vec2(crate::widgets::property::NAME_WIDTH, height), layout, |ui| {
+                ui.set_min_width(crate::widgets::property::NAME_WIDTH);
+                ui.add(egui::Label::new(text).truncate().selectable(false))
+            });
         let named = contents(ui).labelled_by(label.inner.id);
         field::name(&named, name);
     });

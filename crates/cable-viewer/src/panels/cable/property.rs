@@ -2,8 +2,8 @@
 
 use cable_core::Cable;
 
-use crate::panels::property::Quantity;
-use crate::panels::unit::Unit;
+use crate::units::unit::Unit;
+use crate::widgets::property::Quantity;
 
 /// A property of a cable.
 pub struct Property {

@@ -10,13 +10,14 @@ use cable_core::summary::{CableSummary, EndForce, Place, summary};
 use cable_core::timeline::{RunPeaks, TensionRanges};
 use egui::{Color32, Grid, ProgressBar, RichText, Ui};
 
-use super::field;
-use super::icon::{self, Icon};
-use super::unit;
-use crate::background::Progress;
-use crate::bending;
 use crate::command::{Command, ViewCommand};
+use crate::jobs::background::Progress;
+use crate::jobs::neglected_bending;
 use crate::state::AppState;
+use crate::units::unit;
+use crate::widgets::field;
+use crate::widgets::icon;
+use crate::widgets::icon::Icon;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -288,7 +289,7 @@ fn bending_stiffness(
     }
     ui.label(name).on_hover_text(&help);
     ui.label("neglected").on_hover_text(&help);
-    let can = bending::asked(state).is_some();
+    let can = neglected_bending::asked(state).is_some();
     let button = ui.add_enabled(can, egui::Button::new("Compare").small());
     field::name(&button, "Compare with the likely bending stiffness");
     let does = format!("Answers once more with {likely}, and says what that changes");
@@ -300,7 +301,7 @@ fn bending_stiffness(
 
 /// What came of comparing an answer with one that has the likely bending stiffness, in short and in full; None where nobody asked.
 fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<(String, String)> {
-    if !bending::fits(state) {
+    if !neglected_bending::fits(state) {
         return None;
     }
     let neglected = "neglected".to_owned();

@@ -5,7 +5,8 @@ use cable_core::solution::{CableSolution, SupportReaction};
 use egui::{Align2, Grid, RichText, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2};
 
 use crate::command::{Command, ViewCommand};
-use crate::panels::{field, unit};
+use crate::units::unit;
+use crate::widgets::field;
 
 /// Side of the square an arrow is drawn in, points.
 const ARROW: f32 = 18.0;

@@ -3,13 +3,17 @@
 use cable_core::Load;
 use egui::{ComboBox, Ui};
 
-use super::{GAP, KIND_WIDTH, NUMBER_WIDTH, components, headings, name_width, remove, selectable_name, show_faults};
 use crate::command::{Command, SceneCommand};
-use crate::panels::property::{Known, Quantity, row};
-use crate::panels::times::{self, Knots, Table};
-use crate::panels::unit::Unit;
-use crate::panels::{fault, field};
+use crate::panels::scene::{
+    GAP, KIND_WIDTH, NUMBER_WIDTH, components, headings, name_width, remove, selectable_name, show_faults,
+};
+use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
+use crate::units::unit::Unit;
+use crate::widgets::field;
+use crate::widgets::property::{Known, Quantity, row};
+use crate::widgets::time_table;
+use crate::widgets::time_table::{Knots, Table};
 
 /// Force of a new load, N.
 const FIRST_LOAD_N: [f64; 2] = [0.0, -100.0];
@@ -35,7 +39,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     for (k, load) in state.scene.loads.iter().enumerate() {
         ui.push_id(k, |ui| line(ui, state, k, load, commands));
-        fault::inline(ui, state, &format!("loads[{k}]"), commands);
+        scene_errors::inline(ui, state, &format!("loads[{k}]"), commands);
     }
     let Some(cable) = state.scene.cables.get(state.current_cable()) else { return };
     if ui.button("Add load").on_hover_text("A force on the middle of the cable, 100 N down").clicked() {
@@ -112,13 +116,13 @@ fn timed(ui: &mut Ui, (name, load): (&str, &Load), faults: &mut Vec<String>) -> 
     let knots = Knots::of(&load.times_s, &load.forces_n);
     let on = load.force_n.is_none();
     let help = "A force at each of several times, linear in between";
-    if let Some(on) = times::toggle(ui, &format!("{name} changes with time"), on, help) {
+    if let Some(on) = time_table::toggle(ui, &format!("{name} changes with time"), on, help) {
         let force_n = load.force_n.or(knots.values.first().copied()).unwrap_or(FIRST_LOAD_N);
         let knots = if on { Knots::steady(force_n, FIRST_SPAN_S) } else { Knots::default() };
         return Some(with(load, (!on).then_some(force_n), knots));
     }
     let table = Table { of: name, columns: ["Right", "Up"], unit: Unit::N, least: 1 };
-    let changed = if on { times::ui(ui, &table, &knots, faults) } else { None };
+    let changed = if on { time_table::ui(ui, &table, &knots, faults) } else { None };
     changed.map(|knots| with(load, None, knots))
 }
 

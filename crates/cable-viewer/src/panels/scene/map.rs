@@ -4,11 +4,11 @@ use cable_core::Scene;
 use cable_core::scene::preset::{self, MapPreset};
 use egui::{ComboBox, Ui};
 
-use crate::canvas::place;
 use crate::command::{Command, SceneCommand, ViewCommand};
+use crate::geometry::handles;
 use crate::panels::cable::labelled;
-use crate::panels::unit;
 use crate::state::{AppState, Item};
+use crate::units::unit;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -41,7 +41,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 /// Offers to begin the cable at the opening of the tank, where it does not.
 fn opening(ui: &mut Ui, state: &AppState, map: &MapPreset, commands: &mut Vec<Command>) {
     let item = Item::Support { cable: state.current_cable(), support: 0 };
-    let Some(at) = place::of(state, item).filter(|at| *at != map.riser_at_m) else { return };
+    let Some(at) = handles::of(state, item).filter(|at| *at != map.riser_at_m) else { return };
     let help = format!(
         "Moves the start of the cable from {} to the opening of the tank at {}",
         unit::position(at),

@@ -11,12 +11,14 @@ use cable_core::math::Point;
 use cable_core::scene::catalog;
 use egui::{Atom, Button, CollapsingHeader, ComboBox, Ui};
 
-use super::cable::labelled;
-use super::icon::{self, Icon};
-use super::unit::Unit;
-use super::{fault, field};
 use crate::command::{Command, FileCommand, SceneCommand, ViewCommand};
+use crate::panels::cable::labelled;
+use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
+use crate::units::unit::Unit;
+use crate::widgets::field;
+use crate::widgets::icon;
+use crate::widgets::icon::Icon;
 
 /// Width of a number in a list, points: “−123.456” fits.
 const NUMBER_WIDTH: f32 = 60.0;
@@ -35,7 +37,7 @@ const GAP: f32 = 3.0;
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     name(ui, state, commands);
     pickers(ui, state, commands);
-    fault::inline(ui, state, "version", commands);
+    scene_errors::inline(ui, state, "version", commands);
     let index = state.current_cable();
     let supports = state.scene.cables.get(index).map_or(0, |c| c.supports.len());
     let title = match state.scene.cables.get(index) {
@@ -67,7 +69,7 @@ fn name(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if let Some(wrong) = wrong {
         field::fault(ui, &wrong);
     }
-    fault::inline(ui, state, "name", commands);
+    scene_errors::inline(ui, state, "name", commands);
 }
 
 fn pickers(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {

@@ -5,16 +5,18 @@ use cable_core::math::Point;
 use cable_core::scene::Shape;
 use egui::{Button, Frame, ScrollArea, Ui};
 
-use super::{
+use crate::command::{Command, SceneCommand};
+use crate::panels::cable::labelled;
+use crate::panels::scene::{
     GAP, KIND_WIDTH, NUMBER_WIDTH, cell, coordinates, headings, name_width, optional, remove, selectable_name,
     show_faults,
 };
-use crate::command::{Command, SceneCommand};
-use crate::panels::cable::labelled;
-use crate::panels::icon::{self, Icon};
-use crate::panels::unit::Unit;
-use crate::panels::{fault, field};
+use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
+use crate::units::unit::Unit;
+use crate::widgets::field;
+use crate::widgets::icon;
+use crate::widgets::icon::Icon;
 
 /// Height of the list of corners, points: about ten.
 const CORNERS_HEIGHT: f32 = 240.0;
@@ -27,7 +29,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     for (k, obstacle) in state.scene.obstacles.iter().enumerate() {
         ui.push_id(k, |ui| line(ui, state, k, obstacle, commands));
-        fault::inline(ui, state, &format!("obstacles[{k}]"), commands);
+        scene_errors::inline(ui, state, &format!("obstacles[{k}]"), commands);
     }
     let menu = ui.menu_button("Add obstacle", |ui| add(ui, state, commands));
     menu.response.on_hover_text("Ground, a beam, a post or a sheet, in the middle of the picture");

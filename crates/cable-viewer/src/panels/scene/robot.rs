@@ -5,12 +5,12 @@ use cable_core::scene::{Heading, SupportKind};
 use cable_core::{Robot, Scene};
 use egui::{ComboBox, Ui};
 
-use super::{coordinates, show_faults, support_kind};
 use crate::command::{Command, SceneCommand};
 use crate::panels::cable::labelled;
-use crate::panels::fault;
-use crate::panels::unit::Unit;
+use crate::panels::scene::{coordinates, show_faults, support_kind};
+use crate::panels::scene_errors;
 use crate::state::AppState;
+use crate::units::unit::Unit;
 use cable_core::scene::ground::Ground;
 
 /// Draws it.
@@ -38,7 +38,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if let Some(robot) = present {
         placed(ui, robot, commands);
     }
-    fault::inline(ui, state, "robot", commands);
+    scene_errors::inline(ui, state, "robot", commands);
 }
 
 fn about(p: &RobotPreset) -> String {

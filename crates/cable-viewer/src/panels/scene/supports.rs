@@ -5,18 +5,20 @@ use cable_core::scene::{Motion, PulleySide, SupportKind};
 use cable_core::{Cable, Support};
 use egui::{ComboBox, Frame, Ui};
 
-use super::loads::FIRST_SPAN_S;
-use super::support_kind::{KINDS, of_kind, refusal};
-use super::{
+use crate::command::{Command, SceneCommand};
+use crate::panels::cable::labelled;
+use crate::panels::scene::loads::FIRST_SPAN_S;
+use crate::panels::scene::support_kind::{KINDS, of_kind, refusal};
+use crate::panels::scene::{
     GAP, KIND_WIDTH, NUMBER_WIDTH, cell, components, coordinates, headings, name_width, optional, remove,
     selectable_name, show_faults,
 };
-use crate::command::{Command, SceneCommand};
-use crate::panels::cable::labelled;
-use crate::panels::times::{self, Knots, Table};
-use crate::panels::unit::Unit;
-use crate::panels::{fault, field};
+use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
+use crate::units::unit::Unit;
+use crate::widgets::field;
+use crate::widgets::time_table;
+use crate::widgets::time_table::{Knots, Table};
 
 /// One support with where it stands.
 struct Row<'a> {
@@ -59,10 +61,10 @@ pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Comman
         ui.push_id((index, support), |ui| line(ui, state, &row, commands));
         if support < last {
             let path = format!("cables[{index}].supports[{support}]");
-            fault::inline(ui, state, &path, commands);
+            scene_errors::inline(ui, state, &path, commands);
         }
     }
-    fault::inline(ui, state, &format!("cables[{index}].supports[{last}]"), commands);
+    scene_errors::inline(ui, state, &format!("cables[{index}].supports[{last}]"), commands);
     let help = "A frictionless point the cable slides through, in the middle of the cable; drag it, or change its kind";
     if ui.button("Add waypoint").on_hover_text(help).clicked() {
         let arc_length_m = cable.length_m / 2.0;
@@ -200,7 +202,7 @@ fn release(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut
         return;
     }
     let help = "From a time on it does not hold the cable any more";
-    if let Some(on) = times::toggle(ui, "Lets go", s.release_s.is_some(), help) {
+    if let Some(on) = time_table::toggle(ui, "Lets go", s.release_s.is_some(), help) {
         row.changed(commands, |s| s.release_s = on.then_some(1.0));
     }
     if s.release_s.is_some() {
@@ -216,7 +218,7 @@ fn motion(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut 
     let s = row.value;
     let Some(at_m) = s.at_m else { return };
     let help = "It follows points at times, smoothly, and stays at the last; all of them move along when it is moved";
-    if let Some(on) = times::toggle(ui, "Moves with time", s.motion.is_some(), help) {
+    if let Some(on) = time_table::toggle(ui, "Moves with time", s.motion.is_some(), help) {
         let Knots { times_s, values } = Knots::steady(at_m, FIRST_SPAN_S);
         row.changed(commands, |s| s.motion = on.then_some(Motion { times_s, points_m: values }));
         return;
@@ -224,7 +226,7 @@ fn motion(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut 
     let Some(motion) = &s.motion else { return };
     let table = Table { of: &s.name, columns: ["x", "y"], unit: Unit::COORDINATE, least: 1 };
     let knots = Knots::of(&motion.times_s, &motion.points_m);
-    if let Some(Knots { times_s, values }) = times::ui(ui, &table, &knots, faults) {
+    if let Some(Knots { times_s, values }) = time_table::ui(ui, &table, &knots, faults) {
         row.changed(commands, |s| {
             let motion = Motion { times_s, points_m: values };
             // It stands where its motion has it at the start.
@@ -261,7 +263,7 @@ fn load(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Ve
     let s = row.value;
     let knots = Knots::of(&s.times_s, &s.forces_n);
     let help = "A force at each of several times, linear in between";
-    if let Some(on) = times::toggle(ui, "Force changes with time", s.force_n.is_none(), help) {
+    if let Some(on) = time_table::toggle(ui, "Force changes with time", s.force_n.is_none(), help) {
         let force_n = s.force_n.or(knots.values.first().copied()).unwrap_or_default();
         let knots = if on { Knots::steady(force_n, FIRST_SPAN_S) } else { Knots::default() };
         row.changed(commands, |s| {
@@ -272,7 +274,7 @@ fn load(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Ve
     }
     let Some(force_n) = s.force_n else {
         let table = Table { of: &s.name, columns: ["Right", "Up"], unit: Unit::N, least: 1 };
-        if let Some(Knots { times_s, values }) = times::ui(ui, &table, &knots, faults) {
+        if let Some(Knots { times_s, values }) = time_table::ui(ui, &table, &knots, faults) {
             row.changed(commands, |s| (s.times_s, s.forces_n) = (times_s, values));
         }
         return;

@@ -1,0 +1,53 @@
+//! The strip that leads through a guided scene, and the menu that begins one.
+
+use egui::Ui;
+
+use crate::app::tutorials::{GUIDES, Place};
+use crate::command::{Command, FileCommand, ViewCommand};
+use crate::state::AppState;
+
+/// The menu of guides.
+pub fn menu(ui: &mut Ui, commands: &mut Vec<Command>) {
+    for (guide, g) in GUIDES.iter().enumerate() {
+        let help = "A scene and a few things to do in it; asks first if this one is not saved";
+        if ui.button(format!("{}. {}", guide + 1, g.title)).on_hover_text(help).clicked() {
+            commands.push(Command::File(FileCommand::OpenGuide(guide)));
+            ui.close();
+        }
+    }
+}
+
+/// Draws the strip, if a guide is on.
+pub fn strip(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let Some(place) = state.guide else { return };
+    let (Some(guide), Some(step)) = (GUIDES.get(place.guide), place.step()) else { return };
+    let go = |to: Option<Place>| Command::View(ViewCommand::Guide(to));
+    let at = |step| Some(Place { step, ..place });
+    let done = step.done.is_some_and(|done| done(state));
+    let last = place.step + 1 == guide.steps.len();
+    if done && !last {
+        commands.push(go(at(place.step + 1)));
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.strong(format!("{}, step {} of {}", guide.title, place.step + 1, guide.steps.len()));
+        ui.label(step.text);
+        if done {
+            ui.weak("Done");
+        }
+        let back = ui.add_enabled(place.step > 0, egui::Button::new("Back"));
+        if back.on_hover_text("The step before").clicked() {
+            commands.push(go(at(place.step.saturating_sub(1))));
+        }
+        if last {
+            let next = (place.guide + 1) % GUIDES.len();
+            if ui.button("Next scene").on_hover_text(GUIDES[next].title).clicked() {
+                commands.push(Command::File(FileCommand::OpenGuide(next)));
+            }
+        } else if ui.button("Next").on_hover_text("The next step, whether this one was done or not").clicked() {
+            commands.push(go(at(place.step + 1)));
+        }
+        if ui.button("End guide").on_hover_text("The scene stays open").clicked() {
+            commands.push(go(None));
+        }
+    });
+}

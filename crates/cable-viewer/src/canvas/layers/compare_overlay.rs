@@ -1,0 +1,19 @@
+//! Answers that are held, as thin lines behind the present one.
+
+use egui::{Pos2, Stroke};
+
+use crate::canvas::view::View;
+use crate::plot::LINES;
+use crate::state::AppState;
+
+/// Draws them, in the colours of the compare panel.
+pub fn draw(view: &View<'_>, state: &AppState) {
+    for (k, held) in state.held.iter().enumerate() {
+        let stroke = Stroke::new(1.8, LINES[k % LINES.len()]);
+        let time_s = state.snapshot.solution.as_ref().map_or(0.0, |s| s.time_s);
+        for piece in held.picture(time_s).cables.iter().flat_map(|c| c.pieces()) {
+            let points: Vec<Pos2> = piece.iter().map(|n| view.at([n.x_m, n.y_m])).collect();
+            view.painter.extend(egui::Shape::dashed_line(&points, stroke, 8.0, 4.0));
+        }
+    }
+}

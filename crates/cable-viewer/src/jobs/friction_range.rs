@@ -1,0 +1,156 @@
+//! The ribbon of less and more friction, computed beside the window whenever scene, model or run have changed.
+
+use std::sync::Arc;
+
+use cable_core::analysis::friction_range::{self, Action, ActionKind, FrictionRange, Query};
+use cable_core::scene::SupportKind;
+use cable_core::{Scene, Solution};
+
+use crate::jobs::background;
+use crate::state::AppState;
+
+/// What was found, and what was asked.
+pub type Found = (Arc<FrictionRange>, Arc<Query>);
+/// How far it is.
+pub type Progress = background::Progress<Found>;
+
+/// Longest run that is followed, s: three runs of it. Longer: a minute of both cores for a ribbon; shorter: a drive is cut off.
+pub const LONGEST_S: f64 = 120.0;
+
+/// Friction that is asked about.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// The ribbon is wanted.
+    pub on: bool,
+    /// Least and greatest friction over that of the scene.
+    pub factors: [f64; 2],
+    /// How far it is.
+    pub progress: Progress,
+}
+
+impl Default for View {
+    /// A third less and a third more: handbooks differ by that for rubber on concrete.
+    fn default() -> Self {
+        Self { on: false, factors: [0.67, 1.33], progress: Progress::None }
+    }
+}
+
+/// A ribbon being computed.
+#[derive(Debug)]
+pub struct Job {
+    job: background::Job<Found>,
+    ask: Arc<Query>,
+}
+
+impl Job {
+    /// Starts one; `shown` is called whenever there is something new to show.
+    #[must_use]
+    pub fn start(ask: Query, shown: impl Fn() + Send + 'static) -> Self {
+        let ask = Arc::new(ask);
+        let theirs = Arc::clone(&ask);
+        let work = move |heard: background::Heard<'_, Found>| {
+            let found = friction_range::friction_range(&theirs, |share| heard(share, None));
+            found.map(|s| (Arc::new(s), theirs)).map_err(|e| e.to_string())
+        };
+        Self { job: background::Job::start("friction range", work, shown), ask }
+    }
+
+    /// What was asked.
+    #[must_use]
+    pub fn ask(&self) -> &Query {
+        &self.ask
+    }
+
+    /// How far it is.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        self.job.progress()
+    }
+}
+
+/// Whether an ask is the one that what is on screen asks.
+#[must_use]
+pub fn fits(state: &AppState, ask: &Query) -> bool {
+    ask.span_s == span_s(state)
+        && ask.factors == state.spread.factors
+        && ask.model == state.model
+        && ask.settings == state.settings
+        && ask.scene == *scene(state)
+}
+
+/// What is on screen asks; None while it moves or has no answer.
+#[must_use]
+pub fn asked(state: &AppState) -> Option<Query> {
+    let still = state.playback.paused && state.grabbed.is_none() && state.scene_fault.is_none();
+    let answered = state.snapshot.solution.is_some() && state.snapshot.error.is_none() && !state.snapshot.draft;
+    (state.spread.on && still && answered).then(|| Query {
+        scene: scene(state).clone(),
+        model: state.model,
+        settings: state.settings,
+        factors: state.spread.factors,
+        span_s: span_s(state),
+        hands: hands(scene(state), state.recording.answers()),
+    })
+}
+
+/// Least move of a support between two answers that is a hand's, m: less is rounding.
+const MOVED_M: f64 = 1e-9;
+
+/// What hands did in a run: where supports that move by nothing else went, and what the robot was told.
+#[must_use]
+pub fn hands(scene: &Scene, answers: &[Solution]) -> Vec<Action> {
+    let by_hand = scene.cables.iter().enumerate().flat_map(|(cable, c)| {
+        let held = |s: &cable_core::Support| {
+            s.at_m.is_some() && s.motion.is_none() && !matches!(s.kind, SupportKind::Pulley | SupportKind::Robot)
+        };
+        c.supports.iter().enumerate().filter(move |(_, s)| held(s)).map(move |(support, _)| (cable, support))
+    });
+    let by_hand: Vec<(usize, usize)> = by_hand.collect();
+    let at = |a: &Solution, (cable, support): (usize, usize)| {
+        a.cables.get(cable).and_then(|c| c.supports.get(support)).map(|s| [s.x_m, s.y_m])
+    };
+    let mut hands = Vec::new();
+    let Some(first) = answers.first() else { return hands };
+    for &(cable, support) in &by_hand {
+        if let Some(to_m) = at(first, (cable, support)) {
+            hands.push(Action { time_s: 0.0, what: ActionKind::Support { cable, support, to_m } });
+        }
+    }
+    let mut told = None;
+    for pair in answers.windows(2) {
+        let [before, now] = [&pair[0], &pair[1]];
+        for &(cable, support) in &by_hand {
+            let (Some(from_m), Some(to_m)) = (at(before, (cable, support)), at(now, (cable, support))) else {
+                continue;
+            };
+            if (to_m[0] - from_m[0]).hypot(to_m[1] - from_m[1]) > MOVED_M {
+                hands.push(Action { time_s: now.time_s, what: ActionKind::Support { cable, support, to_m } });
+            }
+        }
+        let order = now.robot.map(|r| r.leg.is_none().then_some(r.commanded_m_per_s));
+        if let Some(order) = order.filter(|o| told != Some(*o)) {
+            hands.push(Action { time_s: now.time_s, what: ActionKind::Robot(order) });
+            told = Some(order);
+        }
+    }
+    hands
+}
+
+fn scene(state: &AppState) -> &Scene {
+    state.snapshot.scene.as_deref().unwrap_or(&state.scene)
+}
+
+/// How long time has run.
+fn span_s(state: &AppState) -> f64 {
+    let now_s = state.live.solution.as_ref().map_or(0.0, |s| s.time_s);
+    now_s.min(LONGEST_S)
+}
+
+/// The ribbon, if there is one of what is on screen.
+#[must_use]
+pub fn shown(state: &AppState) -> Option<&Found> {
+    match &state.spread.progress {
+        Progress::Done(found) if state.spread.on && fits(state, &found.1) => Some(found),
+        _ => None,
+    }
+}

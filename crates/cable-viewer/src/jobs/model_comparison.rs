@@ -1,0 +1,74 @@
+//! A scene at rest by every model, computed beside the window: what each answers and costs, and why others do not.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::Instant;
+
+use cable_core::{Model, Scene, Settings, Simulation, Solution};
+
+use crate::jobs::background;
+use crate::state::Held;
+
+/// What came of a model.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// The model.
+    pub model: Model,
+    /// Its answer and the wall time it took (s), or why there is none.
+    pub result: Result<(Arc<Solution>, f64), String>,
+}
+
+/// What came of all of them, and the scene they were asked about.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// The models so far, in the order they are listed everywhere.
+    pub answers: Vec<Answer>,
+}
+
+/// How far it is.
+pub type Progress = background::Progress<Found>;
+/// Models being asked.
+pub type Job = background::Job<Found>;
+
+/// Asks every model; `shown` is called whenever there is something new to show.
+#[must_use]
+pub fn start(scene: Scene, settings: Settings, shown: impl Fn() + Send + 'static) -> Job {
+    let work = move |heard: background::Heard<'_, Found>| {
+        let mut found = Found { scene: Arc::new(scene), answers: Vec::new() };
+        let all = Model::SOLVERS;
+        for (k, model) in all.into_iter().enumerate() {
+            if heard(k as f64 / all.len() as f64, Some(found.clone())) == ControlFlow::Break(()) {
+                return Err("it was ended".to_owned());
+            }
+            let result = at_rest(&found.scene, model, settings);
+            found.answers.push(Answer { model, result });
+        }
+        Ok(found)
+    };
+    background::Job::start("every model", work, shown)
+}
+
+fn at_rest(scene: &Scene, model: Model, settings: Settings) -> Result<(Arc<Solution>, f64), String> {
+    let began = Instant::now();
+    let mut simulation = Simulation::with_settings(scene.clone(), model, settings).map_err(|e| e.to_string())?;
+    let solution = simulation.settle().map_err(|e| e.to_string())?;
+    Ok((Arc::new(solution), began.elapsed().as_secs_f64()))
+}
+
+/// Holds each answer, in place of one held before of the same scene and model, as far as there is room.
+pub fn hold(all: &mut Vec<Held>, found: &Found) {
+    for answer in &found.answers {
+        let Ok((solution, wall_s)) = &answer.result else { continue };
+        let name = format!("{}, {} model at rest", found.scene.name, answer.model);
+        let scene = Arc::clone(&found.scene);
+        let held = Held { name, scene, solution: Arc::clone(solution), wall_s: *wall_s, run: None };
+        let before = all.iter().position(|h| h.name == held.name && h.run.is_none() && h.scene == held.scene);
+        if let Some(before) = before.and_then(|k| all.get_mut(k)) {
+            *before = held;
+        } else if all.len() < Held::MOST {
+            all.push(held);
+        }
+    }
+}
