@@ -5,18 +5,18 @@
 //! simulation on a thread of its own.
 //!
 //! The rooms, each importing only from those above it:
-//! - [`units`]: numbers with their unit, SI or US, as text and back
-//! - [`render`]: colours, themes, drawing without a GPU or without a window
-//! - [`widgets`]: fields, icons, rows and tables that panels are made of
-//! - [`record`]: what was seen since the last start, and runs kept to compare with
-//! - [`io`]: every file the window reads or writes
-//! - [`jobs`]: long computations beside the window
-//! - [`state`]: everything the window shows, in parts
-//! - [`geometry`]: where things of the scene are, and what lies under the pointer
-//! - [`worker`]: the simulation, on its thread
-//! - [`command`]: every edit and action, and the one place that applies them
-//! - [`plot`], [`canvas`], [`panels`]: the graphs, the picture of the scene, the forms beside it
-//! - [`app`]: the window that puts them together
+//! - `units`: numbers with their unit, SI or US, as text and back
+//! - `render`: colours, themes, drawing without a GPU or without a window
+//! - `widgets`: fields, icons, rows and tables that panels are made of
+//! - `record`: what was seen since the last start, and runs kept to compare with
+//! - `io`: every file the window reads or writes
+//! - `jobs`: long computations beside the window
+//! - `state`: everything the window shows, in parts
+//! - `geometry`: where things of the scene are, and what lies under the pointer
+//! - `worker`: the simulation, on its thread
+//! - `command`: every edit and action, and the one place that applies them
+//! - `plot`, `panels`, `canvas`: the graphs, the forms beside the picture of the scene, the picture
+//! - `app`: the window that puts them together
 
 pub mod app;
 pub mod canvas;

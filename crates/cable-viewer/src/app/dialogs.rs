@@ -6,7 +6,7 @@ use egui::{Context, Id, Modal, Ui};
 
 use crate::command::{Command, FileCommand};
 use crate::state::AppState;
-use crate::state::dialog::Dialog;
+use crate::state::dialog::{Dialog, Replacement};
 
 /// Draws the dialog, if one is open.
 pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
@@ -231,7 +231,7 @@ fn ask_path(ui: &mut Ui, title: &str, path: &mut String, saving: bool, commands:
     }
 }
 
-fn unsaved(ui: &mut Ui, name: &str, then: &Command, commands: &mut Vec<Command>) {
+fn unsaved(ui: &mut Ui, name: &str, then: &Replacement, commands: &mut Vec<Command>) {
     ui.heading("Unsaved changes");
     ui.add_space(6.0);
     ui.label(format!("“{name}” has changes that are not saved."));
@@ -242,7 +242,7 @@ fn unsaved(ui: &mut Ui, name: &str, then: &Command, commands: &mut Vec<Command>)
             commands.push(Command::File(FileCommand::Save));
         }
         if ui.button("Go on without saving").clicked() {
-            commands.push(Command::File(FileCommand::Discard(Box::new(then.clone()))));
+            commands.push(Command::File(FileCommand::Discard(then.clone())));
         }
         if ui.button("Cancel").clicked() {
             commands.push(close());

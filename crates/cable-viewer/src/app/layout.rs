@@ -3,10 +3,9 @@
 use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, RichText, ScrollArea, Ui};
 
 use crate::app::{menu, tutorial_bar};
-use crate::canvas;
 use crate::command::Command;
-use crate::panels;
 use crate::state::AppState;
+use crate::{canvas, panels};
 
 type PanelUi = fn(&mut Ui, &AppState, &mut Vec<Command>);
 type Section = (&'static str, PanelUi);

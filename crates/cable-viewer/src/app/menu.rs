@@ -9,9 +9,8 @@ use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCo
 use crate::render::colour::{ColourMap, Quantity};
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, WorkerStatus};
-use crate::units::labels;
 use crate::units::system::System;
-use crate::units::translate;
+use crate::units::{labels, translate};
 
 /// The menu bar.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {

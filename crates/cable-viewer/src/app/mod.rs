@@ -2,8 +2,8 @@
 //!
 //! - `layout`, `menu`, `keys`, `palette`: where panels are, and every command by menu, key or name
 //! - `dialogs`, `feedback_form`: what the user is asked
-//! - [`tutorials`], `tutorial_bar`: guided scenes, and the bar that leads through one
-//! - [`screenshot`]: the window as a picture file
+//! - `tutorials`, `tutorial_bar`: guided scenes, and the bar that leads through one
+//! - `screenshot`: the window as a picture file
 
 mod dialogs;
 mod feedback_form;
@@ -21,16 +21,15 @@ use std::time::Instant;
 
 use cable_core::Scene;
 
-use crate::command;
-use crate::command::{Command, Effects};
+use crate::command::effects::{Effects, submit_scene};
+use crate::command::{self, Command};
 use crate::io::autosave::Autosave;
-use crate::jobs::friction_range;
-use crate::jobs::model_comparison;
-use crate::jobs::neglected_bending;
-use crate::jobs::safe_reach;
+use crate::jobs::{friction_range, model_comparison, neglected_bending, safe_reach};
 use crate::record::samples::Sample;
 use crate::render::theme;
+use crate::state::compare::hold;
 use crate::state::dialog::Dialog;
+use crate::state::questions::{bending_query_fits, friction_query, friction_query_fits};
 use crate::state::{AppState, WorkerStatus};
 use crate::units::system;
 use crate::worker::Worker;
@@ -90,7 +89,7 @@ impl ViewerApp {
             spread: None,
         };
         let mut effects = Effects::default();
-        command::submit_scene(&mut app.state, true, &mut effects);
+        submit_scene(&mut app.state, true, &mut effects);
         app.carry_out(ctx, effects);
         app
     }
@@ -182,7 +181,7 @@ impl ViewerApp {
         if let Some(job) = &self.models {
             self.state.models = job.progress();
             if let model_comparison::Progress::Done(found) = self.state.models.clone() {
-                model_comparison::hold(&mut self.state.held, &found);
+                hold(&mut self.state.held, &found);
             }
             if !matches!(self.state.models, model_comparison::Progress::Running(..)) {
                 self.models = None;
@@ -203,7 +202,7 @@ impl ViewerApp {
 
     /// Looks after what neglecting bending stiffness changes: a question about what is no longer on screen is forgotten.
     fn keep_bending(&mut self, ctx: &egui::Context) {
-        if !neglected_bending::fits(&self.state) {
+        if !bending_query_fits(&self.state) {
             self.state.bending = neglected_bending::View::default();
         }
         let Some(ask) = self.state.bending.ask.clone() else { return };
@@ -221,11 +220,11 @@ impl ViewerApp {
     /// Looks after the ribbon of less and more friction: one of another question ends, a missing one begins.
     fn keep_spread(&mut self, ctx: &egui::Context) {
         let state = &mut self.state;
-        if self.spread.as_ref().is_some_and(|job| !state.spread.on || !friction_range::fits(state, job.ask())) {
+        if self.spread.as_ref().is_some_and(|job| !state.spread.on || !friction_query_fits(state, job.ask())) {
             self.spread = None;
         }
         if self.spread.is_none()
-            && let Some(ask) = friction_range::asked(state)
+            && let Some(ask) = friction_query(state)
         {
             let shown = ctx.clone();
             self.spread = Some(friction_range::Job::start(ask, move || shown.request_repaint()));

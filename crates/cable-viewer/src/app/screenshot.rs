@@ -1,17 +1,13 @@
 //! The window drawn to a picture file, without a window.
 
-use std::future::Future;
 use std::path::Path;
-use std::pin::pin;
-use std::task::{Context, Poll, Waker};
 
 use cable_core::Scene;
-use eframe::egui_wgpu;
 use egui_kittest::Harness;
-use egui_kittest::wgpu::{WgpuTestRenderer, default_wgpu_setup};
 use image::RgbaImage;
 
 use crate::ViewerApp;
+use crate::render::offscreen::renderer;
 
 /// Frames after which a picture is taken: the first lays out, the second fits and solves, the others settle scroll bars.
 const FRAMES: usize = 6;
@@ -52,42 +48,4 @@ pub fn draw(
         });
     harness.run_steps(FRAMES);
     harness.render()
-}
-
-/// A renderer on whatever adapter there is.
-///
-/// # Errors
-/// There is none.
-pub fn renderer() -> Result<WgpuTestRenderer, String> {
-    render_state(egui_wgpu::RendererOptions::PREDICTABLE).map(WgpuTestRenderer::from_render_state)
-}
-
-/// What draws on whatever adapter there is, without a window.
-///
-/// # Errors
-/// There is none.
-pub fn render_state(options: egui_wgpu::RendererOptions) -> Result<egui_wgpu::RenderState, String> {
-    let setup = default_wgpu_setup();
-    let configuration = egui_wgpu::WgpuConfiguration { wgpu_setup: setup.clone(), ..Default::default() };
-    let state = ready(async move {
-        let instance = setup.new_instance().await;
-        egui_wgpu::RenderState::create(&configuration, &instance, None, options).await
-    });
-    state.map_err(|e| {
-        format!(
-            "no graphics adapter was found ({e}); install a Vulkan driver (Debian: mesa-vulkan-drivers) or try WGPU_BACKEND=gl"
-        )
-    })
-}
-
-/// Waits for a future; the native ones of wgpu are ready at once, so that polling is enough.
-fn ready<T>(future: impl Future<Output = T>) -> T {
-    let mut future = pin!(future);
-    let mut context = Context::from_waker(Waker::noop());
-    loop {
-        if let Poll::Ready(value) = future.as_mut().poll(&mut context) {
-            return value;
-        }
-        std::thread::yield_now();
-    }
 }

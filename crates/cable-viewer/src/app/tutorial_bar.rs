@@ -2,16 +2,17 @@
 
 use egui::Ui;
 
-use crate::app::tutorials::{GUIDES, Place};
-use crate::command::{Command, FileCommand, ViewCommand};
+use crate::app::tutorials::{self, TUTORIALS};
+use crate::command::{Command, ViewCommand};
 use crate::state::AppState;
+use crate::state::tutorial_place::TutorialPlace;
 
 /// The menu of guides.
 pub fn menu(ui: &mut Ui, commands: &mut Vec<Command>) {
-    for (guide, g) in GUIDES.iter().enumerate() {
+    for (guide, g) in TUTORIALS.iter().enumerate() {
         let help = "A scene and a few things to do in it; asks first if this one is not saved";
         if ui.button(format!("{}. {}", guide + 1, g.title)).on_hover_text(help).clicked() {
-            commands.push(Command::File(FileCommand::OpenGuide(guide)));
+            commands.push(Command::File(tutorials::open(guide)));
             ui.close();
         }
     }
@@ -20,9 +21,9 @@ pub fn menu(ui: &mut Ui, commands: &mut Vec<Command>) {
 /// Draws the strip, if a guide is on.
 pub fn strip(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let Some(place) = state.guide else { return };
-    let (Some(guide), Some(step)) = (GUIDES.get(place.guide), place.step()) else { return };
-    let go = |to: Option<Place>| Command::View(ViewCommand::Guide(to));
-    let at = |step| Some(Place { step, ..place });
+    let (Some(guide), Some(step)) = (TUTORIALS.get(place.tutorial), tutorials::step(place)) else { return };
+    let go = |to: Option<TutorialPlace>| Command::View(ViewCommand::Guide(to));
+    let at = |step| Some(TutorialPlace { step, ..place });
     let done = step.done.is_some_and(|done| done(state));
     let last = place.step + 1 == guide.steps.len();
     if done && !last {
@@ -39,9 +40,9 @@ pub fn strip(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             commands.push(go(at(place.step.saturating_sub(1))));
         }
         if last {
-            let next = (place.guide + 1) % GUIDES.len();
-            if ui.button("Next scene").on_hover_text(GUIDES[next].title).clicked() {
-                commands.push(Command::File(FileCommand::OpenGuide(next)));
+            let next = (place.tutorial + 1) % TUTORIALS.len();
+            if ui.button("Next scene").on_hover_text(TUTORIALS[next].title).clicked() {
+                commands.push(Command::File(tutorials::open(next)));
             }
         } else if ui.button("Next").on_hover_text("The next step, whether this one was done or not").clicked() {
             commands.push(go(at(place.step + 1)));

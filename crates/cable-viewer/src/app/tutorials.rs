@@ -2,10 +2,12 @@
 
 use cable_core::scene::SupportKind;
 
+use crate::command::FileCommand;
 use crate::state::AppState;
+use crate::state::tutorial_place::TutorialPlace;
 
 /// A guided scene.
-pub struct Guide {
+pub struct Tutorial {
     /// What it teaches.
     pub title: &'static str,
     /// Short id of its scene in the catalogue.
@@ -22,21 +24,16 @@ pub struct Step {
     pub done: Option<fn(&AppState) -> bool>,
 }
 
-/// Which guide, and which of its steps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
-    /// Index of the guide.
-    pub guide: usize,
-    /// Index of the step.
-    pub step: usize,
+/// What is to be done at a place.
+#[must_use]
+pub fn step(place: TutorialPlace) -> Option<&'static Step> {
+    TUTORIALS.get(place.tutorial)?.steps.get(place.step)
 }
 
-impl Place {
-    /// What is to be done there.
-    #[must_use]
-    pub fn step(self) -> Option<&'static Step> {
-        GUIDES.get(self.guide)?.steps.get(self.step)
-    }
+/// The command that opens a tutorial.
+#[must_use]
+pub fn open(tutorial: usize) -> FileCommand {
+    FileCommand::OpenTutorial { tutorial, scene: TUTORIALS.get(tutorial).map_or("", |t| t.scene) }
 }
 
 const fn act(text: &'static str, done: fn(&AppState) -> bool) -> Step {
@@ -64,8 +61,8 @@ fn time_s(state: &AppState) -> f64 {
 }
 
 /// All of them, in the order they are best taken.
-pub const GUIDES: [Guide; 6] = [
-    Guide {
+pub const TUTORIALS: [Tutorial; 6] = [
+    Tutorial {
         title: "Drag an end",
         scene: "hanging-span",
         steps: &[
@@ -76,7 +73,7 @@ pub const GUIDES: [Guide; 6] = [
             act("Undo it with Ctrl+Z, or Undo in the Edit menu", |s| !changed(s)),
         ],
     },
-    Guide {
+    Tutorial {
         title: "Change the cable",
         scene: "over-beam",
         steps: &[
@@ -92,7 +89,7 @@ pub const GUIDES: [Guide; 6] = [
             act("Press the fix, or undo", |s| s.scene_fault.is_none()),
         ],
     },
-    Guide {
+    Tutorial {
         title: "Lay it over waypoints",
         scene: "hanging-span",
         steps: &[
@@ -106,7 +103,7 @@ pub const GUIDES: [Guide; 6] = [
             act("Press Delete while it is picked to take it out again", |s| supports(s) == saved_supports(s)),
         ],
     },
-    Guide {
+    Tutorial {
         title: "Let time run",
         scene: "floor-drag",
         steps: &[
@@ -118,7 +115,7 @@ pub const GUIDES: [Guide; 6] = [
             act("Go on from there, or press Present to come back", |s| s.recording.shown_s.is_none()),
         ],
     },
-    Guide {
+    Tutorial {
         title: "Drive the robot",
         scene: "robot-drive",
         steps: &[
@@ -134,7 +131,7 @@ pub const GUIDES: [Guide; 6] = [
             ),
         ],
     },
-    Guide {
+    Tutorial {
         title: "Compare and keep",
         scene: "hanging-span",
         steps: &[
@@ -157,13 +154,13 @@ mod tests {
 
     #[test]
     fn every_guide_has_its_scene_and_begins_undone() {
-        for guide in &GUIDES {
-            let found = catalog::all().into_iter().find(|(id, _)| *id == guide.scene);
-            let (_, scene) = found.unwrap_or_else(|| panic!("{}", guide.scene));
+        for tutorial in &TUTORIALS {
+            let found = catalog::all().into_iter().find(|(id, _)| *id == tutorial.scene);
+            let (_, scene) = found.unwrap_or_else(|| panic!("{}", tutorial.scene));
             let state = AppState::new(scene, None);
-            let first = guide.steps.first().and_then(|s| s.done).expect("begins with something to do");
-            assert!(!first(&state), "{}", guide.title);
-            assert!((3..=5).contains(&guide.steps.len()), "{}", guide.title);
+            let first = tutorial.steps.first().and_then(|s| s.done).expect("begins with something to do");
+            assert!(!first(&state), "{}", tutorial.title);
+            assert!((3..=5).contains(&tutorial.steps.len()), "{}", tutorial.title);
         }
     }
 }

@@ -4,10 +4,13 @@ use cable_core::math::Point;
 use cable_core::solution::ContactState;
 use egui::{Rect, Role, Sense, Ui, WidgetInfo, vec2};
 
-use crate::canvas::layers::{contact, forces, robot_path, supports};
+use crate::canvas::layers::contact;
+use crate::geometry::arrows::load_at;
 use crate::geometry::handles;
+use crate::geometry::robot::path_flags;
+use crate::geometry::supports::support_position;
 use crate::state::{AppState, Item};
-use crate::units::{translate, unit};
+use crate::units::{format, translate, unit};
 
 /// Most contacts of a cable that are named: what lies on rubble has one a stone.
 const MOST_CONTACTS: usize = 40;
@@ -25,7 +28,7 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState) {
     let scene = &state.scene;
     for (cable, c) in scene.cables.iter().enumerate() {
         for (support, s) in c.supports.iter().enumerate() {
-            if let Some(at) = supports::place(state, cable, support) {
+            if let Some(at) = support_position(state, cable, support) {
                 name(at, ("support", cable, support), format!("Support {} of {}", s.name, c.name));
             }
         }
@@ -37,14 +40,14 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState) {
     }
     contacts(state, &name);
     for k in 0..scene.loads.len() {
-        if let Some((at, _)) = forces::load_at(state, k) {
+        if let Some((at, _)) = load_at(state, k) {
             name(at, ("load", k, 0), format!("Load {}", k + 1));
         }
         if let Some(at) = handles::of(state, Item::Head(k)) {
             name(at, ("head", k, 0), format!("Force of load {}", k + 1));
         }
     }
-    for (k, at, _) in robot_path::flags(state) {
+    for (k, at, _) in path_flags(state) {
         name(at, ("leg", k, 0), format!("Leg {} of the robot's path", k + 1));
     }
     if let Some(at) = handles::of(state, Item::Robot) {
@@ -90,7 +93,7 @@ pub fn summary(state: &AppState) -> String {
     )];
     for (cable, c) in scene.cables.iter().enumerate() {
         let supports = c.supports.iter().enumerate().filter_map(|(k, s)| {
-            supports::place(state, cable, k).map(|at| format!("{} at {}", s.name, unit::position(at)))
+            support_position(state, cable, k).map(|at| format!("{} at {}", s.name, format::position(at)))
         });
         out.push(format!("{}: {}", c.name, supports.collect::<Vec<_>>().join(", ")));
     }
@@ -99,14 +102,14 @@ pub fn summary(state: &AppState) -> String {
         let on = answer.cables.get(most.cable).map_or("", |c| &c.name);
         out.push(format!(
             "time {}: largest tension {} at {} along {on}",
-            unit::duration(answer.time_s),
-            unit::force(most.tension_n),
-            unit::length(most.arc_length_m)
+            format::duration(answer.time_s),
+            format::force(most.tension_n),
+            format::length(most.arc_length_m)
         ));
         let contacts: usize = answer.cables.iter().map(|c| c.contacts.len()).sum();
         out.push(format!("{}, {}", count(contacts, "contact"), count(answer.warnings.len(), "warning")));
         if let Some(robot) = &answer.robot {
-            out.push(format!("robot at {}, {}", unit::position([robot.x_m, robot.y_m]), robot.going.name()));
+            out.push(format!("robot at {}, {}", format::position([robot.x_m, robot.y_m]), robot.going.name()));
         }
     }
     if let Some((maps, _)) = state.reach.found() {

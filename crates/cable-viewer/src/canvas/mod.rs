@@ -1,6 +1,6 @@
 //! The canvas draws the scene in layers and reads the pointer on it.
 //!
-//! - [`layers`]: what is drawn, a file a layer
+//! - `layers`: what is drawn, a file a layer
 //! - `view`: from metres to the painter
 //! - `pointer`: clicks, drags and the wheel as commands
 //! - `accessibility`: the same picture for screen readers

@@ -4,45 +4,19 @@ use std::fmt::Write as _;
 
 use cable_core::math::Point;
 use cable_core::scene::{Shape, Support, SupportKind};
-use cable_core::{Cable, Load, Obstacle};
+use cable_core::{Cable, Obstacle};
 
-use crate::canvas::layers::supports;
-use crate::command::Effects;
-use crate::command::items::shifted;
-use crate::command::scene::{unique, waypoint_place};
+use crate::command::effects::Effects;
+use crate::command::items::{shifted, unique, waypoint_place};
+use crate::command::support_kind::of_kind;
 use crate::geometry::hit_test;
-use crate::panels::scene::support_kind::of_kind;
+use crate::geometry::supports::support_position;
+use crate::state::clipboard::{Clipboard, Thing};
 use crate::state::{AppState, Item};
 
 /// Where something goes that is pasted with no pointer over the canvas: this far from where it was, m. Less: it hides what it
 /// was copied from; more: it is out of view in a small scene.
 const BESIDE_M: Point = [0.5, 0.5];
-
-/// What was copied.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Clipboard {
-    things: Vec<Thing>,
-    /// The middle of it all, m.
-    middle_m: Point,
-    /// As it was given to the system: pasted text that differs comes from another program.
-    pub text: String,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-enum Thing {
-    Cable(Box<Cable>),
-    Support(Box<Support>, Point),
-    Obstacle(Obstacle),
-    Load(Load),
-}
-
-impl Clipboard {
-    /// Nothing was copied.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.things.is_empty()
-    }
-}
 
 /// Keeps what is picked; as text it is a table of points.
 pub fn copy(state: &mut AppState, effects: &mut Effects) {
@@ -75,7 +49,7 @@ fn thing(state: &AppState, item: Item) -> Option<(Thing, Vec<Point>)> {
         }
         Item::Support { cable, support } => {
             let value = scene.cables.get(cable)?.supports.get(support)?;
-            let at_m = supports::place(state, cable, support)?;
+            let at_m = support_position(state, cable, support)?;
             (Thing::Support(Box::new(value.clone()), at_m), vec![at_m])
         }
         Item::Obstacle(k) | Item::Corner { obstacle: k, .. } => {
@@ -89,7 +63,7 @@ fn thing(state: &AppState, item: Item) -> Option<(Thing, Vec<Point>)> {
             (Thing::Obstacle(value.clone()), points)
         }
         Item::Load(k) | Item::Head(k) => {
-            let (at_m, _) = crate::canvas::layers::forces::load_at(state, k)?;
+            let (at_m, _) = crate::geometry::arrows::load_at(state, k)?;
             (Thing::Load(scene.loads.get(k)?.clone()), vec![at_m])
         }
         Item::Robot | Item::Leg(_) => return None,

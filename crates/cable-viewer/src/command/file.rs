@@ -8,17 +8,17 @@ use cable_core::files::{RunEnd, RunFolder};
 use cable_core::record::{NodeChoice, RunRequest};
 use cable_core::scene::catalog;
 
-use crate::app::tutorials::{GUIDES, Place};
-use crate::command::{Command, Effects, SceneCommand, import, submit_scene};
-use crate::io::feedback;
-use crate::io::feedback::Answers;
-use crate::io::graph_file;
-use crate::io::graph_file::Sheet;
+use crate::command::effects::{Effects, submit_scene};
+use crate::command::import;
+use crate::command::scene::{self, SceneCommand};
+use crate::io::feedback::{self, Answers};
+use crate::io::graph_file::{self, Sheet};
+use crate::io::saved_run::{SavedRun, read_run};
 use crate::io::scene_file;
-use crate::record::run;
 use crate::record::run::Run;
 use crate::record::samples::Sample;
-use crate::state::dialog::Dialog;
+use crate::state::dialog::{Dialog, Replacement};
+use crate::state::tutorial_place::TutorialPlace;
 use crate::state::{AppState, Held};
 
 /// Files and the window.
@@ -30,8 +30,13 @@ pub enum FileCommand {
     Open(PathBuf),
     /// Opens a catalogue scene by its short id.
     OpenCatalogue(String),
-    /// Opens the scene of a guide and leads through it.
-    OpenGuide(usize),
+    /// Opens the scene of a tutorial and leads through it.
+    OpenTutorial {
+        /// Index of the tutorial.
+        tutorial: usize,
+        /// Short id of its scene.
+        scene: &'static str,
+    },
     /// Saves where it came from, else asks where to.
     Save,
     /// Asks where to save.
@@ -64,7 +69,7 @@ pub enum FileCommand {
     /// Removes it.
     ForgetRecovery,
     /// Goes on without saving.
-    Discard(Box<Command>),
+    Discard(Replacement),
     /// Starts the solver thread anew after it died.
     RestartWorker,
     /// Closes the window.
@@ -73,8 +78,8 @@ pub enum FileCommand {
 
 /// Does one of them.
 pub fn apply(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
-    if replaces_scene(&command) && state.unsaved() {
-        state.dialog = Some(Dialog::Unsaved { then: Box::new(Command::File(command)) });
+    if let Some(then) = command.replacement().filter(|_| state.unsaved()) {
+        state.dialog = Some(Dialog::Unsaved { then });
         return;
     }
     carry_out(state, command, effects);
@@ -93,10 +98,9 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
                 open(state, scene, None, effects);
             }
         }
-        FileCommand::OpenGuide(index) => {
-            let Some(guide) = GUIDES.get(index) else { return };
-            carry_out(state, FileCommand::OpenCatalogue(guide.scene.to_owned()), effects);
-            state.guide = Some(Place { guide: index, step: 0 });
+        FileCommand::OpenTutorial { tutorial, scene } => {
+            carry_out(state, FileCommand::OpenCatalogue(scene.to_owned()), effects);
+            state.guide = Some(TutorialPlace { tutorial, step: 0 });
         }
         FileCommand::Save => match state.document.path.clone() {
             Some(path) => save(state, &path),
@@ -110,14 +114,14 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
         FileCommand::ImportMap { path, text, unit_m } => {
             match import::add(&state.scene, path.as_deref(), &text, unit_m) {
                 Ok((scene, report)) => {
-                    crate::command::apply(state, Command::Scene(SceneCommand::SetScene(Box::new(scene))), effects);
+                    scene::apply(state, SceneCommand::SetScene(Box::new(scene)), effects);
                     state.camera.fit_wanted = true;
                     state.dialog = Some(Dialog::Message { title: "Imported".to_owned(), text: report });
                 }
                 Err(text) => complain(state, "The map was not imported", text),
             }
         }
-        FileCommand::SaveFeedback(path, answers) => match feedback::save(&path, &answers, state) {
+        FileCommand::SaveFeedback(path, answers) => match feedback::save(&path, &answers, &feedback_context(state)) {
             Ok(()) => state.dialog = None,
             Err(text) => complain(state, &format!("“{}” was not written", path.display()), text),
         },
@@ -125,7 +129,7 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
             Ok(()) => state.dialog = None,
             Err(text) => complain(state, &format!("The run was not written to “{}”", path.display()), text),
         },
-        FileCommand::OpenRun(path) => match run::open(&path) {
+        FileCommand::OpenRun(path) => match read_run(&path) {
             Ok(opened) => {
                 open(state, opened.scene, None, effects);
                 state.reopened = opened.answers;
@@ -133,7 +137,7 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
             }
             Err(text) => complain(state, &format!("The run “{}” was not opened", path.display()), text),
         },
-        FileCommand::HoldRun(path) => match run::open(&path) {
+        FileCommand::HoldRun(path) => match read_run(&path) {
             Ok(opened) => hold(state, &path, opened),
             Err(text) => complain(state, &format!("The run “{}” was not opened", path.display()), text),
         },
@@ -148,10 +152,7 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
         }
         FileCommand::Discard(then) => {
             state.dialog = None;
-            match *then {
-                Command::File(command) => carry_out(state, command, effects),
-                other => crate::command::apply(state, other, effects),
-            }
+            carry_out(state, then.into(), effects);
         }
         FileCommand::RestartWorker => {
             effects.restart_worker = true;
@@ -164,15 +165,30 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
     }
 }
 
-fn replaces_scene(command: &FileCommand) -> bool {
-    matches!(
-        command,
-        FileCommand::Open(_)
-            | FileCommand::OpenRun(_)
-            | FileCommand::OpenCatalogue(_)
-            | FileCommand::OpenGuide(_)
-            | FileCommand::Quit
-    )
+impl FileCommand {
+    /// What takes the place of the present scene; None: it stays.
+    fn replacement(&self) -> Option<Replacement> {
+        Some(match self {
+            Self::Open(path) => Replacement::Open(path.clone()),
+            Self::OpenRun(path) => Replacement::OpenRun(path.clone()),
+            Self::OpenCatalogue(id) => Replacement::OpenCatalogue(id.clone()),
+            &Self::OpenTutorial { tutorial, scene } => Replacement::OpenTutorial { tutorial, scene },
+            Self::Quit => Replacement::Quit,
+            _ => return None,
+        })
+    }
+}
+
+impl From<Replacement> for FileCommand {
+    fn from(action: Replacement) -> Self {
+        match action {
+            Replacement::Open(path) => Self::Open(path),
+            Replacement::OpenRun(path) => Self::OpenRun(path),
+            Replacement::OpenCatalogue(id) => Self::OpenCatalogue(id),
+            Replacement::OpenTutorial { tutorial, scene } => Self::OpenTutorial { tutorial, scene },
+            Replacement::Quit => Self::Quit,
+        }
+    }
 }
 
 fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut Effects) {
@@ -204,7 +220,7 @@ fn remark(state: &mut AppState, path: &Path, remarks: &[String]) {
     }
 }
 
-fn hold(state: &mut AppState, path: &Path, opened: run::Opened) {
+fn hold(state: &mut AppState, path: &Path, opened: SavedRun) {
     let samples: Vec<Sample> = opened.answers.iter().map(Sample::of).collect();
     let events = opened.answers.iter().map(|a| a.warnings.len()).sum();
     let run = Run::of(samples.iter(), &opened.answers, events).map(Arc::new);
@@ -251,4 +267,12 @@ fn complain(state: &mut AppState, title: &str, text: String) {
 
 fn path_text(state: &AppState) -> String {
     state.document.path.as_ref().map_or_else(|| "scene.toml".to_owned(), |p| p.display().to_string())
+}
+
+fn feedback_context(state: &AppState) -> feedback::Context<'_> {
+    feedback::Context {
+        scene: &state.scene.name,
+        answer: state.snapshot.solution.as_deref(),
+        error: state.snapshot.error.as_deref(),
+    }
 }

@@ -5,7 +5,6 @@ use cable_core::scene::ground::Ground;
 use cable_core::scene::{RobotTask, Shape, Support, SupportKind};
 use cable_core::{Robot, Scene};
 
-use crate::command::scene::set;
 use crate::state::{AppState, Item};
 
 /// Puts a thing at a point, m.
@@ -54,9 +53,8 @@ pub fn move_item(state: &mut AppState, item: Item, to_m: Point) {
             }
         }
         Item::Head(index) => {
-            let Some((tail, _)) = crate::canvas::layers::forces::load_at(state, index) else { return };
-            let force =
-                crate::canvas::layers::forces::force_of_arrow([to_m[0] - tail[0], to_m[1] - tail[1]], &state.camera);
+            let Some((tail, _)) = crate::geometry::arrows::load_at(state, index) else { return };
+            let force = crate::geometry::arrows::force_of_arrow([to_m[0] - tail[0], to_m[1] - tail[1]], &state.camera);
             if let Some(load) = state.scene.loads.get_mut(index).filter(|l| l.force_n.is_some()) {
                 load.force_n = Some(force);
             }
@@ -193,4 +191,44 @@ fn exists(state: &AppState, item: Item) -> bool {
         Item::Robot => scene.robot.is_some(),
         Item::Leg(k) => scene.robot.as_ref().is_some_and(|r| k < r.path.len()),
     }
+}
+
+pub fn set<T>(list: &mut [T], index: usize, value: T) {
+    if let Some(slot) = list.get_mut(index) {
+        *slot = value;
+    }
+}
+
+/// The name, with the first free number appended if it is taken.
+pub fn unique(name: &str, taken: impl Fn(&str) -> bool) -> String {
+    if !taken(name) {
+        return name.to_owned();
+    }
+    (2..).map(|k| format!("{name} {k}")).find(|n| !taken(n)).unwrap_or_default()
+}
+
+pub fn add_waypoint(state: &mut AppState, cable: usize, arc_length_m: f64, at_m: Point) {
+    let place = waypoint_place(state, cable, arc_length_m);
+    let Some(c) = state.scene.cables.get_mut(cable) else { return };
+    if c.supports.len() < 2 {
+        return;
+    }
+    let place = place.clamp(1, c.supports.len() - 1);
+    let name = unique("waypoint", |n| c.supports.iter().any(|s| s.name == n));
+    c.supports.insert(place, Support::pulley(name, at_m));
+    // A route laid before the waypoint existed may pass it on the wrong side.
+    c.route_m.clear();
+    state.selected = Some(Item::Support { cable, support: place });
+}
+
+/// Which place among the supports a point of the cable falls into: after those that sit before it now.
+pub fn waypoint_place(state: &AppState, cable: usize, arc_length_m: f64) -> usize {
+    let answer = state.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable));
+    let (Some(answer), Some(c)) = (answer, state.scene.cables.get(cable)) else {
+        return 1;
+    };
+    if answer.supports.len() != c.supports.len() {
+        return 1;
+    }
+    answer.supports.iter().take_while(|s| s.arc_length_m < arc_length_m).count()
 }

@@ -2,7 +2,7 @@
 
 use cable_core::scene::SupportKind;
 
-use crate::command::{Effects, next_number};
+use crate::command::effects::{Effects, next_number};
 use crate::state::dialog::Dialog;
 use crate::state::undo::EditKind;
 use crate::state::{AppState, Playback};

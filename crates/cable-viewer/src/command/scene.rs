@@ -4,8 +4,11 @@ use cable_core::math::Point;
 use cable_core::scene::{Environment, RobotTask, Support};
 use cable_core::{Cable, Load, Obstacle, Robot, Scene};
 
-use crate::command::items::{drop_lost_selection, hitched, move_item, remove_all, set_robot};
-use crate::command::{Effects, clipboard, next_number, route, submit_scene};
+use crate::command::effects::{Effects, next_number, submit_scene};
+use crate::command::items::{
+    add_waypoint, drop_lost_selection, hitched, move_item, remove_all, set, set_robot, unique,
+};
+use crate::command::{clipboard, route};
 use crate::state::undo::EditKind;
 use crate::state::{AppState, Item};
 use crate::worker::engine::slow;
@@ -237,46 +240,6 @@ fn change(state: &mut AppState, command: SceneCommand) {
         SceneCommand::Cut => remove_all(state, state.picks()),
         SceneCommand::EditDone | SceneCommand::Copy | SceneCommand::Undo | SceneCommand::Redo => {}
     }
-}
-
-pub(super) fn set<T>(list: &mut [T], index: usize, value: T) {
-    if let Some(slot) = list.get_mut(index) {
-        *slot = value;
-    }
-}
-
-/// The name, with the first free number appended if it is taken.
-pub(super) fn unique(name: &str, taken: impl Fn(&str) -> bool) -> String {
-    if !taken(name) {
-        return name.to_owned();
-    }
-    (2..).map(|k| format!("{name} {k}")).find(|n| !taken(n)).unwrap_or_default()
-}
-
-pub(super) fn add_waypoint(state: &mut AppState, cable: usize, arc_length_m: f64, at_m: Point) {
-    let place = waypoint_place(state, cable, arc_length_m);
-    let Some(c) = state.scene.cables.get_mut(cable) else { return };
-    if c.supports.len() < 2 {
-        return;
-    }
-    let place = place.clamp(1, c.supports.len() - 1);
-    let name = unique("waypoint", |n| c.supports.iter().any(|s| s.name == n));
-    c.supports.insert(place, Support::pulley(name, at_m));
-    // A route laid before the waypoint existed may pass it on the wrong side.
-    c.route_m.clear();
-    state.selected = Some(Item::Support { cable, support: place });
-}
-
-/// Which place among the supports a point of the cable falls into: after those that sit before it now.
-pub(super) fn waypoint_place(state: &AppState, cable: usize, arc_length_m: f64) -> usize {
-    let answer = state.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable));
-    let (Some(answer), Some(c)) = (answer, state.scene.cables.get(cable)) else {
-        return 1;
-    };
-    if answer.supports.len() != c.supports.len() {
-        return 1;
-    }
-    answer.supports.iter().take_while(|s| s.arc_length_m < arc_length_m).count()
 }
 
 /// Speed of a first leg, m/s: a careful walk.

@@ -4,14 +4,13 @@ use std::sync::Arc;
 
 use cable_core::math::Point;
 
-use crate::app::tutorials;
-use crate::command::Effects;
-use crate::jobs::model_comparison;
-use crate::jobs::neglected_bending;
-use crate::jobs::safe_reach;
-use crate::jobs::safe_reach::{Moved, Order, Progress};
+use crate::command::effects::Effects;
+use crate::jobs::safe_reach::{self, Moved, Order, Progress};
+use crate::jobs::{model_comparison, neglected_bending};
 use crate::record::run::Run;
 use crate::render::colour::ColourScale;
+use crate::state::questions::{bending_query, reach_target};
+use crate::state::tutorial_place::TutorialPlace;
 use crate::state::{AppState, Grab, Held, Item, Layers, Probe};
 use crate::units::system::System;
 
@@ -62,7 +61,7 @@ pub enum ViewCommand {
     /// Ask what neglecting bending stiffness changes.
     AskBending,
     /// Leads to a step of a guided scene, or not any more.
-    Guide(Option<tutorials::Place>),
+    Guide(Option<TutorialPlace>),
     /// SI or US units; files stay SI.
     SetUnits(System),
     /// Keeps the answer on screen to compare with.
@@ -120,7 +119,7 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
         ViewCommand::SetTheme(theme) => state.theme = theme,
         ViewCommand::Reach(false) => (state.reach.progress, effects.reach) = (Progress::None, Some(None)),
         ViewCommand::Reach(true) => {
-            let Some(moved) = safe_reach::moved(state) else {
+            let Some(moved) = reach_target(state) else {
                 state.reach.progress = Progress::Failed("nothing here has a place to be taken from".to_owned());
                 return;
             };
@@ -143,10 +142,9 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             }
         }
         ViewCommand::AskBending => {
-            state.bending =
-                neglected_bending::View { ask: neglected_bending::asked(state), ..neglected_bending::View::default() }
+            state.bending = neglected_bending::View { ask: bending_query(state), ..neglected_bending::View::default() }
         }
-        ViewCommand::Guide(place) => state.guide = place.filter(|p| p.step().is_some()),
+        ViewCommand::Guide(place) => state.guide = place,
         ViewCommand::SetUnits(units) => state.units = units,
         ViewCommand::Hold => {
             if let (Some(solution), Some(scene)) = (state.snapshot.solution.clone(), state.snapshot.scene.clone())

@@ -66,7 +66,7 @@ pub fn scene(state: &AppState) -> [Point; 2] {
             }
         }
     }
-    crate::canvas::layers::robot::outline(state).into_iter().for_each(|p| bounds.add(p));
+    crate::geometry::robot::robot_outline(state).into_iter().for_each(|p| bounds.add(p));
     bounds.or_unit()
 }
 

@@ -3,7 +3,9 @@
 use cable_core::math::Point;
 use cable_core::scene::Shape;
 
-use crate::canvas::layers::{forces, robot_path, supports};
+use crate::geometry::arrows::{head_at, load_at};
+use crate::geometry::robot::path_flags;
+use crate::geometry::supports::support_position;
 use crate::state::{AppState, Item};
 
 /// Where a thing that can be dragged is, m; None for one that cannot.
@@ -12,7 +14,7 @@ pub fn of(state: &AppState, item: Item) -> Option<Point> {
     match item {
         Item::Support { cable, support } => {
             state.scene.cables.get(cable)?.supports.get(support)?.at_m?;
-            supports::place(state, cable, support)
+            support_position(state, cable, support)
         }
         Item::Corner { obstacle, corner } => match &state.scene.obstacles.get(obstacle)?.shape {
             Shape::Terrain { points_m } | Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => {
@@ -26,13 +28,13 @@ pub fn of(state: &AppState, item: Item) -> Option<Point> {
             Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => points_m.first().copied(),
             Shape::Circle { center_m, .. } => Some(*center_m),
         },
-        Item::Load(k) => forces::load_at(state, k).map(|(at, _)| at),
+        Item::Load(k) => load_at(state, k).map(|(at, _)| at),
         Item::Head(k) => {
             state.scene.loads.get(k)?.force_n?;
-            forces::head_at(state, k)
+            head_at(state, k)
         }
         Item::Robot => state.scene.robot.as_ref().map(|r| r.at_m),
-        Item::Leg(k) => robot_path::flags(state).into_iter().find(|(leg, ..)| *leg == k).map(|(_, at, _)| at),
+        Item::Leg(k) => path_flags(state).into_iter().find(|(leg, ..)| *leg == k).map(|(_, at, _)| at),
         Item::Cable(_) => None,
     }
 }
@@ -56,7 +58,7 @@ pub fn within(state: &AppState, [a, b]: [Point; 2]) -> Vec<Item> {
         (0..c.supports.len()).map(move |support| (Item::Support { cable, support }, (cable, support)))
     });
     let mut out: Vec<Item> = supports
-        .filter(|(_, (cable, support))| supports::place(state, *cable, *support).is_some_and(inside))
+        .filter(|(_, (cable, support))| support_position(state, *cable, *support).is_some_and(inside))
         .map(|(item, _)| item)
         .collect();
     for (k, o) in scene.obstacles.iter().enumerate() {
@@ -81,7 +83,7 @@ pub fn all(state: &AppState) -> Vec<Item> {
     let supports = scene.cables.iter().enumerate();
     let supports =
         supports.flat_map(|(cable, c)| (0..c.supports.len()).map(move |support| Item::Support { cable, support }));
-    let legs = robot_path::flags(state).into_iter().map(|(k, ..)| Item::Leg(k));
+    let legs = path_flags(state).into_iter().map(|(k, ..)| Item::Leg(k));
     supports
         .chain((0..scene.obstacles.len()).map(Item::Obstacle))
         .chain((0..scene.loads.len()).map(Item::Load))

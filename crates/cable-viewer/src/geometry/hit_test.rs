@@ -4,7 +4,9 @@ use cable_core::math::Point;
 use cable_core::scene::Shape;
 use egui::{Pos2, Rect};
 
-use crate::canvas::layers::{forces, robot, robot_path, supports};
+use crate::geometry::arrows::{head_at, load_at};
+use crate::geometry::robot::{path_flags, robot_outline};
+use crate::geometry::supports::support_position;
 use crate::state::{AppState, Item};
 
 /// How near counts as on it, points.
@@ -29,17 +31,17 @@ pub fn item_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
     };
     for (cable, c) in state.scene.cables.iter().enumerate() {
         for support in 0..c.supports.len() {
-            let d = supports::place(state, cable, support).and_then(|at| near(at, SUPPORT));
+            let d = support_position(state, cable, support).and_then(|at| near(at, SUPPORT));
             offer(d, Item::Support { cable, support });
         }
     }
     for load in 0..state.scene.loads.len() {
-        offer(forces::load_at(state, load).and_then(|(at, _)| near(at, CORNER)), Item::Load(load));
+        offer(load_at(state, load).and_then(|(at, _)| near(at, CORNER)), Item::Load(load));
         if state.layers.forces {
-            offer(forces::head_at(state, load).and_then(|at| near(at, CORNER)), Item::Head(load));
+            offer(head_at(state, load).and_then(|at| near(at, CORNER)), Item::Head(load));
         }
     }
-    for (leg, at, _) in robot_path::flags(state) {
+    for (leg, at, _) in path_flags(state) {
         offer(near(at, CORNER), Item::Leg(leg));
     }
     for (obstacle, o) in state.scene.obstacles.iter().enumerate() {
@@ -58,7 +60,7 @@ pub fn item_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
     if let Some((cable, _, _)) = cable_at(state, canvas, p, LINE) {
         return Some(Item::Cable(cable));
     }
-    if inside(&robot::outline(state), state.camera.to_world(canvas, p)) {
+    if inside(&robot_outline(state), state.camera.to_world(canvas, p)) {
         return Some(Item::Robot);
     }
     obstacle_at(state, canvas, p)

@@ -2,9 +2,7 @@
 
 use std::path::Path;
 
-use cable_core::files;
-
-use crate::state::AppState;
+use cable_core::{Solution, files};
 
 /// What is asked, and the word a column has.
 pub const QUESTIONS: [(&str, &str); 4] = [
@@ -30,6 +28,17 @@ pub struct Answers {
     pub words: String,
 }
 
+/// What was on screen while they were given.
+#[derive(Clone, Copy, Debug)]
+pub struct Context<'a> {
+    /// Name of the scene.
+    pub scene: &'a str,
+    /// The answer.
+    pub answer: Option<&'a Solution>,
+    /// Why there is none.
+    pub error: Option<&'a str>,
+}
+
 impl Answers {
     /// Something was marked low, and what confused is not said yet.
     #[must_use]
@@ -45,16 +54,16 @@ impl Answers {
 
     /// A row: the marks, the words, and what was on screen while they were given.
     #[must_use]
-    fn row(&self, state: &AppState) -> String {
+    fn row(&self, context: &Context<'_>) -> String {
         let mut cells: Vec<String> = self.marks.iter().map(|m| m.map_or_else(String::new, |m| m.to_string())).collect();
-        let answer = state.snapshot.solution.as_deref();
+        let answer = context.answer;
         let warnings = answer.map_or(&[][..], |a| &a.warnings);
         let mut kinds: Vec<&str> = warnings.iter().map(|w| w.kind.name()).collect();
         kinds.dedup();
         cells.push(quoted(&self.words));
-        cells.push(quoted(&state.scene.name));
+        cells.push(quoted(context.scene));
         cells.push(answer.map_or_else(String::new, |a| a.model.to_string()));
-        cells.push(quoted(state.snapshot.error.as_deref().unwrap_or_default()));
+        cells.push(quoted(context.error.unwrap_or_default()));
         cells.push(quoted(&kinds.join(" ")));
         cells.join(",")
     }
@@ -69,7 +78,7 @@ fn quoted(text: &str) -> String {
 ///
 /// # Errors
 /// In words: it is not complete, or the file refuses.
-pub fn save(path: &Path, answers: &Answers, state: &AppState) -> Result<(), String> {
+pub fn save(path: &Path, answers: &Answers, context: &Context<'_>) -> Result<(), String> {
     if !answers.complete() {
         return Err("every question needs a mark, and a low one a few words on what confused".to_owned());
     }
@@ -83,7 +92,7 @@ pub fn save(path: &Path, answers: &Answers, state: &AppState) -> Result<(), Stri
     if !text.ends_with('\n') {
         text.push('\n');
     }
-    text += &answers.row(state);
+    text += &answers.row(context);
     text.push('\n');
     files::write_atomic(path, text.as_bytes()).map_err(|e| e.to_string())
 }

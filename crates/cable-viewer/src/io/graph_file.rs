@@ -5,8 +5,9 @@ use std::path::Path;
 
 use cable_core::files;
 
-use crate::plot::{LINES, round_step};
 use crate::record::series::Series;
+use crate::render::colour::LINES;
+use crate::units::format::round_step;
 
 /// What is in view of a graph.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -98,7 +99,7 @@ pub fn svg(sheet: &Sheet) -> String {
         ROOM[0], ROOM[1]
     );
     for (value, across) in ticks(left, right).map(|v| (v, true)).chain(ticks(bottom, top).map(|v| (v, false))) {
-        let text = crate::units::unit::significant(value, 4);
+        let text = crate::units::format::significant(value, 4);
         let (x1, y1, x2, y2) = if across {
             (x(value), ROOM[1], x(value), ROOM[1] + height)
         } else {
@@ -160,7 +161,7 @@ fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
         .with_theme(egui::Theme::Light)
         .with_render_cursor(false)
         .with_accessibility_check(false)
-        .renderer(crate::app::screenshot::renderer()?)
+        .renderer(crate::render::offscreen::renderer()?)
         .build_ui(move |ui| {
             crate::render::theme::install(ui.ctx());
             ui.strong(&sheet.title);
@@ -173,7 +174,7 @@ fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
                 .show(ui, |plot| {
                     plot.set_plot_bounds(egui_plot::PlotBounds::from_min_max([left, bottom], [right, top]));
                     for (k, line) in sheet.lines.iter().enumerate() {
-                        let (colour, style) = crate::plot::look(line, k);
+                        let (colour, style) = crate::record::series::line_style(line, k);
                         let points: Vec<[f64; 2]> =
                             visible(line, &sheet).iter().map(|p| [p[0] / sheet.si[0], p[1] / sheet.si[1]]).collect();
                         let drawn = egui_plot::Line::new(line.name.clone(), points).color(colour).width(2.0);

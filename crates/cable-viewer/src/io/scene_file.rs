@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use cable_core::Scene;
-use cable_core::files;
+use cable_core::{Scene, files};
 
 /// Reads a scene.
 ///

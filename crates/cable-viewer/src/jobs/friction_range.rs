@@ -7,7 +7,6 @@ use cable_core::scene::SupportKind;
 use cable_core::{Scene, Solution};
 
 use crate::jobs::background;
-use crate::state::AppState;
 
 /// What was found, and what was asked.
 pub type Found = (Arc<FrictionRange>, Arc<Query>);
@@ -68,31 +67,6 @@ impl Job {
     }
 }
 
-/// Whether an ask is the one that what is on screen asks.
-#[must_use]
-pub fn fits(state: &AppState, ask: &Query) -> bool {
-    ask.span_s == span_s(state)
-        && ask.factors == state.spread.factors
-        && ask.model == state.model
-        && ask.settings == state.settings
-        && ask.scene == *scene(state)
-}
-
-/// What is on screen asks; None while it moves or has no answer.
-#[must_use]
-pub fn asked(state: &AppState) -> Option<Query> {
-    let still = state.playback.paused && state.grabbed.is_none() && state.scene_fault.is_none();
-    let answered = state.snapshot.solution.is_some() && state.snapshot.error.is_none() && !state.snapshot.draft;
-    (state.spread.on && still && answered).then(|| Query {
-        scene: scene(state).clone(),
-        model: state.model,
-        settings: state.settings,
-        factors: state.spread.factors,
-        span_s: span_s(state),
-        hands: hands(scene(state), state.recording.answers()),
-    })
-}
-
 /// Least move of a support between two answers that is a hand's, m: less is rounding.
 const MOVED_M: f64 = 1e-9;
 
@@ -134,23 +108,4 @@ pub fn hands(scene: &Scene, answers: &[Solution]) -> Vec<Action> {
         }
     }
     hands
-}
-
-fn scene(state: &AppState) -> &Scene {
-    state.snapshot.scene.as_deref().unwrap_or(&state.scene)
-}
-
-/// How long time has run.
-fn span_s(state: &AppState) -> f64 {
-    let now_s = state.live.solution.as_ref().map_or(0.0, |s| s.time_s);
-    now_s.min(LONGEST_S)
-}
-
-/// The ribbon, if there is one of what is on screen.
-#[must_use]
-pub fn shown(state: &AppState) -> Option<&Found> {
-    match &state.spread.progress {
-        Progress::Done(found) if state.spread.on && fits(state, &found.1) => Some(found),
-        _ => None,
-    }
 }

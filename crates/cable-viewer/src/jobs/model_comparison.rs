@@ -7,7 +7,6 @@ use std::time::Instant;
 use cable_core::{Model, Scene, Settings, Simulation, Solution};
 
 use crate::jobs::background;
-use crate::state::Held;
 
 /// What came of a model.
 #[derive(Clone, Debug)]
@@ -55,20 +54,4 @@ fn at_rest(scene: &Scene, model: Model, settings: Settings) -> Result<(Arc<Solut
     let mut simulation = Simulation::with_settings(scene.clone(), model, settings).map_err(|e| e.to_string())?;
     let solution = simulation.settle().map_err(|e| e.to_string())?;
     Ok((Arc::new(solution), began.elapsed().as_secs_f64()))
-}
-
-/// Holds each answer, in place of one held before of the same scene and model, as far as there is room.
-pub fn hold(all: &mut Vec<Held>, found: &Found) {
-    for answer in &found.answers {
-        let Ok((solution, wall_s)) = &answer.result else { continue };
-        let name = format!("{}, {} model at rest", found.scene.name, answer.model);
-        let scene = Arc::clone(&found.scene);
-        let held = Held { name, scene, solution: Arc::clone(solution), wall_s: *wall_s, run: None };
-        let before = all.iter().position(|h| h.name == held.name && h.run.is_none() && h.scene == held.scene);
-        if let Some(before) = before.and_then(|k| all.get_mut(k)) {
-            *before = held;
-        } else if all.len() < Held::MOST {
-            all.push(held);
-        }
-    }
 }

@@ -6,7 +6,6 @@ use cable_core::summary::{NeglectedBending, neglected_bending};
 use cable_core::{Scene, Settings, Solution};
 
 use crate::jobs::background;
-use crate::state::AppState;
 
 /// One a cable that is likely to be stiff and was answered without it.
 pub type Found = Arc<Vec<NeglectedBending>>;
@@ -16,9 +15,12 @@ pub type Progress = background::Progress<Found>;
 /// The question: of which answer.
 #[derive(Clone, Debug)]
 pub struct Ask {
-    scene: Arc<Scene>,
-    settings: Settings,
-    answer: Arc<Solution>,
+    /// The scene of the answer.
+    pub scene: Arc<Scene>,
+    /// Mesh and accuracy.
+    pub settings: Settings,
+    /// The answer.
+    pub answer: Arc<Solution>,
 }
 
 /// What was asked last, and what came of it.
@@ -59,20 +61,4 @@ impl Job {
     pub fn progress(&self) -> Progress {
         self.job.progress()
     }
-}
-
-/// The question about what is on screen; None where that is no answer at rest.
-#[must_use]
-pub fn asked(state: &AppState) -> Option<Ask> {
-    let answer = state.snapshot.solution.clone().filter(|s| s.time_s == 0.0)?;
-    let settled = state.snapshot.error.is_none() && !state.snapshot.draft && !state.snapshot.stale;
-    let scene = state.snapshot.scene.clone().filter(|_| settled)?;
-    Some(Ask { scene, settings: state.settings, answer })
-}
-
-/// Whether what was asked is of the answer on screen.
-#[must_use]
-pub fn fits(state: &AppState) -> bool {
-    let shown = state.snapshot.solution.as_ref();
-    state.bending.ask.as_ref().zip(shown).is_some_and(|(ask, shown)| Arc::ptr_eq(&ask.answer, shown))
 }

@@ -10,7 +10,6 @@ use cable_core::scene::SupportKind;
 use cable_core::{Scene, Settings, Solution};
 
 use crate::jobs::background;
-use crate::state::{AppState, Item};
 
 /// Places of a robot that are looked at. More: finer and, with the way back from each, slower by the square; fewer: mounds fall
 /// between them.
@@ -182,29 +181,6 @@ pub fn movable(scene: &Scene) -> Vec<Moved> {
         placed.map(move |(support, _)| Moved::Support { cable, support })
     });
     robot.into_iter().chain(supports).collect()
-}
-
-/// What is taken somewhere: what was chosen, if it is still there.
-#[must_use]
-pub fn moved(state: &AppState) -> Option<Moved> {
-    let all = movable(&state.scene);
-    let chosen = state.reach.choice.moved.filter(|m| all.contains(m));
-    let robot = || all.first().copied().filter(|m| *m == Moved::Robot);
-    let picked = || match state.selected {
-        Some(Item::Support { cable, support }) => Some(Moved::Support { cable, support }).filter(|m| all.contains(m)),
-        _ => None,
-    };
-    let driven = || {
-        let moves = |m: &&Moved| match m {
-            Moved::Robot => false,
-            Moved::Support { cable, support } => {
-                let s = state.scene.cables.get(*cable).and_then(|c| c.supports.get(*support));
-                s.is_some_and(|s| s.motion.is_some())
-            }
-        };
-        all.iter().find(moves).copied()
-    };
-    chosen.or_else(robot).or_else(picked).or_else(driven).or_else(|| all.last().copied())
 }
 
 /// In words.

@@ -4,14 +4,12 @@ use cable_core::scene::{Environment, View};
 use egui::Ui;
 
 use crate::command::{Command, SceneCommand};
-use crate::panels::cable::labelled;
 use crate::panels::scene_errors;
 use crate::state::AppState;
 use crate::units::unit::Unit;
 use crate::widgets::field;
-use crate::widgets::property::{Known, Quantity, row};
-use crate::widgets::time_table;
-use crate::widgets::time_table::{Knots, Table};
+use crate::widgets::property::{Known, Quantity, labelled, row};
+use crate::widgets::time_table::{self, Knots, Table};
 
 /// What the environment panel edits: how it is shown, its key, how it is read and written.
 type Entry = (Quantity, &'static str, fn(&Environment) -> f64, fn(&mut Environment, f64));

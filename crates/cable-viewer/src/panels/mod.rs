@@ -1,9 +1,9 @@
 //! The panels are the forms beside the canvas: each reads the state and pushes commands, nothing else.
 //!
-//! - [`scene`], [`cable`], [`environment`], [`robot`], [`solver`]: what is edited, on the left
-//! - [`readouts`], [`warnings`], [`analysis`]: what was answered, on the right
-//! - [`plots`], [`playback`], [`timeline`]: graphs and time, below
-//! - [`scene_errors`]: what is wrong with the scene, beside the field where it was typed
+//! - `scene`, `cable`, `environment`, `robot`, `solver`: what is edited, on the left
+//! - `readouts`, `warnings`, `analysis`: what was answered, on the right
+//! - `plots`, `playback`, `timeline`: graphs and time, below
+//! - `scene_errors`: what is wrong with the scene, beside the field where it was typed
 
 pub mod analysis;
 pub mod cable;

@@ -4,11 +4,10 @@ use egui::{Button, Slider, SliderClamping, Ui};
 
 use crate::command::{Command, PlaybackCommand};
 use crate::state::{AppState, Playback};
-use crate::units::unit;
+use crate::units::format;
 use crate::units::unit::Unit;
 use crate::widgets::field;
-use crate::widgets::icon;
-use crate::widgets::icon::Icon;
+use crate::widgets::icon::{self, Icon};
 
 /// Below this share of the speed asked for, the shortfall is named: smaller ones are jitter of the clock.
 const KEEPS_UP: f64 = 0.9;
@@ -81,10 +80,10 @@ fn real_time(ui: &mut Ui, state: &AppState) {
         return;
     };
     let asked = state.playback.speed;
-    let text = format!("Runs at {}", unit::times(reached));
+    let text = format!("Runs at {}", format::times(reached));
     let help = "Simulated seconds per second actually reached";
     if reached < KEEPS_UP * asked {
-        let slow = format!("{text} of {}", unit::times(asked));
+        let slow = format!("{text} of {}", format::times(asked));
         ui.colored_label(ui.visuals().warn_fg_color, slow)
             .on_hover_text(format!("{help}. The solver does not keep up: fewer segments or a looser tolerance help"));
     } else {

@@ -3,12 +3,12 @@
 use egui::{ComboBox, Id, Ui};
 
 use crate::command::{Command, FileCommand};
-use crate::jobs::friction_range;
 use crate::plot::{Touched, View, along, time};
 use crate::record::measure::Measure;
 use crate::render::colour::Quantity;
 use crate::state::AppState;
 use crate::state::dialog::Dialog;
+use crate::state::questions::friction_answer;
 use crate::widgets::field;
 
 /// Below this width the graphs stand one under the other, points.
@@ -113,7 +113,7 @@ fn along_cable(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touche
         (Some(cable), Some(solved)) => {
             // The ribbon is of the end of the run.
             let present = state.snapshot.solution.as_ref().map(|s| s.time_s);
-            let found = friction_range::shown(state).filter(|(_, ask)| present == Some(ask.span_s));
+            let found = friction_answer(state).filter(|(_, ask)| present == Some(ask.span_s));
             let ribbon = found.and_then(|(s, _)| s.along.get(index)).map_or(&[][..], Vec::as_slice);
             along::ui(ui, cable, (solved, ribbon), view, height)
         }

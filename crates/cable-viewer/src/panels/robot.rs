@@ -8,14 +8,13 @@ use cable_core::scene::robot::{ROLLING_RESISTANCE, TRACK_FRICTION};
 use egui::{Grid, Ui};
 
 use crate::command::{Command, PlaybackCommand, SceneCommand};
-use crate::panels::cable::labelled;
 use crate::panels::scene_errors;
 use crate::state::AppState;
-use crate::units::unit;
+use crate::units::format::{self, significant};
 use crate::units::unit::Unit;
 use crate::widgets::field;
-use crate::widgets::icon;
-use crate::widgets::icon::Icon;
+use crate::widgets::icon::{self, Icon};
+use crate::widgets::property::labelled;
 
 /// Width of a number, points: “12.34 m/s” fits.
 const WIDTH: f32 = 72.0;
@@ -89,7 +88,7 @@ fn readouts(ui: &mut Ui, r: &RobotReport) {
             "Speed",
             {
                 let Unit { symbol, si, .. } = Unit::M_PER_S.shown();
-                let shown = |v: f64| unit::significant(v / si, 3);
+                let shown = |v: f64| significant(v / si, 3);
                 format!("{} {symbol}, told {} {symbol}", shown(r.speed_m_per_s), shown(r.commanded_m_per_s))
             },
             "Along the ground, and what it is told by hand or by its path",
@@ -97,18 +96,18 @@ fn readouts(ui: &mut Ui, r: &RobotReport) {
         ("Slope", format!("{:.1}°", r.pitch_deg).replace('-', "−"), "Positive where it climbs to the right"),
         (
             "Track force",
-            format!("{}, {} of what holds", unit::force(r.thrust_n), unit::percent(share)),
+            format!("{}, {} of what holds", format::force(r.thrust_n), format::percent(share)),
             "Force of the tracks along the ground, and its share of friction times normal force",
         ),
-        ("Normal force", unit::force(r.normal_n), "Of the ground on its tracks; the cable can lift or press"),
+        ("Normal force", format::force(r.normal_n), "Of the ground on its tracks; the cable can lift or press"),
         (
             "Pull of the cable",
-            unit::force(r.hitch_x_n.hypot(r.hitch_y_n)),
+            format::force(r.hitch_x_n.hypot(r.hitch_y_n)),
             "On its hitch; it slows the robot by the balance of forces",
         ),
         (
             "Press of the cable",
-            unit::force(r.push_x_n.hypot(r.push_y_n)),
+            format::force(r.push_x_n.hypot(r.push_y_n)),
             "On its outline, where the cable lies on it or is pushed along",
         ),
     ];

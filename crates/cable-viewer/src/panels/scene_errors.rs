@@ -7,8 +7,8 @@ use egui::Ui;
 
 use crate::command::{Command, SceneCommand};
 use crate::state::AppState;
-use crate::units::translate;
 use crate::units::unit::Unit;
+use crate::units::{format, translate};
 use crate::widgets::field;
 
 /// A change that puts a fault right.
@@ -37,8 +37,8 @@ pub fn sentence(fault: &SceneFault) -> String {
             "needs ≥ {} {symbol}, is {:.2} {symbol}: stretching to its supports would take {}, and it breaks at {}",
             up_to_hundredth(*way_m / si),
             length_m / si,
-            crate::units::unit::force(*needed_n),
-            crate::units::unit::force(*breaking_n)
+            format::force(*needed_n),
+            format::force(*breaking_n)
         ),
         other => translate::shown(&other.to_string()).into_owned(),
     }

@@ -7,7 +7,7 @@ use egui::{Grid, Ui};
 
 use crate::command::Command;
 use crate::state::{AppState, WorkerStatus};
-use crate::units::unit;
+use crate::units::format::{self, significant};
 use crate::units::unit::Unit;
 use crate::widgets::property::{Known, Quantity, row};
 use crate::worker;
@@ -162,10 +162,10 @@ fn cost(ui: &mut Ui, state: &AppState, answer: Option<&Solution>) {
         WorkerStatus::Busy => "working…",
         WorkerStatus::Dead(_) => "stopped, see warnings",
     };
-    let step = if cost.inner_step_s > 0.0 { unit::duration(cost.inner_step_s) } else { "none, at rest".to_owned() };
+    let step = if cost.inner_step_s > 0.0 { format::duration(cost.inner_step_s) } else { "none, at rest".to_owned() };
     let segments = largest_mesh(Some(answer)).map_or_else(|| "–".to_owned(), |n| n.to_string());
     let rows = [
-        ("Wall time", unit::duration(state.snapshot.solve_wall_s), "Time the last solve or step took"),
+        ("Wall time", format::duration(state.snapshot.solve_wall_s), "Time the last solve or step took"),
         (
             "Iterations",
             cost.iterations.to_string(),
@@ -175,7 +175,7 @@ fn cost(ui: &mut Ui, state: &AppState, answer: Option<&Solution>) {
             "Residual",
             {
                 let Unit { symbol, si, .. } = Unit::N.shown();
-                format!("{} {symbol}", unit::significant(cost.residual_n / si, 2))
+                format!("{} {symbol}", significant(cost.residual_n / si, 2))
             },
             "Largest force left unbalanced at a node: the smaller, the closer to equilibrium",
         ),

@@ -5,7 +5,7 @@ use egui::{Color32, Rect, Sense, Slider, Stroke, Ui, pos2, vec2};
 
 use crate::command::{Command, PlaybackCommand};
 use crate::state::AppState;
-use crate::units::{translate, unit};
+use crate::units::{format, translate};
 use crate::widgets::field;
 
 /// Room for the buttons beside it, points.
@@ -66,7 +66,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         slider.on_hover_text(state.recording.about()).on_disabled_hover_text(NOTHING);
         let text = match state.recording.shown_s {
             Some(t) => format!("showing {t:.2} s of {last:.2} s"),
-            None => format!("recorded {}", unit::duration(last - first)),
+            None => format!("recorded {}", format::duration(last - first)),
         };
         if span.is_some() {
             ui.label(text);

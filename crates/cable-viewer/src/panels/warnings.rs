@@ -6,12 +6,10 @@ use cable_core::{Settings, Solution};
 use egui::{Color32, Frame, RichText, ScrollArea, Ui};
 
 use crate::command::{Command, FileCommand, SceneCommand, ViewCommand};
-use crate::panels::scene_errors;
-use crate::panels::scene_errors::Fix;
+use crate::panels::scene_errors::{self, Fix};
 use crate::state::{AppState, Item, WorkerStatus};
-use crate::units::{translate, unit};
-use crate::widgets::icon;
-use crate::widgets::icon::Icon;
+use crate::units::{format, translate, unit};
+use crate::widgets::icon::{self, Icon};
 
 /// Most warnings drawn; the rest is counted. A cable that is too tight everywhere can have one a node.
 const MOST: usize = 30;
@@ -148,13 +146,13 @@ fn figures(warning: &Warning) -> Option<String> {
     let Warning { value, limit, .. } = *warning;
     match warning.kind {
         WarningKind::ServiceTension | WarningKind::BreakingTension | WarningKind::MayBreak => {
-            Some(unit::force_of(value, limit))
+            Some(format::force_of(value, limit))
         }
-        WarningKind::Broken => Some(unit::force(limit)),
+        WarningKind::Broken => Some(format::force(limit)),
         WarningKind::BendRadius | WarningKind::Kink => {
-            Some(format!("{}, least {}", unit::length(value), unit::length(limit)))
+            Some(format!("{}, least {}", format::length(value), format::length(limit)))
         }
-        WarningKind::Slack => Some(unit::length(value)),
+        WarningKind::Slack => Some(format::length(value)),
         WarningKind::SidewallPressure => {
             let per_metre = |v| unit::Unit { decimals: Some(0), ..unit::Unit::N_PER_M }.text(v).replace(' ', "\u{a0}");
             Some(format!("{} of {}", per_metre(value), per_metre(limit)))
@@ -162,9 +160,9 @@ fn figures(warning: &Warning) -> Option<String> {
         WarningKind::Wrapped => Some(format!("{value:.2} turns")),
         WarningKind::Curl => Some(format!("{value:.0}° of {limit:.0}°")),
         WarningKind::Snag => Some(format!("tension ratio {value:.2}")),
-        WarningKind::EnergyGrows => Some(format!("{} more than given", unit::energy(value))),
+        WarningKind::EnergyGrows => Some(format!("{} more than given", format::energy(value))),
         WarningKind::Loop => None,
-        WarningKind::Accuracy => Some(format!("{} of {}", unit::percent(value), unit::percent(limit))),
+        WarningKind::Accuracy => Some(format!("{} of {}", format::percent(value), format::percent(limit))),
         WarningKind::InitialPenetration
         | WarningKind::NotUnique
         | WarningKind::SupportHeld
@@ -208,7 +206,7 @@ fn wheel(state: &AppState, answer: &Solution, warning: &Warning, cable: usize) -
     })?;
     let mut value = of.supports.get(support)?.clone();
     value.radius_m = Some(of.min_bend_radius_m);
-    let label = format!("Give {} a wheel of {}", value.name, unit::length(of.min_bend_radius_m));
+    let label = format!("Give {} a wheel of {}", value.name, format::length(of.min_bend_radius_m));
     let command = SceneCommand::SetSupport { cable, support, value: Box::new(value) };
     Some(Fix { label, command: Command::Scene(command) })
 }
@@ -241,7 +239,7 @@ fn card(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) 
 
 fn actions(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
     if let Some(at_m) = entry.at_m {
-        let show = ui.button("Show").on_hover_text(format!("Centres the picture on {}", unit::position(at_m)));
+        let show = ui.button("Show").on_hover_text(format!("Centres the picture on {}", format::position(at_m)));
         crate::widgets::field::name(&show, &format!("Show warning {}", number + 1));
         if show.clicked() {
             commands.push(Command::View(ViewCommand::CentreOn(at_m)));

@@ -5,11 +5,10 @@ use cable_core::analysis::friction_range::TensionRange;
 use cable_core::solution::CableSolution;
 use egui::Ui;
 
-use crate::units::unit::Unit;
-
-use crate::plot::{Graph, Touched, View, limits, per_newton, show};
-use crate::record::measure::Measure;
+use crate::plot::{Graph, Touched, View, show};
+use crate::record::measure::{Measure, per_newton, tension_limits};
 use crate::record::series::{Series, thin};
+use crate::units::unit::Unit;
 
 /// The group of graphs along the cable.
 pub const GROUP: &str = "along";
@@ -32,7 +31,7 @@ pub fn ui(
         measure: Measure::Cable(quantity),
         across: ("Arc length", Unit::M),
         range: [0.0, cable.length_m],
-        limits: limits(quantity, cable),
+        limits: tension_limits(quantity, cable),
         follow,
         height,
         ribbon: {

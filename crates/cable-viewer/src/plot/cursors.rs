@@ -3,7 +3,8 @@
 use egui::{Id, Ui};
 
 use crate::record::series::{Series, value_at};
-use crate::units::unit::{DIGITS, significant};
+use crate::units::format::significant;
+use crate::units::unit::DIGITS;
 
 /// Places of the cursors of a graph.
 #[derive(Clone, Debug, Default, PartialEq)]

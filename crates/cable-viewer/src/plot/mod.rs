@@ -1,6 +1,6 @@
 //! The graphs show quantities along the cable, and these, the robot and energies against time.
 //!
-//! - [`along`], [`time`]: what each graph shows
+//! - `along`, `time`: what each graph shows
 //! - `cursors`, `keys`: reading values off it, and steering it without a pointer
 
 pub mod along;
@@ -8,25 +8,18 @@ mod cursors;
 mod keys;
 pub mod time;
 
-use cable_core::Cable;
 use egui::{Align2, Color32, Id, RichText, Sense, Stroke, TextStyle, Ui, vec2};
 use egui_plot::{GridInput, GridMark, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
 
 use crate::io::graph_file::Sheet;
 use crate::plot::cursors::Cursors;
 use crate::record::measure::Measure;
-use crate::record::series::{Series, value_at};
-use crate::render::colour::Quantity;
-use crate::units::unit::{DIGITS, Unit, significant};
+use crate::record::series::{Series, line_style, value_at};
+use crate::render::colour::{LINES, Quantity};
+use crate::units::format::{round_step, significant};
+use crate::units::unit::{DIGITS, Unit};
 use crate::widgets::field;
 
-/// Colours of the lines, distinct to colour-blind eyes (after M. Okabe and K. Ito, “Color Universal Design”, 2008).
-pub const LINES: [Color32; 4] = [
-    Color32::from_rgb(0, 114, 178),
-    Color32::from_rgb(0, 158, 115),
-    Color32::from_rgb(170, 110, 190),
-    Color32::from_rgb(150, 120, 60),
-];
 /// The service limit.
 const SERVICE: Color32 = Color32::from_rgb(230, 159, 0);
 /// The breaking limit.
@@ -113,23 +106,6 @@ pub struct Touched {
     pub zoomed: bool,
     /// It is to be exported: what is in view, with the lines as they were drawn.
     pub export: Option<Box<Sheet>>,
-}
-
-/// Service and breaking limit of a quantity, SI.
-#[must_use]
-pub fn limits(quantity: Quantity, cable: &Cable) -> [f64; 2] {
-    let per_newton = per_newton(quantity, cable);
-    [cable.service_tension_n * per_newton, cable.breaking_tension_n * per_newton]
-}
-
-/// The quantity of a cable under one newton, SI.
-#[must_use]
-pub fn per_newton(quantity: Quantity, cable: &Cable) -> f64 {
-    match quantity {
-        Quantity::Tension => 1.0,
-        Quantity::Stress => 1.0 / cable.area_m2(),
-        Quantity::Strain => 1.0 / cable.axial_stiffness_n,
-    }
 }
 
 /// Lowest and highest value in view, SI.
@@ -277,18 +253,10 @@ fn draw_ribbon(plot: &mut PlotUi<'_>, ribbon: &[[f64; 3]], [x_si, si]: [f64; 2])
     plot.add(egui_plot::FilledArea::new(RIBBON, &xs, &low, &high).fill_color(colour).allow_hover(false));
 }
 
-/// Colour and style of the `k`-th line of a graph.
-pub fn look(line: &Series, k: usize) -> (Color32, LineStyle) {
-    match line.held {
-        Some(held) => (LINES[held % LINES.len()], LineStyle::dashed_loose()),
-        None => (LINES[k % LINES.len()], LineStyle::Solid),
-    }
-}
-
 /// Colour, style and width with which it is drawn. Where it goes up and down in every column, dashes cannot be seen, and would be
 /// thousands.
 fn drawn(line: &Series, k: usize) -> (Color32, LineStyle, f32) {
-    let (colour, style) = look(line, k);
+    let (colour, style) = line_style(line, k);
     if line.held.is_some() && restless(&line.points) {
         return (colour.gamma_multiply(0.7), LineStyle::Solid, 1.0);
     }
@@ -345,17 +313,6 @@ fn draw_marks(plot: &mut PlotUi<'_>, mark: Option<f64>, cursors: &[f64], text: O
     }
 }
 
-/// The round step (1, 2 or 5 times a power of ten) that cuts a range into about so many parts.
-pub fn round_step(range: f64, parts: f64) -> f64 {
-    let raw = range / parts;
-    if !(raw.is_finite() && raw > 0.0) {
-        return 1.0;
-    }
-    let power = 10_f64.powf(raw.log10().floor());
-    let step = [1.0, 2.0, 5.0].map(|k| k * power).into_iter().find(|step| *step >= raw * (1.0 - 1e-9));
-    step.unwrap_or(10.0 * power)
-}
-
 fn marks(input: GridInput, parts: f64) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     let step = round_step(high - low, parts);
@@ -375,7 +332,7 @@ fn tick(mark: GridMark) -> String {
 /// not named; what finds no room is told on hover.
 fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series], high: f64) -> (Id, bool) {
     let mut entries: Vec<(String, Color32, bool)> =
-        lines.iter().enumerate().map(|(k, l)| (l.name.clone(), look(l, k).0, l.held.is_some())).collect();
+        lines.iter().enumerate().map(|(k, l)| (l.name.clone(), line_style(l, k).0, l.held.is_some())).collect();
     if graph.ribbon.len() >= 2 {
         entries.push((RIBBON.to_owned(), LINES[0].gamma_multiply(0.5), false));
     }

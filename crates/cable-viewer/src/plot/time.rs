@@ -3,13 +3,13 @@
 use cable_core::{Cable, Scene};
 use egui::Ui;
 
-use crate::jobs::friction_range;
-use crate::plot::{Graph, Touched, View, in_view, per_newton, show};
-use crate::record::measure::Measure;
+use crate::plot::{Graph, Touched, View, in_view, show};
+use crate::record::measure::{Measure, per_newton};
 use crate::record::samples::Sample;
 use crate::record::series::{Series, thin};
 use crate::render::colour::Quantity;
 use crate::state::AppState;
+use crate::state::questions::friction_answer;
 use crate::units::unit::Unit;
 
 /// Between two columns of a line of more samples than can be told apart, points: lines are as wide. Less: twice the triangles for the same
@@ -71,7 +71,7 @@ fn graph(ui: &mut Ui, state: &AppState, view: View, (title, height): (&str, f32)
 
 /// The largest tension with less and more friction, and what follows from it.
 fn ribbon(state: &AppState, cable: &Cable, measure: Measure) -> Vec<[f64; 3]> {
-    let (Measure::Cable(quantity), Some((found, _))) = (measure, friction_range::shown(state)) else {
+    let (Measure::Cable(quantity), Some((found, _))) = (measure, friction_answer(state)) else {
         return Vec::new();
     };
     let scale = per_newton(quantity, cable);

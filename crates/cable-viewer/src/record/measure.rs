@@ -4,6 +4,7 @@ use cable_core::Cable;
 
 use crate::record::samples::Sample;
 use crate::render::colour::Quantity;
+use crate::units::format::{self, significant};
 use crate::units::{system, unit};
 
 /// A line over time: its name, and how to read it off a sample.
@@ -110,12 +111,12 @@ impl Measure {
     #[must_use]
     pub fn text(self, value: f64) -> String {
         match self {
-            Self::Cable(Quantity::Tension) | Self::Pull => unit::force(value),
-            Self::Cable(Quantity::Stress) => unit::stress(value),
-            Self::Cable(Quantity::Strain) => unit::strain(value),
+            Self::Cable(Quantity::Tension) | Self::Pull => format::force(value),
+            Self::Cable(Quantity::Stress) => format::stress(value),
+            Self::Cable(Quantity::Strain) => format::strain(value),
             Self::Speed | Self::Energy => {
                 let (symbol, si) = self.unit(value.abs());
-                format!("{} {symbol}", unit::significant(value / si, unit::DIGITS))
+                format!("{} {symbol}", significant(value / si, unit::DIGITS))
             }
         }
     }
@@ -133,7 +134,7 @@ impl Measure {
     #[must_use]
     pub fn limits(self, cable: &Cable) -> [f64; 2] {
         match self {
-            Self::Cable(quantity) => crate::plot::limits(quantity, cable),
+            Self::Cable(quantity) => tension_limits(quantity, cable),
             _ => [f64::INFINITY; 2],
         }
     }
@@ -152,5 +153,22 @@ impl Measure {
                 ("Bending", |s| s.energy_j[3]),
             ],
         }
+    }
+}
+
+/// Service and breaking limit of a quantity, SI.
+#[must_use]
+pub fn tension_limits(quantity: Quantity, cable: &Cable) -> [f64; 2] {
+    let per_newton = per_newton(quantity, cable);
+    [cable.service_tension_n * per_newton, cable.breaking_tension_n * per_newton]
+}
+
+/// The quantity of a cable under one newton, SI.
+#[must_use]
+pub fn per_newton(quantity: Quantity, cable: &Cable) -> f64 {
+    match quantity {
+        Quantity::Tension => 1.0,
+        Quantity::Stress => 1.0 / cable.area_m2(),
+        Quantity::Strain => 1.0 / cable.axial_stiffness_n,
     }
 }

@@ -1,5 +1,10 @@
 //! Points of a line: thinning them to what a screen can show, reading a value between them.
 
+use egui::Color32;
+use egui_plot::LineStyle;
+
+use crate::render::colour::LINES;
+
 /// A named line; x ascending, SI values.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
@@ -50,6 +55,14 @@ pub fn value_at(points: &[[f64; 2]], x: f64) -> Option<f64> {
     match points.get(k) {
         Some(b) => Some(a[1] + (b[1] - a[1]) * (x - a[0]) / (b[0] - a[0])),
         None => (a[0] == x).then_some(a[1]),
+    }
+}
+
+/// Colour and style of the `k`-th line of a graph.
+pub fn line_style(line: &Series, k: usize) -> (Color32, LineStyle) {
+    match line.held {
+        Some(held) => (LINES[held % LINES.len()], LineStyle::dashed_loose()),
+        None => (LINES[k % LINES.len()], LineStyle::Solid),
     }
 }
 

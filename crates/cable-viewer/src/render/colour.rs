@@ -169,3 +169,11 @@ impl ColourScale {
         (value - low) / (high - low)
     }
 }
+
+/// Colours of the lines, distinct to colour-blind eyes (after M. Okabe and K. Ito, “Color Universal Design”, 2008).
+pub const LINES: [Color32; 4] = [
+    Color32::from_rgb(0, 114, 178),
+    Color32::from_rgb(0, 158, 115),
+    Color32::from_rgb(170, 110, 190),
+    Color32::from_rgb(150, 120, 60),
+];

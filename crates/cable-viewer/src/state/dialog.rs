@@ -1,5 +1,32 @@
 //! The one dialog that may be open, as data; `app/dialogs.rs` draws it.
 
+use std::path::PathBuf;
+
+use cable_core::Scene;
+
+use crate::io::feedback::Answers;
+use crate::io::graph_file::Sheet;
+
+/// An action that takes the place of the present scene, and so asks first if it is not saved.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Replacement {
+    /// Opens a scene file.
+    Open(PathBuf),
+    /// Opens the folder of a run.
+    OpenRun(PathBuf),
+    /// Opens a catalogue scene by its short id.
+    OpenCatalogue(String),
+    /// Opens the scene of a tutorial.
+    OpenTutorial {
+        /// Index of the tutorial.
+        tutorial: usize,
+        /// Short id of its scene.
+        scene: &'static str,
+    },
+    /// Closes the window.
+    Quit,
+}
+
 /// What the user is asked or told.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Dialog {
@@ -25,7 +52,7 @@ pub enum Dialog {
         /// The path as typed so far.
         path: String,
         /// What was in view.
-        sheet: Box<crate::io::graph_file::Sheet>,
+        sheet: Box<Sheet>,
     },
     /// Where to save what was recorded.
     SaveRun {
@@ -56,7 +83,7 @@ pub enum Dialog {
     /// What the user thinks.
     Feedback {
         /// So far.
-        answers: crate::io::feedback::Answers,
+        answers: Answers,
         /// Where to keep it, as typed so far.
         path: String,
     },
@@ -65,12 +92,12 @@ pub enum Dialog {
     /// A window that did not close has left unsaved changes.
     Recover {
         /// The scene as it was last kept.
-        scene: Box<cable_core::Scene>,
+        scene: Box<Scene>,
     },
     /// The scene has unsaved changes and something is about to replace it.
     Unsaved {
         /// What goes on once the user agrees.
-        then: Box<crate::command::Command>,
+        then: Replacement,
     },
     /// Keys and pointer.
     Help,

@@ -113,19 +113,33 @@ pub fn for_size(kind: Kind, size: f64) -> (&'static str, f64) {
     found.or(units.get(zero)).map_or(("", 1.0), |(symbol, si, _)| (symbol, *si))
 }
 
+impl Unit {
+    /// The unit it is shown in: itself, or that of the other system.
+    #[must_use]
+    pub fn shown(self) -> Self {
+        unit(self)
+    }
+
+    /// Without its symbol, for a column that has it in its heading; units may still be typed.
+    #[must_use]
+    pub fn bare(self) -> Self {
+        Self { symbol: "", ..self.shown() }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::unit;
+    use super::super::format;
     use super::*;
 
     /// By the definitions of the units, to the digits shown.
     #[test]
     fn figures_and_typed_text_follow_the_switch_and_values_do_not() {
         show(System::Us);
-        assert_eq!(unit::force(1000.0), "224.8 lbf");
-        assert_eq!(unit::force(1e6), "224.8 kip");
-        assert_eq!(unit::stress(1e6), "145.0 psi");
-        assert_eq!(unit::length(3.048), "10.00 ft");
+        assert_eq!(format::force(1000.0), "224.8 lbf");
+        assert_eq!(format::force(1e6), "224.8 kip");
+        assert_eq!(format::stress(1e6), "145.0 psi");
+        assert_eq!(format::length(3.048), "10.00 ft");
         assert_eq!(Unit::KG_PER_M.text(1.0), "0.6720 lb/ft");
         assert_eq!(Unit::K.text(10.0), "18.00 °F");
         assert_eq!(Unit::M_PER_S2.text(9.80665), "32.17 ft/s²");
@@ -141,7 +155,7 @@ mod tests {
         let exact = Unit::KN.exact(12_345.678);
         assert!((Unit::KN.parse(&exact).unwrap() / 12_345.678 - 1.0).abs() < 1e-13, "{exact}");
         show(System::Si);
-        assert_eq!(unit::force(1000.0), "1000 N");
+        assert_eq!(format::force(1000.0), "1000 N");
         assert!((Unit::M.parse("10 ft").unwrap() - 3.048).abs() < 1e-15);
     }
 }

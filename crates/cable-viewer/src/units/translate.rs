@@ -6,8 +6,7 @@
 
 use std::borrow::Cow;
 
-use crate::units::system;
-use crate::units::system::System;
+use crate::units::system::{self, System};
 use crate::units::unit::Unit;
 
 /// Units in sentences of the core. Longer symbols first: `N/m` begins with `N`.

@@ -4,8 +4,7 @@ use egui::text::{CCursor, CCursorRange};
 use egui::{Align2, Id, Key, Margin, Response, TextEdit, Ui};
 
 use crate::units::unit::Unit;
-use crate::widgets::icon;
-use crate::widgets::icon::Icon;
+use crate::widgets::icon::{self, Icon};
 
 /// What a field holds while it differs from the value behind it.
 #[derive(Clone, Debug, Default)]

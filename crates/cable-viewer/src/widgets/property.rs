@@ -1,11 +1,10 @@
 //! One editable quantity in a row: name, slider, typed value with its unit, reset.
 
-use egui::{RichText, Slider, SliderClamping, Ui};
+use egui::{Response, RichText, Slider, SliderClamping, Ui};
 
 use crate::units::unit::Unit;
 use crate::widgets::field;
-use crate::widgets::icon;
-use crate::widgets::icon::Icon;
+use crate::widgets::icon::{self, Icon};
 
 /// What a quantity is called, shown in and usually worth.
 #[derive(Clone, Copy, Debug)]
@@ -145,4 +144,20 @@ fn explanation(ui: &mut Ui, quantity: &Quantity, known: &Known) {
         ui.separator();
         ui.label(source);
     }
+}
+
+/// A text in the column of names, and the widget it names beside it; `name` is what tests and screen readers call it.
+pub fn labelled(ui: &mut Ui, text: &str, name: &str, contents: impl FnOnce(&mut Ui) -> Response) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let height = ui.spacing().interact_size.y;
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        let label =
+            ui.allocate_ui_with_layout(egui::vec2(crate::widgets::property::NAME_WIDTH, height), layout, |ui| {
+                ui.set_min_width(crate::widgets::property::NAME_WIDTH);
+                ui.add(egui::Label::new(text).truncate().selectable(false))
+            });
+        let named = contents(ui).labelled_by(label.inner.id);
+        field::name(&named, name);
+    });
 }

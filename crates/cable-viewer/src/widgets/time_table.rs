@@ -5,8 +5,7 @@ use egui::{Button, ScrollArea, Ui};
 
 use crate::units::unit::Unit;
 use crate::widgets::field;
-use crate::widgets::icon;
-use crate::widgets::icon::Icon;
+use crate::widgets::icon::{self, Icon};
 
 /// Height of a table, points: about six rows.
 const HEIGHT: f32 = 140.0;

@@ -8,8 +8,8 @@ use cable_core::contact::World;
 use cable_core::math::vec2;
 use cable_core::{Error, Model, Simulation, SolveError};
 
-use crate::worker::engine::FRAME_S;
 use crate::worker::request::Edit;
+use crate::worker::timing::FRAME_S;
 
 /// Segments of a draft. More: as slow as the answer; fewer: corners show, and the greatest tension is 3 % off.
 const SEGMENTS: usize = 60;

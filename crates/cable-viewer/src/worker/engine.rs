@@ -12,24 +12,10 @@ use cable_core::{Error, Model, Scene, Settings, Simulation, Solution};
 use crate::state::{Playback, Snapshot};
 use crate::worker::draft;
 use crate::worker::request::{Drag, Edit, Request, Resume};
-
-/// One frame of simulated time at normal speed, s.
-pub const FRAME_S: f64 = 1.0 / 60.0;
+use crate::worker::timing::{DRAFT_AFTER_S, FRAME_S, MAX_ANSWERS, QUIET_S};
 
 /// What `auto` is asked once time runs.
 const MOTION: Question = Question::History(Inertia::Dynamic);
-
-/// A solve that took longer (s) has a draft go before the next one. Longer: the picture lags behind the hand; shorter:
-/// drafts where the answer itself would be in the next frame. Tuned on the tank at 200 segments.
-const DRAFT_AFTER_S: f64 = 0.012;
-/// Time without a further edit (s) after which a draft is replaced by the answer. Longer: figures of the draft stay on
-/// screen; shorter: an answer is begun between two steps of a drag where frames are slow (a tenth of a second without a
-/// GPU), and the next draft waits for it.
-pub const QUIET_S: f64 = 0.2;
-
-/// Most answers waiting for a window that does not look: ten seconds of them. Fewer: a window that stalls loses some; more:
-/// one that is hidden for long fills the memory.
-pub const MOST_ANSWERS: usize = 600;
 
 /// Owns the simulation.
 #[derive(Debug)]
@@ -79,7 +65,7 @@ pub struct Report {
     pub snapshot: Snapshot,
     /// Forget the history shown so far.
     pub history_restarts: bool,
-    /// New answers; at most [`MOST_ANSWERS`].
+    /// New answers; at most [`MAX_ANSWERS`].
     pub answers: Vec<Solution>,
     /// The worker paused itself because a step failed.
     pub paused_itself: bool,
@@ -483,7 +469,7 @@ impl Engine {
     /// Adds the present instant to the history: the start as well as every step.
     fn sample(&mut self) {
         if let Some(simulation) = &self.simulation
-            && self.answers.len() < MOST_ANSWERS
+            && self.answers.len() < MAX_ANSWERS
         {
             self.answers.push(simulation.solution());
         }

@@ -6,16 +6,17 @@
 pub mod draft;
 pub mod engine;
 pub mod request;
+pub mod timing;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::worker::engine::{Engine, FRAME_S, QUIET_S, Report};
-use crate::worker::request::Request;
-
 use crate::state::WorkerStatus;
+use crate::worker::engine::{Engine, Report};
+use crate::worker::request::Request;
+use crate::worker::timing::{FRAME_S, MAX_ANSWERS, QUIET_S};
 
 /// The window's end.
 pub struct Worker {
@@ -58,7 +59,7 @@ impl Report {
             self.answers.clear();
         }
         self.answers.extend(later.answers);
-        let excess = self.answers.len().saturating_sub(engine::MOST_ANSWERS);
+        let excess = self.answers.len().saturating_sub(MAX_ANSWERS);
         self.answers.drain(..excess);
     }
 }

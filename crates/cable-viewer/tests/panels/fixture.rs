@@ -8,8 +8,8 @@ use cable_core::solution::{
     CableSolution, ContactReport, ContactState, Cost, Energy, Node, Solution, SupportReaction, Warning, WarningKind,
 };
 use cable_core::{Load, Model, Scene};
-use cable_viewer::command;
-use cable_viewer::command::{Command, Effects};
+use cable_viewer::command::effects::Effects;
+use cable_viewer::command::{self, Command};
 use cable_viewer::record::samples::Sample;
 use cable_viewer::state::{AppState, Held, Snapshot};
 use egui_kittest::Harness;

@@ -2,8 +2,9 @@
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
-use cable_viewer::app::tutorials::GUIDES;
+use cable_viewer::app::tutorials::TUTORIALS;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
+use cable_viewer::state::dialog::Replacement;
 use cable_viewer::state::{AppState, Item};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Order, Pos2};
@@ -160,7 +161,7 @@ fn the_picture_is_told_in_words() {
 #[test]
 fn t01_six_guided_scenes_lead_from_step_to_step() {
     let mut harness = open_span();
-    for (k, guide) in GUIDES.iter().enumerate() {
+    for (k, guide) in TUTORIALS.iter().enumerate() {
         harness.get_by_label("Learn").click();
         harness.run_steps(3);
         harness.get_by_label(&format!("{}. {}", k + 1, guide.title)).click();
@@ -170,11 +171,14 @@ fn t01_six_guided_scenes_lead_from_step_to_step() {
             harness.get_by_label("Go on without saving").click();
             harness.run_steps(4);
         }
-        assert_eq!(state(&harness).guide.map(|p| (p.guide, p.step)), Some((k, 0)), "{}", guide.title);
+        assert_eq!(state(&harness).guide.map(|p| (p.tutorial, p.step)), Some((k, 0)), "{}", guide.title);
         harness.get_by_label_contains(guide.steps[0].text);
     }
     // The first one, done.
-    apply(&mut harness, Command::File(FileCommand::Discard(Box::new(Command::File(FileCommand::OpenGuide(0))))));
+    apply(
+        &mut harness,
+        Command::File(FileCommand::Discard(Replacement::OpenTutorial { tutorial: 0, scene: TUTORIALS[0].scene })),
+    );
     let item = Item::Support { cable: 0, support: 1 };
     apply(&mut harness, Command::Scene(SceneCommand::Move { item, to_m: [9.0, 5.0] }));
     harness.run_steps(2);
@@ -203,9 +207,12 @@ fn t01_every_step_of_every_guide_can_be_done_as_it_says() {
         let mut harness = open_span();
         harness.set_size(egui::Vec2::new(1280.0, 1800.0));
         apply(&mut harness, Command::SetModel(cable_core::Model::Auto));
-        apply(&mut harness, Command::File(FileCommand::Discard(Box::new(Command::File(FileCommand::OpenGuide(k))))));
+        apply(
+            &mut harness,
+            Command::File(FileCommand::Discard(Replacement::OpenTutorial { tutorial: k, scene: TUTORIALS[k].scene })),
+        );
         harness.run_steps(3);
-        assert_eq!(at(&harness), Some(0), "{}", GUIDES[k].title);
+        assert_eq!(at(&harness), Some(0), "{}", TUTORIALS[k].title);
         harness
     }
     fn hold(harness: &mut Harness<'_, ViewerApp>, key: Key, frames: usize) {

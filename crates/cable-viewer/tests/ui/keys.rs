@@ -2,8 +2,7 @@
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
-use cable_viewer::command::Command;
-use cable_viewer::command::FileCommand;
+use cable_viewer::command::{Command, FileCommand};
 use cable_viewer::state::dialog::Dialog;
 use cable_viewer::state::{AppState, Item};
 use egui::{Key, Modifiers, Vec2};

@@ -7,6 +7,7 @@ use cable_core::{Model, Solution};
 use cable_viewer::app::screenshot;
 use cable_viewer::canvas;
 use cable_viewer::command::{Command, PlaybackCommand};
+use cable_viewer::render::offscreen::renderer;
 use cable_viewer::render::theme;
 use cable_viewer::state::{AppState, Item};
 use egui::{Theme, Vec2};
@@ -14,7 +15,7 @@ use egui_kittest::Harness;
 
 /// Compares the canvas of a state with its picture. Skips with a notice where nothing can draw, except in CI.
 fn compare(name: &str, state: AppState, theme: Theme) {
-    let renderer = match screenshot::renderer() {
+    let renderer = match renderer() {
         Ok(renderer) => renderer,
         Err(why) if std::env::var("CI").is_ok_and(|v| v == "true") => panic!("{why}"),
         Err(why) => return eprintln!("{name}: skipped, {why}"),
@@ -274,10 +275,10 @@ fn several_picked_in_us_units_light() {
 #[test]
 fn guide_light() {
     use cable_viewer::ViewerApp;
-    use cable_viewer::command::FileCommand;
+
     let draw = |app: &mut ViewerApp, ctx: &egui::Context| {
         app.state.theme = egui::ThemePreference::Light;
-        app.apply(ctx, vec![Command::File(FileCommand::OpenGuide(0))]);
+        app.apply(ctx, vec![Command::File(cable_viewer::app::tutorials::open(0))]);
         (app.state.snapshot.solve_wall_s, app.state.live.solve_wall_s) = (1e-3, 1e-3);
     };
     let picture = match screenshot::draw(catalog::hanging_span(), [1100, 640], draw) {

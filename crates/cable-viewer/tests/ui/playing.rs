@@ -4,8 +4,8 @@ use cable_core::scene::catalog;
 use cable_core::solution::WarningKind;
 use cable_core::{Model, Scene, Solution};
 use cable_viewer::ViewerApp;
-use cable_viewer::canvas::layers::supports;
 use cable_viewer::command::{Command, PlaybackCommand, SceneCommand};
+use cable_viewer::geometry::supports::{hand_spring, support_position};
 use cable_viewer::state::{Item, WorkerStatus};
 use egui::Key;
 use egui_kittest::Harness;
@@ -119,17 +119,17 @@ fn what_a_hand_is_ahead_of_a_support_is_drawn_and_said() {
     let (item, to_m) = (Item::Support { cable: 0, support: 1 }, [at[0] - 1.0, at[1] + 0.5]);
     apply(&mut harness, Command::Scene(SceneCommand::Move { item, to_m }));
     harness.run_steps(8);
-    let drawn = supports::drawn(&harness.state().state, 0, 1).expect("the hand is ahead");
+    let drawn = hand_spring(&harness.state().state, 0, 1).expect("the hand is ahead");
     assert_eq!(drawn[1], to_m);
     let moved = (drawn[0][0] - at[0]).hypot(drawn[0][1] - at[1]);
     assert!((0.02..0.4).contains(&moved), "{moved} m");
-    assert_eq!(supports::place(&harness.state().state, 0, 1), Some(drawn[0]));
+    assert_eq!(support_position(&harness.state().state, 0, 1), Some(drawn[0]));
     let said = solution(&harness).warnings;
     let held = said.iter().find(|w| w.kind == WarningKind::SupportHeld).expect("said");
     assert!(held.message.contains("2 m/s"), "{}", held.message);
     harness.run_steps(60);
-    assert_eq!(supports::drawn(&harness.state().state, 0, 1), None);
-    assert_eq!(supports::place(&harness.state().state, 0, 1), Some(to_m));
+    assert_eq!(hand_spring(&harness.state().state, 0, 1), None);
+    assert_eq!(support_position(&harness.state().state, 0, 1), Some(to_m));
 }
 
 #[test]

@@ -9,6 +9,7 @@ use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand};
 use cable_viewer::render::colour::{ColourMap, Quantity};
 use cable_viewer::state::AppState;
+use cable_viewer::state::dialog::Replacement;
 use egui::Vec2;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -183,12 +184,7 @@ fn s05_a_cable_that_crosses_itself_is_named_and_can_be_made_to_stop_on_itself() 
     assert_eq!(state(&harness).snapshot.error, None);
     assert!(warned(&harness, WarningKind::Loop), "{:?}", answer(&harness).warnings);
     harness.get_by_label_contains("Crosses itself");
-    apply(
-        &mut harness,
-        Command::File(FileCommand::Discard(Box::new(Command::File(FileCommand::OpenCatalogue(
-            "hanging-span".to_owned(),
-        ))))),
-    );
+    apply(&mut harness, Command::File(FileCommand::Discard(Replacement::OpenCatalogue("hanging-span".to_owned()))));
     harness.set_size(Vec2::new(1280.0, 1800.0));
     harness.run_steps(3);
     click(&mut harness, "Self-contact");
@@ -206,7 +202,7 @@ fn s07_robots_are_drawn_as_large_as_published() {
         scene.robot = Some(robot);
         let harness = open(scene);
         assert_eq!(state(&harness).scene_fault, None, "{}", preset.id);
-        let outline = cable_viewer::canvas::layers::robot::outline(state(&harness));
+        let outline = cable_viewer::geometry::robot::robot_outline(state(&harness));
         let span = |k: usize| {
             let values = || outline.iter().map(|p| p[k]);
             values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min)
@@ -225,8 +221,8 @@ fn s10_stress_and_strain_are_told_with_their_units() {
     let cable = &answer(&harness).cables[0];
     let most = |of: fn(&cable_core::solution::Node) -> f64| cable.nodes.iter().map(of).fold(0.0, f64::max);
     for (label, text) in [
-        ("Max stress", cable_viewer::units::unit::stress(most(|n| n.stress_pa))),
-        ("Max strain", cable_viewer::units::unit::strain(most(|n| n.strain))),
+        ("Max stress", cable_viewer::units::format::stress(most(|n| n.stress_pa))),
+        ("Max strain", cable_viewer::units::format::strain(most(|n| n.strain))),
     ] {
         harness.get_by_label(label);
         harness.get_by_label(&text);

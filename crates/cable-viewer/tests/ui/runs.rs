@@ -11,6 +11,7 @@ use cable_viewer::record::measure::Measure;
 use cable_viewer::record::run::Run;
 use cable_viewer::record::samples::Sample;
 use cable_viewer::state::AppState;
+use cable_viewer::state::dialog::Replacement;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
@@ -37,7 +38,7 @@ fn s11_a_run_is_opened_again_and_nothing_is_lost() {
     let scene = state(&harness).scene.clone();
 
     let mut harness = open_span();
-    apply(&mut harness, Command::File(FileCommand::Discard(Box::new(Command::File(FileCommand::OpenRun(run))))));
+    apply(&mut harness, Command::File(FileCommand::Discard(Replacement::OpenRun(run))));
     harness.run_steps(3);
     assert_eq!(state(&harness).dialog, None);
     assert_eq!(state(&harness).scene, scene);

@@ -102,7 +102,7 @@ fn a_click_on_the_cable_shows_where_its_tension_comes_from() {
         figure.accesskit_node().description().unwrap_or_default()
     };
     let said = words(&harness);
-    assert!(said.starts_with(&cable_viewer::units::unit::force(found.tension_n)), "{said}");
+    assert!(said.starts_with(&cable_viewer::units::format::force(found.tension_n)), "{said}");
     assert!(said.contains("Friction on beam") && said.contains("Weight") && said.contains("Pull at the end"), "{said}");
     harness.get_by_label("Friction on beam");
     // The other end, and another place, without the pointer on the canvas.
@@ -225,11 +225,11 @@ fn friction_that_is_not_known_well_is_a_ribbon_of_tension() {
     ] {
         let figure = harness.get_by_role_and_label(Role::Figure, title);
         let said = figure.accesskit_node().description().unwrap_or_default();
-        let figures = [low, high].map(|v| cable_viewer::units::unit::significant(v, 4));
+        let figures = [low, high].map(|v| cable_viewer::units::format::significant(v, 4));
         let expected = format!("with less and more friction {} to {} N", figures[0], figures[1]);
         assert!(said.contains(&expected), "{title}: {said}, not {expected}");
     }
-    harness.get_by_label(&cable_viewer::units::unit::force(high));
+    harness.get_by_label(&cable_viewer::units::format::force(high));
     // It follows what is edited, and goes.
     apply(&mut harness, Command::View(cable_viewer::command::ViewCommand::Spread(true, [1.0, 1.0])));
     let found = ribbon(&mut harness);

@@ -8,8 +8,8 @@ use std::time::Instant;
 use cable_core::scene::{Obstacle, Shape, catalog};
 use cable_core::{Model, Scene};
 use cable_viewer::ViewerApp;
-use cable_viewer::app::screenshot;
 use cable_viewer::command::{Command, ViewCommand};
+use cable_viewer::render::offscreen::render_state;
 use cable_viewer::render::software::Software;
 use eframe::egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, wgpu};
 use egui::Vec2;
@@ -41,7 +41,7 @@ struct Screen {
 
 impl Screen {
     fn new() -> Result<Self, String> {
-        Ok(Self { state: screenshot::render_state(RendererOptions::default())?, view: None })
+        Ok(Self { state: render_state(RendererOptions::default())?, view: None })
     }
 }
 
@@ -232,7 +232,7 @@ fn software_drawing_looks_the_same() {
 fn software_drawing_looks_the_same_at(scale: f32) {
     let picture = |taken_over: bool| {
         let options = RendererOptions { dithering: false, ..RendererOptions::default() };
-        let state = match screenshot::render_state(options) {
+        let state = match render_state(options) {
             Ok(state) => state,
             Err(why) if std::env::var("CI").is_ok_and(|v| v == "true") => panic!("{why}"),
             Err(why) => {

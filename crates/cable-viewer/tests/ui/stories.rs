@@ -213,7 +213,7 @@ fn s12_a_graph_is_zoomed_read_with_cursors_and_exported() {
         assert_eq!(harness.state().state.dialog, None, "{name}");
         assert!(std::fs::read_to_string(path).unwrap().contains(if name.ends_with("csv") { "time_s" } else { "<svg" }));
     }
-    if cable_viewer::app::screenshot::renderer().is_ok() {
+    if cable_viewer::render::offscreen::renderer().is_ok() {
         let path = folder.path().join("graph.png");
         apply(&mut harness, Command::File(FileCommand::Export(path.clone(), sheet)));
         assert!(std::fs::read(path).unwrap().starts_with(b"\x89PNG"));

@@ -7,9 +7,9 @@ use std::path::PathBuf;
 use cable_core::Scene;
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
-use cable_viewer::app::screenshot;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use cable_viewer::state::dialog::Dialog;
+use cable_viewer::render::offscreen::renderer;
+use cable_viewer::state::dialog::{Dialog, Replacement};
 use cable_viewer::state::{Item, Probe};
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
@@ -32,7 +32,7 @@ impl Walk {
             .with_render_cursor(false)
             .with_accessibility_check(false)
             .allow_missing_glyphs()
-            .renderer(screenshot::renderer().unwrap())
+            .renderer(renderer().unwrap())
             .build_eframe(|cc| ViewerApp::inline(&cc.egui_ctx, scene, None));
         let mut walk = Self { harness, folder };
         walk.harness.run_steps(6);
@@ -120,7 +120,7 @@ fn walk_a_span() {
         Dialog::Feedback { answers: cable_viewer::io::feedback::Answers::default(), path: "feedback.csv".to_owned() },
         Dialog::SaveRun { path: "run".to_owned() },
         Dialog::Recover { scene: Box::new(catalog::tank()) },
-        Dialog::Unsaved { then: Box::new(Command::File(FileCommand::Quit)) },
+        Dialog::Unsaved { then: Replacement::Quit },
         Dialog::OpenRun { path: "run".to_owned(), hold: true },
     ]
     .into_iter()

@@ -41,7 +41,7 @@ fn u04_sag_and_tension_stand_in_the_window() {
     let harness = open_span();
     harness.get_by_label("Max tension");
     harness.get_by_label("Sag");
-    let text = cable_viewer::units::unit::force(answer(&harness).max_tension().tension_n);
+    let text = cable_viewer::units::format::force(answer(&harness).max_tension().tension_n);
     assert!(harness.get_all_by_label(&text).count() >= 1, "{text}");
 }
 

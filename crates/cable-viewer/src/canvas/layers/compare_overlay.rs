@@ -3,7 +3,7 @@
 use egui::{Pos2, Stroke};
 
 use crate::canvas::view::View;
-use crate::plot::LINES;
+use crate::render::colour::LINES;
 use crate::state::AppState;
 
 /// Draws them, in the colours of the compare panel.

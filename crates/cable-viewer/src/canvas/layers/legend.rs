@@ -6,8 +6,7 @@ use crate::canvas::view::View;
 use crate::panels::scene_errors;
 use crate::render::colour::{ColourScale, Quantity};
 use crate::state::{AppState, WorkerStatus};
-use crate::units::labels;
-use crate::units::translate;
+use crate::units::{labels, translate};
 
 /// Size of the coloured bar, points.
 const BAR: [f32; 2] = [14.0, 132.0];

@@ -1,9 +1,9 @@
-//! The picture of the scene consists of these layers, which [`super::ui`] draws back to front.
+//! The picture of the scene consists of these layers, which [`crate::canvas::ui`] draws back to front.
 //!
-//! - [`grid`], [`obstacles`], [`robot`], [`robot_path`]: the surroundings
-//! - [`cable`], [`contact`], [`supports`], [`forces`]: the answer
-//! - [`compare_overlay`], [`tension_marker`], [`safe_reach`]: analyses drawn over it
-//! - [`legend`]: what the colours mean
+//! - `grid`, `obstacles`, `robot`, `robot_path`: the surroundings
+//! - `cable`, `contact`, `supports`, `forces`: the answer
+//! - `compare_overlay`, `tension_marker`, `safe_reach`: analyses drawn over it
+//! - `legend`: what the colours mean
 
 pub mod cable;
 pub mod compare_overlay;

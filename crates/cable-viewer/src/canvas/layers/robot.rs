@@ -2,11 +2,12 @@
 
 use cable_core::math::Point;
 use cable_core::robot::Going;
-use cable_core::scene::preset::{RobotPreset, robot_preset};
+use cable_core::scene::preset::RobotPreset;
 use cable_core::scene::robot::{Heading, Pose};
 use egui::{Color32, Mesh, Pos2, Stroke};
 
 use crate::canvas::view::View;
+use crate::geometry::robot::{robot_outline, robot_pose};
 use crate::geometry::triangulate::triangulate;
 use crate::state::{AppState, Item};
 
@@ -15,17 +16,10 @@ const TRACK_HEIGHT: f64 = 0.28;
 /// Wheels drawn in a track.
 const WHEELS: u8 = 4;
 
-/// Its outline in the world, m; empty where there is no robot or no such preset.
-#[must_use]
-pub fn outline(state: &AppState) -> Vec<Point> {
-    let Some((pose, preset)) = robot(state) else { return Vec::new() };
-    preset.outline_m.iter().map(|&p| pose.place(p)).collect()
-}
-
 /// Where its name stands and what it says: its name, and why it goes as it does.
 #[must_use]
 pub fn title(state: &AppState) -> Option<(Point, String)> {
-    let (pose, preset) = robot(state)?;
+    let (pose, preset) = robot_pose(state)?;
     let going = state.snapshot.solution.as_ref().and_then(|s| s.robot).map(|r| r.going);
     let text = match going {
         None | Some(Going::Standing | Going::Driving) => preset.name.clone(),
@@ -34,28 +28,16 @@ pub fn title(state: &AppState) -> Option<(Point, String)> {
     Some((pose.place([0.0, preset.height_m.value]), text))
 }
 
-/// How it stands: while time runs where the answer has it, else where it is being put.
-fn robot(state: &AppState) -> Option<(Pose, &'static RobotPreset)> {
-    let robot = state.scene.robot.as_ref()?;
-    let preset = robot_preset(&robot.preset)?;
-    let moved = state.snapshot.solution.as_ref().filter(|s| s.time_s > 0.0).and_then(|s| s.robot);
-    let pose = match moved {
-        Some(r) => Pose { at_m: [r.x_m, r.y_m], pitch: r.pitch_deg.to_radians(), heading: robot.heading },
-        None => state.scene.robot_pose()?,
-    };
-    Some((pose, preset))
-}
-
 /// Draws it.
 pub fn draw(view: &mut View<'_>, state: &AppState) {
-    let Some((pose, preset)) = robot(state) else { return };
+    let Some((pose, preset)) = robot_pose(state) else { return };
     let is = |item: Option<Item>| item == Some(Item::Robot);
     let line = match (state.picked(Item::Robot), is(state.hovered)) {
         (true, _) => Stroke::new(2.5, view.palette.accent),
         (_, true) => Stroke::new(2.0, view.palette.accent),
         _ => Stroke::new(1.4, view.palette.surface),
     };
-    let points = outline(state);
+    let points = robot_outline(state);
     let mut mesh = Mesh::default();
     for &p in &points {
         mesh.colored_vertex(view.at(p), view.palette.robot);

@@ -1,41 +1,17 @@
 //! The robot's path: a flag on the ground where each leg ends.
 
-use cable_core::math::Point;
-use cable_core::scene::RobotTask;
-use cable_core::scene::ground::Ground;
 use egui::{Color32, Pos2, Stroke, vec2};
 
 use crate::canvas::view::View;
+use crate::geometry::robot::path_flags;
 use crate::state::{AppState, Item};
-use crate::units::labels;
 
 /// Height and width of a flag, points.
 const FLAG: [f32; 2] = [26.0, 15.0];
 
-/// The legs that lead to a place: index, where, m, and what it says.
-#[must_use]
-pub fn flags(state: &AppState) -> Vec<(usize, Point, String)> {
-    let Some(robot) = state.scene.robot.as_ref().filter(|r| !r.path.is_empty()) else { return Vec::new() };
-    let ground = Ground::of(&state.scene);
-    let mut out: Vec<(usize, Point, String)> = Vec::new();
-    for (k, task) in robot.path.iter().enumerate() {
-        match (task, out.last_mut()) {
-            (RobotTask::Drive { to_x_m, speed_m_per_s }, _) => {
-                let y = ground.height(*to_x_m).unwrap_or(robot.at_m[1]);
-                out.push((k, [*to_x_m, y], format!("leg {}: {}", k + 1, labels::speed(*speed_m_per_s))));
-            }
-            (RobotTask::Wait { wait_s }, Some((_, _, text))) => {
-                *text += &format!(", then waits {} s", labels::digits(*wait_s));
-            }
-            (RobotTask::Wait { .. }, None) => {}
-        }
-    }
-    out
-}
-
 /// Draws them; what they say goes to `figures` for the labels to place.
 pub fn draw(view: &View<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
-    for (k, at, text) in flags(state) {
+    for (k, at, text) in path_flags(state) {
         let item = Item::Leg(k);
         let marked = state.picked(item) || state.hovered == Some(item);
         let colour = if marked { view.palette.accent } else { view.palette.surface };

@@ -1,64 +1,13 @@
 //! Supports as the signs engineers draw, and the labels of everything.
 
-use cable_core::math::Point;
 use cable_core::scene::{Support, SupportKind};
-use cable_core::solution::SupportReaction;
 use egui::{Color32, Pos2, Stroke, vec2};
 
 use crate::canvas::layers::robot;
 use crate::canvas::view::{Place, View};
+use crate::geometry::supports::{hand_spring, support_position};
 use crate::state::{AppState, Item};
 use crate::units::labels;
-
-/// Where a support is on screen now: where the scene puts it, or where the cable took it.
-#[must_use]
-pub fn place(state: &AppState, cable: usize, support: usize) -> Option<Point> {
-    let s = state.scene.cables.get(cable)?.supports.get(support)?;
-    if let Some([behind, _]) = drawn(state, cable, support) {
-        return Some(behind);
-    }
-    if let Some(now) = answer(state, cable, support).filter(|now| now.hand.is_some()) {
-        return Some([now.x_m, now.y_m]);
-    }
-    let solved = state.snapshot.solution.as_ref().and_then(|x| x.cables.get(cable));
-    let answer = solved.and_then(|c| c.supports.get(support)).map(|r| [r.x_m, r.y_m]);
-    // A moving or free support is where the answer says; a still one where it is being edited.
-    match (s.at_m, &s.motion) {
-        (Some(at), None) => Some(at),
-        (Some(at), Some(_)) => answer.or(Some(at)),
-        (None, _) => answer,
-    }
-}
-
-/// Nearer than this to where it is drawn, a support is there, m.
-const THERE_M: f64 = 1e-3;
-
-/// What the answer says of a support.
-fn answer(state: &AppState, cable: usize, support: usize) -> Option<&SupportReaction> {
-    state.snapshot.solution.as_ref()?.cables.get(cable)?.supports.get(support)
-}
-
-/// Where a support is that a hand draws while masses move, and where the spring between them ends, or where it is drawn to without one, m; None where it is
-/// there.
-#[must_use]
-pub fn drawn(state: &AppState, cable: usize, support: usize) -> Option<[Point; 2]> {
-    if let Some(now) = answer(state, cable, support)
-        && let Some(hand) = &now.hand
-    {
-        let ends = [[now.x_m, now.y_m], [hand.x_m, hand.y_m]];
-        return ((ends[0][0] - ends[1][0]).hypot(ends[0][1] - ends[1][1]) > THERE_M).then_some(ends);
-    }
-    let s = state.scene.cables.get(cable)?.supports.get(support)?;
-    let held = matches!(s.kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Pulley);
-    let solution = state.snapshot.solution.as_ref()?;
-    let solved = solution.cables.get(cable)?;
-    // Moved by the scene it is drawn to where its motion has it now.
-    let moved = s.motion.as_ref().map(|m| m.at(solution.time_s).0).map(|p| [p.x, p.y]);
-    let to = moved.or(s.at_m).filter(|_| held && s.release_s.is_none())?;
-    let at = solved.supports.get(support).map(|r| [r.x_m, r.y_m])?;
-    let far = (at[0] - to[0]).hypot(at[1] - to[1]) > THERE_M;
-    (far && solved.assumptions.inertia && !state.playback.paused).then_some([at, to])
-}
 
 /// Windings of the spring between a hand and what it draws.
 const WINDINGS: usize = 9;
@@ -84,9 +33,9 @@ fn spring(view: &View<'_>, [at, to]: [Pos2; 2]) {
 pub fn draw(view: &View<'_>, state: &AppState) {
     for (cable, c) in state.scene.cables.iter().enumerate() {
         for (support, s) in c.supports.iter().enumerate() {
-            let Some(at) = place(state, cable, support) else { continue };
+            let Some(at) = support_position(state, cable, support) else { continue };
             let p = view.at(at);
-            if let Some(ends) = drawn(state, cable, support) {
+            if let Some(ends) = hand_spring(state, cable, support) {
                 spring(view, ends.map(|p| view.at(p)));
                 // The pointer may be ahead of the hand, which is no faster than it may be.
                 if let Some(to) = s.at_m.filter(|_| state.pulled == Some((cable, support))) {
@@ -143,7 +92,7 @@ pub fn labels(view: &mut View<'_>, state: &AppState, figures: Vec<(Pos2, String,
     let mut spots = Vec::new();
     for (cable, c) in state.scene.cables.iter().enumerate() {
         for (support, s) in c.supports.iter().enumerate() {
-            if let Some(at) = place(state, cable, support) {
+            if let Some(at) = support_position(state, cable, support) {
                 let p = view.at(at);
                 view.taken.push(egui::Rect::from_min_max(p + vec2(-10.0, -8.0), p + vec2(10.0, 13.0)));
                 let [x, y] = at.map(|v| labels::coordinate(v, 0.01));

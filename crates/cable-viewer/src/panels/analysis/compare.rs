@@ -8,13 +8,12 @@ use egui::{Grid, Id, ProgressBar, RichText, Ui};
 
 use crate::command::{Command, FileCommand, ViewCommand};
 use crate::jobs::background::Progress;
-use crate::plot::LINES;
 use crate::record::measure::Measure;
 use crate::record::run::Peak;
-use crate::render::colour::Quantity;
+use crate::render::colour::{LINES, Quantity};
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Held};
-use crate::units::{translate, unit};
+use crate::units::{format, translate};
 use crate::widgets::field;
 
 /// Most lines of difference told; more are counted.
@@ -143,9 +142,9 @@ fn runs(ui: &mut Ui, state: &AppState) {
         for (name, k, ([first, last], peaks, events)) in own.into_iter().chain(held) {
             let text = RichText::new(name).strong();
             ui.label(k.map_or(text.clone(), |k| text.color(LINES[k % LINES.len()])));
-            ui.label(unit::duration(last - first));
+            ui.label(format::duration(last - first));
             for peak in peaks {
-                let at = |p: Peak| format!("{} at {:.2} s", unit::force(p.value), p.time_s);
+                let at = |p: Peak| format!("{} at {:.2} s", format::force(p.value), p.time_s);
                 ui.label(peak.map_or_else(|| "–".to_owned(), at));
             }
             ui.label(events.to_string());
@@ -180,12 +179,12 @@ impl Figures {
 }
 
 fn row(ui: &mut Ui, f: &Figures, present: Option<&Figures>) {
-    cell(ui, unit::force(f.tension_n), (Some(f.tension_n), present.map(|p| p.tension_n)));
-    let sag = f.sag_m.map_or_else(|| "–".to_owned(), unit::length);
+    cell(ui, format::force(f.tension_n), (Some(f.tension_n), present.map(|p| p.tension_n)));
+    let sag = f.sag_m.map_or_else(|| "–".to_owned(), format::length);
     cell(ui, sag, (f.sag_m, present.and_then(|p| p.sag_m)));
-    let energy = unit::energy(f.energy_j);
+    let energy = format::energy(f.energy_j);
     cell(ui, energy, (Some(f.energy_j), present.map(|p| p.energy_j)));
-    cell(ui, unit::duration(f.wall_s), (None, None));
+    cell(ui, format::duration(f.wall_s), (None, None));
 }
 
 /// A figure, and below it how much it is above the present one.

@@ -6,7 +6,7 @@ use crate::command::{Command, ViewCommand};
 use crate::jobs::background::Progress;
 use crate::jobs::friction_range;
 use crate::state::AppState;
-use crate::units::unit;
+use crate::units::format;
 use crate::units::unit::Unit;
 use crate::widgets::field;
 use crate::widgets::property::{Known, Quantity, row};
@@ -64,7 +64,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 }
                 ui.end_row();
                 for most_n in found.most_n {
-                    ui.label(unit::force(most_n));
+                    ui.label(format::force(most_n));
                 }
                 ui.end_row();
             });

@@ -5,16 +5,16 @@ use cable_core::analysis::safe_reach::line::ReachMap;
 use egui::{ComboBox, ProgressBar, Slider, Ui};
 
 use crate::command::{Command, ViewCommand};
-use crate::jobs::safe_reach;
-use crate::jobs::safe_reach::{ACROSS, Choice, Maps, Moved, Progress};
+use crate::jobs::safe_reach::{self, ACROSS, Choice, Maps, Moved, Progress};
 use crate::state::AppState;
-use crate::units::unit;
+use crate::state::questions::reach_target;
+use crate::units::format;
 use crate::units::unit::Unit;
 use crate::widgets::field;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let Some(moved) = safe_reach::moved(state) else {
+    let Some(moved) = reach_target(state) else {
         ui.weak("Nothing here has a place to be taken from");
         return;
     };
@@ -130,7 +130,7 @@ fn to(x: f64) -> String {
 
 fn of_line(map: &ReachMap, back: bool, (name, tension_n): (&str, f64)) -> String {
     let Some([left, right]) = map.safe_m(tension_n, back) else {
-        return format!("Above {name} {} where it stands", unit::force(tension_n));
+        return format!("Above {name} {} where it stands", format::force(tension_n));
     };
     let why = |x: f64, side: f64| {
         let next = map.places.iter().filter(|p| side * (p.at_m[0] - x) > 0.0);
@@ -143,12 +143,12 @@ fn of_line(map: &ReachMap, back: bool, (name, tension_n): (&str, f64)) -> String
             Some(_) => "",
         }
     };
-    let force = unit::force(tension_n);
+    let force = format::force(tension_n);
     format!("Below {name} {force} from x = {}{} to {}{}", to(left), why(left, -1.0), to(right), why(right, 1.0))
 }
 
 fn of_area(area: &Area, (name, tension_n): (&str, f64)) -> String {
-    let force = unit::force(tension_n);
+    let force = format::force(tension_n);
     match area.below(tension_n) {
         Some((_, [low, high])) => format!(
             "Below {name} {force} between x = {} and {}, y = {} and {}",

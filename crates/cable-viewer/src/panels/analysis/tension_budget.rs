@@ -7,7 +7,7 @@ use egui::{Color32, Grid, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2}
 
 use crate::command::{Command, ViewCommand};
 use crate::state::{AppState, Probe};
-use crate::units::unit;
+use crate::units::format::{self, significant};
 use crate::units::unit::Unit;
 use crate::widgets::property::{Known, Quantity, row};
 
@@ -56,7 +56,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     place(ui, scene, probe, commands);
     ui.horizontal(|ui| {
         ui.label("Tension there");
-        ui.strong(unit::force(found.tension_n));
+        ui.strong(format::force(found.tension_n));
     });
     let listed = listed(&found);
     bar(ui, &found, &listed, &|t| title(scene, answer, probe.cable, t));
@@ -124,7 +124,7 @@ fn title(scene: &Scene, answer: &Solution, cable: usize, term: &Contribution) ->
 
 /// By what factor, and over what turn.
 fn how(answer: &Solution, cable: usize, term: &Contribution) -> String {
-    let factor = term.factor.map_or_else(String::new, |f| format!("× {}", unit::significant(f, 3)));
+    let factor = term.factor.map_or_else(String::new, |f| format!("× {}", significant(f, 3)));
     let Cause::Contact(k) = term.cause else { return factor };
     let turn = answer.cables.get(cable).and_then(|c| c.contacts.get(k)).map_or(0.0, |c| c.turn_deg.abs());
     if turn >= 0.5 { format!("{factor} over {turn:.0}°") } else { factor }
@@ -145,8 +145,8 @@ fn colour(term: &Contribution) -> Color32 {
 /// What adds, from left to right; below it what takes away, from there back to the tension.
 fn bar(ui: &mut Ui, found: &TensionBudget, listed: &[Contribution], title: &dyn Fn(&Contribution) -> String) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 2.0 * ROW + 2.0), Sense::hover());
-    let words: Vec<String> = listed.iter().map(|t| format!("{} {}", title(t), unit::force(t.tension_n))).collect();
-    let spoken = format!("{} = {}", unit::force(found.tension_n), words.join(" + "));
+    let words: Vec<String> = listed.iter().map(|t| format!("{} {}", title(t), format::force(t.tension_n))).collect();
+    let spoken = format!("{} = {}", format::force(found.tension_n), words.join(" + "));
     response.widget_info(|| WidgetInfo::labeled(Role::Figure, true, "Where the tension comes from"));
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(spoken.as_str()));
     let added: f64 = listed.iter().map(|t| t.tension_n.max(0.0)).sum();
@@ -189,7 +189,7 @@ fn figures(
             ui.painter().rect_filled(rect, 1.0, colour(t));
             ui.label(title(t));
             let sign = if t.tension_n < 0.0 { "" } else { "+" };
-            ui.label(format!("{sign}{}", unit::force(t.tension_n)));
+            ui.label(format!("{sign}{}", format::force(t.tension_n)));
             ui.weak(how(t)).on_hover_text("Tension beyond it over tension before it, on the way from the end");
             ui.end_row();
         }

@@ -5,14 +5,14 @@ pub mod provenance;
 
 use cable_core::Cable;
 use cable_core::scene::preset;
-use egui::{ComboBox, Response, Ui};
+use egui::{ComboBox, Ui};
 
 use crate::command::{Command, SceneCommand, ViewCommand};
 use crate::panels::cable::property::{PROPERTIES, SEGMENTS};
 use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
 use crate::widgets::field;
-use crate::widgets::property::{Known, row};
+use crate::widgets::property::{Known, labelled, row};
 
 /// Height of the list of presets, points: all of them are seen at once.
 const POPUP_HEIGHT: f32 = 360.0;
@@ -168,21 +168,5 @@ fn count(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Command
         if remove.clicked() {
             commands.push(Command::Scene(SceneCommand::Remove(Item::Cable(index))));
         }
-    });
-}
-
-/// A text in the column of names, and the widget it names beside it; `name` is what tests and screen readers call it.
-pub fn labelled(ui: &mut Ui, text: &str, name: &str, contents: impl FnOnce(&mut Ui) -> Response) {
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        let height = ui.spacing().interact_size.y;
-        let layout = egui::Layout::left_to_right(egui::Align::Center);
-        let label =
-            ui.allocate_ui_with_layout(egui::vec2(crate::widgets::property::NAME_WIDTH, height), layout, |ui| {
-                ui.set_min_width(crate::widgets::property::NAME_WIDTH);
-                ui.add(egui::Label::new(text).truncate().selectable(false))
-            });
-        let named = contents(ui).labelled_by(label.inner.id);
-        field::name(&named, name);
     });
 }

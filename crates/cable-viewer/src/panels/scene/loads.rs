@@ -4,7 +4,7 @@ use cable_core::Load;
 use egui::{ComboBox, Ui};
 
 use crate::command::{Command, SceneCommand};
-use crate::panels::scene::{
+use crate::panels::scene::rows::{
     GAP, KIND_WIDTH, NUMBER_WIDTH, components, headings, name_width, remove, selectable_name, show_faults,
 };
 use crate::panels::scene_errors;
@@ -12,8 +12,7 @@ use crate::state::{AppState, Item};
 use crate::units::unit::Unit;
 use crate::widgets::field;
 use crate::widgets::property::{Known, Quantity, row};
-use crate::widgets::time_table;
-use crate::widgets::time_table::{Knots, Table};
+use crate::widgets::time_table::{self, Knots, Table};
 
 /// Force of a new load, N.
 const FIRST_LOAD_N: [f64; 2] = [0.0, -100.0];

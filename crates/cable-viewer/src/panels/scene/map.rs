@@ -6,9 +6,9 @@ use egui::{ComboBox, Ui};
 
 use crate::command::{Command, SceneCommand, ViewCommand};
 use crate::geometry::handles;
-use crate::panels::cable::labelled;
 use crate::state::{AppState, Item};
-use crate::units::unit;
+use crate::units::format;
+use crate::widgets::property::labelled;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -44,8 +44,8 @@ fn opening(ui: &mut Ui, state: &AppState, map: &MapPreset, commands: &mut Vec<Co
     let Some(at) = handles::of(state, item).filter(|at| *at != map.riser_at_m) else { return };
     let help = format!(
         "Moves the start of the cable from {} to the opening of the tank at {}",
-        unit::position(at),
-        unit::position(map.riser_at_m)
+        format::position(at),
+        format::position(map.riser_at_m)
     );
     if ui.button("Cable in by the opening").on_hover_text(help).clicked() {
         commands.push(Command::Scene(SceneCommand::EditDone));
@@ -58,9 +58,9 @@ fn about(map: &MapPreset) -> String {
     format!(
         "{}\nInside width {}, waste up to {} deep, opening at {}",
         map.note,
-        unit::length(map.inside_width_m.value),
-        unit::length(map.waste_depth_m.value),
-        unit::position(map.riser_at_m)
+        format::length(map.inside_width_m.value),
+        format::length(map.waste_depth_m.value),
+        format::position(map.riser_at_m)
     )
 }
 

@@ -6,8 +6,7 @@ use cable_core::scene::Shape;
 use egui::{Button, Frame, ScrollArea, Ui};
 
 use crate::command::{Command, SceneCommand};
-use crate::panels::cable::labelled;
-use crate::panels::scene::{
+use crate::panels::scene::rows::{
     GAP, KIND_WIDTH, NUMBER_WIDTH, cell, coordinates, headings, name_width, optional, remove, selectable_name,
     show_faults,
 };
@@ -15,8 +14,8 @@ use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
 use crate::units::unit::Unit;
 use crate::widgets::field;
-use crate::widgets::icon;
-use crate::widgets::icon::Icon;
+use crate::widgets::icon::{self, Icon};
+use crate::widgets::property::labelled;
 
 /// Height of the list of corners, points: about ten.
 const CORNERS_HEIGHT: f32 = 240.0;

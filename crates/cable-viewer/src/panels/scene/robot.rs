@@ -1,17 +1,17 @@
 //! The robot: which, where, which way. A first one stands where it can, with the end of the cable on its hitch.
 
+use cable_core::scene::ground::Ground;
 use cable_core::scene::preset::{self, RobotPreset};
 use cable_core::scene::{Heading, SupportKind};
 use cable_core::{Robot, Scene};
 use egui::{ComboBox, Ui};
 
-use crate::command::{Command, SceneCommand};
-use crate::panels::cable::labelled;
-use crate::panels::scene::{coordinates, show_faults, support_kind};
+use crate::command::{Command, SceneCommand, support_kind};
+use crate::panels::scene::rows::{coordinates, show_faults};
 use crate::panels::scene_errors;
 use crate::state::AppState;
 use crate::units::unit::Unit;
-use cable_core::scene::ground::Ground;
+use crate::widgets::property::labelled;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {

@@ -5,11 +5,10 @@ use cable_core::scene::{Motion, PulleySide, SupportKind};
 use cable_core::{Cable, Support};
 use egui::{ComboBox, Frame, Ui};
 
+use crate::command::support_kind::{KINDS, of_kind, refusal};
 use crate::command::{Command, SceneCommand};
-use crate::panels::cable::labelled;
 use crate::panels::scene::loads::FIRST_SPAN_S;
-use crate::panels::scene::support_kind::{KINDS, of_kind, refusal};
-use crate::panels::scene::{
+use crate::panels::scene::rows::{
     GAP, KIND_WIDTH, NUMBER_WIDTH, cell, components, coordinates, headings, name_width, optional, remove,
     selectable_name, show_faults,
 };
@@ -17,8 +16,8 @@ use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
 use crate::units::unit::Unit;
 use crate::widgets::field;
-use crate::widgets::time_table;
-use crate::widgets::time_table::{Knots, Table};
+use crate::widgets::property::labelled;
+use crate::widgets::time_table::{self, Knots, Table};
 
 /// One support with where it stands.
 struct Row<'a> {

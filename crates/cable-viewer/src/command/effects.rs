@@ -1,0 +1,45 @@
+//! Effects are what applying commands asks of the world outside [`AppState`].
+
+use cable_core::Scene;
+
+use crate::jobs::safe_reach::Order;
+use crate::state::AppState;
+use crate::worker::request::{Edit, Request};
+
+/// What applying commands asks of the world outside [`AppState`].
+#[derive(Debug, Default)]
+pub struct Effects {
+    /// For the worker.
+    pub request: Request,
+    /// Close the window.
+    pub quit: bool,
+    /// Remove what was kept for recovery.
+    pub forget_recovery: bool,
+    /// Start the solver thread anew.
+    pub restart_worker: bool,
+    /// Look for where the robot can go, or end that.
+    pub reach: Option<Option<Box<Order>>>,
+    /// Ask every model about a scene, or end that.
+    pub models: Option<Option<Box<Scene>>>,
+    /// Text for the clipboard of the system.
+    pub copied: Option<String>,
+}
+
+/// Sends the scene to the worker; `fresh`: nothing of the present simulation is carried over.
+pub fn submit_scene(state: &mut AppState, fresh: bool, effects: &mut Effects) {
+    // An edit is of the present.
+    state.show_time(None);
+    let edit = Edit { scene: state.scene.clone(), model: state.model, settings: state.settings, fresh };
+    effects.request.merge(Request {
+        edit: Some(edit),
+        playback: Some(state.playback),
+        number: next_number(state),
+        ..Request::default()
+    });
+}
+
+/// Numbers the next edit.
+pub fn next_number(state: &mut AppState) -> u64 {
+    state.edits_sent += 1;
+    state.edits_sent
+}

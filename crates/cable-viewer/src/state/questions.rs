@@ -1,0 +1,95 @@
+//! The questions that jobs are asked follow from what is on screen; an answer to another question is not shown.
+
+use std::sync::Arc;
+
+use cable_core::Scene;
+use cable_core::analysis::friction_range::Query;
+
+use crate::jobs::friction_range::{self, LONGEST_S, hands};
+use crate::jobs::neglected_bending::Ask;
+use crate::jobs::safe_reach::{Moved, movable};
+use crate::state::app_state::AppState;
+use crate::state::selection::Item;
+
+/// Whether an ask is the one that what is on screen asks.
+#[must_use]
+pub fn friction_query_fits(state: &AppState, ask: &Query) -> bool {
+    ask.span_s == run_time_s(state)
+        && ask.factors == state.spread.factors
+        && ask.model == state.model
+        && ask.settings == state.settings
+        && ask.scene == *answered_scene(state)
+}
+
+/// What is on screen asks; None while it moves or has no answer.
+#[must_use]
+pub fn friction_query(state: &AppState) -> Option<Query> {
+    let still = state.playback.paused && state.grabbed.is_none() && state.scene_fault.is_none();
+    let answered = state.snapshot.solution.is_some() && state.snapshot.error.is_none() && !state.snapshot.draft;
+    (state.spread.on && still && answered).then(|| Query {
+        scene: answered_scene(state).clone(),
+        model: state.model,
+        settings: state.settings,
+        factors: state.spread.factors,
+        span_s: run_time_s(state),
+        hands: hands(answered_scene(state), state.recording.answers()),
+    })
+}
+
+fn answered_scene(state: &AppState) -> &Scene {
+    state.snapshot.scene.as_deref().unwrap_or(&state.scene)
+}
+
+/// How long time has run.
+fn run_time_s(state: &AppState) -> f64 {
+    let now_s = state.live.solution.as_ref().map_or(0.0, |s| s.time_s);
+    now_s.min(LONGEST_S)
+}
+
+/// The ribbon, if there is one of what is on screen.
+#[must_use]
+pub fn friction_answer(state: &AppState) -> Option<&friction_range::Found> {
+    match &state.spread.progress {
+        friction_range::Progress::Done(found) if state.spread.on && friction_query_fits(state, &found.1) => Some(found),
+        _ => None,
+    }
+}
+
+/// The question about what is on screen; None where that is no answer at rest.
+#[must_use]
+pub fn bending_query(state: &AppState) -> Option<Ask> {
+    let answer = state.snapshot.solution.clone().filter(|s| s.time_s == 0.0)?;
+    let settled = state.snapshot.error.is_none() && !state.snapshot.draft && !state.snapshot.stale;
+    let scene = state.snapshot.scene.clone().filter(|_| settled)?;
+    Some(Ask { scene, settings: state.settings, answer })
+}
+
+/// Whether what was asked is of the answer on screen.
+#[must_use]
+pub fn bending_query_fits(state: &AppState) -> bool {
+    let shown = state.snapshot.solution.as_ref();
+    state.bending.ask.as_ref().zip(shown).is_some_and(|(ask, shown)| Arc::ptr_eq(&ask.answer, shown))
+}
+
+/// What is taken somewhere: what was chosen, if it is still there.
+#[must_use]
+pub fn reach_target(state: &AppState) -> Option<Moved> {
+    let all = movable(&state.scene);
+    let chosen = state.reach.choice.moved.filter(|m| all.contains(m));
+    let robot = || all.first().copied().filter(|m| *m == Moved::Robot);
+    let picked = || match state.selected {
+        Some(Item::Support { cable, support }) => Some(Moved::Support { cable, support }).filter(|m| all.contains(m)),
+        _ => None,
+    };
+    let driven = || {
+        let moves = |m: &&Moved| match m {
+            Moved::Robot => false,
+            Moved::Support { cable, support } => {
+                let s = state.scene.cables.get(*cable).and_then(|c| c.supports.get(*support));
+                s.is_some_and(|s| s.motion.is_some())
+            }
+        };
+        all.iter().find(moves).copied()
+    };
+    chosen.or_else(robot).or_else(picked).or_else(driven).or_else(|| all.last().copied())
+}
