@@ -78,7 +78,7 @@ fn run(arguments: Arguments) -> Result<(), String> {
     };
     if let Some(picture) = arguments.screenshot {
         return screenshot::save(scene, &picture, arguments.size, |app, ctx| {
-            app.state.theme = theme;
+            app.state.view.theme = theme;
             app.apply(ctx, vec![Command::SetModel(arguments.model)]);
         });
     }
@@ -95,7 +95,7 @@ fn run(arguments: Arguments) -> Result<(), String> {
             cc.egui_ctx.add_plugin(software);
         }
         let mut app = ViewerApp::new(&cc.egui_ctx, scene, path);
-        app.state.theme = theme;
+        app.state.view.theme = theme;
         if let Some(path) = autosave::default_path() {
             app.keep_changes_in(path);
         }

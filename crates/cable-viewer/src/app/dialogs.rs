@@ -10,8 +10,8 @@ use crate::state::dialog::{Dialog, Replacement};
 
 /// Draws the dialog, if one is open.
 pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
-    let Some(dialog) = &mut state.dialog else { return };
-    let name = state.scene.name.clone();
+    let Some(dialog) = &mut state.ui.dialog else { return };
+    let name = state.document.scene.name.clone();
     let response = Modal::new(Id::unique("dialog")).show(ctx, |ui| {
         ui.set_max_width(460.0);
         match dialog {

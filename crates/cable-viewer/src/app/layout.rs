@@ -42,7 +42,7 @@ const LEAST_GRAPHS: f32 = 130.0;
 /// Draws everything but dialogs. Only the canvas needs the state mutable: it fits the camera to its own size.
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     Panel::top("menu").show(ui, |ui| menu::ui(ui, state, commands));
-    if state.guide.is_some() {
+    if state.ui.tutorial.is_some() {
         Panel::top("guide").show(ui, |ui| tutorial_bar::strip(ui, state, commands));
     }
     Panel::bottom("status").show(ui, |ui| menu::status(ui, state));
@@ -101,8 +101,8 @@ fn tabs(ui: &mut Ui, (state, graphs): (&AppState, bool), commands: &mut Vec<Comm
                 ui.selectable_value(&mut tab, Tab::Graphs, "Graphs")
                     .on_hover_text("Tension and more, over time and along the cable");
             }
-            let warnings = state.snapshot.solution.as_ref().map_or(0, |s| s.warnings.len());
-            if state.scene_fault.is_some() || state.snapshot.error.is_some() || warnings > 0 {
+            let warnings = state.live.snapshot.solution.as_ref().map_or(0, |s| s.warnings.len());
+            if state.document.fault.is_some() || state.live.snapshot.error.is_some() || warnings > 0 {
                 ui.add(
                     egui::Label::new(RichText::new("Warnings: see Read").color(ui.visuals().warn_fg_color)).truncate(),
                 );
@@ -121,9 +121,9 @@ fn scroll(ui: &mut Ui, id: &str, (sections, state, commands): (&[Section], &AppS
     ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| {
         for (title, panel) in sections {
             let hidden = match *title {
-                "Robot" => state.scene.robot.is_none(),
-                MARKED => state.probe.is_none(),
-                UNMARKED => state.probe.is_some(),
+                "Robot" => state.document.scene.robot.is_none(),
+                MARKED => state.analysis.tension_marker.is_none(),
+                UNMARKED => state.analysis.tension_marker.is_some(),
                 _ => false,
             };
             if hidden {

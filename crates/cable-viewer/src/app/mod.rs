@@ -25,9 +25,8 @@ use crate::command::effects::{Effects, submit_scene};
 use crate::command::{self, Command};
 use crate::io::autosave::Autosave;
 use crate::jobs::{friction_range, model_comparison, neglected_bending, safe_reach};
-use crate::record::samples::Sample;
 use crate::render::theme;
-use crate::state::compare::hold;
+use crate::state::analysis::hold;
 use crate::state::dialog::Dialog;
 use crate::state::questions::{bending_query_fits, friction_query, friction_query_fits};
 use crate::state::{AppState, WorkerStatus};
@@ -97,7 +96,7 @@ impl ViewerApp {
     /// From now on unsaved changes are kept in a file; if there are some from a window that died, they are offered.
     pub fn keep_changes_in(&mut self, path: PathBuf) {
         let autosave = Autosave::new(path);
-        self.state.dialog = match autosave.found() {
+        self.state.ui.dialog = match autosave.found() {
             None => None,
             Some(Ok(scene)) => Some(Dialog::Recover { scene: Box::new(scene) }),
             Some(Err(text)) => Some(Dialog::Message {
@@ -112,11 +111,15 @@ impl ViewerApp {
     fn look_after_changes(&mut self, ctx: &egui::Context) {
         let Some(autosave) = &mut self.autosave else { return };
         let state = &mut self.state;
-        let wait = autosave.look(&state.scene, [state.unsaved(), state.scene_fault.is_none()], Instant::now());
+        let wait = autosave.look(
+            &state.document.scene,
+            [state.document.unsaved(), state.document.fault.is_none()],
+            Instant::now(),
+        );
         if let Some(wait) = wait {
             ctx.request_repaint_after(wait);
         }
-        state.autosave_fault = autosave.fault().map(str::to_owned);
+        state.ui.autosave_fault = autosave.fault().map(str::to_owned);
     }
 
     /// Applies commands as if panels had pushed them.
@@ -146,7 +149,7 @@ impl ViewerApp {
             self.reach = order.map(|o| safe_reach::start(*o, move || shown.request_repaint()));
         }
         if let Some(scene) = effects.models {
-            let (shown, settings) = (ctx.clone(), self.state.settings);
+            let (shown, settings) = (ctx.clone(), self.state.solver.settings);
             self.models = scene.map(|s| model_comparison::start(*s, settings, move || shown.request_repaint()));
         }
         if effects.restart_worker {
@@ -173,29 +176,29 @@ impl ViewerApp {
             self.show(report);
         }
         if let Some(job) = &self.reach {
-            self.state.reach.progress = job.progress();
-            if !matches!(self.state.reach.progress, safe_reach::Progress::Running(..)) {
+            self.state.analysis.safe_reach.progress = job.progress();
+            if !matches!(self.state.analysis.safe_reach.progress, safe_reach::Progress::Running(..)) {
                 self.reach = None;
             }
         }
         if let Some(job) = &self.models {
-            self.state.models = job.progress();
-            if let model_comparison::Progress::Done(found) = self.state.models.clone() {
-                hold(&mut self.state.held, &found);
+            self.state.analysis.models = job.progress();
+            if let model_comparison::Progress::Done(found) = self.state.analysis.models.clone() {
+                hold(&mut self.state.analysis.references, &found);
             }
-            if !matches!(self.state.models, model_comparison::Progress::Running(..)) {
+            if !matches!(self.state.analysis.models, model_comparison::Progress::Running(..)) {
                 self.models = None;
             }
         }
         self.keep_bending(ctx);
         self.keep_spread(ctx);
-        self.state.worker = self.worker.status();
-        if !self.threaded && !self.state.playback.paused {
+        self.state.solver.status = self.worker.status();
+        if !self.threaded && !self.state.live.playback.paused {
             ctx.request_repaint();
         }
-        if matches!(self.state.worker, WorkerStatus::Dead(_)) {
-            self.state.live.stale = true;
-            self.state.snapshot.stale = true;
+        if matches!(self.state.solver.status, WorkerStatus::Dead(_)) {
+            self.state.live.latest.stale = true;
+            self.state.live.snapshot.stale = true;
             self.asked.clear();
         }
     }
@@ -203,9 +206,9 @@ impl ViewerApp {
     /// Looks after what neglecting bending stiffness changes: a question about what is no longer on screen is forgotten.
     fn keep_bending(&mut self, ctx: &egui::Context) {
         if !bending_query_fits(&self.state) {
-            self.state.bending = neglected_bending::View::default();
+            self.state.analysis.neglected_bending = neglected_bending::View::default();
         }
-        let Some(ask) = self.state.bending.ask.clone() else { return };
+        let Some(ask) = self.state.analysis.neglected_bending.ask.clone() else { return };
         let runs = |job: &neglected_bending::Job| matches!(job.progress(), neglected_bending::Progress::Running(..));
         // One that still runs cannot be stopped within its solve: the next waits for it.
         if self.bending.as_ref().is_none_or(|job| !job.is_of(&ask) && !runs(job)) {
@@ -213,14 +216,18 @@ impl ViewerApp {
             self.bending = Some(neglected_bending::Job::start(ask.clone(), move || shown.request_repaint()));
         }
         let own = self.bending.as_ref().filter(|job| job.is_of(&ask));
-        self.state.bending.progress =
+        self.state.analysis.neglected_bending.progress =
             own.map_or(neglected_bending::Progress::Running(0.0, None), neglected_bending::Job::progress);
     }
 
     /// Looks after the ribbon of less and more friction: one of another question ends, a missing one begins.
     fn keep_spread(&mut self, ctx: &egui::Context) {
         let state = &mut self.state;
-        if self.spread.as_ref().is_some_and(|job| !state.spread.on || !friction_query_fits(state, job.ask())) {
+        if self
+            .spread
+            .as_ref()
+            .is_some_and(|job| !state.analysis.friction_range.on || !friction_query_fits(state, job.ask()))
+        {
             self.spread = None;
         }
         if self.spread.is_none()
@@ -229,18 +236,18 @@ impl ViewerApp {
             let shown = ctx.clone();
             self.spread = Some(friction_range::Job::start(ask, move || shown.request_repaint()));
         }
-        state.spread.progress =
+        state.analysis.friction_range.progress =
             self.spread.as_ref().map_or(friction_range::Progress::None, friction_range::Job::progress);
     }
 
     /// Lets what was recorded go on while it is replayed.
     fn replay(&mut self, ctx: &egui::Context) {
         let state = &mut self.state;
-        if state.playback.paused || state.recording.shown_s.is_none() {
+        if state.live.playback.paused || state.live.recording.shown_s.is_none() {
             return;
         }
-        let ended = state.recording.replay(f64::from(ctx.input(|i| i.stable_dt)) * state.playback.speed);
-        state.refresh();
+        let ended = state.live.recording.replay(f64::from(ctx.input(|i| i.stable_dt)) * state.live.playback.speed);
+        state.live.refresh();
         ctx.request_repaint();
         if ended {
             let mut effects = Effects::default();
@@ -252,31 +259,29 @@ impl ViewerApp {
     fn show(&mut self, report: Report) {
         let state = &mut self.state;
         if report.history_restarts {
-            state.history.clear();
-            state.recording.clear();
+            state.live.history.clear();
+            state.live.recording.clear();
         }
         for answer in report.answers {
-            state.history.push(Sample::of(&answer));
-            state.recording.push(answer);
+            state.live.record(answer);
         }
         if report.paused_itself {
-            state.playback.paused = true;
+            state.live.playback.paused = true;
         }
-        state.take(report.snapshot);
-        if report.history_restarts && !state.reopened.is_empty() {
-            let answers = std::mem::take(&mut state.reopened);
+        state.live.receive(report.snapshot);
+        if report.history_restarts && !state.live.reopened_run.is_empty() {
+            let answers = std::mem::take(&mut state.live.reopened_run);
             let last_s = answers.last().map(|a| a.time_s);
             for answer in answers {
-                state.history.push(Sample::of(&answer));
-                state.recording.push(answer);
+                state.live.record(answer);
             }
-            state.show_time(last_s);
+            state.live.show_time(last_s);
         }
         // Several edits may be answered at once: the delay shown is that of the one that waited longest.
-        let answered = self.asked.iter().take_while(|(number, _)| *number <= state.snapshot.edit).count();
+        let answered = self.asked.iter().take_while(|(number, _)| *number <= state.live.snapshot.edit).count();
         if let Some((_, began)) = self.asked.drain(..answered).next() {
             // Without a thread a frame waits for its answer: that time says nothing of the window's.
-            state.edit_latency_s = self.threaded.then(|| began.elapsed().as_secs_f64());
+            state.solver.edit_latency_s = self.threaded.then(|| began.elapsed().as_secs_f64());
         }
     }
 }
@@ -293,15 +298,15 @@ fn new_worker(ctx: &egui::Context, threaded: bool) -> Worker {
 impl eframe::App for ViewerApp {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        system::show(self.state.units);
+        system::show(self.state.view.units);
         self.take_answers(&ctx);
         self.replay(&ctx);
-        ctx.set_theme(self.state.theme);
+        ctx.set_theme(self.state.view.theme);
         let mut commands = Vec::new();
         keys::read(&ctx, &self.state, &mut commands);
         layout::ui(ui, &mut self.state, &mut commands);
         dialogs::ui(&ctx, &mut self.state, &mut commands);
-        if ctx.input(|i| i.viewport().close_requested()) && self.state.unsaved() && !self.state.closing {
+        if ctx.input(|i| i.viewport().close_requested()) && self.state.document.unsaved() && !self.state.ui.closing {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             commands.push(Command::File(command::FileCommand::Quit));
         }

@@ -20,7 +20,7 @@ pub fn menu(ui: &mut Ui, commands: &mut Vec<Command>) {
 
 /// Draws the strip, if a guide is on.
 pub fn strip(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let Some(place) = state.guide else { return };
+    let Some(place) = state.ui.tutorial else { return };
     let (Some(guide), Some(step)) = (TUTORIALS.get(place.tutorial), tutorials::step(place)) else { return };
     let go = |to: Option<TutorialPlace>| Command::View(ViewCommand::Guide(to));
     let at = |step| Some(TutorialPlace { step, ..place });

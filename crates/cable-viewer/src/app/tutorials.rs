@@ -45,11 +45,11 @@ const fn read(text: &'static str) -> Step {
 }
 
 fn changed(state: &AppState) -> bool {
-    state.scene != state.document.saved
+    state.document.scene != state.document.saved
 }
 
 fn supports(state: &AppState) -> usize {
-    state.scene.cables.first().map_or(0, |c| c.supports.len())
+    state.document.scene.cables.first().map_or(0, |c| c.supports.len())
 }
 
 fn saved_supports(state: &AppState) -> usize {
@@ -57,7 +57,7 @@ fn saved_supports(state: &AppState) -> usize {
 }
 
 fn time_s(state: &AppState) -> f64 {
-    state.live.solution.as_ref().map_or(0.0, |s| s.time_s)
+    state.live.latest.solution.as_ref().map_or(0.0, |s| s.time_s)
 }
 
 /// All of them, in the order they are best taken.
@@ -84,9 +84,9 @@ pub const TUTORIALS: [Tutorial; 6] = [
             read("Hover over a name to see what it is and how sure its figure is; ≈ marks an estimate"),
             act(
                 "Type a length below 9 m: the window says what is wrong before anything fails, and offers the fix",
-                |s| s.scene_fault.is_some() || s.scene.cables.first().is_some_and(|c| c.length_m < 9.0),
+                |s| s.document.fault.is_some() || s.document.scene.cables.first().is_some_and(|c| c.length_m < 9.0),
             ),
-            act("Press the fix, or undo", |s| s.scene_fault.is_none()),
+            act("Press the fix, or undo", |s| s.document.fault.is_none()),
         ],
     },
     Tutorial {
@@ -95,7 +95,7 @@ pub const TUTORIALS: [Tutorial; 6] = [
         steps: &[
             act("Double-click the cable: a waypoint, which it slides through", |s| supports(s) > saved_supports(s)),
             act("Drag the waypoint upwards, and give it a wheel under Supports on the left if you like", |s| {
-                let of = s.scene.cables.first().map(|c| &c.supports);
+                let of = s.document.scene.cables.first().map(|c| &c.supports);
                 of.is_some_and(|list| {
                     list.iter().any(|p| p.kind == SupportKind::Pulley && p.at_m.is_some_and(|at| at[1] > 4.5))
                 })
@@ -108,11 +108,11 @@ pub const TUTORIALS: [Tutorial; 6] = [
         scene: "floor-drag",
         steps: &[
             act("Press Space: time runs and the graphs fill", |s| time_s(s) > 0.3),
-            act("Press Space again to stop", |s| s.playback.paused),
+            act("Press Space again to stop", |s| s.live.playback.paused),
             act("Drag the timeline below the canvas, or press the left arrow, to look at an earlier time", |s| {
-                s.recording.shown_s.is_some()
+                s.live.recording.shown_s.is_some()
             }),
-            act("Go on from there, or press Present to come back", |s| s.recording.shown_s.is_none()),
+            act("Go on from there, or press Present to come back", |s| s.live.recording.shown_s.is_none()),
         ],
     },
     Tutorial {
@@ -120,14 +120,14 @@ pub const TUTORIALS: [Tutorial; 6] = [
         scene: "robot-drive",
         steps: &[
             act("Hold D: the robot drives to the right and draws its cable along", |s| {
-                s.live.solution.as_ref().and_then(|a| a.robot).is_some_and(|r| r.x_m > 10.4)
+                s.live.latest.solution.as_ref().and_then(|a| a.robot).is_some_and(|r| r.x_m > 10.4)
             }),
             read(
                 "Under Robot stands why it is as fast as it is: slope, ground, the pull of the cable. Drive on and it stalls or slips",
             ),
             act(
                 "Press Find safe reach on the right: where it can go and come back below the service tension is drawn along the ground",
-                |s| matches!(s.reach.progress, crate::jobs::safe_reach::Progress::Done(..)),
+                |s| matches!(s.analysis.safe_reach.progress, crate::jobs::safe_reach::Progress::Done(..)),
             ),
         ],
     },
@@ -135,9 +135,9 @@ pub const TUTORIALS: [Tutorial; 6] = [
         title: "Compare and keep",
         scene: "hanging-span",
         steps: &[
-            act("Press Hold this answer under Compare on the right", |s| !s.held.is_empty()),
+            act("Press Hold this answer under Compare on the right", |s| !s.analysis.references.is_empty()),
             act("Change the length: both are drawn, and what differs is told under Compare", |s| {
-                !s.held.is_empty() && changed(s)
+                !s.analysis.references.is_empty() && changed(s)
             }),
             read(
                 "Export… beside a graph writes what is in view as CSV, SVG or PNG; Save run… in the File menu keeps everything",

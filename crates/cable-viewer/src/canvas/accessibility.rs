@@ -18,14 +18,14 @@ const MOST_CONTACTS: usize = 40;
 /// Names everything that can be picked, and where the cable lies on something.
 pub fn ui(ui: &Ui, canvas: Rect, state: &AppState) {
     let name = |at: Point, id: (&str, usize, usize), text: String| {
-        let spot = Rect::from_center_size(state.camera.to_screen(canvas, at), vec2(20.0, 20.0));
+        let spot = Rect::from_center_size(state.view.camera.to_screen(canvas, at), vec2(20.0, 20.0));
         if !canvas.intersects(spot) {
             return;
         }
         let response = ui.interact(spot.intersect(canvas), ui.scope_id().with(id), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(Role::GraphicsSymbol, true, &text));
     };
-    let scene = &state.scene;
+    let scene = &state.document.scene;
     for (cable, c) in scene.cables.iter().enumerate() {
         for (support, s) in c.supports.iter().enumerate() {
             if let Some(at) = support_position(state, cable, support) {
@@ -57,7 +57,7 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState) {
 
 /// Stretches of contact, what each does, and slip fronts.
 fn contacts(state: &AppState, name: &impl Fn(Point, (&str, usize, usize), String)) {
-    let Some(solution) = state.snapshot.solution.as_ref().filter(|_| state.layers.contacts) else { return };
+    let Some(solution) = state.live.snapshot.solution.as_ref().filter(|_| state.view.layers.contacts) else { return };
     for answer in &solution.cables {
         for (k, c) in answer.contacts.iter().enumerate().take(MOST_CONTACTS) {
             for (j, part) in contact::parts(c).into_iter().enumerate().filter(|(_, p)| p.ends_m > p.begins_m) {
@@ -81,7 +81,7 @@ fn contacts(state: &AppState, name: &impl Fn(Point, (&str, usize, usize), String
 /// The picture in words.
 #[must_use]
 pub fn summary(state: &AppState) -> String {
-    let scene = &state.scene;
+    let scene = &state.document.scene;
     let count = |n: usize, one: &str| if n == 1 { format!("1 {one}") } else { format!("{n} {one}s") };
     let mut out = vec![format!(
         "{}: {}, {}, {}{}",
@@ -97,7 +97,7 @@ pub fn summary(state: &AppState) -> String {
         });
         out.push(format!("{}: {}", c.name, supports.collect::<Vec<_>>().join(", ")));
     }
-    if let Some(answer) = &state.snapshot.solution {
+    if let Some(answer) = &state.live.snapshot.solution {
         let most = answer.max_tension();
         let on = answer.cables.get(most.cable).map_or("", |c| &c.name);
         out.push(format!(
@@ -112,17 +112,17 @@ pub fn summary(state: &AppState) -> String {
             out.push(format!("robot at {}, {}", format::position([robot.x_m, robot.y_m]), robot.going.name()));
         }
     }
-    if let Some((maps, _)) = state.reach.found() {
-        let shown = if state.reach.choice.back { "there and back" } else { "there" };
+    if let Some((maps, _)) = state.analysis.safe_reach.found() {
+        let shown = if state.analysis.safe_reach.choice.back { "there and back" } else { "there" };
         out.push(format!(
             "safe reach, {shown}: {}",
-            crate::panels::analysis::safe_reach::told(maps, state.reach.choice.back).join(", ")
+            crate::panels::analysis::safe_reach::told(maps, state.analysis.safe_reach.choice.back).join(", ")
         ));
     }
-    if let Some(error) = &state.snapshot.error {
+    if let Some(error) = &state.live.snapshot.error {
         out.push(format!("no answer: {}", translate::shown(error)));
     }
-    if let Some(item) = state.selected {
+    if let Some(item) = state.selection.selected {
         out.push(format!("picked: {}", title(state, item)));
     }
     out.join(". ")
@@ -131,7 +131,7 @@ pub fn summary(state: &AppState) -> String {
 /// A thing in words.
 #[must_use]
 pub fn title(state: &AppState, item: Item) -> String {
-    let scene = &state.scene;
+    let scene = &state.document.scene;
     let cable = |k: usize| scene.cables.get(k).map_or("?", |c| &c.name);
     let obstacle = |k: usize| scene.obstacles.get(k).map_or("?", |o| &o.name);
     match item {

@@ -33,18 +33,18 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     if !rect.is_positive() {
         return;
     }
-    let answered = state.snapshot.solution.is_some() || state.snapshot.error.is_some();
-    if state.camera.fit_wanted && answered {
+    let answered = state.live.snapshot.solution.is_some() || state.live.snapshot.error.is_some();
+    if state.view.camera.fit_wanted && answered {
         let bounds = bounds::scene(state);
-        state.camera.fit(rect, bounds);
+        state.view.camera.fit(rect, bounds);
     }
-    let [low, high] = [rect.left_bottom(), rect.right_top()].map(|p| state.camera.to_world(rect, p));
-    state.visible_m = [low, high];
+    let [low, high] = [rect.left_bottom(), rect.right_top()].map(|p| state.view.camera.to_world(rect, p));
+    state.view.visible_m = [low, high];
     pointer::read(ui, &response, state, commands);
     accessibility::ui(ui, rect, state);
     let mut view = View {
         rect,
-        camera: state.camera,
+        camera: state.view.camera,
         painter: &painter,
         palette: theme::palette(ui.visuals()),
         taken: Vec::new(),
@@ -56,7 +56,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
 /// All layers, back to front.
 fn draw(view: &mut View<'_>, state: &AppState) {
     view.painter.rect_filled(view.rect, 0.0, view.palette.background);
-    if state.layers.grid {
+    if state.view.layers.grid {
         grid::lines(view);
     }
     safe_reach::area(view, state);
@@ -72,7 +72,7 @@ fn draw(view: &mut View<'_>, state: &AppState) {
     tension_marker::draw(view, state, &mut figures);
     robot_path::draw(view, state, &mut figures);
     pointer::frame(view, state);
-    if state.layers.grid {
+    if state.view.layers.grid {
         grid::axes(view);
         grid::scale_bar(view);
     }
@@ -80,7 +80,7 @@ fn draw(view: &mut View<'_>, state: &AppState) {
     legend::contacts(view, state);
     legend::banner(view, state);
     safe_reach::legend(view, state);
-    if state.layers.labels {
+    if state.view.layers.labels {
         supports::labels(view, state, figures);
     }
 }

@@ -30,7 +30,7 @@ pub fn read(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<C
         if matches!(item, Some(Item::Cable(_)))
             && let Some((cable, arc_length_m, _)) = hit_test::cable_at(state, canvas, p, WAYPOINT_REACH)
         {
-            let from = state.probe.map(|p| p.from).unwrap_or_default();
+            let from = state.analysis.tension_marker.map(|p| p.from).unwrap_or_default();
             commands.push(Command::View(ViewCommand::Probe(Some(Probe { cable, arc_length_m, from }))));
         }
         commands.push(Command::View(match item {
@@ -50,29 +50,29 @@ fn adds(ui: &Ui) -> bool {
 fn double_click(state: &AppState, canvas: Rect, p: Pos2, commands: &mut Vec<Command>) {
     if let Some((cable, arc_length_m, at_m)) = hit_test::cable_at(state, canvas, p, WAYPOINT_REACH) {
         commands.push(Command::Scene(SceneCommand::AddWaypoint { cable, arc_length_m, at_m }));
-    } else if state.scene.robot.is_some()
+    } else if state.document.scene.robot.is_some()
         && let Some(Item::Obstacle(k)) = hit_test::item_at(state, canvas, p)
-        && state.scene.obstacles.get(k).is_some_and(|o| matches!(o.shape, Shape::Terrain { .. }))
+        && state.document.scene.obstacles.get(k).is_some_and(|o| matches!(o.shape, Shape::Terrain { .. }))
     {
-        let [to_x_m, _] = state.camera.to_world(canvas, p);
+        let [to_x_m, _] = state.view.camera.to_world(canvas, p);
         commands.push(Command::Scene(SceneCommand::AddLeg { to_x_m }));
     }
 }
 
 fn hover(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Command>) {
     let pointer = response.hover_pos();
-    let item = match &state.grabbed {
+    let item = match &state.selection.grab {
         Some(grab) => Some(grab.item),
         None => pointer.and_then(|p| hit_test::item_at(state, response.rect, p)),
     };
-    let cursor_m = pointer.map(|p| state.camera.to_world(response.rect, p));
-    if item != state.hovered || cursor_m != state.cursor_m {
+    let cursor_m = pointer.map(|p| state.view.camera.to_world(response.rect, p));
+    if item != state.selection.hovered || cursor_m != state.selection.cursor_m {
         commands.push(Command::View(ViewCommand::Hover(item, cursor_m)));
     }
-    if pointer.is_none() && state.grabbed.is_none() {
+    if pointer.is_none() && state.selection.grab.is_none() {
         return;
     }
-    let icon = match (state.grabbed.is_some(), item) {
+    let icon = match (state.selection.grab.is_some(), item) {
         (true, _) => CursorIcon::Grabbing,
         (false, Some(Item::Cable(_))) => CursorIcon::PointingHand,
         (false, Some(item)) if handles::of(state, item).is_some() => CursorIcon::Grab,
@@ -88,7 +88,7 @@ fn wheel(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comm
     let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
     let factor = f64::from(pinch) * (f64::from(scroll) * WHEEL).exp();
     if factor != 1.0 {
-        let about_m = state.camera.to_world(response.rect, p);
+        let about_m = state.view.camera.to_world(response.rect, p);
         commands.push(Command::View(ViewCommand::Zoom { about_m, factor }));
     }
 }
@@ -100,16 +100,16 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
     {
         let Some(item) = hit_test::item_at(state, canvas, p) else {
             if adds(ui) {
-                let at = state.camera.to_world(canvas, p);
+                let at = state.view.camera.to_world(canvas, p);
                 commands.push(Command::View(ViewCommand::Frame(Some([at, at]))));
             }
             return;
         };
-        if !state.picked(item) {
+        if !state.selection.contains(item) {
             commands.push(Command::View(ViewCommand::Select(Some(item))));
         }
         if let Some(at) = handles::of(state, item) {
-            let w = state.camera.to_world(canvas, p);
+            let w = state.view.camera.to_world(canvas, p);
             let grab = Grab { item, offset_m: [at[0] - w[0], at[1] - w[1]] };
             commands.push(Command::View(ViewCommand::Grab(Some(grab))));
             // The pointer has moved on since the press.
@@ -119,7 +119,7 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
             return;
         }
     }
-    match &state.grabbed {
+    match &state.selection.grab {
         Some(grab) => {
             if response.dragged_by(PointerButton::Primary)
                 && let Some(p) = response.interact_pointer_pos()
@@ -131,7 +131,7 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
                 commands.push(Command::Scene(SceneCommand::EditDone));
             }
         }
-        None if state.frame_m.is_some() => frame_to(ui, response, state, commands),
+        None if state.selection.frame_m.is_some() => frame_to(ui, response, state, commands),
         None => {
             let delta = response.drag_delta();
             if response.dragged() && delta != egui::Vec2::ZERO {
@@ -145,22 +145,23 @@ fn move_to(state: &AppState, grab: &Grab, canvas: egui::Rect, p: Pos2, commands:
     if let Item::Load(k) = grab.item {
         // A load slides along its cable.
         if let Some((cable, arc_length_m, _)) = hit_test::cable_at(state, canvas, p, f32::INFINITY)
-            && let Some(mut value) = state.scene.loads.get(k).cloned()
-            && state.scene.cables.get(cable).is_some_and(|c| c.name == value.cable)
+            && let Some(mut value) = state.document.scene.loads.get(k).cloned()
+            && state.document.scene.cables.get(cable).is_some_and(|c| c.name == value.cable)
         {
             value.arc_length_m = arc_length_m;
             commands.push(Command::Scene(SceneCommand::SetLoad { load: k, value }));
         }
         return;
     }
-    let w = state.camera.to_world(canvas, p);
+    let w = state.view.camera.to_world(canvas, p);
     let mut to_m = [w[0] + grab.offset_m[0], w[1] + grab.offset_m[1]];
-    if state.layers.snap {
-        let [_, step] = grid::steps(&state.camera);
+    if state.view.layers.snap {
+        let [_, step] = grid::steps(&state.view.camera);
         to_m = to_m.map(|v| (v / step).round() * step);
     }
     let item = grab.item;
-    let from_m = handles::of(state, item).filter(|_| state.picked(item) && !state.also.is_empty());
+    let from_m =
+        handles::of(state, item).filter(|_| state.selection.contains(item) && !state.selection.also.is_empty());
     commands.push(Command::Scene(match from_m {
         Some(from) => SceneCommand::MoveAll(handles::moved(state, item, [to_m[0] - from[0], to_m[1] - from[1]])),
         None => SceneCommand::Move { item, to_m },
@@ -169,8 +170,8 @@ fn move_to(state: &AppState, grab: &Grab, canvas: egui::Rect, p: Pos2, commands:
 
 /// Draws the frame on, and picks what is in it when it is let go.
 fn frame_to(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Command>) {
-    let Some([from, to]) = state.frame_m else { return };
-    let to = response.interact_pointer_pos().map_or(to, |p| state.camera.to_world(response.rect, p));
+    let Some([from, to]) = state.selection.frame_m else { return };
+    let to = response.interact_pointer_pos().map_or(to, |p| state.view.camera.to_world(response.rect, p));
     if response.drag_stopped() || !ui.input(|i| i.pointer.primary_down()) {
         commands.push(Command::View(ViewCommand::SelectAll(handles::within(state, [from, to]))));
         commands.push(Command::View(ViewCommand::Frame(None)));
@@ -181,7 +182,7 @@ fn frame_to(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<C
 
 /// The frame being drawn round things to pick.
 pub fn frame(view: &View<'_>, state: &AppState) {
-    let Some([a, b]) = state.frame_m else { return };
+    let Some([a, b]) = state.selection.frame_m else { return };
     let rect = Rect::from_two_pos(view.at(a), view.at(b));
     let line = Stroke::new(1.2, view.palette.accent);
     view.painter.rect(rect, 0.0, view.palette.accent.gamma_multiply(0.12), line, StrokeKind::Middle);

@@ -28,11 +28,12 @@ pub struct Effects {
 /// Sends the scene to the worker; `fresh`: nothing of the present simulation is carried over.
 pub fn submit_scene(state: &mut AppState, fresh: bool, effects: &mut Effects) {
     // An edit is of the present.
-    state.show_time(None);
-    let edit = Edit { scene: state.scene.clone(), model: state.model, settings: state.settings, fresh };
+    state.live.show_time(None);
+    let edit =
+        Edit { scene: state.document.scene.clone(), model: state.solver.model, settings: state.solver.settings, fresh };
     effects.request.merge(Request {
         edit: Some(edit),
-        playback: Some(state.playback),
+        playback: Some(state.live.playback),
         number: next_number(state),
         ..Request::default()
     });
@@ -40,6 +41,6 @@ pub fn submit_scene(state: &mut AppState, fresh: bool, effects: &mut Effects) {
 
 /// Numbers the next edit.
 pub fn next_number(state: &mut AppState) -> u64 {
-    state.edits_sent += 1;
-    state.edits_sent
+    state.solver.edits_sent += 1;
+    state.solver.edits_sent
 }

@@ -19,7 +19,7 @@ use crate::record::run::Run;
 use crate::record::samples::Sample;
 use crate::state::dialog::{Dialog, Replacement};
 use crate::state::tutorial_place::TutorialPlace;
-use crate::state::{AppState, Held};
+use crate::state::{AppState, Document, Held};
 
 /// Files and the window.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,8 +78,8 @@ pub enum FileCommand {
 
 /// Does one of them.
 pub fn apply(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
-    if let Some(then) = command.replacement().filter(|_| state.unsaved()) {
-        state.dialog = Some(Dialog::Unsaved { then });
+    if let Some(then) = command.replacement().filter(|_| state.document.unsaved()) {
+        state.ui.dialog = Some(Dialog::Unsaved { then });
         return;
     }
     carry_out(state, command, effects);
@@ -87,8 +87,8 @@ pub fn apply(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
 
 fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
     match command {
-        FileCommand::AskOpen => state.dialog = Some(Dialog::Open { path: path_text(state) }),
-        FileCommand::AskSaveAs => state.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
+        FileCommand::AskOpen => state.ui.dialog = Some(Dialog::Open { path: path_text(state) }),
+        FileCommand::AskSaveAs => state.ui.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
         FileCommand::Open(path) => match scene_file::load(&path) {
             Ok(scene) => open(state, scene, Some(path), effects),
             Err(text) => complain(state, &format!("“{}” was not opened", path.display()), text),
@@ -100,39 +100,39 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
         }
         FileCommand::OpenTutorial { tutorial, scene } => {
             carry_out(state, FileCommand::OpenCatalogue(scene.to_owned()), effects);
-            state.guide = Some(TutorialPlace { tutorial, step: 0 });
+            state.ui.tutorial = Some(TutorialPlace { tutorial, step: 0 });
         }
         FileCommand::Save => match state.document.path.clone() {
             Some(path) => save(state, &path),
-            None => state.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
+            None => state.ui.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
         },
         FileCommand::SaveAs(path) => save(state, &path),
         FileCommand::Export(path, sheet) => match graph_file::save(&path, &sheet) {
-            Ok(()) => state.dialog = None,
+            Ok(()) => state.ui.dialog = None,
             Err(text) => complain(state, &format!("“{}” was not written", path.display()), text),
         },
         FileCommand::ImportMap { path, text, unit_m } => {
-            match import::add(&state.scene, path.as_deref(), &text, unit_m) {
+            match import::add(&state.document.scene, path.as_deref(), &text, unit_m) {
                 Ok((scene, report)) => {
                     scene::apply(state, SceneCommand::SetScene(Box::new(scene)), effects);
-                    state.camera.fit_wanted = true;
-                    state.dialog = Some(Dialog::Message { title: "Imported".to_owned(), text: report });
+                    state.view.camera.fit_wanted = true;
+                    state.ui.dialog = Some(Dialog::Message { title: "Imported".to_owned(), text: report });
                 }
                 Err(text) => complain(state, "The map was not imported", text),
             }
         }
         FileCommand::SaveFeedback(path, answers) => match feedback::save(&path, &answers, &feedback_context(state)) {
-            Ok(()) => state.dialog = None,
+            Ok(()) => state.ui.dialog = None,
             Err(text) => complain(state, &format!("“{}” was not written", path.display()), text),
         },
         FileCommand::SaveRun(path) => match save_run(state, &path) {
-            Ok(()) => state.dialog = None,
+            Ok(()) => state.ui.dialog = None,
             Err(text) => complain(state, &format!("The run was not written to “{}”", path.display()), text),
         },
         FileCommand::OpenRun(path) => match read_run(&path) {
             Ok(opened) => {
                 open(state, opened.scene, None, effects);
-                state.reopened = opened.answers;
+                state.live.reopened_run = opened.answers;
                 remark(state, &path, &opened.remarks);
             }
             Err(text) => complain(state, &format!("The run “{}” was not opened", path.display()), text),
@@ -141,17 +141,17 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
             Ok(opened) => hold(state, &path, opened),
             Err(text) => complain(state, &format!("The run “{}” was not opened", path.display()), text),
         },
-        FileCommand::SetDialog(dialog) => state.dialog = dialog,
+        FileCommand::SetDialog(dialog) => state.ui.dialog = dialog,
         FileCommand::Recover(scene) => {
             open(state, *scene, None, effects);
             state.document.recovered = true;
         }
         FileCommand::ForgetRecovery => {
-            state.dialog = None;
+            state.ui.dialog = None;
             effects.forget_recovery = true;
         }
         FileCommand::Discard(then) => {
-            state.dialog = None;
+            state.ui.dialog = None;
             carry_out(state, then.into(), effects);
         }
         FileCommand::RestartWorker => {
@@ -159,7 +159,7 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
             submit_scene(state, true, effects);
         }
         FileCommand::Quit => {
-            state.closing = true;
+            state.ui.closing = true;
             effects.quit = true;
         }
     }
@@ -192,24 +192,20 @@ impl From<Replacement> for FileCommand {
 }
 
 fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut Effects) {
-    let fresh = AppState::new(scene, path);
-    state.scene = fresh.scene;
-    state.scene_fault = fresh.scene_fault;
-    state.document = fresh.document;
-    state.undo = fresh.undo;
-    (state.selected, state.also) = (None, Vec::new());
-    (state.hovered, state.probe) = (None, None);
-    state.playback.paused = true;
-    state.robot_order = None;
-    state.reopened = Vec::new();
-    state.guide = None;
-    state.reach = crate::jobs::safe_reach::View::default();
+    state.document = Document::new(scene, path);
+    (state.selection.selected, state.selection.also) = (None, Vec::new());
+    (state.selection.hovered, state.analysis.tension_marker) = (None, None);
+    state.live.playback.paused = true;
+    state.live.robot_order = None;
+    state.live.reopened_run = Vec::new();
+    state.ui.tutorial = None;
+    state.analysis.safe_reach = crate::jobs::safe_reach::View::default();
     effects.reach = Some(None);
-    state.models = crate::jobs::model_comparison::Progress::None;
+    state.analysis.models = crate::jobs::model_comparison::Progress::None;
     effects.models = Some(None);
     effects.request.robot = Some(None);
-    state.camera.fit_wanted = true;
-    state.dialog = None;
+    state.view.camera.fit_wanted = true;
+    state.ui.dialog = None;
     submit_scene(state, true, effects);
 }
 
@@ -224,33 +220,35 @@ fn hold(state: &mut AppState, path: &Path, opened: SavedRun) {
     let samples: Vec<Sample> = opened.answers.iter().map(Sample::of).collect();
     let events = opened.answers.iter().map(|a| a.warnings.len()).sum();
     let run = Run::of(samples.iter(), &opened.answers, events).map(Arc::new);
-    state.dialog = None;
+    state.ui.dialog = None;
     remark(state, path, &opened.remarks);
-    if let (Some(solution), true) = (opened.answers.into_iter().next_back(), state.held.len() < Held::MOST) {
+    if let (Some(solution), true) =
+        (opened.answers.into_iter().next_back(), state.analysis.references.len() < Held::MOST)
+    {
         let name = format!("{}, {}, {:.2} s", opened.scene.name, path.display(), solution.time_s);
         let (scene, solution) = (Arc::new(opened.scene), Arc::new(solution));
-        state.held.push(Held { name, scene, solution, wall_s: f64::NAN, run });
+        state.analysis.references.push(Held { name, scene, solution, wall_s: f64::NAN, run });
     }
 }
 
 fn save(state: &mut AppState, path: &Path) {
-    match scene_file::save(path, &state.scene) {
+    match scene_file::save(path, &state.document.scene) {
         Ok(()) => {
             state.document.path = Some(path.to_owned());
-            state.document.saved = state.scene.clone();
+            state.document.saved = state.document.scene.clone();
             state.document.recovered = false;
-            state.dialog = None;
+            state.ui.dialog = None;
         }
         Err(text) => complain(state, &format!("“{}” was not saved", path.display()), text),
     }
 }
 
 fn save_run(state: &AppState, path: &Path) -> Result<(), String> {
-    let scene = state.live.scene.as_deref().ok_or("nothing was solved yet")?;
+    let scene = state.live.latest.scene.as_deref().ok_or("nothing was solved yet")?;
     let request =
         RunRequest { program: format!("cable-viewer {}", env!("CARGO_PKG_VERSION")), ..RunRequest::default() };
     let mut folder = RunFolder::create(path, scene, request, NodeChoice::default()).map_err(|e| e.to_string())?;
-    for answer in state.recording.answers() {
+    for answer in state.live.recording.answers() {
         if let Err(e) = folder.push(answer) {
             let why = e.to_string();
             // The tables are readable and marked as partial already, whether this can be noted or not.
@@ -262,7 +260,7 @@ fn save_run(state: &AppState, path: &Path) -> Result<(), String> {
 }
 
 fn complain(state: &mut AppState, title: &str, text: String) {
-    state.dialog = Some(Dialog::Message { title: title.to_owned(), text });
+    state.ui.dialog = Some(Dialog::Message { title: title.to_owned(), text });
 }
 
 fn path_text(state: &AppState) -> String {
@@ -271,8 +269,8 @@ fn path_text(state: &AppState) -> String {
 
 fn feedback_context(state: &AppState) -> feedback::Context<'_> {
     feedback::Context {
-        scene: &state.scene.name,
-        answer: state.snapshot.solution.as_deref(),
-        error: state.snapshot.error.as_deref(),
+        scene: &state.document.scene.name,
+        answer: state.live.snapshot.solution.as_deref(),
+        error: state.live.snapshot.error.as_deref(),
     }
 }

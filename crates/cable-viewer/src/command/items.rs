@@ -12,7 +12,7 @@ pub fn move_item(state: &mut AppState, item: Item, to_m: Point) {
     if !to_m.iter().all(|v| v.is_finite()) {
         return;
     }
-    let scene = &mut state.scene;
+    let scene = &mut state.document.scene;
     match item {
         Item::Support { cable, support } => {
             let Some(s) = scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support)) else { return };
@@ -54,8 +54,9 @@ pub fn move_item(state: &mut AppState, item: Item, to_m: Point) {
         }
         Item::Head(index) => {
             let Some((tail, _)) = crate::geometry::arrows::load_at(state, index) else { return };
-            let force = crate::geometry::arrows::force_of_arrow([to_m[0] - tail[0], to_m[1] - tail[1]], &state.camera);
-            if let Some(load) = state.scene.loads.get_mut(index).filter(|l| l.force_n.is_some()) {
+            let force =
+                crate::geometry::arrows::force_of_arrow([to_m[0] - tail[0], to_m[1] - tail[1]], &state.view.camera);
+            if let Some(load) = state.document.scene.loads.get_mut(index).filter(|l| l.force_n.is_some()) {
                 load.force_n = Some(force);
             }
         }
@@ -112,9 +113,9 @@ pub fn remove_all(state: &mut AppState, mut items: Vec<Item>) {
     items.dedup_by_key(|item| rank(item));
     items.sort_by_key(|item| rank(item).0);
     for item in items {
-        remove(&mut state.scene, item);
+        remove(&mut state.document.scene, item);
     }
-    (state.selected, state.also) = (None, Vec::new());
+    (state.selection.selected, state.selection.also) = (None, Vec::new());
 }
 
 fn remove(scene: &mut Scene, item: Item) {
@@ -167,16 +168,16 @@ fn remove(scene: &mut Scene, item: Item) {
 
 /// A selection that no longer exists must not point at its neighbour's panel.
 pub fn drop_lost_selection(state: &mut AppState) {
-    if state.selected.is_some_and(|item| !exists(state, item)) {
-        state.selected = None;
+    if state.selection.selected.is_some_and(|item| !exists(state, item)) {
+        state.selection.selected = None;
     }
-    let mut also = std::mem::take(&mut state.also);
+    let mut also = std::mem::take(&mut state.selection.also);
     also.retain(|item| exists(state, *item));
-    state.also = also;
+    state.selection.also = also;
 }
 
 fn exists(state: &AppState, item: Item) -> bool {
-    let scene = &state.scene;
+    let scene = &state.document.scene;
     match item {
         Item::Cable(k) => k < scene.cables.len(),
         Item::Support { cable, support } => scene.cables.get(cable).is_some_and(|c| support < c.supports.len()),
@@ -209,7 +210,7 @@ pub fn unique(name: &str, taken: impl Fn(&str) -> bool) -> String {
 
 pub fn add_waypoint(state: &mut AppState, cable: usize, arc_length_m: f64, at_m: Point) {
     let place = waypoint_place(state, cable, arc_length_m);
-    let Some(c) = state.scene.cables.get_mut(cable) else { return };
+    let Some(c) = state.document.scene.cables.get_mut(cable) else { return };
     if c.supports.len() < 2 {
         return;
     }
@@ -218,13 +219,13 @@ pub fn add_waypoint(state: &mut AppState, cable: usize, arc_length_m: f64, at_m:
     c.supports.insert(place, Support::pulley(name, at_m));
     // A route laid before the waypoint existed may pass it on the wrong side.
     c.route_m.clear();
-    state.selected = Some(Item::Support { cable, support: place });
+    state.selection.selected = Some(Item::Support { cable, support: place });
 }
 
 /// Which place among the supports a point of the cable falls into: after those that sit before it now.
 pub fn waypoint_place(state: &AppState, cable: usize, arc_length_m: f64) -> usize {
-    let answer = state.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable));
-    let (Some(answer), Some(c)) = (answer, state.scene.cables.get(cable)) else {
+    let answer = state.live.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable));
+    let (Some(answer), Some(c)) = (answer, state.document.scene.cables.get(cable)) else {
         return 1;
     };
     if answer.supports.len() != c.supports.len() {

@@ -45,11 +45,11 @@ pub fn apply(state: &mut AppState, command: Command, effects: &mut Effects) {
         Command::Scene(c) => scene::apply(state, c, effects),
         Command::Playback(c) => playback::apply(state, c, effects),
         Command::SetModel(model) => {
-            state.model = model;
+            state.solver.model = model;
             submit_scene(state, false, effects);
         }
         Command::SetSettings(settings) => {
-            state.settings = settings;
+            state.solver.settings = settings;
             submit_scene(state, false, effects);
         }
         Command::View(c) => view::apply(state, c, effects),

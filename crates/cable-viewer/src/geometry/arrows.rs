@@ -14,8 +14,8 @@ pub const LOAD_LENGTH: [f64; 2] = [18.0, 220.0];
 
 /// Where a load acts now and its force, N.
 pub fn load_at(state: &AppState, load: usize) -> Option<(Point, Point)> {
-    let load = state.scene.loads.get(load)?;
-    let solution = state.snapshot.solution.as_ref()?;
+    let load = state.document.scene.loads.get(load)?;
+    let solution = state.live.snapshot.solution.as_ref()?;
     let cable = solution.cables.iter().find(|c| c.name == load.cable)?;
     let force = load.force_n.or_else(|| load.forces_n.first().copied())?;
     let k = cable.nodes.partition_point(|n| n.arc_length_m < load.arc_length_m).min(cable.nodes.len().checked_sub(1)?);
@@ -42,7 +42,7 @@ pub fn load_arrow(force: Point) -> Vec2 {
 pub fn head_at(state: &AppState, load: usize) -> Option<Point> {
     let (tail, force) = load_at(state, load)?;
     let along = load_arrow(force);
-    let scale = state.camera.points_per_m;
+    let scale = state.view.camera.points_per_m;
     Some([tail[0] + f64::from(along.x) / scale, tail[1] - f64::from(along.y) / scale])
 }
 

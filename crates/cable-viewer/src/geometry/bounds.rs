@@ -30,12 +30,12 @@ impl Bounds {
 }
 
 fn add_cables(state: &AppState, bounds: &mut Bounds) {
-    if let Some(solution) = &state.snapshot.solution {
+    if let Some(solution) = &state.live.snapshot.solution {
         for n in solution.cables.iter().flat_map(|c| &c.nodes) {
             bounds.add([n.x_m, n.y_m]);
         }
     }
-    for s in state.scene.cables.iter().flat_map(|c| &c.supports) {
+    for s in state.document.scene.cables.iter().flat_map(|c| &c.supports) {
         if let Some(p) = s.at_m {
             bounds.add(p);
         }
@@ -55,7 +55,7 @@ pub fn cables(state: &AppState) -> [Point; 2] {
 pub fn scene(state: &AppState) -> [Point; 2] {
     let mut bounds = Bounds::EMPTY;
     add_cables(state, &mut bounds);
-    for obstacle in &state.scene.obstacles {
+    for obstacle in &state.document.scene.obstacles {
         match &obstacle.shape {
             Shape::Terrain { points_m } | Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => {
                 points_m.iter().for_each(|&p| bounds.add(p));
@@ -74,15 +74,15 @@ pub fn scene(state: &AppState) -> [Point; 2] {
 #[must_use]
 pub fn ground(state: &AppState) -> [f64; 2] {
     let mut bounds = Bounds::EMPTY;
-    for obstacle in &state.scene.obstacles {
+    for obstacle in &state.document.scene.obstacles {
         if let Shape::Terrain { points_m } = &obstacle.shape {
             points_m.iter().for_each(|&p| bounds.add(p));
         }
     }
     let [low, high] = bounds.or_unit();
-    let from = state.scene.robot.as_ref().map_or(0.0, |r| r.at_m[0]);
-    let longest = state.scene.cables.iter().map(|c| c.length_m).fold(0.0, f64::max);
-    let starts = state.scene.cables.iter().filter_map(|c| c.supports.first()?.at_m).map(|p| p[0]);
+    let from = state.document.scene.robot.as_ref().map_or(0.0, |r| r.at_m[0]);
+    let longest = state.document.scene.cables.iter().map(|c| c.length_m).fold(0.0, f64::max);
+    let starts = state.document.scene.cables.iter().filter_map(|c| c.supports.first()?.at_m).map(|p| p[0]);
     let (near, far) = starts.fold((from, from), |(a, b), x| (a.min(x), b.max(x)));
     [low[0].max(near - longest), high[0].min(far + longest)]
 }

@@ -13,16 +13,16 @@ use crate::state::{AppState, Item};
 pub fn of(state: &AppState, item: Item) -> Option<Point> {
     match item {
         Item::Support { cable, support } => {
-            state.scene.cables.get(cable)?.supports.get(support)?.at_m?;
+            state.document.scene.cables.get(cable)?.supports.get(support)?.at_m?;
             support_position(state, cable, support)
         }
-        Item::Corner { obstacle, corner } => match &state.scene.obstacles.get(obstacle)?.shape {
+        Item::Corner { obstacle, corner } => match &state.document.scene.obstacles.get(obstacle)?.shape {
             Shape::Terrain { points_m } | Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => {
                 points_m.get(corner).copied()
             }
             Shape::Circle { .. } => None,
         },
-        Item::Obstacle(k) => match &state.scene.obstacles.get(k)?.shape {
+        Item::Obstacle(k) => match &state.document.scene.obstacles.get(k)?.shape {
             // The whole ground is not dragged by accident: its corners are.
             Shape::Terrain { .. } => None,
             Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => points_m.first().copied(),
@@ -30,10 +30,10 @@ pub fn of(state: &AppState, item: Item) -> Option<Point> {
         },
         Item::Load(k) => load_at(state, k).map(|(at, _)| at),
         Item::Head(k) => {
-            state.scene.loads.get(k)?.force_n?;
+            state.document.scene.loads.get(k)?.force_n?;
             head_at(state, k)
         }
-        Item::Robot => state.scene.robot.as_ref().map(|r| r.at_m),
+        Item::Robot => state.document.scene.robot.as_ref().map(|r| r.at_m),
         Item::Leg(k) => path_flags(state).into_iter().find(|(leg, ..)| *leg == k).map(|(_, at, _)| at),
         Item::Cable(_) => None,
     }
@@ -42,7 +42,7 @@ pub fn of(state: &AppState, item: Item) -> Option<Point> {
 /// What moves when a thing is moved by a vector (m): it, or all that is picked if it is; each with where it goes to, m.
 #[must_use]
 pub fn moved(state: &AppState, item: Item, by_m: Point) -> Vec<(Item, Point)> {
-    let items = if state.picked(item) { state.picks() } else { vec![item] };
+    let items = if state.selection.contains(item) { state.selection.picks() } else { vec![item] };
     // Loads and heads of arrows have places that follow from others.
     let alone = items.len() == 1;
     let moves = items.into_iter().filter(|i| alone || !matches!(i, Item::Load(_) | Item::Head(_) | Item::Leg(_)));
@@ -53,7 +53,7 @@ pub fn moved(state: &AppState, item: Item, by_m: Point) -> Vec<(Item, Point)> {
 #[must_use]
 pub fn within(state: &AppState, [a, b]: [Point; 2]) -> Vec<Item> {
     let inside = |p: Point| (0..2).all(|k| p[k] >= a[k].min(b[k]) && p[k] <= a[k].max(b[k]));
-    let scene = &state.scene;
+    let scene = &state.document.scene;
     let supports = scene.cables.iter().enumerate().flat_map(|(cable, c)| {
         (0..c.supports.len()).map(move |support| (Item::Support { cable, support }, (cable, support)))
     });
@@ -79,7 +79,7 @@ pub fn within(state: &AppState, [a, b]: [Point; 2]) -> Vec<Item> {
 /// Everything that can be picked, in the order of the scene panel.
 #[must_use]
 pub fn all(state: &AppState) -> Vec<Item> {
-    let scene = &state.scene;
+    let scene = &state.document.scene;
     let supports = scene.cables.iter().enumerate();
     let supports =
         supports.flat_map(|(cable, c)| (0..c.supports.len()).map(move |support| Item::Support { cable, support }));

@@ -18,7 +18,7 @@ const LINE: f32 = 7.0;
 #[must_use]
 pub fn item_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
     let near = |at: Point, reach: f32| {
-        let d = state.camera.to_screen(canvas, at).distance(p);
+        let d = state.view.camera.to_screen(canvas, at).distance(p);
         (d <= reach).then_some(d)
     };
     let mut best: Option<(f32, Item)> = None;
@@ -29,22 +29,22 @@ pub fn item_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
             best = Some((d, item));
         }
     };
-    for (cable, c) in state.scene.cables.iter().enumerate() {
+    for (cable, c) in state.document.scene.cables.iter().enumerate() {
         for support in 0..c.supports.len() {
             let d = support_position(state, cable, support).and_then(|at| near(at, SUPPORT));
             offer(d, Item::Support { cable, support });
         }
     }
-    for load in 0..state.scene.loads.len() {
+    for load in 0..state.document.scene.loads.len() {
         offer(load_at(state, load).and_then(|(at, _)| near(at, CORNER)), Item::Load(load));
-        if state.layers.forces {
+        if state.view.layers.forces {
             offer(head_at(state, load).and_then(|at| near(at, CORNER)), Item::Head(load));
         }
     }
     for (leg, at, _) in path_flags(state) {
         offer(near(at, CORNER), Item::Leg(leg));
     }
-    for (obstacle, o) in state.scene.obstacles.iter().enumerate() {
+    for (obstacle, o) in state.document.scene.obstacles.iter().enumerate() {
         // Corners can be picked once their handles are shown; before, the whole obstacle is.
         if !handles_shown(state, obstacle) {
             continue;
@@ -60,7 +60,7 @@ pub fn item_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
     if let Some((cable, _, _)) = cable_at(state, canvas, p, LINE) {
         return Some(Item::Cable(cable));
     }
-    if inside(&robot_outline(state), state.camera.to_world(canvas, p)) {
+    if inside(&robot_outline(state), state.view.camera.to_world(canvas, p)) {
         return Some(Item::Robot);
     }
     obstacle_at(state, canvas, p)
@@ -69,7 +69,7 @@ pub fn item_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
 /// The obstacle, or one of its corners, is selected.
 #[must_use]
 pub fn handles_shown(state: &AppState, index: usize) -> bool {
-    match state.selected {
+    match state.selection.selected {
         Some(Item::Obstacle(k)) => k == index,
         Some(Item::Corner { obstacle, .. }) => obstacle == index,
         _ => false,
@@ -81,7 +81,7 @@ fn corner_reach(state: &AppState, points: &[Point], corner: usize) -> f32 {
     let Some(&p) = points.get(corner) else { return 0.0 };
     let neighbours = [corner.checked_sub(1), corner.checked_add(1)].into_iter().flatten().filter_map(|k| points.get(k));
     let nearest = neighbours.map(|q| (q[0] - p[0]).hypot(q[1] - p[1])).fold(f64::INFINITY, f64::min);
-    ((0.35 * nearest * state.camera.points_per_m) as f32).clamp(3.0, CORNER)
+    ((0.35 * nearest * state.view.camera.points_per_m) as f32).clamp(3.0, CORNER)
 }
 
 fn corners(shape: &Shape) -> &[Point] {
@@ -94,8 +94,8 @@ fn corners(shape: &Shape) -> &[Point] {
 /// The nearest cable within reach (points): its index, the arc length there, the point there, m.
 #[must_use]
 pub fn cable_at(state: &AppState, canvas: Rect, p: Pos2, reach: f32) -> Option<(usize, f64, Point)> {
-    let solution = state.snapshot.solution.as_ref()?;
-    let world = state.camera.to_world(canvas, p);
+    let solution = state.live.snapshot.solution.as_ref()?;
+    let world = state.view.camera.to_world(canvas, p);
     let mut best: Option<(f64, usize, f64, Point)> = None;
     for (k, cable) in solution.cables.iter().enumerate() {
         for pair in cable.pieces().flat_map(|p| p.windows(2)) {
@@ -110,13 +110,13 @@ pub fn cable_at(state: &AppState, canvas: Rect, p: Pos2, reach: f32) -> Option<(
         }
     }
     let (d, k, s, q) = best?;
-    (d * state.camera.points_per_m <= f64::from(reach)).then_some((k, s, q))
+    (d * state.view.camera.points_per_m <= f64::from(reach)).then_some((k, s, q))
 }
 
 /// Arc length where a cable is nearest to a point, m.
 #[must_use]
 pub fn nearest_on(state: &AppState, cable: usize, p: Point) -> Option<f64> {
-    let answer = state.snapshot.solution.as_ref()?.cables.get(cable)?;
+    let answer = state.live.snapshot.solution.as_ref()?.cables.get(cable)?;
     let mut best: Option<(f64, f64)> = None;
     for pair in answer.pieces().flat_map(|p| p.windows(2)) {
         let (a, b) = ([pair[0].x_m, pair[0].y_m], [pair[1].x_m, pair[1].y_m]);
@@ -137,8 +137,8 @@ fn along(a: Point, b: Point, p: Point) -> f64 {
 }
 
 fn obstacle_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
-    let world = state.camera.to_world(canvas, p);
-    let reach = f64::from(LINE) / state.camera.points_per_m;
+    let world = state.view.camera.to_world(canvas, p);
+    let reach = f64::from(LINE) / state.view.camera.points_per_m;
     let near_line = |points: &[Point], reach: f64| {
         points.windows(2).any(|s| {
             let f = along(s[0], s[1], world);
@@ -155,7 +155,7 @@ fn obstacle_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
         Shape::Polyline { points_m, thickness_m } => near_line(points_m, reach.max(0.5 * thickness_m)),
     };
     // The last drawn is on top.
-    let k = state.scene.obstacles.iter().rposition(|o| hit(&o.shape))?;
+    let k = state.document.scene.obstacles.iter().rposition(|o| hit(&o.shape))?;
     Some(Item::Obstacle(k))
 }
 

@@ -11,12 +11,12 @@ use crate::units::labels;
 
 /// How it stands: while time runs where the answer has it, else where it is being put.
 pub fn robot_pose(state: &AppState) -> Option<(Pose, &'static RobotPreset)> {
-    let robot = state.scene.robot.as_ref()?;
+    let robot = state.document.scene.robot.as_ref()?;
     let preset = robot_preset(&robot.preset)?;
-    let moved = state.snapshot.solution.as_ref().filter(|s| s.time_s > 0.0).and_then(|s| s.robot);
+    let moved = state.live.snapshot.solution.as_ref().filter(|s| s.time_s > 0.0).and_then(|s| s.robot);
     let pose = match moved {
         Some(r) => Pose { at_m: [r.x_m, r.y_m], pitch: r.pitch_deg.to_radians(), heading: robot.heading },
-        None => state.scene.robot_pose()?,
+        None => state.document.scene.robot_pose()?,
     };
     Some((pose, preset))
 }
@@ -31,8 +31,8 @@ pub fn robot_outline(state: &AppState) -> Vec<Point> {
 /// The legs that lead to a place: index, where, m, and what it says.
 #[must_use]
 pub fn path_flags(state: &AppState) -> Vec<(usize, Point, String)> {
-    let Some(robot) = state.scene.robot.as_ref().filter(|r| !r.path.is_empty()) else { return Vec::new() };
-    let ground = Ground::of(&state.scene);
+    let Some(robot) = state.document.scene.robot.as_ref().filter(|r| !r.path.is_empty()) else { return Vec::new() };
+    let ground = Ground::of(&state.document.scene);
     let mut out: Vec<(usize, Point, String)> = Vec::new();
     for (k, task) in robot.path.iter().enumerate() {
         match (task, out.last_mut()) {

@@ -66,7 +66,7 @@ const TEMPERATURE: Entry = (
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     view(ui, state, commands);
-    let environment = &state.scene.environment;
+    let environment = &state.document.scene.environment;
     for (quantity, key, get, set) in [GRAVITY, WIND_X, WIND_Y, TEMPERATURE] {
         let wind = key == "wind_n_per_m";
         if wind && !environment.winds_n_per_m.is_empty() {
@@ -97,7 +97,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 fn wind(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     /// Time over which it changes at first, s.
     const FIRST_SPAN_S: f64 = 5.0;
-    let environment = &state.scene.environment;
+    let environment = &state.document.scene.environment;
     let knots = Knots::of(&environment.wind_times_s, &environment.winds_n_per_m);
     let on = !environment.winds_n_per_m.is_empty();
     let (mut faults, mut changed) = (Vec::new(), None);
@@ -124,13 +124,13 @@ fn wind(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     labelled(ui, "View", "Side view", |ui| {
-        let mut view = state.scene.view;
+        let mut view = state.document.scene.view;
         let side = ui.selectable_value(&mut view, View::Elevation, "Side view");
         let side = side.on_hover_text("Seen from the side: gravity points down");
         let plan = ui.selectable_value(&mut view, View::Plan, "Plan view");
         plan.on_hover_text("Seen from above: gravity points into the page and the floor rubs everywhere");
-        if view != state.scene.view {
-            let scene = cable_core::Scene { view, ..state.scene.clone() };
+        if view != state.document.scene.view {
+            let scene = cable_core::Scene { view, ..state.document.scene.clone() };
             commands.push(Command::Scene(SceneCommand::SetScene(Box::new(scene))));
         }
         side

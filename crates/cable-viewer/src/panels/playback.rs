@@ -26,7 +26,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             }
         };
         button(ui, (Icon::ToStart, "Reset"), "Back to the start, bit for bit", PlaybackCommand::Reset);
-        if state.playback.paused {
+        if state.live.playback.paused {
             button(ui, (Icon::Play, "Play"), "Let time run", PlaybackCommand::SetPaused(false));
         } else {
             button(ui, (Icon::Pause, "Pause"), "Stop time", PlaybackCommand::SetPaused(true));
@@ -35,7 +35,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.separator();
         speed(ui, state, commands);
         ui.separator();
-        let time_s = state.snapshot.solution.as_ref().map_or(0.0, |s| s.time_s);
+        let time_s = state.live.snapshot.solution.as_ref().map_or(0.0, |s| s.time_s);
         ui.label(format!("Time {time_s:.3} s")).on_hover_text("Simulated time since the start");
         real_time(ui, state);
     });
@@ -43,7 +43,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 fn speed(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let label = ui.label("Speed").id;
-    let mut speed = state.playback.speed;
+    let mut speed = state.live.playback.speed;
     let response = ui.add(
         Slider::new(&mut speed, Playback::MIN_SPEED..=Playback::MAX_SPEED)
             .logarithmic(true)
@@ -55,14 +55,14 @@ fn speed(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         commands.push(Command::Playback(PlaybackCommand::SetSpeed(speed)));
     }
     response.on_hover_text("Simulated seconds per second, 0.01× to 4×");
-    let entry = field::number(ui, "Speed", Unit::TIMES, state.playback.speed, SPEED_WIDTH);
+    let entry = field::number(ui, "Speed", Unit::TIMES, state.live.playback.speed, SPEED_WIDTH);
     if let Some(speed) = entry.value {
         commands.push(Command::Playback(PlaybackCommand::SetSpeed(speed)));
     }
     let response = entry.response.labelled_by(label);
     field::name(&response, "Speed");
     response.on_hover_text("Simulated seconds per second, 0.01× to 4×");
-    let unchanged = state.playback.speed == 1.0;
+    let unchanged = state.live.playback.speed == 1.0;
     let reset = ui.add_enabled(!unchanged, Button::new("1×")).on_hover_text("Back to real time");
     let reset = reset.on_disabled_hover_text("It runs in real time");
     field::name(&reset, "Real-time speed");
@@ -75,11 +75,11 @@ fn speed(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 fn real_time(ui: &mut Ui, state: &AppState) {
-    let Some(reached) = state.snapshot.real_speed else {
-        ui.weak(if state.playback.paused { "Paused" } else { "Starting…" });
+    let Some(reached) = state.live.snapshot.real_speed else {
+        ui.weak(if state.live.playback.paused { "Paused" } else { "Starting…" });
         return;
     };
-    let asked = state.playback.speed;
+    let asked = state.live.playback.speed;
     let text = format!("Runs at {}", format::times(reached));
     let help = "Simulated seconds per second actually reached";
     if reached < KEEPS_UP * asked {

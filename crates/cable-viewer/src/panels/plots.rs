@@ -60,7 +60,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 fn controls(ui: &mut Ui, state: &AppState, view: &mut View) {
     for measure in Measure::ALL {
         let robot = matches!(measure, Measure::Pull | Measure::Speed);
-        if !robot || state.scene.robot.is_some() {
+        if !robot || state.document.scene.robot.is_some() {
             let on = view.measure == measure || view.second == Some(measure);
             let help = format!(
                 "{}. Shift+click: in a second graph beside the first, with time and cursors linked",
@@ -85,9 +85,9 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut View) {
     });
     field::name(&shown.response, "Time window");
     shown.response.on_hover_text("How much of the past the time graph follows");
-    if state.history.samples.len() < 2 {
+    if state.live.history.samples.len() < 2 {
         ui.weak("Press play to record over time");
-    } else if state.scene.cables.len() > 1
+    } else if state.document.scene.cables.len() > 1
         && matches!(view.measure, Measure::Cable(Quantity::Stress | Quantity::Strain))
     {
         ui.weak("Over time: tension, as there are several cables");
@@ -107,12 +107,12 @@ fn pick(ui: &Ui, view: &mut View, measure: Measure) {
 
 fn along_cable(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touched {
     let index = state.current_cable();
-    let scene = state.snapshot.scene.as_deref().unwrap_or(&state.scene);
-    let answer = state.snapshot.solution.as_deref().and_then(|s| s.cables.get(index));
+    let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
+    let answer = state.live.snapshot.solution.as_deref().and_then(|s| s.cables.get(index));
     match (scene.cables.get(index), answer) {
         (Some(cable), Some(solved)) => {
             // The ribbon is of the end of the run.
-            let present = state.snapshot.solution.as_ref().map(|s| s.time_s);
+            let present = state.live.snapshot.solution.as_ref().map(|s| s.time_s);
             let found = friction_answer(state).filter(|(_, ask)| present == Some(ask.span_s));
             let ribbon = found.and_then(|(s, _)| s.along.get(index)).map_or(&[][..], Vec::as_slice);
             along::ui(ui, cable, (solved, ribbon), view, height)

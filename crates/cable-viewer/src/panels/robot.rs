@@ -23,12 +23,12 @@ const FIRST_LEG: (f64, f64) = (0.3, 2.0);
 
 /// Draws it, if the scene has one.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let Some(robot) = &state.scene.robot else {
+    let Some(robot) = &state.document.scene.robot else {
         ui.weak("No robot: choose one under Scene");
         return;
     };
     by_hand(ui, state, commands);
-    match state.snapshot.solution.as_ref().and_then(|s| s.robot) {
+    match state.live.snapshot.solution.as_ref().and_then(|s| s.robot) {
         Some(report) => readouts(ui, &report),
         None => {
             ui.weak("It cannot drive here: it needs terrain below it in a side view");
@@ -42,13 +42,19 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 /// Speed of the robot by hand, m/s: what was set, else its greatest.
 #[must_use]
 pub fn hand_speed(state: &AppState) -> f64 {
-    let top = state.scene.robot.as_ref().and_then(|r| robot_preset(&r.preset)).map_or(0.0, |p| p.speed_m_per_s.value);
-    state.robot_speed.map_or(top, |v| v.min(top))
+    let top = state
+        .document
+        .scene
+        .robot
+        .as_ref()
+        .and_then(|r| robot_preset(&r.preset))
+        .map_or(0.0, |p| p.speed_m_per_s.value);
+    state.live.robot_speed.map_or(top, |v| v.min(top))
 }
 
 fn by_hand(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let speed = hand_speed(state);
-    let order = state.robot_order;
+    let order = state.live.robot_order;
     ui.horizontal_wrapped(|ui| {
         for (text, help, wanted, on) in [
             (

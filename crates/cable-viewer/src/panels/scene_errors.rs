@@ -23,7 +23,7 @@ pub struct Fix {
 /// The fault of the scene if it lies at a path or below it, such as `cables[0].length_m`.
 #[must_use]
 pub fn at<'a>(state: &'a AppState, path: &str) -> Option<&'a SceneError> {
-    let fault = state.scene_fault.as_ref()?;
+    let fault = state.document.fault.as_ref()?;
     let rest = fault.path.strip_prefix(path)?;
     (rest.is_empty() || rest.starts_with(['.', '['])).then_some(fault)
 }
@@ -47,10 +47,10 @@ pub fn sentence(fault: &SceneFault) -> String {
 /// What is wrong with the scene, if anything: which property of what, and why.
 #[must_use]
 pub fn whole(state: &AppState) -> Option<String> {
-    let found = state.scene_fault.as_ref()?;
+    let found = state.document.fault.as_ref()?;
     let named = cable_and_key(&found.path).and_then(|(index, key)| {
         let property = crate::panels::cable::property::PROPERTIES.iter().find(|p| p.key == key)?;
-        Some(format!("{} of {}", property.quantity.name, state.scene.cables.get(index)?.name))
+        Some(format!("{} of {}", property.quantity.name, state.document.scene.cables.get(index)?.name))
     });
     Some(format!("{} {}", named.unwrap_or_else(|| found.path.clone()), sentence(&found.fault)))
 }
@@ -67,9 +67,9 @@ fn ceil_hundredth(length: f64) -> f64 {
 /// What would put the scene's fault right, where one change does.
 #[must_use]
 pub fn fix(state: &AppState) -> Option<Fix> {
-    let fault = state.scene_fault.as_ref()?;
+    let fault = state.document.fault.as_ref()?;
     let (index, key) = cable_and_key(&fault.path)?;
-    let cable = state.scene.cables.get(index)?;
+    let cable = state.document.scene.cables.get(index)?;
     match &fault.fault {
         SceneFault::TooShort { length_m, way_m, .. } => {
             // With a grip between the ends it is one stretch that is too short, which more length at the end does not help.

@@ -20,8 +20,8 @@ const PRESENT: &str = "The present is shown";
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let span = state.recording.span_s();
-    let now_s = state.live.solution.as_ref().map_or(0.0, |s| s.time_s);
+    let span = state.live.recording.span_s();
+    let now_s = state.live.latest.solution.as_ref().map_or(0.0, |s| s.time_s);
     ui.horizontal(|ui| {
         let mut push = |command| commands.push(Command::Playback(command));
         ui.add_enabled_ui(span.is_some(), |ui| {
@@ -30,16 +30,16 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             if back.clicked() {
                 push(PlaybackCommand::StepBack);
             }
-            let mut looped = state.recording.looped;
+            let mut looped = state.live.recording.looped;
             let help = "Play begins anew at the end of what was recorded; off, it goes on from there";
             if ui.checkbox(&mut looped, "Loop").on_hover_text(help).on_disabled_hover_text(NOTHING).changed() {
                 push(PlaybackCommand::SetLoop(looped));
                 // A loop of what is not shown begins at its start.
-                if let (true, None, Some([first, _])) = (looped, state.recording.shown_s, span) {
+                if let (true, None, Some([first, _])) = (looped, state.live.recording.shown_s, span) {
                     push(PlaybackCommand::Show(Some(first)));
                 }
             }
-            let shown = state.recording.shown_s.is_some();
+            let shown = state.live.recording.shown_s.is_some();
             let help = "Ends the look at the past";
             let present = ui.add_enabled(shown, egui::Button::new("Present")).on_hover_text(help);
             if present.on_disabled_hover_text(PRESENT).clicked() {
@@ -54,7 +54,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         });
         let [first, last] = span.unwrap_or([0.0, 1.0]);
         ui.spacing_mut().slider_width = (ui.available_width() - BESIDE).max(80.0);
-        let mut time_s = state.recording.shown_s.unwrap_or(now_s).clamp(first, last);
+        let mut time_s = state.live.recording.shown_s.unwrap_or(now_s).clamp(first, last);
         let slider = ui.add_enabled(span.is_some(), Slider::new(&mut time_s, first..=last).show_value(false));
         field::name(&slider, "Timeline");
         if slider.changed() {
@@ -63,8 +63,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         if span.is_some() {
             marks(ui, state, slider.rect, [first, last]);
         }
-        slider.on_hover_text(state.recording.about()).on_disabled_hover_text(NOTHING);
-        let text = match state.recording.shown_s {
+        slider.on_hover_text(state.live.recording.about()).on_disabled_hover_text(NOTHING);
+        let text = match state.live.recording.shown_s {
             Some(t) => format!("showing {t:.2} s of {last:.2} s"),
             None => format!("recorded {}", format::duration(last - first)),
         };
@@ -73,7 +73,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         } else {
             ui.weak("Press play to record");
         }
-        let count = state.recording.events().len();
+        let count = state.live.recording.events().len();
         if span.is_some() && count > 0 {
             ui.weak(if count == 1 { "1 event".to_owned() } else { format!("{count} events") });
         }
@@ -88,7 +88,7 @@ fn marks(ui: &mut Ui, state: &AppState, rail: Rect, [first, last]: [f64; 2]) {
         let share = ((time_s - first) / (last - first)).clamp(0.0, 1.0) as f32;
         rail.left() + inset + share * (rail.width() - 2.0 * inset)
     };
-    for event in state.recording.events() {
+    for event in state.live.recording.events() {
         let colour = colour(ui, event.kind);
         let top = pos2(x(event.time_s), rail.top());
         let size = if event.kind == WarningKind::Broken { 4.0 } else { 3.0 };
@@ -96,7 +96,7 @@ fn marks(ui: &mut Ui, state: &AppState, rail: Rect, [first, last]: [f64; 2]) {
         ui.painter().circle_filled(top, size, colour);
     }
     let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|p| rail.expand(NEAR).contains(*p)) else { return };
-    let near = state.recording.events().iter().filter(|e| (x(e.time_s) - pointer.x).abs() < NEAR);
+    let near = state.live.recording.events().iter().filter(|e| (x(e.time_s) - pointer.x).abs() < NEAR);
     let text: Vec<String> = near.take(4).map(|e| format!("{:.2} s: {}", e.time_s, translate::shown(&e.text))).collect();
     if !text.is_empty() {
         let spot = Rect::from_center_size(pointer, vec2(1.0, 1.0));

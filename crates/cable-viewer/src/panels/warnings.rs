@@ -67,12 +67,12 @@ fn entries(state: &AppState) -> Vec<Entry> {
     let mut list = Vec::new();
     list.extend(dead_worker(state));
     list.extend(scene_fault(state));
-    if let (Some(error), None) = (&state.snapshot.error, &state.scene_fault) {
+    if let (Some(error), None) = (&state.live.snapshot.error, &state.document.fault) {
         let error = capital(&translate::shown(error));
         let text = format!("{error}. The picture and the figures are of the last scene that was solved.");
         list.push(Entry { title: "No answer".to_owned(), ..entry(Severity::Stop, text) });
     }
-    if let Some(answer) = state.snapshot.solution.as_deref() {
+    if let Some(answer) = state.live.snapshot.solution.as_deref() {
         list.extend(answer.warnings.iter().map(|w| of_warning(state, answer, w)));
     }
     // A stable sort: equals stay in the order of the answer.
@@ -91,7 +91,7 @@ fn capital(text: &str) -> String {
 }
 
 fn dead_worker(state: &AppState) -> Option<Entry> {
-    let WorkerStatus::Dead(words) = &state.worker else { return None };
+    let WorkerStatus::Dead(words) = &state.solver.status else { return None };
     let fix = Fix { label: "Start it again".to_owned(), command: Command::File(FileCommand::RestartWorker) };
     let text = format!("{}. The scene is safe; nothing is solved until it runs again.", capital(words));
     Some(Entry { title: "The solver stopped".to_owned(), fix: Some(fix), ..entry(Severity::Stop, text) })
@@ -126,7 +126,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
         WarningKind::EnergyGrows => (Severity::Stop, "Energy from nowhere"),
         WarningKind::NotUnique => (Severity::Note, "One of several resting places"),
     };
-    let index = state.scene.cables.iter().position(|c| c.name == warning.cable);
+    let index = state.document.scene.cables.iter().position(|c| c.name == warning.cable);
     let since = warning.since_s.map_or_else(String::new, |t| format!(" since {t:.2}\u{a0}s"));
     let along = unit::Unit { decimals: Some(2), ..unit::Unit::M }.text(warning.arc_length_m);
     let place = format!("{} at {}{since}", warning.cable, along.replace(' ', "\u{a0}"));
@@ -187,7 +187,7 @@ fn remedy(state: &AppState, answer: &Solution, warning: &Warning, index: Option<
         WarningKind::Accuracy => {
             let nodes = answer.cables.iter().map(|c| c.nodes.len()).max()?;
             let segments = 2 * nodes.saturating_sub(1).max(1);
-            let settings = Settings { segments: Some(segments), ..state.settings };
+            let settings = Settings { segments: Some(segments), ..state.solver.settings };
             Some(Fix { label: format!("Use {segments} segments"), command: Command::SetSettings(settings) })
         }
         WarningKind::BendRadius => wheel(state, answer, warning, index?),
@@ -197,7 +197,7 @@ fn remedy(state: &AppState, answer: &Solution, warning: &Warning, index: Option<
 
 /// A bend at a pulley whose wheel is too small: a wheel as large as the cable needs.
 fn wheel(state: &AppState, answer: &Solution, warning: &Warning, cable: usize) -> Option<Fix> {
-    let of = state.scene.cables.get(cable)?;
+    let of = state.document.scene.cables.get(cable)?;
     let solved = answer.cables.get(cable)?;
     // The bend of a wheel lies within a wheel's radius of where the cable leaves it.
     let near = |s: f64| (s - warning.arc_length_m).abs() <= of.min_bend_radius_m;

@@ -34,14 +34,14 @@ pub fn second(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touched
 }
 
 fn graph(ui: &mut Ui, state: &AppState, view: View, (title, height): (&str, f32)) -> Touched {
-    let scene = state.snapshot.scene.as_deref().unwrap_or(&state.scene);
+    let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let Some(cable) = scene.cables.get(state.current_cable()) else { return Touched::default() };
     let measure = match view.measure {
         Measure::Cable(_) if scene.cables.len() > 1 => Measure::Cable(Quantity::Tension),
         measure => measure,
     };
-    let now_s = state.history.samples.back().map_or(0.0, |s| s.time_s);
-    let first_s = state.history.samples.front().map_or(0.0, |s| s.time_s);
+    let now_s = state.live.history.samples.back().map_or(0.0, |s| s.time_s);
+    let first_s = state.live.history.samples.front().map_or(0.0, |s| s.time_s);
     let left_s = view.window_s.map_or(first_s, |w| (now_s - w).max(first_s));
     let range = [left_s, now_s.max(left_s + view.window_s.unwrap_or(SHORTEST_S).max(SHORTEST_S))];
     // A zoomed graph shows what it showed in the frame before, and a little on each side.
@@ -59,7 +59,7 @@ fn graph(ui: &mut Ui, state: &AppState, view: View, (title, height): (&str, f32)
         follow: view.follow,
         height,
         ribbon: ribbon(state, cable, measure),
-        mark: state.recording.shown_s,
+        mark: state.live.recording.shown_s,
     };
     let mut touched = show(ui, &graph, &lines(state, scene, measure, (seen, Some(columns))));
     if let Some(sheet) = &mut touched.export {
@@ -81,7 +81,7 @@ fn ribbon(state: &AppState, cable: &Cable, measure: Measure) -> Vec<[f64; 3]> {
 /// The lines of a measure, SI, between two times: thinned to `columns` of the screen if there are any; then those of held runs.
 fn lines(state: &AppState, scene: &Scene, measure: Measure, (seen, columns): ([f64; 2], Option<usize>)) -> Vec<Series> {
     let mut lines = own(state, scene, measure, (seen, columns));
-    for (k, held) in state.held.iter().enumerate() {
+    for (k, held) in state.analysis.references.iter().enumerate() {
         let Some(line) = held.run.as_ref().and_then(|r| r.line(measure)) else { continue };
         let scale = match (measure, held.scene.cables.first()) {
             (Measure::Cable(quantity), Some(cable)) => per_newton(quantity, cable),
@@ -100,7 +100,7 @@ fn lines(state: &AppState, scene: &Scene, measure: Measure, (seen, columns): ([f
 
 /// Those of what was recorded.
 fn own(state: &AppState, scene: &Scene, measure: Measure, (seen, columns): ([f64; 2], Option<usize>)) -> Vec<Series> {
-    let samples = state.history.view(seen, columns);
+    let samples = state.live.history.view(seen, columns);
     let index = state.current_cable();
     let cable = scene.cables.get(index);
     let scale = match (measure, cable) {

@@ -15,42 +15,47 @@ use crate::state::selection::Item;
 #[must_use]
 pub fn friction_query_fits(state: &AppState, ask: &Query) -> bool {
     ask.span_s == run_time_s(state)
-        && ask.factors == state.spread.factors
-        && ask.model == state.model
-        && ask.settings == state.settings
+        && ask.factors == state.analysis.friction_range.factors
+        && ask.model == state.solver.model
+        && ask.settings == state.solver.settings
         && ask.scene == *answered_scene(state)
 }
 
 /// What is on screen asks; None while it moves or has no answer.
 #[must_use]
 pub fn friction_query(state: &AppState) -> Option<Query> {
-    let still = state.playback.paused && state.grabbed.is_none() && state.scene_fault.is_none();
-    let answered = state.snapshot.solution.is_some() && state.snapshot.error.is_none() && !state.snapshot.draft;
-    (state.spread.on && still && answered).then(|| Query {
+    let still = state.live.playback.paused && state.selection.grab.is_none() && state.document.fault.is_none();
+    let answered =
+        state.live.snapshot.solution.is_some() && state.live.snapshot.error.is_none() && !state.live.snapshot.draft;
+    (state.analysis.friction_range.on && still && answered).then(|| Query {
         scene: answered_scene(state).clone(),
-        model: state.model,
-        settings: state.settings,
-        factors: state.spread.factors,
+        model: state.solver.model,
+        settings: state.solver.settings,
+        factors: state.analysis.friction_range.factors,
         span_s: run_time_s(state),
-        hands: hands(answered_scene(state), state.recording.answers()),
+        hands: hands(answered_scene(state), state.live.recording.answers()),
     })
 }
 
 fn answered_scene(state: &AppState) -> &Scene {
-    state.snapshot.scene.as_deref().unwrap_or(&state.scene)
+    state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene)
 }
 
 /// How long time has run.
 fn run_time_s(state: &AppState) -> f64 {
-    let now_s = state.live.solution.as_ref().map_or(0.0, |s| s.time_s);
+    let now_s = state.live.latest.solution.as_ref().map_or(0.0, |s| s.time_s);
     now_s.min(LONGEST_S)
 }
 
 /// The ribbon, if there is one of what is on screen.
 #[must_use]
 pub fn friction_answer(state: &AppState) -> Option<&friction_range::Found> {
-    match &state.spread.progress {
-        friction_range::Progress::Done(found) if state.spread.on && friction_query_fits(state, &found.1) => Some(found),
+    match &state.analysis.friction_range.progress {
+        friction_range::Progress::Done(found)
+            if state.analysis.friction_range.on && friction_query_fits(state, &found.1) =>
+        {
+            Some(found)
+        }
         _ => None,
     }
 }
@@ -58,26 +63,26 @@ pub fn friction_answer(state: &AppState) -> Option<&friction_range::Found> {
 /// The question about what is on screen; None where that is no answer at rest.
 #[must_use]
 pub fn bending_query(state: &AppState) -> Option<Ask> {
-    let answer = state.snapshot.solution.clone().filter(|s| s.time_s == 0.0)?;
-    let settled = state.snapshot.error.is_none() && !state.snapshot.draft && !state.snapshot.stale;
-    let scene = state.snapshot.scene.clone().filter(|_| settled)?;
-    Some(Ask { scene, settings: state.settings, answer })
+    let answer = state.live.snapshot.solution.clone().filter(|s| s.time_s == 0.0)?;
+    let settled = state.live.snapshot.error.is_none() && !state.live.snapshot.draft && !state.live.snapshot.stale;
+    let scene = state.live.snapshot.scene.clone().filter(|_| settled)?;
+    Some(Ask { scene, settings: state.solver.settings, answer })
 }
 
 /// Whether what was asked is of the answer on screen.
 #[must_use]
 pub fn bending_query_fits(state: &AppState) -> bool {
-    let shown = state.snapshot.solution.as_ref();
-    state.bending.ask.as_ref().zip(shown).is_some_and(|(ask, shown)| Arc::ptr_eq(&ask.answer, shown))
+    let shown = state.live.snapshot.solution.as_ref();
+    state.analysis.neglected_bending.ask.as_ref().zip(shown).is_some_and(|(ask, shown)| Arc::ptr_eq(&ask.answer, shown))
 }
 
 /// What is taken somewhere: what was chosen, if it is still there.
 #[must_use]
 pub fn reach_target(state: &AppState) -> Option<Moved> {
-    let all = movable(&state.scene);
-    let chosen = state.reach.choice.moved.filter(|m| all.contains(m));
+    let all = movable(&state.document.scene);
+    let chosen = state.analysis.safe_reach.choice.moved.filter(|m| all.contains(m));
     let robot = || all.first().copied().filter(|m| *m == Moved::Robot);
-    let picked = || match state.selected {
+    let picked = || match state.selection.selected {
         Some(Item::Support { cable, support }) => Some(Moved::Support { cable, support }).filter(|m| all.contains(m)),
         _ => None,
     };
@@ -85,7 +90,7 @@ pub fn reach_target(state: &AppState) -> Option<Moved> {
         let moves = |m: &&Moved| match m {
             Moved::Robot => false,
             Moved::Support { cable, support } => {
-                let s = state.scene.cables.get(*cable).and_then(|c| c.supports.get(*support));
+                let s = state.document.scene.cables.get(*cable).and_then(|c| c.supports.get(*support));
                 s.is_some_and(|s| s.motion.is_some())
             }
         };

@@ -2,6 +2,43 @@
 
 use cable_core::math::Point;
 
+use crate::state::clipboard::Clipboard;
+
+/// What is picked, hovered, dragged and copied.
+#[derive(Clone, Debug, Default)]
+pub struct Selection {
+    /// What the user picked.
+    pub selected: Option<Item>,
+    /// What was picked besides: moved, copied and removed with it.
+    pub also: Vec<Item>,
+    /// Two corners of the frame being drawn round things to pick, m.
+    pub frame_m: Option<[Point; 2]>,
+    /// What was copied.
+    pub clipboard: Clipboard,
+    /// What the pointer is over.
+    pub hovered: Option<Item>,
+    /// What is being dragged.
+    pub grab: Option<Grab>,
+    /// The support that the pointer holds by a spring while time runs.
+    pub spring_support: Option<(usize, usize)>,
+    /// Where the pointer is, m; None outside the canvas.
+    pub cursor_m: Option<Point>,
+}
+
+impl Selection {
+    /// Everything picked.
+    #[must_use]
+    pub fn picks(&self) -> Vec<Item> {
+        self.selected.into_iter().chain(self.also.iter().copied()).collect()
+    }
+
+    /// Whether a thing is picked.
+    #[must_use]
+    pub fn contains(&self, item: Item) -> bool {
+        self.selected == Some(item) || self.also.contains(&item)
+    }
+}
+
 /// A thing on the canvas that can be picked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Item {
@@ -31,17 +68,6 @@ pub enum Item {
     Robot,
     /// Where a leg of the robot's path ends.
     Leg(usize),
-}
-
-/// A place on a cable whose tension is taken apart.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Probe {
-    /// Index of the cable.
-    pub cable: usize,
-    /// Where on it, m.
-    pub arc_length_m: f64,
-    /// The end the sum begins at.
-    pub from: cable_core::analysis::tension_budget::StartEnd,
 }
 
 /// A thing being dragged.

@@ -36,9 +36,9 @@ fn cable() {
 fn cable_too_short() {
     let short = || {
         let mut state = state();
-        state.scene.cables[0].length_m = 9.0;
-        state.scene.cables[0].segments = Some(64);
-        state.scene_fault = state.scene.validate().err();
+        state.document.scene.cables[0].length_m = 9.0;
+        state.document.scene.cables[0].segments = Some(64);
+        state.document.fault = state.document.scene.validate().err();
         state
     };
     picture("cable_too_short", short, panels::cable::ui, [320.0, 540.0]);
@@ -59,7 +59,7 @@ fn scene() {
     let selected = || {
         let mut state = state();
         with_pulley(&mut state);
-        state.selected = Some(Item::Support { cable: 0, support: 1 });
+        state.selection.selected = Some(Item::Support { cable: 0, support: 1 });
         state
     };
     picture("scene", selected, panels::scene::ui, [320.0, 640.0]);
@@ -67,7 +67,11 @@ fn scene() {
 
 #[test]
 fn scene_obstacle() {
-    let selected = || AppState { selected: Some(Item::Obstacle(0)), ..state() };
+    let selected = || {
+        let mut state = state();
+        state.selection.selected = Some(Item::Obstacle(0));
+        state
+    };
     picture("scene_obstacle", selected, panels::scene::ui, [320.0, 640.0]);
 }
 
@@ -75,7 +79,7 @@ fn scene_obstacle() {
 fn playback() {
     let running = || {
         let mut state = state();
-        state.playback.paused = false;
+        state.live.playback.paused = false;
         state
     };
     picture("playback", running, panels::playback::ui, [900.0, 44.0]);
@@ -103,8 +107,8 @@ fn compare_models() {
         let mut state = compared();
         let why = "catenary cannot answer this scene: the cable reaches an obstacle 4.894 m along it".to_owned();
         let answers = vec![model_comparison::Answer { model: cable_core::Model::Catenary, result: Err(why) }];
-        let scene = std::sync::Arc::new(state.scene.clone());
-        state.models = model_comparison::Progress::Done(model_comparison::Found { scene, answers });
+        let scene = std::sync::Arc::new(state.document.scene.clone());
+        state.analysis.models = model_comparison::Progress::Done(model_comparison::Found { scene, answers });
         state
     };
     picture("compare_models", asked, panels::analysis::compare::ui, [320.0, 280.0]);
@@ -115,7 +119,7 @@ fn compare_models() {
 fn reach() {
     let searching = || {
         let mut state = state();
-        state.reach.progress = safe_reach::Progress::Running(0.4, None);
+        state.analysis.safe_reach.progress = safe_reach::Progress::Running(0.4, None);
         state
     };
     picture("reach", searching, panels::analysis::safe_reach::ui, [320.0, 130.0]);
@@ -125,8 +129,8 @@ fn reach() {
 fn friction_range() {
     let computing = || {
         let mut state = state();
-        state.spread.on = true;
-        state.spread.progress = friction_range::Progress::Running(0.3, None);
+        state.analysis.friction_range.on = true;
+        state.analysis.friction_range.progress = friction_range::Progress::Running(0.3, None);
         state
     };
     picture("friction_range", computing, panels::analysis::friction_range::ui, [320.0, 130.0]);
@@ -160,8 +164,8 @@ fn warnings() {
     let warned = || {
         let mut state = state();
         warn(&mut state);
-        state.scene.cables[0].length_m = 9.0;
-        state.scene_fault = state.scene.validate().err();
+        state.document.scene.cables[0].length_m = 9.0;
+        state.document.fault = state.document.scene.validate().err();
         state
     };
     // Tall: they take two fifths of a window.
@@ -173,7 +177,7 @@ fn origin() {
     let probed = || {
         let mut state = wrapped();
         let from = cable_core::analysis::tension_budget::StartEnd::Start;
-        state.probe = Some(cable_viewer::state::Probe { cable: 0, arc_length_m: 12.0, from });
+        state.analysis.tension_marker = Some(cable_viewer::state::Probe { cable: 0, arc_length_m: 12.0, from });
         state
     };
     picture("origin", probed, panels::analysis::tension_budget::ui, [320.0, 260.0]);

@@ -148,8 +148,8 @@ fn draw(name: &str, mut scene: Scene, taken_over: bool) {
     let ctx = harness.ctx.clone();
     harness.state_mut().apply(&ctx, vec![Command::SetModel(Model::Fem)]);
     harness.run_steps(4);
-    assert_eq!(harness.state().state.snapshot.error, None);
-    harness.state_mut().state.scene.obstacles = ground;
+    assert_eq!(harness.state().state.live.snapshot.error, None);
+    harness.state_mut().state.document.scene.obstacles = ground;
     harness.run_steps(2);
     harness.render().unwrap();
     let ctx = harness.ctx.clone();
@@ -219,7 +219,7 @@ fn speed_of_import() {
              (an empty window takes {ready:.2} s)",
             began.elapsed().as_secs_f64()
         );
-        assert_eq!(harness.state().state.snapshot.error, None);
+        assert_eq!(harness.state().state.live.snapshot.error, None);
     }
 }
 
@@ -255,9 +255,9 @@ fn software_drawing_looks_the_same_at(scale: f32) {
         harness.run_steps(6);
         // A popup is drawn over the rest, and a font of another size makes the atlas grow.
         let state = &mut harness.state_mut().state;
-        state.dialog = Some(cable_viewer::state::dialog::Dialog::About);
+        state.ui.dialog = Some(cable_viewer::state::dialog::Dialog::About);
         // The time it took is another every time.
-        (state.snapshot.solve_wall_s, state.live.solve_wall_s) = (1e-3, 1e-3);
+        (state.live.snapshot.solve_wall_s, state.live.latest.solve_wall_s) = (1e-3, 1e-3);
         harness.run_steps(3);
         Some(harness.render().unwrap())
     };
@@ -303,9 +303,9 @@ fn speed_of_graphs() {
         [("empty graphs", 0, 2), ("a million held", 1_000_000, 2), ("a million held, history full", 1_000_000, 400_000)]
     {
         let state = &mut harness.state_mut().state;
-        let solution = state.snapshot.solution.clone().expect("an answer");
-        (state.held, state.history) = (Vec::new(), History::default());
-        (0..live).for_each(|k| state.history.push(sample(k)));
+        let solution = state.live.snapshot.solution.clone().expect("an answer");
+        (state.analysis.references, state.live.history) = (Vec::new(), History::default());
+        (0..live).for_each(|k| state.live.history.push(sample(k)));
         if held > 0 {
             let samples: Vec<Sample> = (0..held).map(sample).collect();
             let run = Run::of(samples.iter(), &[(*solution).clone(), (*solution).clone()], 0).map(std::sync::Arc::new);
@@ -314,8 +314,14 @@ fn speed_of_graphs() {
                     .map(|r| r.line(cable_viewer::record::measure::Measure::ALL[0]).map_or(0, |l| l.points().len())),
                 Some(held as usize)
             );
-            let scene = state.snapshot.scene.clone().expect("a scene");
-            state.held.push(cable_viewer::state::Held { name: "held".to_owned(), scene, solution, wall_s: 0.0, run });
+            let scene = state.live.snapshot.scene.clone().expect("a scene");
+            state.analysis.references.push(cable_viewer::state::Held {
+                name: "held".to_owned(),
+                scene,
+                solution,
+                wall_s: 0.0,
+                run,
+            });
         }
         harness.run_steps(3);
         harness.render().unwrap();
@@ -334,7 +340,7 @@ fn speed_of_graphs() {
             harness.render().unwrap();
             whole.push(from.elapsed().as_secs_f64() * 1e3);
         }
-        let samples = harness.state().state.history.samples.len();
+        let samples = harness.state().state.live.history.samples.len();
         println!(
             "graphs, {name} ({samples} samples live): laid out and cut into triangles {}, CPU {}; drawn as well {}",
             figures(laid),

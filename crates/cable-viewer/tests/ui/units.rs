@@ -44,7 +44,7 @@ fn warnings_and_refusals_are_read_in_us_units() {
     harness.get_by_label_contains(&pull);
     // What cannot be solved, too.
     set_cable(&mut harness, |c| c.length_m = 9.0);
-    assert!(state(&harness).scene_fault.is_some());
+    assert!(state(&harness).document.fault.is_some());
     assert_eq!(metric(&harness), Vec::<String>::new());
     apply(&mut harness, Command::View(ViewCommand::SetUnits(System::Si)));
     harness.run_steps(2);

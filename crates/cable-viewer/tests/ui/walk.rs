@@ -95,7 +95,7 @@ fn walk_a_span() {
     walk.plays(150);
     walk.look("a04-played");
     walk.view(ViewCommand::Hold);
-    let mut cable = walk.harness.state().state.scene.cables[0].clone();
+    let mut cable = walk.harness.state().state.document.scene.cables[0].clone();
     cable.length_m *= 1.15;
     walk.does(Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
     walk.look("a05-held-and-changed");
@@ -134,7 +134,7 @@ fn walk_a_span() {
 #[test]
 fn walk_b_faults_and_loads() {
     let Some(mut walk) = Walk::open(catalog::hanging_span(), WINDOW) else { return };
-    let mut cable = walk.harness.state().state.scene.cables[0].clone();
+    let mut cable = walk.harness.state().state.document.scene.cables[0].clone();
     cable.length_m = 7.0;
     walk.does(Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable.clone()) }));
     walk.look("b01-too-short");

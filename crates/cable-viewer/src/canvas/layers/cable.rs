@@ -20,11 +20,11 @@ const MITER: f32 = 2.0;
 
 /// All cables.
 pub fn draw(view: &mut View<'_>, state: &AppState) {
-    let Some(solution) = &state.snapshot.solution else { return };
-    let solved = state.snapshot.scene.as_deref().unwrap_or(&state.scene);
-    let range = state.colour.range(solution);
+    let Some(solution) = &state.live.snapshot.solution else { return };
+    let solved = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
+    let range = state.view.colour.range(solution);
     let mut mesh = Mesh::default();
-    let fade = |c: Color32| if state.snapshot.stale { grey(c) } else { c };
+    let fade = |c: Color32| if state.live.snapshot.stale { grey(c) } else { c };
     for (k, answer) in solution.cables.iter().enumerate() {
         let Some(cable) = solved.cables.get(k) else { continue };
         let width = view.points(cable.diameter_m).max(LEAST_WIDTH);
@@ -33,14 +33,14 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
         for nodes in answer.pieces() {
             let nodes = &seen(view, nodes, service);
             let line = Ribbon::new(view, nodes);
-            if state.picked(Item::Cable(k)) || picked(state.hovered) {
+            if state.selection.contains(Item::Cable(k)) || picked(state.selection.hovered) {
                 line.add(&mut mesh, width + 7.0, |_| Some(view.palette.accent.gamma_multiply(0.55)));
             }
             line.add(&mut mesh, width + 6.0, |i| (nodes[i].tension_n > service).then_some(fade(view.palette.risk)));
             line.add(&mut mesh, width + 1.6, |_| Some(fade(view.palette.casing)));
             line.add(&mut mesh, width, |i| {
-                let fraction = ColourScale::fraction(state.colour.quantity.of(&nodes[i]), range);
-                Some(fade(state.colour.map.at(fraction)))
+                let fraction = ColourScale::fraction(state.view.colour.quantity.of(&nodes[i]), range);
+                Some(fade(state.view.colour.map.at(fraction)))
             });
         }
     }
@@ -57,7 +57,7 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
         // Where the pointer is in the graph along the cable.
         view.painter.circle_stroke(view.at([n.x_m, n.y_m]), 7.0, Stroke::new(2.0, view.palette.accent));
     }
-    if state.layers.nodes {
+    if state.view.layers.nodes {
         for n in solution.cables.iter().flat_map(|c| &c.nodes) {
             let p = view.at([n.x_m, n.y_m]);
             view.painter.circle(p, 2.4, view.palette.background, Stroke::new(1.0, view.palette.text));

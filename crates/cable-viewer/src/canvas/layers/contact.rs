@@ -35,8 +35,8 @@ pub fn fronts(contact: &ContactReport) -> impl Iterator<Item = f64> {
 
 /// Bands and ticks of all cables.
 pub fn draw(view: &View<'_>, state: &AppState) {
-    let Some(solution) = state.snapshot.solution.as_ref().filter(|_| state.layers.contacts) else { return };
-    let solved = state.snapshot.scene.as_deref().unwrap_or(&state.scene);
+    let Some(solution) = state.live.snapshot.solution.as_ref().filter(|_| state.view.layers.contacts) else { return };
+    let solved = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let mut mesh = Mesh::default();
     for (answer, cable) in solution.cables.iter().zip(&solved.cables) {
         let width = view.points(cable.diameter_m).max(LEAST_WIDTH);

@@ -17,27 +17,27 @@ const APART: f32 = 22.0;
 const LENGTH: [f64; 2] = [64.0, 9.0];
 /// All arrows; their figures go to `figures` for the labels to place.
 pub fn draw(view: &mut View<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
-    let Some(solution) = &state.snapshot.solution else { return };
+    let Some(solution) = &state.live.snapshot.solution else { return };
     let greatest = greatest(state);
     let scale = |f: Point| screen_vector(f, greatest);
     for (k, cable) in solution.cables.iter().enumerate() {
-        if state.layers.contacts {
+        if state.view.layers.contacts {
             contacts(view, cable, &scale);
         }
-        if state.layers.forces {
+        if state.view.layers.forces {
             reactions(view, state, cable, (&scale, figures));
             loads(view, state, k, cable, figures);
         }
     }
-    if state.layers.forces {
-        wind(view, state.scene.environment.wind_n_per_m);
+    if state.view.layers.forces {
+        wind(view, state.document.scene.environment.wind_n_per_m);
     }
 }
 
 /// The largest force shown as reaction or contact, N.
 fn greatest(state: &AppState) -> f64 {
     let mut best: f64 = 0.0;
-    for c in state.snapshot.solution.iter().flat_map(|s| &s.cables) {
+    for c in state.live.snapshot.solution.iter().flat_map(|s| &s.cables) {
         let reactions = c.supports.iter().map(|s| s.reaction_x_n.hypot(s.reaction_y_n));
         let contacts = c.contacts.iter().map(|c| c.normal_n.abs().max(c.friction_n.abs()));
         best = reactions.chain(contacts).filter(|f| f.is_finite()).fold(best, f64::max);
@@ -117,7 +117,7 @@ fn reactions(
             let at = view.at([s.x_m, s.y_m]);
             view.arrow(at, along, Stroke::new(2.0, view.palette.reaction));
             view.avoid_line(at, at + along);
-            let figure = figure([s.reaction_x_n, s.reaction_y_n], state.layers.components);
+            let figure = figure([s.reaction_x_n, s.reaction_y_n], state.view.layers.components);
             figures.push((at + along, figure, view.palette.reaction));
         }
     }
@@ -132,24 +132,24 @@ fn loads(
 ) {
     let mut arrow = |at: Point, force: Point, item: Item| {
         let along = load_arrow(force);
-        let head = matches!((item, state.hovered), (Item::Load(k), Some(Item::Head(h))) if k == h);
-        let picked = state.picked(item) || state.hovered == Some(item) || head;
+        let head = matches!((item, state.selection.hovered), (Item::Load(k), Some(Item::Head(h))) if k == h);
+        let picked = state.selection.contains(item) || state.selection.hovered == Some(item) || head;
         let colour = if picked { view.palette.accent } else { view.palette.load };
         let tail = view.at(at);
         view.arrow(tail, along, Stroke::new(2.6, colour));
         view.avoid_line(tail, tail + along);
         view.painter.circle_filled(tail, 3.5, colour);
-        let text = figure(force, state.layers.components || picked);
+        let text = figure(force, state.view.layers.components || picked);
         figures.push((tail + along, text, colour));
     };
-    for (k, load) in state.scene.loads.iter().enumerate() {
+    for (k, load) in state.document.scene.loads.iter().enumerate() {
         if load.cable == answer.name
             && let Some((at, force)) = load_at(state, k)
         {
             arrow(at, force, Item::Load(k));
         }
     }
-    let Some(scene_cable) = state.scene.cables.get(cable) else { return };
+    let Some(scene_cable) = state.document.scene.cables.get(cable) else { return };
     for (k, (s, r)) in scene_cable.supports.iter().zip(&answer.supports).enumerate() {
         if let Some(force) = s.force_n.or_else(|| s.forces_n.first().copied()) {
             arrow([r.x_m, r.y_m], force, Item::Support { cable, support: k });

@@ -15,16 +15,16 @@ const TICKS: usize = 5;
 
 /// The colours and what they mean.
 pub fn draw(view: &mut View<'_>, state: &AppState) {
-    let Some(solution) = &state.snapshot.solution else { return };
-    let [low, high] = state.colour.range(solution);
-    let (unit, si) = state.colour.quantity.unit(high.abs().max(low.abs()));
+    let Some(solution) = &state.live.snapshot.solution else { return };
+    let [low, high] = state.view.colour.range(solution);
+    let (unit, si) = state.view.colour.quantity.unit(high.abs().max(low.abs()));
     let plate = Rect::from_min_size(pos2(view.rect.max.x - 118.0, view.rect.min.y + 10.0), vec2(108.0, BAR[1] + 44.0));
     if plate.min.x < view.rect.min.x + 60.0 || plate.max.y > view.rect.max.y - 30.0 {
         return;
     }
     let line = Stroke::new(1.0, view.palette.plate_line);
     view.painter.rect(plate, 4.0, view.palette.plate, line, StrokeKind::Inside);
-    let title = format!("{} ({unit})", state.colour.quantity.name());
+    let title = format!("{} ({unit})", state.view.colour.quantity.name());
     view.text(plate.min + vec2(9.0, 7.0), Align2::LEFT_TOP, &title, 12.0, view.palette.text);
     let bar = Rect::from_min_size(plate.min + vec2(10.0, 32.0), vec2(BAR[0], BAR[1]));
     let mut mesh = Mesh::default();
@@ -32,7 +32,7 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
     for k in 0..=STRIPS {
         let f = f64::from(k) / f64::from(STRIPS);
         let y = bar.max.y - bar.height() * f as f32;
-        let colour = state.colour.map.at(f);
+        let colour = state.view.colour.map.at(f);
         mesh.colored_vertex(pos2(bar.min.x, y), colour);
         mesh.colored_vertex(pos2(bar.max.x, y), colour);
         if k > 0 {
@@ -52,7 +52,7 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
         let text = format!("{:.decimals$}", (low + f * (high - low)) / si);
         view.text(pos2(bar.max.x + 8.0, y), Align2::LEFT_CENTER, &text, 11.0, view.palette.text);
     }
-    if state.colour.quantity == Quantity::Tension {
+    if state.view.colour.quantity == Quantity::Tension {
         service(view, state, bar, [low, high]);
     }
     view.taken.push(plate);
@@ -60,11 +60,15 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
 
 /// What the bands along the cable mean, below the colours, where there are some.
 pub fn contacts(view: &mut View<'_>, state: &AppState) {
-    let stretches = state.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
+    let stretches = state.live.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
     let any = stretches.into_iter().any(|c| c.ends_m > c.begins_m);
     let top = view.rect.min.y + 10.0 + BAR[1] + 44.0 + 6.0;
     let plate = Rect::from_min_size(pos2(view.rect.max.x - 118.0, top), vec2(108.0, 42.0));
-    if !any || !state.layers.contacts || plate.min.x < view.rect.min.x + 60.0 || plate.max.y > view.rect.max.y - 30.0 {
+    if !any
+        || !state.view.layers.contacts
+        || plate.min.x < view.rect.min.x + 60.0
+        || plate.max.y > view.rect.max.y - 30.0
+    {
         return;
     }
     let line = Stroke::new(1.0, view.palette.plate_line);
@@ -80,7 +84,7 @@ pub fn contacts(view: &mut View<'_>, state: &AppState) {
 
 /// A red mark where the first cable's service tension lies.
 fn service(view: &View<'_>, state: &AppState, bar: Rect, range: [f64; 2]) {
-    let Some(cable) = state.scene.cables.first() else { return };
+    let Some(cable) = state.document.scene.cables.first() else { return };
     let f = ColourScale::fraction(cable.service_tension_n, range);
     if (0.0..=1.0).contains(&f) {
         let y = bar.max.y - bar.height() * f as f32;
@@ -90,7 +94,7 @@ fn service(view: &View<'_>, state: &AppState, bar: Rect, range: [f64; 2]) {
 
 /// Why the picture is not of the scene as it is now.
 pub fn banner(view: &mut View<'_>, state: &AppState) {
-    let (title, text) = match (&state.worker, &state.snapshot.error) {
+    let (title, text) = match (&state.solver.status, &state.live.snapshot.error) {
         (WorkerStatus::Dead(why), _) => ("The solver has stopped", why.clone()),
         (_, Some(why)) => {
             let told = scene_errors::whole(state).unwrap_or_else(|| translate::shown(why).into_owned());
@@ -98,7 +102,7 @@ pub fn banner(view: &mut View<'_>, state: &AppState) {
         }
         _ => return,
     };
-    let kept = if state.snapshot.solution.is_some() { "The last good picture is shown in grey." } else { "" };
+    let kept = if state.live.snapshot.solution.is_some() { "The last good picture is shown in grey." } else { "" };
     let body = if kept.is_empty() { text } else { format!("{text}\n{kept}") };
     let width = (view.rect.width() - 200.0).clamp(140.0, 440.0);
     let at = view.rect.min + vec2(crate::canvas::layers::grid::STRIP[0] + 12.0, 12.0);

@@ -16,13 +16,13 @@ const APART: f32 = 1.0;
 
 /// All of them.
 pub fn draw(view: &View<'_>, state: &AppState) {
-    for (k, obstacle) in state.scene.obstacles.iter().enumerate() {
+    for (k, obstacle) in state.document.scene.obstacles.iter().enumerate() {
         let touched =
             |item: Item| item == Item::Obstacle(k) || matches!(item, Item::Corner { obstacle, .. } if obstacle == k);
-        let selected = state.selected.is_some_and(touched) || state.picked(Item::Obstacle(k));
+        let selected = state.selection.selected.is_some_and(touched) || state.selection.contains(Item::Obstacle(k));
         let stroke = if selected {
             Stroke::new(2.5, view.palette.accent)
-        } else if state.hovered.is_some_and(touched) {
+        } else if state.selection.hovered.is_some_and(touched) {
             Stroke::new(2.0, view.palette.accent)
         } else {
             Stroke::new(1.5, view.palette.surface)
@@ -53,7 +53,11 @@ fn corners(view: &View<'_>, shape: &Shape, state: &AppState) {
     };
     for (k, &p) in points_m.iter().enumerate() {
         let is = |item: Option<Item>| matches!(item, Some(Item::Corner { corner, .. }) if corner == k);
-        let fill = if is(state.selected) || is(state.hovered) { view.palette.accent } else { view.palette.background };
+        let fill = if is(state.selection.selected) || is(state.selection.hovered) {
+            view.palette.accent
+        } else {
+            view.palette.background
+        };
         let next = points_m.get(k + 1).or(points_m.get(k.wrapping_sub(1)));
         let crowded = next.is_some_and(|&q| view.at(q).distance(view.at(p)) < 14.0);
         let side = if crowded { 4.0 } else { 7.0 };

@@ -20,7 +20,7 @@ const WHEELS: u8 = 4;
 #[must_use]
 pub fn title(state: &AppState) -> Option<(Point, String)> {
     let (pose, preset) = robot_pose(state)?;
-    let going = state.snapshot.solution.as_ref().and_then(|s| s.robot).map(|r| r.going);
+    let going = state.live.snapshot.solution.as_ref().and_then(|s| s.robot).map(|r| r.going);
     let text = match going {
         None | Some(Going::Standing | Going::Driving) => preset.name.clone(),
         Some(going) => format!("{}: {}", preset.name, going.name()),
@@ -32,7 +32,7 @@ pub fn title(state: &AppState) -> Option<(Point, String)> {
 pub fn draw(view: &mut View<'_>, state: &AppState) {
     let Some((pose, preset)) = robot_pose(state) else { return };
     let is = |item: Option<Item>| item == Some(Item::Robot);
-    let line = match (state.picked(Item::Robot), is(state.hovered)) {
+    let line = match (state.selection.contains(Item::Robot), is(state.selection.hovered)) {
         (true, _) => Stroke::new(2.5, view.palette.accent),
         (_, true) => Stroke::new(2.0, view.palette.accent),
         _ => Stroke::new(1.4, view.palette.surface),
@@ -57,8 +57,8 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
 /// What the cable meets of it, where it touches that: it is cut back round the hitch and boxed at the tracks. What of it reaches below
 /// the ground, so that nothing gets under a track, is left out.
 fn touched(view: &View<'_>, state: &AppState, (pose, preset): (&Pose, &RobotPreset)) {
-    let contacts = state.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
-    if !state.layers.contacts || !contacts.into_iter().any(|c| c.obstacle == "robot") {
+    let contacts = state.live.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
+    if !state.view.layers.contacts || !contacts.into_iter().any(|c| c.obstacle == "robot") {
         return;
     }
     // In its own axes, looking right: the pose turns it to where it looks.

@@ -13,7 +13,7 @@ const FLAG: [f32; 2] = [26.0, 15.0];
 pub fn draw(view: &View<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
     for (k, at, text) in path_flags(state) {
         let item = Item::Leg(k);
-        let marked = state.picked(item) || state.hovered == Some(item);
+        let marked = state.selection.contains(item) || state.selection.hovered == Some(item);
         let colour = if marked { view.palette.accent } else { view.palette.surface };
         let foot = view.at(at);
         let top = foot - vec2(0.0, FLAG[0]);

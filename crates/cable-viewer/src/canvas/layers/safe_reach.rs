@@ -27,8 +27,8 @@ const LEGEND: [f32; 2] = [206.0, 78.0];
 
 /// Draws the map of an end.
 pub fn area(view: &View<'_>, state: &AppState) {
-    let Some((Maps::Area(there, ways), _)) = state.reach.found() else { return };
-    let Some(area) = (if state.reach.choice.back { ways.as_ref() } else { Some(there) }) else { return };
+    let Some((Maps::Area(there, ways), _)) = state.analysis.safe_reach.found() else { return };
+    let Some(area) = (if state.analysis.safe_reach.choice.back { ways.as_ref() } else { Some(there) }) else { return };
     let mut mesh = Mesh::default();
     let mut lines = Vec::new();
     for corners in quads(area) {
@@ -103,9 +103,9 @@ fn colour(share: f64) -> Color32 {
 
 /// Draws the map of a robot; its ends go to `figures` for the labels to place.
 pub fn line(view: &View<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
-    let Some((Maps::Line(map), _)) = state.reach.found() else { return };
-    let back = state.reach.choice.back;
-    let preset = state.scene.robot.as_ref().and_then(|r| robot_preset(&r.preset));
+    let Some((Maps::Line(map), _)) = state.analysis.safe_reach.found() else { return };
+    let back = state.analysis.safe_reach.choice.back;
+    let preset = state.document.scene.robot.as_ref().and_then(|r| robot_preset(&r.preset));
     let height = view.points(preset.map_or(HEIGHT_M, |p| p.height_m.value)).max(9.0);
     let value = |p: &ReachPlace| if back { p.there_and_back_n } else { p.there_n };
     let mut mesh = Mesh::default();
@@ -158,7 +158,7 @@ fn ends(view: &View<'_>, (map, back): (&ReachMap, bool), height: f32, figures: &
 
 /// What the colours of the map mean, in the lower left corner.
 pub fn legend(view: &mut View<'_>, state: &AppState) {
-    let Some((maps, scene)) = state.reach.found() else { return };
+    let Some((maps, scene)) = state.analysis.safe_reach.found() else { return };
     let [service_n, breaking_n] = maps.limits_n();
     let corner = pos2(
         view.rect.min.x + crate::canvas::layers::grid::STRIP[0] + 10.0,
@@ -170,8 +170,8 @@ pub fn legend(view: &mut View<'_>, state: &AppState) {
     }
     let line = Stroke::new(1.0, view.palette.plate_line);
     view.painter.rect(plate, 4.0, view.palette.plate, line, StrokeKind::Inside);
-    let title = if state.reach.choice.back { "Safe reach, there and back" } else { "Safe reach" };
-    let title = if **scene == state.scene { title.to_owned() } else { format!("{title} (before edits)") };
+    let title = if state.analysis.safe_reach.choice.back { "Safe reach, there and back" } else { "Safe reach" };
+    let title = if **scene == state.document.scene { title.to_owned() } else { format!("{title} (before edits)") };
     view.text(plate.min + vec2(9.0, 6.0), Align2::LEFT_TOP, &title, 11.5, view.palette.text);
     let bar = Rect::from_min_size(plate.min + vec2(9.0, 24.0), vec2(LEGEND[0] - 18.0, 9.0));
     let mut mesh = Mesh::default();

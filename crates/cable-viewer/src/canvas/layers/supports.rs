@@ -31,21 +31,21 @@ fn spring(view: &View<'_>, [at, to]: [Pos2; 2]) {
 
 /// The signs.
 pub fn draw(view: &View<'_>, state: &AppState) {
-    for (cable, c) in state.scene.cables.iter().enumerate() {
+    for (cable, c) in state.document.scene.cables.iter().enumerate() {
         for (support, s) in c.supports.iter().enumerate() {
             let Some(at) = support_position(state, cable, support) else { continue };
             let p = view.at(at);
             if let Some(ends) = hand_spring(state, cable, support) {
                 spring(view, ends.map(|p| view.at(p)));
                 // The pointer may be ahead of the hand, which is no faster than it may be.
-                if let Some(to) = s.at_m.filter(|_| state.pulled == Some((cable, support))) {
+                if let Some(to) = s.at_m.filter(|_| state.selection.spring_support == Some((cable, support))) {
                     let ends = [ends[1], to].map(|p| view.at(p));
                     view.painter.line_segment(ends, Stroke::new(1.0, view.palette.accent.gamma_multiply(0.6)));
                 }
             }
             let item = Item::Support { cable, support };
-            if state.picked(item) || state.hovered == Some(item) {
-                let strong = if state.picked(item) { 0.5 } else { 0.28 };
+            if state.selection.contains(item) || state.selection.hovered == Some(item) {
+                let strong = if state.selection.contains(item) { 0.5 } else { 0.28 };
                 view.painter.circle_filled(p, 15.0, view.palette.accent.gamma_multiply(strong));
             }
             sign(view, p, s);
@@ -90,7 +90,7 @@ fn sign(view: &View<'_>, p: Pos2, s: &Support) {
 pub fn labels(view: &mut View<'_>, state: &AppState, figures: Vec<(Pos2, String, Color32)>) {
     let text_colour = view.palette.text;
     let mut spots = Vec::new();
-    for (cable, c) in state.scene.cables.iter().enumerate() {
+    for (cable, c) in state.document.scene.cables.iter().enumerate() {
         for (support, s) in c.supports.iter().enumerate() {
             if let Some(at) = support_position(state, cable, support) {
                 let p = view.at(at);
@@ -106,7 +106,7 @@ pub fn labels(view: &mut View<'_>, state: &AppState, figures: Vec<(Pos2, String,
     for (p, text) in &spots {
         view.label(*p, text, text_colour, Place::Must);
     }
-    if let Some(solution) = &state.snapshot.solution {
+    if let Some(solution) = &state.live.snapshot.solution {
         let most = solution.max_tension();
         let cable = solution.cables.get(most.cable);
         if let Some(n) = cable.and_then(|c| c.nodes.iter().find(|n| n.arc_length_m >= most.arc_length_m)) {

@@ -12,8 +12,8 @@ const HALF: f32 = 8.0;
 
 /// Draws it; its figure goes to `figures` for the labels to place.
 pub fn draw(view: &View<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
-    let Some(probe) = &state.probe else { return };
-    let cable = state.snapshot.solution.as_ref().and_then(|s| s.cables.get(probe.cable));
+    let Some(probe) = &state.analysis.tension_marker else { return };
+    let cable = state.live.snapshot.solution.as_ref().and_then(|s| s.cables.get(probe.cable));
     let Some(n) = cable.and_then(|c| contact::at(c, probe.arc_length_m)) else { return };
     let at = view.at([n.x_m, n.y_m]);
     let corners = [vec2(0.0, -HALF), vec2(HALF, 0.0), vec2(0.0, HALF), vec2(-HALF, 0.0)].map(|d| at + d);

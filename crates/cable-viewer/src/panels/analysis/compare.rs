@@ -22,10 +22,10 @@ const MOST_LINES: usize = 12;
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        let full = state.held.len() == Held::MOST;
+        let full = state.analysis.references.len() == Held::MOST;
         let help =
             if full { "No more can be held: let one go" } else { "Keeps this answer on screen beside what follows" };
-        let can = state.snapshot.solution.is_some() && !full;
+        let can = state.live.snapshot.solution.is_some() && !full;
         if ui.add_enabled(can, egui::Button::new("Hold this answer")).on_hover_text(help).clicked() {
             commands.push(Command::View(ViewCommand::Hold));
         }
@@ -34,16 +34,23 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             let dialog = Dialog::OpenRun { path: "run".to_owned(), hold: true };
             commands.push(Command::File(FileCommand::SetDialog(Some(dialog))));
         }
-        if !state.held.is_empty() && ui.button("Let all go").on_hover_text("None is held any more").clicked() {
+        if !state.analysis.references.is_empty()
+            && ui.button("Let all go").on_hover_text("None is held any more").clicked()
+        {
             commands.push(Command::View(ViewCommand::LetGo(None)));
         }
     });
     every_model(ui, state, commands);
-    if state.held.is_empty() {
+    if state.analysis.references.is_empty() {
         ui.weak("Nothing held: hold an answer, then change the scene or the model");
         return;
     }
-    let present = state.snapshot.solution.as_deref().map(|s| Figures::of(s, &state.scene, state.snapshot.solve_wall_s));
+    let present = state
+        .live
+        .snapshot
+        .solution
+        .as_deref()
+        .map(|s| Figures::of(s, &state.document.scene, state.live.snapshot.solve_wall_s));
     Grid::new("compare").num_columns(6).spacing([7.0, 3.0]).striped(true).show(ui, |ui| {
         for title in ["", "Tension", "Sag", "Energy", "Cost", ""] {
             ui.weak(title);
@@ -54,7 +61,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             row(ui, present, None);
             ui.end_row();
         }
-        for (k, held) in state.held.iter().enumerate() {
+        for (k, held) in state.analysis.references.iter().enumerate() {
             let colour = LINES[k % LINES.len()];
             ui.label(RichText::new(format!("{}", k + 1)).color(colour).strong()).on_hover_text(&held.name);
             row(ui, &Figures::of(&held.solution, &held.scene, held.wall_s), present.as_ref());
@@ -67,7 +74,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
     });
     runs(ui, state);
-    for (k, held) in state.held.iter().enumerate() {
+    for (k, held) in state.analysis.references.iter().enumerate() {
         ui.weak(format!("{}: {}", k + 1, held.name));
         for line in remembered(ui, k, held, state).iter() {
             ui.label(RichText::new(line).small());
@@ -77,7 +84,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 /// Asks every model at once, and tells why some have no answer.
 fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    if let Progress::Running(share, _) = state.models {
+    if let Progress::Running(share, _) = state.analysis.models {
         let bar = ui.add(ProgressBar::new(share as f32).show_percentage().desired_height(16.0));
         field::name(&bar, "Progress of every model");
         if ui.button("Cancel every model").on_hover_text("Ends it; nothing is held").clicked() {
@@ -87,14 +94,14 @@ fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     let help = "Solves the scene at rest with each model in turn, beside the window, and holds what they answer: tension, sag, \
                 energy and cost side by side";
-    let can = state.scene_fault.is_none();
+    let can = state.document.fault.is_none();
     let button = ui.add_enabled(can, egui::Button::new("Hold every model")).on_hover_text(help);
     if button.on_disabled_hover_text("The scene has a fault: see Warnings").clicked() {
         commands.push(Command::View(ViewCommand::HoldModels(true)));
     }
-    match &state.models {
+    match &state.analysis.models {
         Progress::Failed(why) => field::fault(ui, why),
-        Progress::Done(found) if *found.scene == state.scene => {
+        Progress::Done(found) if *found.scene == state.document.scene => {
             for answer in &found.answers {
                 if let Err(why) = &answer.result {
                     // Most refusals begin with the model's name.
@@ -110,13 +117,13 @@ fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 /// The greatest of each whole run, where time ran.
 fn runs(ui: &mut Ui, state: &AppState) {
-    if state.held.iter().all(|h| h.run.is_none()) {
+    if state.analysis.references.iter().all(|h| h.run.is_none()) {
         return;
     }
     let measures = [Measure::Cable(Quantity::Tension), Measure::Pull];
-    let own = state.recording.span_s().map(|span_s| {
-        let peaks = measures.map(|m| state.history.peak(m.lead()?).map(|[time_s, value]| Peak { time_s, value }));
-        ("Now".to_owned(), None, (span_s, peaks, state.recording.events().len()))
+    let own = state.live.recording.span_s().map(|span_s| {
+        let peaks = measures.map(|m| state.live.history.peak(m.lead()?).map(|[time_s, value]| Peak { time_s, value }));
+        ("Now".to_owned(), None, (span_s, peaks, state.live.recording.events().len()))
     });
     ui.separator();
     ui.strong("Whole runs");
@@ -134,7 +141,7 @@ fn runs(ui: &mut Ui, state: &AppState) {
             }
         }
         ui.end_row();
-        let held = state.held.iter().enumerate();
+        let held = state.analysis.references.iter().enumerate();
         let held = held.filter_map(|(k, h)| {
             let run = h.run.as_deref()?;
             Some((format!("{}", k + 1), Some(k), (run.span_s(), measures.map(|m| run.peak(m)), run.events)))
@@ -214,14 +221,14 @@ struct Told {
 /// The differences of the last frame where nothing has changed since: to write two files and compare them takes milliseconds.
 fn remembered(ui: &Ui, k: usize, held: &Held, state: &AppState) -> Arc<Vec<String>> {
     let id = Id::unique(("differences", k));
-    let models = [Some(held.solution.model), state.snapshot.solution.as_ref().map(|s| s.model)];
+    let models = [Some(held.solution.model), state.live.snapshot.solution.as_ref().map(|s| s.model)];
     let last = ui.data(|d| d.get_temp::<Told>(id));
-    let fits = |t: &Told| Arc::ptr_eq(&t.held, &held.scene) && t.models == models && *t.present == state.scene;
+    let fits = |t: &Told| Arc::ptr_eq(&t.held, &held.scene) && t.models == models && *t.present == state.document.scene;
     if let Some(told) = last.filter(fits) {
         return told.lines;
     }
     let lines = Arc::new(differences(held, state));
-    let (present, held) = (Arc::new(state.scene.clone()), Arc::clone(&held.scene));
+    let (present, held) = (Arc::new(state.document.scene.clone()), Arc::clone(&held.scene));
     ui.data_mut(|d| d.insert_temp(id, Told { held, present, models, lines: Arc::clone(&lines) }));
     lines
 }
@@ -230,12 +237,12 @@ fn remembered(ui: &Ui, k: usize, held: &Held, state: &AppState) -> Arc<Vec<Strin
 #[must_use]
 pub fn differences(held: &Held, state: &AppState) -> Vec<String> {
     let mut out = Vec::new();
-    if let Some(present) = &state.snapshot.solution
+    if let Some(present) = &state.live.snapshot.solution
         && present.model != held.solution.model
     {
         out.push(format!("model {} to {}", held.solution.model, present.model));
     }
-    let (a, b) = (held.scene.to_toml(), state.scene.to_toml());
+    let (a, b) = (held.scene.to_toml(), state.document.scene.to_toml());
     let (a, b): (Vec<&str>, Vec<&str>) = (a.lines().collect(), b.lines().collect());
     if a.len() == b.len() {
         let pairs = a.iter().zip(&b).filter(|(x, y)| x != y);

@@ -28,7 +28,7 @@ const MOST: Quantity = Quantity {
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let view = &state.spread;
+    let view = &state.analysis.friction_range;
     let mut on = view.on;
     let help = "The same question with less and with more friction, as a ribbon in the graphs of tension; computed beside the \
                 window whenever time stands still. What was moved or driven by hand meanwhile is repeated";

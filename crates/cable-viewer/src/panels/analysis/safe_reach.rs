@@ -18,7 +18,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.weak("Nothing here has a place to be taken from");
         return;
     };
-    let view = &state.reach;
+    let view = &state.analysis.safe_reach;
     let running = match view.progress {
         Progress::Running(share, _) => Some(share),
         _ => None,
@@ -54,7 +54,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     let Some((maps, scene)) = view.found() else { return };
     both_ways(ui, view.choice, commands);
-    if **scene != state.scene {
+    if **scene != state.document.scene {
         ui.colored_label(ui.visuals().warn_fg_color, "Of the scene before the last edits");
     }
     for line in told(maps, view.choice.back) {
@@ -63,13 +63,13 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 fn choices(ui: &mut Ui, state: &AppState, moved: Moved, commands: &mut Vec<Command>) {
-    let choice = state.reach.choice;
+    let choice = state.analysis.safe_reach.choice;
     ui.horizontal(|ui| {
         ui.label("Moves");
-        let combo = ComboBox::from_id_salt("moved").selected_text(safe_reach::name(&state.scene, moved));
+        let combo = ComboBox::from_id_salt("moved").selected_text(safe_reach::name(&state.document.scene, moved));
         let shown = combo.width(ui.available_width() - 8.0).truncate().show_ui(ui, |ui| {
-            for other in safe_reach::movable(&state.scene) {
-                if ui.selectable_label(other == moved, safe_reach::name(&state.scene, other)).clicked() {
+            for other in safe_reach::movable(&state.document.scene) {
+                if ui.selectable_label(other == moved, safe_reach::name(&state.document.scene, other)).clicked() {
                     commands.push(set(Choice { moved: Some(other), ..choice }));
                 }
             }

@@ -27,25 +27,25 @@ const REST: Color32 = Color32::from_rgb(190, 190, 190);
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let Some(answer) = state.snapshot.solution.as_deref() else {
+    let Some(answer) = state.live.snapshot.solution.as_deref() else {
         ui.weak("Nothing solved yet");
         return;
     };
-    let scene = state.snapshot.scene.as_deref().unwrap_or(&state.scene);
+    let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     ui.horizontal_wrapped(|ui| {
         let help = "Takes the largest tension apart: what of it is weight, friction of each contact, pull at the end";
         if ui.button("At the largest").on_hover_text(help).clicked() {
             let most = answer.max_tension();
-            let from = state.probe.map(|p| p.from).unwrap_or_default();
+            let from = state.analysis.tension_marker.map(|p| p.from).unwrap_or_default();
             let probe = Probe { cable: most.cable, arc_length_m: most.arc_length_m, from };
             commands.push(Command::View(ViewCommand::Probe(Some(probe))));
         }
         let help = "No place is marked any more";
-        if state.probe.is_some() && ui.button("Unmark").on_hover_text(help).clicked() {
+        if state.analysis.tension_marker.is_some() && ui.button("Unmark").on_hover_text(help).clicked() {
             commands.push(Command::View(ViewCommand::Probe(None)));
         }
     });
-    let Some(probe) = state.probe else {
+    let Some(probe) = state.analysis.tension_marker else {
         ui.weak("Click on the cable: where does its tension come from?");
         return;
     };

@@ -20,7 +20,7 @@ const POPUP_HEIGHT: f32 = 360.0;
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let index = state.current_cable();
-    let Some(cable) = state.scene.cables.get(index) else {
+    let Some(cable) = state.document.scene.cables.get(index) else {
         ui.weak("No cable");
         return;
     };
@@ -54,12 +54,12 @@ fn changed(index: usize, cable: &Cable, change: impl FnOnce(&mut Cable)) -> Comm
 
 /// Which cable, where there are several, and its name.
 fn picker(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Command>) {
-    let Some(cable) = state.scene.cables.get(index) else { return };
-    if state.scene.cables.len() > 1 {
+    let Some(cable) = state.document.scene.cables.get(index) else { return };
+    if state.document.scene.cables.len() > 1 {
         labelled(ui, "Cable", "Cable", |ui| {
             let combo = ComboBox::from_id_salt("cable").selected_text(&cable.name).width(ui.available_width() - 8.0);
             let shown = combo.show_ui(ui, |ui| {
-                for (k, other) in state.scene.cables.iter().enumerate() {
+                for (k, other) in state.document.scene.cables.iter().enumerate() {
                     if ui.selectable_label(k == index, &other.name).clicked() {
                         commands.push(Command::View(ViewCommand::Select(Some(Item::Cable(k)))));
                     }
@@ -85,7 +85,7 @@ fn picker(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Comman
 
 /// The scene with a cable and everything that names it renamed.
 fn renamed(state: &AppState, index: usize, name: String) -> Command {
-    let mut scene = state.scene.clone();
+    let mut scene = state.document.scene.clone();
     if let Some(cable) = scene.cables.get_mut(index) {
         let old = std::mem::replace(&mut cable.name, name.clone());
         for load in scene.loads.iter_mut().filter(|l| l.cable == old) {
@@ -118,7 +118,7 @@ fn presets(ui: &mut Ui, index: usize, cable: &Cable, commands: &mut Vec<Command>
 }
 
 fn segments(ui: &mut Ui, state: &AppState, index: usize, loaded: Option<&Cable>, commands: &mut Vec<Command>) {
-    let Some(cable) = state.scene.cables.get(index) else { return };
+    let Some(cable) = state.document.scene.cables.get(index) else { return };
     let mut own = cable.segments.is_some();
     let help = "Off: the model chooses by the accuracy asked for";
     if ui.checkbox(&mut own, "Fixed number of segments").on_hover_text(help).changed() {
@@ -141,7 +141,7 @@ fn segments(ui: &mut Ui, state: &AppState, index: usize, loaded: Option<&Cable>,
 }
 
 fn solved_segments(state: &AppState, index: usize) -> Option<usize> {
-    let answer = state.snapshot.solution.as_ref()?.cables.get(index)?;
+    let answer = state.live.snapshot.solution.as_ref()?.cables.get(index)?;
     answer.nodes.len().checked_sub(1).filter(|&n| n > 0)
 }
 
@@ -161,7 +161,7 @@ fn count(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Command
         if ui.button("Add cable").on_hover_text(help).clicked() {
             commands.push(Command::Scene(SceneCommand::AddCable));
         }
-        let several = state.scene.cables.len() > 1;
+        let several = state.document.scene.cables.len() > 1;
         let remove = ui.add_enabled(several, egui::Button::new("Remove cable"));
         let remove =
             remove.on_hover_text("Takes this cable out, with its loads").on_disabled_hover_text("The last one stays");

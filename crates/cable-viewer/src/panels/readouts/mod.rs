@@ -21,17 +21,17 @@ use crate::widgets::icon::{self, Icon};
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let index = state.current_cable();
-    let Some(answer) = state.snapshot.solution.as_deref() else {
+    let Some(answer) = state.live.snapshot.solution.as_deref() else {
         ui.weak("Nothing solved yet");
         return;
     };
     // The figures belong to the scene that was solved, which may not be the one being typed.
-    let scene = state.snapshot.scene.as_deref().unwrap_or(&state.scene);
+    let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let (Some(cable), Some(solved)) = (scene.cables.get(index), answer.cables.get(index)) else {
         ui.weak("This cable is not solved yet");
         return;
     };
-    if state.snapshot.stale {
+    if state.live.snapshot.stale {
         ui.horizontal(|ui| {
             let colour = ui.visuals().warn_fg_color;
             icon::sign(ui, Icon::Caution, colour);
@@ -50,7 +50,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ends(ui, &first);
         shape(ui, scene.view, &first, commands);
         material(ui, (cable, solved), &first, commands);
-        if let (Some(run), true) = (state.snapshot.peaks.get(index), answer.time_s > 0.0) {
+        if let (Some(run), true) = (state.live.snapshot.peaks.get(index), answer.time_s > 0.0) {
             greatest_so_far(ui, run);
         }
         accuracy(ui, solved, &first);
@@ -310,7 +310,7 @@ fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<(
         return None;
     }
     let neglected = "neglected".to_owned();
-    let found = match &state.bending.progress {
+    let found = match &state.analysis.neglected_bending.progress {
         Progress::None => return None,
         Progress::Running(..) => return Some(("neglected, being compared".to_owned(), String::new())),
         Progress::Failed(why) => return Some((neglected, format!(". {why}"))),

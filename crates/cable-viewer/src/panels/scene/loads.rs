@@ -30,17 +30,17 @@ const STRENGTH: Quantity = Quantity {
 
 /// Draws them.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    if !state.scene.loads.is_empty() {
+    if !state.document.scene.loads.is_empty() {
         let (length, force) = (Unit::M.shown().symbol, Unit::N.shown().symbol);
         let [at, right, up] = [format!("At, {length}"), format!("Right, {force}"), format!("Up, {force}")];
         let columns = [("Name", name_width(ui)), (&*at, KIND_WIDTH), (&*right, NUMBER_WIDTH), (&*up, NUMBER_WIDTH)];
         headings(ui, &columns);
     }
-    for (k, load) in state.scene.loads.iter().enumerate() {
+    for (k, load) in state.document.scene.loads.iter().enumerate() {
         ui.push_id(k, |ui| line(ui, state, k, load, commands));
         scene_errors::inline(ui, state, &format!("loads[{k}]"), commands);
     }
-    let Some(cable) = state.scene.cables.get(state.current_cable()) else { return };
+    let Some(cable) = state.document.scene.cables.get(state.current_cable()) else { return };
     if ui.button("Add load").on_hover_text("A force on the middle of the cable, 100 N down").clicked() {
         let load = Load {
             cable: cable.name.clone(),
@@ -86,7 +86,7 @@ fn line(ui: &mut Ui, state: &AppState, k: usize, load: &Load, commands: &mut Vec
             remove(ui, item, &name, "Takes it off", commands);
         });
     });
-    if state.selected == Some(item) {
+    if state.selection.selected == Some(item) {
         if let Some(force_n) = load.force_n {
             strength(ui, load, (k, force_n), commands);
         }
@@ -94,11 +94,11 @@ fn line(ui: &mut Ui, state: &AppState, k: usize, load: &Load, commands: &mut Vec
             set(value, commands);
         }
     }
-    if state.scene.cables.len() > 1 {
+    if state.document.scene.cables.len() > 1 {
         ui.horizontal(|ui| {
             ui.label("    on");
             let shown = ComboBox::from_id_salt("cable").selected_text(&load.cable).show_ui(ui, |ui| {
-                for cable in &state.scene.cables {
+                for cable in &state.document.scene.cables {
                     if ui.selectable_label(cable.name == load.cable, &cable.name).clicked() {
                         set(Load { cable: cable.name.clone(), ..load.clone() }, commands);
                     }

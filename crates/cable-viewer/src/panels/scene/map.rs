@@ -12,22 +12,22 @@ use crate::widgets::property::labelled;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let present = preset::map_presets().iter().find(|m| m.obstacles == state.scene.obstacles);
+    let present = preset::map_presets().iter().find(|m| m.obstacles == state.document.scene.obstacles);
     labelled(ui, "Map", "Map", |ui| {
         let text = match present {
             Some(map) => map.name.as_str(),
-            None if state.scene.obstacles.is_empty() => "None",
+            None if state.document.scene.obstacles.is_empty() => "None",
             None => "Own",
         };
         let combo = ComboBox::from_id_salt("map").selected_text(text).width(ui.available_width() - 8.0).truncate();
         let shown = combo.show_ui(ui, |ui| {
-            if ui.selectable_label(state.scene.obstacles.is_empty(), "None").clicked() {
-                choose(&state.scene, &[], commands);
+            if ui.selectable_label(state.document.scene.obstacles.is_empty(), "None").clicked() {
+                choose(&state.document.scene, &[], commands);
             }
             for map in preset::map_presets() {
                 let entry = ui.selectable_label(present.is_some_and(|m| m.id == map.id), &map.name);
                 if entry.on_hover_text(about(map)).clicked() {
-                    choose(&state.scene, &map.obstacles, commands);
+                    choose(&state.document.scene, &map.obstacles, commands);
                 }
             }
         });

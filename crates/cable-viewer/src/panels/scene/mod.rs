@@ -22,15 +22,15 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     pickers(ui, state, commands);
     scene_errors::inline(ui, state, "version", commands);
     let index = state.current_cable();
-    let supports = state.scene.cables.get(index).map_or(0, |c| c.supports.len());
-    let title = match state.scene.cables.get(index) {
-        Some(cable) if state.scene.cables.len() > 1 => format!("Supports of {} ({supports})", cable.name),
+    let supports = state.document.scene.cables.get(index).map_or(0, |c| c.supports.len());
+    let title = match state.document.scene.cables.get(index) {
+        Some(cable) if state.document.scene.cables.len() > 1 => format!("Supports of {} ({supports})", cable.name),
         _ => format!("Supports ({supports})"),
     };
     list(ui, "supports", &title, |ui| supports::ui(ui, state, index, commands));
-    let title = format!("Obstacles ({})", state.scene.obstacles.len());
+    let title = format!("Obstacles ({})", state.document.scene.obstacles.len());
     list(ui, "obstacles", &title, |ui| obstacles::ui(ui, state, commands));
-    let title = format!("Loads ({})", state.scene.loads.len());
+    let title = format!("Loads ({})", state.document.scene.loads.len());
     list(ui, "loads", &title, |ui| loads::ui(ui, state, commands));
 }
 
@@ -41,7 +41,7 @@ fn list(ui: &mut Ui, id: &str, title: &str, contents: impl FnOnce(&mut Ui)) {
 fn name(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut wrong = None;
     labelled(ui, "Name", "Scene name", |ui| {
-        let entry = field::text(ui, "Scene name", &state.scene.name, ui.available_width() - 8.0);
+        let entry = field::text(ui, "Scene name", &state.document.scene.name, ui.available_width() - 8.0);
         wrong = entry.fault;
         if let Some(name) = entry.value {
             commands.push(Command::Scene(SceneCommand::SetName(name)));
@@ -60,7 +60,7 @@ fn pickers(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let combo = ComboBox::from_id_salt("scene").selected_text("Choose a scene…").width(ui.available_width() - 8.0);
         let shown = combo.show_ui(ui, |ui| {
             for (id, scene) in catalog::all() {
-                if ui.selectable_label(scene.name == state.scene.name, &scene.name).clicked() {
+                if ui.selectable_label(scene.name == state.document.scene.name, &scene.name).clicked() {
                     commands.push(Command::File(FileCommand::OpenCatalogue(id.to_owned())));
                 }
             }

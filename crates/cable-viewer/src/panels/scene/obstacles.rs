@@ -22,11 +22,11 @@ const CORNERS_HEIGHT: f32 = 240.0;
 
 /// Draws them.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    if !state.scene.obstacles.is_empty() {
+    if !state.document.scene.obstacles.is_empty() {
         let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.shown().symbol));
         headings(ui, &[("Name", name_width(ui)), ("Form", KIND_WIDTH), (&x, NUMBER_WIDTH), (&y, NUMBER_WIDTH)]);
     }
-    for (k, obstacle) in state.scene.obstacles.iter().enumerate() {
+    for (k, obstacle) in state.document.scene.obstacles.iter().enumerate() {
         ui.push_id(k, |ui| line(ui, state, k, obstacle, commands));
         scene_errors::inline(ui, state, &format!("obstacles[{k}]"), commands);
     }
@@ -36,7 +36,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 /// New obstacles stand in the middle of the picture, where the user looks.
 fn add(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let [x, y] = state.camera.centre_m.map(|v| (v * 10.0).round() / 10.0);
+    let [x, y] = state.view.camera.centre_m.map(|v| (v * 10.0).round() / 10.0);
     let forms = [
         ("Floor", "Ground, solid below", Shape::Terrain { points_m: vec![[x - 10.0, y], [x + 10.0, y]] }),
         (
@@ -103,7 +103,7 @@ fn line(ui: &mut Ui, state: &AppState, k: usize, obstacle: &Obstacle, commands: 
         })
         .inner;
     show_faults(ui, &faults);
-    let corner_selected = matches!(state.selected, Some(Item::Corner { obstacle, .. }) if obstacle == k);
+    let corner_selected = matches!(state.selection.selected, Some(Item::Corner { obstacle, .. }) if obstacle == k);
     if selected || corner_selected {
         Frame::group(ui.style()).inner_margin(5).show(ui, |ui| details(ui, k, obstacle, commands));
     }

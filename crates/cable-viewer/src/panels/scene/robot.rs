@@ -15,7 +15,7 @@ use crate::widgets::property::labelled;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let present = state.scene.robot.as_ref();
+    let present = state.document.scene.robot.as_ref();
     labelled(ui, "Robot", "Robot", |ui| {
         let shown = present.map(|r| preset::robot_preset(&r.preset).map_or(r.preset.as_str(), |p| p.name.as_str()));
         let combo = ComboBox::from_id_salt("robot").selected_text(shown.unwrap_or("None"));
@@ -60,10 +60,10 @@ fn set(robot: Option<Robot>, commands: &mut Vec<Command>) {
 
 /// The same robot of another kind, or a first one with the end of the cable on its hitch.
 fn choose(state: &AppState, p: &RobotPreset, commands: &mut Vec<Command>) {
-    if let Some(present) = &state.scene.robot {
+    if let Some(present) = &state.document.scene.robot {
         return set(Some(Robot { preset: p.id.to_owned(), ..present.clone() }), commands);
     }
-    let mut scene = state.scene.clone();
+    let mut scene = state.document.scene.clone();
     add(&mut scene, state.current_cable(), p);
     commands.push(Command::Scene(SceneCommand::SetScene(Box::new(scene))));
 }

@@ -30,7 +30,7 @@ pub const GAP: f32 = 3.0;
 
 /// The name of a thing in a list: picks it.
 pub fn selectable_name(ui: &mut Ui, state: &AppState, item: Item, name: &str, commands: &mut Vec<Command>) -> bool {
-    let selected = state.selected == Some(item);
+    let selected = state.selection.selected == Some(item);
     let button = Button::selectable(selected, (name, Atom::grow())).truncate();
     let width = name_width(ui);
     let response = cell(ui, width, |ui| ui.add(button.min_size(egui::vec2(width, 0.0))));

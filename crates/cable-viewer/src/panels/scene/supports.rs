@@ -50,7 +50,7 @@ impl Row<'_> {
 
 /// Draws them.
 pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Command>) {
-    let Some(cable) = state.scene.cables.get(index) else { return };
+    let Some(cable) = state.document.scene.cables.get(index) else { return };
     let last = cable.supports.len().saturating_sub(1);
     let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.shown().symbol));
     headings(ui, &[("Name", name_width(ui)), ("Kind", KIND_WIDTH), (&x, NUMBER_WIDTH), (&y, NUMBER_WIDTH)]);
@@ -75,7 +75,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Comman
 /// Where a support is in the present answer, else where the scene says.
 fn place_now(state: &AppState, cable: usize, support: usize, of: &Cable) -> (Point, f64) {
     // An answer with other supports is of an earlier scene: its places are those of the neighbours.
-    let solved = state.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable));
+    let solved = state.live.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable));
     let solved = solved.filter(|c| c.supports.len() == of.supports.len()).and_then(|c| c.supports.get(support));
     solved.map_or_else(
         || {
@@ -89,7 +89,7 @@ fn place_now(state: &AppState, cable: usize, support: usize, of: &Cable) -> (Poi
 
 /// The node of the present answer next to an arc length, m.
 pub(super) fn position_at(state: &AppState, cable: usize, arc_length_m: f64) -> Option<Point> {
-    let nodes = &state.snapshot.solution.as_ref()?.cables.get(cable)?.nodes;
+    let nodes = &state.live.snapshot.solution.as_ref()?.cables.get(cable)?.nodes;
     let k = nodes.partition_point(|n| n.arc_length_m < arc_length_m).min(nodes.len().checked_sub(1)?);
     nodes.get(k).map(|n| [n.x_m, n.y_m])
 }
@@ -136,7 +136,7 @@ fn kind(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command
     let text = KINDS.iter().find(|(k, ..)| *k == row.value.kind).map_or("", |(_, text, _)| text);
     let shown = ComboBox::from_id_salt("kind").selected_text(text).width(KIND_WIDTH - 4.0).show_ui(ui, |ui| {
         for (kind, text, help) in KINDS {
-            let refused = refusal(kind, row.end, state.scene.robot.is_some());
+            let refused = refusal(kind, row.end, state.document.scene.robot.is_some());
             let entry = ui.add_enabled(refused.is_none(), egui::Button::selectable(kind == row.value.kind, text));
             let entry = entry.on_hover_text(help).on_disabled_hover_text(refused.unwrap_or_default());
             if entry.clicked() && kind != row.value.kind {

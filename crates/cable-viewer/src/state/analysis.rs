@@ -1,11 +1,40 @@
-//! Comparison keeps answers on screen beside the present one.
+//! Analyses are what is asked beyond the answer itself, and answers kept to compare with.
 
 use std::sync::Arc;
 
 use cable_core::{Scene, Solution};
 
 use crate::jobs::model_comparison::Found;
+use crate::jobs::{friction_range, model_comparison, neglected_bending, safe_reach};
 use crate::record::run::Run;
+
+/// What is asked beyond the answer itself.
+#[derive(Debug, Default)]
+pub struct Analysis {
+    /// Answers kept on screen to compare with.
+    pub references: Vec<Held>,
+    /// What every model says of a scene.
+    pub models: model_comparison::Progress,
+    /// Where on a cable it is shown where the tension comes from.
+    pub tension_marker: Option<Probe>,
+    /// Where the robot or an end can be taken.
+    pub safe_reach: safe_reach::View,
+    /// What neglecting bending stiffness changes.
+    pub neglected_bending: neglected_bending::View,
+    /// What less and more friction does.
+    pub friction_range: friction_range::View,
+}
+
+/// A place on a cable whose tension is taken apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Probe {
+    /// Index of the cable.
+    pub cable: usize,
+    /// Where on it, m.
+    pub arc_length_m: f64,
+    /// The end the sum begins at.
+    pub from: cable_core::analysis::tension_budget::StartEnd,
+}
 
 /// An answer that is kept to compare with.
 #[derive(Clone, Debug)]
