@@ -49,13 +49,13 @@ enum Theme {
 }
 
 /// Largest picture side, pixels: what every GPU can draw.
-const MOST_PIXELS: u32 = 8192;
+const MAX_PIXELS: u32 = 8192;
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
     match sides {
-        Some(size) if size.iter().all(|s| (1..=MOST_PIXELS).contains(s)) => Ok(size),
-        _ => Err(format!("write it as 1280x800, each side 1 to {MOST_PIXELS}")),
+        Some(size) if size.iter().all(|s| (1..=MAX_PIXELS).contains(s)) => Ok(size),
+        _ => Err(format!("write it as 1280x800, each side 1 to {MAX_PIXELS}")),
     }
 }
 

@@ -3,7 +3,7 @@
 use egui::{TextEdit, Ui};
 
 use crate::command::{Command, FileCommand};
-use crate::io::feedback::{Answers, BEST, GOOD, QUESTIONS};
+use crate::io::feedback::{Answers, MAX_MARK, MIN_GOOD_MARK, QUESTIONS};
 use crate::widgets::field;
 
 /// Draws it.
@@ -15,7 +15,7 @@ pub fn ui(ui: &mut Ui, answers: &mut Answers, path: &mut String, commands: &mut 
         for ((_, question), mark) in QUESTIONS.iter().zip(&mut answers.marks) {
             ui.label(*question);
             ui.horizontal(|ui| {
-                for k in 1..=BEST {
+                for k in 1..=MAX_MARK {
                     let button = ui.radio(*mark == Some(k), k.to_string());
                     field::name(&button, &format!("{question}: {k}"));
                     if button.clicked() {
@@ -29,7 +29,7 @@ pub fn ui(ui: &mut Ui, answers: &mut Answers, path: &mut String, commands: &mut 
     let label = ui.label("What confused you, or should be otherwise");
     ui.add(TextEdit::multiline(&mut answers.words).desired_rows(3).desired_width(f32::INFINITY)).labelled_by(label.id);
     if answers.wants_words() {
-        ui.colored_label(ui.visuals().warn_fg_color, format!("Below {GOOD}: please say what confused you"));
+        ui.colored_label(ui.visuals().warn_fg_color, format!("Below {MIN_GOOD_MARK}: please say what confused you"));
     }
     ui.horizontal(|ui| {
         let label = ui.label("Table");

@@ -240,7 +240,7 @@ fn light(ui: &mut Ui, verification: &Verification) {
         (false, _) => (visuals.error_fg_color, visuals.error_fg_color, "NOT SOUND"),
     };
     let laws: Vec<&str> = verification.checked.iter().map(|l| l.name()).collect();
-    let help = format!("{}. Checked: {}", translate::shown(&verification.summary()), laws.join(", "));
+    let help = format!("{}. Checked: {}", translate::display(&verification.summary()), laws.join(", "));
     // The font has no signs for this: the light is painted, and the words say the same without its colour.
     let (place, _) = ui.allocate_exact_size(Vec2::splat(LIGHT_SIZE), Sense::hover());
     ui.painter().circle_filled(place.center(), 0.5 * LIGHT_SIZE, lamp);

@@ -35,7 +35,7 @@ use crate::worker::Worker;
 use crate::worker::engine::Report;
 
 /// Most unanswered edits whose delay is measured; of more, those in between are not.
-const MOST_ASKED: usize = 64;
+const MAX_ASKED: usize = 64;
 
 /// The eframe application.
 pub struct ViewerApp {
@@ -47,7 +47,7 @@ pub struct ViewerApp {
     title: String,
     /// Keeps unsaved changes on disk, in a window.
     autosave: Option<Autosave>,
-    /// Numbers of the edits not yet answered and when they were sent, oldest first; at most [`MOST_ASKED`].
+    /// Numbers of the edits not yet answered and when they were sent, oldest first; at most [`MAX_ASKED`].
     asked: VecDeque<(u64, Instant)>,
     /// The map of where the robot can go, while it is computed.
     reach: Option<safe_reach::Job>,
@@ -108,7 +108,7 @@ impl ViewerApp {
     }
 
     /// Keeps unsaved changes on disk; asks for a frame when the next copy is due.
-    fn look_after_changes(&mut self, ctx: &egui::Context) {
+    fn update_autosave(&mut self, ctx: &egui::Context) {
         let Some(autosave) = &mut self.autosave else { return };
         let state = &mut self.state;
         let wait = autosave.look(
@@ -157,7 +157,7 @@ impl ViewerApp {
         }
         if !effects.request.is_empty() {
             if effects.request.number > 0 {
-                if self.asked.len() == MOST_ASKED {
+                if self.asked.len() == MAX_ASKED {
                     self.asked.pop_back();
                 }
                 self.asked.push_back((effects.request.number, Instant::now()));
@@ -190,8 +190,8 @@ impl ViewerApp {
                 self.models = None;
             }
         }
-        self.keep_bending(ctx);
-        self.keep_spread(ctx);
+        self.update_neglected_bending(ctx);
+        self.update_friction_range(ctx);
         self.state.solver.status = self.worker.status();
         if !self.threaded && !self.state.live.playback.paused {
             ctx.request_repaint();
@@ -204,11 +204,11 @@ impl ViewerApp {
     }
 
     /// Looks after what neglecting bending stiffness changes: a question about what is no longer on screen is forgotten.
-    fn keep_bending(&mut self, ctx: &egui::Context) {
+    fn update_neglected_bending(&mut self, ctx: &egui::Context) {
         if !bending_query_fits(&self.state) {
-            self.state.analysis.neglected_bending = neglected_bending::View::default();
+            self.state.analysis.neglected_bending = neglected_bending::NeglectedBendingState::default();
         }
-        let Some(ask) = self.state.analysis.neglected_bending.ask.clone() else { return };
+        let Some(ask) = self.state.analysis.neglected_bending.query.clone() else { return };
         let runs = |job: &neglected_bending::Job| matches!(job.progress(), neglected_bending::Progress::Running(..));
         // One that still runs cannot be stopped within its solve: the next waits for it.
         if self.bending.as_ref().is_none_or(|job| !job.is_of(&ask) && !runs(job)) {
@@ -221,7 +221,7 @@ impl ViewerApp {
     }
 
     /// Looks after the ribbon of less and more friction: one of another question ends, a missing one begins.
-    fn keep_spread(&mut self, ctx: &egui::Context) {
+    fn update_friction_range(&mut self, ctx: &egui::Context) {
         let state = &mut self.state;
         if self
             .spread
@@ -298,7 +298,7 @@ fn new_worker(ctx: &egui::Context, threaded: bool) -> Worker {
 impl eframe::App for ViewerApp {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        system::show(self.state.view.units);
+        system::set_current(self.state.view.units);
         self.take_answers(&ctx);
         self.replay(&ctx);
         ctx.set_theme(self.state.view.theme);
@@ -311,7 +311,7 @@ impl eframe::App for ViewerApp {
             commands.push(Command::File(command::FileCommand::Quit));
         }
         self.apply(&ctx, commands);
-        self.look_after_changes(&ctx);
+        self.update_autosave(&ctx);
         let title = format!("{} – Cable simulator", menu::title(&self.state));
         if title != self.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));

@@ -13,7 +13,7 @@ use crate::state::{AppState, Item};
 use crate::units::{format, translate, unit};
 
 /// Most contacts of a cable that are named: what lies on rubble has one a stone.
-const MOST_CONTACTS: usize = 40;
+const MAX_CONTACTS: usize = 40;
 
 /// Names everything that can be picked, and where the cable lies on something.
 pub fn ui(ui: &Ui, canvas: Rect, state: &AppState) {
@@ -59,7 +59,7 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState) {
 fn contacts(state: &AppState, name: &impl Fn(Point, (&str, usize, usize), String)) {
     let Some(solution) = state.live.snapshot.solution.as_ref().filter(|_| state.view.layers.contacts) else { return };
     for answer in &solution.cables {
-        for (k, c) in answer.contacts.iter().enumerate().take(MOST_CONTACTS) {
+        for (k, c) in answer.contacts.iter().enumerate().take(MAX_CONTACTS) {
             for (j, part) in contact::parts(c).into_iter().enumerate().filter(|(_, p)| p.ends_m > p.begins_m) {
                 let does = if part.state == ContactState::Stick { "holds" } else { "slides" };
                 let [from, to] = [part.begins_m, part.ends_m].map(|s| unit::Unit::COORDINATE.text(s));
@@ -116,11 +116,11 @@ pub fn summary(state: &AppState) -> String {
         let shown = if state.analysis.safe_reach.choice.back { "there and back" } else { "there" };
         out.push(format!(
             "safe reach, {shown}: {}",
-            crate::panels::analysis::safe_reach::told(maps, state.analysis.safe_reach.choice.back).join(", ")
+            crate::panels::analysis::safe_reach::describe(maps, state.analysis.safe_reach.choice.back).join(", ")
         ));
     }
     if let Some(error) = &state.live.snapshot.error {
-        out.push(format!("no answer: {}", translate::shown(error)));
+        out.push(format!("no answer: {}", translate::display(error)));
     }
     if let Some(item) = state.selection.selected {
         out.push(format!("picked: {}", title(state, item)));

@@ -16,7 +16,7 @@ use crate::canvas::layers::{
     cable, compare_overlay, contact, forces, grid, legend, obstacles, robot, robot_path, safe_reach, supports,
     tension_marker,
 };
-use crate::canvas::view::View;
+use crate::canvas::view::CanvasView;
 use crate::command::Command;
 use crate::geometry::bounds;
 use crate::render::theme;
@@ -42,7 +42,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     state.view.visible_m = [low, high];
     pointer::read(ui, &response, state, commands);
     accessibility::ui(ui, rect, state);
-    let mut view = View {
+    let mut view = CanvasView {
         rect,
         camera: state.view.camera,
         painter: &painter,
@@ -54,7 +54,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
 }
 
 /// All layers, back to front.
-fn draw(view: &mut View<'_>, state: &AppState) {
+fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     view.painter.rect_filled(view.rect, 0.0, view.palette.background);
     if state.view.layers.grid {
         grid::lines(view);

@@ -4,10 +4,10 @@ use cable_core::scene::Shape;
 use egui::{CursorIcon, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui};
 
 use crate::canvas::layers::grid;
-use crate::canvas::view::View;
+use crate::canvas::view::CanvasView;
 use crate::command::{Command, SceneCommand, ViewCommand};
 use crate::geometry::{handles, hit_test};
-use crate::state::{AppState, Grab, Item, Probe};
+use crate::state::{AppState, Grab, Item, TensionMarker};
 
 /// How near to the cable a double-click adds a waypoint, points.
 const WAYPOINT_REACH: f32 = 14.0;
@@ -31,7 +31,7 @@ pub fn read(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<C
             && let Some((cable, arc_length_m, _)) = hit_test::cable_at(state, canvas, p, WAYPOINT_REACH)
         {
             let from = state.analysis.tension_marker.map(|p| p.from).unwrap_or_default();
-            commands.push(Command::View(ViewCommand::Probe(Some(Probe { cable, arc_length_m, from }))));
+            commands.push(Command::View(ViewCommand::MarkTension(Some(TensionMarker { cable, arc_length_m, from }))));
         }
         commands.push(Command::View(match item {
             Some(item) if adds(ui) => ViewCommand::Toggle(item),
@@ -181,7 +181,7 @@ fn frame_to(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<C
 }
 
 /// The frame being drawn round things to pick.
-pub fn frame(view: &View<'_>, state: &AppState) {
+pub fn frame(view: &CanvasView<'_>, state: &AppState) {
     let Some([a, b]) = state.selection.frame_m else { return };
     let rect = Rect::from_two_pos(view.at(a), view.at(b));
     let line = Stroke::new(1.2, view.palette.accent);

@@ -7,7 +7,7 @@ use crate::render::theme::Palette;
 use crate::state::camera::Camera;
 
 /// One frame's picture.
-pub struct View<'a> {
+pub struct CanvasView<'a> {
     /// The canvas.
     pub rect: Rect,
     /// What part of the world is in it.
@@ -31,7 +31,7 @@ pub enum Place {
     IfRoom,
 }
 
-impl View<'_> {
+impl CanvasView<'_> {
     /// World (m) to screen.
     #[must_use]
     pub fn at(&self, p: Point) -> Pos2 {

@@ -16,7 +16,7 @@ use crate::state::{AppState, Item};
 
 /// Where something goes that is pasted with no pointer over the canvas: this far from where it was, m. Less: it hides what it
 /// was copied from; more: it is out of view in a small scene.
-const BESIDE_M: Point = [0.5, 0.5];
+const PASTE_OFFSET_M: Point = [0.5, 0.5];
 
 /// Keeps what is picked; as text it is a table of points.
 pub fn copy(state: &mut AppState, effects: &mut Effects) {
@@ -73,7 +73,7 @@ fn thing(state: &AppState, item: Item) -> Option<(Thing, Vec<Point>)> {
 /// Puts what was copied into the scene, picked.
 pub fn paste(state: &mut AppState, at_m: Option<Point>) {
     let Clipboard { things, middle_m, .. } = state.selection.clipboard.clone();
-    let to = at_m.unwrap_or([middle_m[0] + BESIDE_M[0], middle_m[1] + BESIDE_M[1]]);
+    let to = at_m.unwrap_or([middle_m[0] + PASTE_OFFSET_M[0], middle_m[1] + PASTE_OFFSET_M[1]]);
     let shift = |p: Point| shifted(p, middle_m, to);
     let target = state.current_cable();
     let mut new = Vec::new();
@@ -98,7 +98,7 @@ pub fn paste(state: &mut AppState, at_m: Option<Point>) {
 /// Another cable like the current one, a little above it.
 pub fn add_cable(state: &mut AppState) {
     let Some(cable) = state.document.scene.cables.get(state.current_cable()).cloned() else { return };
-    let up = |p: Point| [p[0], p[1] + BESIDE_M[1]];
+    let up = |p: Point| [p[0], p[1] + PASTE_OFFSET_M[1]];
     let item = put_cable(state, &cable, &up);
     (state.selection.selected, state.selection.also) = (Some(item), Vec::new());
 }

@@ -2,7 +2,7 @@
 
 use cable_core::Scene;
 
-use crate::jobs::safe_reach::Order;
+use crate::jobs::safe_reach::ReachQuery;
 use crate::state::AppState;
 use crate::worker::request::{Edit, Request};
 
@@ -18,7 +18,7 @@ pub struct Effects {
     /// Start the solver thread anew.
     pub restart_worker: bool,
     /// Look for where the robot can go, or end that.
-    pub reach: Option<Option<Box<Order>>>,
+    pub reach: Option<Option<Box<ReachQuery>>>,
     /// Ask every model about a scene, or end that.
     pub models: Option<Option<Box<Scene>>>,
     /// Text for the clipboard of the system.

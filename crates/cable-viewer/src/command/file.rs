@@ -19,7 +19,7 @@ use crate::record::run::Run;
 use crate::record::samples::Sample;
 use crate::state::dialog::{Dialog, Replacement};
 use crate::state::tutorial_place::TutorialPlace;
-use crate::state::{AppState, Document, Held};
+use crate::state::{AppState, Document, Reference};
 
 /// Files and the window.
 #[derive(Clone, Debug, PartialEq)]
@@ -199,7 +199,7 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
     state.live.robot_order = None;
     state.live.reopened_run = Vec::new();
     state.ui.tutorial = None;
-    state.analysis.safe_reach = crate::jobs::safe_reach::View::default();
+    state.analysis.safe_reach = crate::jobs::safe_reach::SafeReachState::default();
     effects.reach = Some(None);
     state.analysis.models = crate::jobs::model_comparison::Progress::None;
     effects.models = Some(None);
@@ -223,11 +223,11 @@ fn hold(state: &mut AppState, path: &Path, opened: SavedRun) {
     state.ui.dialog = None;
     remark(state, path, &opened.remarks);
     if let (Some(solution), true) =
-        (opened.answers.into_iter().next_back(), state.analysis.references.len() < Held::MOST)
+        (opened.answers.into_iter().next_back(), state.analysis.references.len() < Reference::MAX_COUNT)
     {
         let name = format!("{}, {}, {:.2} s", opened.scene.name, path.display(), solution.time_s);
         let (scene, solution) = (Arc::new(opened.scene), Arc::new(solution));
-        state.analysis.references.push(Held { name, scene, solution, wall_s: f64::NAN, run });
+        state.analysis.references.push(Reference { name, scene, solution, wall_s: f64::NAN, run });
     }
 }
 

@@ -9,7 +9,7 @@ use crate::state::{AppState, Playback};
 use crate::worker::request::{Edit, Request, Resume};
 
 /// A support that is farther than this from where it was has been moved since, m. Less: rounding counts as moving.
-const MOVED_M: f64 = 1e-6;
+const MIN_MOVE_M: f64 = 1e-6;
 
 /// Time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,7 +104,7 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
 
 /// Takes the answer shown as the present one: supports stand where they stood then.
 fn go_on(state: &mut AppState, effects: &mut Effects) {
-    let Some(answer) = state.live.recording.shown() else { return };
+    let Some(answer) = state.live.recording.displayed() else { return };
     state.live.playback.paused = true;
     if answer.cables.iter().any(|c| !c.breaks.is_empty()) {
         let title = "Time does not go on from here".to_owned();
@@ -115,7 +115,7 @@ fn go_on(state: &mut AppState, effects: &mut Effects) {
     let before = state.document.scene.clone();
     for (cable, then) in state.document.scene.cables.iter_mut().zip(&answer.cables) {
         for (s, then) in cable.supports.iter_mut().zip(&then.supports) {
-            let moved = s.at_m.is_some_and(|at| (at[0] - then.x_m).hypot(at[1] - then.y_m) > MOVED_M);
+            let moved = s.at_m.is_some_and(|at| (at[0] - then.x_m).hypot(at[1] - then.y_m) > MIN_MOVE_M);
             if moved && s.motion.is_none() && s.kind != SupportKind::Pulley {
                 s.at_m = Some([then.x_m, then.y_m]);
             }

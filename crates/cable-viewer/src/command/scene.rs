@@ -11,7 +11,7 @@ use crate::command::items::{
 use crate::command::{clipboard, route};
 use crate::state::undo::EditKind;
 use crate::state::{AppState, Item};
-use crate::worker::engine::slow;
+use crate::worker::engine::is_quasi_static;
 use crate::worker::request::{Drag, Request};
 
 /// Changes the scene. Indices that do not exist change nothing.
@@ -178,7 +178,8 @@ fn after_edit(state: &mut AppState, dragged: Option<(usize, usize, Point)>, effe
             state.live.show_time(None);
             // A pointer holds by a spring; a key or a robot puts it there.
             let held = Item::Support { cable, support };
-            let by_spring = state.selection.grab.is_some_and(|g| g.item == held) && !slow(state.solver.model);
+            let by_spring =
+                state.selection.grab.is_some_and(|g| g.item == held) && !is_quasi_static(state.solver.model);
             state.selection.spring_support = by_spring.then_some((cable, support));
             draw_support(state, (cable, support, to_m), effects);
         }

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use cable_core::math::Point;
 
 use crate::command::effects::Effects;
-use crate::jobs::safe_reach::{self, Moved, Order, Progress};
+use crate::jobs::safe_reach::{self, Progress, ReachQuery, ReachSubject};
 use crate::jobs::{model_comparison, neglected_bending};
 use crate::record::run::Run;
 use crate::render::colour::ColourScale;
 use crate::state::questions::{bending_query, reach_target};
 use crate::state::tutorial_place::TutorialPlace;
-use crate::state::{AppState, Grab, Held, Item, Layers, Probe};
+use crate::state::{AppState, Grab, Item, Layers, Reference, TensionMarker};
 use crate::units::system::System;
 
 /// Changes what is shown.
@@ -24,7 +24,7 @@ pub enum ViewCommand {
     /// Picks several things.
     SelectAll(Vec<Item>),
     /// Takes the tension at a place of a cable apart, or not any more.
-    Probe(Option<Probe>),
+    MarkTension(Option<TensionMarker>),
     /// Draws a frame round things to pick, between two corners, m.
     Frame(Option<[Point; 2]>),
     /// The pointer is over a thing, or over nothing, at a point of the world (m).
@@ -90,7 +90,7 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             select_all(state, picks);
         }
         ViewCommand::SelectAll(items) => select_all(state, items),
-        ViewCommand::Probe(probe) => state.analysis.tension_marker = probe,
+        ViewCommand::MarkTension(probe) => state.analysis.tension_marker = probe,
         ViewCommand::Frame(corners) => state.selection.frame_m = corners,
         ViewCommand::Hover(item, at_m) => {
             state.selection.hovered = item;
@@ -126,14 +126,14 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             };
             state.analysis.safe_reach.progress = Progress::Running(0.0, None);
             let corners_m = match moved {
-                Moved::Robot => crate::geometry::bounds::ground(state).map(|x| [x, 0.0]),
-                Moved::Support { .. } => state.view.visible_m,
+                ReachSubject::Robot => crate::geometry::bounds::ground(state).map(|x| [x, 0.0]),
+                ReachSubject::Support { .. } => state.view.visible_m,
             };
             let (scene, settings, across) =
                 (state.document.scene.clone(), state.solver.settings, state.analysis.safe_reach.choice.across);
             // From where the cable is on screen, once time has run: a hand or the robot may have taken it elsewhere.
             let now = state.live.snapshot.solution.clone().filter(|s| s.time_s > 0.0 && !state.live.snapshot.stale);
-            effects.reach = Some(Some(Box::new(Order { scene, now, settings, moved, corners_m, across })));
+            effects.reach = Some(Some(Box::new(ReachQuery { scene, now, settings, moved, corners_m, across })));
         }
         ViewCommand::SetReach(choice) => state.analysis.safe_reach.choice = choice,
         ViewCommand::Spread(on, [low, high]) => {
@@ -144,21 +144,23 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             }
         }
         ViewCommand::AskBending => {
-            state.analysis.neglected_bending =
-                neglected_bending::View { ask: bending_query(state), ..neglected_bending::View::default() }
+            state.analysis.neglected_bending = neglected_bending::NeglectedBendingState {
+                query: bending_query(state),
+                ..neglected_bending::NeglectedBendingState::default()
+            }
         }
         ViewCommand::Guide(place) => state.ui.tutorial = place,
         ViewCommand::SetUnits(units) => state.view.units = units,
         ViewCommand::Hold => {
             if let (Some(solution), Some(scene)) =
                 (state.live.snapshot.solution.clone(), state.live.snapshot.scene.clone())
-                && state.analysis.references.len() < Held::MOST
+                && state.analysis.references.len() < Reference::MAX_COUNT
             {
                 let name = format!("{}, {} model, {:.2} s", scene.name, solution.model, solution.time_s);
                 let recording = &state.live.recording;
                 let run = Run::of(state.live.history.samples.iter(), recording.answers(), recording.events().len());
                 let (run, wall_s) = (run.map(Arc::new), state.live.snapshot.solve_wall_s);
-                state.analysis.references.push(Held { name, scene, solution, wall_s, run });
+                state.analysis.references.push(Reference { name, scene, solution, wall_s, run });
             }
         }
         ViewCommand::HoldModels(true) => {

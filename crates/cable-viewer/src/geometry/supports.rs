@@ -7,7 +7,7 @@ use cable_core::solution::SupportReaction;
 use crate::state::AppState;
 
 /// Nearer than this to where it is drawn, a support is there, m.
-pub const THERE_M: f64 = 1e-3;
+pub const COINCIDENCE_M: f64 = 1e-3;
 
 /// What the answer says of a support.
 pub fn reaction(state: &AppState, cable: usize, support: usize) -> Option<&SupportReaction> {
@@ -42,7 +42,7 @@ pub fn hand_spring(state: &AppState, cable: usize, support: usize) -> Option<[Po
         && let Some(hand) = &now.hand
     {
         let ends = [[now.x_m, now.y_m], [hand.x_m, hand.y_m]];
-        return ((ends[0][0] - ends[1][0]).hypot(ends[0][1] - ends[1][1]) > THERE_M).then_some(ends);
+        return ((ends[0][0] - ends[1][0]).hypot(ends[0][1] - ends[1][1]) > COINCIDENCE_M).then_some(ends);
     }
     let s = state.document.scene.cables.get(cable)?.supports.get(support)?;
     let held = matches!(s.kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Pulley);
@@ -52,6 +52,6 @@ pub fn hand_spring(state: &AppState, cable: usize, support: usize) -> Option<[Po
     let moved = s.motion.as_ref().map(|m| m.at(solution.time_s).0).map(|p| [p.x, p.y]);
     let to = moved.or(s.at_m).filter(|_| held && s.release_s.is_none())?;
     let at = solved.supports.get(support).map(|r| [r.x_m, r.y_m])?;
-    let far = (at[0] - to[0]).hypot(at[1] - to[1]) > THERE_M;
+    let far = (at[0] - to[0]).hypot(at[1] - to[1]) > COINCIDENCE_M;
     (far && solved.assumptions.inertia && !state.live.playback.paused).then_some([at, to])
 }

@@ -12,12 +12,12 @@ pub const QUESTIONS: [(&str, &str); 4] = [
     ("easy", "It is easy to use"),
 ];
 /// Answers below this are low: what confused is asked for.
-pub const GOOD: u8 = 4;
+pub const MIN_GOOD_MARK: u8 = 4;
 /// Best answer; the worst is 1.
-pub const BEST: u8 = 5;
+pub const MAX_MARK: u8 = 5;
 
 /// Largest file that is added to, bytes: more is not a table of answers.
-const MOST_BYTES: u64 = 16 << 20;
+const MAX_BYTES: u64 = 16 << 20;
 
 /// The answers so far.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -43,7 +43,7 @@ impl Answers {
     /// Something was marked low, and what confused is not said yet.
     #[must_use]
     pub fn wants_words(&self) -> bool {
-        self.marks.iter().flatten().any(|m| *m < GOOD) && self.words.trim().is_empty()
+        self.marks.iter().flatten().any(|m| *m < MIN_GOOD_MARK) && self.words.trim().is_empty()
     }
 
     /// It can be saved.
@@ -83,7 +83,7 @@ pub fn save(path: &Path, answers: &Answers, context: &Context<'_>) -> Result<(),
         return Err("every question needs a mark, and a low one a few words on what confused".to_owned());
     }
     let mut text = if path.exists() {
-        let bytes = files::read_limited(path, MOST_BYTES).map_err(|e| e.to_string())?;
+        let bytes = files::read_limited(path, MAX_BYTES).map_err(|e| e.to_string())?;
         String::from_utf8(bytes).map_err(|_| "it is no table of answers".to_owned())?
     } else {
         let columns: Vec<&str> = QUESTIONS.iter().map(|(column, _)| *column).collect();

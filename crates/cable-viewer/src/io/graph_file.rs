@@ -110,8 +110,8 @@ pub fn svg(sheet: &Sheet) -> String {
         let _ = writeln!(out, "<text x=\"{tx:.2}\" y=\"{ty:.2}\" text-anchor=\"{anchor}\">{text}</text>");
     }
     for (k, line) in sheet.lines.iter().enumerate() {
-        let c = LINES[line.held.unwrap_or(k) % LINES.len()];
-        let dashes = if line.held.is_some() { " stroke-dasharray=\"6 4\"" } else { "" };
+        let c = LINES[line.reference.unwrap_or(k) % LINES.len()];
+        let dashes = if line.reference.is_some() { " stroke-dasharray=\"6 4\"" } else { "" };
         let colour = format!("#{:02x}{:02x}{:02x}", c.r(), c.g(), c.b());
         let points = visible(line, sheet).iter().filter(|p| p[1].is_finite());
         let path: Vec<String> =
@@ -197,7 +197,7 @@ mod tests {
         let line = |name: &str, f: fn(f64) -> f64| Series {
             name: name.to_owned(),
             points: (0..100).map(|k| f64::from(k) / 10.0).map(|x| [x, f(x)]).collect(),
-            held: None,
+            reference: None,
         };
         Sheet {
             title: "Over <time>".to_owned(),

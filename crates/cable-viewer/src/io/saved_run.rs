@@ -9,7 +9,7 @@ use cable_core::solution::{CableSolution, Cost, Energy, SupportReaction, Tension
 use cable_core::{Model, Scene, Solution, files};
 
 /// Largest table read, bytes: half an hour of 200 nodes at 60 answers a second is 3 GB; such a run is for other programs.
-const MOST_BYTES: u64 = 512 << 20;
+const MAX_BYTES: u64 = 512 << 20;
 
 /// A run as it lies in a folder.
 #[derive(Clone, Debug)]
@@ -27,7 +27,7 @@ pub struct SavedRun {
 /// # Errors
 /// In words: what is missing or broken, and where.
 pub fn read_run(folder: &Path) -> Result<SavedRun, String> {
-    let run = files::load_run(folder, MOST_BYTES).map_err(|e| e.to_string())?;
+    let run = files::load_run(folder, MAX_BYTES).map_err(|e| e.to_string())?;
     let mut remarks = run.remarks();
     let RunTables { history, mut nodes, events, .. } = run.tables;
     if history.time_s.is_empty() {

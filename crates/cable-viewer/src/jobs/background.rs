@@ -20,7 +20,7 @@ pub enum Progress<T> {
 }
 
 /// Hears the share done, 0 to 1, and what is known so far, and says whether to go on.
-pub type Heard<'a, T> = &'a mut dyn FnMut(f64, Option<T>) -> ControlFlow<()>;
+pub type Listener<'a, T> = &'a mut dyn FnMut(f64, Option<T>) -> ControlFlow<()>;
 
 /// It, while it is computed. Dropped, it ends at its next word.
 #[derive(Debug)]
@@ -45,14 +45,14 @@ impl<T: Clone + Send + 'static> Job<T> {
     #[must_use]
     pub fn start(
         name: &str,
-        work: impl FnOnce(Heard<'_, T>) -> Result<T, String> + Send + 'static,
+        work: impl FnOnce(Listener<'_, T>) -> Result<T, String> + Send + 'static,
         shown: impl Fn() + Send + 'static,
     ) -> Self {
         let (progress, cancelled) = (Mutex::new(Progress::Running(0.0, None)), AtomicBool::new(false));
         let shared = Arc::new(Shared { progress, cancelled });
         let theirs = Arc::clone(&shared);
         let job = move || {
-            let mut heard = |share: f64, so_far: Option<T>| {
+            let mut listen = |share: f64, so_far: Option<T>| {
                 if theirs.cancelled.load(Ordering::Relaxed) {
                     return ControlFlow::Break(());
                 }
@@ -60,7 +60,7 @@ impl<T: Clone + Send + 'static> Job<T> {
                 shown();
                 ControlFlow::Continue(())
             };
-            let result = catch_unwind(AssertUnwindSafe(|| work(&mut heard)));
+            let result = catch_unwind(AssertUnwindSafe(|| work(&mut listen)));
             theirs.set(match result {
                 Ok(Ok(done)) => Progress::Done(done),
                 Ok(Err(why)) => Progress::Failed(why),

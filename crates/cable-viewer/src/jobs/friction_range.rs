@@ -9,16 +9,16 @@ use cable_core::{Scene, Solution};
 use crate::jobs::background;
 
 /// What was found, and what was asked.
-pub type Found = (Arc<FrictionRange>, Arc<Query>);
+pub type Outcome = (Arc<FrictionRange>, Arc<Query>);
 /// How far it is.
-pub type Progress = background::Progress<Found>;
+pub type Progress = background::Progress<Outcome>;
 
 /// Longest run that is followed, s: three runs of it. Longer: a minute of both cores for a ribbon; shorter: a drive is cut off.
-pub const LONGEST_S: f64 = 120.0;
+pub const MAX_RUN_S: f64 = 120.0;
 
 /// Friction that is asked about.
 #[derive(Clone, Debug)]
-pub struct View {
+pub struct FrictionRangeState {
     /// The ribbon is wanted.
     pub on: bool,
     /// Least and greatest friction over that of the scene.
@@ -27,7 +27,7 @@ pub struct View {
     pub progress: Progress,
 }
 
-impl Default for View {
+impl Default for FrictionRangeState {
     /// A third less and a third more: handbooks differ by that for rubber on concrete.
     fn default() -> Self {
         Self { on: false, factors: [0.67, 1.33], progress: Progress::None }
@@ -37,7 +37,7 @@ impl Default for View {
 /// A ribbon being computed.
 #[derive(Debug)]
 pub struct Job {
-    job: background::Job<Found>,
+    job: background::Job<Outcome>,
     ask: Arc<Query>,
 }
 
@@ -47,8 +47,8 @@ impl Job {
     pub fn start(ask: Query, shown: impl Fn() + Send + 'static) -> Self {
         let ask = Arc::new(ask);
         let theirs = Arc::clone(&ask);
-        let work = move |heard: background::Heard<'_, Found>| {
-            let found = friction_range::friction_range(&theirs, |share| heard(share, None));
+        let work = move |listen: background::Listener<'_, Outcome>| {
+            let found = friction_range::friction_range(&theirs, |share| listen(share, None));
             found.map(|s| (Arc::new(s), theirs)).map_err(|e| e.to_string())
         };
         Self { job: background::Job::start("friction range", work, shown), ask }
@@ -68,7 +68,7 @@ impl Job {
 }
 
 /// Least move of a support between two answers that is a hand's, m: less is rounding.
-const MOVED_M: f64 = 1e-9;
+const MIN_MOVE_M: f64 = 1e-9;
 
 /// What hands did in a run: where supports that move by nothing else went, and what the robot was told.
 #[must_use]
@@ -97,7 +97,7 @@ pub fn hands(scene: &Scene, answers: &[Solution]) -> Vec<Action> {
             let (Some(from_m), Some(to_m)) = (at(before, (cable, support)), at(now, (cable, support))) else {
                 continue;
             };
-            if (to_m[0] - from_m[0]).hypot(to_m[1] - from_m[1]) > MOVED_M {
+            if (to_m[0] - from_m[0]).hypot(to_m[1] - from_m[1]) > MIN_MOVE_M {
                 hands.push(Action { time_s: now.time_s, what: ActionKind::Support { cable, support, to_m } });
             }
         }

@@ -19,7 +19,7 @@ pub struct Answer {
 
 /// What came of all of them, and the scene they were asked about.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct Outcome {
     /// The scene.
     pub scene: Arc<Scene>,
     /// The models so far, in the order they are listed everywhere.
@@ -27,18 +27,18 @@ pub struct Found {
 }
 
 /// How far it is.
-pub type Progress = background::Progress<Found>;
+pub type Progress = background::Progress<Outcome>;
 /// Models being asked.
-pub type Job = background::Job<Found>;
+pub type Job = background::Job<Outcome>;
 
 /// Asks every model; `shown` is called whenever there is something new to show.
 #[must_use]
 pub fn start(scene: Scene, settings: Settings, shown: impl Fn() + Send + 'static) -> Job {
-    let work = move |heard: background::Heard<'_, Found>| {
-        let mut found = Found { scene: Arc::new(scene), answers: Vec::new() };
+    let work = move |listen: background::Listener<'_, Outcome>| {
+        let mut found = Outcome { scene: Arc::new(scene), answers: Vec::new() };
         let all = Model::SOLVERS;
         for (k, model) in all.into_iter().enumerate() {
-            if heard(k as f64 / all.len() as f64, Some(found.clone())) == ControlFlow::Break(()) {
+            if listen(k as f64 / all.len() as f64, Some(found.clone())) == ControlFlow::Break(()) {
                 return Err("it was ended".to_owned());
             }
             let result = at_rest(&found.scene, model, settings);

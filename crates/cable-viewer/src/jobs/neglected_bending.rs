@@ -8,13 +8,13 @@ use cable_core::{Scene, Settings, Solution};
 use crate::jobs::background;
 
 /// One a cable that is likely to be stiff and was answered without it.
-pub type Found = Arc<Vec<NeglectedBending>>;
+pub type Outcome = Arc<Vec<NeglectedBending>>;
 /// How far it is.
-pub type Progress = background::Progress<Found>;
+pub type Progress = background::Progress<Outcome>;
 
 /// The question: of which answer.
 #[derive(Clone, Debug)]
-pub struct Ask {
+pub struct Query {
     /// The scene of the answer.
     pub scene: Arc<Scene>,
     /// Mesh and accuracy.
@@ -25,9 +25,9 @@ pub struct Ask {
 
 /// What was asked last, and what came of it.
 #[derive(Clone, Debug, Default)]
-pub struct View {
+pub struct NeglectedBendingState {
     /// The question; None: nothing was asked of what is on screen.
-    pub ask: Option<Ask>,
+    pub query: Option<Query>,
     /// How far it is.
     pub progress: Progress,
 }
@@ -35,25 +35,25 @@ pub struct View {
 /// It, while it is computed.
 #[derive(Debug)]
 pub struct Job {
-    job: background::Job<Found>,
+    job: background::Job<Outcome>,
     answer: Arc<Solution>,
 }
 
 impl Job {
     /// Starts it; `shown` is called when there is something new to show.
     #[must_use]
-    pub fn start(ask: Ask, shown: impl Fn() + Send + 'static) -> Self {
-        let answer = Arc::clone(&ask.answer);
-        let work = move |_: background::Heard<'_, Found>| {
-            Ok(Arc::new(neglected_bending(&ask.scene, &ask.answer, ask.settings)))
+    pub fn start(query: Query, shown: impl Fn() + Send + 'static) -> Self {
+        let answer = Arc::clone(&query.answer);
+        let work = move |_: background::Listener<'_, Outcome>| {
+            Ok(Arc::new(neglected_bending(&query.scene, &query.answer, query.settings)))
         };
         Self { job: background::Job::start("bending stiffness", work, shown), answer }
     }
 
     /// Whether it is this question that it answers.
     #[must_use]
-    pub fn is_of(&self, ask: &Ask) -> bool {
-        Arc::ptr_eq(&self.answer, &ask.answer)
+    pub fn is_of(&self, query: &Query) -> bool {
+        Arc::ptr_eq(&self.answer, &query.answer)
     }
 
     /// How far it is.

@@ -19,14 +19,14 @@ pub const PLACES: usize = 41;
 pub const ACROSS: [usize; 2] = [8, 96];
 
 /// The ways back are followed from every so manieth place, both ways: as much work as the places themselves, not thirty times.
-const COARSER: f64 = 2.0;
+const RETURN_COARSENING: f64 = 2.0;
 
 /// How much more is shown at least before the next look, as a share: more often, and drawing it takes longer than finding it.
-const SHOWN: f64 = 0.01;
+const MIN_PROGRESS_STEP: f64 = 0.01;
 
 /// What is taken somewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Moved {
+pub enum ReachSubject {
     /// The robot, along its ground.
     Robot,
     /// A support, through free space.
@@ -42,7 +42,7 @@ pub enum Moved {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Choice {
     /// What is taken somewhere; None: the robot, else what is picked, else what moves, else an end.
-    pub moved: Option<Moved>,
+    pub moved: Option<ReachSubject>,
     /// Shows the way there and back instead of the place itself.
     pub back: bool,
     /// Places of an end side by side.
@@ -57,7 +57,7 @@ impl Default for Choice {
 
 /// What there is of it.
 #[derive(Clone, Debug, Default)]
-pub struct View {
+pub struct SafeReachState {
     /// What the user chose.
     pub choice: Choice,
     /// How far it is.
@@ -66,7 +66,7 @@ pub struct View {
 
 /// What the map asks for.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Order {
+pub struct ReachQuery {
     /// The scene.
     pub scene: Scene,
     /// Where time has run: how its cables lie now.
@@ -74,7 +74,7 @@ pub struct Order {
     /// Mesh and accuracy.
     pub settings: Settings,
     /// What is taken somewhere.
-    pub moved: Moved,
+    pub moved: ReachSubject,
     /// Lower left and upper right corner of what is looked at, m.
     pub corners_m: [Point; 2],
     /// Places of an end side by side.
@@ -102,16 +102,16 @@ impl Maps {
 }
 
 /// The map, and the scene it is of.
-pub type Found = (Maps, Arc<Scene>);
+pub type Outcome = (Maps, Arc<Scene>);
 /// How far it is.
-pub type Progress = background::Progress<Found>;
+pub type Progress = background::Progress<Outcome>;
 /// A map being computed.
-pub type Job = background::Job<Found>;
+pub type Job = background::Job<Outcome>;
 
-impl View {
+impl SafeReachState {
     /// The map, as far as it is known.
     #[must_use]
-    pub fn found(&self) -> Option<&Found> {
+    pub fn found(&self) -> Option<&Outcome> {
         match &self.progress {
             Progress::Done(found) => Some(found),
             Progress::Running(_, so_far) => so_far.as_ref(),
@@ -122,29 +122,29 @@ impl View {
 
 /// Starts one; `shown` is called whenever there is something new to show.
 #[must_use]
-pub fn start(order: Order, shown: impl Fn() + Send + 'static) -> Job {
-    Job::start("safe reach", move |heard| find(order, heard), shown)
+pub fn start(order: ReachQuery, shown: impl Fn() + Send + 'static) -> Job {
+    Job::start("safe reach", move |listen| find(order, listen), shown)
 }
 
-fn find(order: Order, heard: background::Heard<'_, Found>) -> Result<Found, String> {
+fn find(order: ReachQuery, listen: background::Listener<'_, Outcome>) -> Result<Outcome, String> {
     let scene = Arc::new(order.scene);
-    let mut told = -SHOWN;
+    let mut told = -MIN_PROGRESS_STEP;
     let mut tell = |share: f64, maps: &dyn Fn() -> Maps| {
-        if share < told + SHOWN {
+        if share < told + MIN_PROGRESS_STEP {
             return ControlFlow::Continue(());
         }
         told = share;
-        heard(share, Some((maps(), Arc::clone(&scene))))
+        listen(share, Some((maps(), Arc::clone(&scene))))
     };
     let maps = match order.moved {
-        Moved::Robot => {
+        ReachSubject::Robot => {
             let ends_m = order.corners_m.map(|p| p[0]);
             let told = |map: &ReachMap, share: f64| tell(share, &|| Maps::Line(Arc::new(map.clone())));
             let map = line::robot_reach((&scene, order.now.as_deref()), order.settings, (ends_m, PLACES), told)
                 .map_err(|e| e.to_string())?;
             Maps::Line(Arc::new(map))
         }
-        Moved::Support { cable, support } => {
+        ReachSubject::Support { cable, support } => {
             let [low, high] = order.corners_m;
             let spacing_m = (high[0] - low[0]) / order.across.clamp(ACROSS[0], ACROSS[1]) as f64;
             let (now, settings, corners_m) = (order.now, order.settings, order.corners_m);
@@ -160,7 +160,7 @@ fn find(order: Order, heard: background::Heard<'_, Found>) -> Result<Found, Stri
             };
             let told = |area: &Area, share: f64| tell(0.5 * share, &|| Maps::Area(Arc::new(area.clone()), None));
             let there = Arc::new(area::area(&ask, told).map_err(|e| e.to_string())?);
-            let ask = area::Query { spacing_m: COARSER * spacing_m, back: true, ..ask };
+            let ask = area::Query { spacing_m: RETURN_COARSENING * spacing_m, back: true, ..ask };
             let told = |area: &Area, share: f64| {
                 tell(0.5 + 0.5 * share, &|| Maps::Area(Arc::clone(&there), Some(Arc::new(area.clone()))))
             };
@@ -173,22 +173,22 @@ fn find(order: Order, heard: background::Heard<'_, Found>) -> Result<Found, Stri
 
 /// All that can be taken somewhere.
 #[must_use]
-pub fn movable(scene: &Scene) -> Vec<Moved> {
+pub fn movable(scene: &Scene) -> Vec<ReachSubject> {
     let hangs = |kind| scene.cables.iter().flat_map(|c| &c.supports).any(|s| s.kind == kind);
-    let robot = (scene.robot.is_some() && hangs(SupportKind::Robot)).then_some(Moved::Robot);
+    let robot = (scene.robot.is_some() && hangs(SupportKind::Robot)).then_some(ReachSubject::Robot);
     let supports = scene.cables.iter().enumerate().flat_map(|(cable, c)| {
         let placed = c.supports.iter().enumerate().filter(|(_, s)| s.at_m.is_some());
-        placed.map(move |(support, _)| Moved::Support { cable, support })
+        placed.map(move |(support, _)| ReachSubject::Support { cable, support })
     });
     robot.into_iter().chain(supports).collect()
 }
 
 /// In words.
 #[must_use]
-pub fn name(scene: &Scene, moved: Moved) -> String {
+pub fn name(scene: &Scene, moved: ReachSubject) -> String {
     match moved {
-        Moved::Robot => "Robot, along the ground".to_owned(),
-        Moved::Support { cable, support } => {
+        ReachSubject::Robot => "Robot, along the ground".to_owned(),
+        ReachSubject::Support { cable, support } => {
             let of = scene.cables.get(cable);
             let s = of.and_then(|c| c.supports.get(support)).map_or("?", |s| &s.name);
             format!("Support {s} of {}", of.map_or("?", |c| &c.name))

@@ -8,7 +8,7 @@ use crate::panels::scene_errors;
 use crate::state::AppState;
 use crate::units::unit::Unit;
 use crate::widgets::field;
-use crate::widgets::property::{Known, Quantity, labelled, row};
+use crate::widgets::property::{Provenance, Quantity, labelled, row};
 use crate::widgets::time_table::{self, Knots, Table};
 
 /// What the environment panel edits: how it is shown, its key, how it is read and written.
@@ -72,10 +72,10 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         if wind && !environment.winds_n_per_m.is_empty() {
             continue;
         }
-        let known = Known {
+        let known = Provenance {
             value: get(environment),
             origin: Some((get(&state.document.saved.environment), "as loaded".to_owned())),
-            ..Known::default()
+            ..Provenance::default()
         };
         let change = row(ui, &quantity, &known);
         if let Some(value) = change.value {

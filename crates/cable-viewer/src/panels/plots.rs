@@ -3,7 +3,7 @@
 use egui::{ComboBox, Id, Ui};
 
 use crate::command::{Command, FileCommand};
-use crate::plot::{Touched, View, along, time};
+use crate::plot::{GraphResponse, GraphView, along, time};
 use crate::record::measure::Measure;
 use crate::render::colour::Quantity;
 use crate::state::AppState;
@@ -23,7 +23,7 @@ const WINDOWS: [(Option<f64>, &str); 4] =
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let id = Id::unique("plot view");
-    let mut view: View = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+    let mut view: GraphView = ui.data(|d| d.get_temp(id)).unwrap_or_default();
     ui.horizontal_wrapped(|ui| controls(ui, state, &mut view));
     let wide = ui.available_width() >= SIDE_BY_SIDE;
     let room = ui.available_height() - ui.spacing().item_spacing.y;
@@ -57,7 +57,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.data_mut(|d| d.insert_temp(id, view));
 }
 
-fn controls(ui: &mut Ui, state: &AppState, view: &mut View) {
+fn controls(ui: &mut Ui, state: &AppState, view: &mut GraphView) {
     for measure in Measure::ALL {
         let robot = matches!(measure, Measure::Pull | Measure::Speed);
         if !robot || state.document.scene.robot.is_some() {
@@ -95,7 +95,7 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut View) {
 }
 
 /// A click shows a measure alone; with shift, in a second graph or not any more.
-fn pick(ui: &Ui, view: &mut View, measure: Measure) {
+fn pick(ui: &Ui, view: &mut GraphView, measure: Measure) {
     if !ui.input(|i| i.modifiers.shift) {
         (view.measure, view.second) = (measure, None);
     } else if view.second == Some(measure) {
@@ -105,7 +105,7 @@ fn pick(ui: &Ui, view: &mut View, measure: Measure) {
     }
 }
 
-fn along_cable(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touched {
+fn along_cable(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> GraphResponse {
     let index = state.current_cable();
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let answer = state.live.snapshot.solution.as_deref().and_then(|s| s.cables.get(index));
@@ -119,7 +119,7 @@ fn along_cable(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touche
         }
         _ => {
             ui.weak("Nothing solved yet");
-            Touched::default()
+            GraphResponse::default()
         }
     }
 }

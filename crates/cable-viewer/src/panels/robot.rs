@@ -93,7 +93,7 @@ fn readouts(ui: &mut Ui, r: &RobotReport) {
         (
             "Speed",
             {
-                let Unit { symbol, si, .. } = Unit::M_PER_S.shown();
+                let Unit { symbol, si, .. } = Unit::M_PER_S.display();
                 let shown = |v: f64| significant(v / si, 3);
                 format!("{} {symbol}, told {} {symbol}", shown(r.speed_m_per_s), shown(r.commanded_m_per_s))
             },

@@ -31,7 +31,7 @@ pub fn at<'a>(state: &'a AppState, path: &str) -> Option<&'a SceneError> {
 /// One sentence that says what is wrong.
 #[must_use]
 pub fn sentence(fault: &SceneFault) -> String {
-    let Unit { symbol, si, .. } = Unit::M.shown();
+    let Unit { symbol, si, .. } = Unit::M.display();
     match fault {
         SceneFault::TooShort { length_m, way_m, needed_n, breaking_n } => format!(
             "needs ≥ {} {symbol}, is {:.2} {symbol}: stretching to its supports would take {}, and it breaks at {}",
@@ -40,7 +40,7 @@ pub fn sentence(fault: &SceneFault) -> String {
             format::force(*needed_n),
             format::force(*breaking_n)
         ),
-        other => translate::shown(&other.to_string()).into_owned(),
+        other => translate::display(&other.to_string()).into_owned(),
     }
 }
 
@@ -78,7 +78,7 @@ pub fn fix(state: &AppState) -> Option<Fix> {
                 return None;
             }
             let thermal = length_m / cable.length_m;
-            let Unit { symbol, si, .. } = Unit::M.shown();
+            let Unit { symbol, si, .. } = Unit::M.display();
             let wanted = ceil_hundredth(if thermal > 0.0 { way_m / thermal } else { *way_m } / si);
             Some(set_cable(index, cable, format!("Set to {wanted:.2} {symbol}"), |c| c.length_m = wanted * si))
         }

@@ -9,7 +9,7 @@ use crate::command::Command;
 use crate::state::{AppState, WorkerStatus};
 use crate::units::format::{self, significant};
 use crate::units::unit::Unit;
-use crate::widgets::property::{Known, Quantity, row};
+use crate::widgets::property::{Provenance, Quantity, row};
 use crate::worker;
 
 const TOLERANCE: Quantity = Quantity {
@@ -85,7 +85,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let why = if state.solver.model == Model::Auto { format!(": {}", answer.reason) } else { String::new() };
         ui.label(format!("Solved with {}{why}", model_name(answer.model)));
     }
-    if worker::engine::slow(state.solver.model) {
+    if worker::engine::is_quasi_static(state.solver.model) {
         ui.weak("Time runs without inertia: supports and loads move, friction remembers, nothing swings");
     }
     mesh(ui, state, commands);
@@ -96,16 +96,16 @@ fn mesh(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let Settings { tolerance, segments, .. } = state.solver.settings;
     let usual = Settings::default();
     let origin = Some((usual.tolerance, "the default".to_owned()));
-    let known = Known { value: tolerance, origin, ..Known::default() };
+    let known = Provenance { value: tolerance, origin, ..Provenance::default() };
     if let Some(tolerance) = row(ui, &TOLERANCE, &known).value {
         // A solver told to be exact, or not to be, would run for ever or not at all.
         let tolerance = tolerance.clamp(1e-9, 0.5);
         commands.push(Command::SetSettings(Settings { tolerance, ..state.solver.settings }));
     }
-    let known = Known {
+    let known = Provenance {
         value: state.solver.settings.hand_speed_m_per_s,
         origin: Some((usual.hand_speed_m_per_s, "the default".to_owned())),
-        ..Known::default()
+        ..Provenance::default()
     };
     if let Some(speed) = row(ui, &HAND, &known).value {
         let hand_speed_m_per_s = speed.clamp(0.01, 20.0);
@@ -119,7 +119,7 @@ fn mesh(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         commands.push(Command::SetSettings(Settings { segments: fixed.then_some(count), ..state.solver.settings }));
     }
     let Some(count) = segments else { return };
-    let known = Known { value: count as f64, ..Known::default() };
+    let known = Provenance { value: count as f64, ..Provenance::default() };
     if let Some(value) = row(ui, &SEGMENTS, &known).value {
         // The range of the scene file's `segments`.
         let segments = Some(value.round().clamp(1.0, 1e5) as usize);
@@ -141,7 +141,7 @@ fn default_hand_stiffness(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comm
         commands.push(set(stated.then(|| of_cable.unwrap_or(FIRST_STIFFNESS))));
     }
     let Some(value) = stiffness else { return };
-    if let Some(value) = row(ui, &HAND_STIFFNESS, &Known { value, ..Known::default() }).value {
+    if let Some(value) = row(ui, &HAND_STIFFNESS, &Provenance { value, ..Provenance::default() }).value {
         commands.push(set(Some(
             value.clamp(*input_filter::HAND_STIFFNESSES.start(), *input_filter::HAND_STIFFNESSES.end()),
         )));
@@ -176,7 +176,7 @@ fn cost(ui: &mut Ui, state: &AppState, answer: Option<&Solution>) {
         (
             "Residual",
             {
-                let Unit { symbol, si, .. } = Unit::N.shown();
+                let Unit { symbol, si, .. } = Unit::N.display();
                 format!("{} {symbol}", significant(cost.residual_n / si, 2))
             },
             "Largest force left unbalanced at a node: the smaller, the closer to equilibrium",

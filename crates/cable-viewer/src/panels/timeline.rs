@@ -11,7 +11,7 @@ use crate::widgets::field;
 /// Room for the buttons beside it, points.
 const BESIDE: f32 = 250.0;
 /// How near to a mark the pointer tells what it is, points.
-const NEAR: f32 = 4.0;
+const MARK_REACH: f32 = 4.0;
 
 /// Why its controls are off.
 const NOTHING: &str = "Nothing is recorded yet: press play";
@@ -95,9 +95,12 @@ fn marks(ui: &mut Ui, state: &AppState, rail: Rect, [first, last]: [f64; 2]) {
         ui.painter().line_segment([top, top + vec2(0.0, rail.height())], Stroke::new(1.5, colour));
         ui.painter().circle_filled(top, size, colour);
     }
-    let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|p| rail.expand(NEAR).contains(*p)) else { return };
-    let near = state.live.recording.events().iter().filter(|e| (x(e.time_s) - pointer.x).abs() < NEAR);
-    let text: Vec<String> = near.take(4).map(|e| format!("{:.2} s: {}", e.time_s, translate::shown(&e.text))).collect();
+    let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|p| rail.expand(MARK_REACH).contains(*p)) else {
+        return;
+    };
+    let near = state.live.recording.events().iter().filter(|e| (x(e.time_s) - pointer.x).abs() < MARK_REACH);
+    let text: Vec<String> =
+        near.take(4).map(|e| format!("{:.2} s: {}", e.time_s, translate::display(&e.text))).collect();
     if !text.is_empty() {
         let spot = Rect::from_center_size(pointer, vec2(1.0, 1.0));
         ui.interact(spot, ui.scope_id().with("event"), Sense::hover()).on_hover_text(text.join("\n"));

@@ -12,7 +12,7 @@ use crate::units::{format, translate, unit};
 use crate::widgets::icon::{self, Icon};
 
 /// Most warnings drawn; the rest is counted. A cable that is too tight everywhere can have one a node.
-const MOST: usize = 30;
+const MAX_ROWS: usize = 30;
 
 /// Most of the window's height that warnings take; more of them scroll. More: the readouts below are out of sight when something is wrong;
 /// less: a second warning is.
@@ -54,11 +54,11 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let high = SHARE * ui.ctx().content_rect().height();
     let area = ScrollArea::vertical().id_salt("warnings").max_height(high).min_scrolled_height(high);
     area.auto_shrink([false, true]).show(ui, |ui| {
-        for (k, entry) in entries.iter().take(MOST).enumerate() {
+        for (k, entry) in entries.iter().take(MAX_ROWS).enumerate() {
             ui.push_id(k, |ui| card(ui, k, entry, commands));
         }
-        if entries.len() > MOST {
-            ui.weak(format!("and {} more", entries.len() - MOST));
+        if entries.len() > MAX_ROWS {
+            ui.weak(format!("and {} more", entries.len() - MAX_ROWS));
         }
     });
 }
@@ -68,7 +68,7 @@ fn entries(state: &AppState) -> Vec<Entry> {
     list.extend(dead_worker(state));
     list.extend(scene_fault(state));
     if let (Some(error), None) = (&state.live.snapshot.error, &state.document.fault) {
-        let error = capital(&translate::shown(error));
+        let error = capital(&translate::display(error));
         let text = format!("{error}. The picture and the figures are of the last scene that was solved.");
         list.push(Entry { title: "No answer".to_owned(), ..entry(Severity::Stop, text) });
     }
@@ -134,7 +134,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
     Entry {
         severity,
         title: format!("{title}: {place}{figures}"),
-        text: translate::shown(&warning.message).into_owned(),
+        text: translate::display(&warning.message).into_owned(),
         at_m: position(answer, warning),
         item: index.map(Item::Cable),
         fix: remedy(state, answer, warning, index),

@@ -5,7 +5,7 @@ use cable_core::analysis::friction_range::TensionRange;
 use cable_core::solution::CableSolution;
 use egui::Ui;
 
-use crate::plot::{Graph, Touched, View, show};
+use crate::plot::{Graph, GraphResponse, GraphView, show};
 use crate::record::measure::{Measure, per_newton, tension_limits};
 use crate::record::series::{Series, thin};
 use crate::units::unit::Unit;
@@ -18,13 +18,13 @@ pub fn ui(
     ui: &mut Ui,
     cable: &Cable,
     (solved, ribbon): (&CableSolution, &[TensionRange]),
-    view: View,
+    view: GraphView,
     height: f32,
-) -> Touched {
+) -> GraphResponse {
     let (quantity, follow) = (view.measure.quantity(), view.follow);
     let columns = ui.available_width().max(1.0) as usize;
     let all = || solved.nodes.iter().map(|n| [n.arc_length_m, quantity.of(n)]);
-    let line = |points| vec![Series { name: quantity.name().to_owned(), points, held: None }];
+    let line = |points| vec![Series { name: quantity.name().to_owned(), points, reference: None }];
     let graph = Graph {
         title: "Along the cable",
         group: GROUP,

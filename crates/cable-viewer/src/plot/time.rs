@@ -3,7 +3,7 @@
 use cable_core::{Cable, Scene};
 use egui::Ui;
 
-use crate::plot::{Graph, Touched, View, in_view, show};
+use crate::plot::{Graph, GraphResponse, GraphView, in_view, show};
 use crate::record::measure::{Measure, per_newton};
 use crate::record::samples::Sample;
 use crate::record::series::{Series, thin};
@@ -22,20 +22,20 @@ const TITLE: &str = "Over time";
 const SHORTEST_S: f64 = 1.0;
 
 /// Draws the first one. Stress and strain follow from tension for a single cable only; with several, tension is shown.
-pub fn ui(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touched {
+pub fn ui(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> GraphResponse {
     graph(ui, state, view, (TITLE, height))
 }
 
 /// Draws the second one, with time linked to the first.
-pub fn second(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touched {
-    let Some(measure) = view.second else { return Touched::default() };
+pub fn second(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> GraphResponse {
+    let Some(measure) = view.second else { return GraphResponse::default() };
     let title = format!("{} over time", measure.name());
-    graph(ui, state, View { measure, ..view }, (&title, height))
+    graph(ui, state, GraphView { measure, ..view }, (&title, height))
 }
 
-fn graph(ui: &mut Ui, state: &AppState, view: View, (title, height): (&str, f32)) -> Touched {
+fn graph(ui: &mut Ui, state: &AppState, view: GraphView, (title, height): (&str, f32)) -> GraphResponse {
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
-    let Some(cable) = scene.cables.get(state.current_cable()) else { return Touched::default() };
+    let Some(cable) = scene.cables.get(state.current_cable()) else { return GraphResponse::default() };
     let measure = match view.measure {
         Measure::Cable(_) if scene.cables.len() > 1 => Measure::Cable(Quantity::Tension),
         measure => measure,
@@ -93,7 +93,7 @@ fn lines(state: &AppState, scene: &Scene, measure: Measure, (seen, columns): ([f
             points = thin(points.into_iter(), columns);
         }
         points.iter_mut().for_each(|p| p[1] *= scale);
-        lines.push(Series { name: format!("Held {}", k + 1), points, held: Some(k) });
+        lines.push(Series { name: format!("Held {}", k + 1), points, reference: Some(k) });
     }
     lines
 }
@@ -110,7 +110,7 @@ fn own(state: &AppState, scene: &Scene, measure: Measure, (seen, columns): ([f64
     let line = |name: String, of: &dyn Fn(&Sample) -> f64| {
         let points = samples.iter().map(|s| [s.time_s, of(s) * scale]);
         let points = columns.map_or_else(|| points.clone().collect(), |c| thin(points.clone(), c));
-        Series { name, points, held: None }
+        Series { name, points, reference: None }
     };
     let (Measure::Cable(_), Some(cable)) = (measure, cable) else {
         return measure.lines().iter().map(|(name, of)| line((*name).to_owned(), of)).collect();

@@ -87,7 +87,7 @@ impl Measure {
             Self::Cable(quantity) => quantity.unit(greatest),
             Self::Pull => Quantity::Tension.unit(greatest),
             Self::Speed => {
-                let unit::Unit { symbol, si, .. } = unit::Unit::M_PER_S.shown();
+                let unit::Unit { symbol, si, .. } = unit::Unit::M_PER_S.display();
                 (symbol, si)
             }
             Self::Energy => system::for_size(system::Kind::Energy, greatest),

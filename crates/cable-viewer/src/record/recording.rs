@@ -13,7 +13,7 @@ use cable_core::solution::{Warning, WarningKind};
 pub const BUDGET_BYTES: usize = 512 << 20;
 
 /// Most events kept: what trembles for hours must not fill the memory.
-const MOST_EVENTS: usize = 5000;
+const MAX_EVENTS: usize = 5000;
 
 /// A warning that began, or a break.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,7 +62,7 @@ impl Recording {
                 WarningKind::Broken => self.events.iter().any(|e| e.kind == w.kind && e.text == w.message),
                 _ => self.active.iter().any(|(kind, cable)| *kind == w.kind && *cable == w.cable),
             };
-            if !known && marks(w.kind) && self.events.len() < MOST_EVENTS {
+            if !known && marks(w.kind) && self.events.len() < MAX_EVENTS {
                 self.events.push(Event { time_s: began(w, solution.time_s), kind: w.kind, text: w.message.clone() });
             }
         }
@@ -101,7 +101,7 @@ impl Recording {
 
     /// The answer to show in the place of the present one.
     #[must_use]
-    pub fn shown(&self) -> Option<Arc<Solution>> {
+    pub fn displayed(&self) -> Option<Arc<Solution>> {
         Some(Arc::new(self.frames.at(self.shown_s?)?.clone()))
     }
 
@@ -230,7 +230,7 @@ mod tests {
             r.push(at(f64::from(k), 1, false));
         }
         r.shown_s = Some(8.5);
-        assert!(!r.replay(0.25) && r.shown().unwrap().time_s == 8.0);
+        assert!(!r.replay(0.25) && r.displayed().unwrap().time_s == 8.0);
         assert!(r.replay(0.5) && r.shown_s.is_none());
         (r.shown_s, r.looped) = (Some(8.5), true);
         assert!(!r.replay(0.75) && r.shown_s == Some(0.0));

@@ -13,7 +13,7 @@ use crate::record::samples::Sample;
 /// smoothly beside the present one; a longer run is shown at fewer pictures a second, at least one a second up to ten minutes. 600
 /// pictures of 200 nodes are 9 MB, of eight runs 70 MB. More: eight held runs fill the memory of a small machine; fewer: the cable
 /// of a fast run jumps.
-const MOST_PICTURES: usize = 600;
+const MAX_PICTURES: usize = 600;
 
 /// What a run was.
 #[derive(Clone, Debug, Default)]
@@ -54,7 +54,7 @@ impl Run {
         };
         let lines: Vec<Pyramid> = Measure::LEADS.iter().map(|(_, of)| line(*of)).collect();
         let peaks = lines.iter().map(|l| Peak::of(l.points().iter().copied())).collect();
-        let every = answers.len().div_ceil(MOST_PICTURES).max(1);
+        let every = answers.len().div_ceil(MAX_PICTURES).max(1);
         let kept = answers.iter().step_by(every).chain(answers.last());
         Some(Self { lines, peaks, answers: kept.map(|a| Arc::new(a.clone())).collect(), events })
     }

@@ -13,7 +13,7 @@ pub struct Series {
     /// x and value.
     pub points: Vec<[f64; 2]>,
     /// It is of this held run, and drawn in its colour and dashed.
-    pub held: Option<usize>,
+    pub reference: Option<usize>,
 }
 
 /// Thins points to at most two a column, keeping each column's least and greatest value, so that no peak is lost.
@@ -60,7 +60,7 @@ pub fn value_at(points: &[[f64; 2]], x: f64) -> Option<f64> {
 
 /// Colour and style of the `k`-th line of a graph.
 pub fn line_style(line: &Series, k: usize) -> (Color32, LineStyle) {
-    match line.held {
+    match line.reference {
         Some(held) => (LINES[held % LINES.len()], LineStyle::dashed_loose()),
         None => (LINES[k % LINES.len()], LineStyle::Solid),
     }

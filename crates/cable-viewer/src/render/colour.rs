@@ -63,7 +63,7 @@ impl Quantity {
     pub fn unit(self, greatest: f64) -> (&'static str, f64) {
         match self {
             Self::Tension => system::for_size(system::Kind::Force, greatest),
-            Self::Stress if system::shown() == system::System::Us => system::for_size(system::Kind::Stress, greatest),
+            Self::Stress if system::current() == system::System::Us => system::for_size(system::Kind::Stress, greatest),
             Self::Stress if greatest >= 1e5 => ("MPa", 1e6),
             Self::Stress => ("kPa", 1e3),
             Self::Strain if greatest >= 1e-3 => ("%", 1e-2),

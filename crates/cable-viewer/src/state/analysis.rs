@@ -4,30 +4,30 @@ use std::sync::Arc;
 
 use cable_core::{Scene, Solution};
 
-use crate::jobs::model_comparison::Found;
-use crate::jobs::{friction_range, model_comparison, neglected_bending, safe_reach};
+use crate::jobs::model_comparison::{self, Outcome};
+use crate::jobs::{friction_range, neglected_bending, safe_reach};
 use crate::record::run::Run;
 
 /// What is asked beyond the answer itself.
 #[derive(Debug, Default)]
 pub struct Analysis {
     /// Answers kept on screen to compare with.
-    pub references: Vec<Held>,
+    pub references: Vec<Reference>,
     /// What every model says of a scene.
     pub models: model_comparison::Progress,
     /// Where on a cable it is shown where the tension comes from.
-    pub tension_marker: Option<Probe>,
+    pub tension_marker: Option<TensionMarker>,
     /// Where the robot or an end can be taken.
-    pub safe_reach: safe_reach::View,
+    pub safe_reach: safe_reach::SafeReachState,
     /// What neglecting bending stiffness changes.
-    pub neglected_bending: neglected_bending::View,
+    pub neglected_bending: neglected_bending::NeglectedBendingState,
     /// What less and more friction does.
-    pub friction_range: friction_range::View,
+    pub friction_range: friction_range::FrictionRangeState,
 }
 
 /// A place on a cable whose tension is taken apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Probe {
+pub struct TensionMarker {
     /// Index of the cable.
     pub cable: usize,
     /// Where on it, m.
@@ -38,7 +38,7 @@ pub struct Probe {
 
 /// An answer that is kept to compare with.
 #[derive(Clone, Debug)]
-pub struct Held {
+pub struct Reference {
     /// What it is of.
     pub name: String,
     /// The scene it answers.
@@ -51,9 +51,9 @@ pub struct Held {
     pub run: Option<Arc<Run>>,
 }
 
-impl Held {
+impl Reference {
     /// Most that are held: more lines cannot be told apart.
-    pub const MOST: usize = 8;
+    pub const MAX_COUNT: usize = 8;
 
     /// What to draw beside a picture of a time, s: the same time of its run.
     #[must_use]
@@ -63,16 +63,16 @@ impl Held {
 }
 
 /// Holds each answer, in place of one held before of the same scene and model, as far as there is room.
-pub fn hold(all: &mut Vec<Held>, found: &Found) {
+pub fn hold(all: &mut Vec<Reference>, found: &Outcome) {
     for answer in &found.answers {
         let Ok((solution, wall_s)) = &answer.result else { continue };
         let name = format!("{}, {} model at rest", found.scene.name, answer.model);
         let scene = Arc::clone(&found.scene);
-        let held = Held { name, scene, solution: Arc::clone(solution), wall_s: *wall_s, run: None };
+        let held = Reference { name, scene, solution: Arc::clone(solution), wall_s: *wall_s, run: None };
         let before = all.iter().position(|h| h.name == held.name && h.run.is_none() && h.scene == held.scene);
         if let Some(before) = before.and_then(|k| all.get_mut(k)) {
             *before = held;
-        } else if all.len() < Held::MOST {
+        } else if all.len() < Reference::MAX_COUNT {
             all.push(held);
         }
     }

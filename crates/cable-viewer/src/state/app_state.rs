@@ -10,7 +10,7 @@ use crate::state::live::Live;
 use crate::state::selection::{Item, Selection};
 use crate::state::solver::Solver;
 use crate::state::ui::Ui;
-use crate::state::view::View;
+use crate::state::view::Appearance;
 
 /// Everything the window shows.
 #[derive(Debug)]
@@ -20,7 +20,7 @@ pub struct AppState {
     /// What is picked, hovered, dragged and copied.
     pub selection: Selection,
     /// How the scene is drawn.
-    pub view: View,
+    pub view: Appearance,
     /// What the worker is asked for.
     pub solver: Solver,
     /// What it answered, and how time runs.
@@ -38,7 +38,7 @@ impl AppState {
         Self {
             document: Document::new(scene, path),
             selection: Selection::default(),
-            view: View::default(),
+            view: Appearance::default(),
             solver: Solver::default(),
             live: Live::default(),
             analysis: Analysis::default(),

@@ -68,7 +68,7 @@ impl Live {
     /// Puts what is to be shown on screen.
     pub fn refresh(&mut self) {
         self.snapshot = self.latest.clone();
-        if let Some(shown) = self.recording.shown() {
+        if let Some(shown) = self.recording.displayed() {
             self.snapshot.solution = Some(shown);
             self.snapshot.real_speed = None;
         }

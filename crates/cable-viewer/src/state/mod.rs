@@ -25,7 +25,7 @@ pub mod ui;
 pub mod undo;
 pub mod view;
 
-pub use crate::state::analysis::{Held, Probe};
+pub use crate::state::analysis::{Reference, TensionMarker};
 pub use crate::state::app_state::AppState;
 pub use crate::state::document::Document;
 pub use crate::state::live::{Playback, Snapshot};

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use cable_core::Scene;
 use cable_core::analysis::friction_range::Query;
 
-use crate::jobs::friction_range::{self, LONGEST_S, hands};
-use crate::jobs::neglected_bending::Ask;
-use crate::jobs::safe_reach::{Moved, movable};
+use crate::jobs::friction_range::{self, MAX_RUN_S, hands};
+use crate::jobs::neglected_bending;
+use crate::jobs::safe_reach::{ReachSubject, movable};
 use crate::state::app_state::AppState;
 use crate::state::selection::Item;
 
@@ -44,12 +44,12 @@ fn answered_scene(state: &AppState) -> &Scene {
 /// How long time has run.
 fn run_time_s(state: &AppState) -> f64 {
     let now_s = state.live.latest.solution.as_ref().map_or(0.0, |s| s.time_s);
-    now_s.min(LONGEST_S)
+    now_s.min(MAX_RUN_S)
 }
 
 /// The ribbon, if there is one of what is on screen.
 #[must_use]
-pub fn friction_answer(state: &AppState) -> Option<&friction_range::Found> {
+pub fn friction_answer(state: &AppState) -> Option<&friction_range::Outcome> {
     match &state.analysis.friction_range.progress {
         friction_range::Progress::Done(found)
             if state.analysis.friction_range.on && friction_query_fits(state, &found.1) =>
@@ -62,34 +62,42 @@ pub fn friction_answer(state: &AppState) -> Option<&friction_range::Found> {
 
 /// The question about what is on screen; None where that is no answer at rest.
 #[must_use]
-pub fn bending_query(state: &AppState) -> Option<Ask> {
+pub fn bending_query(state: &AppState) -> Option<neglected_bending::Query> {
     let answer = state.live.snapshot.solution.clone().filter(|s| s.time_s == 0.0)?;
     let settled = state.live.snapshot.error.is_none() && !state.live.snapshot.draft && !state.live.snapshot.stale;
     let scene = state.live.snapshot.scene.clone().filter(|_| settled)?;
-    Some(Ask { scene, settings: state.solver.settings, answer })
+    Some(neglected_bending::Query { scene, settings: state.solver.settings, answer })
 }
 
 /// Whether what was asked is of the answer on screen.
 #[must_use]
 pub fn bending_query_fits(state: &AppState) -> bool {
     let shown = state.live.snapshot.solution.as_ref();
-    state.analysis.neglected_bending.ask.as_ref().zip(shown).is_some_and(|(ask, shown)| Arc::ptr_eq(&ask.answer, shown))
+    state
+        .analysis
+        .neglected_bending
+        .query
+        .as_ref()
+        .zip(shown)
+        .is_some_and(|(ask, shown)| Arc::ptr_eq(&ask.answer, shown))
 }
 
 /// What is taken somewhere: what was chosen, if it is still there.
 #[must_use]
-pub fn reach_target(state: &AppState) -> Option<Moved> {
+pub fn reach_target(state: &AppState) -> Option<ReachSubject> {
     let all = movable(&state.document.scene);
     let chosen = state.analysis.safe_reach.choice.moved.filter(|m| all.contains(m));
-    let robot = || all.first().copied().filter(|m| *m == Moved::Robot);
+    let robot = || all.first().copied().filter(|m| *m == ReachSubject::Robot);
     let picked = || match state.selection.selected {
-        Some(Item::Support { cable, support }) => Some(Moved::Support { cable, support }).filter(|m| all.contains(m)),
+        Some(Item::Support { cable, support }) => {
+            Some(ReachSubject::Support { cable, support }).filter(|m| all.contains(m))
+        }
         _ => None,
     };
     let driven = || {
-        let moves = |m: &&Moved| match m {
-            Moved::Robot => false,
-            Moved::Support { cable, support } => {
+        let moves = |m: &&ReachSubject| match m {
+            ReachSubject::Robot => false,
+            ReachSubject::Support { cable, support } => {
                 let s = state.document.scene.cables.get(*cable).and_then(|c| c.supports.get(*support));
                 s.is_some_and(|s| s.motion.is_some())
             }

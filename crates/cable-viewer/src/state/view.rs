@@ -8,7 +8,7 @@ use crate::units::system::System;
 
 /// How the scene is drawn.
 #[derive(Clone, Debug)]
-pub struct View {
+pub struct Appearance {
     /// The part of the world on screen.
     pub camera: Camera,
     /// The part of the world that the canvas shows, lower left and upper right corner, m.
@@ -23,7 +23,7 @@ pub struct View {
     pub theme: egui::ThemePreference,
 }
 
-impl Default for View {
+impl Default for Appearance {
     fn default() -> Self {
         Self {
             camera: Camera::default(),

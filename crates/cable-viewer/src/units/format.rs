@@ -79,7 +79,7 @@ pub fn percent(ratio: f64) -> String {
 /// A position, m, to the millimetre.
 #[must_use]
 pub fn position(at_m: [f64; 2]) -> String {
-    let Unit { symbol, si, .. } = Unit::M.shown();
+    let Unit { symbol, si, .. } = Unit::M.display();
     format!("({:.3}, {:.3}) {symbol}", at_m[0] / si, at_m[1] / si).replace('-', "−")
 }
 
@@ -124,7 +124,7 @@ impl Unit {
     /// A value (SI) with [`DIGITS`] digits, or the unit's own decimals, and the unit.
     #[must_use]
     pub fn text(self, value: f64) -> String {
-        let unit = self.shown();
+        let unit = self.display();
         let number = match unit.decimals {
             Some(decimals) if value.is_finite() => format!("{:.decimals$}", value / unit.si).replace('-', "−"),
             _ => significant(value / unit.si, DIGITS),
@@ -135,7 +135,7 @@ impl Unit {
     /// A value (SI) with all its digits and the unit, to be edited.
     #[must_use]
     pub fn exact(self, value: f64) -> String {
-        let unit = self.shown();
+        let unit = self.display();
         let shown = value / unit.si;
         // Division by the unit may add a last wrong digit; 15 digits are what decimal text keeps.
         let rounded = format!("{shown:.14e}").parse().unwrap_or(shown);

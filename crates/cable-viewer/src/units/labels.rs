@@ -8,7 +8,7 @@ use crate::units::unit::Unit;
 pub fn force(newtons: f64) -> String {
     let size = newtons.abs();
     if !size.is_finite() {
-        return format!("– {}", Unit::N.shown().symbol);
+        return format!("– {}", Unit::N.display().symbol);
     }
     let (symbol, si) = system::for_size(system::Kind::Force, newtons);
     format!("{} {symbol}", digits(newtons / si))
@@ -31,7 +31,7 @@ pub fn digits(value: f64) -> String {
 /// The unit of coordinates, and how many metres it holds.
 #[must_use]
 pub fn of_length() -> (&'static str, f64) {
-    let Unit { symbol, si, .. } = Unit::M.shown();
+    let Unit { symbol, si, .. } = Unit::M.display();
     (symbol, si)
 }
 
@@ -58,6 +58,6 @@ pub fn decimals_of(step: f64) -> usize {
 /// A speed, m/s, three significant digits.
 #[must_use]
 pub fn speed(metres_per_second: f64) -> String {
-    let Unit { symbol, si, .. } = Unit::M_PER_S.shown();
+    let Unit { symbol, si, .. } = Unit::M_PER_S.display();
     format!("{} {symbol}", digits(metres_per_second / si))
 }

@@ -9,7 +9,7 @@ impl Unit {
     /// # Errors
     /// What is wrong with the text and what would be right.
     pub fn parse(self, text: &str) -> Result<f64, String> {
-        let Self { symbol, si, others, .. } = self.shown();
+        let Self { symbol, si, others, .. } = self.display();
         let plain = text.trim().replace('−', "-").replace(' ', "");
         let number = |digits: &str, si: f64| digits.parse::<f64>().ok().filter(|v| v.is_finite()).map(|v| v * si);
         let spelled = std::iter::once((symbol, si)).chain(others.iter().copied());

@@ -17,18 +17,18 @@ pub enum System {
 thread_local! {
     /// The window is drawn by one thread, which says at the start of each frame what the whole frame is shown in: handing it to
     /// every figure would put it into every function that writes one.
-    static SHOWN: Cell<System> = const { Cell::new(System::Si) };
+    static CURRENT: Cell<System> = const { Cell::new(System::Si) };
 }
 
 /// From now on figures written by this thread are in these units.
-pub fn show(system: System) {
-    SHOWN.with(|s| s.set(system));
+pub fn set_current(system: System) {
+    CURRENT.with(|s| s.set(system));
 }
 
 /// The units figures are written in.
 #[must_use]
-pub fn shown() -> System {
-    SHOWN.with(Cell::get)
+pub fn current() -> System {
+    CURRENT.with(Cell::get)
 }
 
 /// A foot, m (exact, as are the inch and the pound: international yard and pound agreement, 1959).
@@ -63,7 +63,7 @@ const US: [(&str, Unit); 13] = [
 /// The unit shown in the place of an SI one.
 #[must_use]
 pub fn unit(of: Unit) -> Unit {
-    if shown() == System::Si {
+    if current() == System::Si {
         return of;
     }
     let found = US.iter().find(|(symbol, _)| *symbol == of.symbol);
@@ -107,7 +107,7 @@ pub fn for_size(kind: Kind, size: f64) -> (&'static str, f64) {
         Kind::Length => &LENGTH,
         Kind::Energy => &ENERGY,
     };
-    let (units, zero) = scales[usize::from(shown() == System::Us)];
+    let (units, zero) = scales[usize::from(current() == System::Us)];
     let size = size.abs();
     let found = if size > 0.0 && size.is_finite() { units.iter().find(|(.., from)| size >= *from) } else { None };
     found.or(units.get(zero)).map_or(("", 1.0), |(symbol, si, _)| (symbol, *si))
@@ -116,14 +116,14 @@ pub fn for_size(kind: Kind, size: f64) -> (&'static str, f64) {
 impl Unit {
     /// The unit it is shown in: itself, or that of the other system.
     #[must_use]
-    pub fn shown(self) -> Self {
+    pub fn display(self) -> Self {
         unit(self)
     }
 
     /// Without its symbol, for a column that has it in its heading; units may still be typed.
     #[must_use]
     pub fn bare(self) -> Self {
-        Self { symbol: "", ..self.shown() }
+        Self { symbol: "", ..self.display() }
     }
 }
 
@@ -135,7 +135,7 @@ mod tests {
     /// By the definitions of the units, to the digits shown.
     #[test]
     fn figures_and_typed_text_follow_the_switch_and_values_do_not() {
-        show(System::Us);
+        set_current(System::Us);
         assert_eq!(format::force(1000.0), "224.8 lbf");
         assert_eq!(format::force(1e6), "224.8 kip");
         assert_eq!(format::stress(1e6), "145.0 psi");
@@ -154,7 +154,7 @@ mod tests {
         }
         let exact = Unit::KN.exact(12_345.678);
         assert!((Unit::KN.parse(&exact).unwrap() / 12_345.678 - 1.0).abs() < 1e-13, "{exact}");
-        show(System::Si);
+        set_current(System::Si);
         assert_eq!(format::force(1000.0), "1000 N");
         assert!((Unit::M.parse("10 ft").unwrap() - 3.048).abs() < 1e-15);
     }

@@ -15,8 +15,8 @@ const UNITS: [Unit; 9] =
 
 /// A sentence as it is on screen: its units, and its names between quotation marks.
 #[must_use]
-pub fn shown(text: &str) -> Cow<'_, str> {
-    let si = system::shown() == System::Si;
+pub fn display(text: &str) -> Cow<'_, str> {
+    let si = system::current() == System::Si;
     if si && !text.contains('`') {
         return Cow::Borrowed(text);
     }
@@ -54,7 +54,7 @@ fn figure(text: &str) -> Option<(String, usize)> {
     let ends = |rest: &str| !rest.starts_with(|c: char| c.is_alphanumeric() || matches!(c, '/' | '·' | '²' | '_'));
     let unit = UNITS.iter().find(|u| after.strip_prefix(u.symbol).is_some_and(ends))?;
     let value: f64 = digits.replace('−', "-").parse().ok()?;
-    let Unit { symbol, si, .. } = unit.shown();
+    let Unit { symbol, si, .. } = unit.display();
     Some((format!("{} {symbol}", like(digits, value * unit.si / si)), number + gap + unit.symbol.len()))
 }
 
@@ -90,9 +90,9 @@ mod tests {
     use super::*;
 
     fn us(text: &str) -> String {
-        system::show(System::Us);
-        let out = shown(text).into_owned();
-        system::show(System::Si);
+        system::set_current(System::Us);
+        let out = display(text).into_owned();
+        system::set_current(System::Si);
         out
     }
 
@@ -112,7 +112,7 @@ mod tests {
         ] {
             let names = |text: &str| text.replacen('`', "“", 1).replacen('`', "”", 1);
             assert_eq!(us(si).replace('-', "−"), names(expected).replace('-', "−"), "{si}");
-            assert_eq!(shown(si), names(si), "but for names SI stays as it is");
+            assert_eq!(display(si), names(si), "but for names SI stays as it is");
         }
     }
 

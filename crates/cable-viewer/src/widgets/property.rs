@@ -23,7 +23,7 @@ pub struct Quantity {
 
 /// The present value and what is known about it.
 #[derive(Clone, Debug, Default)]
-pub struct Known {
+pub struct Provenance {
     /// Now, SI.
     pub value: f64,
     /// What reset returns to, SI, and where that comes from in a few words.
@@ -56,7 +56,7 @@ pub const NAME_WIDTH: f32 = 122.0;
 const LEAST_OF_TOP: f64 = 1e-4;
 
 /// Draws the row; faults stand below it.
-pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Known) -> Change {
+pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Provenance) -> Change {
     let mut change = Change::default();
     let mut fault = None;
     ui.horizontal(|ui| {
@@ -97,8 +97,8 @@ pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Known) -> Change {
     change
 }
 
-fn slider(ui: &mut Ui, quantity: &Quantity, known: &Known, change: &mut Change) {
-    let si = quantity.unit.shown().si;
+fn slider(ui: &mut Ui, quantity: &Quantity, known: &Provenance, change: &mut Change) {
+    let si = quantity.unit.display().si;
     let [low, high] = quantity.usual.map(|v| v / si);
     let mut shown = known.value / si;
     if !shown.is_finite() {
@@ -118,7 +118,7 @@ fn slider(ui: &mut Ui, quantity: &Quantity, known: &Known, change: &mut Change) 
     response.on_hover_ui(|ui| explanation(ui, quantity, known));
 }
 
-fn reset(ui: &mut Ui, quantity: &Quantity, known: &Known, typed_wrong: bool) -> bool {
+fn reset(ui: &mut Ui, quantity: &Quantity, known: &Provenance, typed_wrong: bool) -> bool {
     let differs = known.origin.as_ref().is_some_and(|(v, _)| *v != known.value) || typed_wrong;
     let response = icon::plain_button(ui, Icon::Reset, differs);
     field::name(&response, &format!("Reset {}", quantity.name.to_lowercase()));
@@ -129,7 +129,7 @@ fn reset(ui: &mut Ui, quantity: &Quantity, known: &Known, typed_wrong: bool) -> 
     response.on_hover_text(&text).on_disabled_hover_text(text).clicked()
 }
 
-fn explanation(ui: &mut Ui, quantity: &Quantity, known: &Known) {
+fn explanation(ui: &mut Ui, quantity: &Quantity, known: &Provenance) {
     ui.set_max_width(300.0);
     ui.label(RichText::new(quantity.name).strong());
     ui.label(quantity.help);

@@ -65,7 +65,7 @@ impl Knots {
 pub fn ui(ui: &mut Ui, table: &Table<'_>, knots: &Knots, faults: &mut Vec<String>) -> Option<Knots> {
     let mut changed = knots.clone();
     let (mut gone, mut doubled) = (None, None);
-    let symbol = table.unit.shown().symbol;
+    let symbol = table.unit.display().symbol;
     ui.weak(format!("Time, s; {}, {}, {symbol}", table.columns[0], table.columns[1]));
     let height = ui.spacing().interact_size.y;
     let area = ScrollArea::vertical().id_salt(("times", table.of)).max_height(HEIGHT).auto_shrink([false, true]);
@@ -87,9 +87,9 @@ pub fn ui(ui: &mut Ui, table: &Table<'_>, knots: &Knots, faults: &mut Vec<String
 }
 
 /// What the buttons of a row ask for: another after it, or that it goes.
-struct Asked([bool; 2]);
+struct RowButtons([bool; 2]);
 
-impl Asked {
+impl RowButtons {
     fn apply(&self, k: usize, wishes: [&mut Option<usize>; 2]) {
         for (asked, wish) in self.0.iter().zip(wishes) {
             if *asked {
@@ -99,7 +99,7 @@ impl Asked {
     }
 }
 
-fn row(ui: &mut Ui, (table, k): (&Table<'_>, usize), changed: &mut Knots, faults: &mut Vec<String>) -> Asked {
+fn row(ui: &mut Ui, (table, k): (&Table<'_>, usize), changed: &mut Knots, faults: &mut Vec<String>) -> RowButtons {
     ui.spacing_mut().item_spacing.x = GAP;
     let of = |what: &str| format!("{what} {} of {}", k + 1, table.of);
     if let Some(time_s) = changed.times_s.get_mut(k) {
@@ -121,7 +121,7 @@ fn row(ui: &mut Ui, (table, k): (&Table<'_>, usize), changed: &mut Knots, faults
     let add = add.on_hover_text("Adds a time halfway to the next").clicked();
     let remove = icon::plain_button(ui, Icon::Remove, true);
     field::name(&remove, &of("Remove time"));
-    Asked([add, remove.on_hover_text("Takes this time out").clicked()])
+    RowButtons([add, remove.on_hover_text("Takes this time out").clicked()])
 }
 
 /// A box that says whether something changes with time; what it is to be once it was clicked.

@@ -17,7 +17,7 @@ const SEGMENTS: usize = 60;
 /// Part of its speed that a draft keeps from frame to frame. Larger: it swings on while the hand rests; smaller: it
 /// hangs in the air behind the hand. 0.85 leaves 1 % of it
 /// after half a second.
-const KEEP: f64 = 0.85;
+const SPEED_RETENTION: f64 = 0.85;
 
 /// A speed that moves nothing, m/s, and tells `fem` that the state is one of motion: it would relax it first.
 const WAKE_M_PER_S: f64 = 1e-100;
@@ -26,7 +26,7 @@ const WAKE_M_PER_S: f64 = 1e-100;
 const UNBREAKABLE_N: f64 = 1e15;
 
 /// A draft of `edit` that goes on where `old` is; None where this kind of draft does not apply or fails.
-pub fn falling(edit: &Edit, old: &Simulation) -> Option<Simulation> {
+pub fn settling_draft(edit: &Edit, old: &Simulation) -> Option<Simulation> {
     // An answer without a mesh is drafted with one: laying the cable anew takes as long however it is asked.
     let shaped = matches!(old.model(), Model::Fem | Model::Spans);
     if !shaped || !same_cables(edit, old) || buried(edit, old) {
@@ -40,7 +40,7 @@ pub fn falling(edit: &Edit, old: &Simulation) -> Option<Simulation> {
     }
     let mut draft = Simulation::with_settings(scene, Model::Fem, settings).ok()?;
     carry(&mut draft, old).ok()?;
-    pass(&mut draft).ok()?;
+    advance_frame(&mut draft).ok()?;
     Some(draft)
 }
 
@@ -48,14 +48,14 @@ pub fn falling(edit: &Edit, old: &Simulation) -> Option<Simulation> {
 ///
 /// # Errors
 /// As a step.
-pub fn pass(draft: &mut Simulation) -> Result<(), SolveError> {
+pub fn advance_frame(draft: &mut Simulation) -> Result<(), SolveError> {
     let time_s = draft.time_s();
     draft.step(FRAME_S)?;
     let mut states = draft.states();
     for state in &mut states {
         state.time_s = time_s;
         for v in &mut state.velocity_m_per_s {
-            *v *= KEEP;
+            *v *= SPEED_RETENTION;
         }
     }
     draft.set_states(&states)
@@ -63,7 +63,7 @@ pub fn pass(draft: &mut Simulation) -> Result<(), SolveError> {
 
 /// A draft by rest: the scene of an edit with few segments and the model that answered it.
 #[must_use]
-pub fn coarse(edit: &Edit, old: &Simulation) -> Edit {
+pub fn coarse_edit(edit: &Edit, old: &Simulation) -> Edit {
     let mut coarse = edit.clone();
     coarse.settings.segments = Some(SEGMENTS);
     // An explicit model: what `auto` chose for the full mesh.
@@ -73,7 +73,7 @@ pub fn coarse(edit: &Edit, old: &Simulation) -> Edit {
 
 /// A simulation in motion with few segments (or with those asked for) that goes on where `old` is; None where it cannot, and for
 /// other models than `fem`, whose frames are short.
-pub fn moving(edit: &Edit, old: &Simulation, coarse: bool) -> Option<Simulation> {
+pub fn with_mesh(edit: &Edit, old: &Simulation, coarse: bool) -> Option<Simulation> {
     if old.model() != Model::Fem || !same_cables(edit, old) {
         return None;
     }
@@ -105,7 +105,7 @@ pub fn moving(edit: &Edit, old: &Simulation, coarse: bool) -> Option<Simulation>
 ///
 /// # Errors
 /// As [`Simulation::set_states`].
-pub fn still(draft: &mut Simulation) -> Result<(), Error> {
+pub fn at_rest(draft: &mut Simulation) -> Result<(), Error> {
     let mut states = draft.states();
     for v in states.iter_mut().flat_map(|s| &mut s.velocity_m_per_s) {
         *v *= 0.0;
@@ -122,7 +122,7 @@ fn carry(draft: &mut Simulation, old: &Simulation) -> Result<(), SolveError> {
 }
 
 /// How far round a point obstacles are asked for, m: what lies deeper than this inside something is in a scene out of all size.
-const FAR_M: f64 = 1e3;
+const SEARCH_RADIUS_M: f64 = 1e3;
 
 /// Whether a cable that was carried over would lie inside an obstacle that was not there, or not there, before: contact begins at a
 /// surface, so it would stay inside. It is laid anew instead.
@@ -138,7 +138,7 @@ pub fn buried(edit: &Edit, old: &Simulation) -> bool {
         // Ends are where their supports are.
         let inner = state.position_m.len().saturating_sub(2);
         let mut points = state.position_m.iter().skip(1).take(inner);
-        points.any(|&p| world.signed_gap(p, FAR_M).is_some_and(|gap| gap.gap_m < -radius))
+        points.any(|&p| world.signed_gap(p, SEARCH_RADIUS_M).is_some_and(|gap| gap.gap_m < -radius))
     })
 }
 

@@ -178,7 +178,7 @@ impl Engine {
         let began = Instant::now();
         if let Some(simulation) = &mut self.simulation {
             // One that cannot go on stays as it is until the answer comes.
-            self.falling = draft::pass(simulation).is_ok();
+            self.falling = draft::advance_frame(simulation).is_ok();
         }
         self.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
         self.show(Ok(()));
@@ -251,11 +251,11 @@ impl Engine {
         let (true, Some(old)) = (self.drafts && same && self.solve_s > DRAFT_AFTER_S, &self.simulation) else {
             return false;
         };
-        let falls = draft::falling(edit, old);
+        let falls = draft::settling_draft(edit, old);
         self.falling = falls.is_some();
         // Models without a mesh have no fewer segments to be asked with.
-        let coarse = || Some(self.rebuild(&draft::coarse(edit, old), Some(old)).ok()?.0);
-        let draft = if slow(old.model()) { falls } else { falls.or_else(coarse) };
+        let coarse = || Some(self.rebuild(&draft::coarse_edit(edit, old), Some(old)).ok()?.0);
+        let draft = if is_quasi_static(old.model()) { falls } else { falls.or_else(coarse) };
         let Some(draft) = draft else { return false };
         self.simulation = Some(draft);
         self.monitor = None;
@@ -271,7 +271,7 @@ impl Engine {
         match (self.draft, self.edit.clone()) {
             (true, Some(edit)) => {
                 if let (true, Some(simulation)) = (self.falling, &mut self.simulation) {
-                    draft::still(simulation)?;
+                    draft::at_rest(simulation)?;
                 }
                 self.take_edit(edit)
             }
@@ -386,7 +386,7 @@ impl Engine {
     /// A coarse mesh follows the hand while time runs, where the full one is late: it goes on where that is.
     fn enter_coarse(&mut self) {
         let (Some(edit), Some(old)) = (&self.edit, &self.simulation) else { return };
-        if let Some(coarse) = draft::moving(edit, old, true) {
+        if let Some(coarse) = draft::with_mesh(edit, old, true) {
             self.simulation = Some(coarse);
             self.monitor = None;
             self.coarse_since = Some(Instant::now());
@@ -397,7 +397,7 @@ impl Engine {
     fn leave_coarse(&mut self) {
         self.coarse_since = None;
         if let (Some(edit), Some(old)) = (&self.edit, &self.simulation)
-            && let Some(mut full) = draft::moving(edit, old, false)
+            && let Some(mut full) = draft::with_mesh(edit, old, false)
         {
             if let Some((cable, support, to_m)) = self.pulled {
                 full.pull_support(cable, support, vec2(to_m));
@@ -440,9 +440,9 @@ impl Engine {
         };
         let asked = self.edit.as_ref().map_or(Model::Auto, |e| e.model);
         let settings = self.edit.as_ref().map_or_else(Settings::default, |e| e.settings);
-        let inertia = if slow(asked) { Inertia::QuasiStatic } else { Inertia::Dynamic };
+        let inertia = if is_quasi_static(asked) { Inertia::QuasiStatic } else { Inertia::Dynamic };
         let mut starts = self.start_kept && simulation.time_s() <= 0.0;
-        if inertia == Inertia::Dynamic && slow(simulation.model()) {
+        if inertia == Inertia::Dynamic && is_quasi_static(simulation.model()) {
             let (moving, settled) = moving(simulation, settings)?;
             self.before_motion = Some(std::mem::replace(simulation, moving));
             starts &= settled;
@@ -511,7 +511,7 @@ impl Engine {
 
 /// Whether a model that was asked for by name lets time run without inertia: it has none.
 #[must_use]
-pub fn slow(model: Model) -> bool {
+pub fn is_quasi_static(model: Model) -> bool {
     matches!(model, Model::Catenary | Model::Spans)
 }
 

@@ -66,7 +66,7 @@ pub struct Drag {
 }
 
 /// Most single steps waiting: more would keep the window behind for seconds after a held key.
-const MOST_STEPS: u32 = 60;
+const MAX_STEPS: u32 = 60;
 
 impl Request {
     /// Takes in a later request.
@@ -98,7 +98,7 @@ impl Request {
         }
         self.robot = later.robot.or(self.robot);
         self.playback = later.playback.or(self.playback);
-        self.steps = (self.steps + later.steps).min(MOST_STEPS);
+        self.steps = (self.steps + later.steps).min(MAX_STEPS);
         self.number = self.number.max(later.number);
     }
 

@@ -11,7 +11,7 @@ use cable_core::{Load, Model, Scene};
 use cable_viewer::command::effects::Effects;
 use cable_viewer::command::{self, Command};
 use cable_viewer::record::samples::Sample;
-use cable_viewer::state::{AppState, Held, Snapshot};
+use cable_viewer::state::{AppState, Reference, Snapshot};
 use egui_kittest::Harness;
 
 pub type PanelUi = fn(&mut egui::Ui, &AppState, &mut Vec<Command>);
@@ -194,7 +194,7 @@ pub fn compared() -> AppState {
     for (scene, solution) in [(state.document.scene.clone(), None), (other, Some(answer))] {
         let solution = solution.map_or_else(|| state.live.snapshot.solution.clone().unwrap(), Arc::new);
         let name = format!("{}, fem model", scene.name);
-        state.analysis.references.push(Held { name, scene: Arc::new(scene), solution, wall_s: 2.5e-3, run: None });
+        state.analysis.references.push(Reference { name, scene: Arc::new(scene), solution, wall_s: 2.5e-3, run: None });
     }
     state
 }

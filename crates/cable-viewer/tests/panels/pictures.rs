@@ -9,7 +9,7 @@ use egui_kittest::{SnapshotOptions, SnapshotResults};
 use crate::fixture::{PanelUi, bench, compared, driven, recorded, state, warn, with_pulley, wrapped};
 
 /// Differences of a rounding here and there between drivers are let pass.
-const MOST_DIFFERENT_PIXELS: usize = 80;
+const MAX_DIFFERENT_PIXELS: usize = 80;
 
 fn picture(name: &str, state: impl Fn() -> AppState, panel: PanelUi, size: [f32; 2]) {
     let mut results = SnapshotResults::new();
@@ -22,7 +22,7 @@ fn picture(name: &str, state: impl Fn() -> AppState, panel: PanelUi, size: [f32;
             eprintln!("skipped the picture of {name}: {reason}");
             return;
         }
-        let options = SnapshotOptions::new().max_failed_pixels(MOST_DIFFERENT_PIXELS);
+        let options = SnapshotOptions::new().max_failed_pixels(MAX_DIFFERENT_PIXELS);
         results.add(harness.try_snapshot_options(format!("panel_{name}_{suffix}"), &options));
     }
 }
@@ -108,7 +108,7 @@ fn compare_models() {
         let why = "catenary cannot answer this scene: the cable reaches an obstacle 4.894 m along it".to_owned();
         let answers = vec![model_comparison::Answer { model: cable_core::Model::Catenary, result: Err(why) }];
         let scene = std::sync::Arc::new(state.document.scene.clone());
-        state.analysis.models = model_comparison::Progress::Done(model_comparison::Found { scene, answers });
+        state.analysis.models = model_comparison::Progress::Done(model_comparison::Outcome { scene, answers });
         state
     };
     picture("compare_models", asked, panels::analysis::compare::ui, [320.0, 280.0]);
@@ -177,7 +177,7 @@ fn origin() {
     let probed = || {
         let mut state = wrapped();
         let from = cable_core::analysis::tension_budget::StartEnd::Start;
-        state.analysis.tension_marker = Some(cable_viewer::state::Probe { cable: 0, arc_length_m: 12.0, from });
+        state.analysis.tension_marker = Some(cable_viewer::state::TensionMarker { cable: 0, arc_length_m: 12.0, from });
         state
     };
     picture("origin", probed, panels::analysis::tension_budget::ui, [320.0, 260.0]);

@@ -83,8 +83,8 @@ fn u11_every_control_of_what_is_picked_explains_itself_on_hover() {
     apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(value) }));
     apply(&mut harness, Command::View(ViewCommand::Spread(true, [0.5, 1.5])));
     let from = cable_core::analysis::tension_budget::StartEnd::Start;
-    let probe = cable_viewer::state::Probe { cable: 0, arc_length_m: 4.0, from };
-    apply(&mut harness, Command::View(ViewCommand::Probe(Some(probe))));
+    let probe = cable_viewer::state::TensionMarker { cable: 0, arc_length_m: 4.0, from };
+    apply(&mut harness, Command::View(ViewCommand::MarkTension(Some(probe))));
     every_control_explains_itself(harness, None);
 }
 

@@ -74,7 +74,7 @@ fn slip_front_and_place_light() {
     let mut state = solved_with(catalog::draped_slipping(), Model::Spans);
     state.document.scene.obstacles.truncate(1);
     let from = cable_core::analysis::tension_budget::StartEnd::Slacker;
-    state.analysis.tension_marker = Some(cable_viewer::state::Probe { cable: 0, arc_length_m: 6.0, from });
+    state.analysis.tension_marker = Some(cable_viewer::state::TensionMarker { cable: 0, arc_length_m: 6.0, from });
     compare("slip_front_and_place_light", state, Theme::Light);
 }
 
@@ -269,9 +269,9 @@ fn several_picked_in_us_units_light() {
     state.selection.frame_m = Some([[2.0, 1.0], [6.0, 4.0]]);
     state.view.layers.components = true;
     // The window says this at the start of each frame.
-    cable_viewer::units::system::show(cable_viewer::units::system::System::Us);
+    cable_viewer::units::system::set_current(cable_viewer::units::system::System::Us);
     compare("several_picked_in_us_units_light", state, Theme::Light);
-    cable_viewer::units::system::show(cable_viewer::units::system::System::Si);
+    cable_viewer::units::system::set_current(cable_viewer::units::system::System::Si);
 }
 
 #[test]

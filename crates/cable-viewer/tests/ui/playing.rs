@@ -15,7 +15,7 @@ use crate::{apply, open, open_span, support};
 /// One frame at normal speed, s.
 const FRAME_S: f64 = 1.0 / 60.0;
 /// Fastest a dragged support moves, m/s (the default of the core), and a margin for rounding.
-const MOST_SPEED: f64 = 2.0 * 1.000_001;
+const MAX_SPEED: f64 = 2.0 * 1.000_001;
 
 fn solution(harness: &Harness<'_, ViewerApp>) -> Solution {
     harness.state().state.live.snapshot.solution.as_deref().expect("an answer").clone()
@@ -166,7 +166,7 @@ fn a_support_dragged_while_time_runs_is_followed_and_never_jumps() {
             let (p, q) = (end(&before), end(&now));
             let moved = (p[0] - q[0]).hypot(p[1] - q[1]);
             let passed = now.time_s - before.time_s;
-            assert!(moved <= MOST_SPEED * passed + 1e-9, "{name}: {moved} m in {passed} s");
+            assert!(moved <= MAX_SPEED * passed + 1e-9, "{name}: {moved} m in {passed} s");
             seen += usize::from(moved > 0.0);
             before = now;
         }

@@ -6,14 +6,16 @@ use cable_core::analysis::safe_reach::line::ReachMap;
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, ViewCommand};
-use cable_viewer::jobs::safe_reach::{Choice, Found, Maps, Moved, Order, PLACES, Progress, View, start};
+use cable_viewer::jobs::safe_reach::{
+    Choice, Maps, Outcome, PLACES, Progress, ReachQuery, ReachSubject, SafeReachState, start,
+};
 use egui::{Key, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
 use crate::{apply, open};
 
-fn reach<'a>(harness: &'a Harness<'_, ViewerApp>) -> &'a View {
+fn reach<'a>(harness: &'a Harness<'_, ViewerApp>) -> &'a SafeReachState {
     &harness.state().state.analysis.safe_reach
 }
 
@@ -54,9 +56,11 @@ fn safe_reach_of_a_robot_is_found_beside_the_window_and_can_be_ended() {
     // A short search to its end.
     let settings = cable_core::Settings::default();
     let corners_m = [[9.9, 0.0], [10.1, 0.0]];
-    let job =
-        start(Order { scene: scene.clone(), now: None, settings, moved: Moved::Robot, corners_m, across: 8 }, || {});
-    let mut found: Option<Found> = None;
+    let job = start(
+        ReachQuery { scene: scene.clone(), now: None, settings, moved: ReachSubject::Robot, corners_m, across: 8 },
+        || {},
+    );
+    let mut found: Option<Outcome> = None;
     patiently("a short search", || {
         match job.progress() {
             Progress::Done(done) => found = Some(done),
@@ -82,7 +86,7 @@ fn a_search_that_is_dropped_ends() {
     let theirs = Arc::clone(&heard);
     let (scene, settings) = (catalog::robot_drive(), cable_core::Settings::default());
     let corners_m = [[0.0, 0.0], [20.0, 0.0]];
-    let order = Order { scene, now: None, settings, moved: Moved::Robot, corners_m, across: 8 };
+    let order = ReachQuery { scene, now: None, settings, moved: ReachSubject::Robot, corners_m, across: 8 };
     let job = start(order, move || {
         theirs.fetch_add(1, Ordering::Relaxed);
         std::thread::sleep(Duration::from_millis(20));
@@ -173,7 +177,7 @@ fn safe_reach_begins_where_the_end_is_on_screen() {
 fn what_is_taken_somewhere_is_the_robot_else_what_is_picked_else_an_end_and_can_be_chosen() {
     let moved = |harness: &Harness<'_, ViewerApp>| cable_viewer::state::questions::reach_target(&harness.state().state);
     let mut harness = tall(catalog::robot_drive());
-    assert_eq!(moved(&harness), Some(Moved::Robot));
+    assert_eq!(moved(&harness), Some(ReachSubject::Robot));
     harness.get_by_label("What is taken somewhere").click();
     harness.run_steps(3);
     let riser = harness.state().state.document.scene.cables[0].supports[0].name.clone();
@@ -183,11 +187,11 @@ fn what_is_taken_somewhere_is_the_robot_else_what_is_picked_else_an_end_and_can_
         harness.get_all_by_label(&label).find(|n| n.accesskit_node().role() != egui::accesskit::Role::GraphicsSymbol);
     entry.unwrap().click();
     harness.run_steps(3);
-    assert_eq!(moved(&harness), Some(Moved::Support { cable: 0, support: 0 }));
+    assert_eq!(moved(&harness), Some(ReachSubject::Support { cable: 0, support: 0 }));
 
     let mut harness = tall(catalog::hanging_span());
-    assert_eq!(moved(&harness), Some(Moved::Support { cable: 0, support: 1 }));
+    assert_eq!(moved(&harness), Some(ReachSubject::Support { cable: 0, support: 1 }));
     let left = cable_viewer::state::Item::Support { cable: 0, support: 0 };
     apply(&mut harness, Command::View(ViewCommand::Select(Some(left))));
-    assert_eq!(moved(&harness), Some(Moved::Support { cable: 0, support: 0 }));
+    assert_eq!(moved(&harness), Some(ReachSubject::Support { cable: 0, support: 0 }));
 }

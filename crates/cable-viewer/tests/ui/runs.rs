@@ -138,7 +138,7 @@ fn speed_of_a_million_samples() {
     let built = began.elapsed().as_secs_f64() * 1e3;
     harness.state_mut().state.analysis.references[0].run = run.clone();
     // All of it in view.
-    let all = cable_viewer::plot::View { window_s: None, ..cable_viewer::plot::View::default() };
+    let all = cable_viewer::plot::GraphView { window_s: None, ..cable_viewer::plot::GraphView::default() };
     harness.ctx.data_mut(|d| d.insert_temp(egui::Id::unique("plot view"), all));
     harness.state_mut().state.live.history.samples.push_back(Sample { time_s: 1000.0, ..samples[0].clone() });
     let long = frame(&mut harness);

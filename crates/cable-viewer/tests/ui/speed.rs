@@ -297,7 +297,7 @@ fn speed_of_graphs() {
     let software = Software::of(&renderer.state);
     let mut harness = window(renderer, software, catalog::hanging_span());
     harness.run_steps(4);
-    let all = cable_viewer::plot::View { window_s: None, ..cable_viewer::plot::View::default() };
+    let all = cable_viewer::plot::GraphView { window_s: None, ..cable_viewer::plot::GraphView::default() };
     harness.ctx.data_mut(|d| d.insert_temp(egui::Id::unique("plot view"), all));
     for (name, held, live) in
         [("empty graphs", 0, 2), ("a million held", 1_000_000, 2), ("a million held, history full", 1_000_000, 400_000)]
@@ -315,7 +315,7 @@ fn speed_of_graphs() {
                 Some(held as usize)
             );
             let scene = state.live.snapshot.scene.clone().expect("a scene");
-            state.analysis.references.push(cable_viewer::state::Held {
+            state.analysis.references.push(cable_viewer::state::Reference {
                 name: "held".to_owned(),
                 scene,
                 solution,

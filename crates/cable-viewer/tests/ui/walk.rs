@@ -10,7 +10,7 @@ use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use cable_viewer::render::offscreen::renderer;
 use cable_viewer::state::dialog::{Dialog, Replacement};
-use cable_viewer::state::{Item, Probe};
+use cable_viewer::state::{Item, TensionMarker};
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -99,7 +99,7 @@ fn walk_a_span() {
     cable.length_m *= 1.15;
     walk.does(Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
     walk.look("a05-held-and-changed");
-    walk.view(ViewCommand::Probe(Some(Probe {
+    walk.view(ViewCommand::MarkTension(Some(TensionMarker {
         cable: 0,
         arc_length_m: 4.0,
         from: cable_core::analysis::tension_budget::StartEnd::Start,

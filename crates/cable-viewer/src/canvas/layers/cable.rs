@@ -3,7 +3,7 @@
 use cable_core::solution::Node;
 use egui::{Color32, Mesh, Pos2, Stroke, Vec2, vec2};
 
-use crate::canvas::view::View;
+use crate::canvas::view::CanvasView;
 use crate::plot;
 use crate::render::colour::ColourScale;
 use crate::state::{AppState, Item};
@@ -12,14 +12,14 @@ use crate::state::{AppState, Item};
 pub const LEAST_WIDTH: f32 = 4.5;
 /// Nodes nearer to each other than this are drawn as one, points: a ribbon of pieces shorter than it is smooth costs as much as a
 /// screen full of text.
-const APART: f32 = 1.5;
+const MIN_SPACING: f32 = 1.5;
 /// Width of the soft edge, points.
 const FEATHER: f32 = 0.8;
 /// A joint is drawn sharp up to this ratio of its miter to the half width, then cut.
 const MITER: f32 = 2.0;
 
 /// All cables.
-pub fn draw(view: &mut View<'_>, state: &AppState) {
+pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     let Some(solution) = &state.live.snapshot.solution else { return };
     let solved = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let range = state.view.colour.range(solution);
@@ -72,15 +72,15 @@ fn grey(c: Color32) -> Color32 {
     Color32::from_rgb(mix(c.r()), mix(c.g()), mix(c.b()))
 }
 
-/// The nodes that can be told apart on screen: the ends, those at least [`APART`] from the one before, and those where the risk
+/// The nodes that can be told apart on screen: the ends, those at least [`MIN_SPACING`] from the one before, and those where the risk
 /// begins or ends.
-pub(super) fn seen(view: &View<'_>, nodes: &[Node], service: f64) -> Vec<Node> {
+pub(super) fn seen(view: &CanvasView<'_>, nodes: &[Node], service: f64) -> Vec<Node> {
     let mut out: Vec<Node> = Vec::with_capacity(nodes.len());
     let mut last: Option<(Pos2, bool)> = None;
     let end = nodes.len().saturating_sub(1);
     for (i, n) in nodes.iter().enumerate() {
         let (at, risk) = (view.at([n.x_m, n.y_m]), n.tension_n > service);
-        if i == end || last.is_none_or(|(p, r)| r != risk || p.distance(at) >= APART) {
+        if i == end || last.is_none_or(|(p, r)| r != risk || p.distance(at) >= MIN_SPACING) {
             out.push(*n);
             last = Some((at, risk));
         }
@@ -96,7 +96,7 @@ pub(super) struct Ribbon {
 }
 
 impl Ribbon {
-    pub fn new(view: &View<'_>, nodes: &[Node]) -> Self {
+    pub fn new(view: &CanvasView<'_>, nodes: &[Node]) -> Self {
         let points: Vec<Pos2> = nodes.iter().map(|n| view.at([n.x_m, n.y_m])).collect();
         let normal = |a: Pos2, b: Pos2| {
             let d = b - a;

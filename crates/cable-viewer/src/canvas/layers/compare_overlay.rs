@@ -2,12 +2,12 @@
 
 use egui::{Pos2, Stroke};
 
-use crate::canvas::view::View;
+use crate::canvas::view::CanvasView;
 use crate::render::colour::LINES;
 use crate::state::AppState;
 
 /// Draws them, in the colours of the compare panel.
-pub fn draw(view: &View<'_>, state: &AppState) {
+pub fn draw(view: &CanvasView<'_>, state: &AppState) {
     for (k, held) in state.analysis.references.iter().enumerate() {
         let stroke = Stroke::new(1.8, LINES[k % LINES.len()]);
         let time_s = state.live.snapshot.solution.as_ref().map_or(0.0, |s| s.time_s);

@@ -5,7 +5,7 @@ use cable_core::solution::{CableSolution, ContactPart, ContactReport, ContactSta
 use egui::{Mesh, Pos2, Rect, Stroke, StrokeKind, vec2};
 
 use crate::canvas::layers::cable::{LEAST_WIDTH, Ribbon, seen};
-use crate::canvas::view::View;
+use crate::canvas::view::CanvasView;
 use crate::state::AppState;
 
 /// How much wider than the cable the band is, points.
@@ -16,7 +16,7 @@ const EDGE: f32 = 3.6;
 const TICK: f32 = 11.0;
 
 /// Ticks nearer to the one before than this (points) are not drawn: closer in there is room for them.
-const APART: f32 = 8.0;
+const MIN_SPACING: f32 = 8.0;
 
 /// The stretches of a contact that hold or slide, in order.
 #[must_use]
@@ -34,7 +34,7 @@ pub fn fronts(contact: &ContactReport) -> impl Iterator<Item = f64> {
 }
 
 /// Bands and ticks of all cables.
-pub fn draw(view: &View<'_>, state: &AppState) {
+pub fn draw(view: &CanvasView<'_>, state: &AppState) {
     let Some(solution) = state.live.snapshot.solution.as_ref().filter(|_| state.view.layers.contacts) else { return };
     let solved = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let mut mesh = Mesh::default();
@@ -65,7 +65,7 @@ pub fn draw(view: &View<'_>, state: &AppState) {
     }
 }
 
-fn tick(view: &View<'_>, answer: &CableSolution, s: f64, last: &mut Option<Pos2>) {
+fn tick(view: &CanvasView<'_>, answer: &CableSolution, s: f64, last: &mut Option<Pos2>) {
     let near = between(answer, [s, s]);
     let k = answer.nodes.partition_point(|n| n.arc_length_m <= s).clamp(1, answer.nodes.len().saturating_sub(1).max(1));
     let (Some(n), Some(a), Some(b)) = (near.first(), answer.nodes.get(k - 1), answer.nodes.get(k)) else { return };
@@ -73,7 +73,7 @@ fn tick(view: &View<'_>, answer: &CableSolution, s: f64, last: &mut Option<Pos2>
     if along.length() > 0.0 {
         let across = along.normalized().rot90() * TICK;
         let at = view.at([n.x_m, n.y_m]);
-        if last.is_some_and(|p| p.distance(at) < APART) {
+        if last.is_some_and(|p| p.distance(at) < MIN_SPACING) {
             return;
         }
         *last = Some(at);
@@ -108,7 +108,7 @@ pub fn at(answer: &CableSolution, s: f64) -> Option<Node> {
 }
 
 /// A piece of band for the legend.
-pub fn sample(view: &View<'_>, rect: Rect, holds: bool) {
+pub fn sample(view: &CanvasView<'_>, rect: Rect, holds: bool) {
     if holds {
         view.painter.rect_filled(rect, 0.0, view.palette.normal);
     } else {

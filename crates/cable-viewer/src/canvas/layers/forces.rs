@@ -5,18 +5,18 @@ use cable_core::math::Point;
 use cable_core::solution::{CableSolution, ContactReport, ContactState};
 use egui::{Align2, Color32, Pos2, Stroke, Vec2, pos2, vec2};
 
-use crate::canvas::view::View;
+use crate::canvas::view::CanvasView;
 use crate::geometry::arrows::{load_arrow, load_at};
 use crate::state::{AppState, Item};
 use crate::units::labels;
 use crate::units::unit::Unit;
 
 /// Of contacts nearer to each other than this (points) only the strongest has arrows; closer in there is room for more.
-const APART: f32 = 22.0;
+const MIN_SPACING: f32 = 22.0;
 /// Longest and shortest arrow, points.
 const LENGTH: [f64; 2] = [64.0, 9.0];
 /// All arrows; their figures go to `figures` for the labels to place.
-pub fn draw(view: &mut View<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
+pub fn draw(view: &mut CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
     let Some(solution) = &state.live.snapshot.solution else { return };
     let greatest = greatest(state);
     let scale = |f: Point| screen_vector(f, greatest);
@@ -55,12 +55,12 @@ fn screen_vector(f: Point, greatest: f64) -> Vec2 {
     vec2((f[0] / size * length) as f32, (-f[1] / size * length) as f32)
 }
 
-fn contacts(view: &View<'_>, cable: &CableSolution, scale: &impl Fn(Point) -> Vec2) {
+fn contacts(view: &CanvasView<'_>, cable: &CableSolution, scale: &impl Fn(Point) -> Vec2) {
     let mut drawn: Vec<Pos2> = Vec::new();
     for c in strongest_first(&cable.contacts) {
         let at = view.at([c.x_m, c.y_m]);
         // Twenty arrows on a hand's breadth hide the cable and each other.
-        if drawn.iter().any(|p| p.distance(at) < APART) {
+        if drawn.iter().any(|p| p.distance(at) < MIN_SPACING) {
             continue;
         }
         drawn.push(at);
@@ -106,7 +106,7 @@ fn figure(force: Point, components: bool) -> String {
 }
 
 fn reactions(
-    view: &mut View<'_>,
+    view: &mut CanvasView<'_>,
     state: &AppState,
     cable: &CableSolution,
     (scale, figures): (&impl Fn(Point) -> Vec2, &mut Vec<(Pos2, String, Color32)>),
@@ -124,7 +124,7 @@ fn reactions(
 }
 
 fn loads(
-    view: &mut View<'_>,
+    view: &mut CanvasView<'_>,
     state: &AppState,
     cable: usize,
     answer: &CableSolution,
@@ -158,7 +158,7 @@ fn loads(
 }
 
 /// Wind as one arrow in the upper left corner.
-fn wind(view: &View<'_>, per_metre: Point) {
+fn wind(view: &CanvasView<'_>, per_metre: Point) {
     let size = per_metre[0].hypot(per_metre[1]);
     if !(size > 0.0 && size.is_finite()) {
         return;
@@ -166,7 +166,7 @@ fn wind(view: &View<'_>, per_metre: Point) {
     let dir = vec2((per_metre[0] / size) as f32, (-per_metre[1] / size) as f32);
     let centre = pos2(view.rect.min.x + crate::canvas::layers::grid::STRIP[0] + 56.0, view.rect.min.y + 40.0);
     view.arrow(centre - dir * 24.0, dir * 48.0, Stroke::new(3.0, view.palette.load));
-    let unit = Unit::N_PER_M.shown();
+    let unit = Unit::N_PER_M.display();
     let text = format!("Wind {} {}", labels::digits(size / unit.si), unit.symbol);
     view.text(pos2(centre.x, centre.y + 28.0), Align2::CENTER_TOP, &text, 11.0, view.palette.text);
 }

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Rect, Stroke, pos2, vec2};
 
-use crate::canvas::view::View;
+use crate::canvas::view::CanvasView;
 use crate::state::camera::Camera;
 use crate::units::labels;
 
@@ -26,7 +26,7 @@ pub fn steps(camera: &Camera) -> [f64; 2] {
 }
 
 /// Lines behind everything.
-pub fn lines(view: &View<'_>) {
+pub fn lines(view: &CanvasView<'_>) {
     let [major, minor] = steps(&view.camera);
     for (step, colour) in [(minor, view.palette.grid_minor), (major, view.palette.grid_major)] {
         each(view, 0, step, |x, zero| {
@@ -41,11 +41,11 @@ pub fn lines(view: &View<'_>) {
 }
 
 /// Calls back with the screen coordinate of each multiple of `step`, and whether it is zero.
-fn each(view: &View<'_>, axis: usize, step: f64, mut line: impl FnMut(f32, bool)) {
+fn each(view: &CanvasView<'_>, axis: usize, step: f64, mut line: impl FnMut(f32, bool)) {
     numbered(view, axis, step, |at, value| line(at, value.abs() < 0.5 * step));
 }
 
-fn numbered(view: &View<'_>, axis: usize, step: f64, mut line: impl FnMut(f32, f64)) {
+fn numbered(view: &CanvasView<'_>, axis: usize, step: f64, mut line: impl FnMut(f32, f64)) {
     let a = view.camera.to_world(view.rect, view.rect.left_bottom())[axis];
     let b = view.camera.to_world(view.rect, view.rect.right_top())[axis];
     let (first, last) = ((a / step).ceil(), (b / step).floor());
@@ -63,7 +63,7 @@ fn numbered(view: &View<'_>, axis: usize, step: f64, mut line: impl FnMut(f32, f
 }
 
 /// Numbers along the left and lower edge, on strips over everything.
-pub fn axes(view: &mut View<'_>) {
+pub fn axes(view: &mut CanvasView<'_>) {
     let [major, _] = steps(&view.camera);
     let (length, _) = labels::of_length();
     let (rect, palette) = (view.rect, view.palette);
@@ -102,7 +102,7 @@ pub fn axes(view: &mut View<'_>) {
 }
 
 /// A bar of a round length, in the lower right corner.
-pub fn scale_bar(view: &mut View<'_>) {
+pub fn scale_bar(view: &mut CanvasView<'_>) {
     let [major, _] = steps(&view.camera);
     let width = view.points(major);
     let end = pos2(view.rect.max.x - 16.0, view.rect.max.y - STRIP[1] - 14.0);

@@ -2,7 +2,7 @@
 
 use egui::{Align2, FontId, Mesh, Rect, Stroke, StrokeKind, pos2, vec2};
 
-use crate::canvas::view::View;
+use crate::canvas::view::CanvasView;
 use crate::panels::scene_errors;
 use crate::render::colour::{ColourScale, Quantity};
 use crate::state::{AppState, WorkerStatus};
@@ -14,7 +14,7 @@ const BAR: [f32; 2] = [14.0, 132.0];
 const TICKS: usize = 5;
 
 /// The colours and what they mean.
-pub fn draw(view: &mut View<'_>, state: &AppState) {
+pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     let Some(solution) = &state.live.snapshot.solution else { return };
     let [low, high] = state.view.colour.range(solution);
     let (unit, si) = state.view.colour.quantity.unit(high.abs().max(low.abs()));
@@ -59,7 +59,7 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
 }
 
 /// What the bands along the cable mean, below the colours, where there are some.
-pub fn contacts(view: &mut View<'_>, state: &AppState) {
+pub fn contacts(view: &mut CanvasView<'_>, state: &AppState) {
     let stretches = state.live.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
     let any = stretches.into_iter().any(|c| c.ends_m > c.begins_m);
     let top = view.rect.min.y + 10.0 + BAR[1] + 44.0 + 6.0;
@@ -83,7 +83,7 @@ pub fn contacts(view: &mut View<'_>, state: &AppState) {
 }
 
 /// A red mark where the first cable's service tension lies.
-fn service(view: &View<'_>, state: &AppState, bar: Rect, range: [f64; 2]) {
+fn service(view: &CanvasView<'_>, state: &AppState, bar: Rect, range: [f64; 2]) {
     let Some(cable) = state.document.scene.cables.first() else { return };
     let f = ColourScale::fraction(cable.service_tension_n, range);
     if (0.0..=1.0).contains(&f) {
@@ -93,11 +93,11 @@ fn service(view: &View<'_>, state: &AppState, bar: Rect, range: [f64; 2]) {
 }
 
 /// Why the picture is not of the scene as it is now.
-pub fn banner(view: &mut View<'_>, state: &AppState) {
+pub fn banner(view: &mut CanvasView<'_>, state: &AppState) {
     let (title, text) = match (&state.solver.status, &state.live.snapshot.error) {
         (WorkerStatus::Dead(why), _) => ("The solver has stopped", why.clone()),
         (_, Some(why)) => {
-            let told = scene_errors::whole(state).unwrap_or_else(|| translate::shown(why).into_owned());
+            let told = scene_errors::whole(state).unwrap_or_else(|| translate::display(why).into_owned());
             ("No answer for this scene", told)
         }
         _ => return,

@@ -4,7 +4,7 @@ use cable_core::math::Point;
 use cable_core::scene::Shape;
 use egui::{Mesh, Pos2, Stroke, pos2, vec2};
 
-use crate::canvas::view::View;
+use crate::canvas::view::CanvasView;
 use crate::geometry::triangulate::triangulate;
 use crate::state::{AppState, Item};
 
@@ -12,10 +12,10 @@ use crate::state::{AppState, Item};
 const HATCH: [f32; 2] = [9.0, 8.0];
 
 /// Points nearer to each other than this are drawn as one, points.
-const APART: f32 = 1.0;
+const MIN_SPACING: f32 = 1.0;
 
 /// All of them.
-pub fn draw(view: &View<'_>, state: &AppState) {
+pub fn draw(view: &CanvasView<'_>, state: &AppState) {
     for (k, obstacle) in state.document.scene.obstacles.iter().enumerate() {
         let touched =
             |item: Item| item == Item::Obstacle(k) || matches!(item, Item::Corner { obstacle, .. } if obstacle == k);
@@ -47,7 +47,7 @@ pub fn draw(view: &View<'_>, state: &AppState) {
 }
 
 /// Handles on the corners of the selected obstacle.
-fn corners(view: &View<'_>, shape: &Shape, state: &AppState) {
+fn corners(view: &CanvasView<'_>, shape: &Shape, state: &AppState) {
     let (Shape::Terrain { points_m } | Shape::Polygon { points_m } | Shape::Polyline { points_m, .. }) = shape else {
         return;
     };
@@ -66,7 +66,7 @@ fn corners(view: &View<'_>, shape: &Shape, state: &AppState) {
     }
 }
 
-fn terrain(view: &View<'_>, points_m: &[Point], stroke: Stroke) {
+fn terrain(view: &CanvasView<'_>, points_m: &[Point], stroke: Stroke) {
     let line = seen(view, points_m);
     let bottom = line.iter().fold(view.rect.max.y, |b, p| b.max(p.y)) + 4.0;
     let mut mesh = Mesh::default();
@@ -86,7 +86,7 @@ fn terrain(view: &View<'_>, points_m: &[Point], stroke: Stroke) {
 }
 
 /// The points of a line that can be told apart on screen, with one beyond each edge that it crosses.
-fn seen(view: &View<'_>, points_m: &[Point]) -> Vec<Pos2> {
+fn seen(view: &CanvasView<'_>, points_m: &[Point]) -> Vec<Pos2> {
     let side = |p: Pos2| i8::from(p.x > view.rect.max.x) - i8::from(p.x < view.rect.min.x);
     let mut out: Vec<Pos2> = Vec::new();
     let mut skipped: Option<Pos2> = None;
@@ -97,7 +97,7 @@ fn seen(view: &View<'_>, points_m: &[Point]) -> Vec<Pos2> {
             continue;
         };
         // Out of view on the same side as the one before, or on it: not drawn, unless the line comes back from there.
-        if (side(at) != 0 && side(at) == side(last)) || last.distance(at) < APART {
+        if (side(at) != 0 && side(at) == side(last)) || last.distance(at) < MIN_SPACING {
             skipped = Some(at);
             continue;
         }
@@ -111,7 +111,7 @@ fn seen(view: &View<'_>, points_m: &[Point]) -> Vec<Pos2> {
 }
 
 /// Short slanted strokes under a stretch of ground, at places fixed to the screen's x.
-fn hatch(view: &View<'_>, a: Pos2, b: Pos2) {
+fn hatch(view: &CanvasView<'_>, a: Pos2, b: Pos2) {
     let (low, high) = (a.x.min(b.x).max(view.rect.min.x), a.x.max(b.x).min(view.rect.max.x));
     if !(high > low) {
         return;
@@ -127,7 +127,7 @@ fn hatch(view: &View<'_>, a: Pos2, b: Pos2) {
     }
 }
 
-fn polygon(view: &View<'_>, points_m: &[Point], stroke: Stroke) {
+fn polygon(view: &CanvasView<'_>, points_m: &[Point], stroke: Stroke) {
     let mut mesh = Mesh::default();
     for &p in points_m {
         mesh.colored_vertex(view.at(p), view.palette.solid);

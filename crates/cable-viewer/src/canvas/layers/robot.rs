@@ -6,7 +6,7 @@ use cable_core::scene::preset::RobotPreset;
 use cable_core::scene::robot::{Heading, Pose};
 use egui::{Color32, Mesh, Pos2, Stroke};
 
-use crate::canvas::view::View;
+use crate::canvas::view::CanvasView;
 use crate::geometry::robot::{robot_outline, robot_pose};
 use crate::geometry::triangulate::triangulate;
 use crate::state::{AppState, Item};
@@ -29,7 +29,7 @@ pub fn title(state: &AppState) -> Option<(Point, String)> {
 }
 
 /// Draws it.
-pub fn draw(view: &mut View<'_>, state: &AppState) {
+pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     let Some((pose, preset)) = robot_pose(state) else { return };
     let is = |item: Option<Item>| item == Some(Item::Robot);
     let line = match (state.selection.contains(Item::Robot), is(state.selection.hovered)) {
@@ -56,7 +56,7 @@ pub fn draw(view: &mut View<'_>, state: &AppState) {
 
 /// What the cable meets of it, where it touches that: it is cut back round the hitch and boxed at the tracks. What of it reaches below
 /// the ground, so that nothing gets under a track, is left out.
-fn touched(view: &View<'_>, state: &AppState, (pose, preset): (&Pose, &RobotPreset)) {
+fn touched(view: &CanvasView<'_>, state: &AppState, (pose, preset): (&Pose, &RobotPreset)) {
     let contacts = state.live.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
     if !state.view.layers.contacts || !contacts.into_iter().any(|c| c.obstacle == "robot") {
         return;
@@ -71,7 +71,7 @@ fn touched(view: &View<'_>, state: &AppState, (pose, preset): (&Pose, &RobotPres
 }
 
 /// A belt with wheels along the foot of the outline.
-fn tracks(view: &View<'_>, pose: &Pose, preset: &RobotPreset) {
+fn tracks(view: &CanvasView<'_>, pose: &Pose, preset: &RobotPreset) {
     let height = TRACK_HEIGHT * preset.height_m.value;
     let foot = preset.outline_m.iter().filter(|p| p[1] < height).map(|p| p[0]);
     let (low, high) = foot.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));

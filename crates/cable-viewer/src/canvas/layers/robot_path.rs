@@ -2,7 +2,7 @@
 
 use egui::{Color32, Pos2, Stroke, vec2};
 
-use crate::canvas::view::View;
+use crate::canvas::view::CanvasView;
 use crate::geometry::robot::path_flags;
 use crate::state::{AppState, Item};
 
@@ -10,7 +10,7 @@ use crate::state::{AppState, Item};
 const FLAG: [f32; 2] = [26.0, 15.0];
 
 /// Draws them; what they say goes to `figures` for the labels to place.
-pub fn draw(view: &View<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
+pub fn draw(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
     for (k, at, text) in path_flags(state) {
         let item = Item::Leg(k);
         let marked = state.selection.contains(item) || state.selection.hovered == Some(item);

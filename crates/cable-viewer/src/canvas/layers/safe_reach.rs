@@ -8,7 +8,7 @@ use cable_core::math::Point;
 use cable_core::scene::preset::robot_preset;
 use egui::{Align2, Color32, Mesh, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
 
-use crate::canvas::view::View;
+use crate::canvas::view::CanvasView;
 use crate::jobs::safe_reach::Maps;
 use crate::render::colour::ColourMap;
 use crate::state::AppState;
@@ -26,7 +26,7 @@ const HEIGHT_M: f64 = 1.0;
 const LEGEND: [f32; 2] = [206.0, 78.0];
 
 /// Draws the map of an end.
-pub fn area(view: &View<'_>, state: &AppState) {
+pub fn area(view: &CanvasView<'_>, state: &AppState) {
     let Some((Maps::Area(there, ways), _)) = state.analysis.safe_reach.found() else { return };
     let Some(area) = (if state.analysis.safe_reach.choice.back { ways.as_ref() } else { Some(there) }) else { return };
     let mut mesh = Mesh::default();
@@ -48,7 +48,7 @@ fn quads(area: &Area) -> impl Iterator<Item = [(Point, f64); 4]> + '_ {
         .filter_map(move |k| Some([corner(k)?, corner(k + 1)?, corner(k + columns + 1)?, corner(k + columns)?]))
 }
 
-fn quad(view: &View<'_>, area: &Area, corners: [(Point, f64); 4], (mesh, lines): (&mut Mesh, &mut Vec<Shape>)) {
+fn quad(view: &CanvasView<'_>, area: &Area, corners: [(Point, f64); 4], (mesh, lines): (&mut Mesh, &mut Vec<Shape>)) {
     if corners.iter().any(|(_, n)| n.is_nan()) {
         return;
     }
@@ -102,7 +102,7 @@ fn colour(share: f64) -> Color32 {
 }
 
 /// Draws the map of a robot; its ends go to `figures` for the labels to place.
-pub fn line(view: &View<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
+pub fn line(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
     let Some((Maps::Line(map), _)) = state.analysis.safe_reach.found() else { return };
     let back = state.analysis.safe_reach.choice.back;
     let preset = state.document.scene.robot.as_ref().and_then(|r| robot_preset(&r.preset));
@@ -133,7 +133,7 @@ pub fn line(view: &View<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, 
 }
 
 /// Strokes across what is above the service tension.
-fn hatch(view: &View<'_>, [a, b]: [Pos2; 2], height: f32) {
+fn hatch(view: &CanvasView<'_>, [a, b]: [Pos2; 2], height: f32) {
     let strokes = ((b.x - a.x).abs() / HATCH).ceil().clamp(1.0, 40.0);
     for k in 0..strokes as usize {
         let at = a + (b - a) * (k as f32 / strokes);
@@ -142,7 +142,12 @@ fn hatch(view: &View<'_>, [a, b]: [Pos2; 2], height: f32) {
 }
 
 /// Marks from where to where the service tension is not passed.
-fn ends(view: &View<'_>, (map, back): (&ReachMap, bool), height: f32, figures: &mut Vec<(Pos2, String, Color32)>) {
+fn ends(
+    view: &CanvasView<'_>,
+    (map, back): (&ReachMap, bool),
+    height: f32,
+    figures: &mut Vec<(Pos2, String, Color32)>,
+) {
     let Some(ends) = map.safe_m(map.service_n, back) else { return };
     for (x, name) in ends.into_iter().zip(["safe from", "safe to"]) {
         let Some(place) = map.places.iter().find(|p| p.at_m[0] >= x) else { continue };
@@ -157,7 +162,7 @@ fn ends(view: &View<'_>, (map, back): (&ReachMap, bool), height: f32, figures: &
 }
 
 /// What the colours of the map mean, in the lower left corner.
-pub fn legend(view: &mut View<'_>, state: &AppState) {
+pub fn legend(view: &mut CanvasView<'_>, state: &AppState) {
     let Some((maps, scene)) = state.analysis.safe_reach.found() else { return };
     let [service_n, breaking_n] = maps.limits_n();
     let corner = pos2(

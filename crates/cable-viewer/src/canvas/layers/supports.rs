@@ -4,7 +4,7 @@ use cable_core::scene::{Support, SupportKind};
 use egui::{Color32, Pos2, Stroke, vec2};
 
 use crate::canvas::layers::robot;
-use crate::canvas::view::{Place, View};
+use crate::canvas::view::{CanvasView, Place};
 use crate::geometry::supports::{hand_spring, support_position};
 use crate::state::{AppState, Item};
 use crate::units::labels;
@@ -15,7 +15,7 @@ const WINDINGS: usize = 9;
 const HALF_WIDTH: f32 = 4.0;
 
 /// The spring from a support to the hand that draws it.
-fn spring(view: &View<'_>, [at, to]: [Pos2; 2]) {
+fn spring(view: &CanvasView<'_>, [at, to]: [Pos2; 2]) {
     let stroke = Stroke::new(1.4, view.palette.accent);
     let (way, length) = (to - at, at.distance(to));
     let across = if length > 0.0 { vec2(-way.y, way.x) * (HALF_WIDTH / length) } else { egui::Vec2::ZERO };
@@ -30,7 +30,7 @@ fn spring(view: &View<'_>, [at, to]: [Pos2; 2]) {
 }
 
 /// The signs.
-pub fn draw(view: &View<'_>, state: &AppState) {
+pub fn draw(view: &CanvasView<'_>, state: &AppState) {
     for (cable, c) in state.document.scene.cables.iter().enumerate() {
         for (support, s) in c.supports.iter().enumerate() {
             let Some(at) = support_position(state, cable, support) else { continue };
@@ -53,7 +53,7 @@ pub fn draw(view: &View<'_>, state: &AppState) {
     }
 }
 
-fn sign(view: &View<'_>, p: Pos2, s: &Support) {
+fn sign(view: &CanvasView<'_>, p: Pos2, s: &Support) {
     let (ink, paper) = (view.palette.support, view.palette.background);
     let line = Stroke::new(1.6, ink);
     let painter = view.painter;
@@ -87,7 +87,7 @@ fn sign(view: &View<'_>, p: Pos2, s: &Support) {
 }
 
 /// Names and coordinates of supports, the largest tension, then the figures of the arrows while there is room.
-pub fn labels(view: &mut View<'_>, state: &AppState, figures: Vec<(Pos2, String, Color32)>) {
+pub fn labels(view: &mut CanvasView<'_>, state: &AppState, figures: Vec<(Pos2, String, Color32)>) {
     let text_colour = view.palette.text;
     let mut spots = Vec::new();
     for (cable, c) in state.document.scene.cables.iter().enumerate() {

@@ -3,7 +3,7 @@
 use egui::{Color32, Pos2, Stroke, vec2};
 
 use crate::canvas::layers::contact;
-use crate::canvas::view::View;
+use crate::canvas::view::CanvasView;
 use crate::state::AppState;
 use crate::units::labels;
 
@@ -11,7 +11,7 @@ use crate::units::labels;
 const HALF: f32 = 8.0;
 
 /// Draws it; its figure goes to `figures` for the labels to place.
-pub fn draw(view: &View<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
+pub fn draw(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
     let Some(probe) = &state.analysis.tension_marker else { return };
     let cable = state.live.snapshot.solution.as_ref().and_then(|s| s.cables.get(probe.cable));
     let Some(n) = cable.and_then(|c| contact::at(c, probe.arc_length_m)) else { return };

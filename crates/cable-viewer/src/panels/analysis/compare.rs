@@ -12,17 +12,17 @@ use crate::record::measure::Measure;
 use crate::record::run::Peak;
 use crate::render::colour::{LINES, Quantity};
 use crate::state::dialog::Dialog;
-use crate::state::{AppState, Held};
+use crate::state::{AppState, Reference};
 use crate::units::{format, translate};
 use crate::widgets::field;
 
 /// Most lines of difference told; more are counted.
-const MOST_LINES: usize = 12;
+const MAX_LINES: usize = 12;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        let full = state.analysis.references.len() == Held::MOST;
+        let full = state.analysis.references.len() == Reference::MAX_COUNT;
         let help =
             if full { "No more can be held: let one go" } else { "Keeps this answer on screen beside what follows" };
         let can = state.live.snapshot.solution.is_some() && !full;
@@ -107,7 +107,7 @@ fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                     // Most refusals begin with the model's name.
                     let name = if why.contains(answer.model.name()) { "" } else { answer.model.name() };
                     let colon = if name.is_empty() { "" } else { ": " };
-                    ui.label(RichText::new(format!("{name}{colon}{}", translate::shown(why))).small());
+                    ui.label(RichText::new(format!("{name}{colon}{}", translate::display(why))).small());
                 }
             }
         }
@@ -211,7 +211,7 @@ fn cell(ui: &mut Ui, text: String, (value, present): (Option<f64>, Option<f64>))
 
 /// What two scenes and models differ in.
 #[derive(Clone)]
-struct Told {
+struct Summary {
     held: Arc<Scene>,
     present: Arc<Scene>,
     models: [Option<Model>; 2],
@@ -219,23 +219,24 @@ struct Told {
 }
 
 /// The differences of the last frame where nothing has changed since: to write two files and compare them takes milliseconds.
-fn remembered(ui: &Ui, k: usize, held: &Held, state: &AppState) -> Arc<Vec<String>> {
+fn remembered(ui: &Ui, k: usize, held: &Reference, state: &AppState) -> Arc<Vec<String>> {
     let id = Id::unique(("differences", k));
     let models = [Some(held.solution.model), state.live.snapshot.solution.as_ref().map(|s| s.model)];
-    let last = ui.data(|d| d.get_temp::<Told>(id));
-    let fits = |t: &Told| Arc::ptr_eq(&t.held, &held.scene) && t.models == models && *t.present == state.document.scene;
+    let last = ui.data(|d| d.get_temp::<Summary>(id));
+    let fits =
+        |t: &Summary| Arc::ptr_eq(&t.held, &held.scene) && t.models == models && *t.present == state.document.scene;
     if let Some(told) = last.filter(fits) {
         return told.lines;
     }
     let lines = Arc::new(differences(held, state));
     let (present, held) = (Arc::new(state.document.scene.clone()), Arc::clone(&held.scene));
-    ui.data_mut(|d| d.insert_temp(id, Told { held, present, models, lines: Arc::clone(&lines) }));
+    ui.data_mut(|d| d.insert_temp(id, Summary { held, present, models, lines: Arc::clone(&lines) }));
     lines
 }
 
 /// What differs in the input of a held answer and the present one, line by line of their files; the models first.
 #[must_use]
-pub fn differences(held: &Held, state: &AppState) -> Vec<String> {
+pub fn differences(held: &Reference, state: &AppState) -> Vec<String> {
     let mut out = Vec::new();
     if let Some(present) = &state.live.snapshot.solution
         && present.model != held.solution.model
@@ -257,9 +258,9 @@ pub fn differences(held: &Held, state: &AppState) -> Vec<String> {
     if out.is_empty() {
         out.push("the same input".to_owned());
     }
-    if out.len() > MOST_LINES {
-        let more = out.len() - MOST_LINES;
-        out.truncate(MOST_LINES);
+    if out.len() > MAX_LINES {
+        let more = out.len() - MAX_LINES;
+        out.truncate(MAX_LINES);
         out.push(format!("and {more} more"));
     }
     out

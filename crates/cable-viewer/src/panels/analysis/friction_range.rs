@@ -9,16 +9,16 @@ use crate::state::AppState;
 use crate::units::format;
 use crate::units::unit::Unit;
 use crate::widgets::field;
-use crate::widgets::property::{Known, Quantity, row};
+use crate::widgets::property::{Provenance, Quantity, row};
 
-const LEAST: Quantity = Quantity {
+const LEAST_FRICTION: Quantity = Quantity {
     name: "Least friction",
     unit: Unit::PERCENT,
     usual: [0.0, 1.0],
     logarithmic: false,
     help: "Least friction there may be, as a share of what the scene says: of cables, obstacles and pulleys alike.",
 };
-const MOST: Quantity = Quantity {
+const GREATEST_FRICTION: Quantity = Quantity {
     name: "Most friction",
     unit: Unit::PERCENT,
     usual: [1.0, 3.0],
@@ -38,10 +38,10 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if !on {
         return;
     }
-    let usual = friction_range::View::default().factors;
-    for (k, quantity) in [LEAST, MOST].iter().enumerate() {
+    let usual = friction_range::FrictionRangeState::default().factors;
+    for (k, quantity) in [LEAST_FRICTION, GREATEST_FRICTION].iter().enumerate() {
         let origin = Some((usual[k], "the default".to_owned()));
-        let change = row(ui, quantity, &Known { value: view.factors[k], origin, ..Known::default() });
+        let change = row(ui, quantity, &Provenance { value: view.factors[k], origin, ..Provenance::default() });
         if let Some(value) = change.value {
             let mut factors = view.factors;
             factors[k] = value;

@@ -5,7 +5,7 @@ use cable_core::analysis::safe_reach::line::ReachMap;
 use egui::{ComboBox, ProgressBar, Slider, Ui};
 
 use crate::command::{Command, ViewCommand};
-use crate::jobs::safe_reach::{self, ACROSS, Choice, Maps, Moved, Progress};
+use crate::jobs::safe_reach::{self, ACROSS, Choice, Maps, Progress, ReachSubject};
 use crate::state::AppState;
 use crate::state::questions::reach_target;
 use crate::units::format;
@@ -57,12 +57,12 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if **scene != state.document.scene {
         ui.colored_label(ui.visuals().warn_fg_color, "Of the scene before the last edits");
     }
-    for line in told(maps, view.choice.back) {
+    for line in describe(maps, view.choice.back) {
         ui.label(line);
     }
 }
 
-fn choices(ui: &mut Ui, state: &AppState, moved: Moved, commands: &mut Vec<Command>) {
+fn choices(ui: &mut Ui, state: &AppState, moved: ReachSubject, commands: &mut Vec<Command>) {
     let choice = state.analysis.safe_reach.choice;
     ui.horizontal(|ui| {
         ui.label("Moves");
@@ -79,7 +79,7 @@ fn choices(ui: &mut Ui, state: &AppState, moved: Moved, commands: &mut Vec<Comma
             .response
             .on_hover_text("The robot along its ground, or a support by a hand or a crane through free space");
     });
-    if moved != Moved::Robot {
+    if moved != ReachSubject::Robot {
         ui.horizontal(|ui| {
             ui.label("Places side by side");
             let mut across = choice.across;
@@ -112,7 +112,7 @@ fn set(choice: Choice) -> Command {
 
 /// The map in words.
 #[must_use]
-pub fn told(maps: &Maps, back: bool) -> Vec<String> {
+pub fn describe(maps: &Maps, back: bool) -> Vec<String> {
     let limits = ["service", "breaking"].into_iter().zip(maps.limits_n());
     limits
         .map(|(name, tension_n)| match maps {

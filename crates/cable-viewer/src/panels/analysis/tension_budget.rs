@@ -6,10 +6,10 @@ use cable_core::{Scene, Solution};
 use egui::{Color32, Grid, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use crate::command::{Command, ViewCommand};
-use crate::state::{AppState, Probe};
+use crate::state::{AppState, TensionMarker};
 use crate::units::format::{self, significant};
 use crate::units::unit::Unit;
-use crate::widgets::property::{Known, Quantity, row};
+use crate::widgets::property::{Provenance, Quantity, row};
 
 /// Height of each of the two rows of the bar, points.
 const ROW: f32 = 15.0;
@@ -37,12 +37,12 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         if ui.button("At the largest").on_hover_text(help).clicked() {
             let most = answer.max_tension();
             let from = state.analysis.tension_marker.map(|p| p.from).unwrap_or_default();
-            let probe = Probe { cable: most.cable, arc_length_m: most.arc_length_m, from };
-            commands.push(Command::View(ViewCommand::Probe(Some(probe))));
+            let probe = TensionMarker { cable: most.cable, arc_length_m: most.arc_length_m, from };
+            commands.push(Command::View(ViewCommand::MarkTension(Some(probe))));
         }
         let help = "No place is marked any more";
         if state.analysis.tension_marker.is_some() && ui.button("Unmark").on_hover_text(help).clicked() {
-            commands.push(Command::View(ViewCommand::Probe(None)));
+            commands.push(Command::View(ViewCommand::MarkTension(None)));
         }
     });
     let Some(probe) = state.analysis.tension_marker else {
@@ -64,7 +64,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 /// The place and the end the sum begins at, both to be set by keys as well.
-fn place(ui: &mut Ui, scene: &Scene, probe: Probe, commands: &mut Vec<Command>) {
+fn place(ui: &mut Ui, scene: &Scene, probe: TensionMarker, commands: &mut Vec<Command>) {
     let Some(cable) = scene.cables.get(probe.cable) else { return };
     let quantity = Quantity {
         name: "Place on the cable",
@@ -73,10 +73,10 @@ fn place(ui: &mut Ui, scene: &Scene, probe: Probe, commands: &mut Vec<Command>) 
         logarithmic: false,
         help: "Unstretched length from the start of the cable to the place whose tension is taken apart",
     };
-    let change = row(ui, &quantity, &Known { value: probe.arc_length_m, ..Known::default() });
+    let change = row(ui, &quantity, &Provenance { value: probe.arc_length_m, ..Provenance::default() });
     if let Some(value) = change.value {
         let arc_length_m = value.clamp(0.0, cable.length_m);
-        commands.push(Command::View(ViewCommand::Probe(Some(Probe { arc_length_m, ..probe }))));
+        commands.push(Command::View(ViewCommand::MarkTension(Some(TensionMarker { arc_length_m, ..probe }))));
     }
     ui.horizontal_wrapped(|ui| {
         ui.weak("From").on_hover_text("The end at which the sum begins");
@@ -90,7 +90,7 @@ fn place(ui: &mut Ui, scene: &Scene, probe: Probe, commands: &mut Vec<Command>) 
             let chosen = ui.selectable_label(probe.from == from, &name);
             crate::widgets::field::name(&chosen, &format!("From {name}"));
             if chosen.on_hover_text("The sum begins at this end").clicked() {
-                commands.push(Command::View(ViewCommand::Probe(Some(Probe { from, ..probe }))));
+                commands.push(Command::View(ViewCommand::MarkTension(Some(TensionMarker { from, ..probe }))));
             }
         }
     });

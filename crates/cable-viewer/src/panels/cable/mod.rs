@@ -12,7 +12,7 @@ use crate::panels::cable::property::{PROPERTIES, SEGMENTS};
 use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
 use crate::widgets::field;
-use crate::widgets::property::{Known, labelled, row};
+use crate::widgets::property::{Provenance, labelled, row};
 
 /// Height of the list of presets, points: all of them are seen at once.
 const POPUP_HEIGHT: f32 = 360.0;
@@ -31,7 +31,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         // The loaded scene's cable of this name is what reset returns to without a preset.
         let loaded = state.document.saved.cables.iter().find(|c| c.name == cable.name);
         for property in &PROPERTIES {
-            let known = provenance::known(property, cable, loaded);
+            let known = provenance::of(property, cable, loaded);
             let change = row(ui, &property.quantity, &known);
             if let Some(value) = change.value {
                 commands.push(changed(index, cable, |c| (property.set)(c, value)));
@@ -128,7 +128,7 @@ fn segments(ui: &mut Ui, state: &AppState, index: usize, loaded: Option<&Cable>,
     }
     let Some(count) = cable.segments else { return };
     let origin = loaded.and_then(|c| c.segments).map(|n| (n as f64, "as loaded".to_owned()));
-    let known = Known { value: count as f64, origin, source: None, estimated: false };
+    let known = Provenance { value: count as f64, origin, source: None, estimated: false };
     let change = row(ui, &SEGMENTS, &known);
     if let Some(value) = change.value {
         // Saturates; zero and too many are refused by the scene's own check, which is shown below.

@@ -4,24 +4,24 @@ use cable_core::Cable;
 use cable_core::scene::preset::{self, CablePreset, Confidence, Figure};
 
 use crate::panels::cable::property::Property;
-use crate::widgets::property::Known;
+use crate::widgets::property::Provenance;
 
 /// A property's value, where reset goes, and its source while it is still the preset's.
-pub fn known(property: &Property, cable: &Cable, loaded: Option<&Cable>) -> Known {
+pub fn of(property: &Property, cable: &Cable, loaded: Option<&Cable>) -> Provenance {
     let value = (property.get)(cable);
     let figure = figure(cable.preset.as_deref(), property.key);
     let origin = figure
         .map(|f| (f.value, "preset".to_owned()))
         .or_else(|| loaded.map(|c| ((property.get)(c), "as loaded".to_owned())));
     let Some(figure) = figure else {
-        return Known { value, origin, source: None, estimated: false };
+        return Provenance { value, origin, source: None, estimated: false };
     };
     if figure.value == value {
         let estimated = figure.confidence == Confidence::C;
-        Known { value, origin, source: Some(source(property, figure)), estimated }
+        Provenance { value, origin, source: Some(source(property, figure)), estimated }
     } else {
         let source = format!("Changed from the preset. Of the preset's {}", source(property, figure));
-        Known { value, origin, source: Some(source), estimated: false }
+        Provenance { value, origin, source: Some(source), estimated: false }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
 use crate::units::unit::Unit;
 use crate::widgets::field;
-use crate::widgets::property::{Known, Quantity, row};
+use crate::widgets::property::{Provenance, Quantity, row};
 use crate::widgets::time_table::{self, Knots, Table};
 
 /// Force of a new load, N.
@@ -31,7 +31,7 @@ const STRENGTH: Quantity = Quantity {
 /// Draws them.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if !state.document.scene.loads.is_empty() {
-        let (length, force) = (Unit::M.shown().symbol, Unit::N.shown().symbol);
+        let (length, force) = (Unit::M.display().symbol, Unit::N.display().symbol);
         let [at, right, up] = [format!("At, {length}"), format!("Right, {force}"), format!("Up, {force}")];
         let columns = [("Name", name_width(ui)), (&*at, KIND_WIDTH), (&*right, NUMBER_WIDTH), (&*up, NUMBER_WIDTH)];
         headings(ui, &columns);
@@ -132,7 +132,7 @@ fn with(load: &Load, force_n: Option<[f64; 2]>, knots: Knots) -> Load {
 /// The slider of a selected load: how much, in the direction it has.
 fn strength(ui: &mut Ui, load: &Load, (k, force_n): (usize, [f64; 2]), commands: &mut Vec<Command>) {
     let size = force_n[0].hypot(force_n[1]);
-    let known = Known { value: size, ..Known::default() };
+    let known = Provenance { value: size, ..Provenance::default() };
     let change = row(ui, &STRENGTH, &known);
     if let Some(wanted) = change.value.filter(|v| v.is_finite() && *v >= 0.0) {
         let direction = if size > 0.0 { force_n.map(|f| f / size) } else { [0.0, -1.0] };

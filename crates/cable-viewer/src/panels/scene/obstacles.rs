@@ -23,7 +23,7 @@ const CORNERS_HEIGHT: f32 = 240.0;
 /// Draws them.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if !state.document.scene.obstacles.is_empty() {
-        let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.shown().symbol));
+        let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.display().symbol));
         headings(ui, &[("Name", name_width(ui)), ("Form", KIND_WIDTH), (&x, NUMBER_WIDTH), (&y, NUMBER_WIDTH)]);
     }
     for (k, obstacle) in state.document.scene.obstacles.iter().enumerate() {
@@ -155,7 +155,7 @@ fn details(ui: &mut Ui, k: usize, obstacle: &Obstacle, commands: &mut Vec<Comman
 
 /// The corners with exact coordinates; only those in view are drawn, terrain can have thousands.
 fn corners(ui: &mut Ui, k: usize, points_m: &mut Vec<Point>, faults: &mut Vec<String>) {
-    ui.weak(format!("{} corners, x and y in {}", points_m.len(), Unit::M.shown().symbol));
+    ui.weak(format!("{} corners, x and y in {}", points_m.len(), Unit::M.display().symbol));
     let mut gone = None;
     let mut doubled = None;
     let height = ui.spacing().interact_size.y;

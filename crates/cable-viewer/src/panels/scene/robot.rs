@@ -102,7 +102,7 @@ fn add(scene: &mut Scene, cable: usize, p: &RobotPreset) {
 
 fn placed(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     let mut faults = Vec::new();
-    let at = format!("Stands at, {}", Unit::M.shown().symbol);
+    let at = format!("Stands at, {}", Unit::M.display().symbol);
     labelled(ui, &at, "Robot stands at", |ui| {
         let label = ui.weak("x, y");
         if let Some(at_m) = coordinates(ui, "robot", robot.at_m, &mut faults) {

@@ -52,7 +52,7 @@ impl Row<'_> {
 pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Command>) {
     let Some(cable) = state.document.scene.cables.get(index) else { return };
     let last = cable.supports.len().saturating_sub(1);
-    let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.shown().symbol));
+    let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.display().symbol));
     headings(ui, &[("Name", name_width(ui)), ("Kind", KIND_WIDTH), (&x, NUMBER_WIDTH), (&y, NUMBER_WIDTH)]);
     for (support, value) in cable.supports.iter().enumerate() {
         let end = support == 0 || support == last;
@@ -280,7 +280,7 @@ fn load(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Ve
     };
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        ui.label(format!("Force right, up, {}", Unit::N.shown().symbol));
+        ui.label(format!("Force right, up, {}", Unit::N.display().symbol));
         let labels = ["Force to the right", "Force upwards"].map(str::to_owned);
         if let Some(force_n) = components(ui, labels, Unit::N, force_n, faults) {
             row.changed(commands, |s| s.force_n = Some(force_n));
