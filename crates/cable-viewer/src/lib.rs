@@ -1,8 +1,8 @@
 //! The cable simulator's window is a library under a thin `main`.
 //!
 //! [`state::AppState`] is what is on screen. Panels and canvas read it and push
-//! [`command::Command`]s; [`command::apply`] is the one place that changes it. The [`worker`] owns the
-//! simulation on a thread of its own.
+//! [`command::Command`]s; [`command::apply`] is the one place that changes it. The [`worker`] owns
+//! the simulation on a thread of its own.
 //!
 //! The rooms, each importing only from those above it:
 //! - `units`: numbers with their unit, SI or US, as text and back

@@ -1,4 +1,4 @@
-//! Draws the open dialog.
+//! The open dialog is drawn over everything else.
 
 use std::path::PathBuf;
 

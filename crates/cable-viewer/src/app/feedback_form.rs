@@ -1,4 +1,4 @@
-//! The dialog that asks what the user thinks.
+//! A dialog asks what the user thinks.
 
 use egui::{TextEdit, Ui};
 

@@ -105,7 +105,8 @@ const PAN: f32 = 60.0;
 
 /// + and − zoom about the middle, Shift with an arrow moves the view.
 fn camera(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
-    // With ctrl they scale the whole window; plus is on the shifted half of its key on many keyboards.
+    // With ctrl they scale the whole window; plus is on the shifted half of its key on many
+    // keyboards.
     let pressed = |key| ctx.input_mut(|i| !i.modifiers.command && i.consume_key(Modifiers::NONE, key));
     let zoom = |factor| Command::View(ViewCommand::Zoom { about_m: state.view.camera.centre_m, factor });
     if pressed(Key::Plus) || pressed(Key::Equals) {
@@ -146,7 +147,8 @@ fn clipboard(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-/// N picks the next thing, M one more, Alt with an arrow moves what is picked by a grid line, Ctrl+A picks everything.
+/// N picks the next thing, M one more, Alt with an arrow moves what is picked by a grid line,
+/// Ctrl+A picks everything.
 fn pick_and_move(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     let all = handles::all(state);
     for (modifiers, forward) in [(Modifiers::SHIFT, false), (Modifiers::NONE, true)] {

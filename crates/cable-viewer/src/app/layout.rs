@@ -1,4 +1,4 @@
-//! Where panels and canvas are.
+//! The layout says where panels and canvas are.
 
 use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, RichText, ScrollArea, Ui};
 
@@ -18,7 +18,8 @@ const EDIT: &[Section] = &[
     ("Environment", panels::environment::ui),
     ("Solver", panels::solver::ui),
 ];
-/// What is read off. Where a place on the cable is marked its tension stands above the readouts, else at the end.
+/// What is read off. Where a place on the cable is marked its tension stands above the readouts,
+/// else at the end.
 const READ: &[Section] = &[
     ("Warnings", panels::warnings::ui),
     (MARKED, panels::analysis::tension_budget::ui),
@@ -32,14 +33,17 @@ const READ: &[Section] = &[
 const MARKED: &str = "Tension at the marked place";
 const UNMARKED: &str = "Tension at a place";
 
-/// Narrower windows (points) have one side panel instead of two: the canvas would be smaller than its labels.
+/// Narrower windows (points) have one side panel instead of two: the canvas would be smaller than
+/// its labels.
 const WIDE: f32 = 1100.0;
-/// Lower windows (points) have one side panel, and the graphs in it: nothing would be left of the canvas above them.
+/// Lower windows (points) have one side panel, and the graphs in it: nothing would be left of the
+/// canvas above them.
 const LEAST_FOR_GRAPHS: f32 = 520.0;
 /// Lowest panel of graphs, points.
 const LEAST_GRAPHS: f32 = 130.0;
 
-/// Draws everything but dialogs. Only the canvas needs the state mutable: it fits the camera to its own size.
+/// Draws everything but dialogs. Only the canvas needs the state mutable: it fits the camera to its
+/// own size.
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     Panel::top("menu").show(ui, |ui| menu::ui(ui, state, commands));
     if state.ui.tutorial.is_some() {

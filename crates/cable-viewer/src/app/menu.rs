@@ -1,4 +1,4 @@
-//! The menu bar and the status line.
+//! The menu bar offers the commands, and the status line says how the solver is doing.
 
 use cable_core::scene::catalog;
 use cable_core::verify::Verification;
@@ -228,10 +228,12 @@ fn scenes(ui: &mut Ui, commands: &mut Vec<Command>) {
 
 /// Diameter of the light that shows the verdict, points.
 const LIGHT_SIZE: f32 = 9.0;
-/// Colour of the light where every law was asked and none is broken: green, told from red by its brightness too.
+/// Colour of the light where every law was asked and none is broken: green, told from red by its
+/// brightness too.
 const SOUND: Color32 = Color32::from_rgb(64, 170, 110);
 
-/// Whether the answer obeys the laws of mechanics, as they were checked independently of the model that gave it.
+/// Whether the answer obeys the laws of mechanics, as they were checked independently of the model
+/// that gave it.
 fn light(ui: &mut Ui, verification: &Verification) {
     let visuals = ui.visuals();
     let (lamp, colour, text) = match (verification.is_sound(), verification.not_checked.is_empty()) {
@@ -241,7 +243,8 @@ fn light(ui: &mut Ui, verification: &Verification) {
     };
     let laws: Vec<&str> = verification.checked.iter().map(|l| l.name()).collect();
     let help = format!("{}. Checked: {}", translate::display(&verification.summary()), laws.join(", "));
-    // The font has no signs for this: the light is painted, and the words say the same without its colour.
+    // The font has no signs for this: the light is painted, and the words say the same without its
+    // colour.
     let (place, _) = ui.allocate_exact_size(Vec2::splat(LIGHT_SIZE), Sense::hover());
     ui.painter().circle_filled(place.center(), 0.5 * LIGHT_SIZE, lamp);
     ui.colored_label(colour, text).on_hover_text(help);

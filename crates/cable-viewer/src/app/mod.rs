@@ -21,7 +21,7 @@ use std::time::Instant;
 
 use cable_core::Scene;
 
-use crate::command::effects::{Effects, submit_scene};
+use crate::command::effects::{Effects, submit_new_scene};
 use crate::command::{self, Command};
 use crate::io::autosave::Autosave;
 use crate::jobs::{friction_range, model_comparison, neglected_bending, safe_reach};
@@ -47,7 +47,8 @@ pub struct ViewerApp {
     title: String,
     /// Keeps unsaved changes on disk, in a window.
     autosave: Option<Autosave>,
-    /// Numbers of the edits not yet answered and when they were sent, oldest first; at most [`MAX_ASKED`].
+    /// Numbers of the edits not yet answered and when they were sent, oldest first; at most
+    /// [`MAX_ASKED`].
     asked: VecDeque<(u64, Instant)>,
     /// The map of where the robot can go, while it is computed.
     reach: Option<safe_reach::Job>,
@@ -88,12 +89,13 @@ impl ViewerApp {
             spread: None,
         };
         let mut effects = Effects::default();
-        submit_scene(&mut app.state, true, &mut effects);
+        submit_new_scene(&mut app.state, &mut effects);
         app.carry_out(ctx, effects);
         app
     }
 
-    /// From now on unsaved changes are kept in a file; if there are some from a window that died, they are offered.
+    /// From now on unsaved changes are kept in a file; if there are some from a window that died,
+    /// they are offered.
     pub fn keep_changes_in(&mut self, path: PathBuf) {
         let autosave = Autosave::new(path);
         self.state.ui.dialog = match autosave.found() {
@@ -203,7 +205,8 @@ impl ViewerApp {
         }
     }
 
-    /// Looks after what neglecting bending stiffness changes: a question about what is no longer on screen is forgotten.
+    /// Looks after what neglecting bending stiffness changes: a question about what is no longer on
+    /// screen is forgotten.
     fn update_neglected_bending(&mut self, ctx: &egui::Context) {
         if !bending_query_fits(&self.state) {
             self.state.analysis.neglected_bending = neglected_bending::NeglectedBendingState::default();
@@ -220,7 +223,8 @@ impl ViewerApp {
             own.map_or(neglected_bending::Progress::Running(0.0, None), neglected_bending::Job::progress);
     }
 
-    /// Looks after the ribbon of less and more friction: one of another question ends, a missing one begins.
+    /// Looks after the ribbon of less and more friction: one of another question ends, a missing
+    /// one begins.
     fn update_friction_range(&mut self, ctx: &egui::Context) {
         let state = &mut self.state;
         if self
@@ -277,10 +281,12 @@ impl ViewerApp {
             }
             state.live.show_time(last_s);
         }
-        // Several edits may be answered at once: the delay shown is that of the one that waited longest.
+        // Several edits may be answered at once: the delay shown is that of the one that waited
+        // longest.
         let answered = self.asked.iter().take_while(|(number, _)| *number <= state.live.snapshot.edit).count();
         if let Some((_, began)) = self.asked.drain(..answered).next() {
-            // Without a thread a frame waits for its answer: that time says nothing of the window's.
+            // Without a thread a frame waits for its answer: that time says nothing of the
+            // window's.
             state.solver.edit_latency_s = self.threaded.then(|| began.elapsed().as_secs_f64());
         }
     }
@@ -320,7 +326,8 @@ impl eframe::App for ViewerApp {
     }
 
     fn on_exit(&mut self) {
-        // Closed on purpose: what is not saved is not wanted. What another window left stays until it is decided on.
+        // Closed on purpose: what is not saved is not wanted. What another window left stays until
+        // it is decided on.
         if let Some(autosave) = &mut self.autosave {
             autosave.look(&self.state.document.saved, [false, true], Instant::now());
         }

@@ -1,4 +1,4 @@
-//! The command palette: everything that can be done, found by typing part of its name.
+//! The command palette finds everything that can be done by part of its name.
 
 use cable_core::Model;
 use cable_core::scene::catalog;

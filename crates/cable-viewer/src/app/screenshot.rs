@@ -1,4 +1,4 @@
-//! The window drawn to a picture file, without a window.
+//! The window is drawn to a picture file, without a window.
 
 use std::path::Path;
 
@@ -9,7 +9,8 @@ use image::RgbaImage;
 use crate::ViewerApp;
 use crate::render::offscreen::renderer;
 
-/// Frames after which a picture is taken: the first lays out, the second fits and solves, the others settle scroll bars.
+/// Frames after which a picture is taken: the first lays out, the second fits and solves, the
+/// others settle scroll bars.
 const FRAMES: usize = 6;
 
 /// Draws a scene at a size in points and writes a PNG; `prepare` sets what is to be shown.

@@ -1,4 +1,4 @@
-//! The strip that leads through a guided scene, and the menu that begins one.
+//! A strip leads through a guided scene, and a menu begins one.
 
 use egui::Ui;
 

@@ -1,4 +1,4 @@
-//! Six guided scenes: a few things to do in each, and how the window sees that they were done.
+//! Six guided scenes ask for a few things to do, and the window sees that they were done.
 
 use cable_core::scene::SupportKind;
 

@@ -1,4 +1,5 @@
-//! What a screen reader, and the tests, find on the canvas: a name for each thing where it is painted, and the scene in words.
+//! What a screen reader, and the tests, find on the canvas: a name for each thing where it is
+//! painted, and the scene in words.
 
 use cable_core::math::Point;
 use cable_core::solution::ContactState;

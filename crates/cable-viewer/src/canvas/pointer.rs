@@ -11,7 +11,8 @@ use crate::state::{AppState, Grab, Item, TensionMarker};
 
 /// How near to the cable a double-click adds a waypoint, points.
 const WAYPOINT_REACH: f32 = 14.0;
-/// Zoom per point of wheel: e^0.0025 ≈ a tenth a notch of 40 points. Larger overshoots, smaller tires.
+/// Zoom per point of wheel: e^0.0025 ≈ a tenth a notch of 40 points. Larger overshoots, smaller
+/// tires.
 const WHEEL: f64 = 0.0025;
 
 /// Reads the pointer.

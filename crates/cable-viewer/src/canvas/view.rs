@@ -1,4 +1,4 @@
-//! What every layer paints with: the canvas rectangle, the camera, the colours.
+//! Every layer paints with a view: the canvas rectangle, the camera, the colours.
 
 use cable_core::math::Point;
 use egui::{Align2, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec2};

@@ -1,4 +1,5 @@
-//! Copy and paste of cables, supports, obstacles and loads, within a window and as a table for other programs.
+//! Cables, supports, obstacles and loads are copied and pasted, within a window and as a table for
+//! others.
 
 use std::fmt::Write as _;
 
@@ -14,8 +15,8 @@ use crate::geometry::supports::support_position;
 use crate::state::clipboard::{Clipboard, Thing};
 use crate::state::{AppState, Item};
 
-/// Where something goes that is pasted with no pointer over the canvas: this far from where it was, m. Less: it hides what it
-/// was copied from; more: it is out of view in a small scene.
+/// Where something goes that is pasted with no pointer over the canvas: this far from where it was,
+/// m. Less: it hides what it was copied from; more: it is out of view in a small scene.
 const PASTE_OFFSET_M: Point = [0.5, 0.5];
 
 /// Keeps what is picked; as text it is a table of points.
@@ -129,7 +130,8 @@ fn put_obstacle(state: &mut AppState, mut obstacle: Obstacle, shift: &impl Fn(Po
     Item::Obstacle(state.document.scene.obstacles.len() - 1)
 }
 
-/// A support between the ends of a cable, where the cable is nearest to it. What can only be an end becomes a waypoint.
+/// A support between the ends of a cable, where the cable is nearest to it. What can only be an end
+/// becomes a waypoint.
 fn put_support(state: &mut AppState, cable: usize, support: &Support, at_m: Point) -> Option<Item> {
     let arc_length_m = hit_test::nearest_on(state, cable, at_m)?;
     let place = waypoint_place(state, cable, arc_length_m);

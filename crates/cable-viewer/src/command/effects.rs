@@ -25,8 +25,17 @@ pub struct Effects {
     pub copied: Option<String>,
 }
 
-/// Sends the scene to the worker; `fresh`: nothing of the present simulation is carried over.
-pub fn submit_scene(state: &mut AppState, fresh: bool, effects: &mut Effects) {
+/// Sends a change of the scene to the worker: the present simulation is carried over.
+pub fn submit_edit(state: &mut AppState, effects: &mut Effects) {
+    submit(state, false, effects);
+}
+
+/// Sends another scene to the worker: nothing of the present simulation is carried over.
+pub fn submit_new_scene(state: &mut AppState, effects: &mut Effects) {
+    submit(state, true, effects);
+}
+
+fn submit(state: &mut AppState, fresh: bool, effects: &mut Effects) {
     // An edit is of the present.
     state.live.show_time(None);
     let edit =

@@ -1,4 +1,4 @@
-//! Commands about files, scenes to open, dialogs and the window.
+//! File commands concern files, scenes to open, dialogs and the window.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use cable_core::files::{RunEnd, RunFolder};
 use cable_core::record::{NodeChoice, RunRequest};
 use cable_core::scene::catalog;
 
-use crate::command::effects::{Effects, submit_scene};
+use crate::command::effects::{Effects, submit_new_scene};
 use crate::command::import;
 use crate::command::scene::{self, SceneCommand};
 use crate::io::feedback::{self, Answers};
@@ -156,7 +156,7 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
         }
         FileCommand::RestartWorker => {
             effects.restart_worker = true;
-            submit_scene(state, true, effects);
+            submit_new_scene(state, effects);
         }
         FileCommand::Quit => {
             state.ui.closing = true;
@@ -206,7 +206,7 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
     effects.request.robot = Some(None);
     state.view.camera.fit_wanted = true;
     state.ui.dialog = None;
-    submit_scene(state, true, effects);
+    submit_new_scene(state, effects);
 }
 
 /// Says what a user should know about a run that was opened.
@@ -251,7 +251,8 @@ fn save_run(state: &AppState, path: &Path) -> Result<(), String> {
     for answer in state.live.recording.answers() {
         if let Err(e) = folder.push(answer) {
             let why = e.to_string();
-            // The tables are readable and marked as partial already, whether this can be noted or not.
+            // The tables are readable and marked as partial already, whether this can be noted or
+            // not.
             let _ = folder.finish(RunEnd::Partial(why.clone()));
             return Err(why);
         }

@@ -1,4 +1,4 @@
-//! Terrain and beams from tables and drawings, added to a scene.
+//! Terrain and beams are read from tables and drawings and added to a scene.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What can be done to a thing of the scene whatever it is: move it, take it out.
+//! Any thing of the scene can be moved and taken out, whatever it is.
 
 use cable_core::math::Point;
 use cable_core::scene::ground::Ground;
@@ -99,7 +99,8 @@ pub fn shifted(p: Point, from: Point, to: Point) -> Point {
 
 /// Takes things out, none of them twice.
 pub fn remove_all(state: &mut AppState, mut items: Vec<Item>) {
-    // From the last to the first of each kind, corners and supports before what they are of: an index stays what it was.
+    // From the last to the first of each kind, corners and supports before what they are of: an
+    // index stays what it was.
     let rank = |item: &Item| match *item {
         Item::Corner { obstacle, corner } => (0, obstacle, corner),
         Item::Support { cable, support } => (1, cable, support),
@@ -222,7 +223,8 @@ pub fn add_waypoint(state: &mut AppState, cable: usize, arc_length_m: f64, at_m:
     state.selection.selected = Some(Item::Support { cable, support: place });
 }
 
-/// Which place among the supports a point of the cable falls into: after those that sit before it now.
+/// Which place among the supports a point of the cable falls into: after those that sit before it
+/// now.
 pub fn waypoint_place(state: &AppState, cable: usize, arc_length_m: f64) -> usize {
     let answer = state.live.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable));
     let (Some(answer), Some(c)) = (answer, state.document.scene.cables.get(cable)) else {

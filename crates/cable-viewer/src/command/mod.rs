@@ -1,5 +1,10 @@
-//! Every edit and action of the window. Panels, canvas, menus and keys only push commands;
+//! Commands are every edit and action of the window. Panels, canvas, menus and keys only push them;
 //! [`apply`] is the one place that changes [`AppState`], split by group.
+//!
+//! - `scene`, `view`, `playback`, `file`: the commands and what each does
+//! - `effects`: what applying them asks of the worker and the window
+//! - `items`, `support_kind`, `route`: rules of edits that several commands share
+//! - `clipboard`, `import`: copy, paste, and maps from tables and drawings
 
 pub mod clipboard;
 pub mod effects;
@@ -12,7 +17,7 @@ pub mod scene;
 pub mod support_kind;
 pub mod view;
 
-pub use crate::command::effects::{Effects, submit_scene};
+pub use crate::command::effects::{Effects, submit_edit, submit_new_scene};
 pub use crate::command::file::FileCommand;
 pub use crate::command::playback::PlaybackCommand;
 pub use crate::command::scene::SceneCommand;
@@ -46,11 +51,11 @@ pub fn apply(state: &mut AppState, command: Command, effects: &mut Effects) {
         Command::Playback(c) => playback::apply(state, c, effects),
         Command::SetModel(model) => {
             state.solver.model = model;
-            submit_scene(state, false, effects);
+            submit_edit(state, effects);
         }
         Command::SetSettings(settings) => {
             state.solver.settings = settings;
-            submit_scene(state, false, effects);
+            submit_edit(state, effects);
         }
         Command::View(c) => view::apply(state, c, effects),
         Command::File(c) => file::apply(state, c, effects),

@@ -1,4 +1,4 @@
-//! Commands about time and the robot that moves in it.
+//! Playback commands concern time and the robot that moves in it.
 
 use cable_core::scene::SupportKind;
 
@@ -8,7 +8,8 @@ use crate::state::undo::EditKind;
 use crate::state::{AppState, Playback};
 use crate::worker::request::{Edit, Request, Resume};
 
-/// A support that is farther than this from where it was has been moved since, m. Less: rounding counts as moving.
+/// A support that is farther than this from where it was has been moved since, m. Less: rounding
+/// counts as moving.
 const MIN_MOVE_M: f64 = 1e-6;
 
 /// Time.

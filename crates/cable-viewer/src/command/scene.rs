@@ -1,10 +1,10 @@
-//! Commands that change the scene.
+//! Scene commands change the scene.
 
 use cable_core::math::Point;
 use cable_core::scene::{Environment, RobotTask, Support};
 use cable_core::{Cable, Load, Obstacle, Robot, Scene};
 
-use crate::command::effects::{Effects, next_number, submit_scene};
+use crate::command::effects::{Effects, next_number, submit_edit};
 use crate::command::items::{
     add_waypoint, drop_lost_selection, hitched, move_item, remove_all, set, set_robot, unique,
 };
@@ -53,7 +53,8 @@ pub enum SceneCommand {
         /// Its new self.
         value: Load,
     },
-    /// Puts a thing (a support, a whole obstacle by its first corner or centre, a corner) at a point, m.
+    /// Puts a thing (a support, a whole obstacle by its first corner or centre, a corner) at a
+    /// point, m.
     Move {
         /// What.
         item: Item,
@@ -92,7 +93,8 @@ pub enum SceneCommand {
     Copy,
     /// Keeps what is picked and takes it out.
     Cut,
-    /// Puts what was copied into the scene, its middle at a point (m), else a little beside where it was.
+    /// Puts what was copied into the scene, its middle at a point (m), else a little beside where
+    /// it was.
     Paste {
         /// Where, m.
         at_m: Option<Point>,
@@ -183,7 +185,7 @@ fn after_edit(state: &mut AppState, dragged: Option<(usize, usize, Point)>, effe
             state.selection.spring_support = by_spring.then_some((cable, support));
             draw_support(state, (cable, support, to_m), effects);
         }
-        _ => submit_scene(state, false, effects),
+        _ => submit_edit(state, effects),
     }
 }
 

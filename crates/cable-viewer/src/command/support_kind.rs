@@ -1,4 +1,4 @@
-//! What becomes of a support when its kind changes: what the new kind needs is filled in, what it cannot have goes.
+//! A support that changes its kind gets what the new kind needs and loses what it cannot have.
 
 use cable_core::Support;
 use cable_core::math::Point;
@@ -25,10 +25,12 @@ pub fn refusal(kind: SupportKind, end: bool, robot: bool) -> Option<&'static str
     }
 }
 
-/// Force a support gets when it becomes a load, N: shows in every scene and breaks no cable of the presets.
+/// Force a support gets when it becomes a load, N: shows in every scene and breaks no cable of the
+/// presets.
 const FIRST_LOAD_N: Point = [0.0, -10.0];
 
-/// The support as another kind. `at_m` and `arc_length_m`: where it is now; `end`: it is the cable's start or end.
+/// The support as another kind. `at_m` and `arc_length_m`: where it is now; `end`: it is the
+/// cable's start or end.
 #[must_use]
 pub fn of_kind(support: &Support, kind: SupportKind, at_m: Point, arc_length_m: f64, end: bool) -> Support {
     let mut new = Support::new(support.name.clone(), kind);

@@ -1,4 +1,4 @@
-//! Commands that change what is shown.
+//! View commands change what is shown, not what is solved.
 
 use std::sync::Arc;
 
@@ -56,7 +56,8 @@ pub enum ViewCommand {
     Reach(bool),
     /// What of it is asked and shown.
     SetReach(safe_reach::Choice),
-    /// Shows what less and more friction does, or not any more; least and greatest friction over that of the scene.
+    /// Shows what less and more friction does, or not any more; least and greatest friction over
+    /// that of the scene.
     Spread(bool, [f64; 2]),
     /// Ask what neglecting bending stiffness changes.
     AskBending,
@@ -131,7 +132,8 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             };
             let (scene, settings, across) =
                 (state.document.scene.clone(), state.solver.settings, state.analysis.safe_reach.choice.across);
-            // From where the cable is on screen, once time has run: a hand or the robot may have taken it elsewhere.
+            // From where the cable is on screen, once time has run: a hand or the robot may have
+            // taken it elsewhere.
             let now = state.live.snapshot.solution.clone().filter(|s| s.time_s > 0.0 && !state.live.snapshot.stale);
             effects.reach = Some(Some(Box::new(ReachQuery { scene, now, settings, moved, corners_m, across })));
         }

@@ -1,12 +1,14 @@
-//! The arrows of loads have a tail, a head that can be dragged, and a length that says how large the force is.
+//! The arrows of loads have a tail, a head that can be dragged, and a length that says how large
+//! the force is.
 
 use cable_core::math::Point;
 use egui::{Vec2, vec2};
 
 use crate::state::AppState;
 
-/// Length of a load's arrow of 1 N, points; it grows with the square root. Loads have a scale of their own that does not depend
-/// on the answer, so that the head of an arrow can be dragged: 100 N are 48 points.
+/// Length of a load's arrow of 1 N, points; it grows with the square root. Loads have a scale of
+/// their own that does not depend on the answer, so that the head of an arrow can be dragged: 100 N
+/// are 48 points.
 pub const LOAD_POINTS: f64 = 4.8;
 
 /// Shortest and longest arrow of a load, points.

@@ -1,4 +1,4 @@
-//! The rectangle of the world that things take up.
+//! The bounds are the rectangle of the world that things take up.
 
 use cable_core::math::Point;
 use cable_core::scene::Shape;
@@ -70,7 +70,8 @@ pub fn scene(state: &AppState) -> [Point; 2] {
     bounds.or_unit()
 }
 
-/// Left and right end of the ground, where there is some, within what a robot could be led to by its cable, m.
+/// Left and right end of the ground, where there is some, within what a robot could be led to by
+/// its cable, m.
 #[must_use]
 pub fn ground(state: &AppState) -> [f64; 2] {
     let mut bounds = Bounds::EMPTY;

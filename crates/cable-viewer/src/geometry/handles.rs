@@ -1,4 +1,4 @@
-//! Where things that can be moved are.
+//! A handle is the point by which a thing of the scene is dragged.
 
 use cable_core::math::Point;
 use cable_core::scene::Shape;
@@ -39,7 +39,8 @@ pub fn of(state: &AppState, item: Item) -> Option<Point> {
     }
 }
 
-/// What moves when a thing is moved by a vector (m): it, or all that is picked if it is; each with where it goes to, m.
+/// What moves when a thing is moved by a vector (m): it, or all that is picked if it is; each with
+/// where it goes to, m.
 #[must_use]
 pub fn moved(state: &AppState, item: Item, by_m: Point) -> Vec<(Item, Point)> {
     let items = if state.selection.contains(item) { state.selection.picks() } else { vec![item] };

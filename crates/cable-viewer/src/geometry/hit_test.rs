@@ -1,4 +1,4 @@
-//! What lies under a point of the screen.
+//! The hit test finds what lies under a point of the screen.
 
 use cable_core::math::Point;
 use cable_core::scene::Shape;
@@ -76,7 +76,8 @@ pub fn handles_shown(state: &AppState, index: usize) -> bool {
     }
 }
 
-/// How near counts as on a corner, points: less where corners are close, so that the body can still be picked.
+/// How near counts as on a corner, points: less where corners are close, so that the body can still
+/// be picked.
 fn corner_reach(state: &AppState, points: &[Point], corner: usize) -> f32 {
     let Some(&p) = points.get(corner) else { return 0.0 };
     let neighbours = [corner.checked_sub(1), corner.checked_add(1)].into_iter().flatten().filter_map(|k| points.get(k));

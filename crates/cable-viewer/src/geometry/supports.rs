@@ -1,4 +1,5 @@
-//! The supports of a scene have a position on screen: where they are put, or where the cable took them.
+//! The supports of a scene have a position on screen: where they are put, or where the cable took
+//! them.
 
 use cable_core::math::Point;
 use cable_core::scene::SupportKind;
@@ -34,8 +35,8 @@ pub fn support_position(state: &AppState, cable: usize, support: usize) -> Optio
     }
 }
 
-/// Where a support is that a hand draws while masses move, and where the spring between them ends, or where it is drawn to without one, m; None where it is
-/// there.
+/// Where a support is that a hand draws while masses move, and where the spring between them ends,
+/// or where it is drawn to without one, m; None where it is there.
 #[must_use]
 pub fn hand_spring(state: &AppState, cable: usize, support: usize) -> Option<[Point; 2]> {
     if let Some(now) = reaction(state, cable, support)

@@ -1,5 +1,5 @@
-//! Unsaved changes kept on disk, for the case that the window dies: a display server that goes takes every program with
-//! it, without a word, so nothing can be saved at that moment.
+//! Unsaved changes kept on disk, for the case that the window dies: a display server that goes
+//! takes every program with it, without a word, so nothing can be saved at that moment.
 
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 
 use cable_core::{Scene, files};
 
-/// From a change to its copy on disk. Longer: more is lost; shorter: a long drag writes all the time.
+/// From a change to its copy on disk. Longer: more is lost; shorter: a long drag writes all the
+/// time.
 const PERIOD: Duration = Duration::from_secs(5);
 
 /// The file that holds unsaved changes, while there are any.
@@ -60,8 +61,8 @@ impl Autosave {
         }
     }
 
-    /// Looks at the scene: `unsaved` if it differs from its file, `whole` if it can be read again. Returns after how
-    /// long to look again, if that matters.
+    /// Looks at the scene: `unsaved` if it differs from its file, `whole` if it can be read again.
+    /// Returns after how long to look again, if that matters.
     pub fn look(&mut self, scene: &Scene, [unsaved, whole]: [bool; 2], now: Instant) -> Option<Duration> {
         self.take_result();
         if !unsaved {

@@ -1,4 +1,4 @@
-//! What a user thinks of the window, as a row of a table in a file of the user's: nothing is sent anywhere.
+//! Feedback is written as a row of a table in a file of the user's: nothing is sent anywhere.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What a graph shows, as a file: CSV in SI units, SVG and PNG as drawn.
+//! A graph is written to a file: CSV in SI units, SVG and PNG as drawn.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -54,7 +54,8 @@ fn visible<'a>(line: &'a Series, sheet: &Sheet) -> &'a [[f64; 2]] {
     line.points.get(from..to).unwrap_or_default()
 }
 
-/// A row for each place, a column for each line; SI units, and the fewest digits that read back to the same bits.
+/// A row for each place, a column for each line; SI units, and the fewest digits that read back to
+/// the same bits.
 #[must_use]
 pub fn csv(sheet: &Sheet) -> String {
     let name = |text: &str| text.to_lowercase().replace([' ', ',', '"', '\n', '\r'], "_");

@@ -1,4 +1,5 @@
-//! This wing reads and writes every file of the window; its errors are sentences that a dialog can show.
+//! This wing reads and writes every file of the window; its errors are sentences that a dialog can
+//! show.
 //!
 //! - `scene_file`: scenes
 //! - `saved_run`: the folder of a run, read again

@@ -8,7 +8,8 @@ use cable_core::scene::SupportKind;
 use cable_core::solution::{CableSolution, Cost, Energy, SupportReaction, TensionPeak, TensionPeaks, Warning};
 use cable_core::{Model, Scene, Solution, files};
 
-/// Largest table read, bytes: half an hour of 200 nodes at 60 answers a second is 3 GB; such a run is for other programs.
+/// Largest table read, bytes: half an hour of 200 nodes at 60 answers a second is 3 GB; such a run
+/// is for other programs.
 const MAX_BYTES: u64 = 512 << 20;
 
 /// A run as it lies in a folder.
@@ -18,7 +19,8 @@ pub struct SavedRun {
     pub scene: Scene,
     /// Its instants, oldest first.
     pub answers: Vec<Solution>,
-    /// What the user should know about it, in sentences: that it is partial, that figures are missing.
+    /// What the user should know about it, in sentences: that it is partial, that figures are
+    /// missing.
     pub remarks: Vec<String>,
 }
 
@@ -38,7 +40,8 @@ pub fn read_run(folder: &Path) -> Result<SavedRun, String> {
     }
     let mut answers = answers(&run.scene, &history, nodes, &events);
     let count = answers.len();
-    // A run may have written its nodes less often than its history: only where there are nodes is there a picture.
+    // A run may have written its nodes less often than its history: only where there are nodes is
+    // there a picture.
     answers.retain(|a| a.cables.iter().any(|c| !c.nodes.is_empty()));
     if answers.is_empty() {
         return Err("its nodes.csv has no nodes, which the picture is drawn from".to_owned());
@@ -49,7 +52,8 @@ pub fn read_run(folder: &Path) -> Result<SavedRun, String> {
     Ok(SavedRun { scene: run.scene, answers, remarks })
 }
 
-/// Figures of nodes that the run left out become 0; a sentence about which. Places cannot be left out.
+/// Figures of nodes that the run left out become 0; a sentence about which. Places cannot be left
+/// out.
 fn fill_missing(nodes: &mut [NodeRow]) -> Result<Option<String>, String> {
     let Some(first) = nodes.first().map(|row| row.node) else { return Ok(None) };
     if [first.arc_length_m, first.x_m, first.y_m].iter().any(|v| v.is_nan()) {
@@ -119,7 +123,8 @@ fn extra(history: &HistoryTable, name: &str, k: usize) -> Option<f64> {
     history.extras.iter().find(|e| e.name == name)?.values.get(k).copied()
 }
 
-/// Tables hold the peaks over all cables: the first cable is given them, and keeps the others out of it.
+/// Tables hold the peaks over all cables: the first cable is given them, and keeps the others out
+/// of it.
 fn peaks(history: &HistoryTable, k: usize, cables: &mut [CableSolution]) {
     let time_s = history.time_s.get(k).copied().unwrap_or(0.0);
     let of = |name| Some(TensionPeak { tension_n: extra(history, name, k)?, time_s, ..TensionPeak::default() });
@@ -139,7 +144,8 @@ fn energy(history: &HistoryTable, k: usize) -> Energy {
     }
 }
 
-/// Supports where the nodes of their cable end or lie nearest to where the scene has them; tables do not hold places.
+/// Supports where the nodes of their cable end or lie nearest to where the scene has them; tables
+/// do not hold places.
 fn reactions(scene: &Scene, history: &HistoryTable, k: usize, cables: &mut [CableSolution]) {
     let mut columns = history.supports.iter();
     for (of, cable) in scene.cables.iter().zip(cables) {

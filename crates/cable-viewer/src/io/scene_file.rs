@@ -1,4 +1,4 @@
-//! Scenes from and to files, with errors in words a dialog can show.
+//! Scenes are read from and written to files, with errors in words a dialog can show.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Something long that is computed beside the window: a thread of its own, its progress, and its end on request.
+//! A job computes something long beside the window, on a thread of its own, and ends on request.
 
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -41,7 +41,8 @@ impl<T> Shared<T> {
 }
 
 impl<T: Clone + Send + 'static> Job<T> {
-    /// Starts it on a thread of this name; `shown` is called whenever there is something new to show.
+    /// Starts it on a thread of this name; `shown` is called whenever there is something new to
+    /// show.
     #[must_use]
     pub fn start(
         name: &str,

@@ -1,4 +1,4 @@
-//! The ribbon of less and more friction, computed beside the window whenever scene, model or run have changed.
+//! A job computes the ribbon of less and more friction whenever scene, model or run have changed.
 
 use std::sync::Arc;
 
@@ -13,7 +13,8 @@ pub type Outcome = (Arc<FrictionRange>, Arc<Query>);
 /// How far it is.
 pub type Progress = background::Progress<Outcome>;
 
-/// Longest run that is followed, s: three runs of it. Longer: a minute of both cores for a ribbon; shorter: a drive is cut off.
+/// Longest run that is followed, s: three runs of it. Longer: a minute of both cores for a ribbon;
+/// shorter: a drive is cut off.
 pub const MAX_RUN_S: f64 = 120.0;
 
 /// Friction that is asked about.
@@ -70,7 +71,8 @@ impl Job {
 /// Least move of a support between two answers that is a hand's, m: less is rounding.
 const MIN_MOVE_M: f64 = 1e-9;
 
-/// What hands did in a run: where supports that move by nothing else went, and what the robot was told.
+/// What hands did in a run: where supports that move by nothing else went, and what the robot was
+/// told.
 #[must_use]
 pub fn hands(scene: &Scene, answers: &[Solution]) -> Vec<Action> {
     let by_hand = scene.cables.iter().enumerate().flat_map(|(cable, c)| {

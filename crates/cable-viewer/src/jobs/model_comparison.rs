@@ -1,4 +1,5 @@
-//! A scene at rest by every model, computed beside the window: what each answers and costs, and why others do not.
+//! A job solves a scene at rest by every model and keeps what each answers and costs, or why it
+//! does not.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

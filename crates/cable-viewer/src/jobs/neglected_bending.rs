@@ -1,4 +1,4 @@
-//! What neglecting the bending stiffness of cables changes, computed beside the window when it is asked for.
+//! A job says what neglecting the bending stiffness of cables changes, when it is asked for.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! The map of where the robot, or an end of a cable, can be taken, computed beside the window.
+//! A job maps where the robot, or an end of a cable, can be taken.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -11,17 +11,19 @@ use cable_core::{Scene, Settings, Solution};
 
 use crate::jobs::background;
 
-/// Places of a robot that are looked at. More: finer and, with the way back from each, slower by the square; fewer: mounds fall
-/// between them.
+/// Places of a robot that are looked at. More: finer and, with the way back from each, slower by
+/// the square; fewer: mounds fall between them.
 pub const PLACES: usize = 41;
 
 /// Fewest and most places of an end side by side.
 pub const ACROSS: [usize; 2] = [8, 96];
 
-/// The ways back are followed from every so manieth place, both ways: as much work as the places themselves, not thirty times.
+/// The ways back are followed from every so manieth place, both ways: as much work as the places
+/// themselves, not thirty times.
 const RETURN_COARSENING: f64 = 2.0;
 
-/// How much more is shown at least before the next look, as a share: more often, and drawing it takes longer than finding it.
+/// How much more is shown at least before the next look, as a share: more often, and drawing it
+/// takes longer than finding it.
 const MIN_PROGRESS_STEP: f64 = 0.01;
 
 /// What is taken somewhere.

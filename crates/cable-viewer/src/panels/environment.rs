@@ -1,4 +1,4 @@
-//! Environment panel: gravity, wind, temperature, view.
+//! The environment panel edits gravity, wind, temperature and view.
 
 use cable_core::scene::{Environment, View};
 use egui::Ui;

@@ -1,4 +1,5 @@
-//! The panels are the forms beside the canvas: each reads the state and pushes commands, nothing else.
+//! The panels are the forms beside the canvas: each reads the state and pushes commands, nothing
+//! else.
 //!
 //! - `scene`, `cable`, `environment`, `robot`, `solver`: what is edited, on the left
 //! - `readouts`, `warnings`, `analysis`: what was answered, on the right

@@ -1,4 +1,4 @@
-//! Playback panel: pause, speed, step, reset.
+//! The playback panel pauses, steps and resets time and sets its speed.
 
 use egui::{Button, Slider, SliderClamping, Ui};
 
@@ -9,10 +9,12 @@ use crate::units::unit::Unit;
 use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
 
-/// Below this share of the speed asked for, the shortfall is named: smaller ones are jitter of the clock.
+/// Below this share of the speed asked for, the shortfall is named: smaller ones are jitter of the
+/// clock.
 const KEEPS_UP: f64 = 0.9;
 
-/// Width of each button, points: “Pause” and its sign fit, and nothing moves when it turns to “Play”.
+/// Width of each button, points: “Pause” and its sign fit, and nothing moves when it turns to
+/// “Play”.
 const BUTTON_WIDTH: f32 = 72.0;
 /// Width of the typed speed, points.
 const SPEED_WIDTH: f32 = 56.0;

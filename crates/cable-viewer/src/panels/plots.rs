@@ -1,4 +1,4 @@
-//! Plots panel: a quantity over time and along the cable, with cursors and export.
+//! The plots panel shows a quantity over time and along the cable, with cursors and export.
 
 use egui::{ComboBox, Id, Ui};
 

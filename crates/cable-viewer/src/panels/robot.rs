@@ -1,4 +1,4 @@
-//! Robot panel: driving by hand, its path, and what its motion is made of.
+//! The robot panel drives by hand, edits the path, and shows what the motion is made of.
 
 use cable_core::Robot;
 use cable_core::robot::RobotReport;

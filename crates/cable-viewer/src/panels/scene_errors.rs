@@ -1,4 +1,4 @@
-//! What is wrong with the scene, shown where it is typed, with the fix where there is one.
+//! An error of the scene is shown where it was typed, with the fix where there is one.
 
 use cable_core::error::SceneFault;
 use cable_core::scene::SupportKind;
@@ -72,7 +72,8 @@ pub fn fix(state: &AppState) -> Option<Fix> {
     let cable = state.document.scene.cables.get(index)?;
     match &fault.fault {
         SceneFault::TooShort { length_m, way_m, .. } => {
-            // With a grip between the ends it is one stretch that is too short, which more length at the end does not help.
+            // With a grip between the ends it is one stretch that is too short, which more length
+            // at the end does not help.
             let grips = cable.supports.iter().filter(|s| !matches!(s.kind, SupportKind::Pulley | SupportKind::Free));
             if grips.count() > 2 {
                 return None;

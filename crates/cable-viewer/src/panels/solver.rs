@@ -1,4 +1,4 @@
-//! Solver panel: the model, its mesh and accuracy, what it did.
+//! The solver panel edits model, mesh and accuracy, and shows what the solver did.
 
 use cable_core::model::input_filter;
 use cable_core::problem::problems;

@@ -1,4 +1,4 @@
-//! The timeline: what was recorded, what happened in it, and which of it is shown.
+//! The timeline shows what was recorded, what happened in it, and which of it is on screen.
 
 use cable_core::solution::WarningKind;
 use egui::{Color32, Rect, Sense, Slider, Stroke, Ui, pos2, vec2};

@@ -1,4 +1,5 @@
-//! Warnings panel: what is wrong, where, why, what it does to the result, and the fix where one change is one.
+//! Warnings panel: what is wrong, where, why, what it does to the result, and the fix where one
+//! change is one.
 
 use cable_core::scene::SupportKind;
 use cable_core::solution::{Warning, WarningKind};
@@ -11,11 +12,12 @@ use crate::state::{AppState, Item, WorkerStatus};
 use crate::units::{format, translate, unit};
 use crate::widgets::icon::{self, Icon};
 
-/// Most warnings drawn; the rest is counted. A cable that is too tight everywhere can have one a node.
+/// Most warnings drawn; the rest is counted. A cable that is too tight everywhere can have one a
+/// node.
 const MAX_ROWS: usize = 30;
 
-/// Most of the window's height that warnings take; more of them scroll. More: the readouts below are out of sight when something is wrong;
-/// less: a second warning is.
+/// Most of the window's height that warnings take; more of them scroll. More: the readouts below
+/// are out of sight when something is wrong; less: a second warning is.
 const SHARE: f32 = 0.42;
 
 /// How bad something is.

@@ -1,4 +1,4 @@
-//! A quantity along the cable.
+//! A graph shows a quantity along the cable.
 
 use cable_core::Cable;
 use cable_core::analysis::friction_range::TensionRange;

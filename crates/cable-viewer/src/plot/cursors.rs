@@ -1,4 +1,5 @@
-//! Up to two cursors in a graph: the first click sets one, the second another, the third takes both away.
+//! Up to two cursors in a graph: the first click sets one, the second another, the third takes both
+//! away.
 
 use egui::{Id, Ui};
 
@@ -41,7 +42,8 @@ impl Cursors {
         ui.data_mut(|d| d.insert_temp(id(title), places));
     }
 
-    /// What they read: values of the first line at each, and the difference; symbols with how many SI units they hold.
+    /// What they read: values of the first line at each, and the difference; symbols with how many
+    /// SI units they hold.
     #[must_use]
     pub fn text(&self, [(x_symbol, x_si), (y_symbol, si)]: [(&str, f64); 2], line: Option<&Series>) -> Option<String> {
         let line = line?;

@@ -1,5 +1,5 @@
-//! A graph that has the focus, by keys: arrows move the last cursor, or set one; with shift the part in view; up and down zoom about the
-//! cursor. Enter sets another cursor, as a click does.
+//! A graph that has the focus, by keys: arrows move the last cursor, or set one; with shift the
+//! part in view; up and down zoom about the cursor. Enter sets another cursor, as a click does.
 
 use egui::{EventFilter, Key, Modifiers};
 use egui_plot::PlotUi;
@@ -8,7 +8,8 @@ use egui_plot::PlotUi;
 const ZOOM: f64 = 1.26;
 /// What an arrow moves the part in view by, as a share of it.
 const PAN: f64 = 0.125;
-/// What an arrow moves a cursor by, as a share of what is in view: held down it crosses it in a few seconds.
+/// What an arrow moves a cursor by, as a share of what is in view: held down it crosses it in a few
+/// seconds.
 const STEP: f64 = 0.01;
 
 /// What keys asked of a graph.

@@ -32,16 +32,19 @@ const CURSOR: Color32 = Color32::GRAY;
 /// Zoom per point of wheel, as on the canvas.
 const WHEEL: f32 = 0.0025;
 
-/// A limit is kept in view once the data reach this share of it; before, it would press the data flat.
+/// A limit is kept in view once the data reach this share of it; before, it would press the data
+/// flat.
 const LIMIT_IN_VIEW_FROM: f64 = 0.5;
 /// Free room above the data, as a share of their range.
 const HEADROOM: f64 = 0.12;
 
-/// Lower graphs (points) name their unit only beside the axis: the whole name would stand over the title.
+/// Lower graphs (points) name their unit only beside the axis: the whole name would stand over the
+/// title.
 const UPRIGHT: f32 = 110.0;
 /// Lowest graph that can still be read, points.
 const LEAST_HEIGHT: f32 = 70.0;
-/// Distance of numbers on the horizontal axis, points: close enough to read between, far enough not to touch.
+/// Distance of numbers on the horizontal axis, points: close enough to read between, far enough not
+/// to touch.
 const COLUMN: f32 = 66.0;
 /// Distance of numbers on the vertical axis, points.
 const ROW: f32 = 24.0;
@@ -49,8 +52,8 @@ const ROW: f32 = 24.0;
 /// Room for the export button beside the legend, points.
 const EXPORT: f32 = 62.0;
 
-/// A held line that goes up and down by this many times its whole height is drawn solid and thin. More: frames with long runs take
-/// longer; fewer: a few swings lose their dashes.
+/// A held line that goes up and down by this many times its whole height is drawn solid and thin.
+/// More: frames with long runs take longer; fewer: a few swings lose their dashes.
 const OSCILLATION_RATIO: f64 = 40.0;
 
 /// Length of a line in the legend, points.
@@ -93,7 +96,8 @@ pub struct Graph<'a> {
     pub follow: bool,
     /// Height, points.
     pub height: f32,
-    /// Least and greatest value with less and more friction at places across, SI; empty where it is not known.
+    /// Least and greatest value with less and more friction at places across, SI; empty where it is
+    /// not known.
     pub ribbon: Vec<[f64; 3]>,
     /// A time to mark, where one is shown that is not the present.
     pub mark: Option<f64>,
@@ -253,8 +257,8 @@ fn draw_ribbon(plot: &mut PlotUi<'_>, ribbon: &[[f64; 3]], [x_si, si]: [f64; 2])
     plot.add(egui_plot::FilledArea::new(RIBBON, &xs, &low, &high).fill_color(colour).allow_hover(false));
 }
 
-/// Colour, style and width with which it is drawn. Where it goes up and down in every column, dashes cannot be seen, and would be
-/// thousands.
+/// Colour, style and width with which it is drawn. Where it goes up and down in every column,
+/// dashes cannot be seen, and would be thousands.
 fn line_look(line: &Series, k: usize) -> (Color32, LineStyle, f32) {
     let (colour, style) = line_style(line, k);
     if line.reference.is_some() && oscillates(&line.points) {
@@ -328,8 +332,8 @@ fn tick(mark: GridMark) -> String {
     format!("{:.decimals$}", mark.value + 0.0).replace('-', "−")
 }
 
-/// What the colours mean, on one line above the graph, where it hides nothing. Limits out of view are not drawn and so
-/// not named; what finds no room is told on hover.
+/// What the colours mean, on one line above the graph, where it hides nothing. Limits out of view
+/// are not drawn and so not named; what finds no room is told on hover.
 fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series], high: f64) -> (Id, bool) {
     let mut entries: Vec<(String, Color32, bool)> =
         lines.iter().enumerate().map(|(k, l)| (l.name.clone(), line_style(l, k).0, l.reference.is_some())).collect();

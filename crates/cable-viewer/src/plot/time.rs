@@ -1,4 +1,5 @@
-//! The largest tension and the pulls at both ends, the robot and energies against time.
+//! A graph shows the largest tension and the pulls at both ends, the robot or energies against
+//! time.
 
 use cable_core::{Cable, Scene};
 use egui::Ui;
@@ -12,8 +13,8 @@ use crate::state::AppState;
 use crate::state::questions::friction_answer;
 use crate::units::unit::Unit;
 
-/// Between two columns of a line of more samples than can be told apart, points: lines are as wide. Less: twice the triangles for the same
-/// picture; more: peaks look blunt.
+/// Between two columns of a line of more samples than can be told apart, points: lines are as wide.
+/// Less: twice the triangles for the same picture; more: peaks look blunt.
 const COLUMN: f32 = 2.0;
 
 /// Names the graph.
@@ -21,7 +22,8 @@ const TITLE: &str = "Over time";
 /// Shortest time axis, s: the first frames would otherwise jump.
 const SHORTEST_S: f64 = 1.0;
 
-/// Draws the first one. Stress and strain follow from tension for a single cable only; with several, tension is shown.
+/// Draws the first one. Stress and strain follow from tension for a single cable only; with
+/// several, tension is shown.
 pub fn ui(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> GraphResponse {
     graph(ui, state, view, (TITLE, height))
 }
@@ -78,7 +80,8 @@ fn ribbon(state: &AppState, cable: &Cable, measure: Measure) -> Vec<[f64; 3]> {
     found.over_time.iter().map(|b| [b.at, b.low_n * scale, b.high_n * scale]).collect()
 }
 
-/// The lines of a measure, SI, between two times: thinned to `columns` of the screen if there are any; then those of held runs.
+/// The lines of a measure, SI, between two times: thinned to `columns` of the screen if there are
+/// any; then those of held runs.
 fn lines(state: &AppState, scene: &Scene, measure: Measure, (seen, columns): ([f64; 2], Option<usize>)) -> Vec<Series> {
     let mut lines = own(state, scene, measure, (seen, columns));
     for (k, held) in state.analysis.references.iter().enumerate() {
@@ -89,7 +92,8 @@ fn lines(state: &AppState, scene: &Scene, measure: Measure, (seen, columns): ([f
         };
         let mut points = line.view(seen, columns.unwrap_or(usize::MAX));
         if let Some(columns) = columns {
-            // Blocks are finer than columns: a line of as many points as can be told apart is drawn in a third of the time.
+            // Blocks are finer than columns: a line of as many points as can be told apart is drawn
+            // in a third of the time.
             points = thin(points.into_iter(), columns);
         }
         points.iter_mut().for_each(|p| p[1] *= scale);

@@ -1,4 +1,4 @@
-//! What a graph shows upwards: a quantity of the cable, or of the robot and the whole.
+//! A measure is what a graph shows upwards: a quantity of the cable, or of the robot and the whole.
 
 use cable_core::Cable;
 
@@ -121,7 +121,8 @@ impl Measure {
         }
     }
 
-    /// The quantity of the cable it is, or the tension where it is none: what a graph along the cable shows.
+    /// The quantity of the cable it is, or the tension where it is none: what a graph along the
+    /// cable shows.
     #[must_use]
     pub fn quantity(self) -> Quantity {
         match self {

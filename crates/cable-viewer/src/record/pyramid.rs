@@ -1,8 +1,9 @@
-//! A long line with the least and greatest sample of every block of it, of every block of blocks, and so on: what a screen can
-//! show of any part of it is found in a time that grows with the columns of the screen, not with the samples.
+//! A long line with the least and greatest sample of every block of it, of every block of blocks,
+//! and so on: what a screen can show of any part of it is found in a time that grows with the
+//! columns of the screen, not with the samples.
 
-/// Samples in a block, blocks in a block of blocks. Larger: more to look through at the ends; smaller: more memory (a third of
-/// the line at 4).
+/// Samples in a block, blocks in a block of blocks. Larger: more to look through at the ends;
+/// smaller: more memory (a third of the line at 4).
 const FAN: usize = 4;
 
 /// A line with its extremes.
@@ -44,7 +45,8 @@ impl Pyramid {
         &self.points
     }
 
-    /// The part between two places, in at most some samples a column, with every column's least and greatest among them.
+    /// The part between two places, in at most some samples a column, with every column's least and
+    /// greatest among them.
     #[must_use]
     pub fn view(&self, [left, right]: [f64; 2], columns: usize) -> Vec<[f64; 2]> {
         // One on each side, so that the line reaches the frame.

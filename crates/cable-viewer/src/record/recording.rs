@@ -1,5 +1,5 @@
-//! What was seen since the last start: every answer within a memory budget, what happened in between, and which of it is
-//! shown.
+//! What was seen since the last start: every answer within a memory budget, what happened in
+//! between, and which of it is shown.
 
 use std::sync::Arc;
 
@@ -7,9 +7,10 @@ use cable_core::Solution;
 use cable_core::record::History;
 use cable_core::solution::{Warning, WarningKind};
 
-/// Memory for answers, bytes: 512 MiB. Ten minutes of 200 nodes at 60 answers a second are 1 GB; beyond the budget every
-/// second answer of the older half is left out, again and again, so that the recent past keeps its full rate and nothing is
-/// forgotten altogether. More costs small machines their memory; less makes old answers coarse.
+/// Memory for answers, bytes: 512 MiB. Ten minutes of 200 nodes at 60 answers a second are 1 GB;
+/// beyond the budget every second answer of the older half is left out, again and again, so that
+/// the recent past keeps its full rate and nothing is forgotten altogether. More costs small
+/// machines their memory; less makes old answers coarse.
 pub const BUDGET_BYTES: usize = 512 << 20;
 
 /// Most events kept: what trembles for hours must not fill the memory.
@@ -105,7 +106,8 @@ impl Recording {
         Some(Arc::new(self.frames.at(self.shown_s?)?.clone()))
     }
 
-    /// Time of the answer one before (−1) or after (+1) the one shown, s; None where there is none. `now_s`: the present.
+    /// Time of the answer one before (−1) or after (+1) the one shown, s; None where there is none.
+    /// `now_s`: the present.
     #[must_use]
     pub fn neighbour_s(&self, now_s: f64, step: isize) -> Option<f64> {
         let at = self.shown_s.unwrap_or(now_s);
@@ -114,7 +116,8 @@ impl Recording {
         entries.get(index.checked_add_signed(step)?).map(|e| e.time_s)
     }
 
-    /// Lets `dt_s` of what is replayed pass; whether its end was reached and the present is to go on.
+    /// Lets `dt_s` of what is replayed pass; whether its end was reached and the present is to go
+    /// on.
     pub fn replay(&mut self, dt_s: f64) -> bool {
         let (Some(shown), Some([first, last])) = (self.shown_s, self.span_s()) else { return false };
         let next = shown + dt_s;

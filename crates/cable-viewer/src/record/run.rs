@@ -1,4 +1,4 @@
-//! A whole run, kept to compare with or read from its folder again.
+//! A whole run is kept to compare with.
 
 use std::sync::Arc;
 
@@ -8,11 +8,12 @@ use crate::record::measure::Measure;
 use crate::record::pyramid::Pyramid;
 use crate::record::samples::Sample;
 
-/// Most pictures kept of a run that is compared with; its lines in the graphs keep every sample. Enough: ten minutes at one a
-/// second, and a run of 20 s (a drive of the robot from the riser and back) at 30 a second, so that the cable of a fast run moves
-/// smoothly beside the present one; a longer run is shown at fewer pictures a second, at least one a second up to ten minutes. 600
-/// pictures of 200 nodes are 9 MB, of eight runs 70 MB. More: eight held runs fill the memory of a small machine; fewer: the cable
-/// of a fast run jumps.
+/// Most pictures kept of a run that is compared with; its lines in the graphs keep every sample.
+/// Enough: ten minutes at one a second, and a run of 20 s (a drive of the robot from the riser and
+/// back) at 30 a second, so that the cable of a fast run moves smoothly beside the present one; a
+/// longer run is shown at fewer pictures a second, at least one a second up to ten minutes. 600
+/// pictures of 200 nodes are 9 MB, of eight runs 70 MB. More: eight held runs fill the memory of a
+/// small machine; fewer: the cable of a fast run jumps.
 const MAX_PICTURES: usize = 600;
 
 /// What a run was.

@@ -1,4 +1,4 @@
-//! Tension and reactions against time, of bounded length.
+//! The history keeps tension and reactions against time, of bounded length.
 
 use std::collections::VecDeque;
 
@@ -13,7 +13,8 @@ pub struct Sample {
     pub max_tension_n: f64,
     /// Energy of motion, of height, of stretch and of bending, J.
     pub energy_j: [f64; 4],
-    /// Speed of the robot along the ground, m/s, and the pull of the cable on it, N; None without one.
+    /// Speed of the robot along the ground, m/s, and the pull of the cable on it, N; None without
+    /// one.
     pub robot: Option<[f64; 2]>,
     /// Force of the cable on each support (cables one after the other, in the scene's order), N.
     pub reactions_n: Vec<[f64; 2]>,
@@ -49,18 +50,21 @@ pub struct History {
     pub samples: VecDeque<Sample>,
     /// Memory of the samples, bytes.
     bytes: usize,
-    /// For each whole block of [`BLOCKS`] samples two with the least and the greatest of every line.
+    /// For each whole block of [`BLOCKS`] samples two with the least and the greatest of every
+    /// line.
     blocks: [Vec<Sample>; 2],
 }
 
-/// Samples in a block of each level. What a graph shows of a long history is read off the largest blocks of which each of its
-/// columns has one, in a time that grows with its columns: all of a full history took 30 ms a frame.
+/// Samples in a block of each level. What a graph shows of a long history is read off the largest
+/// blocks of which each of its columns has one, in a time that grows with its columns: all of a
+/// full history took 30 ms a frame.
 const BLOCKS: [usize; 2] = [16, 256];
 
 impl History {
-    /// Memory for samples, bytes: 32 MiB hold 15 minutes of a cable with two supports at 240 samples a second, and 10 minutes
-    /// with eight. Once full, each four samples of the older half become two that keep the least and the greatest of every line,
-    /// again and again: no peak is ever lost and nothing is forgotten. More costs small machines their memory and every frame
+    /// Memory for samples, bytes: 32 MiB hold 15 minutes of a cable with two supports at 240
+    /// samples a second, and 10 minutes with eight. Once full, each four samples of the older half
+    /// become two that keep the least and the greatest of every line, again and again: no peak is
+    /// ever lost and nothing is forgotten. More costs small machines their memory and every frame
     /// that shows all of it; less makes what is minutes old coarse.
     pub const BUDGET_BYTES: usize = 32 << 20;
 
@@ -91,8 +95,9 @@ impl History {
         }
     }
 
-    /// The samples between two times (s) and one on each side, or blocks of them where there are more than a graph of so many
-    /// columns can show: oldest first, with the least and greatest of every line in every column.
+    /// The samples between two times (s) and one on each side, or blocks of them where there are
+    /// more than a graph of so many columns can show: oldest first, with the least and greatest of
+    /// every line in every column.
     #[must_use]
     pub fn view(&self, [from_s, to_s]: [f64; 2], columns: Option<usize>) -> Vec<&Sample> {
         let samples = &self.samples;
@@ -108,7 +113,8 @@ impl History {
         out
     }
 
-    /// Time (s) and value of the greatest of a line that [`Measure::LEADS`](crate::record::measure::Measure::LEADS) names: the block it is in is
+    /// Time (s) and value of the greatest of a line that
+    /// [`Measure::LEADS`](crate::record::measure::Measure::LEADS) names: the block it is in is
     /// found first.
     #[must_use]
     pub fn peak(&self, of: impl Fn(&Sample) -> f64) -> Option<[f64; 2]> {
@@ -159,7 +165,8 @@ impl Sample {
     }
 }
 
-/// Two samples in the place of several: of every line the least and the greatest, in the order they came in. None of none.
+/// Two samples in the place of several: of every line the least and the greatest, in the order they
+/// came in. None of none.
 fn merged(several: &[&Sample]) -> Vec<Sample> {
     let middle = several.len() / 2;
     let (Some(first), Some(half)) = (several.first(), several.get(middle)) else { return Vec::new() };

@@ -1,4 +1,4 @@
-//! Points of a line: thinning them to what a screen can show, reading a value between them.
+//! A series is a line of points, thinned to what a screen can show and read between its points.
 
 use egui::Color32;
 use egui_plot::LineStyle;
@@ -16,7 +16,8 @@ pub struct Series {
     pub reference: Option<usize>,
 }
 
-/// Thins points to at most two a column, keeping each column's least and greatest value, so that no peak is lost.
+/// Thins points to at most two a column, keeping each column's least and greatest value, so that no
+/// peak is lost.
 #[must_use]
 pub fn thin(points: impl ExactSizeIterator<Item = [f64; 2]>, columns: usize) -> Vec<[f64; 2]> {
     let per_column = points.len().div_ceil(columns.max(1));

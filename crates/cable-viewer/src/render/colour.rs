@@ -1,4 +1,4 @@
-//! Colours of a quantity along the cable: map, range, unit.
+//! A colour scale shows a quantity along the cable by a map, a range and a unit.
 
 use cable_core::Solution;
 use cable_core::solution::Node;
@@ -81,9 +81,9 @@ pub enum ColourMap {
     Cividis,
 }
 
-/// Equally spaced stops of each map (after S. van der Walt and N. Smith, "A better default
-/// colormap for Matplotlib", SciPy 2015; J. Nuñez, C. Anderton and R. Renslow, "Optimizing colormaps
-/// with consideration for color vision deficiency", PLoS ONE 2018).
+/// Equally spaced stops of each map (after S. van der Walt and N. Smith, "A better default colormap
+/// for Matplotlib", SciPy 2015; J. Nuñez, C. Anderton and R. Renslow, "Optimizing colormaps with
+/// consideration for color vision deficiency", PLoS ONE 2018).
 const VIRIDIS: [[u8; 3]; 11] = [
     [68, 1, 84],
     [72, 36, 117],
@@ -170,7 +170,8 @@ impl ColourScale {
     }
 }
 
-/// Colours of the lines, distinct to colour-blind eyes (after M. Okabe and K. Ito, “Color Universal Design”, 2008).
+/// Colours of the lines, distinct to colour-blind eyes (after M. Okabe and K. Ito, “Color Universal
+/// Design”, 2008).
 pub const LINES: [Color32; 4] = [
     Color32::from_rgb(0, 114, 178),
     Color32::from_rgb(0, 158, 115),

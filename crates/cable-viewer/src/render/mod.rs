@@ -1,4 +1,5 @@
-//! This wing says how things are drawn: colours, themes, and renderers for machines without a GPU or window.
+//! This wing says how things are drawn: colours, themes, and renderers for machines without a GPU
+//! or window.
 //!
 //! - `colour`: a quantity along the cable as a colour
 //! - `theme`: the palettes of light and dark

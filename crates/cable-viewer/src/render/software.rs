@@ -1,10 +1,11 @@
 //! Drawing without a GPU.
 //!
-//! egui's own shader asks, for every pixel, whether it is to dither and whether it is to filter the font by hand. A GPU skips what
-//! is not asked for; Mesa's software Vulkan works out everything and throws it away: 93 ns a pixel, 150 ms a screen of 1280×800.
-//! Where the adapter is software, what egui would draw is drawn by a shader that only multiplies colour and font; large pieces of
-//! one opaque colour (backgrounds, panels, the ground) by one that asks nothing and reads nothing back: whole tiles of the screen
-//! are then filled at once, and what lay below them is not drawn at all.
+//! egui's own shader asks, for every pixel, whether it is to dither and whether it is to filter the
+//! font by hand. A GPU skips what is not asked for; Mesa's software Vulkan works out everything and
+//! throws it away: 93 ns a pixel, 150 ms a screen of 1280×800. Where the adapter is software, what
+//! egui would draw is drawn by a shader that only multiplies colour and font; large pieces of one
+//! opaque colour (backgrounds, panels, the ground) by one that asks nothing and reads nothing back:
+//! whole tiles of the screen are then filled at once, and what lay below them is not drawn at all.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -30,8 +31,9 @@ struct Solid { @builtin(position) at: vec4f, @location(0) @interpolate(flat) col
 @fragment fn solid(c: Solid) -> @location(0) vec4f { return c.colour; }
 ";
 
-/// Twice the area, points², from which a triangle of one colour, or a row of small ones, is drawn without asking the font. Smaller: changing the shader
-/// costs more than the pixels; larger: buttons and plots ask the font for nothing.
+/// Twice the area, points², from which a triangle of one colour, or a row of small ones, is drawn
+/// without asking the font. Smaller: changing the shader costs more than the pixels; larger:
+/// buttons and plots ask the font for nothing.
 const PLAIN: f32 = 4000.0;
 
 /// Bytes of a corner: place, place in the font, colour.
@@ -49,7 +51,8 @@ impl Software {
     #[must_use]
     pub fn of(state: &RenderState) -> Option<Self> {
         let software = state.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
-        // egui blends in the eye's scale of brightness: a target that converts by itself would need another shader.
+        // egui blends in the eye's scale of brightness: a target that converts by itself would need
+        // another shader.
         let plain = !state.target_format.is_srgb();
         (software && plain).then(|| Self { format: state.target_format, font: Arc::default() })
     }
@@ -70,7 +73,8 @@ impl egui::Plugin for Software {
             font.push(change.clone());
         }
         drop(font);
-        // What this cannot draw is left to egui: other pictures than the font, other programs' drawing.
+        // What this cannot draw is left to egui: other pictures than the font, other programs'
+        // drawing.
         let own =
             |s: &ClippedShape| !matches!(s.shape, Shape::Callback(_)) && s.shape.texture_id() == TextureId::default();
         if output.shapes.is_empty() || !output.shapes.iter().all(own) {
@@ -223,7 +227,8 @@ impl CallbackTrait for Picture {
     }
 }
 
-/// How each triangle can be drawn: large ones by themselves, small ones that ask the font for nothing where enough of them follow each other.
+/// How each triangle can be drawn: large ones by themselves, small ones that ask the font for
+/// nothing where enough of them follow each other.
 fn fills(mesh: &Mesh) -> Vec<Fill> {
     let mut fills = Vec::with_capacity(mesh.indices.len() / 3);
     // Where the row of small white ones began, and twice its area, points².
@@ -299,8 +304,8 @@ impl Device {
             ],
         });
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            // Letters lie on whole pixels at every scale: to mix four points of the font for each costs an eighth of a frame and
-            // changes nothing.
+            // Letters lie on whole pixels at every scale: to mix four points of the font for each
+            // costs an eighth of a frame and changes nothing.
             mag_filter: wgpu::FilterMode::Nearest,
             min_filter: wgpu::FilterMode::Nearest,
             ..Default::default()

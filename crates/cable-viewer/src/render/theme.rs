@@ -1,4 +1,4 @@
-//! Colours and spacing of the window, light and dark.
+//! The theme sets colours and spacing of the window, light and dark.
 
 use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, Visuals};
 

@@ -62,7 +62,8 @@ impl Reference {
     }
 }
 
-/// Holds each answer, in place of one held before of the same scene and model, as far as there is room.
+/// Holds each answer, in place of one held before of the same scene and model, as far as there is
+/// room.
 pub fn hold(all: &mut Vec<Reference>, found: &Outcome) {
     for answer in &found.answers {
         let Ok((solution, wall_s)) = &answer.result else { continue };

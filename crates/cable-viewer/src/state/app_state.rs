@@ -46,7 +46,8 @@ impl AppState {
         }
     }
 
-    /// The cable that panels edit: the selected one, else that of the selected support, else the first.
+    /// The cable that panels edit: the selected one, else that of the selected support, else the
+    /// first.
     #[must_use]
     pub fn current_cable(&self) -> usize {
         let scene = &self.document.scene;

@@ -20,7 +20,8 @@ impl Default for Camera {
     }
 }
 
-/// Smallest and largest scale, points per metre. Beyond them f32 screen coordinates lose whole pixels.
+/// Smallest and largest scale, points per metre. Beyond them f32 screen coordinates lose whole
+/// pixels.
 const SCALE: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 
 /// Free border of a fitted scene, points: left (axis numbers), right (legend), top, bottom.

@@ -104,7 +104,8 @@ pub struct Snapshot {
     pub scene: Option<Arc<Scene>>,
     /// The last good answer.
     pub solution: Option<Arc<Solution>>,
-    /// The greatest tensions of each cable in the run so far; empty where it is not known from its start.
+    /// The greatest tensions of each cable in the run so far; empty where it is not known from its
+    /// start.
     pub peaks: Vec<RunPeaks>,
     /// Wall time of the solve or of the steps it took, s.
     pub solve_wall_s: f64,

@@ -1,4 +1,5 @@
-//! The questions that jobs are asked follow from what is on screen; an answer to another question is not shown.
+//! The questions that jobs are asked follow from what is on screen; an answer to another question
+//! is not shown.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! A tutorial that is on has a place: which tutorial, and which of its steps.
+//! A tutorial that is on has a place: a tutorial and one of its steps.
 
 /// Which tutorial, and which of its steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

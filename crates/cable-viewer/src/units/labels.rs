@@ -1,4 +1,4 @@
-//! Figures with their unit, as short as their accuracy allows.
+//! Labels on the canvas are figures with their unit, as short as their accuracy allows.
 
 use crate::units::system;
 use crate::units::unit::Unit;

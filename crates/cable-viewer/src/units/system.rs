@@ -15,8 +15,9 @@ pub enum System {
 }
 
 thread_local! {
-    /// The window is drawn by one thread, which says at the start of each frame what the whole frame is shown in: handing it to
-    /// every figure would put it into every function that writes one.
+    /// The window is drawn by one thread, which says at the start of each frame what the whole
+    /// frame is shown in: handing it to every figure would put it into every function that writes
+    /// one.
     static CURRENT: Cell<System> = const { Cell::new(System::Si) };
 }
 
@@ -70,7 +71,8 @@ pub fn unit(of: Unit) -> Unit {
     found.map_or(of, |(_, us)| Unit { decimals: of.decimals, ..*us })
 }
 
-/// Units of a quantity from large to small with the value (SI) each is used from on, and the one of zero.
+/// Units of a quantity from large to small with the value (SI) each is used from on, and the one of
+/// zero.
 pub type Scale = (&'static [(&'static str, f64, f64)], usize);
 
 const FORCE: [Scale; 2] = [

@@ -1,8 +1,9 @@
-//! Sentences of the solver in the units on screen.
+//! Sentences of the solver are written in the units on screen.
 //!
-//! The core speaks SI: `a` is pulled with 912.0 N at 3.200 m. On a screen in US units each figure with its unit is written in
-//! the unit of that system, with as many decimals; words and figures without a unit stay. Names, which the core has between
-//! backticks, are read between quotation marks in both.
+//! The core speaks SI: `a` is pulled with 912.0 N at 3.200 m. On a screen in US units each figure
+//! with its unit is written in the unit of that system, with as many decimals; words and figures
+//! without a unit stay. Names, which the core has between backticks, are read between quotation
+//! marks in both.
 
 use std::borrow::Cow;
 
@@ -45,7 +46,8 @@ pub fn display(text: &str) -> Cow<'_, str> {
     Cow::Owned(out)
 }
 
-/// A figure with its unit at the start of a text, in the unit on screen, and how many bytes of the text it is.
+/// A figure with its unit at the start of a text, in the unit on screen, and how many bytes of the
+/// text it is.
 fn figure(text: &str) -> Option<(String, usize)> {
     let number = number_length(text)?;
     let (digits, after) = text.split_at_checked(number)?;

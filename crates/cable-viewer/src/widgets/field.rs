@@ -32,11 +32,13 @@ pub fn name(response: &Response, label: &str) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(label));
 }
 
-/// A field for a number in a unit; `value` is SI. Enter or leaving the field enters the text, Escape drops it.
+/// A field for a number in a unit; `value` is SI. Enter or leaving the field enters the text,
+/// Escape drops it.
 pub fn number(ui: &mut Ui, label: &str, unit: Unit, value: f64, width: f32) -> Entry<f64> {
     let shown = [unit.text(value), unit.exact(value)];
     let entry = text_field(ui, label, &shown, (width, Align2::RIGHT_CENTER), |text| unit.parse(text));
-    // Text shown with fewer digits than the value has must not round it when it is entered unchanged.
+    // Text shown with fewer digits than the value has must not round it when it is entered
+    // unchanged.
     let value = entry.value.filter(|&v| unit.exact(v) != shown[1]);
     Entry { value, ..entry }
 }

@@ -1,4 +1,4 @@
-//! One editable quantity in a row: name, slider, typed value with its unit, reset.
+//! A property row edits one quantity: name, slider, typed value with its unit, reset.
 
 use egui::{Response, RichText, Slider, SliderClamping, Ui};
 
@@ -52,7 +52,8 @@ const RESET_WIDTH: f32 = 18.0;
 /// Width of the names, points: “Bending stiffness ≈” fits.
 pub const NAME_WIDTH: f32 = 122.0;
 
-/// Smallest value above zero that a logarithmic slider from zero resolves, as a fraction of its top.
+/// Smallest value above zero that a logarithmic slider from zero resolves, as a fraction of its
+/// top.
 const LEAST_OF_TOP: f64 = 1e-4;
 
 /// Draws the row; faults stand below it.
@@ -146,7 +147,8 @@ fn explanation(ui: &mut Ui, quantity: &Quantity, known: &Provenance) {
     }
 }
 
-/// A text in the column of names, and the widget it names beside it; `name` is what tests and screen readers call it.
+/// A text in the column of names, and the widget it names beside it; `name` is what tests and
+/// screen readers call it.
 pub fn labelled(ui: &mut Ui, text: &str, name: &str, contents: impl FnOnce(&mut Ui) -> Response) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;

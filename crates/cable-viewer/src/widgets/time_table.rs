@@ -1,4 +1,5 @@
-//! A vector that changes with time, as a small table: a row for each time, linear (or smooth) in between.
+//! A small table edits a vector that changes with time: a row for each time, linear (or smooth) in
+//! between.
 
 use cable_core::math::Point;
 use egui::{Button, ScrollArea, Ui};

@@ -1,4 +1,5 @@
-//! What the window asks of the worker. Requests merge: the latest scene, drag and speed win.
+//! A request is what the window asks of the worker. Requests merge: the latest scene, drag and
+//! speed win.
 
 use std::sync::Arc;
 

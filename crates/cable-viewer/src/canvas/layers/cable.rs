@@ -1,4 +1,5 @@
-//! The cable: one mesh of ribbons (casing, warning outline, colours), so that thousands of nodes cost one draw call.
+//! The cable: one mesh of ribbons (casing, warning outline, colours), so that thousands of nodes
+//! cost one draw call.
 
 use cable_core::solution::Node;
 use egui::{Color32, Mesh, Pos2, Stroke, Vec2, vec2};
@@ -10,8 +11,8 @@ use crate::state::{AppState, Item};
 
 /// Thinnest ribbon, points: the true diameter is drawn only where it is wider.
 pub const LEAST_WIDTH: f32 = 4.5;
-/// Nodes nearer to each other than this are drawn as one, points: a ribbon of pieces shorter than it is smooth costs as much as a
-/// screen full of text.
+/// Nodes nearer to each other than this are drawn as one, points: a ribbon of pieces shorter than
+/// it is smooth costs as much as a screen full of text.
 const MIN_SPACING: f32 = 1.5;
 /// Width of the soft edge, points.
 const FEATHER: f32 = 0.8;
@@ -72,8 +73,8 @@ fn grey(c: Color32) -> Color32 {
     Color32::from_rgb(mix(c.r()), mix(c.g()), mix(c.b()))
 }
 
-/// The nodes that can be told apart on screen: the ends, those at least [`MIN_SPACING`] from the one before, and those where the risk
-/// begins or ends.
+/// The nodes that can be told apart on screen: the ends, those at least [`MIN_SPACING`] from the
+/// one before, and those where the risk begins or ends.
 pub(super) fn seen(view: &CanvasView<'_>, nodes: &[Node], service: f64) -> Vec<Node> {
     let mut out: Vec<Node> = Vec::with_capacity(nodes.len());
     let mut last: Option<(Pos2, bool)> = None;

@@ -1,4 +1,4 @@
-//! Answers that are held, as thin lines behind the present one.
+//! Answers that are held are drawn as thin lines behind the present one.
 
 use egui::{Pos2, Stroke};
 

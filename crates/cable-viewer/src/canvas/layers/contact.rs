@@ -1,5 +1,6 @@
-//! Where the cable lies on something: a band along it, filled where it holds, hollow where it slides, with a tick at each
-//! slip front. Blue and orange are told apart by colour-blind eyes; filled and hollow by every eye.
+//! Where the cable lies on something: a band along it, filled where it holds, hollow where it
+//! slides, with a tick at each slip front. Blue and orange are told apart by colour-blind eyes;
+//! filled and hollow by every eye.
 
 use cable_core::solution::{CableSolution, ContactPart, ContactReport, ContactState, Node};
 use egui::{Mesh, Pos2, Rect, Stroke, StrokeKind, vec2};
@@ -15,7 +16,8 @@ const EDGE: f32 = 3.6;
 /// Half the length of the tick at a slip front, points.
 const TICK: f32 = 11.0;
 
-/// Ticks nearer to the one before than this (points) are not drawn: closer in there is room for them.
+/// Ticks nearer to the one before than this (points) are not drawn: closer in there is room for
+/// them.
 const MIN_SPACING: f32 = 8.0;
 
 /// The stretches of a contact that hold or slide, in order.
@@ -81,7 +83,8 @@ fn tick(view: &CanvasView<'_>, answer: &CableSolution, s: f64, last: &mut Option
     }
 }
 
-/// The nodes between two arc lengths and the points of the cable at both; one where they are the same.
+/// The nodes between two arc lengths and the points of the cable at both; one where they are the
+/// same.
 #[must_use]
 pub fn between(answer: &CableSolution, [from, to]: [f64; 2]) -> Vec<Node> {
     let (Some(first), Some(last)) = (at(answer, from), at(answer, to)) else { return Vec::new() };

@@ -1,5 +1,5 @@
-//! Forces as arrows: contacts, loads, reactions, wind. One length scale for all, by the square root, so that
-//! small ones stay visible beside large ones.
+//! Forces as arrows: contacts, loads, reactions, wind. One length scale for all, by the square
+//! root, so that small ones stay visible beside large ones.
 
 use cable_core::math::Point;
 use cable_core::solution::{CableSolution, ContactReport, ContactState};
@@ -11,7 +11,8 @@ use crate::state::{AppState, Item};
 use crate::units::labels;
 use crate::units::unit::Unit;
 
-/// Of contacts nearer to each other than this (points) only the strongest has arrows; closer in there is room for more.
+/// Of contacts nearer to each other than this (points) only the strongest has arrows; closer in
+/// there is room for more.
 const MIN_SPACING: f32 = 22.0;
 /// Longest and shortest arrow, points.
 const LENGTH: [f64; 2] = [64.0, 9.0];

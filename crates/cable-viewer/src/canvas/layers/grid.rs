@@ -1,4 +1,4 @@
-//! Grid, axes with numbers and units, scale bar.
+//! The grid is drawn with axes, numbers and units, and a scale bar.
 
 use egui::{Align2, Rect, Stroke, pos2, vec2};
 

@@ -1,4 +1,5 @@
-//! The colour legend, in the upper right corner, and the banner that says why there is no new answer.
+//! The colour legend, in the upper right corner, and the banner that says why there is no new
+//! answer.
 
 use egui::{Align2, FontId, Mesh, Rect, Stroke, StrokeKind, pos2, vec2};
 

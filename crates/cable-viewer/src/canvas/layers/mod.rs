@@ -1,4 +1,5 @@
-//! The picture of the scene consists of these layers, which [`crate::canvas::ui`] draws back to front.
+//! The picture of the scene consists of these layers, which [`crate::canvas::ui`] draws back to
+//! front.
 //!
 //! - `grid`, `obstacles`, `robot`, `robot_path`: the surroundings
 //! - `cable`, `contact`, `supports`, `forces`: the answer

@@ -1,4 +1,4 @@
-//! Terrain, beams, posts and thin lines.
+//! Obstacles are drawn: terrain, beams, posts and thin lines.
 
 use cable_core::math::Point;
 use cable_core::scene::Shape;
@@ -85,7 +85,8 @@ fn terrain(view: &CanvasView<'_>, points_m: &[Point], stroke: Stroke) {
     view.painter.line(line, stroke);
 }
 
-/// The points of a line that can be told apart on screen, with one beyond each edge that it crosses.
+/// The points of a line that can be told apart on screen, with one beyond each edge that it
+/// crosses.
 fn seen(view: &CanvasView<'_>, points_m: &[Point]) -> Vec<Pos2> {
     let side = |p: Pos2| i8::from(p.x > view.rect.max.x) - i8::from(p.x < view.rect.min.x);
     let mut out: Vec<Pos2> = Vec::new();
@@ -96,7 +97,8 @@ fn seen(view: &CanvasView<'_>, points_m: &[Point]) -> Vec<Pos2> {
             out.push(at);
             continue;
         };
-        // Out of view on the same side as the one before, or on it: not drawn, unless the line comes back from there.
+        // Out of view on the same side as the one before, or on it: not drawn, unless the line
+        // comes back from there.
         if (side(at) != 0 && side(at) == side(last)) || last.distance(at) < MIN_SPACING {
             skipped = Some(at);
             continue;

@@ -1,4 +1,4 @@
-//! The robot, to scale: body, tracks, hitch.
+//! The robot is drawn to scale: body, tracks, hitch.
 
 use cable_core::math::Point;
 use cable_core::robot::Going;
@@ -54,8 +54,9 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     view.painter.circle(hitch, 4.0, Color32::TRANSPARENT, Stroke::new(1.6, view.palette.support));
 }
 
-/// What the cable meets of it, where it touches that: it is cut back round the hitch and boxed at the tracks. What of it reaches below
-/// the ground, so that nothing gets under a track, is left out.
+/// What the cable meets of it, where it touches that: it is cut back round the hitch and boxed at
+/// the tracks. What of it reaches below the ground, so that nothing gets under a track, is left
+/// out.
 fn touched(view: &CanvasView<'_>, state: &AppState, (pose, preset): (&Pose, &RobotPreset)) {
     let contacts = state.live.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
     if !state.view.layers.contacts || !contacts.into_iter().any(|c| c.obstacle == "robot") {

@@ -1,4 +1,4 @@
-//! The robot's path: a flag on the ground where each leg ends.
+//! The robot's path is drawn as a flag on the ground where each leg ends.
 
 use egui::{Color32, Pos2, Stroke, vec2};
 

@@ -1,6 +1,7 @@
-//! The safe reach over the map, in the colour of what it costs the cable as a share of its service tension. Of an end: the
-//! plane, with the lines of service and breaking tension; of a robot: what it passes over above the ground. What the cable may
-//! not bear is hatched, so that its colour is not all that tells it; where nothing is known, and where it does not reach, nothing is drawn.
+//! The safe reach over the map, in the colour of what it costs the cable as a share of its service
+//! tension. Of an end: the plane, with the lines of service and breaking tension; of a robot: what
+//! it passes over above the ground. What the cable may not bear is hatched, so that its colour is
+//! not all that tells it; where nothing is known, and where it does not reach, nothing is drawn.
 
 use cable_core::analysis::safe_reach::area::Area;
 use cable_core::analysis::safe_reach::line::{ReachMap, ReachPlace};
@@ -82,7 +83,8 @@ fn quad(view: &CanvasView<'_>, area: &Area, corners: [(Point, f64); 4], (mesh, l
     }
 }
 
-/// Where a value is passed in a square: its ends on the sides, between which tension grows by even factors.
+/// Where a value is passed in a square: its ends on the sides, between which tension grows by even
+/// factors.
 fn crossing(at: [Pos2; 4], values: [f64; 4], limit: f64) -> Vec<[Pos2; 2]> {
     let log = |v: f64| v.max(1e-9).ln();
     let on = |k: usize| {

@@ -1,4 +1,4 @@
-//! Supports as the signs engineers draw, and the labels of everything.
+//! Supports are drawn as the signs engineers use, with the labels of everything.
 
 use cable_core::scene::{Support, SupportKind};
 use egui::{Color32, Pos2, Stroke, vec2};
@@ -86,7 +86,8 @@ fn sign(view: &CanvasView<'_>, p: Pos2, s: &Support) {
     }
 }
 
-/// Names and coordinates of supports, the largest tension, then the figures of the arrows while there is room.
+/// Names and coordinates of supports, the largest tension, then the figures of the arrows while
+/// there is room.
 pub fn labels(view: &mut CanvasView<'_>, state: &AppState, figures: Vec<(Pos2, String, Color32)>) {
     let text_colour = view.palette.text;
     let mut spots = Vec::new();

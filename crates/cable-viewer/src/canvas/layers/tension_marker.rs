@@ -1,4 +1,4 @@
-//! The place whose tension is taken apart, marked on the cable.
+//! A marker on the cable shows the place whose tension is taken apart.
 
 use egui::{Color32, Pos2, Stroke, vec2};
 

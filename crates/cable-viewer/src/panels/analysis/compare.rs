@@ -1,4 +1,4 @@
-//! Compare panel: answers held beside the present one, their figures and what differs in their input.
+//! The compare panel shows answers held beside the present one, and what differs in their input.
 
 use std::sync::Arc;
 
@@ -218,7 +218,8 @@ struct Summary {
     lines: Arc<Vec<String>>,
 }
 
-/// The differences of the last frame where nothing has changed since: to write two files and compare them takes milliseconds.
+/// The differences of the last frame where nothing has changed since: to write two files and
+/// compare them takes milliseconds.
 fn remembered(ui: &Ui, k: usize, held: &Reference, state: &AppState) -> Arc<Vec<String>> {
     let id = Id::unique(("differences", k));
     let models = [Some(held.solution.model), state.live.snapshot.solution.as_ref().map(|s| s.model)];
@@ -234,7 +235,8 @@ fn remembered(ui: &Ui, k: usize, held: &Reference, state: &AppState) -> Arc<Vec<
     lines
 }
 
-/// What differs in the input of a held answer and the present one, line by line of their files; the models first.
+/// What differs in the input of a held answer and the present one, line by line of their files; the
+/// models first.
 #[must_use]
 pub fn differences(held: &Reference, state: &AppState) -> Vec<String> {
     let mut out = Vec::new();

@@ -1,4 +1,5 @@
-//! Friction that is not known well: how much less and more of it there may be, and what that does to the tension.
+//! Friction that is not known well: how much less and more of it there may be, and what that does
+//! to the tension.
 
 use egui::{Grid, ProgressBar, Ui};
 

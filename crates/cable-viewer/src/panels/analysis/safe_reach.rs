@@ -1,4 +1,5 @@
-//! Where the robot or an end can be taken without passing the service tension, and where its cable would snag: asked for, and read off.
+//! Where the robot or an end can be taken without passing the service tension, and where its cable
+//! would snag: asked for, and read off.
 
 use cable_core::analysis::safe_reach::area::Area;
 use cable_core::analysis::safe_reach::line::ReachMap;

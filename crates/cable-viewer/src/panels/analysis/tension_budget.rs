@@ -1,4 +1,5 @@
-//! Where the tension at a place comes from: a bar of what adds to it and what takes from it, and the same as figures.
+//! The tension budget shows what adds to the tension at a place and what takes from it, as a bar
+//! and as figures.
 
 use cable_core::analysis::tension_budget::{Cause, Contribution, StartEnd, TensionBudget, tension_budget};
 use cable_core::scene::View;

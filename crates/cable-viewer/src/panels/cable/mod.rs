@@ -1,4 +1,7 @@
-//! Cable panel: the properties of the current cable.
+//! The cable panel edits the properties of the current cable.
+//!
+//! - `property`: each property with its unit and usual range
+//! - `provenance`: source and confidence of each value
 
 pub mod property;
 pub mod provenance;

@@ -1,4 +1,4 @@
-//! The properties of a cable: what each is called, its unit, its usual range, where it lives.
+//! A property of a cable has a name, a unit, a usual range and a place in the cable.
 
 use cable_core::Cable;
 

@@ -1,4 +1,5 @@
-//! What is known about a cable's numbers: its preset's figures with source and confidence, or the loaded file.
+//! The provenance of a cable's number is its preset's figure with source and confidence, or the
+//! loaded file.
 
 use cable_core::Cable;
 use cable_core::scene::preset::{self, CablePreset, Confidence, Figure};

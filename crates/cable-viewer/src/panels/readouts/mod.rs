@@ -1,4 +1,7 @@
-//! Readouts panel: the figures of the present answer.
+//! The readouts panel shows the figures of the present answer.
+//!
+//! - `figures`: greatest and least values along a cable
+//! - `reactions`: the forces on the supports
 
 pub(crate) mod figures;
 mod reactions;
@@ -89,7 +92,8 @@ fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Ve
     }
 }
 
-/// Calm below the limit, amber above service, red above break; chosen to keep black or white text readable.
+/// Calm below the limit, amber above service, red above break; chosen to keep black or white text
+/// readable.
 fn bar_colour(share: f64, breaking: bool, dark: bool) -> Color32 {
     match (share > 1.0, breaking) {
         (true, true) => Color32::from_rgb(214, 68, 68),
@@ -248,8 +252,8 @@ fn material(ui: &mut Ui, (cable, solved): (&Cable, &CableSolution), first: &Cabl
     }
 }
 
-/// An error of this part of the greatest tension is one of rounding. More: meshes that are very fine are called exact; less: models without a
-/// mesh show their rounding as if it mattered.
+/// An error of this part of the greatest tension is one of rounding. More: meshes that are very
+/// fine are called exact; less: models without a mesh show their rounding as if it mattered.
 const ROUNDED: f64 = 1e-9;
 
 /// The greatest tension since the run began, and what coarser runs beside it leave open.
@@ -304,7 +308,8 @@ fn bending_stiffness(
     ui.end_row();
 }
 
-/// What came of comparing an answer with one that has the likely bending stiffness, in short and in full; None where nobody asked.
+/// What came of comparing an answer with one that has the likely bending stiffness, in short and in
+/// full; None where nobody asked.
 fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<(String, String)> {
     if !bending_query_fits(state) {
         return None;

@@ -1,4 +1,4 @@
-//! What the cable does to its supports: size, direction as an arrow, components.
+//! The table of reactions gives the force on each support: size, direction as an arrow, components.
 
 use cable_core::Cable;
 use cable_core::solution::{CableSolution, SupportReaction};

@@ -1,4 +1,4 @@
-//! The point loads: on which cable, where, how much.
+//! The list of point loads says on which cable, where and how much.
 
 use cable_core::Load;
 use egui::{ComboBox, Ui};

@@ -1,4 +1,4 @@
-//! The map picker: puts the obstacles of a known tank into the scene.
+//! The map picker puts the obstacles of a known tank into the scene.
 
 use cable_core::Scene;
 use cable_core::scene::preset::{self, MapPreset};

@@ -1,4 +1,8 @@
-//! Scene panel: name, scene and map pickers, supports, obstacles and loads with exact coordinates.
+//! The scene panel edits the name, the map and the things of the scene, with exact coordinates.
+//!
+//! - `map`, `robot`: pickers of known tanks and robots
+//! - `supports`, `obstacles`, `loads`: a list each, and everything else of the selected one
+//! - `rows`: the cells, headings and fields that lists are made of
 
 mod loads;
 mod map;

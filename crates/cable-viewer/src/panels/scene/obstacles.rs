@@ -1,4 +1,4 @@
-//! The obstacles: form, place, and everything else of the selected one.
+//! The list of obstacles gives form and place of each, and everything else of the selected one.
 
 use cable_core::Obstacle;
 use cable_core::math::Point;

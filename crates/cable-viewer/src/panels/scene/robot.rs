@@ -1,4 +1,5 @@
-//! The robot: which, where, which way. A first one stands where it can, with the end of the cable on its hitch.
+//! The robot: which, where, which way. A first one stands where it can, with the end of the cable
+//! on its hitch.
 
 use cable_core::scene::ground::Ground;
 use cable_core::scene::preset::{self, RobotPreset};
@@ -68,13 +69,14 @@ fn choose(state: &AppState, p: &RobotPreset, commands: &mut Vec<Command>) {
     commands.push(Command::Scene(SceneCommand::SetScene(Box::new(scene))));
 }
 
-/// Steepest ground that a first robot is put on, rad: 11°. More: much of what its tracks hold is spent before it pulls; less: rough waste
-/// has no place for it.
+/// Steepest ground that a first robot is put on, rad: 11°. More: much of what its tracks hold is
+/// spent before it pulls; less: rough waste has no place for it.
 const STEEPEST: f64 = 0.2;
 /// How far apart the places that are tried are, m, and how many to each side: a tank's width.
 const TRIED: (f64, u32) = (0.25, 100);
 
-/// Puts a robot into a scene that has none: as near as can be to below the end of a cable, which it takes over from a hand.
+/// Puts a robot into a scene that has none: as near as can be to below the end of a cable, which it
+/// takes over from a hand.
 fn add(scene: &mut Scene, cable: usize, p: &RobotPreset) {
     let end = scene.cables.get(cable).and_then(|c| c.supports.last()?.at_m);
     let at = end.unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The supports of a cable in order: kind, place, and everything else of the selected one.
+//! The list of supports gives kind and place of each, and everything else of the selected one.
 
 use cable_core::math::Point;
 use cable_core::scene::{Motion, PulleySide, SupportKind};
