@@ -57,10 +57,10 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     let [width, height] = ui.ctx().content_rect().size().into();
     let graphs = height >= LEAST_FOR_GRAPHS;
     if width >= WIDE && graphs {
-        side(ui, "edit", (EDIT, state, commands));
-        side(ui, "read", (READ, state, commands));
+        side(ui, "edit", EDIT, state, commands);
+        side(ui, "read", READ, state, commands);
     } else {
-        tabs(ui, (state, !graphs), commands);
+        tabs(ui, state, !graphs, commands);
     }
     if !graphs {
         CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
@@ -75,9 +75,9 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
 }
 
-fn side(ui: &mut Ui, id: &'static str, (sections, state, commands): (&[Section], &AppState, &mut Vec<Command>)) {
+fn side(ui: &mut Ui, id: &'static str, sections: &[Section], state: &AppState, commands: &mut Vec<Command>) {
     let panel = if id == "edit" { Panel::left(id).default_size(336.0) } else { Panel::right(id).default_size(320.0) };
-    panel.size_range(220.0..=420.0).show(ui, |ui| scroll(ui, id, (sections, state, commands)));
+    panel.size_range(220.0..=420.0).show(ui, |ui| scroll(ui, id, sections, state, commands));
 }
 
 /// What the one panel of a small window shows.
@@ -90,7 +90,7 @@ enum Tab {
 }
 
 /// One panel for all in a window that has no room for two, or none for graphs below the canvas.
-fn tabs(ui: &mut Ui, (state, graphs): (&AppState, bool), commands: &mut Vec<Command>) {
+fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>) {
     // A large scale on a small screen: half of it stays for the picture.
     let most = 0.5 * ui.ctx().content_rect().width();
     let range = most.min(220.0)..=most.min(420.0);
@@ -115,13 +115,13 @@ fn tabs(ui: &mut Ui, (state, graphs): (&AppState, bool), commands: &mut Vec<Comm
         ui.data_mut(|d| d.insert_temp(id, tab));
         match tab {
             Tab::Graphs if graphs => panels::plots::ui(ui, state, commands),
-            Tab::Read => scroll(ui, "read", (READ, state, commands)),
-            Tab::Edit | Tab::Graphs => scroll(ui, "edit", (EDIT, state, commands)),
+            Tab::Read => scroll(ui, "read", READ, state, commands),
+            Tab::Edit | Tab::Graphs => scroll(ui, "edit", EDIT, state, commands),
         }
     });
 }
 
-fn scroll(ui: &mut Ui, id: &str, (sections, state, commands): (&[Section], &AppState, &mut Vec<Command>)) {
+fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, commands: &mut Vec<Command>) {
     ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| {
         for (title, panel) in sections {
             let hidden = match *title {

@@ -183,14 +183,14 @@ fn after_edit(state: &mut AppState, dragged: Option<(usize, usize, Point)>, effe
             let by_spring =
                 state.selection.grab.is_some_and(|g| g.item == held) && !is_quasi_static(state.solver.model);
             state.selection.spring_support = by_spring.then_some((cable, support));
-            draw_support(state, (cable, support, to_m), effects);
+            draw_support(state, cable, support, to_m, effects);
         }
         _ => submit_edit(state, effects),
     }
 }
 
 /// Has a support drawn to a point (m), by a spring or not.
-fn draw_support(state: &mut AppState, (cable, support, to_m): (usize, usize, Point), effects: &mut Effects) {
+fn draw_support(state: &mut AppState, cable: usize, support: usize, to_m: Point, effects: &mut Effects) {
     let by_spring = state.selection.spring_support == Some((cable, support));
     let drag = Drag { cable, support, to_m, by_spring, scene: state.document.scene.clone() };
     effects.request.merge(Request { drag: Some(drag), number: next_number(state), ..Request::default() });
@@ -204,7 +204,7 @@ pub(super) fn let_go(state: &mut AppState, effects: &mut Effects) {
     let held = state.document.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support));
     if let (Some(at), Some(held)) = (at, held) {
         held.at_m = Some(at);
-        draw_support(state, (cable, support, at), effects);
+        draw_support(state, cable, support, at, effects);
     }
 }
 

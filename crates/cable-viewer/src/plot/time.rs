@@ -25,17 +25,17 @@ const SHORTEST_S: f64 = 1.0;
 /// Draws the first one. Stress and strain follow from tension for a single cable only; with
 /// several, tension is shown.
 pub fn ui(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> GraphResponse {
-    graph(ui, state, view, (TITLE, height))
+    graph(ui, state, view, TITLE, height)
 }
 
 /// Draws the second one, with time linked to the first.
 pub fn second(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> GraphResponse {
     let Some(measure) = view.second else { return GraphResponse::default() };
     let title = format!("{} over time", measure.name());
-    graph(ui, state, GraphView { measure, ..view }, (&title, height))
+    graph(ui, state, GraphView { measure, ..view }, &title, height)
 }
 
-fn graph(ui: &mut Ui, state: &AppState, view: GraphView, (title, height): (&str, f32)) -> GraphResponse {
+fn graph(ui: &mut Ui, state: &AppState, view: GraphView, title: &str, height: f32) -> GraphResponse {
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let Some(cable) = scene.cables.get(state.current_cable()) else { return GraphResponse::default() };
     let measure = match view.measure {
@@ -63,10 +63,10 @@ fn graph(ui: &mut Ui, state: &AppState, view: GraphView, (title, height): (&str,
         ribbon: ribbon(state, cable, measure),
         mark: state.live.recording.shown_s,
     };
-    let mut touched = show(ui, &graph, &lines(state, scene, measure, (seen, Some(columns))));
+    let mut touched = show(ui, &graph, &lines(state, scene, measure, seen, Some(columns)));
     if let Some(sheet) = &mut touched.export {
         // Every sample, not only those that can be told apart on screen.
-        sheet.lines = lines(state, scene, measure, ([f64::NEG_INFINITY, f64::INFINITY], None));
+        sheet.lines = lines(state, scene, measure, [f64::NEG_INFINITY, f64::INFINITY], None);
     }
     touched
 }
@@ -82,8 +82,8 @@ fn ribbon(state: &AppState, cable: &Cable, measure: Measure) -> Vec<[f64; 3]> {
 
 /// The lines of a measure, SI, between two times: thinned to `columns` of the screen if there are
 /// any; then those of held runs.
-fn lines(state: &AppState, scene: &Scene, measure: Measure, (seen, columns): ([f64; 2], Option<usize>)) -> Vec<Series> {
-    let mut lines = own(state, scene, measure, (seen, columns));
+fn lines(state: &AppState, scene: &Scene, measure: Measure, seen: [f64; 2], columns: Option<usize>) -> Vec<Series> {
+    let mut lines = own(state, scene, measure, seen, columns);
     for (k, held) in state.analysis.references.iter().enumerate() {
         let Some(line) = held.run.as_ref().and_then(|r| r.line(measure)) else { continue };
         let scale = match (measure, held.scene.cables.first()) {
@@ -103,7 +103,7 @@ fn lines(state: &AppState, scene: &Scene, measure: Measure, (seen, columns): ([f
 }
 
 /// Those of what was recorded.
-fn own(state: &AppState, scene: &Scene, measure: Measure, (seen, columns): ([f64; 2], Option<usize>)) -> Vec<Series> {
+fn own(state: &AppState, scene: &Scene, measure: Measure, seen: [f64; 2], columns: Option<usize>) -> Vec<Series> {
     let samples = state.live.history.view(seen, columns);
     let index = state.current_cable();
     let cable = scene.cables.get(index);

@@ -72,7 +72,7 @@ pub fn ui(ui: &mut Ui, table: &Table<'_>, knots: &Knots, faults: &mut Vec<String
     let area = ScrollArea::vertical().id_salt(("times", table.of)).max_height(HEIGHT).auto_shrink([false, true]);
     area.show_rows(ui, height, knots.times_s.len(), |ui, rows| {
         for k in rows {
-            ui.push_id(k, |ui| ui.horizontal(|ui| row(ui, (table, k), &mut changed, faults)).inner)
+            ui.push_id(k, |ui| ui.horizontal(|ui| row(ui, table, k, &mut changed, faults)).inner)
                 .inner
                 .apply(k, [&mut doubled, &mut gone]);
         }
@@ -100,7 +100,7 @@ impl RowButtons {
     }
 }
 
-fn row(ui: &mut Ui, (table, k): (&Table<'_>, usize), changed: &mut Knots, faults: &mut Vec<String>) -> RowButtons {
+fn row(ui: &mut Ui, table: &Table<'_>, k: usize, changed: &mut Knots, faults: &mut Vec<String>) -> RowButtons {
     ui.spacing_mut().item_spacing.x = GAP;
     let of = |what: &str| format!("{what} {} of {}", k + 1, table.of);
     if let Some(time_s) = changed.times_s.get_mut(k) {

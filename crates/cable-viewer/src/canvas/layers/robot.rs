@@ -49,7 +49,7 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     let body: Vec<Pos2> = points.iter().map(|&p| view.at(p)).collect();
     view.painter.add(egui::Shape::closed_line(body, line));
     tracks(view, &pose, preset);
-    touched(view, state, (&pose, preset));
+    touched(view, state, &pose, preset);
     let hitch = view.at(pose.hitch_m(preset));
     view.painter.circle(hitch, 4.0, Color32::TRANSPARENT, Stroke::new(1.6, view.palette.support));
 }
@@ -57,7 +57,7 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
 /// What the cable meets of it, where it touches that: it is cut back round the hitch and boxed at
 /// the tracks. What of it reaches below the ground, so that nothing gets under a track, is left
 /// out.
-fn touched(view: &CanvasView<'_>, state: &AppState, (pose, preset): (&Pose, &RobotPreset)) {
+fn touched(view: &CanvasView<'_>, state: &AppState, pose: &Pose, preset: &RobotPreset) {
     let contacts = state.live.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
     if !state.view.layers.contacts || !contacts.into_iter().any(|c| c.obstacle == "robot") {
         return;

@@ -33,7 +33,7 @@ pub fn area(view: &CanvasView<'_>, state: &AppState) {
     let mut mesh = Mesh::default();
     let mut lines = Vec::new();
     for corners in quads(area) {
-        quad(view, area, corners, (&mut mesh, &mut lines));
+        quad(view, area, corners, &mut mesh, &mut lines);
     }
     view.painter.add(mesh);
     view.painter.extend(lines);
@@ -49,7 +49,7 @@ fn quads(area: &Area) -> impl Iterator<Item = [(Point, f64); 4]> + '_ {
         .filter_map(move |k| Some([corner(k)?, corner(k + 1)?, corner(k + columns + 1)?, corner(k + columns)?]))
 }
 
-fn quad(view: &CanvasView<'_>, area: &Area, corners: [(Point, f64); 4], (mesh, lines): (&mut Mesh, &mut Vec<Shape>)) {
+fn quad(view: &CanvasView<'_>, area: &Area, corners: [(Point, f64); 4], mesh: &mut Mesh, lines: &mut Vec<Shape>) {
     if corners.iter().any(|(_, n)| n.is_nan()) {
         return;
     }

@@ -186,16 +186,16 @@ impl Figures {
 }
 
 fn row(ui: &mut Ui, f: &Figures, present: Option<&Figures>) {
-    cell(ui, format::force(f.tension_n), (Some(f.tension_n), present.map(|p| p.tension_n)));
+    cell(ui, format::force(f.tension_n), Some(f.tension_n), present.map(|p| p.tension_n));
     let sag = f.sag_m.map_or_else(|| "–".to_owned(), format::length);
-    cell(ui, sag, (f.sag_m, present.and_then(|p| p.sag_m)));
+    cell(ui, sag, f.sag_m, present.and_then(|p| p.sag_m));
     let energy = format::energy(f.energy_j);
-    cell(ui, energy, (Some(f.energy_j), present.map(|p| p.energy_j)));
-    cell(ui, format::duration(f.wall_s), (None, None));
+    cell(ui, energy, Some(f.energy_j), present.map(|p| p.energy_j));
+    cell(ui, format::duration(f.wall_s), None, None);
 }
 
 /// A figure, and below it how much it is above the present one.
-fn cell(ui: &mut Ui, text: String, (value, present): (Option<f64>, Option<f64>)) {
+fn cell(ui: &mut Ui, text: String, value: Option<f64>, present: Option<f64>) {
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.add(egui::Label::new(text).extend());

@@ -117,10 +117,10 @@ pub fn describe(maps: &Maps, back: bool) -> Vec<String> {
     let limits = ["service", "breaking"].into_iter().zip(maps.limits_n());
     limits
         .map(|(name, tension_n)| match maps {
-            Maps::Line(map) => of_line(map, back, (name, tension_n)),
-            Maps::Area(there, None) if !back => of_area(there, (name, tension_n)),
+            Maps::Line(map) => of_line(map, back, name, tension_n),
+            Maps::Area(there, None) if !back => of_area(there, name, tension_n),
             Maps::Area(_, None) => "The ways back are not known yet".to_owned(),
-            Maps::Area(there, Some(ways)) => of_area(if back { ways } else { there }, (name, tension_n)),
+            Maps::Area(there, Some(ways)) => of_area(if back { ways } else { there }, name, tension_n),
         })
         .collect()
 }
@@ -129,7 +129,7 @@ fn to(x: f64) -> String {
     Unit { decimals: Some(2), ..Unit::M }.text(x)
 }
 
-fn of_line(map: &ReachMap, back: bool, (name, tension_n): (&str, f64)) -> String {
+fn of_line(map: &ReachMap, back: bool, name: &str, tension_n: f64) -> String {
     let Some([left, right]) = map.safe_m(tension_n, back) else {
         return format!("Above {name} {} where it stands", format::force(tension_n));
     };
@@ -148,7 +148,7 @@ fn of_line(map: &ReachMap, back: bool, (name, tension_n): (&str, f64)) -> String
     format!("Below {name} {force} from x = {}{} to {}{}", to(left), why(left, -1.0), to(right), why(right, 1.0))
 }
 
-fn of_area(area: &Area, (name, tension_n): (&str, f64)) -> String {
+fn of_area(area: &Area, name: &str, tension_n: f64) -> String {
     let force = format::force(tension_n);
     match area.below(tension_n) {
         Some((_, [low, high])) => format!(

@@ -52,7 +52,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let first = summary(scene, cable, solved, answer.time_s);
         ends(ui, &first);
         shape(ui, scene.view, &first, commands);
-        material(ui, (cable, solved), &first, commands);
+        material(ui, cable, solved, &first, commands);
         if let (Some(run), true) = (state.live.snapshot.peaks.get(index), answer.time_s > 0.0) {
             greatest_so_far(ui, run);
         }
@@ -197,7 +197,7 @@ fn shape(ui: &mut Ui, view: View, first: &CableSummary, commands: &mut Vec<Comma
     figure(ui, "Least tension", format::force(least.tension_n), help, Some((&node(least.at), commands)));
 }
 
-fn material(ui: &mut Ui, (cable, solved): (&Cable, &CableSolution), first: &CableSummary, commands: &mut Vec<Command>) {
+fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, first: &CableSummary, commands: &mut Vec<Command>) {
     if let Some((stress_pa, node)) = figures::greatest(solved, |n| n.stress_pa) {
         let help = "Largest tension over the full round section (conductors alone carry more)";
         figure(ui, "Max stress", format::stress(stress_pa), help, Some((&node, &mut *commands)));

@@ -88,9 +88,9 @@ fn line(ui: &mut Ui, state: &AppState, k: usize, load: &Load, commands: &mut Vec
     });
     if state.selection.selected == Some(item) {
         if let Some(force_n) = load.force_n {
-            strength(ui, load, (k, force_n), commands);
+            strength(ui, load, k, force_n, commands);
         }
-        if let Some(value) = timed(ui, (&name, load), &mut faults) {
+        if let Some(value) = timed(ui, &name, load, &mut faults) {
             set(value, commands);
         }
     }
@@ -111,7 +111,7 @@ fn line(ui: &mut Ui, state: &AppState, k: usize, load: &Load, commands: &mut Vec
 }
 
 /// A force that changes with time, or does from now on.
-fn timed(ui: &mut Ui, (name, load): (&str, &Load), faults: &mut Vec<String>) -> Option<Load> {
+fn timed(ui: &mut Ui, name: &str, load: &Load, faults: &mut Vec<String>) -> Option<Load> {
     let knots = Knots::of(&load.times_s, &load.forces_n);
     let on = load.force_n.is_none();
     let help = "A force at each of several times, linear in between";
@@ -130,7 +130,7 @@ fn with(load: &Load, force_n: Option<[f64; 2]>, knots: Knots) -> Load {
 }
 
 /// The slider of a selected load: how much, in the direction it has.
-fn strength(ui: &mut Ui, load: &Load, (k, force_n): (usize, [f64; 2]), commands: &mut Vec<Command>) {
+fn strength(ui: &mut Ui, load: &Load, k: usize, force_n: [f64; 2], commands: &mut Vec<Command>) {
     let size = force_n[0].hypot(force_n[1]);
     let known = Provenance { value: size, ..Provenance::default() };
     let change = row(ui, &STRENGTH, &known);
