@@ -1,7 +1,8 @@
-//! The documents against the tree: every path they name must exist.
+//! The documents and the source against the tree: every path they name must exist, and imports go one way.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 fn root() -> PathBuf {
@@ -47,4 +48,139 @@ fn links_of_the_documents_lead_somewhere() {
             }
         }
     }
+}
+
+#[test]
+fn every_viewer_wing_has_a_line_in_architecture() {
+    let text = read("ARCHITECTURE.md");
+    for entry in std::fs::read_dir(root().join("crates/cable-viewer/src")).expect("the viewer's sources") {
+        let entry = entry.expect("an entry");
+        let name = entry.file_name().into_string().expect("a name");
+        let is_named = text.contains(&format!("cable-viewer/src/{name}/"));
+        assert!(!entry.path().is_dir() || is_named, "{name} has no line in ARCHITECTURE.md");
+    }
+}
+
+/// Every module of a crate (`a::b`) and its code, without comments and unit tests.
+fn modules(source: &Path) -> BTreeMap<String, String> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![source.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).expect("a folder of sources") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let relative = path.strip_prefix(source).expect("below the source").with_extension("");
+            let name = relative.to_str().expect("a name").replace('/', "::");
+            if path.extension().is_none_or(|e| e != "rs") || ["lib", "main"].contains(&name.as_str()) {
+                continue;
+            }
+            let text = std::fs::read_to_string(&path).expect("a source");
+            let text = text.split("#[cfg(test)]\n").next().unwrap_or_default();
+            let code = |line: &str| line.split("//").next().unwrap_or_default().to_owned() + "\n";
+            found.insert(name.trim_end_matches("::mod").to_owned(), text.lines().map(code).collect());
+        }
+    }
+    found
+}
+
+/// The paths that a text begins with: `a::{b, c::d}` is `a::b` and `a::c::d`. Returns what is left of the text.
+fn path_tree<'a>(text: &'a str, before: &[&'a str], out: &mut Vec<Vec<String>>) -> &'a str {
+    let (mut path, mut rest) = (before.to_vec(), text);
+    loop {
+        let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+        let (word, after) = rest.split_at(end);
+        if word.is_empty() {
+            break;
+        }
+        path.push(word);
+        let Some(next) = after.strip_prefix("::") else {
+            rest = after;
+            break;
+        };
+        rest = next;
+        if let Some(mut inside) = next.strip_prefix('{') {
+            while !inside.is_empty() && !inside.starts_with('}') {
+                let skipped = inside.trim_start_matches([' ', '\n', ',']);
+                if skipped.starts_with('}') {
+                    break;
+                }
+                let left = path_tree(skipped, &path, out);
+                inside = if left.len() == skipped.len() { left.get(1..).unwrap_or_default() } else { left };
+            }
+            return inside.strip_prefix('}').unwrap_or_default();
+        }
+    }
+    out.push(path.iter().map(|w| (*w).to_owned()).collect());
+    rest
+}
+
+/// The modules of the crate that one of them imports from.
+fn imports(name: &str, code: &str, all: &BTreeMap<String, String>) -> BTreeSet<String> {
+    let mut paths = Vec::new();
+    let starts = |word: &str| {
+        let ends_before = |at: &usize| !code[..*at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':');
+        code.match_indices(word).map(|(at, _)| at).filter(ends_before).collect::<Vec<_>>()
+    };
+    for word in ["crate::", "super::"] {
+        for at in starts(word) {
+            path_tree(&code[at..], &[], &mut paths);
+        }
+    }
+    let mut found = BTreeSet::new();
+    for path in paths {
+        let up = path.iter().take_while(|w| *w == "super").count();
+        let own: Vec<&str> = name.split("::").collect();
+        let base = if up > 0 { own[..own.len().saturating_sub(up)].to_vec() } else { Vec::new() };
+        let below = path.iter().skip(up.max(1)).map(String::as_str);
+        let full: Vec<&str> = base.into_iter().chain(below).collect();
+        found.extend((1..=full.len()).rev().map(|n| full[..n].join("::")).find(|m| all.contains_key(m)));
+    }
+    // An entrance calls its rooms by their names alone.
+    let inside = format!("{name}::");
+    let rooms = all.keys().filter(|m| m.strip_prefix(&inside).is_some_and(|room| !room.contains("::")));
+    found.extend(rooms.filter(|m| !starts(&format!("{}::", &m[inside.len()..])).is_empty()).cloned());
+    found.remove(name);
+    found
+}
+
+#[test]
+fn modules_of_viewer_and_program_import_one_way() {
+    for name in ["cable-viewer", "cable-cli"] {
+        let all = modules(&root().join("crates").join(name).join("src"));
+        assert!(all.len() > 5, "{name} has modules");
+        let files: BTreeMap<&String, BTreeSet<String>> =
+            all.iter().map(|(m, code)| (m, imports(m, code, &all))).collect();
+        assert!(files.values().map(BTreeSet::len).sum::<usize>() > 5, "{name}: imports are seen");
+        let wing = |m: &str| m.split("::").next().unwrap_or_default().to_owned();
+        let mut wings: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+        for (m, targets) in &files {
+            let own = wing(m);
+            let others = targets.iter().map(|t| wing(t)).filter(|t| *t != own).collect::<Vec<_>>();
+            wings.entry(own).or_default().extend(others);
+        }
+        let files = files.into_iter().map(|(m, targets)| (m.clone(), targets)).collect();
+        for graph in [wings, files] {
+            let in_loops: Vec<&String> = graph.keys().filter(|m| reaches(&graph, m)).collect();
+            assert!(in_loops.is_empty(), "{name}: these import each other in a loop: {in_loops:?}");
+        }
+    }
+}
+
+/// A module is reached by following imports from itself.
+fn reaches(graph: &BTreeMap<String, BTreeSet<String>>, from: &str) -> bool {
+    let (mut seen, mut next) = (BTreeSet::new(), vec![from]);
+    while let Some(module) = next.pop() {
+        for target in graph.get(module).into_iter().flatten() {
+            if target == from {
+                return true;
+            }
+            if seen.insert(target) {
+                next.push(target);
+            }
+        }
+    }
+    false
 }

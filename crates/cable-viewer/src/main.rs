@@ -5,9 +5,11 @@ use std::process::ExitCode;
 
 use cable_core::scene::catalog;
 use cable_core::{Model, Scene};
+use cable_viewer::ViewerApp;
+use cable_viewer::app::screenshot;
 use cable_viewer::command::Command;
-use cable_viewer::software::Software;
-use cable_viewer::{ViewerApp, autosave, scene_file, screenshot};
+use cable_viewer::io::{autosave, scene_file};
+use cable_viewer::render::software::Software;
 use clap::Parser;
 
 /// The cable simulator's window.
@@ -47,13 +49,13 @@ enum Theme {
 }
 
 /// Largest picture side, pixels: what every GPU can draw.
-const MOST_PIXELS: u32 = 8192;
+const MAX_PIXELS: u32 = 8192;
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
     match sides {
-        Some(size) if size.iter().all(|s| (1..=MOST_PIXELS).contains(s)) => Ok(size),
-        _ => Err(format!("write it as 1280x800, each side 1 to {MOST_PIXELS}")),
+        Some(size) if size.iter().all(|s| (1..=MAX_PIXELS).contains(s)) => Ok(size),
+        _ => Err(format!("write it as 1280x800, each side 1 to {MAX_PIXELS}")),
     }
 }
 
@@ -76,7 +78,7 @@ fn run(arguments: Arguments) -> Result<(), String> {
     };
     if let Some(picture) = arguments.screenshot {
         return screenshot::save(scene, &picture, arguments.size, |app, ctx| {
-            app.state.theme = theme;
+            app.state.view.theme = theme;
             app.apply(ctx, vec![Command::SetModel(arguments.model)]);
         });
     }
@@ -93,7 +95,7 @@ fn run(arguments: Arguments) -> Result<(), String> {
             cc.egui_ctx.add_plugin(software);
         }
         let mut app = ViewerApp::new(&cc.egui_ctx, scene, path);
-        app.state.theme = theme;
+        app.state.view.theme = theme;
         if let Some(path) = autosave::default_path() {
             app.keep_changes_in(path);
         }

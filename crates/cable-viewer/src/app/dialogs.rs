@@ -1,17 +1,17 @@
-//! Draws the open dialog.
+//! The open dialog is drawn over everything else.
 
 use std::path::PathBuf;
 
 use egui::{Context, Id, Modal, Ui};
 
 use crate::command::{Command, FileCommand};
-use crate::dialog::Dialog;
 use crate::state::AppState;
+use crate::state::dialog::{Dialog, Replacement};
 
 /// Draws the dialog, if one is open.
 pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
-    let Some(dialog) = &mut state.dialog else { return };
-    let name = state.scene.name.clone();
+    let Some(dialog) = &mut state.ui.dialog else { return };
+    let name = state.document.scene.name.clone();
     let response = Modal::new(Id::unique("dialog")).show(ctx, |ui| {
         ui.set_max_width(460.0);
         match dialog {
@@ -38,9 +38,9 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
                     commands.push(Command::File(command));
                 }
             }
-            Dialog::Feedback { answers, path } => super::feedback::ui(ui, answers, path, commands),
+            Dialog::Feedback { answers, path } => crate::app::feedback_form::ui(ui, answers, path, commands),
             Dialog::About => about(ui, commands),
-            Dialog::Palette { text } => super::palette::ui(ui, text, commands),
+            Dialog::Palette { text } => crate::app::palette::ui(ui, text, commands),
             Dialog::ImportMap { path, text, unit_m } => import_map(ui, [path, text, unit_m], commands),
             Dialog::Unsaved { then } => unsaved(ui, &name, then, commands),
             Dialog::Recover { scene } => recover(ui, scene, commands),
@@ -231,7 +231,7 @@ fn ask_path(ui: &mut Ui, title: &str, path: &mut String, saving: bool, commands:
     }
 }
 
-fn unsaved(ui: &mut Ui, name: &str, then: &Command, commands: &mut Vec<Command>) {
+fn unsaved(ui: &mut Ui, name: &str, then: &Replacement, commands: &mut Vec<Command>) {
     ui.heading("Unsaved changes");
     ui.add_space(6.0);
     ui.label(format!("“{name}” has changes that are not saved."));
@@ -242,7 +242,7 @@ fn unsaved(ui: &mut Ui, name: &str, then: &Command, commands: &mut Vec<Command>)
             commands.push(Command::File(FileCommand::Save));
         }
         if ui.button("Go on without saving").clicked() {
-            commands.push(Command::File(FileCommand::Discard(Box::new(then.clone()))));
+            commands.push(Command::File(FileCommand::Discard(then.clone())));
         }
         if ui.button("Cancel").clicked() {
             commands.push(close());

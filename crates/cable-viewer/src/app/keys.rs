@@ -2,11 +2,12 @@
 
 use egui::{Context, Event, Key, KeyboardShortcut, Modifiers};
 
-use crate::canvas::{grid, place};
+use crate::canvas::layers::grid;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use crate::dialog::Dialog;
+use crate::geometry::handles;
 use crate::panels::robot;
 use crate::state::AppState;
+use crate::state::dialog::Dialog;
 
 /// Ctrl or ⌘ with a key.
 const fn with_command(key: Key) -> KeyboardShortcut {
@@ -36,7 +37,7 @@ pub const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus
 
 /// Pushes what the keys of this frame ask for.
 pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
-    if state.dialog.is_some() {
+    if state.ui.dialog.is_some() {
         if ctx.input(|i| i.key_pressed(Key::Escape)) {
             commands.push(Command::File(FileCommand::SetDialog(None)));
         }
@@ -88,8 +89,8 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     if plain(Key::F1) {
         commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::Help))));
     }
-    if (plain(Key::Delete) || plain(Key::Backspace)) && state.selected.is_some() {
-        commands.push(Command::Scene(SceneCommand::RemoveAll(state.picks())));
+    if (plain(Key::Delete) || plain(Key::Backspace)) && state.selection.selected.is_some() {
+        commands.push(Command::Scene(SceneCommand::RemoveAll(state.selection.picks())));
     }
     // An open menu or list closes first, and only it.
     if !egui::Popup::is_any_open(ctx) && plain(Key::Escape) {
@@ -104,9 +105,10 @@ const PAN: f32 = 60.0;
 
 /// + and − zoom about the middle, Shift with an arrow moves the view.
 fn camera(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
-    // With ctrl they scale the whole window; plus is on the shifted half of its key on many keyboards.
+    // With ctrl they scale the whole window; plus is on the shifted half of its key on many
+    // keyboards.
     let pressed = |key| ctx.input_mut(|i| !i.modifiers.command && i.consume_key(Modifiers::NONE, key));
-    let zoom = |factor| Command::View(ViewCommand::Zoom { about_m: state.camera.centre_m, factor });
+    let zoom = |factor| Command::View(ViewCommand::Zoom { about_m: state.view.camera.centre_m, factor });
     if pressed(Key::Plus) || pressed(Key::Equals) {
         commands.push(zoom(ZOOM));
     }
@@ -132,8 +134,8 @@ fn clipboard(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
         match event {
             Event::Copy => commands.push(scene(SceneCommand::Copy)),
             Event::Cut => commands.push(scene(SceneCommand::Cut)),
-            Event::Paste(text) if text == state.clipboard.text && !state.clipboard.is_empty() => {
-                commands.push(scene(SceneCommand::Paste { at_m: state.cursor_m }));
+            Event::Paste(text) if text == state.selection.clipboard.text && !state.selection.clipboard.is_empty() => {
+                commands.push(scene(SceneCommand::Paste { at_m: state.selection.cursor_m }));
             }
             Event::Paste(text) => {
                 let (path, unit_m) = (String::new(), "1".to_owned());
@@ -145,12 +147,13 @@ fn clipboard(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-/// N picks the next thing, M one more, Alt with an arrow moves what is picked by a grid line, Ctrl+A picks everything.
+/// N picks the next thing, M one more, Alt with an arrow moves what is picked by a grid line,
+/// Ctrl+A picks everything.
 fn pick_and_move(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
-    let all = place::all(state);
+    let all = handles::all(state);
     for (modifiers, forward) in [(Modifiers::SHIFT, false), (Modifiers::NONE, true)] {
         if ctx.input_mut(|i| i.consume_key(modifiers, Key::N)) && !all.is_empty() {
-            let here = state.selected.and_then(|s| all.iter().position(|i| *i == s));
+            let here = state.selection.selected.and_then(|s| all.iter().position(|i| *i == s));
             let next = match (here, forward) {
                 (Some(k), true) => (k + 1) % all.len(),
                 (Some(k), false) => (k + all.len() - 1) % all.len(),
@@ -161,7 +164,7 @@ fn pick_and_move(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
         }
     }
     if ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::M)) {
-        let mut picks = state.picks();
+        let mut picks = state.selection.picks();
         let after = picks.last().and_then(|s| all.iter().position(|i| i == s)).map_or(0, |k| k + 1);
         let next = all.iter().cycle().skip(after).take(all.len()).find(|i| !picks.contains(i));
         picks.extend(next);
@@ -170,8 +173,8 @@ fn pick_and_move(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     if ctx.input_mut(|i| i.consume_shortcut(&SELECT_ALL)) {
         commands.push(Command::View(ViewCommand::SelectAll(all)));
     }
-    let Some(item) = state.selected else { return };
-    let [_, step] = grid::steps(&state.camera);
+    let Some(item) = state.selection.selected else { return };
+    let [_, step] = grid::steps(&state.view.camera);
     for (key, by) in [
         (Key::ArrowRight, [step, 0.0]),
         (Key::ArrowLeft, [-step, 0.0]),
@@ -179,14 +182,14 @@ fn pick_and_move(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
         (Key::ArrowDown, [0.0, -step]),
     ] {
         if ctx.input_mut(|i| i.consume_key(Modifiers::ALT, key)) {
-            commands.push(Command::Scene(SceneCommand::MoveAll(place::moved(state, item, by))));
+            commands.push(Command::Scene(SceneCommand::MoveAll(handles::moved(state, item, by))));
         }
     }
 }
 
 /// A and D drive the robot while they are held.
 fn drive(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
-    if state.scene.robot.is_none() {
+    if state.document.scene.robot.is_none() {
         return;
     }
     let [left, right, released] = ctx.input(|i| {
@@ -200,7 +203,7 @@ fn drive(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
         _ if released => Some(0.0),
         _ => return,
     };
-    if order != state.robot_order {
+    if order != state.live.robot_order {
         commands.push(Command::Playback(PlaybackCommand::DriveRobot(order)));
     }
 }

@@ -1,12 +1,11 @@
-//! Where panels and canvas are.
+//! The layout says where panels and canvas are.
 
 use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, RichText, ScrollArea, Ui};
 
-use super::{guide, menu};
-use crate::canvas;
+use crate::app::{menu, tutorial_bar};
 use crate::command::Command;
-use crate::panels;
 use crate::state::AppState;
+use crate::{canvas, panels};
 
 type PanelUi = fn(&mut Ui, &AppState, &mut Vec<Command>);
 type Section = (&'static str, PanelUi);
@@ -19,32 +18,36 @@ const EDIT: &[Section] = &[
     ("Environment", panels::environment::ui),
     ("Solver", panels::solver::ui),
 ];
-/// What is read off. Where a place on the cable is marked its tension stands above the readouts, else at the end.
+/// What is read off. Where a place on the cable is marked its tension stands above the readouts,
+/// else at the end.
 const READ: &[Section] = &[
     ("Warnings", panels::warnings::ui),
-    (MARKED, panels::origin::ui),
+    (MARKED, panels::analysis::tension_budget::ui),
     ("Readouts", panels::readouts::ui),
-    ("Safe reach", panels::reach::ui),
-    ("Compare", panels::compare::ui),
-    (UNMARKED, panels::origin::ui),
-    ("Friction range", panels::spread::ui),
+    ("Safe reach", panels::analysis::safe_reach::ui),
+    ("Compare", panels::analysis::compare::ui),
+    (UNMARKED, panels::analysis::tension_budget::ui),
+    ("Friction range", panels::analysis::friction_range::ui),
 ];
 
 const MARKED: &str = "Tension at the marked place";
 const UNMARKED: &str = "Tension at a place";
 
-/// Narrower windows (points) have one side panel instead of two: the canvas would be smaller than its labels.
+/// Narrower windows (points) have one side panel instead of two: the canvas would be smaller than
+/// its labels.
 const WIDE: f32 = 1100.0;
-/// Lower windows (points) have one side panel, and the graphs in it: nothing would be left of the canvas above them.
+/// Lower windows (points) have one side panel, and the graphs in it: nothing would be left of the
+/// canvas above them.
 const LEAST_FOR_GRAPHS: f32 = 520.0;
 /// Lowest panel of graphs, points.
 const LEAST_GRAPHS: f32 = 130.0;
 
-/// Draws everything but dialogs. Only the canvas needs the state mutable: it fits the camera to its own size.
+/// Draws everything but dialogs. Only the canvas needs the state mutable: it fits the camera to its
+/// own size.
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     Panel::top("menu").show(ui, |ui| menu::ui(ui, state, commands));
-    if state.guide.is_some() {
-        Panel::top("guide").show(ui, |ui| guide::strip(ui, state, commands));
+    if state.ui.tutorial.is_some() {
+        Panel::top("guide").show(ui, |ui| tutorial_bar::strip(ui, state, commands));
     }
     Panel::bottom("status").show(ui, |ui| menu::status(ui, state));
     Panel::bottom("playback").show(ui, |ui| {
@@ -54,10 +57,10 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     let [width, height] = ui.ctx().content_rect().size().into();
     let graphs = height >= LEAST_FOR_GRAPHS;
     if width >= WIDE && graphs {
-        side(ui, "edit", (EDIT, state, commands));
-        side(ui, "read", (READ, state, commands));
+        side(ui, "edit", EDIT, state, commands);
+        side(ui, "read", READ, state, commands);
     } else {
-        tabs(ui, (state, !graphs), commands);
+        tabs(ui, state, !graphs, commands);
     }
     if !graphs {
         CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
@@ -72,9 +75,9 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
 }
 
-fn side(ui: &mut Ui, id: &'static str, (sections, state, commands): (&[Section], &AppState, &mut Vec<Command>)) {
+fn side(ui: &mut Ui, id: &'static str, sections: &[Section], state: &AppState, commands: &mut Vec<Command>) {
     let panel = if id == "edit" { Panel::left(id).default_size(336.0) } else { Panel::right(id).default_size(320.0) };
-    panel.size_range(220.0..=420.0).show(ui, |ui| scroll(ui, id, (sections, state, commands)));
+    panel.size_range(220.0..=420.0).show(ui, |ui| scroll(ui, id, sections, state, commands));
 }
 
 /// What the one panel of a small window shows.
@@ -87,7 +90,7 @@ enum Tab {
 }
 
 /// One panel for all in a window that has no room for two, or none for graphs below the canvas.
-fn tabs(ui: &mut Ui, (state, graphs): (&AppState, bool), commands: &mut Vec<Command>) {
+fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>) {
     // A large scale on a small screen: half of it stays for the picture.
     let most = 0.5 * ui.ctx().content_rect().width();
     let range = most.min(220.0)..=most.min(420.0);
@@ -102,8 +105,8 @@ fn tabs(ui: &mut Ui, (state, graphs): (&AppState, bool), commands: &mut Vec<Comm
                 ui.selectable_value(&mut tab, Tab::Graphs, "Graphs")
                     .on_hover_text("Tension and more, over time and along the cable");
             }
-            let warnings = state.snapshot.solution.as_ref().map_or(0, |s| s.warnings.len());
-            if state.scene_fault.is_some() || state.snapshot.error.is_some() || warnings > 0 {
+            let warnings = state.live.snapshot.solution.as_ref().map_or(0, |s| s.warnings.len());
+            if state.document.fault.is_some() || state.live.snapshot.error.is_some() || warnings > 0 {
                 ui.add(
                     egui::Label::new(RichText::new("Warnings: see Read").color(ui.visuals().warn_fg_color)).truncate(),
                 );
@@ -112,19 +115,19 @@ fn tabs(ui: &mut Ui, (state, graphs): (&AppState, bool), commands: &mut Vec<Comm
         ui.data_mut(|d| d.insert_temp(id, tab));
         match tab {
             Tab::Graphs if graphs => panels::plots::ui(ui, state, commands),
-            Tab::Read => scroll(ui, "read", (READ, state, commands)),
-            Tab::Edit | Tab::Graphs => scroll(ui, "edit", (EDIT, state, commands)),
+            Tab::Read => scroll(ui, "read", READ, state, commands),
+            Tab::Edit | Tab::Graphs => scroll(ui, "edit", EDIT, state, commands),
         }
     });
 }
 
-fn scroll(ui: &mut Ui, id: &str, (sections, state, commands): (&[Section], &AppState, &mut Vec<Command>)) {
+fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, commands: &mut Vec<Command>) {
     ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| {
         for (title, panel) in sections {
             let hidden = match *title {
-                "Robot" => state.scene.robot.is_none(),
-                MARKED => state.probe.is_none(),
-                UNMARKED => state.probe.is_some(),
+                "Robot" => state.document.scene.robot.is_none(),
+                MARKED => state.analysis.tension_marker.is_none(),
+                UNMARKED => state.analysis.tension_marker.is_some(),
                 _ => false,
             };
             if hidden {

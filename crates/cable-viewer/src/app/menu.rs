@@ -1,17 +1,16 @@
-//! The menu bar and the status line.
+//! The menu bar offers the commands, and the status line says how the solver is doing.
 
 use cable_core::scene::catalog;
 use cable_core::verify::Verification;
 use egui::{Button, Color32, KeyboardShortcut, MenuBar, Sense, Ui, Vec2};
 
-use super::keys;
-use crate::colour::{ColourMap, Quantity};
+use crate::app::keys;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use crate::dialog::Dialog;
-use crate::panels::system::System;
-use crate::panels::translate;
+use crate::render::colour::{ColourMap, Quantity};
+use crate::state::dialog::Dialog;
 use crate::state::{AppState, WorkerStatus};
-use crate::units;
+use crate::units::system::System;
+use crate::units::{labels, translate};
 
 /// The menu bar.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -20,7 +19,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.menu_button("Edit", |ui| edit(ui, state, commands));
         ui.menu_button("View", |ui| view(ui, state, commands));
         ui.menu_button("Scenes", |ui| scenes(ui, commands));
-        ui.menu_button("Learn", |ui| super::guide::menu(ui, commands));
+        ui.menu_button("Learn", |ui| crate::app::tutorial_bar::menu(ui, commands));
         if ui.button("Help").on_hover_text("Pointer and keys (F1)").clicked() {
             commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::Help))));
         }
@@ -37,14 +36,14 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 /// Asks what the user thinks.
 pub fn feedback() -> FileCommand {
-    let (answers, path) = (crate::feedback::Answers::default(), "feedback.csv".to_owned());
+    let (answers, path) = (crate::io::feedback::Answers::default(), "feedback.csv".to_owned());
     FileCommand::SetDialog(Some(Dialog::Feedback { answers, path }))
 }
 
 /// The scene's name, and whether it is saved.
 pub fn title(state: &AppState) -> String {
-    let name = if state.scene.name.is_empty() { "Untitled scene" } else { &state.scene.name };
-    let mark = if state.unsaved() { " (not saved)" } else { "" };
+    let name = if state.document.scene.name.is_empty() { "Untitled scene" } else { &state.document.scene.name };
+    let mark = if state.document.unsaved() { " (not saved)" } else { "" };
     format!("{name}{mark}")
 }
 
@@ -109,7 +108,7 @@ pub fn import_map() -> FileCommand {
 }
 
 fn edit(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let (undo, redo) = state.undo.available();
+    let (undo, redo) = state.document.undo.available();
     for (text, shortcut, enabled, command) in
         [("Undo", &keys::UNDO, undo, SceneCommand::Undo), ("Redo", &keys::REDO, redo, SceneCommand::Redo)]
     {
@@ -123,13 +122,13 @@ fn edit(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::Palette { text: String::new() }))));
     }
     ui.separator();
-    let picked = state.selected.is_some();
+    let picked = state.selection.selected.is_some();
     for (text, shortcut, enabled, command) in [
         ("Copy", Some(&keys::COPY), picked, SceneCommand::Copy),
         ("Cut", Some(&keys::CUT), picked, SceneCommand::Cut),
-        ("Paste", Some(&keys::PASTE), !state.clipboard.is_empty(), SceneCommand::Paste { at_m: None }),
-        ("Remove selected", None, picked, SceneCommand::RemoveAll(state.picks())),
-        ("Add a cable", None, !state.scene.cables.is_empty(), SceneCommand::AddCable),
+        ("Paste", Some(&keys::PASTE), !state.selection.clipboard.is_empty(), SceneCommand::Paste { at_m: None }),
+        ("Remove selected", None, picked, SceneCommand::RemoveAll(state.selection.picks())),
+        ("Add a cable", None, !state.document.scene.cables.is_empty(), SceneCommand::AddCable),
     ] {
         ui.add_enabled_ui(enabled, |ui| {
             if entry(ui, text, shortcut) {
@@ -140,7 +139,7 @@ fn edit(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if entry(ui, "Reset to start (R)", None) {
         commands.push(Command::Playback(PlaybackCommand::Reset));
     }
-    if matches!(state.worker, WorkerStatus::Dead(_)) && entry(ui, "Restart the solver", None) {
+    if matches!(state.solver.status, WorkerStatus::Dead(_)) && entry(ui, "Restart the solver", None) {
         commands.push(Command::File(FileCommand::RestartWorker));
     }
 }
@@ -153,7 +152,7 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         commands.push(Command::View(ViewCommand::Recentre));
     }
     ui.separator();
-    let mut layers = state.layers;
+    let mut layers = state.view.layers;
     ui.checkbox(&mut layers.grid, "Grid").on_hover_text("Lines and numbered axes");
     ui.checkbox(&mut layers.labels, "Labels").on_hover_text("Names, coordinates and figures");
     ui.checkbox(&mut layers.contacts, "Contacts").on_hover_text(
@@ -164,32 +163,32 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.checkbox(&mut layers.nodes, "Nodes").on_hover_text("The points the model works with");
     ui.separator();
     ui.checkbox(&mut layers.snap, "Snap to grid").on_hover_text("Dragged points land on the finest grid lines shown");
-    if layers != state.layers {
+    if layers != state.view.layers {
         commands.push(Command::View(ViewCommand::SetLayers(layers)));
     }
     ui.separator();
     colours(ui, state, commands);
     ui.separator();
-    let mut units = state.units;
+    let mut units = state.view.units;
     ui.radio_value(&mut units, System::Si, "SI units").on_hover_text("Metres, newtons, kilograms");
     ui.radio_value(&mut units, System::Us, "US units").on_hover_text("Feet, pounds-force, pounds; files stay SI");
-    if units != state.units {
+    if units != state.view.units {
         commands.push(Command::View(ViewCommand::SetUnits(units)));
     }
     ui.separator();
-    let mut theme = state.theme;
+    let mut theme = state.view.theme;
     ui.radio_value(&mut theme, egui::ThemePreference::System, "Theme of the system")
         .on_hover_text("Dark where it does not say");
     ui.radio_value(&mut theme, egui::ThemePreference::Light, "Light theme").on_hover_text("Dark on light");
     ui.radio_value(&mut theme, egui::ThemePreference::Dark, "Dark theme").on_hover_text("Light on dark");
-    if theme != state.theme {
+    if theme != state.view.theme {
         commands.push(Command::View(ViewCommand::SetTheme(theme)));
     }
 }
 
 /// What the cable's colours show, and between which values.
 fn colours(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let mut colour = state.colour;
+    let mut colour = state.view.colour;
     for quantity in Quantity::ALL {
         let text = format!("Colour by {}", quantity.name().to_lowercase());
         if ui
@@ -209,12 +208,12 @@ fn colours(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let mut fixed = colour.fixed.is_some();
         let help =
             "On: the colours keep the values they have now; off: they follow the least and greatest of each answer";
-        let present = state.snapshot.solution.as_deref().map(|s| state.colour.range(s));
+        let present = state.live.snapshot.solution.as_deref().map(|s| state.view.colour.range(s));
         if ui.checkbox(&mut fixed, "Keep the range").on_hover_text(help).changed() {
             colour.fixed = present.filter(|_| fixed);
         }
     });
-    if colour != state.colour {
+    if colour != state.view.colour {
         commands.push(Command::View(ViewCommand::SetColour(colour)));
     }
 }
@@ -229,10 +228,12 @@ fn scenes(ui: &mut Ui, commands: &mut Vec<Command>) {
 
 /// Diameter of the light that shows the verdict, points.
 const LIGHT_SIZE: f32 = 9.0;
-/// Colour of the light where every law was asked and none is broken: green, told from red by its brightness too.
+/// Colour of the light where every law was asked and none is broken: green, told from red by its
+/// brightness too.
 const SOUND: Color32 = Color32::from_rgb(64, 170, 110);
 
-/// Whether the answer obeys the laws of mechanics, as they were checked independently of the model that gave it.
+/// Whether the answer obeys the laws of mechanics, as they were checked independently of the model
+/// that gave it.
 fn light(ui: &mut Ui, verification: &Verification) {
     let visuals = ui.visuals();
     let (lamp, colour, text) = match (verification.is_sound(), verification.not_checked.is_empty()) {
@@ -241,8 +242,9 @@ fn light(ui: &mut Ui, verification: &Verification) {
         (false, _) => (visuals.error_fg_color, visuals.error_fg_color, "NOT SOUND"),
     };
     let laws: Vec<&str> = verification.checked.iter().map(|l| l.name()).collect();
-    let help = format!("{}. Checked: {}", translate::shown(&verification.summary()), laws.join(", "));
-    // The font has no signs for this: the light is painted, and the words say the same without its colour.
+    let help = format!("{}. Checked: {}", translate::display(&verification.summary()), laws.join(", "));
+    // The font has no signs for this: the light is painted, and the words say the same without its
+    // colour.
     let (place, _) = ui.allocate_exact_size(Vec2::splat(LIGHT_SIZE), Sense::hover());
     ui.painter().circle_filled(place.center(), 0.5 * LIGHT_SIZE, lamp);
     ui.colored_label(colour, text).on_hover_text(help);
@@ -251,13 +253,13 @@ fn light(ui: &mut Ui, verification: &Verification) {
 /// The status line: cursor, model, time taken.
 pub fn status(ui: &mut Ui, state: &AppState) {
     ui.horizontal(|ui| {
-        let (length, si) = units::of_length();
-        match state.cursor_m.map(|p| p.map(|v| v / si)) {
+        let (length, si) = labels::of_length();
+        match state.selection.cursor_m.map(|p| p.map(|v| v / si)) {
             Some([x, y]) => ui.monospace(format!("x {x:9.3} {length}   y {y:9.3} {length}")),
             None => ui.monospace(format!("x         – {length}   y         – {length}")),
         };
         ui.separator();
-        if let Some(solution) = &state.snapshot.solution {
+        if let Some(solution) = &state.live.snapshot.solution {
             ui.label(format!("{} model", solution.model)).on_hover_text(&solution.reason);
             ui.separator();
             if let Some(verification) = &solution.verification {
@@ -267,17 +269,17 @@ pub fn status(ui: &mut Ui, state: &AppState) {
             ui.label(format!("t = {:.3} s", solution.time_s));
             ui.separator();
         }
-        ui.label(format!("solved in {:.2} ms", state.snapshot.solve_wall_s * 1e3));
-        if let Some(latency) = state.edit_latency_s {
+        ui.label(format!("solved in {:.2} ms", state.live.snapshot.solve_wall_s * 1e3));
+        if let Some(latency) = state.solver.edit_latency_s {
             ui.separator();
             ui.label(format!("edit to picture {:.0} ms", latency * 1e3))
                 .on_hover_text("From the last edit to the first picture that shows it");
         }
-        if let Some(fault) = &state.autosave_fault {
+        if let Some(fault) = &state.ui.autosave_fault {
             ui.separator();
             ui.colored_label(ui.visuals().warn_fg_color, "changes are not kept for recovery").on_hover_text(fault);
         }
-        if state.snapshot.draft {
+        if state.live.snapshot.draft {
             ui.separator();
             ui.label("draft, settling…")
                 .on_hover_text("Few segments, not yet at rest, while the scene is being moved; the answer follows");

@@ -1,12 +1,19 @@
-//! The window: takes in the worker's answers, lays out panels and canvas, applies what they push.
+//! The window takes in the worker's answers, lays out panels and canvas and applies what they push.
+//!
+//! - `layout`, `menu`, `keys`, `palette`: where panels are, and every command by menu, key or name
+//! - `dialogs`, `feedback_form`: what the user is asked
+//! - `tutorials`, `tutorial_bar`: guided scenes, and the bar that leads through one
+//! - `screenshot`: the window as a picture file
 
 mod dialogs;
-mod feedback;
-mod guide;
+mod feedback_form;
 mod keys;
 mod layout;
 mod menu;
 mod palette;
+pub mod screenshot;
+mod tutorial_bar;
+pub mod tutorials;
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -14,22 +21,21 @@ use std::time::Instant;
 
 use cable_core::Scene;
 
-use crate::autosave::Autosave;
-use crate::bending;
-use crate::command::{self, Command, Effects};
-use crate::dialog::Dialog;
-use crate::history::Sample;
-use crate::models;
-use crate::panels::system;
-use crate::reach;
-use crate::spread;
+use crate::command::effects::{Effects, submit_new_scene};
+use crate::command::{self, Command};
+use crate::io::autosave::Autosave;
+use crate::jobs::{friction_range, model_comparison, neglected_bending, safe_reach};
+use crate::render::theme;
+use crate::state::analysis::hold;
+use crate::state::dialog::Dialog;
+use crate::state::questions::{bending_query_fits, friction_query, friction_query_fits};
 use crate::state::{AppState, WorkerStatus};
-use crate::theme;
+use crate::units::system;
 use crate::worker::Worker;
 use crate::worker::engine::Report;
 
 /// Most unanswered edits whose delay is measured; of more, those in between are not.
-const MOST_ASKED: usize = 64;
+const MAX_ASKED: usize = 64;
 
 /// The eframe application.
 pub struct ViewerApp {
@@ -41,16 +47,17 @@ pub struct ViewerApp {
     title: String,
     /// Keeps unsaved changes on disk, in a window.
     autosave: Option<Autosave>,
-    /// Numbers of the edits not yet answered and when they were sent, oldest first; at most [`MOST_ASKED`].
+    /// Numbers of the edits not yet answered and when they were sent, oldest first; at most
+    /// [`MAX_ASKED`].
     asked: VecDeque<(u64, Instant)>,
     /// The map of where the robot can go, while it is computed.
-    reach: Option<reach::Job>,
+    reach: Option<safe_reach::Job>,
     /// Every model being asked.
-    models: Option<models::Job>,
+    models: Option<model_comparison::Job>,
     /// What neglecting bending stiffness changes, computed or being computed.
-    bending: Option<bending::Job>,
+    bending: Option<neglected_bending::Job>,
     /// The ribbon of less and more friction, computed or being computed.
-    spread: Option<spread::Job>,
+    spread: Option<friction_range::Job>,
 }
 
 impl ViewerApp {
@@ -82,15 +89,16 @@ impl ViewerApp {
             spread: None,
         };
         let mut effects = Effects::default();
-        command::submit_scene(&mut app.state, true, &mut effects);
+        submit_new_scene(&mut app.state, &mut effects);
         app.carry_out(ctx, effects);
         app
     }
 
-    /// From now on unsaved changes are kept in a file; if there are some from a window that died, they are offered.
+    /// From now on unsaved changes are kept in a file; if there are some from a window that died,
+    /// they are offered.
     pub fn keep_changes_in(&mut self, path: PathBuf) {
         let autosave = Autosave::new(path);
-        self.state.dialog = match autosave.found() {
+        self.state.ui.dialog = match autosave.found() {
             None => None,
             Some(Ok(scene)) => Some(Dialog::Recover { scene: Box::new(scene) }),
             Some(Err(text)) => Some(Dialog::Message {
@@ -102,14 +110,18 @@ impl ViewerApp {
     }
 
     /// Keeps unsaved changes on disk; asks for a frame when the next copy is due.
-    fn look_after_changes(&mut self, ctx: &egui::Context) {
+    fn update_autosave(&mut self, ctx: &egui::Context) {
         let Some(autosave) = &mut self.autosave else { return };
         let state = &mut self.state;
-        let wait = autosave.look(&state.scene, [state.unsaved(), state.scene_fault.is_none()], Instant::now());
+        let wait = autosave.look(
+            &state.document.scene,
+            [state.document.unsaved(), state.document.fault.is_none()],
+            Instant::now(),
+        );
         if let Some(wait) = wait {
             ctx.request_repaint_after(wait);
         }
-        state.autosave_fault = autosave.fault().map(str::to_owned);
+        state.ui.autosave_fault = autosave.fault().map(str::to_owned);
     }
 
     /// Applies commands as if panels had pushed them.
@@ -136,18 +148,18 @@ impl ViewerApp {
         }
         if let Some(order) = effects.reach {
             let shown = ctx.clone();
-            self.reach = order.map(|o| reach::start(*o, move || shown.request_repaint()));
+            self.reach = order.map(|o| safe_reach::start(*o, move || shown.request_repaint()));
         }
         if let Some(scene) = effects.models {
-            let (shown, settings) = (ctx.clone(), self.state.settings);
-            self.models = scene.map(|s| models::start(*s, settings, move || shown.request_repaint()));
+            let (shown, settings) = (ctx.clone(), self.state.solver.settings);
+            self.models = scene.map(|s| model_comparison::start(*s, settings, move || shown.request_repaint()));
         }
         if effects.restart_worker {
             self.worker = new_worker(ctx, self.threaded);
         }
         if !effects.request.is_empty() {
             if effects.request.number > 0 {
-                if self.asked.len() == MOST_ASKED {
+                if self.asked.len() == MAX_ASKED {
                     self.asked.pop_back();
                 }
                 self.asked.push_back((effects.request.number, Instant::now()));
@@ -166,72 +178,80 @@ impl ViewerApp {
             self.show(report);
         }
         if let Some(job) = &self.reach {
-            self.state.reach.progress = job.progress();
-            if !matches!(self.state.reach.progress, reach::Progress::Running(..)) {
+            self.state.analysis.safe_reach.progress = job.progress();
+            if !matches!(self.state.analysis.safe_reach.progress, safe_reach::Progress::Running(..)) {
                 self.reach = None;
             }
         }
         if let Some(job) = &self.models {
-            self.state.models = job.progress();
-            if let models::Progress::Done(found) = self.state.models.clone() {
-                models::hold(&mut self.state.held, &found);
+            self.state.analysis.models = job.progress();
+            if let model_comparison::Progress::Done(found) = self.state.analysis.models.clone() {
+                hold(&mut self.state.analysis.references, &found);
             }
-            if !matches!(self.state.models, models::Progress::Running(..)) {
+            if !matches!(self.state.analysis.models, model_comparison::Progress::Running(..)) {
                 self.models = None;
             }
         }
-        self.keep_bending(ctx);
-        self.keep_spread(ctx);
-        self.state.worker = self.worker.status();
-        if !self.threaded && !self.state.playback.paused {
+        self.update_neglected_bending(ctx);
+        self.update_friction_range(ctx);
+        self.state.solver.status = self.worker.status();
+        if !self.threaded && !self.state.live.playback.paused {
             ctx.request_repaint();
         }
-        if matches!(self.state.worker, WorkerStatus::Dead(_)) {
-            self.state.live.stale = true;
-            self.state.snapshot.stale = true;
+        if matches!(self.state.solver.status, WorkerStatus::Dead(_)) {
+            self.state.live.latest.stale = true;
+            self.state.live.snapshot.stale = true;
             self.asked.clear();
         }
     }
 
-    /// Looks after what neglecting bending stiffness changes: a question about what is no longer on screen is forgotten.
-    fn keep_bending(&mut self, ctx: &egui::Context) {
-        if !bending::fits(&self.state) {
-            self.state.bending = bending::View::default();
+    /// Looks after what neglecting bending stiffness changes: a question about what is no longer on
+    /// screen is forgotten.
+    fn update_neglected_bending(&mut self, ctx: &egui::Context) {
+        if !bending_query_fits(&self.state) {
+            self.state.analysis.neglected_bending = neglected_bending::NeglectedBendingState::default();
         }
-        let Some(ask) = self.state.bending.ask.clone() else { return };
-        let runs = |job: &bending::Job| matches!(job.progress(), bending::Progress::Running(..));
+        let Some(ask) = self.state.analysis.neglected_bending.query.clone() else { return };
+        let runs = |job: &neglected_bending::Job| matches!(job.progress(), neglected_bending::Progress::Running(..));
         // One that still runs cannot be stopped within its solve: the next waits for it.
         if self.bending.as_ref().is_none_or(|job| !job.is_of(&ask) && !runs(job)) {
             let shown = ctx.clone();
-            self.bending = Some(bending::Job::start(ask.clone(), move || shown.request_repaint()));
+            self.bending = Some(neglected_bending::Job::start(ask.clone(), move || shown.request_repaint()));
         }
         let own = self.bending.as_ref().filter(|job| job.is_of(&ask));
-        self.state.bending.progress = own.map_or(bending::Progress::Running(0.0, None), bending::Job::progress);
+        self.state.analysis.neglected_bending.progress =
+            own.map_or(neglected_bending::Progress::Running(0.0, None), neglected_bending::Job::progress);
     }
 
-    /// Looks after the ribbon of less and more friction: one of another question ends, a missing one begins.
-    fn keep_spread(&mut self, ctx: &egui::Context) {
+    /// Looks after the ribbon of less and more friction: one of another question ends, a missing
+    /// one begins.
+    fn update_friction_range(&mut self, ctx: &egui::Context) {
         let state = &mut self.state;
-        if self.spread.as_ref().is_some_and(|job| !state.spread.on || !spread::fits(state, job.ask())) {
+        if self
+            .spread
+            .as_ref()
+            .is_some_and(|job| !state.analysis.friction_range.on || !friction_query_fits(state, job.ask()))
+        {
             self.spread = None;
         }
         if self.spread.is_none()
-            && let Some(ask) = spread::asked(state)
+            && let Some(ask) = friction_query(state)
         {
             let shown = ctx.clone();
-            self.spread = Some(spread::Job::start(ask, move || shown.request_repaint()));
+            self.spread = Some(friction_range::Job::start(ask, move || shown.request_repaint()));
         }
-        state.spread.progress = self.spread.as_ref().map_or(spread::Progress::None, spread::Job::progress);
+        state.analysis.friction_range.progress =
+            self.spread.as_ref().map_or(friction_range::Progress::None, friction_range::Job::progress);
     }
 
     /// Lets what was recorded go on while it is replayed.
     fn replay(&mut self, ctx: &egui::Context) {
         let state = &mut self.state;
-        if state.playback.paused || state.recording.shown_s.is_none() {
+        if state.live.playback.paused || state.live.recording.shown_s.is_none() {
             return;
         }
-        let ended = state.recording.replay(f64::from(ctx.input(|i| i.stable_dt)) * state.playback.speed);
-        state.refresh();
+        let ended = state.live.recording.replay(f64::from(ctx.input(|i| i.stable_dt)) * state.live.playback.speed);
+        state.live.refresh();
         ctx.request_repaint();
         if ended {
             let mut effects = Effects::default();
@@ -243,31 +263,31 @@ impl ViewerApp {
     fn show(&mut self, report: Report) {
         let state = &mut self.state;
         if report.history_restarts {
-            state.history.clear();
-            state.recording.clear();
+            state.live.history.clear();
+            state.live.recording.clear();
         }
         for answer in report.answers {
-            state.history.push(Sample::of(&answer));
-            state.recording.push(answer);
+            state.live.record(answer);
         }
         if report.paused_itself {
-            state.playback.paused = true;
+            state.live.playback.paused = true;
         }
-        state.take(report.snapshot);
-        if report.history_restarts && !state.reopened.is_empty() {
-            let answers = std::mem::take(&mut state.reopened);
+        state.live.receive(report.snapshot);
+        if report.history_restarts && !state.live.reopened_run.is_empty() {
+            let answers = std::mem::take(&mut state.live.reopened_run);
             let last_s = answers.last().map(|a| a.time_s);
             for answer in answers {
-                state.history.push(Sample::of(&answer));
-                state.recording.push(answer);
+                state.live.record(answer);
             }
-            state.show_time(last_s);
+            state.live.show_time(last_s);
         }
-        // Several edits may be answered at once: the delay shown is that of the one that waited longest.
-        let answered = self.asked.iter().take_while(|(number, _)| *number <= state.snapshot.edit).count();
+        // Several edits may be answered at once: the delay shown is that of the one that waited
+        // longest.
+        let answered = self.asked.iter().take_while(|(number, _)| *number <= state.live.snapshot.edit).count();
         if let Some((_, began)) = self.asked.drain(..answered).next() {
-            // Without a thread a frame waits for its answer: that time says nothing of the window's.
-            state.edit_latency_s = self.threaded.then(|| began.elapsed().as_secs_f64());
+            // Without a thread a frame waits for its answer: that time says nothing of the
+            // window's.
+            state.solver.edit_latency_s = self.threaded.then(|| began.elapsed().as_secs_f64());
         }
     }
 }
@@ -284,20 +304,20 @@ fn new_worker(ctx: &egui::Context, threaded: bool) -> Worker {
 impl eframe::App for ViewerApp {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
-        system::show(self.state.units);
+        system::set_current(self.state.view.units);
         self.take_answers(&ctx);
         self.replay(&ctx);
-        ctx.set_theme(self.state.theme);
+        ctx.set_theme(self.state.view.theme);
         let mut commands = Vec::new();
         keys::read(&ctx, &self.state, &mut commands);
         layout::ui(ui, &mut self.state, &mut commands);
         dialogs::ui(&ctx, &mut self.state, &mut commands);
-        if ctx.input(|i| i.viewport().close_requested()) && self.state.unsaved() && !self.state.closing {
+        if ctx.input(|i| i.viewport().close_requested()) && self.state.document.unsaved() && !self.state.ui.closing {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             commands.push(Command::File(command::FileCommand::Quit));
         }
         self.apply(&ctx, commands);
-        self.look_after_changes(&ctx);
+        self.update_autosave(&ctx);
         let title = format!("{} – Cable simulator", menu::title(&self.state));
         if title != self.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
@@ -306,7 +326,8 @@ impl eframe::App for ViewerApp {
     }
 
     fn on_exit(&mut self) {
-        // Closed on purpose: what is not saved is not wanted. What another window left stays until it is decided on.
+        // Closed on purpose: what is not saved is not wanted. What another window left stays until
+        // it is decided on.
         if let Some(autosave) = &mut self.autosave {
             autosave.look(&self.state.document.saved, [false, true], Instant::now());
         }

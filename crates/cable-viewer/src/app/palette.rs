@@ -1,13 +1,13 @@
-//! The command palette: everything that can be done, found by typing part of its name.
+//! The command palette finds everything that can be done by part of its name.
 
 use cable_core::Model;
 use cable_core::scene::catalog;
 use egui::{Key, ScrollArea, TextEdit, Ui};
 
-use crate::colour::{ColourScale, Quantity};
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use crate::dialog::Dialog;
-use crate::panels::system::System;
+use crate::render::colour::{ColourScale, Quantity};
+use crate::state::dialog::Dialog;
+use crate::units::system::System;
 
 /// Everything, with the words it is found by.
 fn entries() -> Vec<(String, Command)> {
@@ -20,7 +20,7 @@ fn entries() -> Vec<(String, Command)> {
         ("Open run…", file(Dialog::OpenRun { path: "run".to_owned(), hold: false })),
         ("Hold a run…", file(Dialog::OpenRun { path: "run".to_owned(), hold: true })),
         ("Save run…", file(Dialog::SaveRun { path: "run".to_owned() })),
-        ("Import map…", Command::File(super::menu::import_map())),
+        ("Import map…", Command::File(crate::app::menu::import_map())),
         ("Undo", Command::Scene(SceneCommand::Undo)),
         ("Redo", Command::Scene(SceneCommand::Redo)),
         ("Remove the robot", Command::Scene(SceneCommand::SetRobot(None))),
@@ -49,7 +49,7 @@ fn entries() -> Vec<(String, Command)> {
         ("Go on from the time shown", Command::Playback(PlaybackCommand::GoOn)),
         ("Restart the solver", Command::File(FileCommand::RestartWorker)),
         ("Help: pointer and keys", file(Dialog::Help)),
-        ("Give feedback…", Command::File(super::menu::feedback())),
+        ("Give feedback…", Command::File(crate::app::menu::feedback())),
         ("About: what was checked", file(Dialog::About)),
         ("Quit", Command::File(FileCommand::Quit)),
     ];
@@ -79,7 +79,7 @@ fn found(text: &str) -> Vec<(String, Command)> {
 pub fn ui(ui: &mut Ui, text: &mut String, commands: &mut Vec<Command>) {
     let field = TextEdit::singleline(text).hint_text("What to do").desired_width(f32::INFINITY);
     let field = ui.add(field);
-    crate::panels::field::name(&field, "Command");
+    crate::widgets::field::name(&field, "Command");
     let entered = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
     if !entered {
         field.request_focus();

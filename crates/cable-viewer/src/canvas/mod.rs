@@ -1,31 +1,26 @@
-//! The picture of the scene, in layers, and the pointer on it.
+//! The canvas draws the scene in layers and reads the pointer on it.
+//!
+//! - `layers`: what is drawn, a file a layer
+//! - `view`: from metres to the painter
+//! - `pointer`: clicks, drags and the wheel as commands
+//! - `accessibility`: the same picture for screen readers
 
-pub mod bounds;
-mod cable;
-mod contact;
-pub mod forces;
-pub mod grid;
-mod held;
-mod legend;
-mod named;
-mod obstacles;
-mod path;
-pub mod pick;
-pub mod place;
+mod accessibility;
+pub mod layers;
 mod pointer;
-mod probe;
-mod reach;
-pub mod robot;
-pub mod supports;
-mod triangulate;
 mod view;
 
 use egui::{Role, Sense, Ui, WidgetInfo};
 
+use crate::canvas::layers::{
+    cable, compare_overlay, contact, forces, grid, legend, obstacles, robot, robot_path, safe_reach, supports,
+    tension_marker,
+};
+use crate::canvas::view::CanvasView;
 use crate::command::Command;
+use crate::geometry::bounds;
+use crate::render::theme;
 use crate::state::AppState;
-use crate::theme;
-use view::View;
 
 /// Draws the scene into the rest of the window and reads the pointer.
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
@@ -34,22 +29,22 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     let rect = response.rect;
     response.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Canvas"));
     // Written only for who listens.
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(named::summary(state)));
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(accessibility::summary(state)));
     if !rect.is_positive() {
         return;
     }
-    let answered = state.snapshot.solution.is_some() || state.snapshot.error.is_some();
-    if state.camera.fit_wanted && answered {
+    let answered = state.live.snapshot.solution.is_some() || state.live.snapshot.error.is_some();
+    if state.view.camera.fit_wanted && answered {
         let bounds = bounds::scene(state);
-        state.camera.fit(rect, bounds);
+        state.view.camera.fit(rect, bounds);
     }
-    let [low, high] = [rect.left_bottom(), rect.right_top()].map(|p| state.camera.to_world(rect, p));
-    state.visible_m = [low, high];
+    let [low, high] = [rect.left_bottom(), rect.right_top()].map(|p| state.view.camera.to_world(rect, p));
+    state.view.visible_m = [low, high];
     pointer::read(ui, &response, state, commands);
-    named::ui(ui, rect, state);
-    let mut view = View {
+    accessibility::ui(ui, rect, state);
+    let mut view = CanvasView {
         rect,
-        camera: state.camera,
+        camera: state.view.camera,
         painter: &painter,
         palette: theme::palette(ui.visuals()),
         taken: Vec::new(),
@@ -59,33 +54,33 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
 }
 
 /// All layers, back to front.
-fn draw(view: &mut View<'_>, state: &AppState) {
+fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     view.painter.rect_filled(view.rect, 0.0, view.palette.background);
-    if state.layers.grid {
+    if state.view.layers.grid {
         grid::lines(view);
     }
-    reach::area(view, state);
+    safe_reach::area(view, state);
     obstacles::draw(view, state);
     let mut figures = Vec::new();
-    reach::line(view, state, &mut figures);
+    safe_reach::line(view, state, &mut figures);
     robot::draw(view, state);
-    held::draw(view, state);
+    compare_overlay::draw(view, state);
     contact::draw(view, state);
     cable::draw(view, state);
     forces::draw(view, state, &mut figures);
     supports::draw(view, state);
-    probe::draw(view, state, &mut figures);
-    path::draw(view, state, &mut figures);
+    tension_marker::draw(view, state, &mut figures);
+    robot_path::draw(view, state, &mut figures);
     pointer::frame(view, state);
-    if state.layers.grid {
+    if state.view.layers.grid {
         grid::axes(view);
         grid::scale_bar(view);
     }
     legend::draw(view, state);
     legend::contacts(view, state);
     legend::banner(view, state);
-    reach::legend(view, state);
-    if state.layers.labels {
+    safe_reach::legend(view, state);
+    if state.view.layers.labels {
         supports::labels(view, state, figures);
     }
 }

@@ -3,14 +3,16 @@
 use cable_core::scene::Shape;
 use egui::{CursorIcon, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui};
 
-use super::view::View;
-use super::{grid, pick, place};
+use crate::canvas::layers::grid;
+use crate::canvas::view::CanvasView;
 use crate::command::{Command, SceneCommand, ViewCommand};
-use crate::state::{AppState, Grab, Item, Probe};
+use crate::geometry::{handles, hit_test};
+use crate::state::{AppState, Grab, Item, TensionMarker};
 
 /// How near to the cable a double-click adds a waypoint, points.
 const WAYPOINT_REACH: f32 = 14.0;
-/// Zoom per point of wheel: e^0.0025 ≈ a tenth a notch of 40 points. Larger overshoots, smaller tires.
+/// Zoom per point of wheel: e^0.0025 ≈ a tenth a notch of 40 points. Larger overshoots, smaller
+/// tires.
 const WHEEL: f64 = 0.0025;
 
 /// Reads the pointer.
@@ -25,12 +27,12 @@ pub fn read(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<C
     } else if response.clicked()
         && let Some(p) = response.interact_pointer_pos()
     {
-        let item = pick::item_at(state, canvas, p);
+        let item = hit_test::item_at(state, canvas, p);
         if matches!(item, Some(Item::Cable(_)))
-            && let Some((cable, arc_length_m, _)) = pick::cable_at(state, canvas, p, WAYPOINT_REACH)
+            && let Some((cable, arc_length_m, _)) = hit_test::cable_at(state, canvas, p, WAYPOINT_REACH)
         {
-            let from = state.probe.map(|p| p.from).unwrap_or_default();
-            commands.push(Command::View(ViewCommand::Probe(Some(Probe { cable, arc_length_m, from }))));
+            let from = state.analysis.tension_marker.map(|p| p.from).unwrap_or_default();
+            commands.push(Command::View(ViewCommand::MarkTension(Some(TensionMarker { cable, arc_length_m, from }))));
         }
         commands.push(Command::View(match item {
             Some(item) if adds(ui) => ViewCommand::Toggle(item),
@@ -47,34 +49,34 @@ fn adds(ui: &Ui) -> bool {
 
 /// A waypoint on the cable; on the ground a leg of the robot's path to there.
 fn double_click(state: &AppState, canvas: Rect, p: Pos2, commands: &mut Vec<Command>) {
-    if let Some((cable, arc_length_m, at_m)) = pick::cable_at(state, canvas, p, WAYPOINT_REACH) {
+    if let Some((cable, arc_length_m, at_m)) = hit_test::cable_at(state, canvas, p, WAYPOINT_REACH) {
         commands.push(Command::Scene(SceneCommand::AddWaypoint { cable, arc_length_m, at_m }));
-    } else if state.scene.robot.is_some()
-        && let Some(Item::Obstacle(k)) = pick::item_at(state, canvas, p)
-        && state.scene.obstacles.get(k).is_some_and(|o| matches!(o.shape, Shape::Terrain { .. }))
+    } else if state.document.scene.robot.is_some()
+        && let Some(Item::Obstacle(k)) = hit_test::item_at(state, canvas, p)
+        && state.document.scene.obstacles.get(k).is_some_and(|o| matches!(o.shape, Shape::Terrain { .. }))
     {
-        let [to_x_m, _] = state.camera.to_world(canvas, p);
+        let [to_x_m, _] = state.view.camera.to_world(canvas, p);
         commands.push(Command::Scene(SceneCommand::AddLeg { to_x_m }));
     }
 }
 
 fn hover(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Command>) {
     let pointer = response.hover_pos();
-    let item = match &state.grabbed {
+    let item = match &state.selection.grab {
         Some(grab) => Some(grab.item),
-        None => pointer.and_then(|p| pick::item_at(state, response.rect, p)),
+        None => pointer.and_then(|p| hit_test::item_at(state, response.rect, p)),
     };
-    let cursor_m = pointer.map(|p| state.camera.to_world(response.rect, p));
-    if item != state.hovered || cursor_m != state.cursor_m {
+    let cursor_m = pointer.map(|p| state.view.camera.to_world(response.rect, p));
+    if item != state.selection.hovered || cursor_m != state.selection.cursor_m {
         commands.push(Command::View(ViewCommand::Hover(item, cursor_m)));
     }
-    if pointer.is_none() && state.grabbed.is_none() {
+    if pointer.is_none() && state.selection.grab.is_none() {
         return;
     }
-    let icon = match (state.grabbed.is_some(), item) {
+    let icon = match (state.selection.grab.is_some(), item) {
         (true, _) => CursorIcon::Grabbing,
         (false, Some(Item::Cable(_))) => CursorIcon::PointingHand,
-        (false, Some(item)) if place::of(state, item).is_some() => CursorIcon::Grab,
+        (false, Some(item)) if handles::of(state, item).is_some() => CursorIcon::Grab,
         (false, Some(_)) => CursorIcon::PointingHand,
         (false, None) if response.dragged() => CursorIcon::AllScroll,
         (false, None) => CursorIcon::Default,
@@ -87,7 +89,7 @@ fn wheel(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comm
     let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
     let factor = f64::from(pinch) * (f64::from(scroll) * WHEEL).exp();
     if factor != 1.0 {
-        let about_m = state.camera.to_world(response.rect, p);
+        let about_m = state.view.camera.to_world(response.rect, p);
         commands.push(Command::View(ViewCommand::Zoom { about_m, factor }));
     }
 }
@@ -97,18 +99,18 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
     if response.drag_started_by(PointerButton::Primary)
         && let Some(p) = ui.input(|i| i.pointer.press_origin())
     {
-        let Some(item) = pick::item_at(state, canvas, p) else {
+        let Some(item) = hit_test::item_at(state, canvas, p) else {
             if adds(ui) {
-                let at = state.camera.to_world(canvas, p);
+                let at = state.view.camera.to_world(canvas, p);
                 commands.push(Command::View(ViewCommand::Frame(Some([at, at]))));
             }
             return;
         };
-        if !state.picked(item) {
+        if !state.selection.contains(item) {
             commands.push(Command::View(ViewCommand::Select(Some(item))));
         }
-        if let Some(at) = place::of(state, item) {
-            let w = state.camera.to_world(canvas, p);
+        if let Some(at) = handles::of(state, item) {
+            let w = state.view.camera.to_world(canvas, p);
             let grab = Grab { item, offset_m: [at[0] - w[0], at[1] - w[1]] };
             commands.push(Command::View(ViewCommand::Grab(Some(grab))));
             // The pointer has moved on since the press.
@@ -118,7 +120,7 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
             return;
         }
     }
-    match &state.grabbed {
+    match &state.selection.grab {
         Some(grab) => {
             if response.dragged_by(PointerButton::Primary)
                 && let Some(p) = response.interact_pointer_pos()
@@ -130,7 +132,7 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
                 commands.push(Command::Scene(SceneCommand::EditDone));
             }
         }
-        None if state.frame_m.is_some() => frame_to(ui, response, state, commands),
+        None if state.selection.frame_m.is_some() => frame_to(ui, response, state, commands),
         None => {
             let delta = response.drag_delta();
             if response.dragged() && delta != egui::Vec2::ZERO {
@@ -143,35 +145,36 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
 fn move_to(state: &AppState, grab: &Grab, canvas: egui::Rect, p: Pos2, commands: &mut Vec<Command>) {
     if let Item::Load(k) = grab.item {
         // A load slides along its cable.
-        if let Some((cable, arc_length_m, _)) = pick::cable_at(state, canvas, p, f32::INFINITY)
-            && let Some(mut value) = state.scene.loads.get(k).cloned()
-            && state.scene.cables.get(cable).is_some_and(|c| c.name == value.cable)
+        if let Some((cable, arc_length_m, _)) = hit_test::cable_at(state, canvas, p, f32::INFINITY)
+            && let Some(mut value) = state.document.scene.loads.get(k).cloned()
+            && state.document.scene.cables.get(cable).is_some_and(|c| c.name == value.cable)
         {
             value.arc_length_m = arc_length_m;
             commands.push(Command::Scene(SceneCommand::SetLoad { load: k, value }));
         }
         return;
     }
-    let w = state.camera.to_world(canvas, p);
+    let w = state.view.camera.to_world(canvas, p);
     let mut to_m = [w[0] + grab.offset_m[0], w[1] + grab.offset_m[1]];
-    if state.layers.snap {
-        let [_, step] = grid::steps(&state.camera);
+    if state.view.layers.snap {
+        let [_, step] = grid::steps(&state.view.camera);
         to_m = to_m.map(|v| (v / step).round() * step);
     }
     let item = grab.item;
-    let from_m = place::of(state, item).filter(|_| state.picked(item) && !state.also.is_empty());
+    let from_m =
+        handles::of(state, item).filter(|_| state.selection.contains(item) && !state.selection.also.is_empty());
     commands.push(Command::Scene(match from_m {
-        Some(from) => SceneCommand::MoveAll(place::moved(state, item, [to_m[0] - from[0], to_m[1] - from[1]])),
+        Some(from) => SceneCommand::MoveAll(handles::moved(state, item, [to_m[0] - from[0], to_m[1] - from[1]])),
         None => SceneCommand::Move { item, to_m },
     }));
 }
 
 /// Draws the frame on, and picks what is in it when it is let go.
 fn frame_to(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Command>) {
-    let Some([from, to]) = state.frame_m else { return };
-    let to = response.interact_pointer_pos().map_or(to, |p| state.camera.to_world(response.rect, p));
+    let Some([from, to]) = state.selection.frame_m else { return };
+    let to = response.interact_pointer_pos().map_or(to, |p| state.view.camera.to_world(response.rect, p));
     if response.drag_stopped() || !ui.input(|i| i.pointer.primary_down()) {
-        commands.push(Command::View(ViewCommand::SelectAll(place::within(state, [from, to]))));
+        commands.push(Command::View(ViewCommand::SelectAll(handles::within(state, [from, to]))));
         commands.push(Command::View(ViewCommand::Frame(None)));
     } else {
         commands.push(Command::View(ViewCommand::Frame(Some([from, to]))));
@@ -179,8 +182,8 @@ fn frame_to(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<C
 }
 
 /// The frame being drawn round things to pick.
-pub fn frame(view: &View<'_>, state: &AppState) {
-    let Some([a, b]) = state.frame_m else { return };
+pub fn frame(view: &CanvasView<'_>, state: &AppState) {
+    let Some([a, b]) = state.selection.frame_m else { return };
     let rect = Rect::from_two_pos(view.at(a), view.at(b));
     let line = Stroke::new(1.2, view.palette.accent);
     view.painter.rect(rect, 0.0, view.palette.accent.gamma_multiply(0.12), line, StrokeKind::Middle);

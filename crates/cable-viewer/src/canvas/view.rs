@@ -1,13 +1,13 @@
-//! What every layer paints with: the canvas rectangle, the camera, the colours.
+//! Every layer paints with a view: the canvas rectangle, the camera, the colours.
 
 use cable_core::math::Point;
 use egui::{Align2, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec2};
 
-use crate::camera::Camera;
-use crate::theme::Palette;
+use crate::render::theme::Palette;
+use crate::state::camera::Camera;
 
 /// One frame's picture.
-pub struct View<'a> {
+pub struct CanvasView<'a> {
     /// The canvas.
     pub rect: Rect,
     /// What part of the world is in it.
@@ -31,7 +31,7 @@ pub enum Place {
     IfRoom,
 }
 
-impl View<'_> {
+impl CanvasView<'_> {
     /// World (m) to screen.
     #[must_use]
     pub fn at(&self, p: Point) -> Pos2 {

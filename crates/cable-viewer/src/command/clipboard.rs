@@ -1,52 +1,28 @@
-//! Copy and paste of cables, supports, obstacles and loads, within a window and as a table for other programs.
+//! Cables, supports, obstacles and loads are copied and pasted, within a window and as a table for
+//! others.
 
 use std::fmt::Write as _;
 
 use cable_core::math::Point;
 use cable_core::scene::{Shape, Support, SupportKind};
-use cable_core::{Cable, Load, Obstacle};
+use cable_core::{Cable, Obstacle};
 
-use super::Effects;
-use super::items::shifted;
-use super::scene::{unique, waypoint_place};
-use crate::canvas::{pick, supports};
-use crate::panels::scene::support_kind::of_kind;
+use crate::command::effects::Effects;
+use crate::command::items::{shifted, unique, waypoint_place};
+use crate::command::support_kind::of_kind;
+use crate::geometry::hit_test;
+use crate::geometry::supports::support_position;
+use crate::state::clipboard::{Clipboard, Thing};
 use crate::state::{AppState, Item};
 
-/// Where something goes that is pasted with no pointer over the canvas: this far from where it was, m. Less: it hides what it
-/// was copied from; more: it is out of view in a small scene.
-const BESIDE_M: Point = [0.5, 0.5];
-
-/// What was copied.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Clipboard {
-    things: Vec<Thing>,
-    /// The middle of it all, m.
-    middle_m: Point,
-    /// As it was given to the system: pasted text that differs comes from another program.
-    pub text: String,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-enum Thing {
-    Cable(Box<Cable>),
-    Support(Box<Support>, Point),
-    Obstacle(Obstacle),
-    Load(Load),
-}
-
-impl Clipboard {
-    /// Nothing was copied.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.things.is_empty()
-    }
-}
+/// Where something goes that is pasted with no pointer over the canvas: this far from where it was,
+/// m. Less: it hides what it was copied from; more: it is out of view in a small scene.
+const PASTE_OFFSET_M: Point = [0.5, 0.5];
 
 /// Keeps what is picked; as text it is a table of points.
 pub fn copy(state: &mut AppState, effects: &mut Effects) {
     let (mut things, mut points, mut text) = (Vec::new(), Vec::new(), String::new());
-    for item in state.picks() {
+    for item in state.selection.picks() {
         let Some((thing, of)) = thing(state, item) else { continue };
         for p in &of {
             let _ = writeln!(text, "{:?}\t{:?}", p[0], p[1]);
@@ -61,12 +37,12 @@ pub fn copy(state: &mut AppState, effects: &mut Effects) {
     let count = points.len().max(1) as f64;
     let middle_m = [0, 1].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / count);
     effects.copied = Some(text.clone());
-    state.clipboard = Clipboard { things, middle_m, text };
+    state.selection.clipboard = Clipboard { things, middle_m, text };
 }
 
 /// A copy of a thing, and the points that say where it is.
 fn thing(state: &AppState, item: Item) -> Option<(Thing, Vec<Point>)> {
-    let scene = &state.scene;
+    let scene = &state.document.scene;
     Some(match item {
         Item::Cable(k) => {
             let cable = scene.cables.get(k)?;
@@ -74,7 +50,7 @@ fn thing(state: &AppState, item: Item) -> Option<(Thing, Vec<Point>)> {
         }
         Item::Support { cable, support } => {
             let value = scene.cables.get(cable)?.supports.get(support)?;
-            let at_m = supports::place(state, cable, support)?;
+            let at_m = support_position(state, cable, support)?;
             (Thing::Support(Box::new(value.clone()), at_m), vec![at_m])
         }
         Item::Obstacle(k) | Item::Corner { obstacle: k, .. } => {
@@ -88,7 +64,7 @@ fn thing(state: &AppState, item: Item) -> Option<(Thing, Vec<Point>)> {
             (Thing::Obstacle(value.clone()), points)
         }
         Item::Load(k) | Item::Head(k) => {
-            let (at_m, _) = crate::canvas::forces::load_at(state, k)?;
+            let (at_m, _) = crate::geometry::arrows::load_at(state, k)?;
             (Thing::Load(scene.loads.get(k)?.clone()), vec![at_m])
         }
         Item::Robot | Item::Leg(_) => return None,
@@ -97,8 +73,8 @@ fn thing(state: &AppState, item: Item) -> Option<(Thing, Vec<Point>)> {
 
 /// Puts what was copied into the scene, picked.
 pub fn paste(state: &mut AppState, at_m: Option<Point>) {
-    let Clipboard { things, middle_m, .. } = state.clipboard.clone();
-    let to = at_m.unwrap_or([middle_m[0] + BESIDE_M[0], middle_m[1] + BESIDE_M[1]]);
+    let Clipboard { things, middle_m, .. } = state.selection.clipboard.clone();
+    let to = at_m.unwrap_or([middle_m[0] + PASTE_OFFSET_M[0], middle_m[1] + PASTE_OFFSET_M[1]]);
     let shift = |p: Point| shifted(p, middle_m, to);
     let target = state.current_cable();
     let mut new = Vec::new();
@@ -108,29 +84,29 @@ pub fn paste(state: &mut AppState, at_m: Option<Point>) {
             Thing::Support(support, was_m) => put_support(state, target, &support, shift(was_m)),
             Thing::Obstacle(obstacle) => Some(put_obstacle(state, obstacle, &shift)),
             Thing::Load(mut load) => {
-                load.cable = state.scene.cables.get(target).map_or(load.cable, |c| c.name.clone());
-                let length = state.scene.cables.get(target).map_or(0.0, |c| c.length_m);
+                load.cable = state.document.scene.cables.get(target).map_or(load.cable, |c| c.name.clone());
+                let length = state.document.scene.cables.get(target).map_or(0.0, |c| c.length_m);
                 load.arc_length_m = load.arc_length_m.min(length);
-                state.scene.loads.push(load);
-                Some(Item::Load(state.scene.loads.len() - 1))
+                state.document.scene.loads.push(load);
+                Some(Item::Load(state.document.scene.loads.len() - 1))
             }
         });
     }
     let mut new = new.into_iter();
-    (state.selected, state.also) = (new.next(), new.collect());
+    (state.selection.selected, state.selection.also) = (new.next(), new.collect());
 }
 
 /// Another cable like the current one, a little above it.
 pub fn add_cable(state: &mut AppState) {
-    let Some(cable) = state.scene.cables.get(state.current_cable()).cloned() else { return };
-    let up = |p: Point| [p[0], p[1] + BESIDE_M[1]];
+    let Some(cable) = state.document.scene.cables.get(state.current_cable()).cloned() else { return };
+    let up = |p: Point| [p[0], p[1] + PASTE_OFFSET_M[1]];
     let item = put_cable(state, &cable, &up);
-    (state.selected, state.also) = (Some(item), Vec::new());
+    (state.selection.selected, state.selection.also) = (Some(item), Vec::new());
 }
 
 fn put_cable(state: &mut AppState, cable: &Cable, shift: &impl Fn(Point) -> Point) -> Item {
     let mut cable = cable.clone();
-    cable.name = unique(&cable.name, |n| state.scene.cables.iter().any(|c| c.name == n));
+    cable.name = unique(&cable.name, |n| state.document.scene.cables.iter().any(|c| c.name == n));
     cable.route_m.iter_mut().for_each(|p| *p = shift(*p));
     for s in &mut cable.supports {
         s.at_m = s.at_m.map(shift);
@@ -138,27 +114,28 @@ fn put_cable(state: &mut AppState, cable: &Cable, shift: &impl Fn(Point) -> Poin
             *p = shift(*p);
         }
     }
-    state.scene.cables.push(cable);
-    Item::Cable(state.scene.cables.len() - 1)
+    state.document.scene.cables.push(cable);
+    Item::Cable(state.document.scene.cables.len() - 1)
 }
 
 fn put_obstacle(state: &mut AppState, mut obstacle: Obstacle, shift: &impl Fn(Point) -> Point) -> Item {
-    obstacle.name = unique(&obstacle.name, |n| state.scene.obstacles.iter().any(|o| o.name == n));
+    obstacle.name = unique(&obstacle.name, |n| state.document.scene.obstacles.iter().any(|o| o.name == n));
     match &mut obstacle.shape {
         Shape::Circle { center_m, .. } => *center_m = shift(*center_m),
         Shape::Terrain { points_m } | Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => {
             points_m.iter_mut().for_each(|p| *p = shift(*p));
         }
     }
-    state.scene.obstacles.push(obstacle);
-    Item::Obstacle(state.scene.obstacles.len() - 1)
+    state.document.scene.obstacles.push(obstacle);
+    Item::Obstacle(state.document.scene.obstacles.len() - 1)
 }
 
-/// A support between the ends of a cable, where the cable is nearest to it. What can only be an end becomes a waypoint.
+/// A support between the ends of a cable, where the cable is nearest to it. What can only be an end
+/// becomes a waypoint.
 fn put_support(state: &mut AppState, cable: usize, support: &Support, at_m: Point) -> Option<Item> {
-    let arc_length_m = pick::nearest_on(state, cable, at_m)?;
+    let arc_length_m = hit_test::nearest_on(state, cable, at_m)?;
     let place = waypoint_place(state, cable, arc_length_m);
-    let c = state.scene.cables.get_mut(cable).filter(|c| c.supports.len() >= 2)?;
+    let c = state.document.scene.cables.get_mut(cable).filter(|c| c.supports.len() >= 2)?;
     let kind = match support.kind {
         SupportKind::Free | SupportKind::Robot => SupportKind::Pulley,
         kind => kind,

@@ -1,4 +1,4 @@
-//! Commands about files, scenes to open, dialogs and the window.
+//! File commands concern files, scenes to open, dialogs and the window.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -8,15 +8,18 @@ use cable_core::files::{RunEnd, RunFolder};
 use cable_core::record::{NodeChoice, RunRequest};
 use cable_core::scene::catalog;
 
-use super::{Command, Effects, SceneCommand, import, submit_scene};
-use crate::dialog::Dialog;
-use crate::feedback::{self, Answers};
-use crate::guide::{GUIDES, Place};
-use crate::history::Sample;
-use crate::plot::export::{self, Sheet};
-use crate::run::{self, Run};
-use crate::scene_file;
-use crate::state::{AppState, Held};
+use crate::command::effects::{Effects, submit_new_scene};
+use crate::command::import;
+use crate::command::scene::{self, SceneCommand};
+use crate::io::feedback::{self, Answers};
+use crate::io::graph_file::{self, Sheet};
+use crate::io::saved_run::{SavedRun, read_run};
+use crate::io::scene_file;
+use crate::record::run::Run;
+use crate::record::samples::Sample;
+use crate::state::dialog::{Dialog, Replacement};
+use crate::state::tutorial_place::TutorialPlace;
+use crate::state::{AppState, Document, Reference};
 
 /// Files and the window.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,8 +30,13 @@ pub enum FileCommand {
     Open(PathBuf),
     /// Opens a catalogue scene by its short id.
     OpenCatalogue(String),
-    /// Opens the scene of a guide and leads through it.
-    OpenGuide(usize),
+    /// Opens the scene of a tutorial and leads through it.
+    OpenTutorial {
+        /// Index of the tutorial.
+        tutorial: usize,
+        /// Short id of its scene.
+        scene: &'static str,
+    },
     /// Saves where it came from, else asks where to.
     Save,
     /// Asks where to save.
@@ -61,7 +69,7 @@ pub enum FileCommand {
     /// Removes it.
     ForgetRecovery,
     /// Goes on without saving.
-    Discard(Box<Command>),
+    Discard(Replacement),
     /// Starts the solver thread anew after it died.
     RestartWorker,
     /// Closes the window.
@@ -70,8 +78,8 @@ pub enum FileCommand {
 
 /// Does one of them.
 pub fn apply(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
-    if replaces_scene(&command) && state.unsaved() {
-        state.dialog = Some(Dialog::Unsaved { then: Box::new(Command::File(command)) });
+    if let Some(then) = command.replacement().filter(|_| state.document.unsaved()) {
+        state.ui.dialog = Some(Dialog::Unsaved { then });
         return;
     }
     carry_out(state, command, effects);
@@ -79,8 +87,8 @@ pub fn apply(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
 
 fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
     match command {
-        FileCommand::AskOpen => state.dialog = Some(Dialog::Open { path: path_text(state) }),
-        FileCommand::AskSaveAs => state.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
+        FileCommand::AskOpen => state.ui.dialog = Some(Dialog::Open { path: path_text(state) }),
+        FileCommand::AskSaveAs => state.ui.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
         FileCommand::Open(path) => match scene_file::load(&path) {
             Ok(scene) => open(state, scene, Some(path), effects),
             Err(text) => complain(state, &format!("“{}” was not opened", path.display()), text),
@@ -90,108 +98,115 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
                 open(state, scene, None, effects);
             }
         }
-        FileCommand::OpenGuide(index) => {
-            let Some(guide) = GUIDES.get(index) else { return };
-            carry_out(state, FileCommand::OpenCatalogue(guide.scene.to_owned()), effects);
-            state.guide = Some(Place { guide: index, step: 0 });
+        FileCommand::OpenTutorial { tutorial, scene } => {
+            carry_out(state, FileCommand::OpenCatalogue(scene.to_owned()), effects);
+            state.ui.tutorial = Some(TutorialPlace { tutorial, step: 0 });
         }
         FileCommand::Save => match state.document.path.clone() {
             Some(path) => save(state, &path),
-            None => state.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
+            None => state.ui.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
         },
         FileCommand::SaveAs(path) => save(state, &path),
-        FileCommand::Export(path, sheet) => match export::save(&path, &sheet) {
-            Ok(()) => state.dialog = None,
+        FileCommand::Export(path, sheet) => match graph_file::save(&path, &sheet) {
+            Ok(()) => state.ui.dialog = None,
             Err(text) => complain(state, &format!("“{}” was not written", path.display()), text),
         },
         FileCommand::ImportMap { path, text, unit_m } => {
-            match import::add(&state.scene, path.as_deref(), &text, unit_m) {
+            match import::add(&state.document.scene, path.as_deref(), &text, unit_m) {
                 Ok((scene, report)) => {
-                    super::apply(state, Command::Scene(SceneCommand::SetScene(Box::new(scene))), effects);
-                    state.camera.fit_wanted = true;
-                    state.dialog = Some(Dialog::Message { title: "Imported".to_owned(), text: report });
+                    scene::apply(state, SceneCommand::SetScene(Box::new(scene)), effects);
+                    state.view.camera.fit_wanted = true;
+                    state.ui.dialog = Some(Dialog::Message { title: "Imported".to_owned(), text: report });
                 }
                 Err(text) => complain(state, "The map was not imported", text),
             }
         }
-        FileCommand::SaveFeedback(path, answers) => match feedback::save(&path, &answers, state) {
-            Ok(()) => state.dialog = None,
+        FileCommand::SaveFeedback(path, answers) => match feedback::save(&path, &answers, &feedback_context(state)) {
+            Ok(()) => state.ui.dialog = None,
             Err(text) => complain(state, &format!("“{}” was not written", path.display()), text),
         },
         FileCommand::SaveRun(path) => match save_run(state, &path) {
-            Ok(()) => state.dialog = None,
+            Ok(()) => state.ui.dialog = None,
             Err(text) => complain(state, &format!("The run was not written to “{}”", path.display()), text),
         },
-        FileCommand::OpenRun(path) => match run::open(&path) {
+        FileCommand::OpenRun(path) => match read_run(&path) {
             Ok(opened) => {
                 open(state, opened.scene, None, effects);
-                state.reopened = opened.answers;
+                state.live.reopened_run = opened.answers;
                 remark(state, &path, &opened.remarks);
             }
             Err(text) => complain(state, &format!("The run “{}” was not opened", path.display()), text),
         },
-        FileCommand::HoldRun(path) => match run::open(&path) {
+        FileCommand::HoldRun(path) => match read_run(&path) {
             Ok(opened) => hold(state, &path, opened),
             Err(text) => complain(state, &format!("The run “{}” was not opened", path.display()), text),
         },
-        FileCommand::SetDialog(dialog) => state.dialog = dialog,
+        FileCommand::SetDialog(dialog) => state.ui.dialog = dialog,
         FileCommand::Recover(scene) => {
             open(state, *scene, None, effects);
             state.document.recovered = true;
         }
         FileCommand::ForgetRecovery => {
-            state.dialog = None;
+            state.ui.dialog = None;
             effects.forget_recovery = true;
         }
         FileCommand::Discard(then) => {
-            state.dialog = None;
-            match *then {
-                Command::File(command) => carry_out(state, command, effects),
-                other => super::apply(state, other, effects),
-            }
+            state.ui.dialog = None;
+            carry_out(state, then.into(), effects);
         }
         FileCommand::RestartWorker => {
             effects.restart_worker = true;
-            submit_scene(state, true, effects);
+            submit_new_scene(state, effects);
         }
         FileCommand::Quit => {
-            state.closing = true;
+            state.ui.closing = true;
             effects.quit = true;
         }
     }
 }
 
-fn replaces_scene(command: &FileCommand) -> bool {
-    matches!(
-        command,
-        FileCommand::Open(_)
-            | FileCommand::OpenRun(_)
-            | FileCommand::OpenCatalogue(_)
-            | FileCommand::OpenGuide(_)
-            | FileCommand::Quit
-    )
+impl FileCommand {
+    /// What takes the place of the present scene; None: it stays.
+    fn replacement(&self) -> Option<Replacement> {
+        Some(match self {
+            Self::Open(path) => Replacement::Open(path.clone()),
+            Self::OpenRun(path) => Replacement::OpenRun(path.clone()),
+            Self::OpenCatalogue(id) => Replacement::OpenCatalogue(id.clone()),
+            &Self::OpenTutorial { tutorial, scene } => Replacement::OpenTutorial { tutorial, scene },
+            Self::Quit => Replacement::Quit,
+            _ => return None,
+        })
+    }
+}
+
+impl From<Replacement> for FileCommand {
+    fn from(action: Replacement) -> Self {
+        match action {
+            Replacement::Open(path) => Self::Open(path),
+            Replacement::OpenRun(path) => Self::OpenRun(path),
+            Replacement::OpenCatalogue(id) => Self::OpenCatalogue(id),
+            Replacement::OpenTutorial { tutorial, scene } => Self::OpenTutorial { tutorial, scene },
+            Replacement::Quit => Self::Quit,
+        }
+    }
 }
 
 fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut Effects) {
-    let fresh = AppState::new(scene, path);
-    state.scene = fresh.scene;
-    state.scene_fault = fresh.scene_fault;
-    state.document = fresh.document;
-    state.undo = fresh.undo;
-    (state.selected, state.also) = (None, Vec::new());
-    (state.hovered, state.probe) = (None, None);
-    state.playback.paused = true;
-    state.robot_order = None;
-    state.reopened = Vec::new();
-    state.guide = None;
-    state.reach = crate::reach::View::default();
+    state.document = Document::new(scene, path);
+    (state.selection.selected, state.selection.also) = (None, Vec::new());
+    (state.selection.hovered, state.analysis.tension_marker) = (None, None);
+    state.live.playback.paused = true;
+    state.live.robot_order = None;
+    state.live.reopened_run = Vec::new();
+    state.ui.tutorial = None;
+    state.analysis.safe_reach = crate::jobs::safe_reach::SafeReachState::default();
     effects.reach = Some(None);
-    state.models = crate::models::Progress::None;
+    state.analysis.models = crate::jobs::model_comparison::Progress::None;
     effects.models = Some(None);
     effects.request.robot = Some(None);
-    state.camera.fit_wanted = true;
-    state.dialog = None;
-    submit_scene(state, true, effects);
+    state.view.camera.fit_wanted = true;
+    state.ui.dialog = None;
+    submit_new_scene(state, effects);
 }
 
 /// Says what a user should know about a run that was opened.
@@ -201,40 +216,43 @@ fn remark(state: &mut AppState, path: &Path, remarks: &[String]) {
     }
 }
 
-fn hold(state: &mut AppState, path: &Path, opened: run::Opened) {
+fn hold(state: &mut AppState, path: &Path, opened: SavedRun) {
     let samples: Vec<Sample> = opened.answers.iter().map(Sample::of).collect();
     let events = opened.answers.iter().map(|a| a.warnings.len()).sum();
     let run = Run::of(samples.iter(), &opened.answers, events).map(Arc::new);
-    state.dialog = None;
+    state.ui.dialog = None;
     remark(state, path, &opened.remarks);
-    if let (Some(solution), true) = (opened.answers.into_iter().next_back(), state.held.len() < Held::MOST) {
+    if let (Some(solution), true) =
+        (opened.answers.into_iter().next_back(), state.analysis.references.len() < Reference::MAX_COUNT)
+    {
         let name = format!("{}, {}, {:.2} s", opened.scene.name, path.display(), solution.time_s);
         let (scene, solution) = (Arc::new(opened.scene), Arc::new(solution));
-        state.held.push(Held { name, scene, solution, wall_s: f64::NAN, run });
+        state.analysis.references.push(Reference { name, scene, solution, wall_s: f64::NAN, run });
     }
 }
 
 fn save(state: &mut AppState, path: &Path) {
-    match scene_file::save(path, &state.scene) {
+    match scene_file::save(path, &state.document.scene) {
         Ok(()) => {
             state.document.path = Some(path.to_owned());
-            state.document.saved = state.scene.clone();
+            state.document.saved = state.document.scene.clone();
             state.document.recovered = false;
-            state.dialog = None;
+            state.ui.dialog = None;
         }
         Err(text) => complain(state, &format!("“{}” was not saved", path.display()), text),
     }
 }
 
 fn save_run(state: &AppState, path: &Path) -> Result<(), String> {
-    let scene = state.live.scene.as_deref().ok_or("nothing was solved yet")?;
+    let scene = state.live.latest.scene.as_deref().ok_or("nothing was solved yet")?;
     let request =
         RunRequest { program: format!("cable-viewer {}", env!("CARGO_PKG_VERSION")), ..RunRequest::default() };
     let mut folder = RunFolder::create(path, scene, request, NodeChoice::default()).map_err(|e| e.to_string())?;
-    for answer in state.recording.answers() {
+    for answer in state.live.recording.answers() {
         if let Err(e) = folder.push(answer) {
             let why = e.to_string();
-            // The tables are readable and marked as partial already, whether this can be noted or not.
+            // The tables are readable and marked as partial already, whether this can be noted or
+            // not.
             let _ = folder.finish(RunEnd::Partial(why.clone()));
             return Err(why);
         }
@@ -243,9 +261,17 @@ fn save_run(state: &AppState, path: &Path) -> Result<(), String> {
 }
 
 fn complain(state: &mut AppState, title: &str, text: String) {
-    state.dialog = Some(Dialog::Message { title: title.to_owned(), text });
+    state.ui.dialog = Some(Dialog::Message { title: title.to_owned(), text });
 }
 
 fn path_text(state: &AppState) -> String {
     state.document.path.as_ref().map_or_else(|| "scene.toml".to_owned(), |p| p.display().to_string())
+}
+
+fn feedback_context(state: &AppState) -> feedback::Context<'_> {
+    feedback::Context {
+        scene: &state.document.scene.name,
+        answer: state.live.snapshot.solution.as_deref(),
+        error: state.live.snapshot.error.as_deref(),
+    }
 }

@@ -1,4 +1,4 @@
-//! Terrain and beams from tables and drawings, added to a scene.
+//! Terrain and beams are read from tables and drawings and added to a scene.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use cable_core::scene::{Obstacle, Shape, import};
 use cable_core::{Scene, files};
 
 /// Largest file, bytes: a million points with room to spare.
-const MOST_BYTES: u64 = 64 << 20;
+const MAX_BYTES: u64 = 64 << 20;
 
 /// The scene with what was read added to it, and what was done, in words.
 ///
@@ -16,7 +16,7 @@ pub fn add(scene: &Scene, path: Option<&Path>, text: &str, unit_m: f64) -> Resul
     let from_file;
     let text = match path {
         Some(path) => {
-            let bytes = files::read_limited(path, MOST_BYTES).map_err(|e| e.to_string())?;
+            let bytes = files::read_limited(path, MAX_BYTES).map_err(|e| e.to_string())?;
             from_file = String::from_utf8(bytes).map_err(|_| "it is no text in UTF-8".to_owned())?;
             &from_file
         }

@@ -1,11 +1,10 @@
-//! What can be done to a thing of the scene whatever it is: move it, take it out.
+//! Any thing of the scene can be moved and taken out, whatever it is.
 
 use cable_core::math::Point;
 use cable_core::scene::ground::Ground;
 use cable_core::scene::{RobotTask, Shape, Support, SupportKind};
 use cable_core::{Robot, Scene};
 
-use super::scene::set;
 use crate::state::{AppState, Item};
 
 /// Puts a thing at a point, m.
@@ -13,7 +12,7 @@ pub fn move_item(state: &mut AppState, item: Item, to_m: Point) {
     if !to_m.iter().all(|v| v.is_finite()) {
         return;
     }
-    let scene = &mut state.scene;
+    let scene = &mut state.document.scene;
     match item {
         Item::Support { cable, support } => {
             let Some(s) = scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support)) else { return };
@@ -54,9 +53,10 @@ pub fn move_item(state: &mut AppState, item: Item, to_m: Point) {
             }
         }
         Item::Head(index) => {
-            let Some((tail, _)) = crate::canvas::forces::load_at(state, index) else { return };
-            let force = crate::canvas::forces::force_of_arrow([to_m[0] - tail[0], to_m[1] - tail[1]], &state.camera);
-            if let Some(load) = state.scene.loads.get_mut(index).filter(|l| l.force_n.is_some()) {
+            let Some((tail, _)) = crate::geometry::arrows::load_at(state, index) else { return };
+            let force =
+                crate::geometry::arrows::force_of_arrow([to_m[0] - tail[0], to_m[1] - tail[1]], &state.view.camera);
+            if let Some(load) = state.document.scene.loads.get_mut(index).filter(|l| l.force_n.is_some()) {
                 load.force_n = Some(force);
             }
         }
@@ -99,7 +99,8 @@ pub fn shifted(p: Point, from: Point, to: Point) -> Point {
 
 /// Takes things out, none of them twice.
 pub fn remove_all(state: &mut AppState, mut items: Vec<Item>) {
-    // From the last to the first of each kind, corners and supports before what they are of: an index stays what it was.
+    // From the last to the first of each kind, corners and supports before what they are of: an
+    // index stays what it was.
     let rank = |item: &Item| match *item {
         Item::Corner { obstacle, corner } => (0, obstacle, corner),
         Item::Support { cable, support } => (1, cable, support),
@@ -113,9 +114,9 @@ pub fn remove_all(state: &mut AppState, mut items: Vec<Item>) {
     items.dedup_by_key(|item| rank(item));
     items.sort_by_key(|item| rank(item).0);
     for item in items {
-        remove(&mut state.scene, item);
+        remove(&mut state.document.scene, item);
     }
-    (state.selected, state.also) = (None, Vec::new());
+    (state.selection.selected, state.selection.also) = (None, Vec::new());
 }
 
 fn remove(scene: &mut Scene, item: Item) {
@@ -168,16 +169,16 @@ fn remove(scene: &mut Scene, item: Item) {
 
 /// A selection that no longer exists must not point at its neighbour's panel.
 pub fn drop_lost_selection(state: &mut AppState) {
-    if state.selected.is_some_and(|item| !exists(state, item)) {
-        state.selected = None;
+    if state.selection.selected.is_some_and(|item| !exists(state, item)) {
+        state.selection.selected = None;
     }
-    let mut also = std::mem::take(&mut state.also);
+    let mut also = std::mem::take(&mut state.selection.also);
     also.retain(|item| exists(state, *item));
-    state.also = also;
+    state.selection.also = also;
 }
 
 fn exists(state: &AppState, item: Item) -> bool {
-    let scene = &state.scene;
+    let scene = &state.document.scene;
     match item {
         Item::Cable(k) => k < scene.cables.len(),
         Item::Support { cable, support } => scene.cables.get(cable).is_some_and(|c| support < c.supports.len()),
@@ -192,4 +193,45 @@ fn exists(state: &AppState, item: Item) -> bool {
         Item::Robot => scene.robot.is_some(),
         Item::Leg(k) => scene.robot.as_ref().is_some_and(|r| k < r.path.len()),
     }
+}
+
+pub fn set<T>(list: &mut [T], index: usize, value: T) {
+    if let Some(slot) = list.get_mut(index) {
+        *slot = value;
+    }
+}
+
+/// The name, with the first free number appended if it is taken.
+pub fn unique(name: &str, taken: impl Fn(&str) -> bool) -> String {
+    if !taken(name) {
+        return name.to_owned();
+    }
+    (2..).map(|k| format!("{name} {k}")).find(|n| !taken(n)).unwrap_or_default()
+}
+
+pub fn add_waypoint(state: &mut AppState, cable: usize, arc_length_m: f64, at_m: Point) {
+    let place = waypoint_place(state, cable, arc_length_m);
+    let Some(c) = state.document.scene.cables.get_mut(cable) else { return };
+    if c.supports.len() < 2 {
+        return;
+    }
+    let place = place.clamp(1, c.supports.len() - 1);
+    let name = unique("waypoint", |n| c.supports.iter().any(|s| s.name == n));
+    c.supports.insert(place, Support::pulley(name, at_m));
+    // A route laid before the waypoint existed may pass it on the wrong side.
+    c.route_m.clear();
+    state.selection.selected = Some(Item::Support { cable, support: place });
+}
+
+/// Which place among the supports a point of the cable falls into: after those that sit before it
+/// now.
+pub fn waypoint_place(state: &AppState, cable: usize, arc_length_m: f64) -> usize {
+    let answer = state.live.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable));
+    let (Some(answer), Some(c)) = (answer, state.document.scene.cables.get(cable)) else {
+        return 1;
+    };
+    if answer.supports.len() != c.supports.len() {
+        return 1;
+    }
+    answer.supports.iter().take_while(|s| s.arc_length_m < arc_length_m).count()
 }

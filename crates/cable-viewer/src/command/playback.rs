@@ -1,15 +1,16 @@
-//! Commands about time and the robot that moves in it.
+//! Playback commands concern time and the robot that moves in it.
 
 use cable_core::scene::SupportKind;
 
-use super::{Effects, next_number};
-use crate::dialog::Dialog;
+use crate::command::effects::{Effects, next_number};
+use crate::state::dialog::Dialog;
+use crate::state::undo::EditKind;
 use crate::state::{AppState, Playback};
-use crate::undo::EditKind;
 use crate::worker::request::{Edit, Request, Resume};
 
-/// A support that is farther than this from where it was has been moved since, m. Less: rounding counts as moving.
-const MOVED_M: f64 = 1e-6;
+/// A support that is farther than this from where it was has been moved since, m. Less: rounding
+/// counts as moving.
+const MIN_MOVE_M: f64 = 1e-6;
 
 /// Time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,60 +41,60 @@ pub enum PlaybackCommand {
 
 /// Does one of them.
 pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effects) {
-    let now_s = state.live.solution.as_ref().map_or(0.0, |s| s.time_s);
+    let now_s = state.live.latest.solution.as_ref().map_or(0.0, |s| s.time_s);
     match command {
-        PlaybackCommand::SetPaused(paused) => state.playback.paused = paused,
-        PlaybackCommand::TogglePause => state.playback.paused = !state.playback.paused,
+        PlaybackCommand::SetPaused(paused) => state.live.playback.paused = paused,
+        PlaybackCommand::TogglePause => state.live.playback.paused = !state.live.playback.paused,
         PlaybackCommand::SetSpeed(speed) => {
             if speed.is_finite() {
-                state.playback.speed = speed.clamp(Playback::MIN_SPEED, Playback::MAX_SPEED);
+                state.live.playback.speed = speed.clamp(Playback::MIN_SPEED, Playback::MAX_SPEED);
             }
         }
-        PlaybackCommand::Step if state.recording.shown_s.is_some() => {
-            state.playback.paused = true;
+        PlaybackCommand::Step if state.live.recording.shown_s.is_some() => {
+            state.live.playback.paused = true;
             // After the last picture comes the present.
-            let next = state.recording.neighbour_s(now_s, 1).filter(|t| *t < now_s);
-            state.show_time(next);
+            let next = state.live.recording.neighbour_s(now_s, 1).filter(|t| *t < now_s);
+            state.live.show_time(next);
         }
         PlaybackCommand::Step => {
-            state.playback.paused = true;
+            state.live.playback.paused = true;
             effects.request.merge(Request { steps: 1, number: next_number(state), ..Request::default() });
         }
         PlaybackCommand::StepBack => {
-            state.playback.paused = true;
-            if let Some(before) = state.recording.neighbour_s(now_s, -1) {
-                state.show_time(Some(before));
+            state.live.playback.paused = true;
+            if let Some(before) = state.live.recording.neighbour_s(now_s, -1) {
+                state.live.show_time(Some(before));
             }
         }
         PlaybackCommand::Show(time_s) => {
-            state.playback.paused = true;
-            state.show_time(time_s.filter(|t| t.is_finite()));
+            state.live.playback.paused = true;
+            state.live.show_time(time_s.filter(|t| t.is_finite()));
         }
         PlaybackCommand::GoOn => go_on(state, effects),
-        PlaybackCommand::SetLoop(looped) => state.recording.looped = looped,
+        PlaybackCommand::SetLoop(looped) => state.live.recording.looped = looped,
         PlaybackCommand::Reset => {
-            state.playback.paused = true;
-            state.show_time(None);
+            state.live.playback.paused = true;
+            state.live.show_time(None);
             effects.request.merge(Request { reset: true, number: next_number(state), ..Request::default() });
         }
         PlaybackCommand::DriveRobot(order) => {
             // Who drives wants to see it: time runs, from the present on.
             if order.is_some_and(|v| v != 0.0) {
-                state.show_time(None);
-                state.playback.paused = false;
+                state.live.show_time(None);
+                state.live.playback.paused = false;
             }
-            if state.robot_order != order {
-                state.robot_order = order;
+            if state.live.robot_order != order {
+                state.live.robot_order = order;
                 effects.request.merge(Request { robot: Some(order), ..Request::default() });
             }
         }
         PlaybackCommand::SetRobotSpeed(speed) => {
             if speed.is_finite() && speed > 0.0 {
-                state.robot_speed = Some(speed);
+                state.live.robot_speed = Some(speed);
                 // What is being driven goes on at the new speed.
-                if let Some(order) = state.robot_order.filter(|v| *v != 0.0) {
+                if let Some(order) = state.live.robot_order.filter(|v| *v != 0.0) {
                     let order = Some(speed.copysign(order));
-                    state.robot_order = order;
+                    state.live.robot_order = order;
                     effects.request.merge(Request { robot: Some(order), ..Request::default() });
                 }
             }
@@ -104,38 +105,43 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
 
 /// Takes the answer shown as the present one: supports stand where they stood then.
 fn go_on(state: &mut AppState, effects: &mut Effects) {
-    let Some(answer) = state.recording.shown() else { return };
-    state.playback.paused = true;
+    let Some(answer) = state.live.recording.displayed() else { return };
+    state.live.playback.paused = true;
     if answer.cables.iter().any(|c| !c.breaks.is_empty()) {
         let title = "Time does not go on from here".to_owned();
         let text = "The cable has broken by then: choose a time before it broke".to_owned();
-        state.dialog = Some(Dialog::Message { title, text });
+        state.ui.dialog = Some(Dialog::Message { title, text });
         return;
     }
-    let before = state.scene.clone();
-    for (cable, then) in state.scene.cables.iter_mut().zip(&answer.cables) {
+    let before = state.document.scene.clone();
+    for (cable, then) in state.document.scene.cables.iter_mut().zip(&answer.cables) {
         for (s, then) in cable.supports.iter_mut().zip(&then.supports) {
-            let moved = s.at_m.is_some_and(|at| (at[0] - then.x_m).hypot(at[1] - then.y_m) > MOVED_M);
+            let moved = s.at_m.is_some_and(|at| (at[0] - then.x_m).hypot(at[1] - then.y_m) > MIN_MOVE_M);
             if moved && s.motion.is_none() && s.kind != SupportKind::Pulley {
                 s.at_m = Some([then.x_m, then.y_m]);
             }
         }
     }
-    if state.scene != before {
-        state.undo.close_entry();
-        state.undo.record(&before, EditKind("go on".to_owned()));
-        state.undo.close_entry();
+    if state.document.scene != before {
+        state.document.undo.close_entry();
+        state.document.undo.record(&before, EditKind("go on".to_owned()));
+        state.document.undo.close_entry();
     }
-    state.scene_fault = state.scene.validate().err();
-    state.show_time(None);
-    let edit = Edit { scene: state.scene.clone(), model: state.model, settings: state.settings, fresh: false };
+    state.document.validate();
+    state.live.show_time(None);
+    let edit = Edit {
+        scene: state.document.scene.clone(),
+        model: state.solver.model,
+        settings: state.solver.settings,
+        fresh: false,
+    };
     let resume = Some(Box::new(Resume { edit, answer }));
     effects.request.merge(Request { resume, number: next_number(state), ..Request::default() });
 }
 
 /// Tells the worker whether time runs: not while what was recorded is replayed.
 pub fn send(state: &AppState, effects: &mut Effects) {
-    let paused = state.playback.paused || state.recording.shown_s.is_some();
-    let playback = Playback { paused, ..state.playback };
+    let paused = state.live.playback.paused || state.live.recording.shown_s.is_some();
+    let playback = Playback { paused, ..state.live.playback };
     effects.request.merge(Request { playback: Some(playback), ..Request::default() });
 }

@@ -1,14 +1,17 @@
-//! Commands that change the scene.
+//! Scene commands change the scene.
 
 use cable_core::math::Point;
 use cable_core::scene::{Environment, RobotTask, Support};
 use cable_core::{Cable, Load, Obstacle, Robot, Scene};
 
-use super::items::{drop_lost_selection, hitched, move_item, remove_all, set_robot};
-use super::{Effects, clipboard, next_number, route, submit_scene};
+use crate::command::effects::{Effects, next_number, submit_edit};
+use crate::command::items::{
+    add_waypoint, drop_lost_selection, hitched, move_item, remove_all, set, set_robot, unique,
+};
+use crate::command::{clipboard, route};
+use crate::state::undo::EditKind;
 use crate::state::{AppState, Item};
-use crate::undo::EditKind;
-use crate::worker::engine::slow;
+use crate::worker::engine::is_quasi_static;
 use crate::worker::request::{Drag, Request};
 
 /// Changes the scene. Indices that do not exist change nothing.
@@ -50,7 +53,8 @@ pub enum SceneCommand {
         /// Its new self.
         value: Load,
     },
-    /// Puts a thing (a support, a whole obstacle by its first corner or centre, a corner) at a point, m.
+    /// Puts a thing (a support, a whole obstacle by its first corner or centre, a corner) at a
+    /// point, m.
     Move {
         /// What.
         item: Item,
@@ -89,7 +93,8 @@ pub enum SceneCommand {
     Copy,
     /// Keeps what is picked and takes it out.
     Cut,
-    /// Puts what was copied into the scene, its middle at a point (m), else a little beside where it was.
+    /// Puts what was copied into the scene, its middle at a point (m), else a little beside where
+    /// it was.
     Paste {
         /// Where, m.
         at_m: Option<Point>,
@@ -123,23 +128,23 @@ impl SceneCommand {
 /// Does one of them.
 pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects) {
     match command {
-        SceneCommand::EditDone => return state.undo.close_entry(),
+        SceneCommand::EditDone => return state.document.undo.close_entry(),
         SceneCommand::Copy => return clipboard::copy(state, effects),
         SceneCommand::Cut => clipboard::copy(state, effects),
         SceneCommand::Undo | SceneCommand::Redo => {
             let other = match command {
-                SceneCommand::Undo => state.undo.back(&state.scene),
-                _ => state.undo.forward(&state.scene),
+                SceneCommand::Undo => state.document.undo.back(&state.document.scene),
+                _ => state.document.undo.forward(&state.document.scene),
             };
             let Some(other) = other else { return };
-            state.scene = other;
+            state.document.scene = other;
             drop_lost_selection(state);
             after_edit(state, None, effects);
             return;
         }
         _ => {}
     }
-    let (before, kind) = (state.scene.clone(), command.kind());
+    let (before, kind) = (state.document.scene.clone(), command.kind());
     let once = kind.0 == "once";
     let dragged = match command {
         SceneCommand::Move { item: Item::Support { cable, support }, to_m } => Some((cable, support, to_m)),
@@ -149,19 +154,19 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
     let new_obstacles =
         matches!(command, SceneCommand::SetScene(_) | SceneCommand::AddObstacle(_) | SceneCommand::Paste { .. });
     change(state, command);
-    if new_obstacles && state.scene.obstacles != before.obstacles {
-        route::forget_buried(&mut state.scene);
+    if new_obstacles && state.document.scene.obstacles != before.obstacles {
+        route::forget_buried(&mut state.document.scene);
     }
-    let dragged = if robot_moves { hitched(&state.scene) } else { dragged };
-    if state.scene == before {
+    let dragged = if robot_moves { hitched(&state.document.scene) } else { dragged };
+    if state.document.scene == before {
         return;
     }
     if once {
-        state.undo.close_entry();
+        state.document.undo.close_entry();
     }
-    state.undo.record(&before, kind);
+    state.document.undo.record(&before, kind);
     if once {
-        state.undo.close_entry();
+        state.document.undo.close_entry();
     }
     drop_lost_selection(state);
     after_edit(state, dragged, effects);
@@ -169,41 +174,42 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
 
 /// Sends the edited scene: as a drag while time runs, else to be solved.
 fn after_edit(state: &mut AppState, dragged: Option<(usize, usize, Point)>, effects: &mut Effects) {
-    state.scene_fault = state.scene.validate().err();
+    state.document.validate();
     match dragged {
-        Some((cable, support, to_m)) if !state.playback.paused && state.scene_fault.is_none() => {
-            state.show_time(None);
+        Some((cable, support, to_m)) if !state.live.playback.paused && state.document.fault.is_none() => {
+            state.live.show_time(None);
             // A pointer holds by a spring; a key or a robot puts it there.
             let held = Item::Support { cable, support };
-            let by_spring = state.grabbed.is_some_and(|g| g.item == held) && !slow(state.model);
-            state.pulled = by_spring.then_some((cable, support));
-            draw_support(state, (cable, support, to_m), effects);
+            let by_spring =
+                state.selection.grab.is_some_and(|g| g.item == held) && !is_quasi_static(state.solver.model);
+            state.selection.spring_support = by_spring.then_some((cable, support));
+            draw_support(state, cable, support, to_m, effects);
         }
-        _ => submit_scene(state, false, effects),
+        _ => submit_edit(state, effects),
     }
 }
 
 /// Has a support drawn to a point (m), by a spring or not.
-fn draw_support(state: &mut AppState, (cable, support, to_m): (usize, usize, Point), effects: &mut Effects) {
-    let by_spring = state.pulled == Some((cable, support));
-    let drag = Drag { cable, support, to_m, by_spring, scene: state.scene.clone() };
+fn draw_support(state: &mut AppState, cable: usize, support: usize, to_m: Point, effects: &mut Effects) {
+    let by_spring = state.selection.spring_support == Some((cable, support));
+    let drag = Drag { cable, support, to_m, by_spring, scene: state.document.scene.clone() };
     effects.request.merge(Request { drag: Some(drag), number: next_number(state), ..Request::default() });
 }
 
 /// The pointer lets go of a support that it held by a spring: it is fixed where it is.
 pub(super) fn let_go(state: &mut AppState, effects: &mut Effects) {
-    let Some((cable, support)) = state.pulled.take() else { return };
-    let answer = state.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable)?.supports.get(support));
+    let Some((cable, support)) = state.selection.spring_support.take() else { return };
+    let answer = state.live.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable)?.supports.get(support));
     let at = answer.filter(|r| r.hand.is_some()).map(|r| [r.x_m, r.y_m]);
-    let held = state.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support));
+    let held = state.document.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support));
     if let (Some(at), Some(held)) = (at, held) {
         held.at_m = Some(at);
-        draw_support(state, (cable, support, at), effects);
+        draw_support(state, cable, support, at, effects);
     }
 }
 
 fn change(state: &mut AppState, command: SceneCommand) {
-    let scene = &mut state.scene;
+    let scene = &mut state.document.scene;
     match command {
         SceneCommand::SetScene(value) => *scene = *value,
         SceneCommand::SetName(name) => scene.name = name,
@@ -226,65 +232,25 @@ fn change(state: &mut AppState, command: SceneCommand) {
         SceneCommand::AddObstacle(mut obstacle) => {
             obstacle.name = unique(&obstacle.name, |n| scene.obstacles.iter().any(|o| o.name == n));
             scene.obstacles.push(obstacle);
-            state.selected = Some(Item::Obstacle(state.scene.obstacles.len() - 1));
+            state.selection.selected = Some(Item::Obstacle(state.document.scene.obstacles.len() - 1));
         }
         SceneCommand::AddLoad(load) => {
             scene.loads.push(load);
-            state.selected = Some(Item::Load(state.scene.loads.len() - 1));
+            state.selection.selected = Some(Item::Load(state.document.scene.loads.len() - 1));
         }
         SceneCommand::Remove(item) => remove_all(state, vec![item]),
         SceneCommand::RemoveAll(items) => remove_all(state, items),
-        SceneCommand::Cut => remove_all(state, state.picks()),
+        SceneCommand::Cut => remove_all(state, state.selection.picks()),
         SceneCommand::EditDone | SceneCommand::Copy | SceneCommand::Undo | SceneCommand::Redo => {}
     }
-}
-
-pub(super) fn set<T>(list: &mut [T], index: usize, value: T) {
-    if let Some(slot) = list.get_mut(index) {
-        *slot = value;
-    }
-}
-
-/// The name, with the first free number appended if it is taken.
-pub(super) fn unique(name: &str, taken: impl Fn(&str) -> bool) -> String {
-    if !taken(name) {
-        return name.to_owned();
-    }
-    (2..).map(|k| format!("{name} {k}")).find(|n| !taken(n)).unwrap_or_default()
-}
-
-pub(super) fn add_waypoint(state: &mut AppState, cable: usize, arc_length_m: f64, at_m: Point) {
-    let place = waypoint_place(state, cable, arc_length_m);
-    let Some(c) = state.scene.cables.get_mut(cable) else { return };
-    if c.supports.len() < 2 {
-        return;
-    }
-    let place = place.clamp(1, c.supports.len() - 1);
-    let name = unique("waypoint", |n| c.supports.iter().any(|s| s.name == n));
-    c.supports.insert(place, Support::pulley(name, at_m));
-    // A route laid before the waypoint existed may pass it on the wrong side.
-    c.route_m.clear();
-    state.selected = Some(Item::Support { cable, support: place });
-}
-
-/// Which place among the supports a point of the cable falls into: after those that sit before it now.
-pub(super) fn waypoint_place(state: &AppState, cable: usize, arc_length_m: f64) -> usize {
-    let answer = state.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable));
-    let (Some(answer), Some(c)) = (answer, state.scene.cables.get(cable)) else {
-        return 1;
-    };
-    if answer.supports.len() != c.supports.len() {
-        return 1;
-    }
-    answer.supports.iter().take_while(|s| s.arc_length_m < arc_length_m).count()
 }
 
 /// Speed of a first leg, m/s: a careful walk.
 const FIRST_LEG_M_PER_S: f64 = 0.3;
 
 fn add_leg(state: &mut AppState, to_x_m: f64) {
-    let Some(robot) = state.scene.robot.as_mut().filter(|_| to_x_m.is_finite()) else { return };
-    let place = match state.selected {
+    let Some(robot) = state.document.scene.robot.as_mut().filter(|_| to_x_m.is_finite()) else { return };
+    let place = match state.selection.selected {
         Some(Item::Leg(k)) => (k + 1).min(robot.path.len()),
         _ => robot.path.len(),
     };
@@ -294,5 +260,5 @@ fn add_leg(state: &mut AppState, to_x_m: f64) {
     });
     let speed_m_per_s = speeds.into_iter().next().unwrap_or(FIRST_LEG_M_PER_S);
     robot.path.insert(place, RobotTask::Drive { to_x_m, speed_m_per_s });
-    (state.selected, state.also) = (Some(Item::Leg(place)), Vec::new());
+    (state.selection.selected, state.selection.also) = (Some(Item::Leg(place)), Vec::new());
 }

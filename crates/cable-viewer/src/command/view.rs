@@ -1,18 +1,18 @@
-//! Commands that change what is shown.
+//! View commands change what is shown, not what is solved.
 
 use std::sync::Arc;
 
 use cable_core::math::Point;
 
-use super::Effects;
-use crate::bending;
-use crate::colour::ColourScale;
-use crate::guide;
-use crate::models;
-use crate::panels::system::System;
-use crate::reach::{self, Moved, Order, Progress};
-use crate::run::Run;
-use crate::state::{AppState, Grab, Held, Item, Layers, Probe};
+use crate::command::effects::Effects;
+use crate::jobs::safe_reach::{self, Progress, ReachQuery, ReachSubject};
+use crate::jobs::{model_comparison, neglected_bending};
+use crate::record::run::Run;
+use crate::render::colour::ColourScale;
+use crate::state::questions::{bending_query, reach_target};
+use crate::state::tutorial_place::TutorialPlace;
+use crate::state::{AppState, Grab, Item, Layers, Reference, TensionMarker};
+use crate::units::system::System;
 
 /// Changes what is shown.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +24,7 @@ pub enum ViewCommand {
     /// Picks several things.
     SelectAll(Vec<Item>),
     /// Takes the tension at a place of a cable apart, or not any more.
-    Probe(Option<Probe>),
+    MarkTension(Option<TensionMarker>),
     /// Draws a frame round things to pick, between two corners, m.
     Frame(Option<[Point; 2]>),
     /// The pointer is over a thing, or over nothing, at a point of the world (m).
@@ -55,13 +55,14 @@ pub enum ViewCommand {
     /// Looks for where the robot or an end can be taken, or ends that and forgets it.
     Reach(bool),
     /// What of it is asked and shown.
-    SetReach(reach::Choice),
-    /// Shows what less and more friction does, or not any more; least and greatest friction over that of the scene.
+    SetReach(safe_reach::Choice),
+    /// Shows what less and more friction does, or not any more; least and greatest friction over
+    /// that of the scene.
     Spread(bool, [f64; 2]),
     /// Ask what neglecting bending stiffness changes.
     AskBending,
     /// Leads to a step of a guided scene, or not any more.
-    Guide(Option<guide::Place>),
+    Guide(Option<TutorialPlace>),
     /// SI or US units; files stay SI.
     SetUnits(System),
     /// Keeps the answer on screen to compare with.
@@ -76,13 +77,13 @@ pub enum ViewCommand {
 pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) {
     match command {
         ViewCommand::Select(item) => {
-            if state.selected != item {
-                state.undo.close_entry();
+            if state.selection.selected != item {
+                state.document.undo.close_entry();
             }
-            (state.selected, state.also) = (item, Vec::new());
+            (state.selection.selected, state.selection.also) = (item, Vec::new());
         }
         ViewCommand::Toggle(item) => {
-            let mut picks = state.picks();
+            let mut picks = state.selection.picks();
             match picks.iter().position(|i| *i == item) {
                 Some(k) => drop(picks.remove(k)),
                 None => picks.push(item),
@@ -90,89 +91,98 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             select_all(state, picks);
         }
         ViewCommand::SelectAll(items) => select_all(state, items),
-        ViewCommand::Probe(probe) => state.probe = probe,
-        ViewCommand::Frame(corners) => state.frame_m = corners,
+        ViewCommand::MarkTension(probe) => state.analysis.tension_marker = probe,
+        ViewCommand::Frame(corners) => state.selection.frame_m = corners,
         ViewCommand::Hover(item, at_m) => {
-            state.hovered = item;
-            state.cursor_m = at_m;
+            state.selection.hovered = item;
+            state.selection.cursor_m = at_m;
         }
         ViewCommand::Grab(grab) => {
-            state.grabbed = grab;
+            state.selection.grab = grab;
             if grab.is_none() {
-                super::scene::let_go(state, effects);
+                crate::command::scene::let_go(state, effects);
             }
         }
-        ViewCommand::Pan(delta) => state.camera.pan(delta),
-        ViewCommand::Zoom { about_m, factor } => state.camera.zoom(about_m, factor),
-        ViewCommand::Fit => state.camera.fit_wanted = true,
+        ViewCommand::Pan(delta) => state.view.camera.pan(delta),
+        ViewCommand::Zoom { about_m, factor } => state.view.camera.zoom(about_m, factor),
+        ViewCommand::Fit => state.view.camera.fit_wanted = true,
         ViewCommand::Recentre => {
-            let [low, high] = crate::canvas::bounds::cables(state);
-            state.camera.centre_m = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
+            let [low, high] = crate::geometry::bounds::cables(state);
+            state.view.camera.centre_m = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
         }
         ViewCommand::CentreOn(p) => {
             if p.iter().all(|v| v.is_finite()) {
-                state.camera.centre_m = p;
+                state.view.camera.centre_m = p;
             }
         }
-        ViewCommand::SetColour(colour) => state.colour = colour,
-        ViewCommand::SetLayers(layers) => state.layers = layers,
-        ViewCommand::SetTheme(theme) => state.theme = theme,
-        ViewCommand::Reach(false) => (state.reach.progress, effects.reach) = (Progress::None, Some(None)),
+        ViewCommand::SetColour(colour) => state.view.colour = colour,
+        ViewCommand::SetLayers(layers) => state.view.layers = layers,
+        ViewCommand::SetTheme(theme) => state.view.theme = theme,
+        ViewCommand::Reach(false) => (state.analysis.safe_reach.progress, effects.reach) = (Progress::None, Some(None)),
         ViewCommand::Reach(true) => {
-            let Some(moved) = reach::moved(state) else {
-                state.reach.progress = Progress::Failed("nothing here has a place to be taken from".to_owned());
+            let Some(moved) = reach_target(state) else {
+                state.analysis.safe_reach.progress =
+                    Progress::Failed("nothing here has a place to be taken from".to_owned());
                 return;
             };
-            state.reach.progress = Progress::Running(0.0, None);
+            state.analysis.safe_reach.progress = Progress::Running(0.0, None);
             let corners_m = match moved {
-                Moved::Robot => crate::canvas::bounds::ground(state).map(|x| [x, 0.0]),
-                Moved::Support { .. } => state.visible_m,
+                ReachSubject::Robot => crate::geometry::bounds::ground(state).map(|x| [x, 0.0]),
+                ReachSubject::Support { .. } => state.view.visible_m,
             };
-            let (scene, settings, across) = (state.scene.clone(), state.settings, state.reach.choice.across);
-            // From where the cable is on screen, once time has run: a hand or the robot may have taken it elsewhere.
-            let now = state.snapshot.solution.clone().filter(|s| s.time_s > 0.0 && !state.snapshot.stale);
-            effects.reach = Some(Some(Box::new(Order { scene, now, settings, moved, corners_m, across })));
+            let (scene, settings, across) =
+                (state.document.scene.clone(), state.solver.settings, state.analysis.safe_reach.choice.across);
+            // From where the cable is on screen, once time has run: a hand or the robot may have
+            // taken it elsewhere.
+            let now = state.live.snapshot.solution.clone().filter(|s| s.time_s > 0.0 && !state.live.snapshot.stale);
+            effects.reach = Some(Some(Box::new(ReachQuery { scene, now, settings, moved, corners_m, across })));
         }
-        ViewCommand::SetReach(choice) => state.reach.choice = choice,
+        ViewCommand::SetReach(choice) => state.analysis.safe_reach.choice = choice,
         ViewCommand::Spread(on, [low, high]) => {
-            state.spread.on = on;
+            state.analysis.friction_range.on = on;
             if low >= 0.0 && high.is_finite() {
                 // The scene's own friction lies in between.
-                state.spread.factors = [low.min(1.0), high.max(1.0)];
+                state.analysis.friction_range.factors = [low.min(1.0), high.max(1.0)];
             }
         }
         ViewCommand::AskBending => {
-            state.bending = bending::View { ask: bending::asked(state), ..bending::View::default() }
+            state.analysis.neglected_bending = neglected_bending::NeglectedBendingState {
+                query: bending_query(state),
+                ..neglected_bending::NeglectedBendingState::default()
+            }
         }
-        ViewCommand::Guide(place) => state.guide = place.filter(|p| p.step().is_some()),
-        ViewCommand::SetUnits(units) => state.units = units,
+        ViewCommand::Guide(place) => state.ui.tutorial = place,
+        ViewCommand::SetUnits(units) => state.view.units = units,
         ViewCommand::Hold => {
-            if let (Some(solution), Some(scene)) = (state.snapshot.solution.clone(), state.snapshot.scene.clone())
-                && state.held.len() < Held::MOST
+            if let (Some(solution), Some(scene)) =
+                (state.live.snapshot.solution.clone(), state.live.snapshot.scene.clone())
+                && state.analysis.references.len() < Reference::MAX_COUNT
             {
                 let name = format!("{}, {} model, {:.2} s", scene.name, solution.model, solution.time_s);
-                let recording = &state.recording;
-                let run = Run::of(state.history.samples.iter(), recording.answers(), recording.events().len());
-                let (run, wall_s) = (run.map(Arc::new), state.snapshot.solve_wall_s);
-                state.held.push(Held { name, scene, solution, wall_s, run });
+                let recording = &state.live.recording;
+                let run = Run::of(state.live.history.samples.iter(), recording.answers(), recording.events().len());
+                let (run, wall_s) = (run.map(Arc::new), state.live.snapshot.solve_wall_s);
+                state.analysis.references.push(Reference { name, scene, solution, wall_s, run });
             }
         }
         ViewCommand::HoldModels(true) => {
-            state.models = models::Progress::Running(0.0, None);
-            effects.models = Some(Some(Box::new(state.scene.clone())));
+            state.analysis.models = model_comparison::Progress::Running(0.0, None);
+            effects.models = Some(Some(Box::new(state.document.scene.clone())));
         }
-        ViewCommand::HoldModels(false) => (state.models, effects.models) = (models::Progress::None, Some(None)),
-        ViewCommand::LetGo(None) => state.held.clear(),
+        ViewCommand::HoldModels(false) => {
+            (state.analysis.models, effects.models) = (model_comparison::Progress::None, Some(None))
+        }
+        ViewCommand::LetGo(None) => state.analysis.references.clear(),
         ViewCommand::LetGo(Some(k)) => {
-            if k < state.held.len() {
-                state.held.remove(k);
+            if k < state.analysis.references.len() {
+                state.analysis.references.remove(k);
             }
         }
     }
 }
 
 fn select_all(state: &mut AppState, items: Vec<Item>) {
-    state.undo.close_entry();
+    state.document.undo.close_entry();
     let mut items = items.into_iter();
-    (state.selected, state.also) = (items.next(), items.collect());
+    (state.selection.selected, state.selection.also) = (items.next(), items.collect());
 }

@@ -1,15 +1,15 @@
-//! Environment panel: gravity, wind, temperature, view.
+//! The environment panel edits gravity, wind, temperature and view.
 
 use cable_core::scene::{Environment, View};
 use egui::Ui;
 
-use super::cable::labelled;
-use super::property::{Known, Quantity, row};
-use super::times::{self, Knots, Table};
-use super::unit::Unit;
-use super::{fault, field};
 use crate::command::{Command, SceneCommand};
+use crate::panels::scene_errors;
 use crate::state::AppState;
+use crate::units::unit::Unit;
+use crate::widgets::field;
+use crate::widgets::property::{Provenance, Quantity, labelled, row};
+use crate::widgets::time_table::{self, Knots, Table};
 
 /// What the environment panel edits: how it is shown, its key, how it is read and written.
 type Entry = (Quantity, &'static str, fn(&Environment) -> f64, fn(&mut Environment, f64));
@@ -66,16 +66,16 @@ const TEMPERATURE: Entry = (
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     view(ui, state, commands);
-    let environment = &state.scene.environment;
+    let environment = &state.document.scene.environment;
     for (quantity, key, get, set) in [GRAVITY, WIND_X, WIND_Y, TEMPERATURE] {
         let wind = key == "wind_n_per_m";
         if wind && !environment.winds_n_per_m.is_empty() {
             continue;
         }
-        let known = Known {
+        let known = Provenance {
             value: get(environment),
             origin: Some((get(&state.document.saved.environment), "as loaded".to_owned())),
-            ..Known::default()
+            ..Provenance::default()
         };
         let change = row(ui, &quantity, &known);
         if let Some(value) = change.value {
@@ -88,7 +88,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
         let component = if quantity.name == WIND_X.0.name { "[0]" } else { "[1]" };
         let path = format!("environment.{key}{}", if wind { component } else { "" });
-        fault::inline(ui, state, &path, commands);
+        scene_errors::inline(ui, state, &path, commands);
     }
     wind(ui, state, commands);
 }
@@ -97,17 +97,17 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 fn wind(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     /// Time over which it changes at first, s.
     const FIRST_SPAN_S: f64 = 5.0;
-    let environment = &state.scene.environment;
+    let environment = &state.document.scene.environment;
     let knots = Knots::of(&environment.wind_times_s, &environment.winds_n_per_m);
     let on = !environment.winds_n_per_m.is_empty();
     let (mut faults, mut changed) = (Vec::new(), None);
     let help = "A wind at each of several times, linear in between";
-    if let Some(on) = times::toggle(ui, "Wind changes with time", on, help) {
+    if let Some(on) = time_table::toggle(ui, "Wind changes with time", on, help) {
         let steady = Knots::steady(environment.wind_n_per_m, FIRST_SPAN_S);
         changed = Some(if on { steady } else { Knots::default() });
     } else if on {
         let table = Table { of: "wind", columns: ["Right", "Up"], unit: Unit::N_PER_M, least: 1 };
-        changed = times::ui(ui, &table, &knots, &mut faults);
+        changed = time_table::ui(ui, &table, &knots, &mut faults);
     }
     if let Some(Knots { times_s, values }) = changed {
         let environment = Environment { wind_times_s: times_s, winds_n_per_m: values, ..environment.clone() };
@@ -118,24 +118,24 @@ fn wind(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         field::fault(ui, &text);
     }
     for path in ["environment.wind_times_s", "environment.winds_n_per_m"] {
-        fault::inline(ui, state, path, commands);
+        scene_errors::inline(ui, state, path, commands);
     }
 }
 
 fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     labelled(ui, "View", "Side view", |ui| {
-        let mut view = state.scene.view;
+        let mut view = state.document.scene.view;
         let side = ui.selectable_value(&mut view, View::Elevation, "Side view");
         let side = side.on_hover_text("Seen from the side: gravity points down");
         let plan = ui.selectable_value(&mut view, View::Plan, "Plan view");
         plan.on_hover_text("Seen from above: gravity points into the page and the floor rubs everywhere");
-        if view != state.scene.view {
-            let scene = cable_core::Scene { view, ..state.scene.clone() };
+        if view != state.document.scene.view {
+            let scene = cable_core::Scene { view, ..state.document.scene.clone() };
             commands.push(Command::Scene(SceneCommand::SetScene(Box::new(scene))));
         }
         side
     });
-    if let Some(found) = fault::at(state, "view") {
-        field::fault(ui, &fault::sentence(&found.fault));
+    if let Some(found) = scene_errors::at(state, "view") {
+        field::fault(ui, &scene_errors::sentence(&found.fault));
     }
 }

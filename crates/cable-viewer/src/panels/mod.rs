@@ -1,24 +1,20 @@
-//! The panels: each reads the state and pushes commands, nothing else.
+//! The panels are the forms beside the canvas: each reads the state and pushes commands, nothing
+//! else.
+//!
+//! - `scene`, `cable`, `environment`, `robot`, `solver`: what is edited, on the left
+//! - `readouts`, `warnings`, `analysis`: what was answered, on the right
+//! - `plots`, `playback`, `timeline`: graphs and time, below
+//! - `scene_errors`: what is wrong with the scene, beside the field where it was typed
 
+pub mod analysis;
 pub mod cable;
-pub mod compare;
 pub mod environment;
-pub mod fault;
-pub mod field;
-pub mod icon;
-pub mod origin;
 pub mod playback;
 pub mod plots;
-pub mod property;
-pub mod reach;
 pub mod readouts;
 pub mod robot;
 pub mod scene;
+pub mod scene_errors;
 pub mod solver;
-pub mod spread;
-pub mod system;
 pub mod timeline;
-pub mod times;
-pub mod translate;
-pub mod unit;
 pub mod warnings;

@@ -1,17 +1,20 @@
-//! Playback panel: pause, speed, step, reset.
+//! The playback panel pauses, steps and resets time and sets its speed.
 
 use egui::{Button, Slider, SliderClamping, Ui};
 
-use super::field;
-use super::icon::{self, Icon};
-use super::unit::{self, Unit};
 use crate::command::{Command, PlaybackCommand};
 use crate::state::{AppState, Playback};
+use crate::units::format;
+use crate::units::unit::Unit;
+use crate::widgets::field;
+use crate::widgets::icon::{self, Icon};
 
-/// Below this share of the speed asked for, the shortfall is named: smaller ones are jitter of the clock.
+/// Below this share of the speed asked for, the shortfall is named: smaller ones are jitter of the
+/// clock.
 const KEEPS_UP: f64 = 0.9;
 
-/// Width of each button, points: “Pause” and its sign fit, and nothing moves when it turns to “Play”.
+/// Width of each button, points: “Pause” and its sign fit, and nothing moves when it turns to
+/// “Play”.
 const BUTTON_WIDTH: f32 = 72.0;
 /// Width of the typed speed, points.
 const SPEED_WIDTH: f32 = 56.0;
@@ -25,7 +28,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             }
         };
         button(ui, (Icon::ToStart, "Reset"), "Back to the start, bit for bit", PlaybackCommand::Reset);
-        if state.playback.paused {
+        if state.live.playback.paused {
             button(ui, (Icon::Play, "Play"), "Let time run", PlaybackCommand::SetPaused(false));
         } else {
             button(ui, (Icon::Pause, "Pause"), "Stop time", PlaybackCommand::SetPaused(true));
@@ -34,7 +37,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.separator();
         speed(ui, state, commands);
         ui.separator();
-        let time_s = state.snapshot.solution.as_ref().map_or(0.0, |s| s.time_s);
+        let time_s = state.live.snapshot.solution.as_ref().map_or(0.0, |s| s.time_s);
         ui.label(format!("Time {time_s:.3} s")).on_hover_text("Simulated time since the start");
         real_time(ui, state);
     });
@@ -42,7 +45,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 fn speed(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let label = ui.label("Speed").id;
-    let mut speed = state.playback.speed;
+    let mut speed = state.live.playback.speed;
     let response = ui.add(
         Slider::new(&mut speed, Playback::MIN_SPEED..=Playback::MAX_SPEED)
             .logarithmic(true)
@@ -54,14 +57,14 @@ fn speed(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         commands.push(Command::Playback(PlaybackCommand::SetSpeed(speed)));
     }
     response.on_hover_text("Simulated seconds per second, 0.01× to 4×");
-    let entry = field::number(ui, "Speed", Unit::TIMES, state.playback.speed, SPEED_WIDTH);
+    let entry = field::number(ui, "Speed", Unit::TIMES, state.live.playback.speed, SPEED_WIDTH);
     if let Some(speed) = entry.value {
         commands.push(Command::Playback(PlaybackCommand::SetSpeed(speed)));
     }
     let response = entry.response.labelled_by(label);
     field::name(&response, "Speed");
     response.on_hover_text("Simulated seconds per second, 0.01× to 4×");
-    let unchanged = state.playback.speed == 1.0;
+    let unchanged = state.live.playback.speed == 1.0;
     let reset = ui.add_enabled(!unchanged, Button::new("1×")).on_hover_text("Back to real time");
     let reset = reset.on_disabled_hover_text("It runs in real time");
     field::name(&reset, "Real-time speed");
@@ -74,15 +77,15 @@ fn speed(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 fn real_time(ui: &mut Ui, state: &AppState) {
-    let Some(reached) = state.snapshot.real_speed else {
-        ui.weak(if state.playback.paused { "Paused" } else { "Starting…" });
+    let Some(reached) = state.live.snapshot.real_speed else {
+        ui.weak(if state.live.playback.paused { "Paused" } else { "Starting…" });
         return;
     };
-    let asked = state.playback.speed;
-    let text = format!("Runs at {}", unit::times(reached));
+    let asked = state.live.playback.speed;
+    let text = format!("Runs at {}", format::times(reached));
     let help = "Simulated seconds per second actually reached";
     if reached < KEEPS_UP * asked {
-        let slow = format!("{text} of {}", unit::times(asked));
+        let slow = format!("{text} of {}", format::times(asked));
         ui.colored_label(ui.visuals().warn_fg_color, slow)
             .on_hover_text(format!("{help}. The solver does not keep up: fewer segments or a looser tolerance help"));
     } else {

@@ -1,15 +1,15 @@
-//! Plots panel: a quantity over time and along the cable, with cursors and export.
+//! The plots panel shows a quantity over time and along the cable, with cursors and export.
 
 use egui::{ComboBox, Id, Ui};
 
-use super::field;
-use crate::colour::Quantity;
 use crate::command::{Command, FileCommand};
-use crate::dialog::Dialog;
-use crate::plot::measure::Measure;
-use crate::plot::{Touched, View, along, time};
-use crate::spread;
+use crate::plot::{GraphResponse, GraphView, along, time};
+use crate::record::measure::Measure;
+use crate::render::colour::Quantity;
 use crate::state::AppState;
+use crate::state::dialog::Dialog;
+use crate::state::questions::friction_answer;
+use crate::widgets::field;
 
 /// Below this width the graphs stand one under the other, points.
 const SIDE_BY_SIDE: f32 = 480.0;
@@ -23,7 +23,7 @@ const WINDOWS: [(Option<f64>, &str); 4] =
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let id = Id::unique("plot view");
-    let mut view: View = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+    let mut view: GraphView = ui.data(|d| d.get_temp(id)).unwrap_or_default();
     ui.horizontal_wrapped(|ui| controls(ui, state, &mut view));
     let wide = ui.available_width() >= SIDE_BY_SIDE;
     let room = ui.available_height() - ui.spacing().item_spacing.y;
@@ -57,10 +57,10 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.data_mut(|d| d.insert_temp(id, view));
 }
 
-fn controls(ui: &mut Ui, state: &AppState, view: &mut View) {
+fn controls(ui: &mut Ui, state: &AppState, view: &mut GraphView) {
     for measure in Measure::ALL {
         let robot = matches!(measure, Measure::Pull | Measure::Speed);
-        if !robot || state.scene.robot.is_some() {
+        if !robot || state.document.scene.robot.is_some() {
             let on = view.measure == measure || view.second == Some(measure);
             let help = format!(
                 "{}. Shift+click: in a second graph beside the first, with time and cursors linked",
@@ -85,9 +85,9 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut View) {
     });
     field::name(&shown.response, "Time window");
     shown.response.on_hover_text("How much of the past the time graph follows");
-    if state.history.samples.len() < 2 {
+    if state.live.history.samples.len() < 2 {
         ui.weak("Press play to record over time");
-    } else if state.scene.cables.len() > 1
+    } else if state.document.scene.cables.len() > 1
         && matches!(view.measure, Measure::Cable(Quantity::Stress | Quantity::Strain))
     {
         ui.weak("Over time: tension, as there are several cables");
@@ -95,7 +95,7 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut View) {
 }
 
 /// A click shows a measure alone; with shift, in a second graph or not any more.
-fn pick(ui: &Ui, view: &mut View, measure: Measure) {
+fn pick(ui: &Ui, view: &mut GraphView, measure: Measure) {
     if !ui.input(|i| i.modifiers.shift) {
         (view.measure, view.second) = (measure, None);
     } else if view.second == Some(measure) {
@@ -105,21 +105,21 @@ fn pick(ui: &Ui, view: &mut View, measure: Measure) {
     }
 }
 
-fn along_cable(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touched {
+fn along_cable(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> GraphResponse {
     let index = state.current_cable();
-    let scene = state.snapshot.scene.as_deref().unwrap_or(&state.scene);
-    let answer = state.snapshot.solution.as_deref().and_then(|s| s.cables.get(index));
+    let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
+    let answer = state.live.snapshot.solution.as_deref().and_then(|s| s.cables.get(index));
     match (scene.cables.get(index), answer) {
         (Some(cable), Some(solved)) => {
             // The ribbon is of the end of the run.
-            let present = state.snapshot.solution.as_ref().map(|s| s.time_s);
-            let found = spread::shown(state).filter(|(_, ask)| present == Some(ask.span_s));
+            let present = state.live.snapshot.solution.as_ref().map(|s| s.time_s);
+            let found = friction_answer(state).filter(|(_, ask)| present == Some(ask.span_s));
             let ribbon = found.and_then(|(s, _)| s.along.get(index)).map_or(&[][..], Vec::as_slice);
             along::ui(ui, cable, (solved, ribbon), view, height)
         }
         _ => {
             ui.weak("Nothing solved yet");
-            Touched::default()
+            GraphResponse::default()
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Robot panel: driving by hand, its path, and what its motion is made of.
+//! The robot panel drives by hand, edits the path, and shows what the motion is made of.
 
 use cable_core::Robot;
 use cable_core::robot::RobotReport;
@@ -7,12 +7,14 @@ use cable_core::scene::preset::robot_preset;
 use cable_core::scene::robot::{ROLLING_RESISTANCE, TRACK_FRICTION};
 use egui::{Grid, Ui};
 
-use super::cable::labelled;
-use super::icon::{self, Icon};
-use super::unit::{self, Unit};
-use super::{fault, field};
 use crate::command::{Command, PlaybackCommand, SceneCommand};
+use crate::panels::scene_errors;
 use crate::state::AppState;
+use crate::units::format::{self, significant};
+use crate::units::unit::Unit;
+use crate::widgets::field;
+use crate::widgets::icon::{self, Icon};
+use crate::widgets::property::labelled;
 
 /// Width of a number, points: “12.34 m/s” fits.
 const WIDTH: f32 = 72.0;
@@ -21,12 +23,12 @@ const FIRST_LEG: (f64, f64) = (0.3, 2.0);
 
 /// Draws it, if the scene has one.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let Some(robot) = &state.scene.robot else {
+    let Some(robot) = &state.document.scene.robot else {
         ui.weak("No robot: choose one under Scene");
         return;
     };
     by_hand(ui, state, commands);
-    match state.snapshot.solution.as_ref().and_then(|s| s.robot) {
+    match state.live.snapshot.solution.as_ref().and_then(|s| s.robot) {
         Some(report) => readouts(ui, &report),
         None => {
             ui.weak("It cannot drive here: it needs terrain below it in a side view");
@@ -34,19 +36,25 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     figures(ui, robot, commands);
     path(ui, robot, commands);
-    fault::inline(ui, state, "robot.path", commands);
+    scene_errors::inline(ui, state, "robot.path", commands);
 }
 
 /// Speed of the robot by hand, m/s: what was set, else its greatest.
 #[must_use]
 pub fn hand_speed(state: &AppState) -> f64 {
-    let top = state.scene.robot.as_ref().and_then(|r| robot_preset(&r.preset)).map_or(0.0, |p| p.speed_m_per_s.value);
-    state.robot_speed.map_or(top, |v| v.min(top))
+    let top = state
+        .document
+        .scene
+        .robot
+        .as_ref()
+        .and_then(|r| robot_preset(&r.preset))
+        .map_or(0.0, |p| p.speed_m_per_s.value);
+    state.live.robot_speed.map_or(top, |v| v.min(top))
 }
 
 fn by_hand(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let speed = hand_speed(state);
-    let order = state.robot_order;
+    let order = state.live.robot_order;
     ui.horizontal_wrapped(|ui| {
         for (text, help, wanted, on) in [
             (
@@ -85,8 +93,8 @@ fn readouts(ui: &mut Ui, r: &RobotReport) {
         (
             "Speed",
             {
-                let Unit { symbol, si, .. } = Unit::M_PER_S.shown();
-                let shown = |v: f64| unit::significant(v / si, 3);
+                let Unit { symbol, si, .. } = Unit::M_PER_S.display();
+                let shown = |v: f64| significant(v / si, 3);
                 format!("{} {symbol}, told {} {symbol}", shown(r.speed_m_per_s), shown(r.commanded_m_per_s))
             },
             "Along the ground, and what it is told by hand or by its path",
@@ -94,18 +102,18 @@ fn readouts(ui: &mut Ui, r: &RobotReport) {
         ("Slope", format!("{:.1}°", r.pitch_deg).replace('-', "−"), "Positive where it climbs to the right"),
         (
             "Track force",
-            format!("{}, {} of what holds", unit::force(r.thrust_n), unit::percent(share)),
+            format!("{}, {} of what holds", format::force(r.thrust_n), format::percent(share)),
             "Force of the tracks along the ground, and its share of friction times normal force",
         ),
-        ("Normal force", unit::force(r.normal_n), "Of the ground on its tracks; the cable can lift or press"),
+        ("Normal force", format::force(r.normal_n), "Of the ground on its tracks; the cable can lift or press"),
         (
             "Pull of the cable",
-            unit::force(r.hitch_x_n.hypot(r.hitch_y_n)),
+            format::force(r.hitch_x_n.hypot(r.hitch_y_n)),
             "On its hitch; it slows the robot by the balance of forces",
         ),
         (
             "Press of the cable",
-            unit::force(r.push_x_n.hypot(r.push_y_n)),
+            format::force(r.push_x_n.hypot(r.push_y_n)),
             "On its outline, where the cable lies on it or is pushed along",
         ),
     ];

@@ -1,14 +1,15 @@
-//! Solver panel: the model, its mesh and accuracy, what it did.
+//! The solver panel edits model, mesh and accuracy, and shows what the solver did.
 
 use cable_core::model::input_filter;
 use cable_core::problem::problems;
 use cable_core::{Model, Settings, Solution};
 use egui::{Grid, Ui};
 
-use super::property::{Known, Quantity, row};
-use super::unit::{self, Unit};
 use crate::command::Command;
 use crate::state::{AppState, WorkerStatus};
+use crate::units::format::{self, significant};
+use crate::units::unit::Unit;
+use crate::widgets::property::{Provenance, Quantity, row};
 use crate::worker;
 
 const TOLERANCE: Quantity = Quantity {
@@ -74,17 +75,17 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         for (model, name, help) in MODELS {
-            if ui.selectable_label(state.model == model, name).on_hover_text(help).clicked() {
+            if ui.selectable_label(state.solver.model == model, name).on_hover_text(help).clicked() {
                 commands.push(Command::SetModel(model));
             }
         }
     });
-    let answer = state.snapshot.solution.as_deref();
+    let answer = state.live.snapshot.solution.as_deref();
     if let Some(answer) = answer {
-        let why = if state.model == Model::Auto { format!(": {}", answer.reason) } else { String::new() };
+        let why = if state.solver.model == Model::Auto { format!(": {}", answer.reason) } else { String::new() };
         ui.label(format!("Solved with {}{why}", model_name(answer.model)));
     }
-    if worker::engine::slow(state.model) {
+    if worker::engine::is_quasi_static(state.solver.model) {
         ui.weak("Time runs without inertia: supports and loads move, friction remembers, nothing swings");
     }
     mesh(ui, state, commands);
@@ -92,53 +93,55 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 fn mesh(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let Settings { tolerance, segments, .. } = state.settings;
+    let Settings { tolerance, segments, .. } = state.solver.settings;
     let usual = Settings::default();
     let origin = Some((usual.tolerance, "the default".to_owned()));
-    let known = Known { value: tolerance, origin, ..Known::default() };
+    let known = Provenance { value: tolerance, origin, ..Provenance::default() };
     if let Some(tolerance) = row(ui, &TOLERANCE, &known).value {
         // A solver told to be exact, or not to be, would run for ever or not at all.
         let tolerance = tolerance.clamp(1e-9, 0.5);
-        commands.push(Command::SetSettings(Settings { tolerance, ..state.settings }));
+        commands.push(Command::SetSettings(Settings { tolerance, ..state.solver.settings }));
     }
-    let known = Known {
-        value: state.settings.hand_speed_m_per_s,
+    let known = Provenance {
+        value: state.solver.settings.hand_speed_m_per_s,
         origin: Some((usual.hand_speed_m_per_s, "the default".to_owned())),
-        ..Known::default()
+        ..Provenance::default()
     };
     if let Some(speed) = row(ui, &HAND, &known).value {
         let hand_speed_m_per_s = speed.clamp(0.01, 20.0);
-        commands.push(Command::SetSettings(Settings { hand_speed_m_per_s, ..state.settings }));
+        commands.push(Command::SetSettings(Settings { hand_speed_m_per_s, ..state.solver.settings }));
     }
     default_hand_stiffness(ui, state, commands);
     let mut fixed = segments.is_some();
     let help = "Off: the cable's own number, else by the tolerance";
     if ui.checkbox(&mut fixed, "Same number of segments for every cable").on_hover_text(help).changed() {
-        let count = largest_mesh(state.snapshot.solution.as_deref()).unwrap_or(FIRST_SEGMENTS);
-        commands.push(Command::SetSettings(Settings { segments: fixed.then_some(count), ..state.settings }));
+        let count = largest_mesh(state.live.snapshot.solution.as_deref()).unwrap_or(FIRST_SEGMENTS);
+        commands.push(Command::SetSettings(Settings { segments: fixed.then_some(count), ..state.solver.settings }));
     }
     let Some(count) = segments else { return };
-    let known = Known { value: count as f64, ..Known::default() };
+    let known = Provenance { value: count as f64, ..Provenance::default() };
     if let Some(value) = row(ui, &SEGMENTS, &known).value {
         // The range of the scene file's `segments`.
         let segments = Some(value.round().clamp(1.0, 1e5) as usize);
-        commands.push(Command::SetSettings(Settings { segments, ..state.settings }));
+        commands.push(Command::SetSettings(Settings { segments, ..state.solver.settings }));
     }
 }
 
 fn default_hand_stiffness(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let stiffness = state.settings.hand_stiffness_n_per_m;
-    let set = |hand_stiffness_n_per_m| Command::SetSettings(Settings { hand_stiffness_n_per_m, ..state.settings });
+    let stiffness = state.solver.settings.hand_stiffness_n_per_m;
+    let set =
+        |hand_stiffness_n_per_m| Command::SetSettings(Settings { hand_stiffness_n_per_m, ..state.solver.settings });
     let mut stated = stiffness.is_some();
     let help = "Off: a hand that carries the whole of a cable is a hundredth of its length ahead of the support";
     if ui.checkbox(&mut stated, "Same stiffness of the hand for every cable").on_hover_text(help).changed() {
         // That of the present cable, which is as wide a choice as any.
-        let of_cable =
-            problems(&state.scene).ok().and_then(|all| all.first().map(|p| input_filter::default_hand_stiffness(p)));
+        let of_cable = problems(&state.document.scene)
+            .ok()
+            .and_then(|all| all.first().map(|p| input_filter::default_hand_stiffness(p)));
         commands.push(set(stated.then(|| of_cable.unwrap_or(FIRST_STIFFNESS))));
     }
     let Some(value) = stiffness else { return };
-    if let Some(value) = row(ui, &HAND_STIFFNESS, &Known { value, ..Known::default() }).value {
+    if let Some(value) = row(ui, &HAND_STIFFNESS, &Provenance { value, ..Provenance::default() }).value {
         commands.push(set(Some(
             value.clamp(*input_filter::HAND_STIFFNESSES.start(), *input_filter::HAND_STIFFNESSES.end()),
         )));
@@ -156,15 +159,15 @@ fn cost(ui: &mut Ui, state: &AppState, answer: Option<&Solution>) {
         return;
     };
     let cost = answer.cost;
-    let status = match &state.worker {
+    let status = match &state.solver.status {
         WorkerStatus::Idle => "ready",
         WorkerStatus::Busy => "working…",
         WorkerStatus::Dead(_) => "stopped, see warnings",
     };
-    let step = if cost.inner_step_s > 0.0 { unit::duration(cost.inner_step_s) } else { "none, at rest".to_owned() };
+    let step = if cost.inner_step_s > 0.0 { format::duration(cost.inner_step_s) } else { "none, at rest".to_owned() };
     let segments = largest_mesh(Some(answer)).map_or_else(|| "–".to_owned(), |n| n.to_string());
     let rows = [
-        ("Wall time", unit::duration(state.snapshot.solve_wall_s), "Time the last solve or step took"),
+        ("Wall time", format::duration(state.live.snapshot.solve_wall_s), "Time the last solve or step took"),
         (
             "Iterations",
             cost.iterations.to_string(),
@@ -173,8 +176,8 @@ fn cost(ui: &mut Ui, state: &AppState, answer: Option<&Solution>) {
         (
             "Residual",
             {
-                let Unit { symbol, si, .. } = Unit::N.shown();
-                format!("{} {symbol}", unit::significant(cost.residual_n / si, 2))
+                let Unit { symbol, si, .. } = Unit::N.display();
+                format!("{} {symbol}", significant(cost.residual_n / si, 2))
             },
             "Largest force left unbalanced at a node: the smaller, the closer to equilibrium",
         ),

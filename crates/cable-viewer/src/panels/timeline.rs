@@ -1,17 +1,17 @@
-//! The timeline: what was recorded, what happened in it, and which of it is shown.
+//! The timeline shows what was recorded, what happened in it, and which of it is on screen.
 
 use cable_core::solution::WarningKind;
 use egui::{Color32, Rect, Sense, Slider, Stroke, Ui, pos2, vec2};
 
-use super::field;
-use super::{translate, unit};
 use crate::command::{Command, PlaybackCommand};
 use crate::state::AppState;
+use crate::units::{format, translate};
+use crate::widgets::field;
 
 /// Room for the buttons beside it, points.
 const BESIDE: f32 = 250.0;
 /// How near to a mark the pointer tells what it is, points.
-const NEAR: f32 = 4.0;
+const MARK_REACH: f32 = 4.0;
 
 /// Why its controls are off.
 const NOTHING: &str = "Nothing is recorded yet: press play";
@@ -20,8 +20,8 @@ const PRESENT: &str = "The present is shown";
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let span = state.recording.span_s();
-    let now_s = state.live.solution.as_ref().map_or(0.0, |s| s.time_s);
+    let span = state.live.recording.span_s();
+    let now_s = state.live.latest.solution.as_ref().map_or(0.0, |s| s.time_s);
     ui.horizontal(|ui| {
         let mut push = |command| commands.push(Command::Playback(command));
         ui.add_enabled_ui(span.is_some(), |ui| {
@@ -30,16 +30,16 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             if back.clicked() {
                 push(PlaybackCommand::StepBack);
             }
-            let mut looped = state.recording.looped;
+            let mut looped = state.live.recording.looped;
             let help = "Play begins anew at the end of what was recorded; off, it goes on from there";
             if ui.checkbox(&mut looped, "Loop").on_hover_text(help).on_disabled_hover_text(NOTHING).changed() {
                 push(PlaybackCommand::SetLoop(looped));
                 // A loop of what is not shown begins at its start.
-                if let (true, None, Some([first, _])) = (looped, state.recording.shown_s, span) {
+                if let (true, None, Some([first, _])) = (looped, state.live.recording.shown_s, span) {
                     push(PlaybackCommand::Show(Some(first)));
                 }
             }
-            let shown = state.recording.shown_s.is_some();
+            let shown = state.live.recording.shown_s.is_some();
             let help = "Ends the look at the past";
             let present = ui.add_enabled(shown, egui::Button::new("Present")).on_hover_text(help);
             if present.on_disabled_hover_text(PRESENT).clicked() {
@@ -54,7 +54,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         });
         let [first, last] = span.unwrap_or([0.0, 1.0]);
         ui.spacing_mut().slider_width = (ui.available_width() - BESIDE).max(80.0);
-        let mut time_s = state.recording.shown_s.unwrap_or(now_s).clamp(first, last);
+        let mut time_s = state.live.recording.shown_s.unwrap_or(now_s).clamp(first, last);
         let slider = ui.add_enabled(span.is_some(), Slider::new(&mut time_s, first..=last).show_value(false));
         field::name(&slider, "Timeline");
         if slider.changed() {
@@ -63,17 +63,17 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         if span.is_some() {
             marks(ui, state, slider.rect, [first, last]);
         }
-        slider.on_hover_text(state.recording.about()).on_disabled_hover_text(NOTHING);
-        let text = match state.recording.shown_s {
+        slider.on_hover_text(state.live.recording.about()).on_disabled_hover_text(NOTHING);
+        let text = match state.live.recording.shown_s {
             Some(t) => format!("showing {t:.2} s of {last:.2} s"),
-            None => format!("recorded {}", unit::duration(last - first)),
+            None => format!("recorded {}", format::duration(last - first)),
         };
         if span.is_some() {
             ui.label(text);
         } else {
             ui.weak("Press play to record");
         }
-        let count = state.recording.events().len();
+        let count = state.live.recording.events().len();
         if span.is_some() && count > 0 {
             ui.weak(if count == 1 { "1 event".to_owned() } else { format!("{count} events") });
         }
@@ -88,16 +88,19 @@ fn marks(ui: &mut Ui, state: &AppState, rail: Rect, [first, last]: [f64; 2]) {
         let share = ((time_s - first) / (last - first)).clamp(0.0, 1.0) as f32;
         rail.left() + inset + share * (rail.width() - 2.0 * inset)
     };
-    for event in state.recording.events() {
+    for event in state.live.recording.events() {
         let colour = colour(ui, event.kind);
         let top = pos2(x(event.time_s), rail.top());
         let size = if event.kind == WarningKind::Broken { 4.0 } else { 3.0 };
         ui.painter().line_segment([top, top + vec2(0.0, rail.height())], Stroke::new(1.5, colour));
         ui.painter().circle_filled(top, size, colour);
     }
-    let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|p| rail.expand(NEAR).contains(*p)) else { return };
-    let near = state.recording.events().iter().filter(|e| (x(e.time_s) - pointer.x).abs() < NEAR);
-    let text: Vec<String> = near.take(4).map(|e| format!("{:.2} s: {}", e.time_s, translate::shown(&e.text))).collect();
+    let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|p| rail.expand(MARK_REACH).contains(*p)) else {
+        return;
+    };
+    let near = state.live.recording.events().iter().filter(|e| (x(e.time_s) - pointer.x).abs() < MARK_REACH);
+    let text: Vec<String> =
+        near.take(4).map(|e| format!("{:.2} s: {}", e.time_s, translate::display(&e.text))).collect();
     if !text.is_empty() {
         let spot = Rect::from_center_size(pointer, vec2(1.0, 1.0));
         ui.interact(spot, ui.scope_id().with("event"), Sense::hover()).on_hover_text(text.join("\n"));

@@ -1,21 +1,23 @@
-//! Warnings panel: what is wrong, where, why, what it does to the result, and the fix where one change is one.
+//! Warnings panel: what is wrong, where, why, what it does to the result, and the fix where one
+//! change is one.
 
 use cable_core::scene::SupportKind;
 use cable_core::solution::{Warning, WarningKind};
 use cable_core::{Settings, Solution};
 use egui::{Color32, Frame, RichText, ScrollArea, Ui};
 
-use super::fault::{self, Fix};
-use super::icon::{self, Icon};
-use super::{translate, unit};
 use crate::command::{Command, FileCommand, SceneCommand, ViewCommand};
+use crate::panels::scene_errors::{self, Fix};
 use crate::state::{AppState, Item, WorkerStatus};
+use crate::units::{format, translate, unit};
+use crate::widgets::icon::{self, Icon};
 
-/// Most warnings drawn; the rest is counted. A cable that is too tight everywhere can have one a node.
-const MOST: usize = 30;
+/// Most warnings drawn; the rest is counted. A cable that is too tight everywhere can have one a
+/// node.
+const MAX_ROWS: usize = 30;
 
-/// Most of the window's height that warnings take; more of them scroll. More: the readouts below are out of sight when something is wrong;
-/// less: a second warning is.
+/// Most of the window's height that warnings take; more of them scroll. More: the readouts below
+/// are out of sight when something is wrong; less: a second warning is.
 const SHARE: f32 = 0.42;
 
 /// How bad something is.
@@ -54,11 +56,11 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let high = SHARE * ui.ctx().content_rect().height();
     let area = ScrollArea::vertical().id_salt("warnings").max_height(high).min_scrolled_height(high);
     area.auto_shrink([false, true]).show(ui, |ui| {
-        for (k, entry) in entries.iter().take(MOST).enumerate() {
+        for (k, entry) in entries.iter().take(MAX_ROWS).enumerate() {
             ui.push_id(k, |ui| card(ui, k, entry, commands));
         }
-        if entries.len() > MOST {
-            ui.weak(format!("and {} more", entries.len() - MOST));
+        if entries.len() > MAX_ROWS {
+            ui.weak(format!("and {} more", entries.len() - MAX_ROWS));
         }
     });
 }
@@ -67,12 +69,12 @@ fn entries(state: &AppState) -> Vec<Entry> {
     let mut list = Vec::new();
     list.extend(dead_worker(state));
     list.extend(scene_fault(state));
-    if let (Some(error), None) = (&state.snapshot.error, &state.scene_fault) {
-        let error = capital(&translate::shown(error));
+    if let (Some(error), None) = (&state.live.snapshot.error, &state.document.fault) {
+        let error = capital(&translate::display(error));
         let text = format!("{error}. The picture and the figures are of the last scene that was solved.");
         list.push(Entry { title: "No answer".to_owned(), ..entry(Severity::Stop, text) });
     }
-    if let Some(answer) = state.snapshot.solution.as_deref() {
+    if let Some(answer) = state.live.snapshot.solution.as_deref() {
         list.extend(answer.warnings.iter().map(|w| of_warning(state, answer, w)));
     }
     // A stable sort: equals stay in the order of the answer.
@@ -91,17 +93,17 @@ fn capital(text: &str) -> String {
 }
 
 fn dead_worker(state: &AppState) -> Option<Entry> {
-    let WorkerStatus::Dead(words) = &state.worker else { return None };
+    let WorkerStatus::Dead(words) = &state.solver.status else { return None };
     let fix = Fix { label: "Start it again".to_owned(), command: Command::File(FileCommand::RestartWorker) };
     let text = format!("{}. The scene is safe; nothing is solved until it runs again.", capital(words));
     Some(Entry { title: "The solver stopped".to_owned(), fix: Some(fix), ..entry(Severity::Stop, text) })
 }
 
 fn scene_fault(state: &AppState) -> Option<Entry> {
-    let found = fault::whole(state)?;
+    let found = scene_errors::whole(state)?;
     let text = format!("{found}. The picture and the figures are of the last scene that could be solved.");
     let title = "The scene cannot be solved".to_owned();
-    Some(Entry { title, fix: fault::fix(state), ..entry(Severity::Stop, text) })
+    Some(Entry { title, fix: scene_errors::fix(state), ..entry(Severity::Stop, text) })
 }
 
 fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
@@ -126,7 +128,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
         WarningKind::EnergyGrows => (Severity::Stop, "Energy from nowhere"),
         WarningKind::NotUnique => (Severity::Note, "One of several resting places"),
     };
-    let index = state.scene.cables.iter().position(|c| c.name == warning.cable);
+    let index = state.document.scene.cables.iter().position(|c| c.name == warning.cable);
     let since = warning.since_s.map_or_else(String::new, |t| format!(" since {t:.2}\u{a0}s"));
     let along = unit::Unit { decimals: Some(2), ..unit::Unit::M }.text(warning.arc_length_m);
     let place = format!("{} at {}{since}", warning.cable, along.replace(' ', "\u{a0}"));
@@ -134,7 +136,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
     Entry {
         severity,
         title: format!("{title}: {place}{figures}"),
-        text: translate::shown(&warning.message).into_owned(),
+        text: translate::display(&warning.message).into_owned(),
         at_m: position(answer, warning),
         item: index.map(Item::Cable),
         fix: remedy(state, answer, warning, index),
@@ -146,13 +148,13 @@ fn figures(warning: &Warning) -> Option<String> {
     let Warning { value, limit, .. } = *warning;
     match warning.kind {
         WarningKind::ServiceTension | WarningKind::BreakingTension | WarningKind::MayBreak => {
-            Some(unit::force_of(value, limit))
+            Some(format::force_of(value, limit))
         }
-        WarningKind::Broken => Some(unit::force(limit)),
+        WarningKind::Broken => Some(format::force(limit)),
         WarningKind::BendRadius | WarningKind::Kink => {
-            Some(format!("{}, least {}", unit::length(value), unit::length(limit)))
+            Some(format!("{}, least {}", format::length(value), format::length(limit)))
         }
-        WarningKind::Slack => Some(unit::length(value)),
+        WarningKind::Slack => Some(format::length(value)),
         WarningKind::SidewallPressure => {
             let per_metre = |v| unit::Unit { decimals: Some(0), ..unit::Unit::N_PER_M }.text(v).replace(' ', "\u{a0}");
             Some(format!("{} of {}", per_metre(value), per_metre(limit)))
@@ -160,9 +162,9 @@ fn figures(warning: &Warning) -> Option<String> {
         WarningKind::Wrapped => Some(format!("{value:.2} turns")),
         WarningKind::Curl => Some(format!("{value:.0}° of {limit:.0}°")),
         WarningKind::Snag => Some(format!("tension ratio {value:.2}")),
-        WarningKind::EnergyGrows => Some(format!("{} more than given", unit::energy(value))),
+        WarningKind::EnergyGrows => Some(format!("{} more than given", format::energy(value))),
         WarningKind::Loop => None,
-        WarningKind::Accuracy => Some(format!("{} of {}", unit::percent(value), unit::percent(limit))),
+        WarningKind::Accuracy => Some(format!("{} of {}", format::percent(value), format::percent(limit))),
         WarningKind::InitialPenetration
         | WarningKind::NotUnique
         | WarningKind::SupportHeld
@@ -187,7 +189,7 @@ fn remedy(state: &AppState, answer: &Solution, warning: &Warning, index: Option<
         WarningKind::Accuracy => {
             let nodes = answer.cables.iter().map(|c| c.nodes.len()).max()?;
             let segments = 2 * nodes.saturating_sub(1).max(1);
-            let settings = Settings { segments: Some(segments), ..state.settings };
+            let settings = Settings { segments: Some(segments), ..state.solver.settings };
             Some(Fix { label: format!("Use {segments} segments"), command: Command::SetSettings(settings) })
         }
         WarningKind::BendRadius => wheel(state, answer, warning, index?),
@@ -197,7 +199,7 @@ fn remedy(state: &AppState, answer: &Solution, warning: &Warning, index: Option<
 
 /// A bend at a pulley whose wheel is too small: a wheel as large as the cable needs.
 fn wheel(state: &AppState, answer: &Solution, warning: &Warning, cable: usize) -> Option<Fix> {
-    let of = state.scene.cables.get(cable)?;
+    let of = state.document.scene.cables.get(cable)?;
     let solved = answer.cables.get(cable)?;
     // The bend of a wheel lies within a wheel's radius of where the cable leaves it.
     let near = |s: f64| (s - warning.arc_length_m).abs() <= of.min_bend_radius_m;
@@ -206,7 +208,7 @@ fn wheel(state: &AppState, answer: &Solution, warning: &Warning, cable: usize) -
     })?;
     let mut value = of.supports.get(support)?.clone();
     value.radius_m = Some(of.min_bend_radius_m);
-    let label = format!("Give {} a wheel of {}", value.name, unit::length(of.min_bend_radius_m));
+    let label = format!("Give {} a wheel of {}", value.name, format::length(of.min_bend_radius_m));
     let command = SceneCommand::SetSupport { cable, support, value: Box::new(value) };
     Some(Fix { label, command: Command::Scene(command) })
 }
@@ -239,8 +241,8 @@ fn card(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) 
 
 fn actions(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
     if let Some(at_m) = entry.at_m {
-        let show = ui.button("Show").on_hover_text(format!("Centres the picture on {}", unit::position(at_m)));
-        super::field::name(&show, &format!("Show warning {}", number + 1));
+        let show = ui.button("Show").on_hover_text(format!("Centres the picture on {}", format::position(at_m)));
+        crate::widgets::field::name(&show, &format!("Show warning {}", number + 1));
         if show.clicked() {
             commands.push(Command::View(ViewCommand::CentreOn(at_m)));
             if entry.item.is_some() {

@@ -1,15 +1,14 @@
-//! A quantity along the cable.
+//! A graph shows a quantity along the cable.
 
 use cable_core::Cable;
 use cable_core::analysis::friction_range::TensionRange;
 use cable_core::solution::CableSolution;
 use egui::Ui;
 
-use crate::panels::unit::Unit;
-
-use super::measure::Measure;
-use super::series::{Series, thin};
-use super::{Graph, Touched, View, limits, per_newton, show};
+use crate::plot::{Graph, GraphResponse, GraphView, show};
+use crate::record::measure::{Measure, per_newton, tension_limits};
+use crate::record::series::{Series, thin};
+use crate::units::unit::Unit;
 
 /// The group of graphs along the cable.
 pub const GROUP: &str = "along";
@@ -19,20 +18,20 @@ pub fn ui(
     ui: &mut Ui,
     cable: &Cable,
     (solved, ribbon): (&CableSolution, &[TensionRange]),
-    view: View,
+    view: GraphView,
     height: f32,
-) -> Touched {
+) -> GraphResponse {
     let (quantity, follow) = (view.measure.quantity(), view.follow);
     let columns = ui.available_width().max(1.0) as usize;
     let all = || solved.nodes.iter().map(|n| [n.arc_length_m, quantity.of(n)]);
-    let line = |points| vec![Series { name: quantity.name().to_owned(), points, held: None }];
+    let line = |points| vec![Series { name: quantity.name().to_owned(), points, reference: None }];
     let graph = Graph {
         title: "Along the cable",
         group: GROUP,
         measure: Measure::Cable(quantity),
         across: ("Arc length", Unit::M),
         range: [0.0, cable.length_m],
-        limits: limits(quantity, cable),
+        limits: tension_limits(quantity, cable),
         follow,
         height,
         ribbon: {

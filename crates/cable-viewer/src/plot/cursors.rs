@@ -1,9 +1,11 @@
-//! Up to two cursors in a graph: the first click sets one, the second another, the third takes both away.
+//! Up to two cursors in a graph: the first click sets one, the second another, the third takes both
+//! away.
 
 use egui::{Id, Ui};
 
-use super::series::{Series, value_at};
-use crate::panels::unit::{DIGITS, significant};
+use crate::record::series::{Series, value_at};
+use crate::units::format::significant;
+use crate::units::unit::DIGITS;
 
 /// Places of the cursors of a graph.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,7 +42,8 @@ impl Cursors {
         ui.data_mut(|d| d.insert_temp(id(title), places));
     }
 
-    /// What they read: values of the first line at each, and the difference; symbols with how many SI units they hold.
+    /// What they read: values of the first line at each, and the difference; symbols with how many
+    /// SI units they hold.
     #[must_use]
     pub fn text(&self, [(x_symbol, x_si), (y_symbol, si)]: [(&str, f64); 2], line: Option<&Series>) -> Option<String> {
         let line = line?;
@@ -70,7 +73,7 @@ mod tests {
     #[test]
     fn two_cursors_tell_their_difference() {
         let points = vec![[0.0, 100.0], [2.0, 300.0]];
-        let line = Series { name: "T".to_owned(), points, held: None };
+        let line = Series { name: "T".to_owned(), points, reference: None };
         let units = [("s", 1.0), ("N", 1.0)];
         let text = Cursors(vec![0.5, 1.5]).text(units, Some(&line)).unwrap();
         assert!(text.contains("A 0.5000 s: 150.0 N") && text.contains("B − A 1.000 s: 100.0 N"), "{text}");

@@ -1,5 +1,5 @@
-//! A graph that has the focus, by keys: arrows move the last cursor, or set one; with shift the part in view; up and down zoom about the
-//! cursor. Enter sets another cursor, as a click does.
+//! A graph that has the focus, by keys: arrows move the last cursor, or set one; with shift the
+//! part in view; up and down zoom about the cursor. Enter sets another cursor, as a click does.
 
 use egui::{EventFilter, Key, Modifiers};
 use egui_plot::PlotUi;
@@ -8,12 +8,13 @@ use egui_plot::PlotUi;
 const ZOOM: f64 = 1.26;
 /// What an arrow moves the part in view by, as a share of it.
 const PAN: f64 = 0.125;
-/// What an arrow moves a cursor by, as a share of what is in view: held down it crosses it in a few seconds.
+/// What an arrow moves a cursor by, as a share of what is in view: held down it crosses it in a few
+/// seconds.
 const STEP: f64 = 0.01;
 
 /// What keys asked of a graph.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Asked {
+pub struct KeyInput {
     /// The part in view was changed.
     pub zoomed: bool,
     /// Where the last cursor is to be, in the unit of the axis.
@@ -23,12 +24,12 @@ pub struct Asked {
 }
 
 /// Reads them; `last`: where the last cursor is, in the unit of the axis.
-pub fn read(plot: &mut PlotUi<'_>, last: Option<f64>) -> Asked {
+pub fn read(plot: &mut PlotUi<'_>, last: Option<f64>) -> KeyInput {
     let bounds = plot.plot_bounds();
     let [left, right] = [bounds.min()[0], bounds.max()[0]];
     let width = right - left;
     let at = last.filter(|x| (left..=right).contains(x)).unwrap_or(0.5 * (left + right));
-    let mut asked = Asked { next: at, ..Asked::default() };
+    let mut asked = KeyInput { next: at, ..KeyInput::default() };
     if !plot.response().has_focus() {
         return asked;
     }

@@ -1,55 +1,50 @@
-//! Graphs: tension, stress and strain along the cable; these, the robot and energies against time.
+//! The graphs show quantities along the cable, and these, the robot and energies against time.
+//!
+//! - `along`, `time`: what each graph shows
+//! - `cursors`, `keys`: reading values off it, and steering it without a pointer
 
 pub mod along;
 mod cursors;
-pub mod export;
 mod keys;
-pub mod measure;
-pub mod pyramid;
-pub mod series;
 pub mod time;
 
-use cable_core::Cable;
 use egui::{Align2, Color32, Id, RichText, Sense, Stroke, TextStyle, Ui, vec2};
 use egui_plot::{GridInput, GridMark, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
 
-use crate::colour::Quantity;
-use crate::panels::field;
-use crate::panels::unit::{DIGITS, Unit, significant};
-use cursors::Cursors;
-use export::Sheet;
-use measure::Measure;
-use series::{Series, value_at};
+use crate::io::graph_file::Sheet;
+use crate::plot::cursors::Cursors;
+use crate::record::measure::Measure;
+use crate::record::series::{Series, line_style, value_at};
+use crate::render::colour::{LINES, Quantity};
+use crate::units::format::{round_step, significant};
+use crate::units::unit::{DIGITS, Unit};
+use crate::widgets::field;
 
-/// Colours of the lines, distinct to colour-blind eyes (after M. Okabe and K. Ito, “Color Universal Design”, 2008).
-pub const LINES: [Color32; 4] = [
-    Color32::from_rgb(0, 114, 178),
-    Color32::from_rgb(0, 158, 115),
-    Color32::from_rgb(170, 110, 190),
-    Color32::from_rgb(150, 120, 60),
-];
 /// The service limit.
 const SERVICE: Color32 = Color32::from_rgb(230, 159, 0);
 /// The breaking limit.
 const BREAKING: Color32 = Color32::from_rgb(213, 60, 40);
 
 /// The time shown, where it is not the present.
-const SHOWN: Color32 = Color32::from_rgb(213, 94, 0);
+const TIME_MARK: Color32 = Color32::from_rgb(213, 94, 0);
 /// A cursor.
 const CURSOR: Color32 = Color32::GRAY;
 /// Zoom per point of wheel, as on the canvas.
 const WHEEL: f32 = 0.0025;
 
-/// A limit is kept in view once the data reach this share of it; before, it would press the data flat.
-const NEAR: f64 = 0.5;
+/// A limit is kept in view once the data reach this share of it; before, it would press the data
+/// flat.
+const LIMIT_IN_VIEW_FROM: f64 = 0.5;
 /// Free room above the data, as a share of their range.
 const HEADROOM: f64 = 0.12;
 
-/// Lower graphs (points) name their unit only beside the axis: the whole name would stand over the title.
+/// Lower graphs (points) name their unit only beside the axis: the whole name would stand over the
+/// title.
 const UPRIGHT: f32 = 110.0;
 /// Lowest graph that can still be read, points.
 const LEAST_HEIGHT: f32 = 70.0;
-/// Distance of numbers on the horizontal axis, points: close enough to read between, far enough not to touch.
+/// Distance of numbers on the horizontal axis, points: close enough to read between, far enough not
+/// to touch.
 const COLUMN: f32 = 66.0;
 /// Distance of numbers on the vertical axis, points.
 const ROW: f32 = 24.0;
@@ -57,16 +52,16 @@ const ROW: f32 = 24.0;
 /// Room for the export button beside the legend, points.
 const EXPORT: f32 = 62.0;
 
-/// A held line that goes up and down by this many times its whole height is drawn solid and thin. More: frames with long runs take
-/// longer; fewer: a few swings lose their dashes.
-const RESTLESS: f64 = 40.0;
+/// A held line that goes up and down by this many times its whole height is drawn solid and thin.
+/// More: frames with long runs take longer; fewer: a few swings lose their dashes.
+const OSCILLATION_RATIO: f64 = 40.0;
 
 /// Length of a line in the legend, points.
 const SWATCH: f32 = 16.0;
 
 /// What the user asked of the graphs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
+pub struct GraphView {
     /// What goes up.
     pub measure: Measure,
     /// What goes up in a second graph over time.
@@ -77,7 +72,7 @@ pub struct View {
     pub window_s: Option<f64>,
 }
 
-impl Default for View {
+impl Default for GraphView {
     fn default() -> Self {
         Self { measure: Measure::Cable(Quantity::Tension), second: None, follow: true, window_s: Some(10.0) }
     }
@@ -101,7 +96,8 @@ pub struct Graph<'a> {
     pub follow: bool,
     /// Height, points.
     pub height: f32,
-    /// Least and greatest value with less and more friction at places across, SI; empty where it is not known.
+    /// Least and greatest value with less and more friction at places across, SI; empty where it is
+    /// not known.
     pub ribbon: Vec<[f64; 3]>,
     /// A time to mark, where one is shown that is not the present.
     pub mark: Option<f64>,
@@ -109,28 +105,11 @@ pub struct Graph<'a> {
 
 /// What the user did to a graph.
 #[derive(Debug, Default)]
-pub struct Touched {
+pub struct GraphResponse {
     /// It was zoomed: it is not to follow the data any more.
     pub zoomed: bool,
     /// It is to be exported: what is in view, with the lines as they were drawn.
     pub export: Option<Box<Sheet>>,
-}
-
-/// Service and breaking limit of a quantity, SI.
-#[must_use]
-pub fn limits(quantity: Quantity, cable: &Cable) -> [f64; 2] {
-    let per_newton = per_newton(quantity, cable);
-    [cable.service_tension_n * per_newton, cable.breaking_tension_n * per_newton]
-}
-
-/// The quantity of a cable under one newton, SI.
-#[must_use]
-pub fn per_newton(quantity: Quantity, cable: &Cable) -> f64 {
-    match quantity {
-        Quantity::Tension => 1.0,
-        Quantity::Stress => 1.0 / cable.area_m2(),
-        Quantity::Strain => 1.0 / cable.axial_stiffness_n,
-    }
 }
 
 /// Lowest and highest value in view, SI.
@@ -141,17 +120,17 @@ fn vertical_range(lines: &[Series], ribbon: &[[f64; 3]], limits: [f64; 2]) -> [f
     };
     let low = values().fold(0.0, f64::min);
     let greatest = values().fold(0.0, f64::max);
-    let high = limits.into_iter().filter(|limit| greatest > NEAR * limit).fold(greatest, f64::max);
+    let high = limits.into_iter().filter(|limit| greatest > LIMIT_IN_VIEW_FROM * limit).fold(greatest, f64::max);
     let height = if high > low { high - low } else { 1.0 };
     [if low < 0.0 { low - HEADROOM * height } else { 0.0 }, low + (1.0 + HEADROOM) * height]
 }
 
 /// Draws lines (SI values) with their limits.
-pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
+pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     let [low, high] = vertical_range(lines, &graph.ribbon, graph.limits);
     let (symbol, si) = graph.measure.unit(high);
     let (across, unit) = graph.across;
-    let (Unit { symbol: across_symbol, si: x_si, .. }, column) = (unit.shown(), unit.symbol);
+    let (Unit { symbol: across_symbol, si: x_si, .. }, column) = (unit.display(), unit.symbol);
     let read = |x: f64| {
         let mut text = format!("{} {across_symbol}", significant(x, DIGITS));
         for line in lines {
@@ -182,8 +161,8 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
         .allow_double_click_reset(!follow)
         .allow_scroll(false)
         .allow_axis_zoom_drag(!follow)
-        .x_grid_spacer(|input| marks(input, columns))
-        .y_grid_spacer(|input| marks(input, rows))
+        .x_grid_spacer(|input| grid_marks(input, columns))
+        .y_grid_spacer(|input| grid_marks(input, rows))
         .x_axis_formatter(|mark, _| tick(mark))
         .y_axis_formatter(|mark, _| tick(mark))
         .label_formatter(|at| {
@@ -197,7 +176,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
         }
         draw_ribbon(plot, &graph.ribbon, [x_si, si]);
         for (k, line) in lines.iter().enumerate() {
-            let (colour, style, width) = drawn(line, k);
+            let (colour, style, width) = line_look(line, k);
             let points: Vec<[f64; 2]> = line.points.iter().map(|p| [p[0] / x_si, p[1] / si]).collect();
             plot.line(egui_plot::Line::new(line.name.clone(), points).color(colour).width(width).style(style));
         }
@@ -206,7 +185,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
         draw_marks(plot, graph.mark, &places, cursor_text.as_deref());
         let wheel = wheel(plot);
         let asked = keys::read(plot, places.last().copied());
-        keys::Asked { zoomed: wheel || asked.zoomed, ..asked }
+        keys::KeyInput { zoomed: wheel || asked.zoomed, ..asked }
     });
     let asked = response.inner;
     let bounds = response.transform.bounds();
@@ -237,7 +216,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> Touched {
         bounds: [bounds.min()[0], bounds.min()[1], bounds.max()[0], bounds.max()[1]],
         lines: lines.to_vec(),
     };
-    Touched { zoomed: asked.zoomed, export: export.then(|| Box::new(sheet())) }
+    GraphResponse { zoomed: asked.zoomed, export: export.then(|| Box::new(sheet())) }
 }
 
 /// Says the last values of the lines, and what the cursors read.
@@ -278,27 +257,19 @@ fn draw_ribbon(plot: &mut PlotUi<'_>, ribbon: &[[f64; 3]], [x_si, si]: [f64; 2])
     plot.add(egui_plot::FilledArea::new(RIBBON, &xs, &low, &high).fill_color(colour).allow_hover(false));
 }
 
-/// Colour and style of the `k`-th line of a graph.
-fn look(line: &Series, k: usize) -> (Color32, LineStyle) {
-    match line.held {
-        Some(held) => (LINES[held % LINES.len()], LineStyle::dashed_loose()),
-        None => (LINES[k % LINES.len()], LineStyle::Solid),
-    }
-}
-
-/// Colour, style and width with which it is drawn. Where it goes up and down in every column, dashes cannot be seen, and would be
-/// thousands.
-fn drawn(line: &Series, k: usize) -> (Color32, LineStyle, f32) {
-    let (colour, style) = look(line, k);
-    if line.held.is_some() && restless(&line.points) {
+/// Colour, style and width with which it is drawn. Where it goes up and down in every column,
+/// dashes cannot be seen, and would be thousands.
+fn line_look(line: &Series, k: usize) -> (Color32, LineStyle, f32) {
+    let (colour, style) = line_style(line, k);
+    if line.reference.is_some() && oscillates(&line.points) {
         return (colour.gamma_multiply(0.7), LineStyle::Solid, 1.0);
     }
     (colour, style, 2.0)
 }
 
-fn restless(points: &[[f64; 2]]) -> bool {
+fn oscillates(points: &[[f64; 2]]) -> bool {
     let (low, high) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[1]), h.max(p[1])));
-    points.windows(2).map(|p| (p[1][1] - p[0][1]).abs()).sum::<f64>() > RESTLESS * (high - low)
+    points.windows(2).map(|p| (p[1][1] - p[0][1]).abs()).sum::<f64>() > OSCILLATION_RATIO * (high - low)
 }
 
 fn hovered_id(group: &str) -> Id {
@@ -332,7 +303,7 @@ fn wheel(plot: &mut PlotUi<'_>) -> bool {
 
 fn draw_marks(plot: &mut PlotUi<'_>, mark: Option<f64>, cursors: &[f64], text: Option<&str>) {
     if let Some(x) = mark {
-        plot.vline(egui_plot::VLine::new("Shown", x).color(SHOWN).width(1.5).allow_hover(false));
+        plot.vline(egui_plot::VLine::new("Shown", x).color(TIME_MARK).width(1.5).allow_hover(false));
     }
     for (x, name) in cursors.iter().zip(["A", "B"]) {
         let line = egui_plot::VLine::new(name, *x).color(CURSOR).width(1.0).allow_hover(false);
@@ -346,18 +317,7 @@ fn draw_marks(plot: &mut PlotUi<'_>, mark: Option<f64>, cursors: &[f64], text: O
     }
 }
 
-/// The round step (1, 2 or 5 times a power of ten) that cuts a range into about so many parts.
-fn round_step(range: f64, parts: f64) -> f64 {
-    let raw = range / parts;
-    if !(raw.is_finite() && raw > 0.0) {
-        return 1.0;
-    }
-    let power = 10_f64.powf(raw.log10().floor());
-    let step = [1.0, 2.0, 5.0].map(|k| k * power).into_iter().find(|step| *step >= raw * (1.0 - 1e-9));
-    step.unwrap_or(10.0 * power)
-}
-
-fn marks(input: GridInput, parts: f64) -> Vec<GridMark> {
+fn grid_marks(input: GridInput, parts: f64) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     let step = round_step(high - low, parts);
     // Counted, not summed up: a sum drifts, and never ends where the step is lost in the number.
@@ -372,11 +332,11 @@ fn tick(mark: GridMark) -> String {
     format!("{:.decimals$}", mark.value + 0.0).replace('-', "−")
 }
 
-/// What the colours mean, on one line above the graph, where it hides nothing. Limits out of view are not drawn and so
-/// not named; what finds no room is told on hover.
+/// What the colours mean, on one line above the graph, where it hides nothing. Limits out of view
+/// are not drawn and so not named; what finds no room is told on hover.
 fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series], high: f64) -> (Id, bool) {
     let mut entries: Vec<(String, Color32, bool)> =
-        lines.iter().enumerate().map(|(k, l)| (l.name.clone(), look(l, k).0, l.held.is_some())).collect();
+        lines.iter().enumerate().map(|(k, l)| (l.name.clone(), line_style(l, k).0, l.reference.is_some())).collect();
     if graph.ribbon.len() >= 2 {
         entries.push((RIBBON.to_owned(), LINES[0].gamma_multiply(0.5), false));
     }
@@ -445,7 +405,7 @@ mod tests {
         Series {
             name: String::new(),
             points: values.iter().enumerate().map(|(i, &v)| [i as f64, v]).collect(),
-            held: None,
+            reference: None,
         }
     }
 
@@ -462,13 +422,13 @@ mod tests {
 
     #[test]
     fn only_held_lines_that_do_not_tremble_are_dashed() {
-        let held = |values: &[f64]| Series { held: Some(0), ..line(values) };
+        let held = |values: &[f64]| Series { reference: Some(0), ..line(values) };
         let wave: Vec<f64> = (0..1200).map(|k| (0.02 * f64::from(k)).sin()).collect();
         let noise: Vec<f64> = (0..1200).map(|k| f64::from(k % 2)).collect();
-        assert!(matches!(drawn(&held(&wave), 0), (_, LineStyle::Dashed { .. }, _)));
-        assert!(matches!(drawn(&held(&noise), 0), (_, LineStyle::Solid, _)));
-        assert!(matches!(drawn(&held(&[1.0; 9]), 0), (_, LineStyle::Dashed { .. }, _)));
-        assert!(matches!(drawn(&line(&noise), 0), (_, LineStyle::Solid, w) if w == 2.0));
+        assert!(matches!(line_look(&held(&wave), 0), (_, LineStyle::Dashed { .. }, _)));
+        assert!(matches!(line_look(&held(&noise), 0), (_, LineStyle::Solid, _)));
+        assert!(matches!(line_look(&held(&[1.0; 9]), 0), (_, LineStyle::Dashed { .. }, _)));
+        assert!(matches!(line_look(&line(&noise), 0), (_, LineStyle::Solid, w) if w == 2.0));
     }
 
     #[test]

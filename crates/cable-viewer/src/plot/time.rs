@@ -1,19 +1,20 @@
-//! The largest tension and the pulls at both ends, the robot and energies against time.
+//! A graph shows the largest tension and the pulls at both ends, the robot or energies against
+//! time.
 
 use cable_core::{Cable, Scene};
 use egui::Ui;
 
-use super::measure::Measure;
-use super::series::{Series, thin};
-use super::{Graph, Touched, View, in_view, per_newton, show};
-use crate::colour::Quantity;
-use crate::history::Sample;
-use crate::panels::unit::Unit;
-use crate::spread;
+use crate::plot::{Graph, GraphResponse, GraphView, in_view, show};
+use crate::record::measure::{Measure, per_newton};
+use crate::record::samples::Sample;
+use crate::record::series::{Series, thin};
+use crate::render::colour::Quantity;
 use crate::state::AppState;
+use crate::state::questions::friction_answer;
+use crate::units::unit::Unit;
 
-/// Between two columns of a line of more samples than can be told apart, points: lines are as wide. Less: twice the triangles for the same
-/// picture; more: peaks look blunt.
+/// Between two columns of a line of more samples than can be told apart, points: lines are as wide.
+/// Less: twice the triangles for the same picture; more: peaks look blunt.
 const COLUMN: f32 = 2.0;
 
 /// Names the graph.
@@ -21,27 +22,28 @@ const TITLE: &str = "Over time";
 /// Shortest time axis, s: the first frames would otherwise jump.
 const SHORTEST_S: f64 = 1.0;
 
-/// Draws the first one. Stress and strain follow from tension for a single cable only; with several, tension is shown.
-pub fn ui(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touched {
-    graph(ui, state, view, (TITLE, height))
+/// Draws the first one. Stress and strain follow from tension for a single cable only; with
+/// several, tension is shown.
+pub fn ui(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> GraphResponse {
+    graph(ui, state, view, TITLE, height)
 }
 
 /// Draws the second one, with time linked to the first.
-pub fn second(ui: &mut Ui, state: &AppState, view: View, height: f32) -> Touched {
-    let Some(measure) = view.second else { return Touched::default() };
+pub fn second(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> GraphResponse {
+    let Some(measure) = view.second else { return GraphResponse::default() };
     let title = format!("{} over time", measure.name());
-    graph(ui, state, View { measure, ..view }, (&title, height))
+    graph(ui, state, GraphView { measure, ..view }, &title, height)
 }
 
-fn graph(ui: &mut Ui, state: &AppState, view: View, (title, height): (&str, f32)) -> Touched {
-    let scene = state.snapshot.scene.as_deref().unwrap_or(&state.scene);
-    let Some(cable) = scene.cables.get(state.current_cable()) else { return Touched::default() };
+fn graph(ui: &mut Ui, state: &AppState, view: GraphView, title: &str, height: f32) -> GraphResponse {
+    let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
+    let Some(cable) = scene.cables.get(state.current_cable()) else { return GraphResponse::default() };
     let measure = match view.measure {
         Measure::Cable(_) if scene.cables.len() > 1 => Measure::Cable(Quantity::Tension),
         measure => measure,
     };
-    let now_s = state.history.samples.back().map_or(0.0, |s| s.time_s);
-    let first_s = state.history.samples.front().map_or(0.0, |s| s.time_s);
+    let now_s = state.live.history.samples.back().map_or(0.0, |s| s.time_s);
+    let first_s = state.live.history.samples.front().map_or(0.0, |s| s.time_s);
     let left_s = view.window_s.map_or(first_s, |w| (now_s - w).max(first_s));
     let range = [left_s, now_s.max(left_s + view.window_s.unwrap_or(SHORTEST_S).max(SHORTEST_S))];
     // A zoomed graph shows what it showed in the frame before, and a little on each side.
@@ -59,27 +61,30 @@ fn graph(ui: &mut Ui, state: &AppState, view: View, (title, height): (&str, f32)
         follow: view.follow,
         height,
         ribbon: ribbon(state, cable, measure),
-        mark: state.recording.shown_s,
+        mark: state.live.recording.shown_s,
     };
-    let mut touched = show(ui, &graph, &lines(state, scene, measure, (seen, Some(columns))));
+    let mut touched = show(ui, &graph, &lines(state, scene, measure, seen, Some(columns)));
     if let Some(sheet) = &mut touched.export {
         // Every sample, not only those that can be told apart on screen.
-        sheet.lines = lines(state, scene, measure, ([f64::NEG_INFINITY, f64::INFINITY], None));
+        sheet.lines = lines(state, scene, measure, [f64::NEG_INFINITY, f64::INFINITY], None);
     }
     touched
 }
 
 /// The largest tension with less and more friction, and what follows from it.
 fn ribbon(state: &AppState, cable: &Cable, measure: Measure) -> Vec<[f64; 3]> {
-    let (Measure::Cable(quantity), Some((found, _))) = (measure, spread::shown(state)) else { return Vec::new() };
+    let (Measure::Cable(quantity), Some((found, _))) = (measure, friction_answer(state)) else {
+        return Vec::new();
+    };
     let scale = per_newton(quantity, cable);
     found.over_time.iter().map(|b| [b.at, b.low_n * scale, b.high_n * scale]).collect()
 }
 
-/// The lines of a measure, SI, between two times: thinned to `columns` of the screen if there are any; then those of held runs.
-fn lines(state: &AppState, scene: &Scene, measure: Measure, (seen, columns): ([f64; 2], Option<usize>)) -> Vec<Series> {
-    let mut lines = own(state, scene, measure, (seen, columns));
-    for (k, held) in state.held.iter().enumerate() {
+/// The lines of a measure, SI, between two times: thinned to `columns` of the screen if there are
+/// any; then those of held runs.
+fn lines(state: &AppState, scene: &Scene, measure: Measure, seen: [f64; 2], columns: Option<usize>) -> Vec<Series> {
+    let mut lines = own(state, scene, measure, seen, columns);
+    for (k, held) in state.analysis.references.iter().enumerate() {
         let Some(line) = held.run.as_ref().and_then(|r| r.line(measure)) else { continue };
         let scale = match (measure, held.scene.cables.first()) {
             (Measure::Cable(quantity), Some(cable)) => per_newton(quantity, cable),
@@ -87,18 +92,19 @@ fn lines(state: &AppState, scene: &Scene, measure: Measure, (seen, columns): ([f
         };
         let mut points = line.view(seen, columns.unwrap_or(usize::MAX));
         if let Some(columns) = columns {
-            // Blocks are finer than columns: a line of as many points as can be told apart is drawn in a third of the time.
+            // Blocks are finer than columns: a line of as many points as can be told apart is drawn
+            // in a third of the time.
             points = thin(points.into_iter(), columns);
         }
         points.iter_mut().for_each(|p| p[1] *= scale);
-        lines.push(Series { name: format!("Held {}", k + 1), points, held: Some(k) });
+        lines.push(Series { name: format!("Held {}", k + 1), points, reference: Some(k) });
     }
     lines
 }
 
 /// Those of what was recorded.
-fn own(state: &AppState, scene: &Scene, measure: Measure, (seen, columns): ([f64; 2], Option<usize>)) -> Vec<Series> {
-    let samples = state.history.view(seen, columns);
+fn own(state: &AppState, scene: &Scene, measure: Measure, seen: [f64; 2], columns: Option<usize>) -> Vec<Series> {
+    let samples = state.live.history.view(seen, columns);
     let index = state.current_cable();
     let cable = scene.cables.get(index);
     let scale = match (measure, cable) {
@@ -108,7 +114,7 @@ fn own(state: &AppState, scene: &Scene, measure: Measure, (seen, columns): ([f64
     let line = |name: String, of: &dyn Fn(&Sample) -> f64| {
         let points = samples.iter().map(|s| [s.time_s, of(s) * scale]);
         let points = columns.map_or_else(|| points.clone().collect(), |c| thin(points.clone(), c));
-        Series { name, points, held: None }
+        Series { name, points, reference: None }
     };
     let (Measure::Cable(_), Some(cable)) = (measure, cable) else {
         return measure.lines().iter().map(|(name, of)| line((*name).to_owned(), of)).collect();

@@ -1,33 +1,39 @@
-//! Drafts: what is shown of a slow scene while it is being moved, until the hand rests and the answer is due.
+//! Drafts: what is shown of a slow scene while it is being moved, until the hand rests and the
+//! answer is due.
 //!
-//! A draft of `fem` is not sought at rest, it falls there: each edit puts few segments where the last draft was and lets
-//! a frame of time pass, so it costs the same however far the hand jumped. Relaxing it took 60 to 800 ms where the hand
-//! moved 8 cm an edit on the tank; a frame of motion takes 3 ms. The time shown stands still meanwhile.
+//! A draft of `fem` is not sought at rest, it falls there: each edit puts few segments where the
+//! last draft was and lets a frame of time pass, so it costs the same however far the hand jumped.
+//! Relaxing it took 60 to 800 ms where the hand moved 8 cm an edit on the tank; a frame of motion
+//! takes 3 ms. The time shown stands still meanwhile.
 
 use cable_core::contact::World;
 use cable_core::math::vec2;
 use cable_core::{Error, Model, Simulation, SolveError};
 
-use super::engine::FRAME_S;
-use super::request::Edit;
+use crate::worker::request::Edit;
+use crate::worker::timing::FRAME_S;
 
-/// Segments of a draft. More: as slow as the answer; fewer: corners show, and the greatest tension is 3 % off.
+/// Segments of a draft. More: as slow as the answer; fewer: corners show, and the greatest tension
+/// is 3 % off.
 const SEGMENTS: usize = 60;
 
-/// Part of its speed that a draft keeps from frame to frame. Larger: it swings on while the hand rests; smaller: it
-/// hangs in the air behind the hand. 0.85 leaves 1 % of it
-/// after half a second.
-const KEEP: f64 = 0.85;
+/// Part of its speed that a draft keeps from frame to frame. Larger: it swings on while the hand
+/// rests; smaller: it hangs in the air behind the hand. 0.85 leaves 1 % of it after half a second.
+const SPEED_RETENTION: f64 = 0.85;
 
-/// A speed that moves nothing, m/s, and tells `fem` that the state is one of motion: it would relax it first.
+/// A speed that moves nothing, m/s, and tells `fem` that the state is one of motion: it would relax
+/// it first.
 const WAKE_M_PER_S: f64 = 1e-100;
 
-/// Breaking tension of a draft, N: it jerks where the hand jumps, and would break where the answer does not.
+/// Breaking tension of a draft, N: it jerks where the hand jumps, and would break where the answer
+/// does not.
 const UNBREAKABLE_N: f64 = 1e15;
 
-/// A draft of `edit` that goes on where `old` is; None where this kind of draft does not apply or fails.
-pub fn falling(edit: &Edit, old: &Simulation) -> Option<Simulation> {
-    // An answer without a mesh is drafted with one: laying the cable anew takes as long however it is asked.
+/// A draft of `edit` that goes on where `old` is; None where this kind of draft does not apply or
+/// fails.
+pub fn settling_draft(edit: &Edit, old: &Simulation) -> Option<Simulation> {
+    // An answer without a mesh is drafted with one: laying the cable anew takes as long however it
+    // is asked.
     if !old.model().capabilities().long_rests || !same_cables(edit, old) || buried(edit, old) {
         return None;
     }
@@ -39,7 +45,7 @@ pub fn falling(edit: &Edit, old: &Simulation) -> Option<Simulation> {
     }
     let mut draft = Simulation::with_settings(scene, Model::MOST_CAPABLE, settings).ok()?;
     carry(&mut draft, old).ok()?;
-    pass(&mut draft).ok()?;
+    advance_frame(&mut draft).ok()?;
     Some(draft)
 }
 
@@ -47,14 +53,14 @@ pub fn falling(edit: &Edit, old: &Simulation) -> Option<Simulation> {
 ///
 /// # Errors
 /// As a step.
-pub fn pass(draft: &mut Simulation) -> Result<(), SolveError> {
+pub fn advance_frame(draft: &mut Simulation) -> Result<(), SolveError> {
     let time_s = draft.time_s();
     draft.step(FRAME_S)?;
     let mut states = draft.states();
     for state in &mut states {
         state.time_s = time_s;
         for v in &mut state.velocity_m_per_s {
-            *v *= KEEP;
+            *v *= SPEED_RETENTION;
         }
     }
     draft.set_states(&states)
@@ -62,7 +68,7 @@ pub fn pass(draft: &mut Simulation) -> Result<(), SolveError> {
 
 /// A draft by rest: the scene of an edit with few segments and the model that answered it.
 #[must_use]
-pub fn coarse(edit: &Edit, old: &Simulation) -> Edit {
+pub fn coarse_edit(edit: &Edit, old: &Simulation) -> Edit {
     let mut coarse = edit.clone();
     coarse.settings.segments = Some(SEGMENTS);
     // An explicit model: what `auto` chose for the full mesh.
@@ -70,15 +76,25 @@ pub fn coarse(edit: &Edit, old: &Simulation) -> Edit {
     coarse
 }
 
-/// A simulation in motion with few segments (or with those asked for) that goes on where `old` is; None where it cannot, and for
-/// other models than `fem`, whose frames are short.
-pub fn moving(edit: &Edit, old: &Simulation, coarse: bool) -> Option<Simulation> {
+/// The mesh of a simulation in motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mesh {
+    /// Few segments, to follow the hand.
+    Coarse,
+    /// The segments that were asked for.
+    Full,
+}
+
+/// A simulation in motion with few segments (or with those asked for) that goes on where `old` is;
+/// None where it cannot, and for other models than `fem`, whose frames are short.
+pub fn with_mesh(edit: &Edit, old: &Simulation, mesh: Mesh) -> Option<Simulation> {
     if !old.model().capabilities().long_steps || !same_cables(edit, old) {
         return None;
     }
     let answer = old.solution();
     let mut scene = edit.scene.clone();
-    // Supports are where the cable is held now, not where the hand already is: they follow from there.
+    // Supports are where the cable is held now, not where the hand already is: they follow from
+    // there.
     let mut targets = Vec::new();
     for (k, (cable, now)) in scene.cables.iter_mut().zip(&answer.cables).enumerate() {
         for (i, (s, now)) in cable.supports.iter_mut().zip(&now.supports).enumerate() {
@@ -89,7 +105,7 @@ pub fn moving(edit: &Edit, old: &Simulation, coarse: bool) -> Option<Simulation>
         }
     }
     let mut settings = edit.settings;
-    if coarse {
+    if mesh == Mesh::Coarse {
         settings.segments = Some(SEGMENTS);
     }
     let mut next = Simulation::with_settings(scene, Model::MOST_CAPABLE, settings).ok()?;
@@ -104,7 +120,7 @@ pub fn moving(edit: &Edit, old: &Simulation, coarse: bool) -> Option<Simulation>
 ///
 /// # Errors
 /// As [`Simulation::set_states`].
-pub fn still(draft: &mut Simulation) -> Result<(), Error> {
+pub fn at_rest(draft: &mut Simulation) -> Result<(), Error> {
     let mut states = draft.states();
     for v in states.iter_mut().flat_map(|s| &mut s.velocity_m_per_s) {
         *v *= 0.0;
@@ -120,11 +136,12 @@ fn carry(draft: &mut Simulation, old: &Simulation) -> Result<(), SolveError> {
     draft.set_states(&states)
 }
 
-/// How far round a point obstacles are asked for, m: what lies deeper than this inside something is in a scene out of all size.
-const FAR_M: f64 = 1e3;
+/// How far round a point obstacles are asked for, m: what lies deeper than this inside something is
+/// in a scene out of all size.
+const SEARCH_RADIUS_M: f64 = 1e3;
 
-/// Whether a cable that was carried over would lie inside an obstacle that was not there, or not there, before: contact begins at a
-/// surface, so it would stay inside. It is laid anew instead.
+/// Whether a cable that was carried over would lie inside an obstacle that was not there, or not
+/// there, before: contact begins at a surface, so it would stay inside. It is laid anew instead.
 #[must_use]
 pub fn buried(edit: &Edit, old: &Simulation) -> bool {
     let obstacles = &edit.scene.obstacles;
@@ -137,7 +154,7 @@ pub fn buried(edit: &Edit, old: &Simulation) -> bool {
         // Ends are where their supports are.
         let inner = state.position_m.len().saturating_sub(2);
         let mut points = state.position_m.iter().skip(1).take(inner);
-        points.any(|&p| world.signed_gap(p, FAR_M).is_some_and(|gap| gap.gap_m < -radius))
+        points.any(|&p| world.signed_gap(p, SEARCH_RADIUS_M).is_some_and(|gap| gap.gap_m < -radius))
     })
 }
 

@@ -1,4 +1,4 @@
-//! What the worker does, without threads: it owns the simulation, answers requests and steps time.
+//! The engine owns the simulation, answers requests and steps time; it knows no threads.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -9,27 +9,13 @@ use cable_core::model::auto::Question;
 use cable_core::timeline::RunMonitor;
 use cable_core::{Error, Model, Scene, Settings, Simulation, Solution};
 
-use super::draft;
-use super::request::{Drag, Edit, Request, Resume};
 use crate::state::{Playback, Snapshot};
-
-/// One frame of simulated time at normal speed, s.
-pub const FRAME_S: f64 = 1.0 / 60.0;
+use crate::worker::draft::{self, Mesh};
+use crate::worker::request::{Drag, Edit, Request, Resume};
+use crate::worker::timing::{DRAFT_AFTER_S, FRAME_S, MAX_ANSWERS, QUIET_S};
 
 /// What `auto` is asked once time runs.
 const MOTION: Question = Question::History(Inertia::Dynamic);
-
-/// A solve that took longer (s) has a draft go before the next one. Longer: the picture lags behind the hand; shorter:
-/// drafts where the answer itself would be in the next frame. Tuned on the tank at 200 segments.
-const DRAFT_AFTER_S: f64 = 0.012;
-/// Time without a further edit (s) after which a draft is replaced by the answer. Longer: figures of the draft stay on
-/// screen; shorter: an answer is begun between two steps of a drag where frames are slow (a tenth of a second without a
-/// GPU), and the next draft waits for it.
-pub const QUIET_S: f64 = 0.2;
-
-/// Most answers waiting for a window that does not look: ten seconds of them. Fewer: a window that stalls loses some; more:
-/// one that is hidden for long fills the memory.
-pub const MOST_ANSWERS: usize = 600;
 
 /// Owns the simulation.
 #[derive(Debug)]
@@ -37,9 +23,8 @@ pub struct Engine {
     simulation: Option<Simulation>,
     /// The last edit, for rebuilding.
     edit: Option<Edit>,
-    /// The simulation, or `before_motion` if there is one, was settled from the present scene at t = 0: its `reset` is
-    /// the start.
-    start_kept: bool,
+    /// What `simulation` holds, beside the last edit.
+    phase: Phase,
     /// The simulation that `auto` chose for rest, kept while one that can move has taken its place.
     before_motion: Option<Simulation>,
     playback: Playback,
@@ -51,12 +36,8 @@ pub struct Engine {
     robot_order: Option<f64>,
     /// Drafts may be shown: there is a thread to replace them by the answer.
     drafts: bool,
-    /// `simulation` is a draft of the last edit.
-    draft: bool,
-    /// That draft has not come to rest: it goes on falling frame by frame.
-    falling: bool,
-    /// What is known of the run so far; None where it does not go on from a start that has settled: a change while time runs begins
-    /// another.
+    /// What is known of the run so far; None where it does not go on from a start that has settled:
+    /// a change while time runs begins another.
     monitor: Option<RunMonitor>,
     /// Wall time of the last answer to an edit, s.
     solve_s: f64,
@@ -64,12 +45,45 @@ pub struct Engine {
     dragged: u64,
     /// Wall time of the last frame on the full mesh, s.
     tick_s: f64,
-    /// Since when the present mesh is the coarse one of a drag while time runs: the last time the hand moved.
-    coarse_since: Option<Instant>,
-    /// The support that a hand holds by a spring: cable, support, and where the hand is, m.
-    pulled: Option<(usize, usize, Point)>,
-    /// Why the last edit has no answer: what `simulation` holds is of the scene before it, and time stands.
-    refused: Option<String>,
+    /// The support that a hand holds by a spring.
+    hand: Option<Hand>,
+}
+
+/// What the simulation of an [`Engine`] holds, beside the last edit.
+#[derive(Clone, Debug)]
+enum Phase {
+    /// The answer to the last edit, if there is any.
+    Answer {
+        /// The simulation, or `before_motion` if there is one, was settled from the present scene
+        /// at t = 0: its `reset` is the start.
+        start_kept: bool,
+    },
+    /// A draft of the last edit, with few segments; time stands still.
+    Draft {
+        /// It has not come to rest: it goes on falling frame by frame.
+        settling: bool,
+    },
+    /// A coarse mesh that follows the hand while time runs.
+    CoarseMotion {
+        /// When the hand moved last.
+        moved_at: Instant,
+    },
+    /// The answer to the scene before: the last edit has none, and time stands.
+    Refused {
+        /// Why, in a sentence.
+        reason: String,
+    },
+}
+
+/// A hand that holds a support by a spring.
+#[derive(Clone, Copy, Debug)]
+struct Hand {
+    /// Index of the cable.
+    cable: usize,
+    /// Index of the support.
+    support: usize,
+    /// Where the hand is, m.
+    at_m: Point,
 }
 
 /// What goes to the window.
@@ -79,7 +93,7 @@ pub struct Report {
     pub snapshot: Snapshot,
     /// Forget the history shown so far.
     pub history_restarts: bool,
-    /// New answers; at most [`MOST_ANSWERS`].
+    /// New answers; at most [`MAX_ANSWERS`].
     pub answers: Vec<Solution>,
     /// The worker paused itself because a step failed.
     pub paused_itself: bool,
@@ -90,7 +104,7 @@ impl Default for Engine {
         Self {
             simulation: None,
             edit: None,
-            start_kept: false,
+            phase: Phase::Answer { start_kept: false },
             before_motion: None,
             playback: Playback { paused: true, speed: 1.0 },
             snapshot: Snapshot::default(),
@@ -98,15 +112,11 @@ impl Default for Engine {
             robot_order: None,
             history_restarts: false,
             drafts: false,
-            draft: false,
-            falling: false,
             monitor: None,
             solve_s: 0.0,
             dragged: 0,
             tick_s: 0.0,
-            coarse_since: None,
-            pulled: None,
-            refused: None,
+            hand: None,
         }
     }
 }
@@ -121,13 +131,23 @@ impl Engine {
     /// What is shown is a draft.
     #[must_use]
     pub fn draft(&self) -> bool {
-        self.draft
+        matches!(self.phase, Phase::Draft { .. })
+    }
+
+    /// The last edit has no answer.
+    fn refused(&self) -> bool {
+        matches!(self.phase, Phase::Refused { .. })
+    }
+
+    /// A coarse mesh follows the hand.
+    fn coarse(&self) -> bool {
+        matches!(self.phase, Phase::CoarseMotion { .. })
     }
 
     /// Time runs.
     #[must_use]
     pub fn playing(&self) -> bool {
-        !self.playback.paused && self.simulation.is_some() && self.refused.is_none()
+        !self.playback.paused && self.simulation.is_some() && !self.refused()
     }
 
     /// Does what is asked; returns what to show.
@@ -145,7 +165,7 @@ impl Engine {
         if let Some(edit) = request.edit {
             let stays = self.playback.paused && !request.reset && request.steps == 0;
             result = if stays && self.show_draft(&edit) { Ok(()) } else { self.take_edit(edit) };
-        } else if self.draft && (request.reset || request.steps > 0 || !self.playback.paused) {
+        } else if self.draft() && (request.reset || request.steps > 0 || !self.playback.paused) {
             // Time goes on from the answer, never from a draft of it.
             result = self.solve_draft();
             solved = true;
@@ -160,13 +180,13 @@ impl Engine {
         if request.reset {
             result = result.and_then(|()| self.reset());
         }
-        if self.refused.is_none() {
+        if !self.refused() {
             for _ in 0..request.steps {
                 result = result.and_then(|()| self.step(FRAME_S));
             }
         }
         // Time must not run in a scene that is no longer the one on screen.
-        let held_back = self.refused.is_some() && !self.playback.paused;
+        let held_back = self.refused() && !self.playback.paused;
         self.playback.paused |= held_back;
         if dragging && self.playing() {
             // The next frame shows it, not this report.
@@ -183,16 +203,16 @@ impl Engine {
 
     /// What is shown is a draft that still moves.
     #[must_use]
-    pub fn falling(&self) -> bool {
-        self.draft && self.falling
+    pub fn settling(&self) -> bool {
+        matches!(self.phase, Phase::Draft { settling: true })
     }
 
     /// Lets a frame of a draft pass.
-    pub fn fall(&mut self) -> Report {
+    pub fn settle_frame(&mut self) -> Report {
         let began = Instant::now();
         if let Some(simulation) = &mut self.simulation {
             // One that cannot go on stays as it is until the answer comes.
-            self.falling = draft::pass(simulation).is_ok();
+            self.phase = Phase::Draft { settling: draft::advance_frame(simulation).is_ok() };
         }
         self.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
         self.show(Ok(()));
@@ -215,7 +235,9 @@ impl Engine {
 
     /// Lets a share of a frame pass.
     pub fn tick_part(&mut self, share: f64) -> Report {
-        if self.coarse_since.is_some_and(|t| t.elapsed().as_secs_f64() > QUIET_S) {
+        if let Phase::CoarseMotion { moved_at } = self.phase
+            && moved_at.elapsed().as_secs_f64() > QUIET_S
+        {
             self.leave_coarse();
         }
         let began = Instant::now();
@@ -235,7 +257,7 @@ impl Engine {
         self.snapshot.solve_wall_s = wall;
         self.snapshot.real_speed = (!failed).then(|| speed * (FRAME_S * share / wall.max(FRAME_S * share)));
         self.snapshot.edit = self.dragged.max(self.snapshot.edit);
-        if self.coarse_since.is_none() {
+        if !self.coarse() {
             self.tick_s = wall;
         }
         self.show(result);
@@ -247,8 +269,9 @@ impl Engine {
         self.simulation = None;
         self.monitor = None;
         self.before_motion = None;
-        self.start_kept = false;
-        self.draft = false;
+        if !self.refused() {
+            self.phase = Phase::Answer { start_kept: false };
+        }
         self.playback.paused = true;
         self.snapshot.error = Some(format!(
             "the solver stopped by a fault of its own ({message}): the picture is the last good one; \
@@ -265,32 +288,26 @@ impl Engine {
         let (true, Some(old)) = (self.drafts && same && self.solve_s > DRAFT_AFTER_S, &self.simulation) else {
             return false;
         };
-        let falls = draft::falling(edit, old);
-        self.falling = falls.is_some();
+        let falls = draft::settling_draft(edit, old);
+        let settling = falls.is_some();
         // Models without a mesh have no fewer segments to be asked with.
-        let coarse = || Some(self.rebuild(&draft::coarse(edit, old), Some(old)).ok()?.0);
-        let draft = if slow(old.model()) { falls } else { falls.or_else(coarse) };
+        let coarse = || Some(self.rebuild(&draft::coarse_edit(edit, old), Some(old)).ok()?.0);
+        let draft = if is_quasi_static(old.model()) { falls } else { falls.or_else(coarse) };
         let Some(draft) = draft else { return false };
         self.simulation = Some(draft);
         self.monitor = None;
         self.before_motion = None;
-        self.start_kept = false;
-        self.draft = true;
-        self.refused = None;
+        self.phase = Phase::Draft { settling };
         self.edit = Some(edit.clone());
         true
     }
 
     fn solve_draft(&mut self) -> Result<(), Error> {
-        match (self.draft, self.edit.clone()) {
-            (true, Some(edit)) => {
-                if let (true, Some(simulation)) = (self.falling, &mut self.simulation) {
-                    draft::still(simulation)?;
-                }
-                self.take_edit(edit)
-            }
-            _ => Ok(()),
+        let (Phase::Draft { settling }, Some(edit)) = (&self.phase, self.edit.clone()) else { return Ok(()) };
+        if let (true, Some(simulation)) = (*settling, &mut self.simulation) {
+            draft::at_rest(simulation)?;
         }
+        self.take_edit(edit)
     }
 
     fn take_edit(&mut self, edit: Edit) -> Result<(), Error> {
@@ -302,36 +319,35 @@ impl Engine {
             self.history_restarts = true;
             self.answers.clear();
         }
-        self.draft = false;
-        (self.coarse_since, self.pulled) = (None, None);
+        self.hand = None;
         self.monitor = None;
-        // Models are compared by what they answer for the scene as laid, not for where another model left the cable.
+        // Models are compared by what they answer for the scene as laid, not for where another
+        // model left the cable.
         let same_model = self.edit.as_ref().is_some_and(|e| e.model == edit.model && e.settings == edit.settings);
         let from = old.as_ref().filter(|o| same_model || o.time_s() > 0.0);
         let rebuilt = self.rebuild(&edit, from);
         self.edit = Some(edit);
         self.solve_s = began.elapsed().as_secs_f64();
         match rebuilt {
-            Ok((simulation, kept)) => {
+            Ok((simulation, start_kept)) => {
                 self.simulation = Some(simulation);
                 self.before_motion = None;
-                self.start_kept = kept;
-                self.refused = None;
+                self.phase = Phase::Answer { start_kept };
                 self.sample();
                 Ok(())
             }
             Err(e) => {
                 // The old one stays: undoing the edit goes on from it.
                 self.simulation = old;
-                self.start_kept = false;
                 self.playback.paused = true;
-                self.refused = Some(e.to_string());
+                self.phase = Phase::Refused { reason: e.to_string() };
                 Err(e)
             }
         }
     }
 
-    /// The simulation of an edited scene, carrying over where the cables are, and whether it is at its start.
+    /// The simulation of an edited scene, carrying over where the cables are, and whether it is at
+    /// its start.
     fn rebuild(&self, edit: &Edit, old: Option<&Simulation>) -> Result<(Simulation, bool), Error> {
         let time_s = old.map_or(0.0, Simulation::time_s);
         let moves = old.is_some() && (time_s > 0.0 || !self.playback.paused);
@@ -356,8 +372,8 @@ impl Engine {
     }
 
     fn drag(&mut self, drag: Drag) -> Result<(), Error> {
-        if self.coarse_since.is_some() {
-            self.coarse_since = Some(Instant::now());
+        if self.coarse() {
+            self.phase = Phase::CoarseMotion { moved_at: Instant::now() };
         } else if self.drafts && self.playing() && self.tick_s > DRAFT_AFTER_S {
             self.enter_coarse();
         }
@@ -366,7 +382,7 @@ impl Engine {
             true => simulation.pull_support(cable, support, vec2(to_m)),
             false => simulation.drag_support(cable, support, vec2(to_m)),
         };
-        self.pulled = drag.by_spring.then_some((cable, support, to_m));
+        self.hand = drag.by_spring.then_some(Hand { cable, support, at_m: to_m });
         if let Some(simulation) = &mut self.simulation {
             draw(simulation);
         }
@@ -376,7 +392,9 @@ impl Engine {
         if let Some(edit) = &mut self.edit {
             edit.scene = drag.scene;
         }
-        self.start_kept = false;
+        if let Phase::Answer { start_kept } = &mut self.phase {
+            *start_kept = false;
+        }
         Ok(())
     }
 
@@ -389,32 +407,31 @@ impl Engine {
         self.monitor = None;
         self.before_motion = None;
         self.edit = Some(edit);
-        self.start_kept = false;
-        self.draft = false;
-        (self.coarse_since, self.pulled) = (None, None);
-        self.refused = None;
+        self.phase = Phase::Answer { start_kept: false };
+        self.hand = None;
         self.sample();
         Ok(())
     }
 
-    /// A coarse mesh follows the hand while time runs, where the full one is late: it goes on where that is.
+    /// A coarse mesh follows the hand while time runs, where the full one is late: it goes on where
+    /// that is.
     fn enter_coarse(&mut self) {
         let (Some(edit), Some(old)) = (&self.edit, &self.simulation) else { return };
-        if let Some(coarse) = draft::moving(edit, old, true) {
+        if let Some(coarse) = draft::with_mesh(edit, old, Mesh::Coarse) {
             self.simulation = Some(coarse);
             self.monitor = None;
-            self.coarse_since = Some(Instant::now());
+            self.phase = Phase::CoarseMotion { moved_at: Instant::now() };
         }
     }
 
     /// The hand rests: the full mesh goes on where the coarse one is.
     fn leave_coarse(&mut self) {
-        self.coarse_since = None;
+        self.phase = Phase::Answer { start_kept: false };
         if let (Some(edit), Some(old)) = (&self.edit, &self.simulation)
-            && let Some(mut full) = draft::moving(edit, old, false)
+            && let Some(mut full) = draft::with_mesh(edit, old, Mesh::Full)
         {
-            if let Some((cable, support, to_m)) = self.pulled {
-                full.pull_support(cable, support, vec2(to_m));
+            if let Some(hand) = self.hand {
+                full.pull_support(hand.cable, hand.support, vec2(hand.at_m));
             }
             self.simulation = Some(full);
             self.monitor = None;
@@ -423,14 +440,13 @@ impl Engine {
 
     fn reset(&mut self) -> Result<(), Error> {
         self.history_restarts = true;
-        if self.coarse_since.take().is_some() {
-            self.start_kept = false;
+        if self.coarse() {
+            self.phase = Phase::Answer { start_kept: false };
         }
         self.answers.clear();
-        (self.monitor, self.pulled) = (None, None);
+        (self.monitor, self.hand) = (None, None);
         // At the start already: lay the cable anew, which forgets the friction of edits since.
-        if self.start_kept
-            && self.refused.is_none()
+        if matches!(self.phase, Phase::Answer { start_kept: true })
             && let Some(simulation) = &mut self.simulation
             && simulation.time_s() > 0.0
         {
@@ -441,8 +457,7 @@ impl Engine {
         } else if let Some(edit) = self.edit.clone() {
             self.simulation = Some(self.rebuild(&edit, None)?.0);
             self.before_motion = None;
-            self.start_kept = true;
-            self.refused = None;
+            self.phase = Phase::Answer { start_kept: true };
         }
         self.sample();
         Ok(())
@@ -454,9 +469,10 @@ impl Engine {
         };
         let asked = self.edit.as_ref().map_or(Model::Auto, |e| e.model);
         let settings = self.edit.as_ref().map_or_else(Settings::default, |e| e.settings);
-        let inertia = if slow(asked) { Inertia::QuasiStatic } else { Inertia::Dynamic };
-        let mut starts = self.start_kept && simulation.time_s() <= 0.0;
-        if inertia == Inertia::Dynamic && slow(simulation.model()) {
+        let inertia = if is_quasi_static(asked) { Inertia::QuasiStatic } else { Inertia::Dynamic };
+        let start_kept = matches!(self.phase, Phase::Answer { start_kept: true });
+        let mut starts = start_kept && simulation.time_s() <= 0.0;
+        if inertia == Inertia::Dynamic && is_quasi_static(simulation.model()) {
             let (moving, settled) = moving(simulation, settings)?;
             self.before_motion = Some(std::mem::replace(simulation, moving));
             starts &= settled;
@@ -483,7 +499,7 @@ impl Engine {
     /// Adds the present instant to the history: the start as well as every step.
     fn sample(&mut self) {
         if let Some(simulation) = &self.simulation
-            && self.answers.len() < MOST_ANSWERS
+            && self.answers.len() < MAX_ANSWERS
         {
             self.answers.push(simulation.solution());
         }
@@ -495,10 +511,13 @@ impl Engine {
             (Ok(()), Some(simulation)) => {
                 self.snapshot.solution = Some(Arc::new(simulation.solution()));
                 self.snapshot.peaks = self.monitor.as_ref().map_or_else(Vec::new, |m| m.peaks().to_vec());
-                self.snapshot.error.clone_from(&self.refused);
-                self.snapshot.stale = self.refused.is_some();
-                self.snapshot.draft = self.draft || self.coarse_since.is_some();
-                if self.refused.is_none() {
+                self.snapshot.error = match &self.phase {
+                    Phase::Refused { reason } => Some(reason.clone()),
+                    _ => None,
+                };
+                self.snapshot.stale = self.refused();
+                self.snapshot.draft = self.draft() || self.coarse();
+                if !self.refused() {
                     self.snapshot.scene = scene;
                 }
             }
@@ -525,11 +544,12 @@ impl Engine {
 
 /// Whether a model that was asked for by name lets time run without inertia: it has none.
 #[must_use]
-pub fn slow(model: Model) -> bool {
+pub fn is_quasi_static(model: Model) -> bool {
     !model.capabilities().inertia
 }
 
-/// The simulation that moves from where the one stands that `auto` chose for rest, and whether it has come to rest there on its own mesh.
+/// The simulation that moves from where the one stands that `auto` chose for rest, and whether it
+/// has come to rest there on its own mesh.
 fn moving(rest: &Simulation, settings: Settings) -> Result<(Simulation, bool), Error> {
     let mut moving = Simulation::for_question(rest.scene().clone(), Model::Auto, settings, MOTION)?;
     moving.carry(rest)?;

@@ -1,21 +1,27 @@
-//! The thread that owns the simulation, so that the window never waits for physics.
+//! The worker is the thread that owns the simulation, so that the window never waits for physics.
 //!
-//! Both ways hold one slot, not a queue: requests merge into the waiting one, the latest answer replaces
-//! the one not yet shown, so memory and delay are bounded whatever the pointer does.
+//! Both ways hold one slot, not a queue: requests merge into the waiting one, the latest answer
+//! replaces the one not yet shown, so memory and delay are bounded whatever the pointer does.
+//!
+//! - `engine`: the simulation, requests and time, without threads
+//! - `request`: what the window asks
+//! - `draft`: coarse answers that follow the hand
+//! - `timing`: frames, drafts and bounds
 
 pub mod draft;
 pub mod engine;
 pub mod request;
+pub mod timing;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use engine::{Engine, FRAME_S, QUIET_S, Report};
-use request::Request;
-
 use crate::state::WorkerStatus;
+use crate::worker::engine::{Engine, Report};
+use crate::worker::request::Request;
+use crate::worker::timing::{FRAME_S, MAX_ANSWERS, QUIET_S};
 
 /// The window's end.
 pub struct Worker {
@@ -58,7 +64,7 @@ impl Report {
             self.answers.clear();
         }
         self.answers.extend(later.answers);
-        let excess = self.answers.len().saturating_sub(engine::MOST_ANSWERS);
+        let excess = self.answers.len().saturating_sub(MAX_ANSWERS);
         self.answers.drain(..excess);
     }
 }
@@ -74,7 +80,8 @@ impl Worker {
         Self { kind: Kind::Thread { shared, handle } }
     }
 
-    /// Does the work in [`Self::submit`] and [`Self::poll`] themselves, for tests and still pictures.
+    /// Does the work in [`Self::submit`] and [`Self::poll`] themselves, for tests and still
+    /// pictures.
     #[must_use]
     pub fn inline() -> Self {
         Self { kind: Kind::Inline { engine: Box::default(), report: None } }
@@ -143,7 +150,8 @@ fn keep(slot: &mut Option<Report>, report: Report) {
     }
 }
 
-/// Least share of a frame that a drag lets pass at once. Smaller: many short steps for a quick mouse; larger: the hand waits.
+/// Least share of a frame that a drag lets pass at once. Smaller: many short steps for a quick
+/// mouse; larger: the hand waits.
 const LEAST_SHARE: f64 = 0.4;
 
 fn work(shared: &Shared, shown: &impl Fn()) {
@@ -162,7 +170,7 @@ fn work(shared: &Shared, shown: &impl Fn()) {
                     return;
                 }
                 let now = Instant::now();
-                let due = match (engine.playing(), engine.draft(), engine.falling()) {
+                let due = match (engine.playing(), engine.draft(), engine.settling()) {
                     (true, _, _) => Some(next_tick),
                     (false, true, true) => Some(next_tick.min(refine_at)),
                     (false, true, false) => Some(refine_at),
@@ -188,7 +196,8 @@ fn work(shared: &Shared, shown: &impl Fn()) {
                 let mut report = guarded(&mut engine, |e| e.handle(request));
                 let passed = last_tick.elapsed().as_secs_f64() / FRAME_S;
                 if drag && engine.playing() && passed > LEAST_SHARE {
-                    // The hand does not wait for the next frame: what has passed of this one is let pass.
+                    // The hand does not wait for the next frame: what has passed of this one is let
+                    // pass.
                     last_tick = Instant::now();
                     next_tick = last_tick + frame;
                     report.merge(guarded(&mut engine, |e| e.tick_part(passed.min(1.0))));
@@ -199,13 +208,14 @@ fn work(shared: &Shared, shown: &impl Fn()) {
                 }
                 report
             }
-            None if !engine.playing() && engine.falling() && Instant::now() < refine_at => {
+            None if !engine.playing() && engine.settling() && Instant::now() < refine_at => {
                 next_tick = Instant::now() + frame;
-                guarded(&mut engine, Engine::fall)
+                guarded(&mut engine, Engine::settle_frame)
             }
             None if !engine.playing() => guarded(&mut engine, Engine::refine),
             None => {
-                // A late frame is not made up for: time runs slower instead of falling behind for ever.
+                // A late frame is not made up for: time runs slower instead of falling behind for
+                // ever.
                 last_tick = Instant::now();
                 next_tick = last_tick.max(next_tick + frame);
                 guarded(&mut engine, Engine::tick)

@@ -1,4 +1,5 @@
-//! What the window asks of the worker. Requests merge: the latest scene, drag and speed win.
+//! A request is what the window asks of the worker. Requests merge: the latest scene, drag and
+//! speed win.
 
 use std::sync::Arc;
 
@@ -66,7 +67,7 @@ pub struct Drag {
 }
 
 /// Most single steps waiting: more would keep the window behind for seconds after a held key.
-const MOST_STEPS: u32 = 60;
+const MAX_STEPS: u32 = 60;
 
 impl Request {
     /// Takes in a later request.
@@ -98,7 +99,7 @@ impl Request {
         }
         self.robot = later.robot.or(self.robot);
         self.playback = later.playback.or(self.playback);
-        self.steps = (self.steps + later.steps).min(MOST_STEPS);
+        self.steps = (self.steps + later.steps).min(MAX_STEPS);
         self.number = self.number.max(later.number);
     }
 

@@ -8,9 +8,10 @@ use cable_core::solution::{
     CableSolution, ContactReport, ContactState, Cost, Energy, Node, Solution, SupportReaction, Warning, WarningKind,
 };
 use cable_core::{Load, Model, Scene};
-use cable_viewer::command::{self, Command, Effects};
-use cable_viewer::history::Sample;
-use cable_viewer::state::{AppState, Held, Snapshot};
+use cable_viewer::command::effects::Effects;
+use cable_viewer::command::{self, Command};
+use cable_viewer::record::samples::Sample;
+use cable_viewer::state::{AppState, Reference, Snapshot};
 use egui_kittest::Harness;
 
 pub type PanelUi = fn(&mut egui::Ui, &AppState, &mut Vec<Command>);
@@ -27,11 +28,11 @@ const DEPTH_M: f64 = 2.9652;
 /// The hanging span with a floor, a post and a load, as a parabola.
 pub fn state() -> AppState {
     let mut state = AppState::new(scene(), None);
-    let solution = answer(&state.scene);
+    let solution = answer(&state.document.scene);
     for k in 0..600 {
         let time_s = f64::from(k) / 60.0;
         let swing = (2.0 * time_s).sin() * (-0.2 * time_s).exp();
-        state.history.push(Sample {
+        state.live.history.push(Sample {
             time_s,
             max_tension_n: 640.0 + 180.0 * swing,
             energy_j: [20.0 * swing * swing, 512.0, 0.9, 0.0],
@@ -39,8 +40,8 @@ pub fn state() -> AppState {
             reactions_n: vec![[560.0 + 150.0 * swing, -310.0], [-560.0 - 120.0 * swing, -290.0]],
         });
     }
-    state.snapshot = Snapshot {
-        scene: Some(Arc::new(state.scene.clone())),
+    state.live.snapshot = Snapshot {
+        scene: Some(Arc::new(state.document.scene.clone())),
         solution: Some(Arc::new(solution)),
         solve_wall_s: 1.234e-3,
         real_speed: Some(0.98),
@@ -132,7 +133,7 @@ pub fn warn(state: &mut AppState) {
     let warning = |kind, arc_length_m, value: f64, limit: f64, message: &str| {
         Warning::new(kind, "cable", arc_length_m, [value, limit], message.to_owned())
     };
-    let mut solution = (**state.snapshot.solution.as_ref().unwrap()).clone();
+    let mut solution = (**state.live.snapshot.solution.as_ref().unwrap()).clone();
     solution.warnings = vec![
         warning(
             WarningKind::NotUnique,
@@ -156,13 +157,13 @@ pub fn warn(state: &mut AppState) {
             "The mesh is too coarse at the load: the largest tension may be off by 0.41 %.",
         ),
     ];
-    state.snapshot.solution = Some(Arc::new(solution));
+    state.live.snapshot.solution = Some(Arc::new(solution));
 }
 
 /// Ten seconds recorded, with three events, and an earlier time shown.
 pub fn recorded() -> AppState {
     let mut state = state();
-    let answer = (**state.snapshot.solution.as_ref().unwrap()).clone();
+    let answer = (**state.live.snapshot.solution.as_ref().unwrap()).clone();
     let event = |k: u32| match k {
         120..150 => Some(WarningKind::ServiceTension),
         300..400 => Some(WarningKind::Slack),
@@ -172,28 +173,28 @@ pub fn recorded() -> AppState {
     for k in 0..600_u32 {
         let warning = |kind| Warning::new(kind, "cable", 0.0, [912.0, 800.0], "as it says".to_owned());
         let warnings = event(k).map(warning).into_iter().collect();
-        state.recording.push(Solution { time_s: f64::from(k) / 60.0, warnings, ..answer.clone() });
+        state.live.recording.push(Solution { time_s: f64::from(k) / 60.0, warnings, ..answer.clone() });
     }
-    state.live = state.snapshot.clone();
-    state.show_time(Some(4.2));
+    state.live.latest = state.live.snapshot.clone();
+    state.live.show_time(Some(4.2));
     state
 }
 
 /// Two answers held: one of a longer and lighter cable.
 pub fn compared() -> AppState {
     let mut state = state();
-    let mut other = state.scene.clone();
+    let mut other = state.document.scene.clone();
     other.cables[0].length_m = 12.5;
     other.cables[0].linear_density_kg_per_m = 1.0;
-    let mut answer = (**state.snapshot.solution.as_ref().unwrap()).clone();
+    let mut answer = (**state.live.snapshot.solution.as_ref().unwrap()).clone();
     for node in &mut answer.cables[0].nodes {
         node.tension_n *= 0.83;
         node.y_m -= 0.1;
     }
-    for (scene, solution) in [(state.scene.clone(), None), (other, Some(answer))] {
-        let solution = solution.map_or_else(|| state.snapshot.solution.clone().unwrap(), Arc::new);
+    for (scene, solution) in [(state.document.scene.clone(), None), (other, Some(answer))] {
+        let solution = solution.map_or_else(|| state.live.snapshot.solution.clone().unwrap(), Arc::new);
         let name = format!("{}, fem model", scene.name);
-        state.held.push(Held { name, scene: Arc::new(scene), solution, wall_s: 2.5e-3, run: None });
+        state.analysis.references.push(Reference { name, scene: Arc::new(scene), solution, wall_s: 2.5e-3, run: None });
     }
     state
 }
@@ -202,9 +203,9 @@ pub fn compared() -> AppState {
 pub fn driven() -> AppState {
     let mut state = state();
     let mut scene = catalog::robot_drive();
-    scene.name.clone_from(&state.scene.name);
-    state.scene = scene;
-    let mut answer = (**state.snapshot.solution.as_ref().unwrap()).clone();
+    scene.name.clone_from(&state.document.scene.name);
+    state.document.scene = scene;
+    let mut answer = (**state.live.snapshot.solution.as_ref().unwrap()).clone();
     answer.robot = Some(RobotReport {
         x_m: 11.2,
         y_m: 0.05,
@@ -220,7 +221,7 @@ pub fn driven() -> AppState {
         leg: Some(0),
         ..RobotReport::default()
     });
-    state.snapshot.solution = Some(Arc::new(answer));
+    state.live.snapshot.solution = Some(Arc::new(answer));
     state
 }
 
@@ -229,15 +230,15 @@ pub fn with_pulley(state: &mut AppState) {
     let mut pulley = Support::pulley("stop 1", [5.0, 4.0]);
     pulley.radius_m = Some(0.1);
     pulley.friction = Some(0.1);
-    state.scene.cables[0].supports.insert(1, pulley);
-    state.scene_fault = state.scene.validate().err();
+    state.document.scene.cables[0].supports.insert(1, pulley);
+    state.document.fault = state.document.scene.validate().err();
 }
 
 /// A window with one panel. Commands are applied as the window does.
 pub fn bench(state: AppState, panel: PanelUi, size: [f32; 2]) -> Harness<'static, Bench> {
     Harness::builder().with_size(size).with_theme(egui::Theme::Light).with_render_cursor(false).build_ui_state(
         move |ui, bench: &mut Bench| {
-            cable_viewer::theme::install(ui.ctx());
+            cable_viewer::render::theme::install(ui.ctx());
             egui::Frame::central_panel(ui.style()).show(ui, |ui| {
                 ui.set_min_size(ui.available_size());
                 let mut commands = Vec::new();
@@ -256,8 +257,8 @@ pub fn bench(state: AppState, panel: PanelUi, size: [f32; 2]) -> Harness<'static
 /// Up a slope, over a post with friction and down on its far side, in figures that add up by hand.
 pub fn wrapped() -> AppState {
     let mut state = state();
-    let w = state.scene.cables[0].linear_density_kg_per_m * 9.80665;
-    let mut answer = (**state.snapshot.solution.as_ref().unwrap()).clone();
+    let w = state.document.scene.cables[0].linear_density_kg_per_m * 9.80665;
+    let mut answer = (**state.live.snapshot.solution.as_ref().unwrap()).clone();
     let node =
         |s: f64, x_m: f64, y_m: f64, tension_n: f64| Node { arc_length_m: s, x_m, y_m, tension_n, ..Node::default() };
     let (rise, fall, rubbed) = (5.0 * w, -2.0 * w, 150.0);
@@ -279,6 +280,6 @@ pub fn wrapped() -> AppState {
         ..ContactReport::default()
     }];
     cable.nodes = nodes;
-    state.snapshot.solution = Some(Arc::new(answer));
+    state.live.snapshot.solution = Some(Arc::new(answer));
     state
 }

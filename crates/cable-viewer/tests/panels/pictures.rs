@@ -1,14 +1,15 @@
 //! A picture of each panel at the width it has in the window. They need a graphics adapter (software will do):
 //! without one they are skipped with a notice, where CI=true they fail.
 
+use cable_viewer::jobs::{friction_range, model_comparison, safe_reach};
+use cable_viewer::panels;
 use cable_viewer::state::{AppState, Item};
-use cable_viewer::{models, panels, reach, spread};
 use egui_kittest::{SnapshotOptions, SnapshotResults};
 
 use crate::fixture::{PanelUi, bench, compared, driven, recorded, state, warn, with_pulley, wrapped};
 
 /// Differences of a rounding here and there between drivers are let pass.
-const MOST_DIFFERENT_PIXELS: usize = 80;
+const MAX_DIFFERENT_PIXELS: usize = 80;
 
 fn picture(name: &str, state: impl Fn() -> AppState, panel: PanelUi, size: [f32; 2]) {
     let mut results = SnapshotResults::new();
@@ -21,7 +22,7 @@ fn picture(name: &str, state: impl Fn() -> AppState, panel: PanelUi, size: [f32;
             eprintln!("skipped the picture of {name}: {reason}");
             return;
         }
-        let options = SnapshotOptions::new().max_failed_pixels(MOST_DIFFERENT_PIXELS);
+        let options = SnapshotOptions::new().max_failed_pixels(MAX_DIFFERENT_PIXELS);
         results.add(harness.try_snapshot_options(format!("panel_{name}_{suffix}"), &options));
     }
 }
@@ -35,9 +36,9 @@ fn cable() {
 fn cable_too_short() {
     let short = || {
         let mut state = state();
-        state.scene.cables[0].length_m = 9.0;
-        state.scene.cables[0].segments = Some(64);
-        state.scene_fault = state.scene.validate().err();
+        state.document.scene.cables[0].length_m = 9.0;
+        state.document.scene.cables[0].segments = Some(64);
+        state.document.fault = state.document.scene.validate().err();
         state
     };
     picture("cable_too_short", short, panels::cable::ui, [320.0, 540.0]);
@@ -58,7 +59,7 @@ fn scene() {
     let selected = || {
         let mut state = state();
         with_pulley(&mut state);
-        state.selected = Some(Item::Support { cable: 0, support: 1 });
+        state.selection.selected = Some(Item::Support { cable: 0, support: 1 });
         state
     };
     picture("scene", selected, panels::scene::ui, [320.0, 640.0]);
@@ -66,7 +67,11 @@ fn scene() {
 
 #[test]
 fn scene_obstacle() {
-    let selected = || AppState { selected: Some(Item::Obstacle(0)), ..state() };
+    let selected = || {
+        let mut state = state();
+        state.selection.selected = Some(Item::Obstacle(0));
+        state
+    };
     picture("scene_obstacle", selected, panels::scene::ui, [320.0, 640.0]);
 }
 
@@ -74,7 +79,7 @@ fn scene_obstacle() {
 fn playback() {
     let running = || {
         let mut state = state();
-        state.playback.paused = false;
+        state.live.playback.paused = false;
         state
     };
     picture("playback", running, panels::playback::ui, [900.0, 44.0]);
@@ -92,7 +97,7 @@ fn robot() {
 
 #[test]
 fn compare() {
-    picture("compare", compared, panels::compare::ui, [320.0, 240.0]);
+    picture("compare", compared, panels::analysis::compare::ui, [320.0, 240.0]);
 }
 
 /// After every model was asked, with one that has no answer.
@@ -101,12 +106,12 @@ fn compare_models() {
     let asked = || {
         let mut state = compared();
         let why = "catenary cannot answer this scene: the cable reaches an obstacle 4.894 m along it".to_owned();
-        let answers = vec![models::Answer { model: cable_core::Model::Catenary, result: Err(why) }];
-        let scene = std::sync::Arc::new(state.scene.clone());
-        state.models = models::Progress::Done(models::Found { scene, answers });
+        let answers = vec![model_comparison::Answer { model: cable_core::Model::Catenary, result: Err(why) }];
+        let scene = std::sync::Arc::new(state.document.scene.clone());
+        state.analysis.models = model_comparison::Progress::Done(model_comparison::Outcome { scene, answers });
         state
     };
-    picture("compare_models", asked, panels::compare::ui, [320.0, 280.0]);
+    picture("compare_models", asked, panels::analysis::compare::ui, [320.0, 280.0]);
 }
 
 /// On its way: progress, and how to end it.
@@ -114,21 +119,21 @@ fn compare_models() {
 fn reach() {
     let searching = || {
         let mut state = state();
-        state.reach.progress = reach::Progress::Running(0.4, None);
+        state.analysis.safe_reach.progress = safe_reach::Progress::Running(0.4, None);
         state
     };
-    picture("reach", searching, panels::reach::ui, [320.0, 130.0]);
+    picture("reach", searching, panels::analysis::safe_reach::ui, [320.0, 130.0]);
 }
 
 #[test]
 fn friction_range() {
     let computing = || {
         let mut state = state();
-        state.spread.on = true;
-        state.spread.progress = spread::Progress::Running(0.3, None);
+        state.analysis.friction_range.on = true;
+        state.analysis.friction_range.progress = friction_range::Progress::Running(0.3, None);
         state
     };
-    picture("friction_range", computing, panels::spread::ui, [320.0, 130.0]);
+    picture("friction_range", computing, panels::analysis::friction_range::ui, [320.0, 130.0]);
 }
 
 /// Every panel of the window has a picture here.
@@ -159,8 +164,8 @@ fn warnings() {
     let warned = || {
         let mut state = state();
         warn(&mut state);
-        state.scene.cables[0].length_m = 9.0;
-        state.scene_fault = state.scene.validate().err();
+        state.document.scene.cables[0].length_m = 9.0;
+        state.document.fault = state.document.scene.validate().err();
         state
     };
     // Tall: they take two fifths of a window.
@@ -172,10 +177,10 @@ fn origin() {
     let probed = || {
         let mut state = wrapped();
         let from = cable_core::analysis::tension_budget::StartEnd::Start;
-        state.probe = Some(cable_viewer::state::Probe { cable: 0, arc_length_m: 12.0, from });
+        state.analysis.tension_marker = Some(cable_viewer::state::TensionMarker { cable: 0, arc_length_m: 12.0, from });
         state
     };
-    picture("origin", probed, panels::origin::ui, [320.0, 260.0]);
+    picture("origin", probed, panels::analysis::tension_budget::ui, [320.0, 260.0]);
 }
 
 #[test]

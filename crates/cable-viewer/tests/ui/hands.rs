@@ -5,8 +5,8 @@ use cable_core::scene::catalog;
 use cable_core::solution::{ContactState, Node};
 use cable_core::{Model, Solution};
 use cable_viewer::ViewerApp;
-use cable_viewer::dialog::Dialog;
 use cable_viewer::state::Item;
+use cable_viewer::state::dialog::Dialog;
 use egui::{Event, Key, Modifiers, Role, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -35,7 +35,7 @@ fn seconds(harness: &mut Harness<'_, ViewerApp>, time_s: f64) {
     harness.key_press(Key::Space);
     harness.run_steps(2);
     for _ in 0..2000 {
-        assert_eq!(state(harness).snapshot.error, None);
+        assert_eq!(state(harness).live.snapshot.error, None);
         if answer(harness).time_s >= time_s {
             break;
         }
@@ -43,7 +43,7 @@ fn seconds(harness: &mut Harness<'_, ViewerApp>, time_s: f64) {
     }
     harness.key_press(Key::Space);
     harness.run_steps(2);
-    assert!(answer(harness).time_s >= time_s && state(harness).playback.paused);
+    assert!(answer(harness).time_s >= time_s && state(harness).live.playback.paused);
 }
 
 fn at(n: &Node) -> Point {
@@ -71,10 +71,10 @@ fn least_gap(answer: &Solution, apart: f64) -> f64 {
 fn s05_the_cable_stops_on_itself_and_what_tangles_is_named() {
     let mut harness = open(catalog::pile());
     tall(&mut harness);
-    let diameter = state(&harness).scene.cables[0].diameter_m;
+    let diameter = state(&harness).document.scene.cables[0].diameter_m;
     seconds(&mut harness, 1.1);
     let on_itself = |a: &Solution| a.cables[0].contacts.iter().any(|c| c.obstacle == a.cables[0].name);
-    let answers = state(&harness).recording.answers();
+    let answers = state(&harness).live.recording.answers();
     assert!(answers.iter().any(on_itself), "it lies on itself");
     // Nodes stand on segments: between two nodes the round of the cable may be a little flatter.
     let least = answers.iter().map(|a| least_gap(a, 3.0 * diameter)).fold(f64::INFINITY, f64::min);
@@ -84,14 +84,14 @@ fn s05_the_cable_stops_on_itself_and_what_tangles_is_named() {
     harness.key_press(Key::R);
     harness.run_steps(3);
     click(&mut harness, "Self-contact");
-    assert!(!state(&harness).scene.cables[0].self_contact);
+    assert!(!state(&harness).document.scene.cables[0].self_contact);
     seconds(&mut harness, 1.1);
-    let least = state(&harness).recording.answers().iter().map(|a| least_gap(a, 3.0 * diameter));
+    let least = state(&harness).live.recording.answers().iter().map(|a| least_gap(a, 3.0 * diameter));
     assert!(least.fold(f64::INFINITY, f64::min) < 0.5 * diameter, "now it goes through itself");
     let named = |h: &Harness<'_, ViewerApp>| {
         ["Crosses itself", "Curls up", "Kinked"].iter().any(|t| h.query_all_by_label_contains(t).next().is_some())
     };
-    let told = !state(&harness).recording.events().is_empty() || named(&harness);
+    let told = !state(&harness).live.recording.events().is_empty() || named(&harness);
     assert!(told, "what tangles is named: {:?}", answer(&harness).warnings);
 }
 
@@ -101,14 +101,14 @@ fn s05_the_cable_stops_on_itself_and_what_tangles_is_named() {
 fn s09_maps_are_picked_and_pasted_while_the_window_runs() {
     let mut harness = open(catalog::slack_to_floor());
     tall(&mut harness);
-    let before = state(&harness).scene.clone();
+    let before = state(&harness).document.scene.clone();
     let map = cable_core::scene::preset::map_presets().iter().find(|m| m.id.starts_with("flat")).expect("a flat tank");
     click(&mut harness, "Map");
     harness.get_by_label(&map.name).click();
     harness.run_steps(4);
-    assert_eq!(state(&harness).scene.obstacles, map.obstacles);
-    assert_eq!(state(&harness).snapshot.error, None);
-    assert_eq!(state(&harness).snapshot.scene.as_ref().map(|s| s.obstacles.len()), Some(map.obstacles.len()));
+    assert_eq!(state(&harness).document.scene.obstacles, map.obstacles);
+    assert_eq!(state(&harness).live.snapshot.error, None);
+    assert_eq!(state(&harness).live.snapshot.scene.as_ref().map(|s| s.obstacles.len()), Some(map.obstacles.len()));
 
     // Pasted: a step of ground where the cable hangs lowest.
     let low = answer(&harness).cables[0]
@@ -120,12 +120,12 @@ fn s09_maps_are_picked_and_pasted_while_the_window_runs() {
     let table = format!("x\ty\n{}\t{}\n{}\t{}\n{}\t{}\n", x - 0.6, low.0 - 0.2, x, y, x + 0.6, low.0 - 0.2);
     harness.event(Event::Paste(table));
     harness.run_steps(3);
-    assert!(matches!(state(&harness).dialog, Some(Dialog::ImportMap { .. })), "{:?}", state(&harness).dialog);
+    assert!(matches!(state(&harness).ui.dialog, Some(Dialog::ImportMap { .. })), "{:?}", state(&harness).ui.dialog);
     click(&mut harness, "Import");
     harness.run_steps(3);
     click(&mut harness, "Close");
-    assert_eq!(state(&harness).scene.obstacles.len(), map.obstacles.len() + 1);
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(state(&harness).document.scene.obstacles.len(), map.obstacles.len() + 1);
+    assert_eq!(state(&harness).live.snapshot.error, None);
     let inside = |n: &Node| (n.x_m - x).abs() < 0.3 && n.y_m < y - (n.x_m - x).abs() * (y - low.0 + 0.2) / 0.6 - 1e-3;
     let deep: Vec<Point> = answer(&harness).cables[0].nodes.iter().filter(|n| inside(n)).map(at).collect();
     assert!(
@@ -142,7 +142,7 @@ fn s09_maps_are_picked_and_pasted_while_the_window_runs() {
         harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
         harness.run_steps(3);
     }
-    assert_eq!(state(&harness).scene.obstacles, before.obstacles);
+    assert_eq!(state(&harness).document.scene.obstacles, before.obstacles);
 }
 
 /// Friction is typed at the obstacle. With it the cable truly sticks while it is pulled by less than e^{μφ}: it does not move at
@@ -155,7 +155,7 @@ fn s19_friction_typed_at_an_obstacle_sticks_slides_and_changes_the_tension() {
         click(&mut harness, "FEM");
         click(&mut harness, "Select pipe");
         enter(&mut harness, "Obstacle friction", friction);
-        assert_eq!(state(&harness).scene.obstacles[0].friction, friction.parse().ok());
+        assert_eq!(state(&harness).document.scene.obstacles[0].friction, friction.parse().ok());
         let start = answer(&harness);
         seconds(&mut harness, 0.9);
         let held = answer(&harness);
@@ -192,7 +192,7 @@ fn s06_a_pointer_holds_an_end_by_a_spring_while_time_runs() {
     harness.key_press(Key::Space);
     harness.run_steps(3);
     let from = crate::support(&harness, "right");
-    let scale = state(&harness).camera.points_per_m;
+    let scale = state(&harness).view.camera.points_per_m;
     let by = Vec2::new(-scale as f32, -0.5 * scale as f32);
     harness.hover_at(from);
     harness.step();
@@ -203,9 +203,9 @@ fn s06_a_pointer_holds_an_end_by_a_spring_while_time_runs() {
         harness.step();
     }
     let now = |h: &Harness<'_, ViewerApp>| answer(h).cables[0].supports[1].clone();
-    assert!(now(&harness).hand.is_some() && state(&harness).pulled == Some((0, 1)));
+    assert!(now(&harness).hand.is_some() && state(&harness).selection.spring_support == Some((0, 1)));
     harness.run_steps(240);
-    let pointer = state(&harness).scene.cables[0].supports[1].at_m.expect("drawn to the pointer");
+    let pointer = state(&harness).document.scene.cables[0].supports[1].at_m.expect("drawn to the pointer");
     let (end, hand) = (now(&harness), now(&harness).hand.expect("held"));
     assert!((hand.x_m - pointer[0]).hypot(hand.y_m - pointer[1]) < 1e-3, "{hand:?} for {pointer:?}");
     let ahead = (hand.x_m - end.x_m).hypot(hand.y_m - end.y_m);
@@ -215,11 +215,11 @@ fn s06_a_pointer_holds_an_end_by_a_spring_while_time_runs() {
     assert!(harness.query_all_by_label_contains("Hand at right").next().is_some(), "its force is read off");
     crate::press(&harness, from + by, false);
     harness.run_steps(40);
-    let (place, fixed) = (now(&harness), state(&harness).scene.cables[0].supports[1].at_m.expect("fixed"));
-    assert!(place.hand.is_none() && state(&harness).pulled.is_none());
+    let (place, fixed) = (now(&harness), state(&harness).document.scene.cables[0].supports[1].at_m.expect("fixed"));
+    assert!(place.hand.is_none() && state(&harness).selection.spring_support.is_none());
     assert!((place.x_m - end.x_m).hypot(place.y_m - end.y_m) < 0.02, "it stays where it was");
     assert!((place.x_m - fixed[0]).hypot(place.y_m - fixed[1]) < 1e-6, "{place:?} and {fixed:?}");
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(state(&harness).live.snapshot.error, None);
 }
 
 /// Everything by keys: open, pick, move, edit a number, another model, run, look back, hold, save.
@@ -245,23 +245,23 @@ fn a_whole_session_by_keys_alone() {
         harness.run_steps(4);
     };
     command(&mut harness, "open scene over a beam");
-    assert_eq!(state(&harness).scene.name, catalog::over_beam().name);
+    assert_eq!(state(&harness).document.scene.name, catalog::over_beam().name);
     // Pick the last support and move it by two grid lines.
     harness.key_press(Key::N);
     harness.run_steps(2);
     harness.key_press(Key::N);
     harness.run_steps(2);
-    let Some(Item::Support { cable, support }) = state(&harness).selected else {
-        panic!("{:?}", state(&harness).selected);
+    let Some(Item::Support { cable, support }) = state(&harness).selection.selected else {
+        panic!("{:?}", state(&harness).selection.selected);
     };
-    let before = state(&harness).scene.cables[cable].supports[support].at_m.unwrap();
+    let before = state(&harness).document.scene.cables[cable].supports[support].at_m.unwrap();
     for _ in 0..2 {
         harness.key_press_modifiers(Modifiers::ALT, Key::ArrowLeft);
         harness.run_steps(3);
     }
-    let after = state(&harness).scene.cables[cable].supports[support].at_m.unwrap();
+    let after = state(&harness).document.scene.cables[cable].supports[support].at_m.unwrap();
     assert!(after[0] < before[0] && after[1] == before[1], "{before:?} {after:?}");
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(state(&harness).live.snapshot.error, None);
     // A number is reached with Tab and typed.
     let focused = |h: &Harness<'_, ViewerApp>| {
         let id = h.ctx.memory(|m| m.focused());
@@ -278,26 +278,26 @@ fn a_whole_session_by_keys_alone() {
         harness.step();
     }
     assert!(focused(&harness), "Tab comes to the length");
-    let length_m = state(&harness).scene.cables[0].length_m + 0.25;
+    let length_m = state(&harness).document.scene.cables[0].length_m + 0.25;
     path(&mut harness, format!("{length_m}"));
-    assert_eq!(state(&harness).scene.cables[0].length_m, length_m);
+    assert_eq!(state(&harness).document.scene.cables[0].length_m, length_m);
     harness.key_press(Key::Escape);
     harness.run_steps(2);
     // Another model; time runs, is looked back at, and begins anew.
     command(&mut harness, "solve with fem");
-    assert_eq!(state(&harness).model, Model::Fem);
+    assert_eq!(state(&harness).solver.model, Model::Fem);
     harness.key_press(Key::Space);
     harness.run_steps(20);
     harness.key_press(Key::Space);
     harness.run_steps(2);
     let now_s = answer(&harness).time_s;
-    assert!(state(&harness).playback.paused && now_s > 0.2, "{now_s}");
+    assert!(state(&harness).live.playback.paused && now_s > 0.2, "{now_s}");
     harness.key_press(Key::ArrowLeft);
     harness.run_steps(2);
     assert!(answer(&harness).time_s < now_s, "an earlier picture");
     command(&mut harness, "show the present");
     command(&mut harness, "hold this answer");
-    assert_eq!(state(&harness).held.len(), 1);
+    assert_eq!(state(&harness).analysis.references.len(), 1);
     harness.key_press(Key::R);
     harness.run_steps(3);
     assert_eq!(answer(&harness).time_s, 0.0);
@@ -306,13 +306,13 @@ fn a_whole_session_by_keys_alone() {
     harness.run_steps(3);
     let file = folder.path().join("keys.toml");
     path(&mut harness, file.display().to_string());
-    assert_eq!(cable_viewer::scene_file::load(&file).unwrap(), state(&harness).scene);
+    assert_eq!(cable_viewer::io::scene_file::load(&file).unwrap(), state(&harness).document.scene);
     command(&mut harness, "save run");
     let run = folder.path().join("run");
     path(&mut harness, run.display().to_string());
-    assert!(run.join("history.csv").exists(), "{:?}", state(&harness).dialog);
-    assert!(state(&harness).dialog.is_none() && !state(&harness).unsaved());
+    assert!(run.join("history.csv").exists(), "{:?}", state(&harness).ui.dialog);
+    assert!(state(&harness).ui.dialog.is_none() && !state(&harness).document.unsaved());
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(3);
-    assert!(state(&harness).unsaved() && state(&harness).scene.cables[0].length_m < length_m);
+    assert!(state(&harness).document.unsaved() && state(&harness).document.scene.cables[0].length_m < length_m);
 }

@@ -2,8 +2,9 @@
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
+use cable_viewer::app::tutorials::TUTORIALS;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use cable_viewer::guide::GUIDES;
+use cable_viewer::state::dialog::Replacement;
 use cable_viewer::state::{AppState, Item};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Order, Pos2};
@@ -77,13 +78,13 @@ fn u11_every_control_of_what_is_picked_explains_itself_on_hover() {
     scene.cables[0].supports[moved].release_s = Some(1.0);
     every_control_explains_itself(open(scene), Some(Item::Support { cable: 0, support: moved }));
     let mut harness = open(catalog::hanging_span());
-    let mut value = state(&harness).scene.cables[0].clone();
+    let mut value = state(&harness).document.scene.cables[0].clone();
     value.length_m = 7.0;
     apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(value) }));
     apply(&mut harness, Command::View(ViewCommand::Spread(true, [0.5, 1.5])));
     let from = cable_core::analysis::tension_budget::StartEnd::Start;
-    let probe = cable_viewer::state::Probe { cable: 0, arc_length_m: 4.0, from };
-    apply(&mut harness, Command::View(ViewCommand::Probe(Some(probe))));
+    let probe = cable_viewer::state::TensionMarker { cable: 0, arc_length_m: 4.0, from };
+    apply(&mut harness, Command::View(ViewCommand::MarkTension(Some(probe))));
     every_control_explains_itself(harness, None);
 }
 
@@ -160,25 +161,28 @@ fn the_picture_is_told_in_words() {
 #[test]
 fn t01_six_guided_scenes_lead_from_step_to_step() {
     let mut harness = open_span();
-    for (k, guide) in GUIDES.iter().enumerate() {
+    for (k, guide) in TUTORIALS.iter().enumerate() {
         harness.get_by_label("Learn").click();
         harness.run_steps(3);
         harness.get_by_label(&format!("{}. {}", k + 1, guide.title)).click();
         harness.run_steps(4);
         // The scene before may have unsaved changes.
-        if state(&harness).dialog.is_some() {
+        if state(&harness).ui.dialog.is_some() {
             harness.get_by_label("Go on without saving").click();
             harness.run_steps(4);
         }
-        assert_eq!(state(&harness).guide.map(|p| (p.guide, p.step)), Some((k, 0)), "{}", guide.title);
+        assert_eq!(state(&harness).ui.tutorial.map(|p| (p.tutorial, p.step)), Some((k, 0)), "{}", guide.title);
         harness.get_by_label_contains(guide.steps[0].text);
     }
     // The first one, done.
-    apply(&mut harness, Command::File(FileCommand::Discard(Box::new(Command::File(FileCommand::OpenGuide(0))))));
+    apply(
+        &mut harness,
+        Command::File(FileCommand::Discard(Replacement::OpenTutorial { tutorial: 0, scene: TUTORIALS[0].scene })),
+    );
     let item = Item::Support { cable: 0, support: 1 };
     apply(&mut harness, Command::Scene(SceneCommand::Move { item, to_m: [9.0, 5.0] }));
     harness.run_steps(2);
-    assert_eq!(state(&harness).guide.map(|p| p.step), Some(1), "what was done is seen");
+    assert_eq!(state(&harness).ui.tutorial.map(|p| p.step), Some(1), "what was done is seen");
     harness.get_by_label("Next").click();
     harness.run_steps(2);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
@@ -186,14 +190,14 @@ fn t01_six_guided_scenes_lead_from_step_to_step() {
     harness.get_by_label("Done");
     harness.get_by_label("End guide").click();
     harness.run_steps(2);
-    assert_eq!(state(&harness).guide, None);
+    assert_eq!(state(&harness).ui.tutorial, None);
 }
 
 /// Each step of each guide, done as it says: the guide sees it and goes on, and what it says happens.
 #[test]
 fn t01_every_step_of_every_guide_can_be_done_as_it_says() {
     fn at(harness: &Harness<'_, ViewerApp>) -> Option<usize> {
-        state(harness).guide.map(|p| p.step)
+        state(harness).ui.tutorial.map(|p| p.step)
     }
     fn next(harness: &mut Harness<'_, ViewerApp>) {
         harness.get_by_label("Next").click();
@@ -203,9 +207,12 @@ fn t01_every_step_of_every_guide_can_be_done_as_it_says() {
         let mut harness = open_span();
         harness.set_size(egui::Vec2::new(1280.0, 1800.0));
         apply(&mut harness, Command::SetModel(cable_core::Model::Auto));
-        apply(&mut harness, Command::File(FileCommand::Discard(Box::new(Command::File(FileCommand::OpenGuide(k))))));
+        apply(
+            &mut harness,
+            Command::File(FileCommand::Discard(Replacement::OpenTutorial { tutorial: k, scene: TUTORIALS[k].scene })),
+        );
         harness.run_steps(3);
-        assert_eq!(at(&harness), Some(0), "{}", GUIDES[k].title);
+        assert_eq!(at(&harness), Some(0), "{}", TUTORIALS[k].title);
         harness
     }
     fn hold(harness: &mut Harness<'_, ViewerApp>, key: Key, frames: usize) {
@@ -245,20 +252,20 @@ fn t01_every_step_of_every_guide_can_be_done_as_it_says() {
     assert_eq!(at(&harness), Some(1));
     next(&mut harness);
     typed(&mut harness, "Length", "8.5");
-    assert_eq!(at(&harness), Some(3), "{:?}", state(&harness).scene_fault);
+    assert_eq!(at(&harness), Some(3), "{:?}", state(&harness).document.fault);
     harness.get_by_label("The scene cannot be solved");
     let fix = harness.get_all_by_label_contains("Set to ").next().expect("the fix is offered");
     fix.click();
     harness.run_steps(3);
-    assert_eq!(state(&harness).scene_fault, None);
+    assert_eq!(state(&harness).document.fault, None);
     harness.get_by_label("Done");
 
     // 3. Waypoints.
     let mut harness = start(2);
-    let answer = state(&harness).snapshot.solution.clone().unwrap();
+    let answer = state(&harness).live.snapshot.solution.clone().unwrap();
     let node = answer.cables[0].nodes[answer.cables[0].nodes.len() / 2];
     let canvas = harness.get_by_label("Canvas").rect();
-    let place = state(&harness).camera.to_screen(canvas, [node.x_m, node.y_m]);
+    let place = state(&harness).view.camera.to_screen(canvas, [node.x_m, node.y_m]);
     harness.hover_at(place);
     harness.step();
     for pressed in [true, false, true, false] {
@@ -268,11 +275,14 @@ fn t01_every_step_of_every_guide_can_be_done_as_it_says() {
     harness.run_steps(3);
     assert_eq!(at(&harness), Some(1));
     let canvas = harness.get_by_label("Canvas").rect();
-    let rise = 2.8 * state(&harness).camera.points_per_m as f32;
-    let place = state(&harness).camera.to_screen(canvas, state(&harness).scene.cables[0].supports[1].at_m.unwrap());
+    let rise = 2.8 * state(&harness).view.camera.points_per_m as f32;
+    let place = state(&harness)
+        .view
+        .camera
+        .to_screen(canvas, state(&harness).document.scene.cables[0].supports[1].at_m.unwrap());
     crate::drag(&mut harness, place, egui::Vec2::new(0.0, -rise));
-    assert_eq!(at(&harness), Some(2), "{:?}", state(&harness).scene.cables[0].supports[1]);
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(at(&harness), Some(2), "{:?}", state(&harness).document.scene.cables[0].supports[1]);
+    assert_eq!(state(&harness).live.snapshot.error, None);
     harness.get_by_label("Wheel radius");
     harness.key_press(Key::Delete);
     harness.run_steps(3);
@@ -283,7 +293,7 @@ fn t01_every_step_of_every_guide_can_be_done_as_it_says() {
     harness.key_press(Key::Space);
     harness.run_steps(30);
     assert_eq!(at(&harness), Some(1));
-    assert!(state(&harness).history.samples.len() > 10, "the graphs fill");
+    assert!(state(&harness).live.history.samples.len() > 10, "the graphs fill");
     harness.key_press(Key::Space);
     harness.run_steps(3);
     assert_eq!(at(&harness), Some(2));
@@ -297,14 +307,17 @@ fn t01_every_step_of_every_guide_can_be_done_as_it_says() {
     // 5. Drive.
     let mut harness = start(4);
     hold(&mut harness, Key::D, 80);
-    assert_eq!(at(&harness), Some(1), "{:?}", state(&harness).live.solution.as_ref().and_then(|s| s.robot));
+    assert_eq!(at(&harness), Some(1), "{:?}", state(&harness).live.latest.solution.as_ref().and_then(|s| s.robot));
     for row in ["Slope", "Pull of the cable", "Track force"] {
         harness.get_by_label(row);
     }
     next(&mut harness);
     harness.get_by_label("Find safe reach").click();
     harness.run_steps(2);
-    assert!(matches!(state(&harness).reach.progress, cable_viewer::reach::Progress::Running(..)));
+    assert!(matches!(
+        state(&harness).analysis.safe_reach.progress,
+        cable_viewer::jobs::safe_reach::Progress::Running(..)
+    ));
 
     // 6. Compare.
     let mut harness = start(5);
@@ -332,11 +345,11 @@ fn escape_closes_a_menu_or_list_before_it_drops_what_is_picked() {
         harness.key_press(Key::Escape);
         harness.run_steps(3);
         assert!(harness.query_by_label(entry).is_none(), "{opener} is still open");
-        assert_eq!(state(&harness).selected, Some(item));
+        assert_eq!(state(&harness).selection.selected, Some(item));
     }
     harness.key_press(Key::Escape);
     harness.run_steps(2);
-    assert_eq!(state(&harness).selected, None);
+    assert_eq!(state(&harness).selection.selected, None);
 }
 
 /// What is typed into stands off the dialog that asks for it, in both themes.
@@ -389,18 +402,18 @@ fn the_keyboard_alone_opens_edits_runs_and_reads() {
     };
     // Pick, move, run, stop, step back, start again.
     key(&mut harness, Key::N);
-    let before = state(&harness).scene.clone();
+    let before = state(&harness).document.scene.clone();
     harness.key_press_modifiers(Modifiers::ALT, Key::ArrowUp);
     harness.run_steps(2);
-    assert_ne!(state(&harness).scene, before);
+    assert_ne!(state(&harness).document.scene, before);
     key(&mut harness, Key::Escape);
     key(&mut harness, Key::Space);
     harness.run_steps(10);
     key(&mut harness, Key::Space);
-    let now = state(&harness).snapshot.solution.as_ref().unwrap().time_s;
+    let now = state(&harness).live.snapshot.solution.as_ref().unwrap().time_s;
     assert!(now > 0.1);
     key(&mut harness, Key::ArrowLeft);
-    assert!(state(&harness).snapshot.solution.as_ref().unwrap().time_s < now);
+    assert!(state(&harness).live.snapshot.solution.as_ref().unwrap().time_s < now);
     key(&mut harness, Key::R);
     // Everything else by name.
     harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
@@ -409,7 +422,7 @@ fn the_keyboard_alone_opens_edits_runs_and_reads() {
     harness.run_steps(3);
     key(&mut harness, Key::Enter);
     harness.run_steps(3);
-    assert_eq!(state(&harness).held.len(), 1);
+    assert_eq!(state(&harness).analysis.references.len(), 1);
     // Tab walks the controls: after the first press something has the focus, and the next is another.
     let mut seen = std::collections::BTreeSet::new();
     for _ in 0..40 {
@@ -432,6 +445,6 @@ fn the_window_is_usable_at_scales_from_a_half_to_four() {
         harness.get_by_label("Play");
         harness.key_press(Key::ArrowRight);
         harness.run_steps(2);
-        assert_eq!(state(&harness).snapshot.error, None, "{scale}");
+        assert_eq!(state(&harness).live.snapshot.error, None, "{scale}");
     }
 }

@@ -5,7 +5,7 @@ use cable_core::scene::{SupportKind, catalog, preset};
 use cable_core::{Model, Scene};
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, ViewCommand};
-use cable_viewer::models::Progress;
+use cable_viewer::jobs::model_comparison::Progress;
 use cable_viewer::state::AppState;
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
@@ -37,12 +37,12 @@ fn a_first_robot_stands_in_the_tank_with_the_cable_on_its_hitch() {
             let mut harness = tall(catalog::hanging_span());
             click(&mut harness, "Map");
             click(&mut harness, &map.name);
-            let end = state(&harness).scene.cables[0].supports[1].at_m.unwrap();
-            let before = state(&harness).scene.clone();
+            let end = state(&harness).document.scene.cables[0].supports[1].at_m.unwrap();
+            let before = state(&harness).document.scene.clone();
             click(&mut harness, "Robot");
             click(&mut harness, &robot.name);
             let what = format!("{} in {}", robot.name, map.name);
-            let scene = &state(&harness).scene;
+            let scene = &state(&harness).document.scene;
             assert_eq!(scene.cables[0].supports[1].kind, SupportKind::Robot, "{what}");
             let at = scene.robot.as_ref().unwrap_or_else(|| panic!("{what}: none")).at_m;
             let stand = Ground::of(scene).stand(at[0], robot.track_half_length_m());
@@ -52,7 +52,7 @@ fn a_first_robot_stands_in_the_tank_with_the_cable_on_its_hitch() {
             // One step back for all of it.
             harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
             harness.run_steps(2);
-            assert_eq!(state(&harness).scene, before, "{what}");
+            assert_eq!(state(&harness).document.scene, before, "{what}");
         }
     }
 }
@@ -66,7 +66,7 @@ fn a_robot_turns_its_back_to_where_the_cable_comes_from() {
     let mut harness = tall(scene);
     click(&mut harness, "Robot");
     click(&mut harness, &preset::robot_presets()[0].name);
-    let scene = &state(&harness).scene;
+    let scene = &state(&harness).document.scene;
     let (robot, hitch) = (scene.robot.as_ref().unwrap(), scene.hitch_m().unwrap());
     assert_eq!(robot.heading, cable_core::scene::Heading::Left);
     assert!(hitch[0] > robot.at_m[0] && hitch[0].abs() < 1.0, "{hitch:?}, {:?}", robot.at_m);
@@ -81,15 +81,15 @@ fn a_tank_job_is_set_up_and_driven_from_the_first_scene() {
     click(&mut harness, "Robot");
     click(&mut harness, &preset::robot_presets()[0].name);
     click(&mut harness, "Cable in by the opening");
-    assert_eq!(state(&harness).scene.cables[0].supports[0].at_m, Some(map.riser_at_m));
+    assert_eq!(state(&harness).document.scene.cables[0].supports[0].at_m, Some(map.riser_at_m));
     assert!(harness.query_by_label("Cable in by the opening").is_none(), "it is there");
     // Too short for that, which is said with the remedy.
-    assert!(state(&harness).scene_fault.is_some());
+    assert!(state(&harness).document.fault.is_some());
     harness.get_all_by_label_contains("Set to ").next().expect("the fix is offered").click();
     harness.run_steps(3);
-    assert_eq!(state(&harness).scene_fault, None);
-    assert_eq!(state(&harness).snapshot.error, None);
-    let x = |h: &Harness<'_, ViewerApp>| state(h).live.solution.as_ref().unwrap().robot.unwrap().x_m;
+    assert_eq!(state(&harness).document.fault, None);
+    assert_eq!(state(&harness).live.snapshot.error, None);
+    let x = |h: &Harness<'_, ViewerApp>| state(h).live.latest.solution.as_ref().unwrap().robot.unwrap().x_m;
     let before = x(&harness);
     let key = |pressed| egui::Event::Key {
         key: Key::A,
@@ -102,13 +102,13 @@ fn a_tank_job_is_set_up_and_driven_from_the_first_scene() {
     harness.run_steps(90);
     harness.event(key(false));
     harness.run_steps(2);
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(state(&harness).live.snapshot.error, None);
     assert!(x(&harness) < before - 0.1, "{before} m to {} m", x(&harness));
 }
 
 fn asked(harness: &mut Harness<'_, ViewerApp>) {
     let began = std::time::Instant::now();
-    while matches!(state(harness).models, Progress::Running(..)) {
+    while matches!(state(harness).analysis.models, Progress::Running(..)) {
         assert!(began.elapsed() < std::time::Duration::from_secs(60), "it takes too long");
         std::thread::sleep(std::time::Duration::from_millis(5));
         harness.step();
@@ -121,26 +121,27 @@ fn s16_every_model_of_a_scene_is_held_with_its_cost_and_refusals_are_told() {
     let mut harness = tall(catalog::over_beam());
     click(&mut harness, "Hold every model");
     asked(&mut harness);
-    let models: Vec<Model> = state(&harness).held.iter().map(|h| h.solution.model).collect();
+    let models: Vec<Model> = state(&harness).analysis.references.iter().map(|h| h.solution.model).collect();
     assert_eq!(models, [Model::Spans, Model::Fem, Model::MassSpring]);
     harness.get_by_label_contains("catenary cannot answer this scene: ");
-    let most: Vec<f64> = state(&harness).held.iter().map(|h| h.solution.max_tension().tension_n).collect();
+    let most: Vec<f64> =
+        state(&harness).analysis.references.iter().map(|h| h.solution.max_tension().tension_n).collect();
     assert!(most.iter().all(|n| (n / most[0] - 1.0).abs() < 0.1), "{most:?}");
-    for held in &state(&harness).held {
+    for held in &state(&harness).analysis.references {
         assert!(held.wall_s > 0.0 && held.solution.time_s == 0.0);
-        let cost = cable_viewer::panels::unit::duration(held.wall_s);
+        let cost = cable_viewer::units::format::duration(held.wall_s);
         assert!(harness.query_all_by_label(&cost).next().is_some(), "{cost}");
     }
     // Again: in their place, not beside them.
     click(&mut harness, "Hold every model");
     asked(&mut harness);
-    assert_eq!(state(&harness).held.len(), 3);
+    assert_eq!(state(&harness).analysis.references.len(), 3);
     // On the way its progress is shown, and it can be ended.
-    harness.state_mut().state.models = Progress::Running(0.5, None);
+    harness.state_mut().state.analysis.models = Progress::Running(0.5, None);
     harness.run_steps(2);
     harness.get_by_label("Progress of every model");
     click(&mut harness, "Cancel every model");
-    assert!(matches!(state(&harness).models, Progress::None));
+    assert!(matches!(state(&harness).analysis.models, Progress::None));
     // What was ended holds nothing, however soon it comes.
     apply(&mut harness, Command::View(ViewCommand::LetGo(None)));
     let ctx = harness.ctx.clone();
@@ -148,5 +149,7 @@ fn s16_every_model_of_a_scene_is_held_with_its_cost_and_refusals_are_told() {
     harness.state_mut().apply(&ctx, commands.into());
     std::thread::sleep(std::time::Duration::from_millis(300));
     harness.run_steps(3);
-    assert!(matches!(state(&harness).models, Progress::None) && state(&harness).held.is_empty());
+    assert!(
+        matches!(state(&harness).analysis.models, Progress::None) && state(&harness).analysis.references.is_empty()
+    );
 }

@@ -2,9 +2,8 @@
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
-use cable_viewer::command::Command;
-use cable_viewer::command::FileCommand;
-use cable_viewer::dialog::Dialog;
+use cable_viewer::command::{Command, FileCommand};
+use cable_viewer::state::dialog::Dialog;
 use cable_viewer::state::{AppState, Item};
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
@@ -25,29 +24,29 @@ fn press(harness: &mut Harness<'_, ViewerApp>, modifiers: Modifiers, key: Key) {
 #[test]
 fn t04_the_view_is_zoomed_and_moved_by_keys() {
     let mut harness = open_span();
-    let before = state(&harness).camera;
+    let before = state(&harness).view.camera;
     for _ in 0..3 {
         press(&mut harness, Modifiers::NONE, Key::Plus);
     }
-    let closer = state(&harness).camera;
+    let closer = state(&harness).view.camera;
     assert!((closer.points_per_m / before.points_per_m - 2.0).abs() < 0.01 && closer.centre_m == before.centre_m);
     for _ in 0..3 {
         press(&mut harness, Modifiers::NONE, Key::Minus);
     }
-    assert!((state(&harness).camera.points_per_m / before.points_per_m - 1.0).abs() < 1e-9);
+    assert!((state(&harness).view.camera.points_per_m / before.points_per_m - 1.0).abs() < 1e-9);
     for (key, [x, y]) in [
         (Key::ArrowRight, [1.0, 0.0]),
         (Key::ArrowUp, [0.0, 1.0]),
         (Key::ArrowLeft, [-1.0, 0.0]),
         (Key::ArrowDown, [0.0, -1.0]),
     ] {
-        let before = state(&harness).camera.centre_m;
+        let before = state(&harness).view.camera.centre_m;
         press(&mut harness, Modifiers::SHIFT, key);
-        let after = state(&harness).camera.centre_m;
+        let after = state(&harness).view.camera.centre_m;
         let moved = [after[0] - before[0], after[1] - before[1]];
         assert!(moved[0] * x >= 0.0 && moved[1] * y >= 0.0 && moved[0].hypot(moved[1]) > 0.1, "{key:?}: {moved:?}");
     }
-    assert_eq!(state(&harness).live.solution.as_ref().unwrap().time_s, 0.0, "no step was taken");
+    assert_eq!(state(&harness).live.latest.solution.as_ref().unwrap().time_s, 0.0, "no step was taken");
 }
 
 #[test]
@@ -65,7 +64,7 @@ fn s12_graphs_are_read_and_zoomed_by_keys() {
     assert!(!told(&harness).contains("; A "), "{}", told(&harness));
     harness.get_by_label("Along the cable").focus();
     harness.run_steps(2);
-    let time_s = state(&harness).live.solution.as_ref().unwrap().time_s;
+    let time_s = state(&harness).live.latest.solution.as_ref().unwrap().time_s;
     press(&mut harness, Modifiers::NONE, Key::ArrowRight);
     assert!(told(&harness).contains("; A 6."), "in the middle: {}", told(&harness));
     press(&mut harness, Modifiers::NONE, Key::Enter);
@@ -85,11 +84,11 @@ fn s12_graphs_are_read_and_zoomed_by_keys() {
     let moved = view(&harness);
     assert!((part[0] - moved[0] - 0.125 * (part[1] - part[0])).abs() < 0.01, "{part:?} {moved:?}");
     // The keys were the graph's: time did not step. Without the focus they are the window's again.
-    assert_eq!(state(&harness).live.solution.as_ref().unwrap().time_s, time_s);
-    assert_eq!(state(&harness).recording.shown_s, None);
+    assert_eq!(state(&harness).live.latest.solution.as_ref().unwrap().time_s, time_s);
+    assert_eq!(state(&harness).live.recording.shown_s, None);
     press(&mut harness, Modifiers::NONE, Key::Escape);
     press(&mut harness, Modifiers::NONE, Key::ArrowLeft);
-    assert!(state(&harness).recording.shown_s.is_some());
+    assert!(state(&harness).live.recording.shown_s.is_some());
 }
 
 #[test]
@@ -99,17 +98,17 @@ fn several_things_are_picked_by_keys() {
         press(&mut harness, Modifiers::NONE, Key::M);
     }
     let ends = [0, 1].map(|support| Item::Support { cable: 0, support });
-    assert_eq!(state(&harness).picks(), [ends[0], ends[1], Item::Obstacle(0)]);
+    assert_eq!(state(&harness).selection.picks(), [ends[0], ends[1], Item::Obstacle(0)]);
     press(&mut harness, Modifiers::NONE, Key::N);
-    assert_eq!(state(&harness).picks().len(), 1, "N picks one alone");
+    assert_eq!(state(&harness).selection.picks().len(), 1, "N picks one alone");
     // One alone, and another that is not the next.
     press(&mut harness, Modifiers::NONE, Key::M);
-    assert_eq!(state(&harness).picks(), [ends[1], Item::Obstacle(0)]);
+    assert_eq!(state(&harness).selection.picks(), [ends[1], Item::Obstacle(0)]);
     for _ in 0..20 {
         press(&mut harness, Modifiers::NONE, Key::M);
     }
-    let mut all = cable_viewer::canvas::place::all(state(&harness));
-    let mut picks = state(&harness).picks();
+    let mut all = cable_viewer::geometry::handles::all(state(&harness));
+    let mut picks = state(&harness).selection.picks();
     all.sort_by_key(|i| format!("{i:?}"));
     picks.sort_by_key(|i| format!("{i:?}"));
     assert_eq!(picks, all, "each once");
@@ -124,7 +123,7 @@ fn dialogs_have_their_buttons_in_sight_in_the_smallest_window() {
             (Dialog::About, "Close"),
             (Dialog::Help, "Close"),
             (
-                Dialog::Feedback { answers: cable_viewer::feedback::Answers::default(), path: "f.csv".to_owned() },
+                Dialog::Feedback { answers: cable_viewer::io::feedback::Answers::default(), path: "f.csv".to_owned() },
                 "Cancel",
             ),
             (Dialog::ImportMap { path: String::new(), text: "0 0\n".repeat(40), unit_m: "1".to_owned() }, "Cancel"),

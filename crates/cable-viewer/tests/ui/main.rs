@@ -83,36 +83,36 @@ fn apply(harness: &mut Harness<'_, ViewerApp>, command: Command) {
 #[test]
 fn u13_dragging_an_end_moves_the_support_and_the_cable_follows() {
     let mut harness = open_span();
-    let scale = harness.state().state.camera.points_per_m;
-    let before = harness.state().state.scene.cables[0].supports[1].at_m.unwrap();
+    let scale = harness.state().state.view.camera.points_per_m;
+    let before = harness.state().state.document.scene.cables[0].supports[1].at_m.unwrap();
     let from = support(&harness, "right");
     drag(&mut harness, from, Vec2::new(-60.0, -40.0));
 
     let state = &harness.state().state;
-    let after = state.scene.cables[0].supports[1].at_m.unwrap();
+    let after = state.document.scene.cables[0].supports[1].at_m.unwrap();
     assert!((after[0] - before[0] + 60.0 / scale).abs() < 0.5 / scale, "{before:?} {after:?}");
     assert!((after[1] - before[1] - 40.0 / scale).abs() < 0.5 / scale, "{before:?} {after:?}");
-    let solution = state.snapshot.solution.as_ref().expect("an answer");
+    let solution = state.live.snapshot.solution.as_ref().expect("an answer");
     let end = solution.cables[0].nodes.last().unwrap();
     assert!((end.x_m - after[0]).hypot(end.y_m - after[1]) < 1e-6, "the cable's end is at ({}, {})", end.x_m, end.y_m);
-    assert_eq!(state.selected, Some(Item::Support { cable: 0, support: 1 }));
-    assert!(state.unsaved() && state.grabbed.is_none());
+    assert_eq!(state.selection.selected, Some(Item::Support { cable: 0, support: 1 }));
+    assert!(state.document.unsaved() && state.selection.grab.is_none());
 
     // The whole drag is one entry.
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(2);
-    assert_eq!(harness.state().state.scene.cables[0].supports[1].at_m, Some(before));
+    assert_eq!(harness.state().state.document.scene.cables[0].supports[1].at_m, Some(before));
 }
 
 #[test]
 fn u06_double_click_on_the_cable_adds_a_waypoint_and_delete_removes_it() {
     let mut harness = open_span();
     let node = {
-        let solution = harness.state().state.snapshot.solution.clone().expect("an answer");
+        let solution = harness.state().state.live.snapshot.solution.clone().expect("an answer");
         solution.cables[0].nodes[solution.cables[0].nodes.len() / 2]
     };
     let canvas = harness.get_by_label("Canvas").rect();
-    let at = harness.state().state.camera.to_screen(canvas, [node.x_m, node.y_m]);
+    let at = harness.state().state.view.camera.to_screen(canvas, [node.x_m, node.y_m]);
     harness.hover_at(at);
     harness.step();
     for pressed in [true, false, true, false] {
@@ -120,24 +120,24 @@ fn u06_double_click_on_the_cable_adds_a_waypoint_and_delete_removes_it() {
         harness.step();
     }
     harness.run_steps(2);
-    let supports = &harness.state().state.scene.cables[0].supports;
+    let supports = &harness.state().state.document.scene.cables[0].supports;
     assert_eq!(supports.len(), 3);
     assert_eq!(supports[1].kind, cable_core::scene::SupportKind::Pulley);
-    assert_eq!(harness.state().state.snapshot.error, None);
+    assert_eq!(harness.state().state.live.snapshot.error, None);
 
     harness.key_press(Key::Delete);
     harness.run_steps(2);
-    assert_eq!(harness.state().state.scene.cables[0].supports.len(), 2);
+    assert_eq!(harness.state().state.document.scene.cables[0].supports.len(), 2);
 }
 
 #[test]
 fn t04_dragging_the_background_moves_the_view_and_not_the_scene() {
     let mut harness = open(catalog::hanging_span());
     let canvas = harness.get_by_label("Canvas").rect();
-    let before = harness.state().state.camera.centre_m;
+    let before = harness.state().state.view.camera.centre_m;
     drag(&mut harness, canvas.left_top() + Vec2::new(120.0, 160.0), Vec2::new(50.0, 20.0));
-    assert_ne!(harness.state().state.camera.centre_m, before);
-    assert!(!harness.state().state.unsaved());
+    assert_ne!(harness.state().state.view.camera.centre_m, before);
+    assert!(!harness.state().state.document.unsaved());
 }
 
 #[test]
@@ -151,11 +151,11 @@ fn an_obstacle_is_dragged_whole_and_its_corners_once_it_is_selected() {
     });
     let mut harness = open(scene);
     let canvas = harness.get_by_label("Canvas").rect();
-    let corners = |harness: &Harness<'_, ViewerApp>| match &harness.state().state.scene.obstacles[0].shape {
+    let corners = |harness: &Harness<'_, ViewerApp>| match &harness.state().state.document.scene.obstacles[0].shape {
         Shape::Polygon { points_m } => points_m.clone(),
         other => panic!("{other:?}"),
     };
-    let camera = harness.state().state.camera;
+    let camera = harness.state().state.view.camera;
     let metre = camera.points_per_m as f32;
     drag(&mut harness, camera.to_screen(canvas, [5.0, -0.5]), Vec2::new(metre, -0.5 * metre));
     for (p, q) in square.iter().zip(corners(&harness)) {
@@ -171,7 +171,7 @@ fn t04_the_wheel_zooms_at_the_pointer() {
     let mut harness = open(catalog::hanging_span());
     let canvas = harness.get_by_label("Canvas").rect();
     let pointer = canvas.center() + Vec2::new(90.0, -70.0);
-    let before = harness.state().state.camera;
+    let before = harness.state().state.view.camera;
     harness.hover_at(pointer);
     harness.step();
     harness.event(egui::Event::MouseWheel {
@@ -182,7 +182,7 @@ fn t04_the_wheel_zooms_at_the_pointer() {
         modifiers: Modifiers::NONE,
     });
     harness.run_steps(30);
-    let after = harness.state().state.camera;
+    let after = harness.state().state.view.camera;
     assert!(after.points_per_m > 1.1 * before.points_per_m);
     let (p, q) = (before.to_world(canvas, pointer), after.to_world(canvas, pointer));
     assert!((p[0] - q[0]).hypot(p[1] - q[1]) < 1e-6, "{p:?} {q:?}");
@@ -194,7 +194,7 @@ fn every_catalogue_scene_is_drawn() {
         let harness = open(scene);
         let state = &harness.state().state;
         assert!(
-            state.snapshot.solution.is_some() || state.snapshot.error.is_some(),
+            state.live.snapshot.solution.is_some() || state.live.snapshot.error.is_some(),
             "{id} shows neither answer nor cause"
         );
     }
@@ -203,15 +203,15 @@ fn every_catalogue_scene_is_drawn() {
 #[test]
 fn u12_a_scene_without_an_answer_keeps_the_last_picture_and_says_why() {
     let mut harness = open_span();
-    let good = harness.state().state.snapshot.solution.clone().expect("an answer");
-    let mut cable = harness.state().state.scene.cables[0].clone();
+    let good = harness.state().state.live.snapshot.solution.clone().expect("an answer");
+    let mut cable = harness.state().state.document.scene.cables[0].clone();
     cable.axial_stiffness_n = f64::NAN;
     let broken = cable_viewer::command::SceneCommand::SetCable { cable: 0, value: Box::new(cable) };
     apply(&mut harness, Command::Scene(broken));
-    let snapshot = &harness.state().state.snapshot;
+    let snapshot = &harness.state().state.live.snapshot;
     assert!(snapshot.stale && snapshot.error.is_some(), "{:?}", snapshot.error);
     assert_eq!(snapshot.solution.as_ref(), Some(&good));
-    assert!(harness.state().state.scene_fault.is_some());
+    assert!(harness.state().state.document.fault.is_some());
 }
 
 #[test]
@@ -219,9 +219,9 @@ fn space_runs_and_pauses() {
     let mut harness = open(catalog::hanging_span());
     harness.key_press(Key::Space);
     harness.step();
-    assert!(!harness.state().state.playback.paused || harness.state().state.snapshot.error.is_some());
+    assert!(!harness.state().state.live.playback.paused || harness.state().state.live.snapshot.error.is_some());
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
-    assert!(harness.state().state.playback.paused);
+    assert!(harness.state().state.live.playback.paused);
 }
 
 #[test]
@@ -240,11 +240,13 @@ fn t01_a_file_that_is_no_scene_leaves_the_scene_and_says_where() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("broken.toml");
     std::fs::write(&path, "version = 1\ncables = 3\n").unwrap();
-    let before = harness.state().state.scene.clone();
+    let before = harness.state().state.document.scene.clone();
     apply(&mut harness, Command::File(cable_viewer::command::FileCommand::Open(path)));
     let state = &harness.state().state;
-    assert_eq!(state.scene, before);
-    let Some(cable_viewer::dialog::Dialog::Message { text, .. }) = &state.dialog else { panic!("{:?}", state.dialog) };
+    assert_eq!(state.document.scene, before);
+    let Some(cable_viewer::state::dialog::Dialog::Message { text, .. }) = &state.ui.dialog else {
+        panic!("{:?}", state.ui.dialog)
+    };
     assert!(text.contains("line 2"), "{text}");
 }
 
@@ -255,10 +257,10 @@ fn a_saved_scene_is_no_longer_marked_unsaved_and_opens_again() {
     let path = folder.path().join("scene.toml");
     let rename = cable_viewer::command::SceneCommand::SetName("Renamed".to_owned());
     apply(&mut harness, Command::Scene(rename));
-    assert!(harness.state().state.unsaved());
+    assert!(harness.state().state.document.unsaved());
     apply(&mut harness, Command::File(cable_viewer::command::FileCommand::SaveAs(path.clone())));
-    assert!(!harness.state().state.unsaved());
-    assert_eq!(cable_viewer::scene_file::load(&path).unwrap(), harness.state().state.scene);
+    assert!(!harness.state().state.document.unsaved());
+    assert_eq!(cable_viewer::io::scene_file::load(&path).unwrap(), harness.state().state.document.scene);
 }
 
 #[test]

@@ -4,15 +4,18 @@
 use cable_core::scene::catalog;
 use cable_core::solution::{CableSolution, ContactReport, ContactState, Cost, Node};
 use cable_core::{Model, Solution};
+use cable_viewer::app::screenshot;
+use cable_viewer::canvas;
 use cable_viewer::command::{Command, PlaybackCommand};
+use cable_viewer::render::offscreen::renderer;
+use cable_viewer::render::theme;
 use cable_viewer::state::{AppState, Item};
-use cable_viewer::{canvas, screenshot, theme};
 use egui::{Theme, Vec2};
 use egui_kittest::Harness;
 
 /// Compares the canvas of a state with its picture. Skips with a notice where nothing can draw, except in CI.
 fn compare(name: &str, state: AppState, theme: Theme) {
-    let renderer = match screenshot::renderer() {
+    let renderer = match renderer() {
         Ok(renderer) => renderer,
         Err(why) if std::env::var("CI").is_ok_and(|v| v == "true") => panic!("{why}"),
         Err(why) => return eprintln!("{name}: skipped, {why}"),
@@ -36,15 +39,15 @@ fn solved_with(scene: cable_core::Scene, model: Model) -> AppState {
     let mut harness = crate::open(scene);
     crate::apply(&mut harness, Command::SetModel(model));
     let mut state = harness.into_state().state;
-    assert_eq!(state.snapshot.error, None);
-    state.camera.fit_wanted = true;
+    assert_eq!(state.live.snapshot.error, None);
+    state.view.camera.fit_wanted = true;
     state
 }
 
 #[test]
 fn waypoints_dark() {
     let mut state = solved(catalog::pulley_waypoints());
-    state.selected = Some(Item::Support { cable: 0, support: 1 });
+    state.selection.selected = Some(Item::Support { cable: 0, support: 1 });
     compare("waypoints_dark", state, Theme::Dark);
 }
 
@@ -52,12 +55,12 @@ fn waypoints_dark() {
 #[test]
 fn a_hand_draws_an_end_dark() {
     let mut state = solved(catalog::hanging_span());
-    let mut answer = state.snapshot.solution.as_deref().expect("an answer").clone();
+    let mut answer = state.live.snapshot.solution.as_deref().expect("an answer").clone();
     answer.cables[0].assumptions.inertia = true;
-    state.snapshot.solution = Some(answer.into());
-    state.playback.paused = false;
-    let at = state.scene.cables[0].supports[1].at_m.expect("held");
-    state.scene.cables[0].supports[1].at_m = Some([at[0] - 1.0, at[1] + 1.7]);
+    state.live.snapshot.solution = Some(answer.into());
+    state.live.playback.paused = false;
+    let at = state.document.scene.cables[0].supports[1].at_m.expect("held");
+    state.document.scene.cables[0].supports[1].at_m = Some([at[0] - 1.0, at[1] + 1.7]);
     compare("a_hand_draws_an_end_dark", state, Theme::Dark);
 }
 
@@ -69,28 +72,29 @@ fn loads_and_wind_light() {
 #[test]
 fn slip_front_and_place_light() {
     let mut state = solved_with(catalog::draped_slipping(), Model::Spans);
-    state.scene.obstacles.truncate(1);
+    state.document.scene.obstacles.truncate(1);
     let from = cable_core::analysis::tension_budget::StartEnd::Slacker;
-    state.probe = Some(cable_viewer::state::Probe { cable: 0, arc_length_m: 6.0, from });
+    state.analysis.tension_marker = Some(cable_viewer::state::TensionMarker { cable: 0, arc_length_m: 6.0, from });
     compare("slip_front_and_place_light", state, Theme::Light);
 }
 
 #[test]
 fn over_service_tension_dark() {
     let mut state = solved(catalog::hanging_span());
-    let scene = state.snapshot.scene.as_deref().expect("a scene");
+    let scene = state.live.snapshot.scene.as_deref().expect("a scene");
     let mut scene = scene.clone();
-    let most = state.snapshot.solution.as_ref().expect("an answer").max_tension().tension_n;
+    let most = state.live.snapshot.solution.as_ref().expect("an answer").max_tension().tension_n;
     scene.cables[0].service_tension_n = 0.93 * most;
-    state.snapshot.scene = Some(scene.into());
+    state.live.snapshot.scene = Some(scene.into());
     compare("over_service_tension_dark", state, Theme::Dark);
 }
 
 #[test]
 fn no_answer_dark() {
     let mut state = solved(catalog::hanging_span());
-    state.snapshot.error = Some("fem did not converge in 60 iterations: unbalanced force 3.2 N at node 7".to_owned());
-    state.snapshot.stale = true;
+    state.live.snapshot.error =
+        Some("fem did not converge in 60 iterations: unbalanced force 3.2 N at node 7".to_owned());
+    state.live.snapshot.stale = true;
     compare("no_answer_dark", state, Theme::Dark);
 }
 
@@ -124,7 +128,7 @@ fn contacts_dark() {
         ..CableSolution::default()
     };
     let mut state = AppState::new(scene, None);
-    state.snapshot.solution = Some(std::sync::Arc::new(Solution {
+    state.live.snapshot.solution = Some(std::sync::Arc::new(Solution {
         time_s: 0.0,
         model: Model::Fem,
         reason: String::new(),
@@ -141,8 +145,8 @@ fn contacts_dark() {
 #[test]
 fn obstacles_light() {
     let mut state = AppState::new(catalog::tank(), None);
-    state.snapshot.error = Some("nothing was solved for this picture".to_owned());
-    state.selected = Some(Item::Obstacle(0));
+    state.live.snapshot.error = Some("nothing was solved for this picture".to_owned());
+    state.selection.selected = Some(Item::Obstacle(0));
     compare("obstacles_light", state, Theme::Light);
 }
 
@@ -168,11 +172,11 @@ fn safe_reach_and_path_dark() {
         ReachPlace { at_m: [x, mound], there_n: there_and_back_n, there_and_back_n, jammed: false }
     };
     let map = ReachMap { places: (0..41).map(place).collect(), start_x_m: 10.0, service_n: 800.0, breaking_n: 1e4 };
-    let scene = std::sync::Arc::new(state.scene.clone());
-    let maps = cable_viewer::reach::Maps::Line(std::sync::Arc::new(map));
-    state.reach.progress = cable_viewer::reach::Progress::Done((maps, scene));
-    state.reach.choice.back = true;
-    state.selected = Some(Item::Leg(2));
+    let scene = std::sync::Arc::new(state.document.scene.clone());
+    let maps = cable_viewer::jobs::safe_reach::Maps::Line(std::sync::Arc::new(map));
+    state.analysis.safe_reach.progress = cable_viewer::jobs::safe_reach::Progress::Done((maps, scene));
+    state.analysis.safe_reach.choice.back = true;
+    state.selection.selected = Some(Item::Leg(2));
     compare("safe_reach_and_path_dark", state, Theme::Dark);
 }
 
@@ -186,10 +190,10 @@ fn robot_pushes_its_cable_dark() {
     crate::apply(&mut harness, Command::Playback(PlaybackCommand::DriveRobot(Some(-0.6))));
     harness.run_steps(130);
     let mut state = harness.into_state().state;
-    let contacts = state.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
-    assert!(contacts.into_iter().any(|c| c.obstacle == "robot"), "{:?}", state.snapshot.error);
+    let contacts = state.live.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
+    assert!(contacts.into_iter().any(|c| c.obstacle == "robot"), "{:?}", state.live.snapshot.error);
     // By hand from here: how a heap lies depends on the solver.
-    let mut answer = Solution::clone(state.snapshot.solution.as_deref().expect("an answer"));
+    let mut answer = Solution::clone(state.live.snapshot.solution.as_deref().expect("an answer"));
     let robot = answer.robot.as_mut().expect("a robot");
     (robot.x_m, robot.y_m, robot.pitch_deg) = (8.8, 0.0, 0.0);
     let cable = &mut answer.cables[0];
@@ -210,8 +214,9 @@ fn robot_pushes_its_cable_dark() {
         vec![ContactReport { obstacle: "robot".to_owned(), begins_m: 7.85, ends_m: 7.85, parts: Vec::new(), ..touch }];
     cable.supports.clear();
     answer.warnings.clear();
-    state.snapshot.solution = Some(std::sync::Arc::new(answer));
-    (state.camera.fit_wanted, state.camera.points_per_m, state.camera.centre_m) = (false, 110.0, [8.0, 0.6]);
+    state.live.snapshot.solution = Some(std::sync::Arc::new(answer));
+    (state.view.camera.fit_wanted, state.view.camera.points_per_m, state.view.camera.centre_m) =
+        (false, 110.0, [8.0, 0.6]);
     compare("robot_pushes_its_cable_dark", state, Theme::Dark);
 }
 
@@ -240,9 +245,9 @@ fn end_reached() -> AppState {
             }
         })
         .collect();
-    let scene = std::sync::Arc::new(state.scene.clone());
-    let maps = cable_viewer::reach::Maps::Area(std::sync::Arc::new(area), None);
-    state.reach.progress = cable_viewer::reach::Progress::Done((maps, scene));
+    let scene = std::sync::Arc::new(state.document.scene.clone());
+    let maps = cable_viewer::jobs::safe_reach::Maps::Area(std::sync::Arc::new(area), None);
+    state.analysis.safe_reach.progress = cable_viewer::jobs::safe_reach::Progress::Done((maps, scene));
     state
 }
 
@@ -259,24 +264,24 @@ fn safe_reach_of_an_end_dark() {
 #[test]
 fn several_picked_in_us_units_light() {
     let mut state = solved(catalog::loads_wind_heat());
-    state.selected = Some(Item::Support { cable: 0, support: 0 });
-    state.also = vec![Item::Load(0)];
-    state.frame_m = Some([[2.0, 1.0], [6.0, 4.0]]);
-    state.layers.components = true;
+    state.selection.selected = Some(Item::Support { cable: 0, support: 0 });
+    state.selection.also = vec![Item::Load(0)];
+    state.selection.frame_m = Some([[2.0, 1.0], [6.0, 4.0]]);
+    state.view.layers.components = true;
     // The window says this at the start of each frame.
-    cable_viewer::panels::system::show(cable_viewer::panels::system::System::Us);
+    cable_viewer::units::system::set_current(cable_viewer::units::system::System::Us);
     compare("several_picked_in_us_units_light", state, Theme::Light);
-    cable_viewer::panels::system::show(cable_viewer::panels::system::System::Si);
+    cable_viewer::units::system::set_current(cable_viewer::units::system::System::Si);
 }
 
 #[test]
 fn guide_light() {
     use cable_viewer::ViewerApp;
-    use cable_viewer::command::FileCommand;
+
     let draw = |app: &mut ViewerApp, ctx: &egui::Context| {
-        app.state.theme = egui::ThemePreference::Light;
-        app.apply(ctx, vec![Command::File(FileCommand::OpenGuide(0))]);
-        (app.state.snapshot.solve_wall_s, app.state.live.solve_wall_s) = (1e-3, 1e-3);
+        app.state.view.theme = egui::ThemePreference::Light;
+        app.apply(ctx, vec![Command::File(cable_viewer::app::tutorials::open(0))]);
+        (app.state.live.snapshot.solve_wall_s, app.state.live.latest.solve_wall_s) = (1e-3, 1e-3);
     };
     let picture = match screenshot::draw(catalog::hanging_span(), [1100, 640], draw) {
         Ok(picture) => picture,

@@ -4,8 +4,8 @@ use cable_core::scene::catalog;
 use cable_core::solution::WarningKind;
 use cable_core::{Model, Scene, Solution};
 use cable_viewer::ViewerApp;
-use cable_viewer::canvas::supports;
 use cable_viewer::command::{Command, PlaybackCommand, SceneCommand};
+use cable_viewer::geometry::supports::{hand_spring, support_position};
 use cable_viewer::state::{Item, WorkerStatus};
 use egui::Key;
 use egui_kittest::Harness;
@@ -15,10 +15,10 @@ use crate::{apply, open, open_span, support};
 /// One frame at normal speed, s.
 const FRAME_S: f64 = 1.0 / 60.0;
 /// Fastest a dragged support moves, m/s (the default of the core), and a margin for rounding.
-const MOST_SPEED: f64 = 2.0 * 1.000_001;
+const MAX_SPEED: f64 = 2.0 * 1.000_001;
 
 fn solution(harness: &Harness<'_, ViewerApp>) -> Solution {
-    harness.state().state.snapshot.solution.as_deref().expect("an answer").clone()
+    harness.state().state.live.snapshot.solution.as_deref().expect("an answer").clone()
 }
 
 /// Every bit of every number: two answers print alike only if they are the same.
@@ -27,7 +27,7 @@ fn bits(solution: &Solution) -> String {
 }
 
 fn times(harness: &Harness<'_, ViewerApp>) -> Vec<f64> {
-    harness.state().state.history.samples.iter().map(|s| s.time_s).collect()
+    harness.state().state.live.history.samples.iter().map(|s| s.time_s).collect()
 }
 
 #[test]
@@ -39,17 +39,17 @@ fn the_history_holds_the_start_and_every_step() {
     let times = times(&harness);
     assert_eq!(times.len(), 2, "{times:?}");
     assert!((times[1] - FRAME_S).abs() < 1e-12, "{times:?}");
-    assert!(harness.state().state.playback.paused);
+    assert!(harness.state().state.live.playback.paused);
 }
 
 #[test]
 fn an_edit_at_rest_starts_the_history_again() {
     let mut harness = open_span();
-    let before = harness.state().state.history.samples[0].clone();
-    let mut cable = harness.state().state.scene.cables[0].clone();
+    let before = harness.state().state.live.history.samples[0].clone();
+    let mut cable = harness.state().state.document.scene.cables[0].clone();
     cable.linear_density_kg_per_m *= 2.0;
     apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
-    let samples = &harness.state().state.history.samples;
+    let samples = &harness.state().state.live.history.samples;
     assert_eq!(samples.len(), 1);
     assert!(samples[0].max_tension_n > 1.5 * before.max_tension_n);
 }
@@ -65,14 +65,14 @@ fn u07_reset_after_steps_is_the_start_bit_for_bit() {
         let name = format!("{} with {model}", scene.name);
         let mut harness = open(scene);
         apply(&mut harness, Command::SetModel(model));
-        assert_eq!(harness.state().state.snapshot.error, None, "{name}");
+        assert_eq!(harness.state().state.live.snapshot.error, None, "{name}");
         let start = solution(&harness);
         for _ in 0..3 {
             harness.key_press(Key::ArrowRight);
             harness.run_steps(2);
         }
         let state = &harness.state().state;
-        assert_eq!(state.snapshot.error, None, "{name}");
+        assert_eq!(state.live.snapshot.error, None, "{name}");
         assert!((solution(&harness).time_s - 3.0 * FRAME_S).abs() < 1e-12, "{name}");
         harness.key_press(Key::R);
         harness.run_steps(2);
@@ -86,14 +86,14 @@ fn space_runs_and_pauses() {
     let mut harness = open_span();
     harness.key_press(Key::Space);
     harness.run_steps(5);
-    assert!(!harness.state().state.playback.paused);
+    assert!(!harness.state().state.live.playback.paused);
     let running = solution(&harness).time_s;
     assert!(running > 3.0 * FRAME_S, "{running}");
     harness.key_press(Key::Space);
     harness.run_steps(2);
     let paused = solution(&harness).time_s;
     harness.run_steps(5);
-    assert!(harness.state().state.playback.paused);
+    assert!(harness.state().state.live.playback.paused);
     assert_eq!(solution(&harness).time_s, paused);
 }
 
@@ -115,21 +115,21 @@ fn what_a_hand_is_ahead_of_a_support_is_drawn_and_said() {
     let mut harness = open_span();
     apply(&mut harness, Command::SetModel(Model::Fem));
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
-    let at = harness.state().state.scene.cables[0].supports[1].at_m.expect("held");
+    let at = harness.state().state.document.scene.cables[0].supports[1].at_m.expect("held");
     let (item, to_m) = (Item::Support { cable: 0, support: 1 }, [at[0] - 1.0, at[1] + 0.5]);
     apply(&mut harness, Command::Scene(SceneCommand::Move { item, to_m }));
     harness.run_steps(8);
-    let drawn = supports::drawn(&harness.state().state, 0, 1).expect("the hand is ahead");
+    let drawn = hand_spring(&harness.state().state, 0, 1).expect("the hand is ahead");
     assert_eq!(drawn[1], to_m);
     let moved = (drawn[0][0] - at[0]).hypot(drawn[0][1] - at[1]);
     assert!((0.02..0.4).contains(&moved), "{moved} m");
-    assert_eq!(supports::place(&harness.state().state, 0, 1), Some(drawn[0]));
+    assert_eq!(support_position(&harness.state().state, 0, 1), Some(drawn[0]));
     let said = solution(&harness).warnings;
     let held = said.iter().find(|w| w.kind == WarningKind::SupportHeld).expect("said");
     assert!(held.message.contains("2 m/s"), "{}", held.message);
     harness.run_steps(60);
-    assert_eq!(supports::drawn(&harness.state().state, 0, 1), None);
-    assert_eq!(supports::place(&harness.state().state, 0, 1), Some(to_m));
+    assert_eq!(hand_spring(&harness.state().state, 0, 1), None);
+    assert_eq!(support_position(&harness.state().state, 0, 1), Some(to_m));
 }
 
 #[test]
@@ -156,8 +156,8 @@ fn a_support_dragged_while_time_runs_is_followed_and_never_jumps() {
             }
             harness.step();
             let state = &harness.state().state;
-            assert_eq!(state.snapshot.error, None, "{name}, frame {frame}");
-            assert!(!matches!(state.worker, WorkerStatus::Dead(_)), "{name}");
+            assert_eq!(state.live.snapshot.error, None, "{name}, frame {frame}");
+            assert!(!matches!(state.solver.status, WorkerStatus::Dead(_)), "{name}");
             let now = solution(&harness);
             let end = |s: &Solution| {
                 let r = &s.cables[0].supports[last];
@@ -166,14 +166,14 @@ fn a_support_dragged_while_time_runs_is_followed_and_never_jumps() {
             let (p, q) = (end(&before), end(&now));
             let moved = (p[0] - q[0]).hypot(p[1] - q[1]);
             let passed = now.time_s - before.time_s;
-            assert!(moved <= MOST_SPEED * passed + 1e-9, "{name}: {moved} m in {passed} s");
+            assert!(moved <= MAX_SPEED * passed + 1e-9, "{name}: {moved} m in {passed} s");
             seen += usize::from(moved > 0.0);
             before = now;
         }
         assert!(seen > 4, "{name}: it moved in {seen} frames");
         let end = &before.cables[0].supports[last];
         assert!((end.x_m - target[0]).hypot(end.y_m - target[1]) < 1e-3, "{name}: ({}, {})", end.x_m, end.y_m);
-        let drawn = harness.state().state.camera.to_world(
+        let drawn = harness.state().state.view.camera.to_world(
             egui_kittest::kittest::Queryable::get_by_label(&harness, "Canvas").rect(),
             support(&harness, &label),
         );
@@ -206,7 +206,7 @@ fn u12_every_model_answers_what_it_can_and_refuses_the_rest_in_words() {
         let mut harness = open(scene);
         let good = solution(&harness);
         apply(&mut harness, Command::SetModel(model));
-        let snapshot = &harness.state().state.snapshot;
+        let snapshot = &harness.state().state.live.snapshot;
         if can {
             assert_eq!(snapshot.error, None, "{name}");
             assert!(!snapshot.stale, "{name}");
@@ -233,8 +233,8 @@ fn figures_have_errors_while_time_runs() {
     let at_rest = error(&harness).expect("errors in motion");
     assert!(at_rest < 0.2 * largest(&harness), "{at_rest} N");
     // A hand that pulls is felt by the coarser runs, too: what they differ by grows, but they do not stay behind.
-    let last = harness.state().state.scene.cables[0].supports.len() - 1;
-    let at = harness.state().state.scene.cables[0].supports[last].at_m.expect("held");
+    let last = harness.state().state.document.scene.cables[0].supports.len() - 1;
+    let at = harness.state().state.document.scene.cables[0].supports[last].at_m.expect("held");
     let item = Item::Support { cable: 0, support: last };
     for k in 1..=12 {
         let to_m = [at[0] + 0.01 * f64::from(k), at[1]];
@@ -245,12 +245,12 @@ fn figures_have_errors_while_time_runs() {
     assert!(pulled < 0.5 * largest(&harness), "{pulled} of {} N", largest(&harness));
     let apart_m = solution(&harness).cables[0].errors.position_m.expect("errors under the hand");
     assert!(apart_m < 0.05, "{apart_m} m: the coarser runs stay where the hand was");
-    let run = &harness.state().state.snapshot.peaks[0];
+    let run = &harness.state().state.live.snapshot.peaks[0];
     let [from, to] = run.ranges.expect("a range").greatest_n;
     let most = run.peaks.greatest.tension_n;
     assert!(from <= most && most <= to && from > 0.0, "{most} in {from} to {to} N");
     // What changes the scene while time runs ends what is known.
-    let mut cable = harness.state().state.scene.cables[0].clone();
+    let mut cable = harness.state().state.document.scene.cables[0].clone();
     cable.linear_density_kg_per_m *= 2.0;
     apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
     harness.run_steps(2);
@@ -262,10 +262,10 @@ fn a_property_the_model_lacks_is_refused_beside_the_last_picture() {
     let mut harness = open(catalog::hanging_span());
     apply(&mut harness, Command::SetModel(Model::MassSpring));
     let good = solution(&harness);
-    let mut cable = harness.state().state.scene.cables[0].clone();
+    let mut cable = harness.state().state.document.scene.cables[0].clone();
     cable.self_contact = true;
     apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
-    let snapshot = &harness.state().state.snapshot;
+    let snapshot = &harness.state().state.live.snapshot;
     let error = snapshot.error.clone().unwrap_or_default();
     assert!(error.contains("mass-spring") && snapshot.stale, "{error:?}");
     assert_eq!(bits(&solution(&harness)), bits(&good));
@@ -280,11 +280,11 @@ fn u18_every_catalogue_scene_plays_five_frames_or_says_why_not() {
         apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
         harness.run_steps(5);
         let state = &harness.state().state;
-        assert!(!matches!(state.worker, WorkerStatus::Dead(_)), "{id}");
-        match &state.snapshot.error {
+        assert!(!matches!(state.solver.status, WorkerStatus::Dead(_)), "{id}");
+        match &state.live.snapshot.error {
             Some(error) => {
-                assert!(state.snapshot.stale && state.playback.paused, "{id}: {error}");
-                assert!(state.snapshot.solution.is_some(), "{id} keeps its picture");
+                assert!(state.live.snapshot.stale && state.live.playback.paused, "{id}: {error}");
+                assert!(state.live.snapshot.solution.is_some(), "{id} keeps its picture");
                 refused.push((id, error.clone()));
             }
             None => assert!(solution(&harness).time_s > 4.0 * FRAME_S, "{id}"),

@@ -6,15 +6,17 @@ use cable_core::analysis::safe_reach::line::ReachMap;
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, ViewCommand};
-use cable_viewer::reach::{Choice, Found, Maps, Moved, Order, PLACES, Progress, View, start};
+use cable_viewer::jobs::safe_reach::{
+    Choice, Maps, Outcome, PLACES, Progress, ReachQuery, ReachSubject, SafeReachState, start,
+};
 use egui::{Key, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
 use crate::{apply, open};
 
-fn reach<'a>(harness: &'a Harness<'_, ViewerApp>) -> &'a View {
-    &harness.state().state.reach
+fn reach<'a>(harness: &'a Harness<'_, ViewerApp>) -> &'a SafeReachState {
+    &harness.state().state.analysis.safe_reach
 }
 
 fn click(harness: &mut Harness<'_, ViewerApp>, label: &str) {
@@ -47,16 +49,18 @@ fn safe_reach_of_a_robot_is_found_beside_the_window_and_can_be_ended() {
     // The window goes on meanwhile.
     harness.key_press(Key::ArrowRight);
     harness.run_steps(3);
-    assert_eq!(harness.state().state.snapshot.error, None);
+    assert_eq!(harness.state().state.live.snapshot.error, None);
     click(&mut harness, "Cancel safe reach");
     assert!(matches!(reach(&harness).progress, Progress::None));
 
     // A short search to its end.
     let settings = cable_core::Settings::default();
     let corners_m = [[9.9, 0.0], [10.1, 0.0]];
-    let job =
-        start(Order { scene: scene.clone(), now: None, settings, moved: Moved::Robot, corners_m, across: 8 }, || {});
-    let mut found: Option<Found> = None;
+    let job = start(
+        ReachQuery { scene: scene.clone(), now: None, settings, moved: ReachSubject::Robot, corners_m, across: 8 },
+        || {},
+    );
+    let mut found: Option<Outcome> = None;
     patiently("a short search", || {
         match job.progress() {
             Progress::Done(done) => found = Some(done),
@@ -82,7 +86,7 @@ fn a_search_that_is_dropped_ends() {
     let theirs = Arc::clone(&heard);
     let (scene, settings) = (catalog::robot_drive(), cable_core::Settings::default());
     let corners_m = [[0.0, 0.0], [20.0, 0.0]];
-    let order = Order { scene, now: None, settings, moved: Moved::Robot, corners_m, across: 8 };
+    let order = ReachQuery { scene, now: None, settings, moved: ReachSubject::Robot, corners_m, across: 8 };
     let job = start(order, move || {
         theirs.fetch_add(1, Ordering::Relaxed);
         std::thread::sleep(Duration::from_millis(20));
@@ -109,7 +113,7 @@ fn safe_reach_of_an_end_is_a_map_of_the_plane_found_by_keys_alone_and_told_in_wo
     assert!(matches!(reach(&harness).progress, Progress::Running(..)), "{:?}", reach(&harness));
 
     // An edit meanwhile is answered at once, and the map says that it is of the scene before.
-    let mut cable = harness.state().state.scene.cables[0].clone();
+    let mut cable = harness.state().state.document.scene.cables[0].clone();
     cable.length_m += 0.1;
     let edit = cable_viewer::command::SceneCommand::SetCable { cable: 0, value: Box::new(cable) };
     apply(&mut harness, Command::Scene(edit));
@@ -122,7 +126,7 @@ fn safe_reach_of_an_end_is_a_map_of_the_plane_found_by_keys_alone_and_told_in_wo
     let Some((Maps::Area(there, Some(ways)), _)) = reach(&harness).found().cloned() else {
         panic!("{:?}", reach(&harness))
     };
-    let [low, high] = harness.state().state.visible_m;
+    let [low, high] = harness.state().state.view.visible_m;
     let inside = |p: [f64; 2]| (0..2).all(|k| p[k] >= low[k] - 1e-9 && p[k] <= high[k] + 1e-9);
     assert!((0..there.most_n.len()).all(|k| inside(there.at(k))), "all over what is in view, and no farther");
     let (rows, known) = (there.most_n.len() / there.columns, there.most_n.iter().filter(|n| n.is_finite()).count());
@@ -154,7 +158,7 @@ fn safe_reach_begins_where_the_end_is_on_screen() {
     apply(&mut harness, Command::Playback(cable_viewer::command::PlaybackCommand::SetPaused(false)));
     harness.run_steps(50);
     apply(&mut harness, Command::Playback(cable_viewer::command::PlaybackCommand::SetPaused(true)));
-    let there = harness.state().state.snapshot.solution.as_ref().unwrap().cables[0].supports[1].clone();
+    let there = harness.state().state.live.snapshot.solution.as_ref().unwrap().cables[0].supports[1].clone();
     assert!((there.x_m - 8.0).abs() < 1e-6, "{there:?}");
     click(&mut harness, "Find safe reach");
     patiently("a coarse map", || {
@@ -171,23 +175,23 @@ fn safe_reach_begins_where_the_end_is_on_screen() {
 
 #[test]
 fn what_is_taken_somewhere_is_the_robot_else_what_is_picked_else_an_end_and_can_be_chosen() {
-    let moved = |harness: &Harness<'_, ViewerApp>| cable_viewer::reach::moved(&harness.state().state);
+    let moved = |harness: &Harness<'_, ViewerApp>| cable_viewer::state::questions::reach_target(&harness.state().state);
     let mut harness = tall(catalog::robot_drive());
-    assert_eq!(moved(&harness), Some(Moved::Robot));
+    assert_eq!(moved(&harness), Some(ReachSubject::Robot));
     harness.get_by_label("What is taken somewhere").click();
     harness.run_steps(3);
-    let riser = harness.state().state.scene.cables[0].supports[0].name.clone();
-    let label = format!("Support {riser} of {}", harness.state().state.scene.cables[0].name);
+    let riser = harness.state().state.document.scene.cables[0].supports[0].name.clone();
+    let label = format!("Support {riser} of {}", harness.state().state.document.scene.cables[0].name);
     // The canvas has a name of the same words.
     let entry =
         harness.get_all_by_label(&label).find(|n| n.accesskit_node().role() != egui::accesskit::Role::GraphicsSymbol);
     entry.unwrap().click();
     harness.run_steps(3);
-    assert_eq!(moved(&harness), Some(Moved::Support { cable: 0, support: 0 }));
+    assert_eq!(moved(&harness), Some(ReachSubject::Support { cable: 0, support: 0 }));
 
     let mut harness = tall(catalog::hanging_span());
-    assert_eq!(moved(&harness), Some(Moved::Support { cable: 0, support: 1 }));
+    assert_eq!(moved(&harness), Some(ReachSubject::Support { cable: 0, support: 1 }));
     let left = cable_viewer::state::Item::Support { cable: 0, support: 0 };
     apply(&mut harness, Command::View(ViewCommand::Select(Some(left))));
-    assert_eq!(moved(&harness), Some(Moved::Support { cable: 0, support: 0 }));
+    assert_eq!(moved(&harness), Some(ReachSubject::Support { cable: 0, support: 0 }));
 }

@@ -3,8 +3,8 @@
 use cable_core::Robot;
 use cable_core::scene::{SupportKind, catalog};
 use cable_viewer::command::{Command, SceneCommand};
-use cable_viewer::dialog::Dialog;
 use cable_viewer::state::Item;
+use cable_viewer::state::dialog::Dialog;
 use egui_kittest::kittest::Queryable;
 
 use crate::{apply, open};
@@ -15,32 +15,32 @@ fn kept_changes_are_offered_and_taken_over_as_unsaved() {
     let path = folder.path().join("recovery.toml");
     let mut kept = catalog::over_beam();
     kept.name = "Worked on for hours".to_owned();
-    cable_viewer::scene_file::save(&path, &kept).unwrap();
+    cable_viewer::io::scene_file::save(&path, &kept).unwrap();
     let mut harness = open(catalog::hanging_span());
     harness.state_mut().keep_changes_in(path.clone());
     harness.run_steps(2);
     harness.get_by_label("Recover").click();
     harness.run_steps(3);
     let state = &harness.state().state;
-    assert_eq!(state.scene, kept);
-    assert!(state.unsaved() && state.dialog.is_none() && path.exists());
-    assert_eq!(state.snapshot.error, None);
+    assert_eq!(state.document.scene, kept);
+    assert!(state.document.unsaved() && state.ui.dialog.is_none() && path.exists());
+    assert_eq!(state.live.snapshot.error, None);
     let saved = folder.path().join("saved.toml");
     apply(&mut harness, Command::File(cable_viewer::command::FileCommand::SaveAs(saved)));
-    assert!(!harness.state().state.unsaved());
+    assert!(!harness.state().state.document.unsaved());
 }
 
 #[test]
 fn kept_changes_can_be_deleted() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("recovery.toml");
-    cable_viewer::scene_file::save(&path, &catalog::over_beam()).unwrap();
+    cable_viewer::io::scene_file::save(&path, &catalog::over_beam()).unwrap();
     let mut harness = open(catalog::hanging_span());
     harness.state_mut().keep_changes_in(path.clone());
     harness.run_steps(2);
     harness.get_by_label("Delete them").click();
     harness.run_steps(2);
-    assert!(!path.exists() && harness.state().state.dialog.is_none());
+    assert!(!path.exists() && harness.state().state.ui.dialog.is_none());
 }
 
 #[test]
@@ -51,10 +51,10 @@ fn a_damaged_copy_is_said_and_the_window_stays_usable() {
     let mut harness = open(catalog::hanging_span());
     harness.state_mut().keep_changes_in(path);
     harness.run_steps(2);
-    assert!(matches!(harness.state().state.dialog, Some(Dialog::Message { .. })));
+    assert!(matches!(harness.state().state.ui.dialog, Some(Dialog::Message { .. })));
     harness.get_by_label("Close").click();
     harness.run_steps(2);
-    assert!(harness.state().state.dialog.is_none());
+    assert!(harness.state().state.ui.dialog.is_none());
 }
 
 #[test]
@@ -66,9 +66,9 @@ fn a_robot_is_dragged_along_the_ground_with_the_cable_on_its_hitch() {
     (end.kind, end.at_m) = (SupportKind::Robot, None);
     scene.robot = Some(robot);
     let mut harness = open(scene);
-    assert_eq!(harness.state().state.snapshot.error, None);
+    assert_eq!(harness.state().state.live.snapshot.error, None);
     let end = |harness: &egui_kittest::Harness<'_, cable_viewer::ViewerApp>| {
-        let solution = harness.state().state.snapshot.solution.clone().unwrap();
+        let solution = harness.state().state.live.snapshot.solution.clone().unwrap();
         let r = solution.cables[0].supports.last().unwrap().clone();
         [r.x_m, r.y_m]
     };
@@ -76,13 +76,13 @@ fn a_robot_is_dragged_along_the_ground_with_the_cable_on_its_hitch() {
     let to_m = [10.4, 3.0];
     apply(&mut harness, Command::Scene(SceneCommand::Move { item: Item::Robot, to_m }));
     let state = &harness.state().state;
-    assert_eq!(state.scene.robot.as_ref().unwrap().at_m, [10.4, 0.0], "it stays on the ground");
-    assert_eq!(state.snapshot.error, None);
+    assert_eq!(state.document.scene.robot.as_ref().unwrap().at_m, [10.4, 0.0], "it stays on the ground");
+    assert_eq!(state.live.snapshot.error, None);
     assert!((end(&harness)[0] - hitch[0] - 0.4).abs() < 1e-9);
     // Without the robot the cable stays where it hung.
     apply(&mut harness, Command::Scene(SceneCommand::Remove(Item::Robot)));
-    let support = harness.state().state.scene.cables[0].supports.last().unwrap().clone();
+    let support = harness.state().state.document.scene.cables[0].supports.last().unwrap().clone();
     assert_eq!(support.kind, SupportKind::Fixed);
     assert!((support.at_m.unwrap()[0] - hitch[0] - 0.4).abs() < 1e-9);
-    assert_eq!(harness.state().state.scene_fault, None);
+    assert_eq!(harness.state().state.document.fault, None);
 }

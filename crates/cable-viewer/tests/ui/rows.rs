@@ -6,9 +6,10 @@ use cable_core::scene::{Shape, Support, catalog};
 use cable_core::solution::WarningKind;
 use cable_core::{Model, Robot, Scene, Solution};
 use cable_viewer::ViewerApp;
-use cable_viewer::colour::{ColourMap, Quantity};
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand};
+use cable_viewer::render::colour::{ColourMap, Quantity};
 use cable_viewer::state::AppState;
+use cable_viewer::state::dialog::Replacement;
 use egui::Vec2;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -20,7 +21,7 @@ pub fn state<'a>(harness: &'a Harness<'_, ViewerApp>) -> &'a AppState {
 }
 
 pub fn answer(harness: &Harness<'_, ViewerApp>) -> Solution {
-    state(harness).snapshot.solution.as_deref().expect("an answer").clone()
+    state(harness).live.snapshot.solution.as_deref().expect("an answer").clone()
 }
 
 pub fn click(harness: &mut Harness<'_, ViewerApp>, label: &str) {
@@ -30,7 +31,7 @@ pub fn click(harness: &mut Harness<'_, ViewerApp>, label: &str) {
 
 /// The first cable with a change.
 pub fn set_cable(harness: &mut Harness<'_, ViewerApp>, change: impl FnOnce(&mut cable_core::Cable)) {
-    let mut value = state(harness).scene.cables[0].clone();
+    let mut value = state(harness).document.scene.cables[0].clone();
     change(&mut value);
     apply(harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(value) }));
 }
@@ -65,23 +66,23 @@ fn s03_a_property_changes_while_time_runs_and_time_goes_on() {
     let before = answer(&harness);
     set_cable(&mut harness, |c| c.linear_density_kg_per_m *= 1.5);
     let after = answer(&harness);
-    assert!(!state(&harness).playback.paused && after.time_s > before.time_s, "no restart");
+    assert!(!state(&harness).live.playback.paused && after.time_s > before.time_s, "no restart");
     let end = |s: &Solution| s.cables[0].nodes[s.cables[0].nodes.len() / 2];
     let moved = (end(&after).x_m - end(&before).x_m).hypot(end(&after).y_m - end(&before).y_m);
     assert!(moved < 0.05, "the cable goes on where it was: {moved} m");
     harness.run_steps(30);
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(state(&harness).live.snapshot.error, None);
     assert!(answer(&harness).max_tension().tension_n > 1.2 * before.max_tension().tension_n);
 }
 
 #[test]
 fn s04_nothing_gets_into_anything() {
     let mut harness = open(catalog::over_beam());
-    let radius = 0.5 * state(&harness).scene.cables[0].diameter_m;
+    let radius = 0.5 * state(&harness).document.scene.cables[0].diameter_m;
     play(&mut harness, 45);
-    for (k, answer) in state(&harness).recording.answers().iter().enumerate() {
+    for (k, answer) in state(&harness).live.recording.answers().iter().enumerate() {
         for n in &answer.cables[0].nodes {
-            for o in &state(&harness).scene.obstacles {
+            for o in &state(&harness).document.scene.obstacles {
                 let deep = depth(&o.shape, [n.x_m, n.y_m]);
                 assert!(deep < radius, "{} at ({}, {}) in picture {k}", o.name, n.x_m, n.y_m);
             }
@@ -105,11 +106,12 @@ fn s04_the_cable_stays_out_of_the_robot() {
     harness.run_steps(300);
     harness.event(key(false));
     harness.run_steps(2);
-    assert_eq!(state(&harness).snapshot.error, None);
-    let heading = state(&harness).scene.robot.as_ref().unwrap().heading;
-    let preset = robot_presets().iter().find(|p| p.id == state(&harness).scene.robot.as_ref().unwrap().preset).unwrap();
-    let radius = 0.5 * state(&harness).scene.cables[0].diameter_m;
-    let answers = state(&harness).recording.answers();
+    assert_eq!(state(&harness).live.snapshot.error, None);
+    let heading = state(&harness).document.scene.robot.as_ref().unwrap().heading;
+    let preset =
+        robot_presets().iter().find(|p| p.id == state(&harness).document.scene.robot.as_ref().unwrap().preset).unwrap();
+    let radius = 0.5 * state(&harness).document.scene.cables[0].diameter_m;
+    let answers = state(&harness).live.recording.answers();
     let (mut way, mut pressed) = (0.0_f64, 0.0_f64);
     for answer in answers {
         let r = answer.robot.unwrap();
@@ -180,22 +182,17 @@ pub fn crossing() -> Scene {
 fn s05_a_cable_that_crosses_itself_is_named_and_can_be_made_to_stop_on_itself() {
     let mut harness = open(crossing());
     apply(&mut harness, Command::SetModel(Model::Fem));
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(state(&harness).live.snapshot.error, None);
     assert!(warned(&harness, WarningKind::Loop), "{:?}", answer(&harness).warnings);
     harness.get_by_label_contains("Crosses itself");
-    apply(
-        &mut harness,
-        Command::File(FileCommand::Discard(Box::new(Command::File(FileCommand::OpenCatalogue(
-            "hanging-span".to_owned(),
-        ))))),
-    );
+    apply(&mut harness, Command::File(FileCommand::Discard(Replacement::OpenCatalogue("hanging-span".to_owned()))));
     harness.set_size(Vec2::new(1280.0, 1800.0));
     harness.run_steps(3);
     click(&mut harness, "Self-contact");
-    assert!(state(&harness).scene.cables[0].self_contact);
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert!(state(&harness).document.scene.cables[0].self_contact);
+    assert_eq!(state(&harness).live.snapshot.error, None);
     play(&mut harness, 5);
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(state(&harness).live.snapshot.error, None);
 }
 
 #[test]
@@ -205,8 +202,8 @@ fn s07_robots_are_drawn_as_large_as_published() {
         let robot = Robot { preset: preset.id.to_owned(), at_m: [9.0, 0.0], ..Robot::default() };
         scene.robot = Some(robot);
         let harness = open(scene);
-        assert_eq!(state(&harness).scene_fault, None, "{}", preset.id);
-        let outline = cable_viewer::canvas::robot::outline(state(&harness));
+        assert_eq!(state(&harness).document.fault, None, "{}", preset.id);
+        let outline = cable_viewer::geometry::robot::robot_outline(state(&harness));
         let span = |k: usize| {
             let values = || outline.iter().map(|p| p[k]);
             values().fold(f64::MIN, f64::max) - values().fold(f64::MAX, f64::min)
@@ -225,14 +222,14 @@ fn s10_stress_and_strain_are_told_with_their_units() {
     let cable = &answer(&harness).cables[0];
     let most = |of: fn(&cable_core::solution::Node) -> f64| cable.nodes.iter().map(of).fold(0.0, f64::max);
     for (label, text) in [
-        ("Max stress", cable_viewer::panels::unit::stress(most(|n| n.stress_pa))),
-        ("Max strain", cable_viewer::panels::unit::strain(most(|n| n.strain))),
+        ("Max stress", cable_viewer::units::format::stress(most(|n| n.stress_pa))),
+        ("Max strain", cable_viewer::units::format::strain(most(|n| n.strain))),
     ] {
         harness.get_by_label(label);
         harness.get_by_label(&text);
     }
     let node = cable.nodes[3];
-    let area = state(&harness).scene.cables[0].area_m2();
+    let area = state(&harness).document.scene.cables[0].area_m2();
     assert!((node.stress_pa * area / node.tension_n - 1.0).abs() < 1e-12, "T / A");
 }
 
@@ -270,29 +267,29 @@ fn s15_it_breaks_at_its_breaking_tension_and_goes_on_as_two() {
         c.breaking_tension_n = 0.9 * most.tension_n;
     });
     play(&mut harness, 30);
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(state(&harness).live.snapshot.error, None);
     let after = answer(&harness);
     assert!(
         after.cables[0].pieces().count() >= 2,
         "{} s, {:?}: {:?}",
         after.time_s,
-        state(&harness).playback,
+        state(&harness).live.playback,
         after.warnings
     );
-    let event = state(&harness).recording.events().iter().find(|e| e.kind == WarningKind::Broken).cloned();
+    let event = state(&harness).live.recording.events().iter().find(|e| e.kind == WarningKind::Broken).cloned();
     assert!(event.is_some_and(|e| e.time_s < 0.1), "marked on the timeline");
     // It falls, and time goes on.
     let low = |s: &Solution| s.cables[0].nodes.iter().map(|n| n.y_m).fold(f64::MAX, f64::min);
     let before = answer(&harness).time_s;
     harness.run_steps(10);
     assert!(answer(&harness).time_s > before && low(&answer(&harness)).is_finite());
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(state(&harness).live.snapshot.error, None);
 }
 
 #[test]
 fn s18_properties_have_names_units_presets_and_a_way_back() {
     let mut harness = open_span();
-    let loaded = state(&harness).scene.cables[0].clone();
+    let loaded = state(&harness).document.scene.cables[0].clone();
     let spoken = |h: &Harness<'_, ViewerApp>, label: &str| {
         let field = h.get_by_role_and_label(egui::accesskit::Role::TextInput, label);
         field.accesskit_node().value().unwrap_or_default()
@@ -307,7 +304,7 @@ fn s18_properties_have_names_units_presets_and_a_way_back() {
     harness.set_size(Vec2::new(1280.0, 1800.0));
     harness.run_steps(3);
     click(&mut harness, "Reset length");
-    assert_eq!(state(&harness).scene.cables[0], loaded);
+    assert_eq!(state(&harness).document.scene.cables[0], loaded);
 }
 
 #[test]
@@ -325,8 +322,8 @@ fn s20_colours_are_even_to_every_eye_and_what_they_show_is_chosen() {
     harness.run_steps(3);
     harness.get_by_label("Colour by stress").click();
     harness.run_steps(3);
-    assert_eq!(state(&harness).colour.quantity, Quantity::Stress);
-    let [low, high] = state(&harness).colour.range(&answer(&harness));
+    assert_eq!(state(&harness).view.colour.quantity, Quantity::Stress);
+    let [low, high] = state(&harness).view.colour.range(&answer(&harness));
     let node = answer(&harness).cables[0].nodes[0];
     assert!(low < high && (low..=high).contains(&node.stress_pa));
 }

@@ -7,10 +7,11 @@ use cable_core::scene::catalog;
 use cable_core::solution::Node;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use cable_viewer::history::Sample;
-use cable_viewer::plot::measure::Measure;
-use cable_viewer::run::Run;
+use cable_viewer::record::measure::Measure;
+use cable_viewer::record::run::Run;
+use cable_viewer::record::samples::Sample;
 use cable_viewer::state::AppState;
+use cable_viewer::state::dialog::Replacement;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
@@ -33,15 +34,15 @@ fn s11_a_run_is_opened_again_and_nothing_is_lost() {
     let folder = tempfile::tempdir().unwrap();
     let run = folder.path().join("run");
     apply(&mut harness, Command::File(FileCommand::SaveRun(run.clone())));
-    let saved: Vec<_> = state(&harness).recording.answers().to_vec();
-    let scene = state(&harness).scene.clone();
+    let saved: Vec<_> = state(&harness).live.recording.answers().to_vec();
+    let scene = state(&harness).document.scene.clone();
 
     let mut harness = open_span();
-    apply(&mut harness, Command::File(FileCommand::Discard(Box::new(Command::File(FileCommand::OpenRun(run))))));
+    apply(&mut harness, Command::File(FileCommand::Discard(Replacement::OpenRun(run))));
     harness.run_steps(3);
-    assert_eq!(state(&harness).dialog, None);
-    assert_eq!(state(&harness).scene, scene);
-    let read = state(&harness).recording.answers();
+    assert_eq!(state(&harness).ui.dialog, None);
+    assert_eq!(state(&harness).document.scene, scene);
+    let read = state(&harness).live.recording.answers();
     assert_eq!(read.len(), saved.len());
     for (a, b) in read.iter().zip(&saved) {
         assert_eq!(a.time_s.to_bits(), b.time_s.to_bits());
@@ -52,25 +53,25 @@ fn s11_a_run_is_opened_again_and_nothing_is_lost() {
         assert_eq!(a.energy, b.energy);
     }
     let last = saved.last().unwrap();
-    assert_eq!(state(&harness).recording.shown_s, Some(last.time_s));
-    assert_eq!(state(&harness).snapshot.solution.as_ref().unwrap().time_s, last.time_s);
+    assert_eq!(state(&harness).live.recording.shown_s, Some(last.time_s));
+    assert_eq!(state(&harness).live.snapshot.solution.as_ref().unwrap().time_s, last.time_s);
     // Time can be taken up where it ended.
     harness.get_by_label("Go on from here").click();
     harness.run_steps(2);
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(state(&harness).live.snapshot.error, None);
     play(&mut harness, 5);
-    assert!(state(&harness).snapshot.solution.as_ref().unwrap().time_s > last.time_s);
+    assert!(state(&harness).live.snapshot.solution.as_ref().unwrap().time_s > last.time_s);
 }
 
 #[test]
 fn a_folder_that_is_no_run_changes_nothing_and_is_named() {
     let mut harness = open_span();
-    let before = state(&harness).scene.clone();
+    let before = state(&harness).document.scene.clone();
     let folder = tempfile::tempdir().unwrap();
     apply(&mut harness, Command::File(FileCommand::OpenRun(folder.path().to_owned())));
-    let Some(cable_viewer::dialog::Dialog::Message { text, .. }) = &state(&harness).dialog else { panic!() };
+    let Some(cable_viewer::state::dialog::Dialog::Message { text, .. }) = &state(&harness).ui.dialog else { panic!() };
     assert!(text.contains("scene.toml"), "{text}");
-    assert_eq!(state(&harness).scene, before);
+    assert_eq!(state(&harness).document.scene, before);
 }
 
 #[test]
@@ -81,27 +82,28 @@ fn s16_whole_runs_are_overlaid_and_compared() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run");
     apply(&mut harness, Command::File(FileCommand::SaveRun(path.clone())));
-    let mut cable = state(&harness).scene.cables[0].clone();
+    let mut cable = state(&harness).document.scene.cables[0].clone();
     cable.linear_density_kg_per_m *= 2.0;
     apply(&mut harness, Command::Playback(PlaybackCommand::Reset));
     apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
     play(&mut harness, 30);
     apply(&mut harness, Command::File(FileCommand::HoldRun(path)));
     harness.run_steps(2);
-    let [own, read] = [0, 1].map(|k| state(&harness).held[k].run.clone().expect("a run"));
+    let [own, read] = [0, 1].map(|k| state(&harness).analysis.references[k].run.clone().expect("a run"));
     let tension = Measure::ALL[0];
     assert_eq!(own.span_s(), read.span_s());
     assert_eq!(own.line(tension).unwrap().points(), read.line(tension).unwrap().points());
-    let now = state(&harness).history.samples.iter().map(|s| s.max_tension_n).fold(0.0, f64::max);
+    let now = state(&harness).live.history.samples.iter().map(|s| s.max_tension_n).fold(0.0, f64::max);
     assert!(now > 1.8 * own.peak(tension).unwrap().value);
     harness.get_by_label("Whole runs");
     let spoken = harness.get_by_label("Over time").accesskit_node().description().unwrap_or_default();
     assert!(spoken.contains("Held 1") && spoken.contains("Held 2"), "{spoken}");
     // The picture of a held run is that of the time shown.
     apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.2))));
-    let time_s = state(&harness).snapshot.solution.as_ref().unwrap().time_s;
-    assert!((state(&harness).held[0].picture(time_s).time_s - time_s).abs() < 0.02);
-    let told = cable_viewer::panels::compare::differences(&state(&harness).held[0], state(&harness));
+    let time_s = state(&harness).live.snapshot.solution.as_ref().unwrap().time_s;
+    assert!((state(&harness).analysis.references[0].picture(time_s).time_s - time_s).abs() < 0.02);
+    let told =
+        cable_viewer::panels::analysis::compare::differences(&state(&harness).analysis.references[0], state(&harness));
     assert!(told.iter().any(|l| l.contains("linear_density_kg_per_m")), "{told:?}");
 }
 
@@ -131,14 +133,14 @@ fn speed_of_a_million_samples() {
         })
         .collect();
     let began = Instant::now();
-    let answers = state(&harness).recording.answers().to_vec();
+    let answers = state(&harness).live.recording.answers().to_vec();
     let run = Run::of(samples.iter(), &answers, 0).map(Arc::new);
     let built = began.elapsed().as_secs_f64() * 1e3;
-    harness.state_mut().state.held[0].run = run.clone();
+    harness.state_mut().state.analysis.references[0].run = run.clone();
     // All of it in view.
-    let all = cable_viewer::plot::View { window_s: None, ..cable_viewer::plot::View::default() };
+    let all = cable_viewer::plot::GraphView { window_s: None, ..cable_viewer::plot::GraphView::default() };
     harness.ctx.data_mut(|d| d.insert_temp(egui::Id::unique("plot view"), all));
-    harness.state_mut().state.history.samples.push_back(Sample { time_s: 1000.0, ..samples[0].clone() });
+    harness.state_mut().state.live.history.samples.push_back(Sample { time_s: 1000.0, ..samples[0].clone() });
     let long = frame(&mut harness);
     let line = run.as_ref().unwrap().line(Measure::ALL[0]).unwrap().clone();
     let began = Instant::now();

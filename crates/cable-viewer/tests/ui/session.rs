@@ -5,8 +5,8 @@ use cable_core::scene::catalog;
 use cable_core::solution::WarningKind;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand};
-use cable_viewer::dialog::Dialog;
 use cable_viewer::state::AppState;
+use cable_viewer::state::dialog::Dialog;
 use egui::{Event, Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -58,30 +58,30 @@ fn a_session_from_opening_a_file_to_exporting_a_run() {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::O);
     harness.run_steps(3);
     answer(&mut harness, &scene.display().to_string(), "Open");
-    assert_eq!(state(&harness).scene, catalog::robot_drive());
-    assert_eq!(state(&harness).dialog, None);
+    assert_eq!(state(&harness).document.scene, catalog::robot_drive());
+    assert_eq!(state(&harness).ui.dialog, None);
 
     // Drag the riser.
-    let metre = state(&harness).camera.points_per_m as f32;
+    let metre = state(&harness).view.camera.points_per_m as f32;
     let riser = harness.get_by_label("Support riser of umbilical").rect().center();
     drag(&mut harness, riser, Vec2::new(0.4 * metre, 0.0));
-    let at = state(&harness).scene.cables[0].supports[0].at_m.unwrap();
+    let at = state(&harness).document.scene.cables[0].supports[0].at_m.unwrap();
     assert!((at[0] - 0.4).abs() < 0.05, "{at:?}");
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(state(&harness).live.snapshot.error, None);
 
     // Drive, hold the run, wind back.
     hold(&mut harness, Key::D, 45);
     harness.key_press(Key::Space);
     harness.run_steps(2);
-    assert!(state(&harness).playback.paused && state(&harness).recording.answers().len() > 30);
+    assert!(state(&harness).live.playback.paused && state(&harness).live.recording.answers().len() > 30);
     click(&mut harness, "Hold this answer");
     harness.key_press(Key::R);
     harness.run_steps(3);
-    assert_eq!(state(&harness).snapshot.solution.as_ref().unwrap().time_s, 0.0);
+    assert_eq!(state(&harness).live.snapshot.solution.as_ref().unwrap().time_s, 0.0);
 
     // A weaker cable breaks on the same way.
-    let mut cable = state(&harness).scene.cables[0].clone();
-    let most = state(&harness).snapshot.solution.as_ref().unwrap().max_tension().tension_n;
+    let mut cable = state(&harness).document.scene.cables[0].clone();
+    let most = state(&harness).live.snapshot.solution.as_ref().unwrap().max_tension().tension_n;
     (cable.service_tension_n, cable.breaking_tension_n) = (0.5 * most, 0.95 * most);
     let ctx = harness.ctx.clone();
     let edit = Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) });
@@ -90,12 +90,13 @@ fn a_session_from_opening_a_file_to_exporting_a_run() {
     hold(&mut harness, Key::D, 30);
     harness.key_press(Key::Space);
     harness.run_steps(2);
-    assert!(state(&harness).recording.events().iter().any(|e| e.kind == WarningKind::Broken));
+    assert!(state(&harness).live.recording.events().iter().any(|e| e.kind == WarningKind::Broken));
     assert!(harness.get_all_by_label_contains("Broken: umbilical at ").count() >= 1);
 
     // Compare.
     harness.get_by_label("Whole runs");
-    let told = cable_viewer::panels::compare::differences(&state(&harness).held[0], state(&harness));
+    let told =
+        cable_viewer::panels::analysis::compare::differences(&state(&harness).analysis.references[0], state(&harness));
     assert!(told.iter().any(|l| l.contains("breaking_tension_n")), "{told:?}");
 
     // Export the graph and the run, and read both again.
@@ -110,15 +111,15 @@ fn a_session_from_opening_a_file_to_exporting_a_run() {
     harness.run_steps(2);
     answer(&mut harness, &run.display().to_string(), "Save");
     let history = read_history(std::fs::File::open(run.join("history.csv")).unwrap()).unwrap();
-    assert_eq!(history.time_s.len(), state(&harness).recording.answers().len());
+    assert_eq!(history.time_s.len(), state(&harness).live.recording.answers().len());
 
     // Nothing was lost on the way: undo leads back to the file.
     for _ in 0..3 {
         harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
         harness.run_steps(2);
     }
-    assert_eq!(state(&harness).scene, catalog::robot_drive());
+    assert_eq!(state(&harness).document.scene, catalog::robot_drive());
     harness.state_mut().apply(&ctx, vec![Command::Playback(PlaybackCommand::Reset)]);
     harness.run_steps(2);
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(state(&harness).live.snapshot.error, None);
 }

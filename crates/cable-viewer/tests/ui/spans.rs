@@ -38,8 +38,8 @@ fn spans_is_offered_wherever_models_are() {
     harness.set_size(Vec2::new(1280.0, 1800.0));
     harness.run_steps(3);
     click(&mut harness, "Spans");
-    assert_eq!(state(&harness).model, Model::Spans);
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(state(&harness).solver.model, Model::Spans);
+    assert_eq!(state(&harness).live.snapshot.error, None);
     assert_eq!(answer(&harness).model, Model::Spans);
     harness.get_by_label_contains("Time runs without inertia");
     // By keys alone.
@@ -50,19 +50,19 @@ fn spans_is_offered_wherever_models_are() {
     harness.run_steps(2);
     harness.key_press(Key::Enter);
     harness.run_steps(3);
-    assert_eq!(state(&harness).model, Model::Spans);
+    assert_eq!(state(&harness).solver.model, Model::Spans);
 }
 
 #[test]
 fn stretches_of_contact_and_slip_fronts_are_named_on_the_canvas_and_move() {
     let mut harness = open(catalog::draped_slipping());
     apply(&mut harness, Command::SetModel(Model::Spans));
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(state(&harness).live.snapshot.error, None);
     harness.get_all_by_label_contains("Contact of cable with pipe: ").next().expect("a stretch");
     harness.get_all_by_label_contains("Slip front of cable at ").next().expect("a front on the canvas");
     play(&mut harness, 120);
-    assert_eq!(state(&harness).snapshot.error, None);
-    let contacts = state(&harness).recording.answers().iter().filter_map(|a| a.cables[0].contacts.first());
+    assert_eq!(state(&harness).live.snapshot.error, None);
+    let contacts = state(&harness).live.recording.answers().iter().filter_map(|a| a.cables[0].contacts.first());
     let seen: Vec<f64> = contacts.flat_map(|c| c.parts.windows(2).map(|p| p[1].begins_m)).collect();
     assert!(seen.windows(2).any(|w| (w[1] - w[0]).abs() > 1e-6), "a front moves: {seen:?}");
     let slides = answer(&harness).cables[0].contacts.iter().any(|c| c.state == ContactState::Slip);
@@ -74,14 +74,14 @@ fn stretches_of_contact_and_slip_fronts_are_named_on_the_canvas_and_move() {
 fn a_click_on_the_cable_shows_where_its_tension_comes_from() {
     let mut harness = open(corner());
     apply(&mut harness, Command::SetModel(Model::Spans));
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(state(&harness).live.snapshot.error, None);
     harness.set_size(Vec2::new(1280.0, 1800.0));
     harness.run_steps(5);
     apply(&mut harness, Command::View(cable_viewer::command::ViewCommand::Fit));
     let nodes = answer(&harness).cables[0].nodes.clone();
     let near_hand = nodes.iter().find(|n| n.arc_length_m > 0.7).unwrap();
     let canvas = harness.get_by_label("Canvas").rect();
-    let at = state(&harness).camera.to_screen(canvas, [near_hand.x_m, near_hand.y_m]);
+    let at = state(&harness).view.camera.to_screen(canvas, [near_hand.x_m, near_hand.y_m]);
     harness.hover_at(at);
     harness.step();
     for pressed in [true, false] {
@@ -89,9 +89,10 @@ fn a_click_on_the_cable_shows_where_its_tension_comes_from() {
         harness.step();
     }
     harness.run_steps(2);
-    let probe = state(&harness).probe.expect("a place");
+    let probe = state(&harness).analysis.tension_marker.expect("a place");
     assert!((probe.arc_length_m - near_hand.arc_length_m).abs() < 0.1, "{probe:?}");
-    let found = tension_budget(&state(&harness).scene, &answer(&harness), (0, probe.arc_length_m), probe.from).unwrap();
+    let found = tension_budget(&state(&harness).document.scene, &answer(&harness), (0, probe.arc_length_m), probe.from)
+        .unwrap();
     let sum: f64 = found.contributions.iter().map(|t| t.tension_n).sum();
     assert!((sum - found.tension_n).abs() < 1e-6);
     let contact =
@@ -102,18 +103,18 @@ fn a_click_on_the_cable_shows_where_its_tension_comes_from() {
         figure.accesskit_node().description().unwrap_or_default()
     };
     let said = words(&harness);
-    assert!(said.starts_with(&cable_viewer::panels::unit::force(found.tension_n)), "{said}");
+    assert!(said.starts_with(&cable_viewer::units::format::force(found.tension_n)), "{said}");
     assert!(said.contains("Friction on beam") && said.contains("Weight") && said.contains("Pull at the end"), "{said}");
     harness.get_by_label("Friction on beam");
     // The other end, and another place, without the pointer on the canvas.
     click(&mut harness, "From hand");
-    assert_eq!(state(&harness).probe.map(|p| p.from), Some(StartEnd::Start));
+    assert_eq!(state(&harness).analysis.tension_marker.map(|p| p.from), Some(StartEnd::Start));
     assert!(!words(&harness).contains("Friction on beam"), "the beam is not between the hand and the place");
     click(&mut harness, "At the largest");
     let most = answer(&harness).max_tension();
-    assert_eq!(state(&harness).probe.map(|p| p.arc_length_m), Some(most.arc_length_m));
+    assert_eq!(state(&harness).analysis.tension_marker.map(|p| p.arc_length_m), Some(most.arc_length_m));
     click(&mut harness, "Unmark");
-    assert!(state(&harness).probe.is_none());
+    assert!(state(&harness).analysis.tension_marker.is_none());
 }
 
 /// Greatest fourth difference of evenly spaced values over their size: what is smooth has next to none, a sawtooth 16 of its
@@ -135,9 +136,9 @@ fn a_recorded_drag_over_a_right_angle_has_no_sawtooth() {
         let ctx = harness.ctx.clone();
         harness.state_mut().apply(&ctx, vec![Command::Scene(SceneCommand::Move { item, to_m })]);
         harness.step();
-        assert_eq!(state(&harness).snapshot.error, None, "at {to_m:?}");
+        assert_eq!(state(&harness).live.snapshot.error, None, "at {to_m:?}");
     }
-    let recorded = state(&harness).recording.answers();
+    let recorded = state(&harness).live.recording.answers();
     let wrap = |a: &cable_core::Solution| a.cables[0].contacts.first().cloned().unwrap();
     let sliding: Vec<_> = recorded.iter().map(wrap).filter(|c| c.state == ContactState::Slip).collect();
     assert!(sliding.len() > 100, "{} of {}", sliding.len(), recorded.len());
@@ -160,10 +161,10 @@ fn a_recorded_drag_over_a_right_angle_has_no_sawtooth() {
 fn ribbon(
     harness: &mut egui_kittest::Harness<'_, cable_viewer::ViewerApp>,
 ) -> std::sync::Arc<cable_core::analysis::friction_range::FrictionRange> {
-    use cable_viewer::background::Progress;
+    use cable_viewer::jobs::background::Progress;
     for _ in 0..6000 {
         harness.run_steps(1);
-        match &state(harness).spread.progress {
+        match &state(harness).analysis.friction_range.progress {
             Progress::Done((found, _)) => return found.clone(),
             Progress::Failed(why) => panic!("{why}"),
             _ => std::thread::sleep(std::time::Duration::from_millis(5)),
@@ -225,11 +226,11 @@ fn friction_that_is_not_known_well_is_a_ribbon_of_tension() {
     ] {
         let figure = harness.get_by_role_and_label(Role::Figure, title);
         let said = figure.accesskit_node().description().unwrap_or_default();
-        let figures = [low, high].map(|v| cable_viewer::panels::unit::significant(v, 4));
+        let figures = [low, high].map(|v| cable_viewer::units::format::significant(v, 4));
         let expected = format!("with less and more friction {} to {} N", figures[0], figures[1]);
         assert!(said.contains(&expected), "{title}: {said}, not {expected}");
     }
-    harness.get_by_label(&cable_viewer::panels::unit::force(high));
+    harness.get_by_label(&cable_viewer::units::format::force(high));
     // It follows what is edited, and goes.
     apply(&mut harness, Command::View(cable_viewer::command::ViewCommand::Spread(true, [1.0, 1.0])));
     let found = ribbon(&mut harness);
@@ -242,7 +243,7 @@ fn friction_that_is_not_known_well_is_a_ribbon_of_tension() {
 /// What neglecting bending stiffness changes is told on request, of the answer on screen only.
 #[test]
 fn a_flexible_answer_is_compared_with_a_stiff_one() {
-    use cable_viewer::background::Progress;
+    use cable_viewer::jobs::background::Progress;
     let mut harness = open(catalog::round_post());
     harness.set_size(Vec2::new(1400.0, 1800.0));
     harness.run_steps(3);
@@ -251,7 +252,7 @@ fn a_flexible_answer_is_compared_with_a_stiff_one() {
     let begun = std::time::Instant::now();
     let found = loop {
         harness.run_steps(1);
-        match &state(&harness).bending.progress {
+        match &state(&harness).analysis.neglected_bending.progress {
             Progress::Done(found) => break found.clone(),
             Progress::Failed(why) => panic!("{why}"),
             _ => assert!(begun.elapsed().as_secs() < 60, "no answer in a minute"),
@@ -265,7 +266,7 @@ fn a_flexible_answer_is_compared_with_a_stiff_one() {
     harness.get_by_label(&said);
     // It is of this answer: another one has not been compared.
     let item = cable_viewer::state::Item::Support { cable: 0, support: 1 };
-    let [x, y] = state(&harness).scene.cables[0].supports[1].at_m.unwrap();
+    let [x, y] = state(&harness).document.scene.cables[0].supports[1].at_m.unwrap();
     let edit = cable_viewer::command::SceneCommand::Move { item, to_m: [x - 0.1, y] };
     apply(&mut harness, Command::Scene(edit));
     harness.run_steps(3);

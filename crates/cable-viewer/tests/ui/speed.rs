@@ -7,9 +7,10 @@ use std::time::Instant;
 
 use cable_core::scene::{Obstacle, Shape, catalog};
 use cable_core::{Model, Scene};
+use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, ViewCommand};
-use cable_viewer::software::Software;
-use cable_viewer::{ViewerApp, screenshot};
+use cable_viewer::render::offscreen::render_state;
+use cable_viewer::render::software::Software;
 use eframe::egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, wgpu};
 use egui::Vec2;
 use egui_kittest::{Harness, TestRenderer};
@@ -40,7 +41,7 @@ struct Screen {
 
 impl Screen {
     fn new() -> Result<Self, String> {
-        Ok(Self { state: screenshot::render_state(RendererOptions::default())?, view: None })
+        Ok(Self { state: render_state(RendererOptions::default())?, view: None })
     }
 }
 
@@ -147,8 +148,8 @@ fn draw(name: &str, mut scene: Scene, taken_over: bool) {
     let ctx = harness.ctx.clone();
     harness.state_mut().apply(&ctx, vec![Command::SetModel(Model::Fem)]);
     harness.run_steps(4);
-    assert_eq!(harness.state().state.snapshot.error, None);
-    harness.state_mut().state.scene.obstacles = ground;
+    assert_eq!(harness.state().state.live.snapshot.error, None);
+    harness.state_mut().state.document.scene.obstacles = ground;
     harness.run_steps(2);
     harness.render().unwrap();
     let ctx = harness.ctx.clone();
@@ -218,7 +219,7 @@ fn speed_of_import() {
              (an empty window takes {ready:.2} s)",
             began.elapsed().as_secs_f64()
         );
-        assert_eq!(harness.state().state.snapshot.error, None);
+        assert_eq!(harness.state().state.live.snapshot.error, None);
     }
 }
 
@@ -231,7 +232,7 @@ fn software_drawing_looks_the_same() {
 fn software_drawing_looks_the_same_at(scale: f32) {
     let picture = |taken_over: bool| {
         let options = RendererOptions { dithering: false, ..RendererOptions::default() };
-        let state = match screenshot::render_state(options) {
+        let state = match render_state(options) {
             Ok(state) => state,
             Err(why) if std::env::var("CI").is_ok_and(|v| v == "true") => panic!("{why}"),
             Err(why) => {
@@ -254,9 +255,9 @@ fn software_drawing_looks_the_same_at(scale: f32) {
         harness.run_steps(6);
         // A popup is drawn over the rest, and a font of another size makes the atlas grow.
         let state = &mut harness.state_mut().state;
-        state.dialog = Some(cable_viewer::dialog::Dialog::About);
+        state.ui.dialog = Some(cable_viewer::state::dialog::Dialog::About);
         // The time it took is another every time.
-        (state.snapshot.solve_wall_s, state.live.solve_wall_s) = (1e-3, 1e-3);
+        (state.live.snapshot.solve_wall_s, state.live.latest.solve_wall_s) = (1e-3, 1e-3);
         harness.run_steps(3);
         Some(harness.render().unwrap())
     };
@@ -276,8 +277,8 @@ fn software_drawing_looks_the_same_at(scale: f32) {
 /// 60th of a second is 16.7 ms.
 #[test]
 fn speed_of_graphs() {
-    use cable_viewer::history::{History, Sample};
-    use cable_viewer::run::Run;
+    use cable_viewer::record::run::Run;
+    use cable_viewer::record::samples::{History, Sample};
     let sample = |k: u32| {
         let t = f64::from(k) / 240.0;
         let pull = 500.0 + 80.0 * (0.7 * t).sin() + 20.0 * (31.0 * t).sin();
@@ -296,25 +297,31 @@ fn speed_of_graphs() {
     let software = Software::of(&renderer.state);
     let mut harness = window(renderer, software, catalog::hanging_span());
     harness.run_steps(4);
-    let all = cable_viewer::plot::View { window_s: None, ..cable_viewer::plot::View::default() };
+    let all = cable_viewer::plot::GraphView { window_s: None, ..cable_viewer::plot::GraphView::default() };
     harness.ctx.data_mut(|d| d.insert_temp(egui::Id::unique("plot view"), all));
     for (name, held, live) in
         [("empty graphs", 0, 2), ("a million held", 1_000_000, 2), ("a million held, history full", 1_000_000, 400_000)]
     {
         let state = &mut harness.state_mut().state;
-        let solution = state.snapshot.solution.clone().expect("an answer");
-        (state.held, state.history) = (Vec::new(), History::default());
-        (0..live).for_each(|k| state.history.push(sample(k)));
+        let solution = state.live.snapshot.solution.clone().expect("an answer");
+        (state.analysis.references, state.live.history) = (Vec::new(), History::default());
+        (0..live).for_each(|k| state.live.history.push(sample(k)));
         if held > 0 {
             let samples: Vec<Sample> = (0..held).map(sample).collect();
             let run = Run::of(samples.iter(), &[(*solution).clone(), (*solution).clone()], 0).map(std::sync::Arc::new);
             assert_eq!(
                 run.as_ref()
-                    .map(|r| r.line(cable_viewer::plot::measure::Measure::ALL[0]).map_or(0, |l| l.points().len())),
+                    .map(|r| r.line(cable_viewer::record::measure::Measure::ALL[0]).map_or(0, |l| l.points().len())),
                 Some(held as usize)
             );
-            let scene = state.snapshot.scene.clone().expect("a scene");
-            state.held.push(cable_viewer::state::Held { name: "held".to_owned(), scene, solution, wall_s: 0.0, run });
+            let scene = state.live.snapshot.scene.clone().expect("a scene");
+            state.analysis.references.push(cable_viewer::state::Reference {
+                name: "held".to_owned(),
+                scene,
+                solution,
+                wall_s: 0.0,
+                run,
+            });
         }
         harness.run_steps(3);
         harness.render().unwrap();
@@ -333,7 +340,7 @@ fn speed_of_graphs() {
             harness.render().unwrap();
             whole.push(from.elapsed().as_secs_f64() * 1e3);
         }
-        let samples = harness.state().state.history.samples.len();
+        let samples = harness.state().state.live.history.samples.len();
         println!(
             "graphs, {name} ({samples} samples live): laid out and cut into triangles {}, CPU {}; drawn as well {}",
             figures(laid),

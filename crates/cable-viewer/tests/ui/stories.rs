@@ -5,7 +5,7 @@ use cable_core::robot::{Going, RobotReport};
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand};
-use cable_viewer::dialog::Dialog;
+use cable_viewer::state::dialog::Dialog;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -13,11 +13,11 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use crate::{apply, open, open_span};
 
 fn time_s(harness: &Harness<'_, ViewerApp>) -> f64 {
-    harness.state().state.snapshot.solution.as_ref().expect("an answer").time_s
+    harness.state().state.live.snapshot.solution.as_ref().expect("an answer").time_s
 }
 
 fn robot(harness: &Harness<'_, ViewerApp>) -> RobotReport {
-    harness.state().state.snapshot.solution.as_ref().and_then(|s| s.robot).expect("a robot")
+    harness.state().state.live.snapshot.solution.as_ref().and_then(|s| s.robot).expect("a robot")
 }
 
 fn click(harness: &mut Harness<'_, ViewerApp>, label: &str) {
@@ -37,11 +37,11 @@ fn s06_keys_drive_the_robot_and_the_cable_follows() {
     hold(&mut harness, Key::D, true);
     harness.run_steps(60);
     let state = &harness.state().state;
-    assert_eq!(state.snapshot.error, None);
-    assert!(!state.playback.paused, "who drives sees time run");
+    assert_eq!(state.live.snapshot.error, None);
+    assert!(!state.live.playback.paused, "who drives sees time run");
     let driven = robot(&harness);
     assert!(driven.x_m > start.x_m + 0.3 && driven.going == Going::Driving, "{driven:?}");
-    let end = harness.state().state.snapshot.solution.as_ref().unwrap().cables[0].nodes.last().copied().unwrap();
+    let end = harness.state().state.live.snapshot.solution.as_ref().unwrap().cables[0].nodes.last().copied().unwrap();
     assert!((end.x_m - (driven.x_m - 0.9)).abs() < 0.02, "{} {}", end.x_m, driven.x_m);
     hold(&mut harness, Key::D, false);
     harness.run_steps(60);
@@ -71,7 +71,7 @@ fn s08_pause_step_back_scrub_and_go_on() {
         harness.key_press(Key::ArrowRight);
         harness.run_steps(2);
     }
-    assert!(harness.state().state.recording.shown_s.is_none() && time_s(&harness) == now);
+    assert!(harness.state().state.live.recording.shown_s.is_none() && time_s(&harness) == now);
     harness.key_press(Key::ArrowRight);
     harness.run_steps(2);
     assert!(time_s(&harness) > now);
@@ -83,9 +83,9 @@ fn s08_pause_step_back_scrub_and_go_on() {
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
     harness.run_steps(5);
     let replayed = time_s(&harness);
-    assert!(replayed > 0.25 && replayed < 0.45 && harness.state().state.recording.shown_s.is_some(), "{replayed}");
+    assert!(replayed > 0.25 && replayed < 0.45 && harness.state().state.live.recording.shown_s.is_some(), "{replayed}");
     harness.run_steps(60);
-    assert!(harness.state().state.recording.shown_s.is_none() && time_s(&harness) > now, "{}", time_s(&harness));
+    assert!(harness.state().state.live.recording.shown_s.is_none() && time_s(&harness) > now, "{}", time_s(&harness));
 }
 
 #[test]
@@ -94,15 +94,15 @@ fn s08_a_loop_begins_anew_and_speeds_are_kept() {
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
     harness.run_steps(20);
     click(&mut harness, "Loop");
-    let last = harness.state().state.recording.span_s().unwrap()[1];
+    let last = harness.state().state.live.recording.span_s().unwrap()[1];
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
     harness.run_steps(120);
-    assert_eq!(harness.state().state.recording.span_s().unwrap()[1], last, "nothing new while it loops");
+    assert_eq!(harness.state().state.live.recording.span_s().unwrap()[1], last, "nothing new while it loops");
     assert!(time_s(&harness) <= last);
     apply(&mut harness, Command::Playback(PlaybackCommand::SetSpeed(0.01)));
-    let before = harness.state().state.recording.shown_s.unwrap();
+    let before = harness.state().state.live.recording.shown_s.unwrap();
     harness.run_steps(6);
-    let passed = harness.state().state.recording.shown_s.unwrap() - before;
+    let passed = harness.state().state.live.recording.shown_s.unwrap() - before;
     assert!(passed > 0.0 && passed < 0.01, "{passed}");
 }
 
@@ -112,11 +112,11 @@ fn s08_an_edit_is_of_the_present() {
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
     harness.run_steps(20);
     apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.1))));
-    let mut cable = harness.state().state.scene.cables[0].clone();
+    let mut cable = harness.state().state.document.scene.cables[0].clone();
     cable.length_m += 0.01;
     let edit = cable_viewer::command::SceneCommand::SetCable { cable: 0, value: Box::new(cable) };
     apply(&mut harness, Command::Scene(edit));
-    assert!(harness.state().state.recording.shown_s.is_none());
+    assert!(harness.state().state.live.recording.shown_s.is_none());
 }
 
 #[test]
@@ -129,11 +129,11 @@ fn s14_the_robot_follows_its_path_and_it_can_be_edited() {
     assert!(r.leg == Some(0) && (r.commanded_m_per_s - 0.6).abs() < 1e-9 && r.x_m > 10.2, "{r:?}");
     apply(&mut harness, Command::Playback(PlaybackCommand::Reset));
     assert_eq!(robot(&harness).x_m, 10.0);
-    let legs = harness.state().state.scene.robot.as_ref().unwrap().path.len();
+    let legs = harness.state().state.document.scene.robot.as_ref().unwrap().path.len();
     click(&mut harness, "Add wait");
     click(&mut harness, "Remove leg 1");
-    assert_eq!(harness.state().state.scene.robot.as_ref().unwrap().path.len(), legs);
-    assert_eq!(harness.state().state.snapshot.error, None);
+    assert_eq!(harness.state().state.document.scene.robot.as_ref().unwrap().path.len(), legs);
+    assert_eq!(harness.state().state.live.snapshot.error, None);
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn s17_the_robot_says_that_its_cable_holds_it() {
     assert!(r.speed_m_per_s.abs() < 0.05, "{r:?}");
     assert!(matches!(r.going, Going::Stalled | Going::Slipping | Going::Slowed), "{r:?}");
     harness.get_by_label(r.going.name());
-    assert!(!harness.state().state.recording.events().is_empty(), "the pull beyond the service tension is marked");
+    assert!(!harness.state().state.live.recording.events().is_empty(), "the pull beyond the service tension is marked");
     click(&mut harness, "Stop");
 }
 
@@ -160,9 +160,9 @@ fn s11_what_was_recorded_is_saved_and_read_again() {
     let folder = tempfile::tempdir().unwrap();
     let run = folder.path().join("run");
     apply(&mut harness, Command::File(FileCommand::SaveRun(run.clone())));
-    assert_eq!(harness.state().state.dialog, None);
+    assert_eq!(harness.state().state.ui.dialog, None);
     let table = read_history(std::fs::File::open(run.join("history.csv")).unwrap()).unwrap();
-    let answers = harness.state().state.recording.answers();
+    let answers = harness.state().state.live.recording.answers();
     assert_eq!(table.time_s.len(), answers.len());
     for (k, answer) in answers.iter().enumerate() {
         assert_eq!(table.max_tension_n[k].to_bits(), answer.max_tension().tension_n.to_bits());
@@ -202,18 +202,18 @@ fn s12_a_graph_is_zoomed_read_with_cursors_and_exported() {
     });
     harness.run_steps(30);
     click(&mut harness, "Export Over time");
-    let Some(Dialog::Export { sheet, .. }) = harness.state().state.dialog.clone() else {
-        panic!("{:?}", harness.state().state.dialog)
+    let Some(Dialog::Export { sheet, .. }) = harness.state().state.ui.dialog.clone() else {
+        panic!("{:?}", harness.state().state.ui.dialog)
     };
     assert!(sheet.bounds[2] - sheet.bounds[0] < 9.0, "it is zoomed: {:?}", sheet.bounds);
     let folder = tempfile::tempdir().unwrap();
     for name in ["graph.csv", "graph.svg"] {
         let path = folder.path().join(name);
         apply(&mut harness, Command::File(FileCommand::Export(path.clone(), sheet.clone())));
-        assert_eq!(harness.state().state.dialog, None, "{name}");
+        assert_eq!(harness.state().state.ui.dialog, None, "{name}");
         assert!(std::fs::read_to_string(path).unwrap().contains(if name.ends_with("csv") { "time_s" } else { "<svg" }));
     }
-    if cable_viewer::screenshot::renderer().is_ok() {
+    if cable_viewer::render::offscreen::renderer().is_ok() {
         let path = folder.path().join("graph.png");
         apply(&mut harness, Command::File(FileCommand::Export(path.clone(), sheet)));
         assert!(std::fs::read(path).unwrap().starts_with(b"\x89PNG"));
@@ -248,23 +248,23 @@ fn t01_about_says_what_was_checked_and_what_was_not() {
 #[test]
 fn s09_a_pasted_table_becomes_ground_and_undo_takes_it_back() {
     let mut harness = open_span();
-    let before = harness.state().state.scene.clone();
+    let before = harness.state().state.document.scene.clone();
     let text = "x;y\n-2,0;-4,0\n5;-3,5\n12;-4\n".to_owned();
     apply(&mut harness, Command::File(FileCommand::ImportMap { path: None, text, unit_m: 1.0 }));
     let state = &harness.state().state;
-    assert_eq!(state.scene.obstacles.len(), before.obstacles.len() + 1);
-    assert_eq!(state.snapshot.error, None);
-    let Some(Dialog::Message { text, .. }) = &state.dialog else { panic!("{:?}", state.dialog) };
+    assert_eq!(state.document.scene.obstacles.len(), before.obstacles.len() + 1);
+    assert_eq!(state.live.snapshot.error, None);
+    let Some(Dialog::Message { text, .. }) = &state.ui.dialog else { panic!("{:?}", state.ui.dialog) };
     assert!(text.contains("3 points") && text.contains("heading"), "{text}");
     apply(&mut harness, Command::File(FileCommand::SetDialog(None)));
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(2);
-    assert_eq!(harness.state().state.scene, before);
+    assert_eq!(harness.state().state.document.scene, before);
     // What cannot be read changes nothing and says the line.
     let text = "0 0\n1 x\n".to_owned();
     apply(&mut harness, Command::File(FileCommand::ImportMap { path: None, text, unit_m: 1.0 }));
-    assert_eq!(harness.state().state.scene, before);
-    let Some(Dialog::Message { text, .. }) = &harness.state().state.dialog else { panic!("no message") };
+    assert_eq!(harness.state().state.document.scene, before);
+    let Some(Dialog::Message { text, .. }) = &harness.state().state.ui.dialog else { panic!("no message") };
     assert!(text.contains("line 2"), "{text}");
 }
 
@@ -276,29 +276,29 @@ fn s16_four_answers_are_held_and_their_differences_told() {
     harness.run_steps(3);
     for k in 0..4 {
         click(&mut harness, "Hold this answer");
-        let mut cable = harness.state().state.scene.cables[0].clone();
+        let mut cable = harness.state().state.document.scene.cables[0].clone();
         cable.length_m += 0.1 * f64::from(k + 1);
         let edit = cable_viewer::command::SceneCommand::SetCable { cable: 0, value: Box::new(cable) };
         apply(&mut harness, Command::Scene(edit));
     }
     let state = &harness.state().state;
-    assert_eq!(state.held.len(), 4);
-    let told = cable_viewer::panels::compare::differences(&state.held[0], state);
+    assert_eq!(state.analysis.references.len(), 4);
+    let told = cable_viewer::panels::analysis::compare::differences(&state.analysis.references[0], state);
     assert!(told.iter().any(|l| l.starts_with("length_m 12")), "{told:?}");
     assert!(harness.get_all_by_label_contains(" %").count() >= 8, "differences of tension and sag");
     click(&mut harness, "Let go 2");
-    assert_eq!(harness.state().state.held.len(), 3);
+    assert_eq!(harness.state().state.analysis.references.len(), 3);
     click(&mut harness, "Let all go");
-    assert!(harness.state().state.held.is_empty());
+    assert!(harness.state().state.analysis.references.is_empty());
 }
 
 #[test]
 fn t03_hundreds_of_load_changes_end_at_the_last() {
     let mut harness = open_span();
     click(&mut harness, "Add load");
-    let load = harness.state().state.scene.loads[0].clone();
+    let load = harness.state().state.document.scene.loads[0].clone();
     harness.get_by_label("Load force");
-    let before = harness.state().state.scene.clone();
+    let before = harness.state().state.document.scene.clone();
     let ctx = harness.ctx.clone();
     for k in 1..=300 {
         let value = cable_core::Load { force_n: Some([0.0, -f64::from(k)]), ..load.clone() };
@@ -310,13 +310,13 @@ fn t03_hundreds_of_load_changes_end_at_the_last() {
     }
     harness.run_steps(2);
     let state = &harness.state().state;
-    assert_eq!(state.snapshot.error, None);
-    assert_eq!(state.scene.loads[0].force_n, Some([0.0, -300.0]));
-    assert_eq!(state.snapshot.scene.as_deref(), Some(&state.scene));
+    assert_eq!(state.live.snapshot.error, None);
+    assert_eq!(state.document.scene.loads[0].force_n, Some([0.0, -300.0]));
+    assert_eq!(state.live.snapshot.scene.as_deref(), Some(&state.document.scene));
     // One drag of the slider is one entry.
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(2);
-    assert_eq!(harness.state().state.scene, before);
+    assert_eq!(harness.state().state.document.scene, before);
 }
 
 #[test]
@@ -329,6 +329,6 @@ fn t01_everything_is_found_by_name_in_the_palette() {
     harness.key_press(Key::Enter);
     harness.run_steps(6);
     let state = &harness.state().state;
-    assert_eq!(state.dialog, None);
-    assert!(state.scene.robot.is_some(), "{}", state.scene.name);
+    assert_eq!(state.ui.dialog, None);
+    assert!(state.document.scene.robot.is_some(), "{}", state.document.scene.name);
 }

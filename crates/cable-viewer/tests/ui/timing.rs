@@ -37,7 +37,7 @@ fn threaded(mut scene: Scene, segments: usize) -> Harness<'static, ViewerApp> {
 fn wait(harness: &mut Harness<'_, ViewerApp>) {
     let began = Instant::now();
     while !harness.state().settled() {
-        assert!(began.elapsed() < PATIENCE, "{:?}", harness.state().state.worker);
+        assert!(began.elapsed() < PATIENCE, "{:?}", harness.state().state.solver.status);
         harness.step();
     }
 }
@@ -48,7 +48,7 @@ fn submit(harness: &mut Harness<'_, ViewerApp>, command: Command) {
 }
 
 fn set_length(harness: &mut Harness<'_, ViewerApp>, length_m: f64) {
-    let mut cable = harness.state().state.scene.cables[0].clone();
+    let mut cable = harness.state().state.document.scene.cables[0].clone();
     cable.length_m = length_m;
     submit(harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
 }
@@ -73,9 +73,9 @@ fn timed_drag(name: &str, (scene, segments): (Scene, usize), how: (bool, f64)) {
 }
 
 fn timed(name: &str, (mut harness, segments): (Harness<'static, ViewerApp>, usize), (playing, radius_m): (bool, f64)) {
-    let last = harness.state().state.scene.cables[0].supports.len() - 1;
+    let last = harness.state().state.document.scene.cables[0].supports.len() - 1;
     let item = Item::Support { cable: 0, support: last };
-    let at: Point = harness.state().state.scene.cables[0].supports[last].at_m.expect("held");
+    let at: Point = harness.state().state.document.scene.cables[0].supports[last].at_m.expect("held");
     if playing {
         submit(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
     }
@@ -92,12 +92,12 @@ fn timed(name: &str, (mut harness, segments): (Harness<'static, ViewerApp>, usiz
             if harness.state().settled() {
                 break;
             }
-            assert!(began.elapsed() < PATIENCE, "{:?}", harness.state().state.worker);
+            assert!(began.elapsed() < PATIENCE, "{:?}", harness.state().state.solver.status);
             std::thread::sleep(Duration::from_secs_f64(1.0 / 60.0).saturating_sub(frame.elapsed()));
         }
         delays.push(began.elapsed().as_secs_f64() * 1e3);
-        solves.push(harness.state().state.snapshot.solve_wall_s * 1e3);
-        let error = &harness.state().state.snapshot.error;
+        solves.push(harness.state().state.live.snapshot.solve_wall_s * 1e3);
+        let error = &harness.state().state.live.snapshot.error;
         assert_eq!(*error, None, "{name}, edit {k}");
     }
     print(&format!("{name}, {segments} segments, edit to picture"), delays);
@@ -154,9 +154,9 @@ fn a_flood_of_edits_ends_at_the_last() {
     }
     wait(&mut harness);
     let state = &harness.state().state;
-    let solved = state.snapshot.scene.as_ref().expect("a scene");
-    assert_eq!(**solved, state.scene);
-    let length = state.snapshot.solution.as_ref().unwrap().cables[0].nodes.last().unwrap().arc_length_m;
+    let solved = state.live.snapshot.scene.as_ref().expect("a scene");
+    assert_eq!(**solved, state.document.scene);
+    let length = state.live.snapshot.solution.as_ref().unwrap().cables[0].nodes.last().unwrap().arc_length_m;
     assert!((length - 12.599).abs() < 1e-9, "{length}");
 }
 
@@ -167,22 +167,22 @@ fn a_drag_of_a_slow_scene_ends_at_the_answer_and_not_at_a_draft() {
         submit(&mut harness, Command::SetModel(model));
         wait(&mut harness);
         let item = Item::Support { cable: 0, support: 1 };
-        let at: Point = harness.state().state.scene.cables[0].supports[1].at_m.expect("held");
+        let at: Point = harness.state().state.document.scene.cables[0].supports[1].at_m.expect("held");
         for k in 1..=10 {
             let to_m = [at[0] - 0.02 * f64::from(k), at[1]];
             submit(&mut harness, Command::Scene(SceneCommand::Move { item, to_m }));
             wait(&mut harness);
         }
         let began = Instant::now();
-        while harness.state().state.snapshot.draft {
+        while harness.state().state.live.snapshot.draft {
             assert!(began.elapsed() < PATIENCE, "the draft stays");
             harness.step();
         }
         let state = &harness.state().state;
-        assert_eq!(state.snapshot.error, None);
-        let answer = state.snapshot.solution.as_ref().unwrap();
+        assert_eq!(state.live.snapshot.error, None);
+        let answer = state.live.snapshot.solution.as_ref().unwrap();
         assert_eq!(answer.model, model);
         assert!(answer.cables[0].nodes.len() > if model == Model::Fem { 150 } else { 1 });
-        assert_eq!(state.snapshot.scene.as_deref(), Some(&state.scene));
+        assert_eq!(state.live.snapshot.scene.as_deref(), Some(&state.document.scene));
     }
 }

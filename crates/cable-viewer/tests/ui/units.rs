@@ -3,7 +3,7 @@
 use cable_core::Model;
 use cable_core::scene::catalog;
 use cable_viewer::command::{Command, ViewCommand};
-use cable_viewer::panels::system::System;
+use cable_viewer::units::system::System;
 use egui_kittest::kittest::{NodeT, Queryable};
 
 use crate::rows::{answer, set_cable, state};
@@ -44,7 +44,7 @@ fn warnings_and_refusals_are_read_in_us_units() {
     harness.get_by_label_contains(&pull);
     // What cannot be solved, too.
     set_cable(&mut harness, |c| c.length_m = 9.0);
-    assert!(state(&harness).scene_fault.is_some());
+    assert!(state(&harness).document.fault.is_some());
     assert_eq!(metric(&harness), Vec::<String>::new());
     apply(&mut harness, Command::View(ViewCommand::SetUnits(System::Si)));
     harness.run_steps(2);

@@ -6,10 +6,11 @@ use std::path::PathBuf;
 
 use cable_core::Scene;
 use cable_core::scene::catalog;
+use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use cable_viewer::dialog::Dialog;
-use cable_viewer::state::{Item, Probe};
-use cable_viewer::{ViewerApp, screenshot};
+use cable_viewer::render::offscreen::renderer;
+use cable_viewer::state::dialog::{Dialog, Replacement};
+use cable_viewer::state::{Item, TensionMarker};
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -31,7 +32,7 @@ impl Walk {
             .with_render_cursor(false)
             .with_accessibility_check(false)
             .allow_missing_glyphs()
-            .renderer(screenshot::renderer().unwrap())
+            .renderer(renderer().unwrap())
             .build_eframe(|cc| ViewerApp::inline(&cc.egui_ctx, scene, None));
         let mut walk = Self { harness, folder };
         walk.harness.run_steps(6);
@@ -94,11 +95,11 @@ fn walk_a_span() {
     walk.plays(150);
     walk.look("a04-played");
     walk.view(ViewCommand::Hold);
-    let mut cable = walk.harness.state().state.scene.cables[0].clone();
+    let mut cable = walk.harness.state().state.document.scene.cables[0].clone();
     cable.length_m *= 1.15;
     walk.does(Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
     walk.look("a05-held-and-changed");
-    walk.view(ViewCommand::Probe(Some(Probe {
+    walk.view(ViewCommand::MarkTension(Some(TensionMarker {
         cable: 0,
         arc_length_m: 4.0,
         from: cable_core::analysis::tension_budget::StartEnd::Start,
@@ -116,10 +117,10 @@ fn walk_a_span() {
         Dialog::Palette { text: "hold".to_owned() },
         Dialog::Open { path: "scene.toml".to_owned() },
         Dialog::ImportMap { path: String::new(), text: "0;0\n1;0,5\n2;0".to_owned(), unit_m: "1".to_owned() },
-        Dialog::Feedback { answers: cable_viewer::feedback::Answers::default(), path: "feedback.csv".to_owned() },
+        Dialog::Feedback { answers: cable_viewer::io::feedback::Answers::default(), path: "feedback.csv".to_owned() },
         Dialog::SaveRun { path: "run".to_owned() },
         Dialog::Recover { scene: Box::new(catalog::tank()) },
-        Dialog::Unsaved { then: Box::new(Command::File(FileCommand::Quit)) },
+        Dialog::Unsaved { then: Replacement::Quit },
         Dialog::OpenRun { path: "run".to_owned(), hold: true },
     ]
     .into_iter()
@@ -133,7 +134,7 @@ fn walk_a_span() {
 #[test]
 fn walk_b_faults_and_loads() {
     let Some(mut walk) = Walk::open(catalog::hanging_span(), WINDOW) else { return };
-    let mut cable = walk.harness.state().state.scene.cables[0].clone();
+    let mut cable = walk.harness.state().state.document.scene.cables[0].clone();
     cable.length_m = 7.0;
     walk.does(Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable.clone()) }));
     walk.look("b01-too-short");
@@ -144,7 +145,7 @@ fn walk_b_faults_and_loads() {
     walk.view(ViewCommand::Select(Some(Item::Load(0))));
     walk.look("b03-loads");
     walk.light();
-    walk.view(ViewCommand::SetUnits(cable_viewer::panels::system::System::Us));
+    walk.view(ViewCommand::SetUnits(cable_viewer::units::system::System::Us));
     walk.look("b04-loads-us");
     let Some(mut walk) = Walk::open(catalog::pile(), WINDOW) else { return };
     walk.look("b05-pile");
@@ -245,7 +246,7 @@ fn walk_f_tall_panels() {
         walk.view(ViewCommand::Hold);
         walk.look(&format!("f-tall-{name}-dark"));
         walk.light();
-        walk.view(ViewCommand::SetUnits(cable_viewer::panels::system::System::Us));
+        walk.view(ViewCommand::SetUnits(cable_viewer::units::system::System::Us));
         walk.look(&format!("f-tall-{name}-light-us"));
         let node = walk.harness.get_by_label("Canvas");
         println!("{name}: {}", node.accesskit_node().data().description().unwrap_or_default());

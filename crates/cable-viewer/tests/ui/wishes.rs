@@ -4,7 +4,7 @@ use cable_core::Model;
 use cable_core::scene::catalog;
 use cable_core::scene::preset::cable_presets;
 use cable_core::solution::WarningKind;
-use cable_viewer::canvas::grid;
+use cable_viewer::canvas::layers::grid;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use cable_viewer::state::Item;
 use egui::Vec2;
@@ -17,7 +17,7 @@ use crate::{apply, open, open_span};
 fn u02_grid_lines_are_round_and_numbered() {
     let mut harness = open_span();
     for _ in 0..12 {
-        let camera = state(&harness).camera;
+        let camera = state(&harness).view.camera;
         let [major, minor] = grid::steps(&camera);
         let lead = major / 10f64.powf(major.log10().floor());
         assert!([1.0, 2.0, 5.0, 10.0].iter().any(|k| (lead / k - 1.0).abs() < 1e-9), "{major}");
@@ -41,7 +41,7 @@ fn u04_sag_and_tension_stand_in_the_window() {
     let harness = open_span();
     harness.get_by_label("Max tension");
     harness.get_by_label("Sag");
-    let text = cable_viewer::panels::unit::force(answer(&harness).max_tension().tension_n);
+    let text = cable_viewer::units::format::force(answer(&harness).max_tension().tension_n);
     assert!(harness.get_all_by_label(&text).count() >= 1, "{text}");
 }
 
@@ -50,10 +50,10 @@ fn u05_many_segments_are_edited_and_run() {
     let mut harness = open_span();
     for segments in [20, 200, 1000] {
         set_cable(&mut harness, |c| c.segments = Some(segments));
-        assert_eq!(state(&harness).snapshot.error, None, "{segments}");
+        assert_eq!(state(&harness).live.snapshot.error, None, "{segments}");
         assert_eq!(answer(&harness).cables[0].nodes.len(), segments + 1);
         play(&mut harness, 2);
-        assert_eq!(state(&harness).snapshot.error, None, "{segments}");
+        assert_eq!(state(&harness).live.snapshot.error, None, "{segments}");
         apply(&mut harness, Command::Playback(PlaybackCommand::Reset));
     }
 }
@@ -66,7 +66,7 @@ fn u06_the_return_trip_is_driven() {
     (robot.path, robot.repeat) = (vec![leg(10.5), leg(10.0)], false);
     let mut harness = open(scene);
     play(&mut harness, 330);
-    let seen: Vec<f64> = state(&harness).recording.answers().iter().filter_map(|a| Some(a.robot?.x_m)).collect();
+    let seen: Vec<f64> = state(&harness).live.recording.answers().iter().filter_map(|a| Some(a.robot?.x_m)).collect();
     let most = seen.iter().copied().fold(f64::MIN, f64::max);
     assert!(most > 10.45 && (seen.last().unwrap() - 10.0).abs() < 0.1, "{most} {:?}", seen.last());
 }
@@ -78,13 +78,13 @@ fn u08_a_length_below_the_way_is_said_before_anything_fails_and_put_right() {
         c.length_m = 9.0;
         c.breaking_tension_n = 1e4;
     });
-    assert!(state(&harness).scene_fault.is_some());
+    assert!(state(&harness).document.fault.is_some());
     assert!(harness.get_all_by_label_contains("needs ≥ ").count() >= 1);
     let fix = harness.get_all_by_label_contains("Set to ").next().expect("a fix");
     fix.click();
     harness.run_steps(3);
-    assert_eq!(state(&harness).scene_fault, None);
-    assert_eq!(state(&harness).snapshot.error, None);
+    assert_eq!(state(&harness).document.fault, None);
+    assert_eq!(state(&harness).live.snapshot.error, None);
 }
 
 #[test]
@@ -115,10 +115,11 @@ fn u15_density_is_per_metre_and_presets_say_where_theirs_is_from() {
     assert!(text.ends_with(" kg/m"), "{text}");
     assert!(cable_presets().len() >= 3);
     for preset in cable_presets() {
-        let value = cable_viewer::panels::cable::known::with_preset(&state(&harness).scene.cables[0], preset);
+        let value =
+            cable_viewer::panels::cable::provenance::with_preset(&state(&harness).document.scene.cables[0], preset);
         let density = value.linear_density_kg_per_m;
         apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(value) }));
-        assert_eq!(state(&harness).scene_fault, None, "{}", preset.id);
+        assert_eq!(state(&harness).document.fault, None, "{}", preset.id);
         assert!(density > 0.0 && density < 50.0, "{}", preset.id);
         assert!(!preset.note.is_empty());
     }
@@ -145,15 +146,15 @@ fn u16_whatever_is_edited_the_window_answers_or_says_why() {
             apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
         }
         let s = state(&harness);
-        assert!(s.snapshot.solution.is_some(), "{k}: the picture stays");
-        if s.scene_fault.is_some() {
+        assert!(s.live.snapshot.solution.is_some(), "{k}: the picture stays");
+        if s.document.fault.is_some() {
             assert!(
-                s.snapshot.error.is_some() && s.snapshot.stale,
+                s.live.snapshot.error.is_some() && s.live.snapshot.stale,
                 "{k}: {} × {factor} fails in silence",
                 property.key
             );
         }
-        if s.scene_fault.is_some() || s.snapshot.error.is_some() {
+        if s.document.fault.is_some() || s.live.snapshot.error.is_some() {
             harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
             harness.run_steps(2);
         }
@@ -172,7 +173,7 @@ fn u17_mass_and_length_change_live() {
             c.length_m = 12.0 + 0.05 * f64::from(k);
             c.linear_density_kg_per_m = 1.0 + 0.1 * f64::from(k);
         });
-        assert_eq!(state(&harness).snapshot.error, None, "{k}");
+        assert_eq!(state(&harness).live.snapshot.error, None, "{k}");
         let end = answer(&harness).cables[0].nodes.last().unwrap().arc_length_m;
         assert!((end - 12.0 - 0.05 * f64::from(k)).abs() < 1e-9, "{end}");
     }
@@ -200,7 +201,7 @@ fn t02_parameters_take_effect_and_paradoxes_are_refused() {
     set_cable(&mut harness, |c| c.linear_density_kg_per_m *= 2.0);
     assert!((answer(&harness).max_tension().tension_n / before - 2.0).abs() < 0.01, "twice the weight, twice the pull");
     set_cable(&mut harness, |c| c.service_tension_n = 2.0 * c.breaking_tension_n);
-    assert!(state(&harness).scene_fault.is_some());
+    assert!(state(&harness).document.fault.is_some());
     assert!(harness.get_all_by_label_contains("breaking").count() >= 1);
 }
 
@@ -209,7 +210,7 @@ fn t03_a_force_diagram_follows_the_load() {
     let mut harness = open_span();
     click(&mut harness, "Add load");
     let before = answer(&harness).cables[0].supports.clone();
-    let load = cable_core::Load { force_n: Some([0.0, -300.0]), ..state(&harness).scene.loads[0].clone() };
+    let load = cable_core::Load { force_n: Some([0.0, -300.0]), ..state(&harness).document.scene.loads[0].clone() };
     apply(&mut harness, Command::Scene(SceneCommand::SetLoad { load: 0, value: load }));
     let after = answer(&harness).cables[0].supports.clone();
     let down = |list: &[cable_core::solution::SupportReaction]| list.iter().map(|s| s.reaction_y_n).sum::<f64>();
@@ -220,33 +221,33 @@ fn t03_a_force_diagram_follows_the_load() {
 #[test]
 fn t04_fast_moves_of_the_camera_neither_lose_it_nor_touch_the_scene() {
     let mut harness = open(catalog::tank());
-    let scene = state(&harness).scene.clone();
+    let scene = state(&harness).document.scene.clone();
     let mut seed = 3;
     for _ in 0..200 {
         let by = Vec2::new(next(&mut seed) as f32 - 0.5, next(&mut seed) as f32 - 0.5) * 400.0;
         let factor = (4.0 * (next(&mut seed) - 0.5)).exp();
         let ctx = harness.ctx.clone();
-        let about_m = state(&harness).camera.centre_m;
+        let about_m = state(&harness).view.camera.centre_m;
         let commands = vec![Command::View(ViewCommand::Pan(by)), Command::View(ViewCommand::Zoom { about_m, factor })];
         harness.state_mut().apply(&ctx, commands);
         harness.step();
-        let camera = state(&harness).camera;
+        let camera = state(&harness).view.camera;
         assert!(camera.centre_m.iter().all(|v| v.is_finite()) && camera.points_per_m > 0.0);
     }
     apply(&mut harness, Command::View(ViewCommand::Fit));
     let canvas = harness.get_by_label("Canvas").rect();
     for s in &scene.cables[0].supports {
-        let at = state(&harness).camera.to_screen(canvas, s.at_m.unwrap());
+        let at = state(&harness).view.camera.to_screen(canvas, s.at_m.unwrap());
         assert!(canvas.contains(at), "{} is in view again", s.name);
     }
-    assert_eq!(state(&harness).scene, scene);
+    assert_eq!(state(&harness).document.scene, scene);
 }
 
 /// Sunny: four good marks are kept. Rainy: a low mark is not taken without what confused, and that is kept with what was on
 /// screen.
 #[test]
 fn t05_marks_are_kept_and_a_low_one_with_what_confused() {
-    use cable_viewer::feedback::QUESTIONS;
+    use cable_viewer::io::feedback::QUESTIONS;
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("feedback.csv");
     let mut harness = open(catalog::round_post());
@@ -256,7 +257,8 @@ fn t05_marks_are_kept_and_a_low_one_with_what_confused() {
         for ((_, question), k) in QUESTIONS.iter().zip(marks) {
             click(harness, &format!("{question}: {k}"));
         }
-        let Some(cable_viewer::dialog::Dialog::Feedback { path: typed, .. }) = &mut harness.state_mut().state.dialog
+        let Some(cable_viewer::state::dialog::Dialog::Feedback { path: typed, .. }) =
+            &mut harness.state_mut().state.ui.dialog
         else {
             panic!("no dialog");
         };
@@ -265,23 +267,23 @@ fn t05_marks_are_kept_and_a_low_one_with_what_confused() {
     };
     mark(&mut harness, [5, 4, 5, 4]);
     click(&mut harness, "Keep");
-    assert!(state(&harness).dialog.is_none());
+    assert!(state(&harness).ui.dialog.is_none());
     mark(&mut harness, [4, 2, 5, 4]);
     click(&mut harness, "Keep");
-    assert!(state(&harness).dialog.is_some(), "a low mark without words is not taken");
+    assert!(state(&harness).ui.dialog.is_some(), "a low mark without words is not taken");
     harness.get_by_label_contains("please say what confused you");
     harness.get_by_label("What confused you, or should be otherwise").focus();
     harness.run_steps(2);
     harness.get_by_label("What confused you, or should be otherwise").type_text("which end, \"left\"?");
     harness.run_steps(2);
     click(&mut harness, "Keep");
-    assert!(state(&harness).dialog.is_none());
+    assert!(state(&harness).ui.dialog.is_none());
     let text = std::fs::read_to_string(&path).unwrap();
     let rows: Vec<&str> = text.lines().collect();
     assert_eq!(rows.len(), 3, "{text}");
     assert!(rows[0].starts_with("useful,clear,realistic,easy,confused_by,scene,model"), "{text}");
     assert!(rows[1].starts_with("5,4,5,4,\"\","), "{text}");
-    let scene = &state(&harness).scene.name;
+    let scene = &state(&harness).document.scene.name;
     assert!(rows[2].starts_with(&format!("4,2,5,4,\"which end, \"\"left\"\"?\",\"{scene}\",")), "{text}");
 }
 

@@ -1,17 +1,21 @@
-//! Cable panel: the properties of the current cable.
+//! The cable panel edits the properties of the current cable.
+//!
+//! - `property`: each property with its unit and usual range
+//! - `provenance`: source and confidence of each value
 
-pub mod known;
 pub mod property;
+pub mod provenance;
 
 use cable_core::Cable;
 use cable_core::scene::preset;
-use egui::{ComboBox, Response, Ui};
+use egui::{ComboBox, Ui};
 
-use super::property::{Known, row};
-use super::{fault, field};
 use crate::command::{Command, SceneCommand, ViewCommand};
+use crate::panels::cable::property::{PROPERTIES, SEGMENTS};
+use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
-use property::{PROPERTIES, SEGMENTS};
+use crate::widgets::field;
+use crate::widgets::property::{Provenance, labelled, row};
 
 /// Height of the list of presets, points: all of them are seen at once.
 const POPUP_HEIGHT: f32 = 360.0;
@@ -19,7 +23,7 @@ const POPUP_HEIGHT: f32 = 360.0;
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let index = state.current_cable();
-    let Some(cable) = state.scene.cables.get(index) else {
+    let Some(cable) = state.document.scene.cables.get(index) else {
         ui.weak("No cable");
         return;
     };
@@ -30,7 +34,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         // The loaded scene's cable of this name is what reset returns to without a preset.
         let loaded = state.document.saved.cables.iter().find(|c| c.name == cable.name);
         for property in &PROPERTIES {
-            let known = known::known(property, cable, loaded);
+            let known = provenance::of(property, cable, loaded);
             let change = row(ui, &property.quantity, &known);
             if let Some(value) = change.value {
                 commands.push(changed(index, cable, |c| (property.set)(c, value)));
@@ -38,7 +42,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             if change.done {
                 commands.push(Command::Scene(SceneCommand::EditDone));
             }
-            fault::inline(ui, state, &format!("cables[{index}].{}", property.key), commands);
+            scene_errors::inline(ui, state, &format!("cables[{index}].{}", property.key), commands);
         }
         segments(ui, state, index, loaded, commands);
         self_contact(ui, index, cable, commands);
@@ -53,12 +57,12 @@ fn changed(index: usize, cable: &Cable, change: impl FnOnce(&mut Cable)) -> Comm
 
 /// Which cable, where there are several, and its name.
 fn picker(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Command>) {
-    let Some(cable) = state.scene.cables.get(index) else { return };
-    if state.scene.cables.len() > 1 {
+    let Some(cable) = state.document.scene.cables.get(index) else { return };
+    if state.document.scene.cables.len() > 1 {
         labelled(ui, "Cable", "Cable", |ui| {
             let combo = ComboBox::from_id_salt("cable").selected_text(&cable.name).width(ui.available_width() - 8.0);
             let shown = combo.show_ui(ui, |ui| {
-                for (k, other) in state.scene.cables.iter().enumerate() {
+                for (k, other) in state.document.scene.cables.iter().enumerate() {
                     if ui.selectable_label(k == index, &other.name).clicked() {
                         commands.push(Command::View(ViewCommand::Select(Some(Item::Cable(k)))));
                     }
@@ -79,12 +83,12 @@ fn picker(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Comman
     if let Some(wrong) = wrong {
         field::fault(ui, &wrong);
     }
-    fault::inline(ui, state, &format!("cables[{index}].name"), commands);
+    scene_errors::inline(ui, state, &format!("cables[{index}].name"), commands);
 }
 
 /// The scene with a cable and everything that names it renamed.
 fn renamed(state: &AppState, index: usize, name: String) -> Command {
-    let mut scene = state.scene.clone();
+    let mut scene = state.document.scene.clone();
     if let Some(cable) = scene.cables.get_mut(index) {
         let old = std::mem::replace(&mut cable.name, name.clone());
         for load in scene.loads.iter_mut().filter(|l| l.cable == old) {
@@ -103,7 +107,7 @@ fn presets(ui: &mut Ui, index: usize, cable: &Cable, commands: &mut Vec<Command>
             for p in preset::cable_presets() {
                 let entry = ui.selectable_label(present.is_some_and(|q| q.id == p.id), &p.name);
                 if entry.on_hover_text(&p.note).clicked() {
-                    commands.push(changed(index, cable, |c| *c = known::with_preset(cable, p)));
+                    commands.push(changed(index, cable, |c| *c = provenance::with_preset(cable, p)));
                     commands.push(Command::Scene(SceneCommand::EditDone));
                 }
             }
@@ -117,7 +121,7 @@ fn presets(ui: &mut Ui, index: usize, cable: &Cable, commands: &mut Vec<Command>
 }
 
 fn segments(ui: &mut Ui, state: &AppState, index: usize, loaded: Option<&Cable>, commands: &mut Vec<Command>) {
-    let Some(cable) = state.scene.cables.get(index) else { return };
+    let Some(cable) = state.document.scene.cables.get(index) else { return };
     let mut own = cable.segments.is_some();
     let help = "Off: the model chooses by the accuracy asked for";
     if ui.checkbox(&mut own, "Fixed number of segments").on_hover_text(help).changed() {
@@ -127,7 +131,7 @@ fn segments(ui: &mut Ui, state: &AppState, index: usize, loaded: Option<&Cable>,
     }
     let Some(count) = cable.segments else { return };
     let origin = loaded.and_then(|c| c.segments).map(|n| (n as f64, "as loaded".to_owned()));
-    let known = Known { value: count as f64, origin, source: None, estimated: false };
+    let known = Provenance { value: count as f64, origin, source: None, estimated: false };
     let change = row(ui, &SEGMENTS, &known);
     if let Some(value) = change.value {
         // Saturates; zero and too many are refused by the scene's own check, which is shown below.
@@ -136,11 +140,11 @@ fn segments(ui: &mut Ui, state: &AppState, index: usize, loaded: Option<&Cable>,
     if change.done {
         commands.push(Command::Scene(SceneCommand::EditDone));
     }
-    fault::inline(ui, state, &format!("cables[{index}].segments"), commands);
+    scene_errors::inline(ui, state, &format!("cables[{index}].segments"), commands);
 }
 
 fn solved_segments(state: &AppState, index: usize) -> Option<usize> {
-    let answer = state.snapshot.solution.as_ref()?.cables.get(index)?;
+    let answer = state.live.snapshot.solution.as_ref()?.cables.get(index)?;
     answer.nodes.len().checked_sub(1).filter(|&n| n > 0)
 }
 
@@ -160,27 +164,12 @@ fn count(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Command
         if ui.button("Add cable").on_hover_text(help).clicked() {
             commands.push(Command::Scene(SceneCommand::AddCable));
         }
-        let several = state.scene.cables.len() > 1;
+        let several = state.document.scene.cables.len() > 1;
         let remove = ui.add_enabled(several, egui::Button::new("Remove cable"));
         let remove =
             remove.on_hover_text("Takes this cable out, with its loads").on_disabled_hover_text("The last one stays");
         if remove.clicked() {
             commands.push(Command::Scene(SceneCommand::Remove(Item::Cable(index))));
         }
-    });
-}
-
-/// A text in the column of names, and the widget it names beside it; `name` is what tests and screen readers call it.
-pub fn labelled(ui: &mut Ui, text: &str, name: &str, contents: impl FnOnce(&mut Ui) -> Response) {
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        let height = ui.spacing().interact_size.y;
-        let layout = egui::Layout::left_to_right(egui::Align::Center);
-        let label = ui.allocate_ui_with_layout(egui::vec2(super::property::NAME_WIDTH, height), layout, |ui| {
-            ui.set_min_width(super::property::NAME_WIDTH);
-            ui.add(egui::Label::new(text).truncate().selectable(false))
-        });
-        let named = contents(ui).labelled_by(label.inner.id);
-        field::name(&named, name);
     });
 }

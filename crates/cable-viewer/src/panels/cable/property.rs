@@ -1,9 +1,9 @@
-//! The properties of a cable: what each is called, its unit, its usual range, where it lives.
+//! A property of a cable has a name, a unit, a usual range and a place in the cable.
 
 use cable_core::Cable;
 
-use crate::panels::property::Quantity;
-use crate::panels::unit::Unit;
+use crate::units::unit::Unit;
+use crate::widgets::property::Quantity;
 
 /// A property of a cable.
 pub struct Property {

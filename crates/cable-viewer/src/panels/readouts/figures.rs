@@ -1,8 +1,9 @@
-//! The figures of a cable's answer that are neither in it nor in its summary as they stand.
+//! These figures of a cable's answer are neither in it nor in its summary as they stand.
 
 use cable_core::solution::{CableSolution, Node};
 
-/// Greatest value of a quantity along a cable and the node it is at; nodes where it is not finite are left out.
+/// Greatest value of a quantity along a cable and the node it is at; nodes where it is not finite
+/// are left out.
 #[must_use]
 pub fn greatest(cable: &CableSolution, of: impl Fn(&Node) -> f64) -> Option<(f64, Node)> {
     let values = cable.nodes.iter().map(|n| (of(n), *n)).filter(|(v, _)| v.is_finite());

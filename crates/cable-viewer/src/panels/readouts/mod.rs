@@ -1,4 +1,7 @@
-//! Readouts panel: the figures of the present answer.
+//! The readouts panel shows the figures of the present answer.
+//!
+//! - `figures`: greatest and least values along a cable
+//! - `reactions`: the forces on the supports
 
 pub(crate) mod figures;
 mod reactions;
@@ -10,28 +13,28 @@ use cable_core::summary::{CablePlace, CableSummary, EndForce, summary};
 use cable_core::timeline::{RunPeaks, TensionRanges};
 use egui::{Color32, Grid, ProgressBar, RichText, Ui};
 
-use super::field;
-use super::icon::{self, Icon};
-use super::unit;
-use crate::background::Progress;
-use crate::bending;
 use crate::command::{Command, ViewCommand};
+use crate::jobs::background::Progress;
 use crate::state::AppState;
+use crate::state::questions::{bending_query, bending_query_fits};
+use crate::units::{format, unit};
+use crate::widgets::field;
+use crate::widgets::icon::{self, Icon};
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let index = state.current_cable();
-    let Some(answer) = state.snapshot.solution.as_deref() else {
+    let Some(answer) = state.live.snapshot.solution.as_deref() else {
         ui.weak("Nothing solved yet");
         return;
     };
     // The figures belong to the scene that was solved, which may not be the one being typed.
-    let scene = state.snapshot.scene.as_deref().unwrap_or(&state.scene);
+    let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let (Some(cable), Some(solved)) = (scene.cables.get(index), answer.cables.get(index)) else {
         ui.weak("This cable is not solved yet");
         return;
     };
-    if state.snapshot.stale {
+    if state.live.snapshot.stale {
         ui.horizontal(|ui| {
             let colour = ui.visuals().warn_fg_color;
             icon::sign(ui, Icon::Caution, colour);
@@ -49,8 +52,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let first = summary(scene, cable, solved, answer.time_s);
         ends(ui, &first);
         shape(ui, scene.view, &first, commands);
-        material(ui, (cable, solved), &first, commands);
-        if let (Some(run), true) = (state.snapshot.peaks.get(index), answer.time_s > 0.0) {
+        material(ui, cable, solved, &first, commands);
+        if let (Some(run), true) = (state.live.snapshot.peaks.get(index), answer.time_s > 0.0) {
             greatest_so_far(ui, run);
         }
         accuracy(ui, solved, &first);
@@ -68,16 +71,16 @@ fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Ve
     };
     ui.horizontal(|ui| {
         ui.label("Max tension");
-        ui.label(RichText::new(unit::force(tension_n)).strong().size(18.0));
+        ui.label(RichText::new(format::force(tension_n)).strong().size(18.0));
         place(ui, "Show the largest tension", &node, commands);
     });
-    ui.weak(format!("at {} along the cable, {}", along(&node), unit::position([node.x_m, node.y_m])));
+    ui.weak(format!("at {} along the cable, {}", along(&node), format::position([node.x_m, node.y_m])));
     for (name, limit_n, help) in [
         ("service", cable.service_tension_n, "Share of the tension of the first warning"),
         ("break", cable.breaking_tension_n, "Share of the tension at which it breaks"),
     ] {
         let share = tension_n / limit_n;
-        let text = format!("{} of {name} {}", unit::percent(share), unit::force(limit_n));
+        let text = format!("{} of {name} {}", format::percent(share), format::force(limit_n));
         let bar = ProgressBar::new(share.clamp(0.0, 1.0) as f32)
             .fill(bar_colour(share, name == "break", ui.visuals().dark_mode))
             .text(text.clone())
@@ -89,7 +92,8 @@ fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Ve
     }
 }
 
-/// Calm below the limit, amber above service, red above break; chosen to keep black or white text readable.
+/// Calm below the limit, amber above service, red above break; chosen to keep black or white text
+/// readable.
 fn bar_colour(share: f64, breaking: bool, dark: bool) -> Color32 {
     match (share > 1.0, breaking) {
         (true, true) => Color32::from_rgb(214, 68, 68),
@@ -120,7 +124,7 @@ fn place(ui: &mut Ui, label: &str, node: &Node, commands: &mut Vec<Command>) {
     let at_m = [node.x_m, node.y_m];
     let button = icon::plain_button(ui, Icon::Locate, true);
     field::name(&button, label);
-    let text = format!("At {} along the cable, {}; click to centre on it", along(node), unit::position(at_m));
+    let text = format!("At {} along the cable, {}; click to centre on it", along(node), format::position(at_m));
     if button.on_hover_text(text).clicked() {
         commands.push(Command::View(ViewCommand::CentreOn(at_m)));
     }
@@ -139,7 +143,7 @@ fn ends(ui: &mut Ui, first: &CableSummary) {
 }
 
 fn pull(end: &EndForce) -> String {
-    let force = unit::force(end.tension_n);
+    let force = format::force(end.tension_n);
     match end.elevation_deg {
         Some(d) => format!("{force}, {:.1}° {}", d.abs(), if d < 0.0 { "down" } else { "up" }),
         None => force,
@@ -150,8 +154,8 @@ fn explained(end: &EndForce) -> String {
     format!(
         "Tension at `{}` and the angle above or below the horizontal in which the cable leaves it; it pulls with {} to the right and {} up",
         end.support,
-        unit::force(end.horizontal_n),
-        unit::force(end.vertical_n)
+        format::force(end.horizontal_n),
+        format::force(end.vertical_n)
     )
 }
 
@@ -161,18 +165,18 @@ fn shape(ui: &mut Ui, view: View, first: &CableSummary, commands: &mut Vec<Comma
         View::Plan => "Greatest distance from the straight line between neighbouring supports",
     };
     match first.sag {
-        Some(sag) => figure(ui, "Sag", unit::length(sag.sag_m), help, Some((&node(sag.at), &mut *commands))),
+        Some(sag) => figure(ui, "Sag", format::length(sag.sag_m), help, Some((&node(sag.at), &mut *commands))),
         None => figure(ui, "Sag", "–".to_owned(), "No two neighbouring supports stand apart", None),
     }
     for (name, at) in [("Lowest", first.lowest), ("Highest", first.highest)] {
-        figure(ui, name, unit::length(at.y_m), "Height of that point", Some((&node(at), &mut *commands)));
+        figure(ui, name, format::length(at.y_m), "Height of that point", Some((&node(at), &mut *commands)));
     }
     let longer = first.stretched_length_m - first.length_m;
     let text = format!(
         "{} ({}{})",
-        unit::length(first.stretched_length_m),
+        format::length(first.stretched_length_m),
         if longer < 0.0 { "" } else { "+" },
-        unit::length(longer)
+        format::length(longer)
     );
     figure(
         ui,
@@ -181,28 +185,28 @@ fn shape(ui: &mut Ui, view: View, first: &CableSummary, commands: &mut Vec<Comma
         "Unstretched length with strain and heat, and how much that is above the unstretched length",
         None,
     );
-    let text = format!("{}, {} suspended", unit::length(first.lying_m), unit::length(first.suspended_m));
+    let text = format!("{}, {} suspended", format::length(first.lying_m), format::length(first.suspended_m));
     figure(ui, "Lying", text, "Unstretched length on ground and other obstacles, and the rest of it", None);
     if let Some(down) = first.touchdowns.first() {
-        let text = format!("{}, first at {}", first.touchdowns.len(), unit::length(down.at.arc_length_m));
+        let text = format!("{}, first at {}", first.touchdowns.len(), format::length(down.at.arc_length_m));
         let help = "Places where it comes down on something or leaves it";
         figure(ui, "Touchdowns", text, help, Some((&node(down.at), &mut *commands)));
     }
     let least = first.least_tension;
     let help = "The least tension anywhere on the cable";
-    figure(ui, "Least tension", unit::force(least.tension_n), help, Some((&node(least.at), commands)));
+    figure(ui, "Least tension", format::force(least.tension_n), help, Some((&node(least.at), commands)));
 }
 
-fn material(ui: &mut Ui, (cable, solved): (&Cable, &CableSolution), first: &CableSummary, commands: &mut Vec<Command>) {
+fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, first: &CableSummary, commands: &mut Vec<Command>) {
     if let Some((stress_pa, node)) = figures::greatest(solved, |n| n.stress_pa) {
         let help = "Largest tension over the full round section (conductors alone carry more)";
-        figure(ui, "Max stress", unit::stress(stress_pa), help, Some((&node, &mut *commands)));
+        figure(ui, "Max stress", format::stress(stress_pa), help, Some((&node, &mut *commands)));
     }
     if let Some((strain, node)) = figures::greatest(solved, |n| n.strain) {
         figure(
             ui,
             "Max strain",
-            unit::strain(strain),
+            format::strain(strain),
             "Largest change of length over length",
             Some((&node, &mut *commands)),
         );
@@ -217,10 +221,10 @@ fn material(ui: &mut Ui, (cable, solved): (&Cable, &CableSolution), first: &Cabl
     let limit = cable.min_bend_radius_m;
     let radius = |radius_m: f64| {
         let tight = if radius_m < limit { ", too tight" } else { "" };
-        format!("{}{tight}", unit::length(radius_m))
+        format!("{}{tight}", format::length(radius_m))
     };
     let judged = first.judged_bend.filter(|j| j.bend.radius_m > bend.radius_m);
-    let text = if judged.is_none() { radius(bend.radius_m) } else { unit::length(bend.radius_m) };
+    let text = if judged.is_none() { radius(bend.radius_m) } else { format::length(bend.radius_m) };
     figure(ui, "Min bend radius", text, help, Some((&place(bend), &mut *commands)));
     if let Some(j) = judged {
         let help = format!(
@@ -234,25 +238,31 @@ fn material(ui: &mut Ui, (cable, solved): (&Cable, &CableSolution), first: &Cabl
         figure(ui, "  free", radius(free.radius_m), help, Some((&place(free), &mut *commands)));
     }
     if limit > 0.0 {
-        figure(ui, "  allowed", format!("≥ {}", unit::length(limit)), "The cable's smallest allowed bend radius", None);
+        figure(
+            ui,
+            "  allowed",
+            format!("≥ {}", format::length(limit)),
+            "The cable's smallest allowed bend radius",
+            None,
+        );
     }
     if let (Some(p), Some(ratio)) = (first.sidewall_pressure, first.utilisation.sidewall_pressure_ratio) {
         let at = node(CablePlace { arc_length_m: p.arc_length_m, x_m: p.x_m, y_m: p.y_m });
         let help = "Pressure on what leads it round, of the most it stands";
-        figure(ui, "Sidewall pressure", unit::percent(ratio), help, Some((&at, commands)));
+        figure(ui, "Sidewall pressure", format::percent(ratio), help, Some((&at, commands)));
     }
 }
 
-/// An error of this part of the greatest tension is one of rounding. More: meshes that are very fine are called exact; less: models without a
-/// mesh show their rounding as if it mattered.
+/// An error of this part of the greatest tension is one of rounding. More: meshes that are very
+/// fine are called exact; less: models without a mesh show their rounding as if it mattered.
 const ROUNDED: f64 = 1e-9;
 
 /// The greatest tension since the run began, and what coarser runs beside it leave open.
 fn greatest_so_far(ui: &mut Ui, run: &RunPeaks) {
-    let most = unit::force(run.peaks.greatest.tension_n);
+    let most = format::force(run.peaks.greatest.tension_n);
     let text = match run.ranges {
         Some(TensionRanges { greatest_n: [from, to], .. }) => {
-            format!("{most} ({} to {})", unit::force(from), unit::force(to))
+            format!("{most} ({} to {})", format::force(from), format::force(to))
         }
         None => most,
     };
@@ -289,7 +299,7 @@ fn bending_stiffness(
     }
     ui.label(name).on_hover_text(&help);
     ui.label("neglected").on_hover_text(&help);
-    let can = bending::asked(state).is_some();
+    let can = bending_query(state).is_some();
     let button = ui.add_enabled(can, egui::Button::new("Compare").small());
     field::name(&button, "Compare with the likely bending stiffness");
     let does = format!("Answers once more with {likely}, and says what that changes");
@@ -299,13 +309,14 @@ fn bending_stiffness(
     ui.end_row();
 }
 
-/// What came of comparing an answer with one that has the likely bending stiffness, in short and in full; None where nobody asked.
+/// What came of comparing an answer with one that has the likely bending stiffness, in short and in
+/// full; None where nobody asked.
 fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<(String, String)> {
-    if !bending::fits(state) {
+    if !bending_query_fits(state) {
         return None;
     }
     let neglected = "neglected".to_owned();
-    let found = match &state.bending.progress {
+    let found = match &state.analysis.neglected_bending.progress {
         Progress::None => return None,
         Progress::Running(..) => return Some(("neglected, being compared".to_owned(), String::new())),
         Progress::Failed(why) => return Some((neglected, format!(". {why}"))),
@@ -316,15 +327,15 @@ fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<(
         return Some((neglected, format!(". No answer was found with that: {why}")));
     };
     let most = figures::greatest(solved, |n| n.tension_n).map_or(0.0, |(tension, _)| tension);
-    let change = if most > 0.0 { format!("{:+.2} %", 100.0 * (with / most - 1.0)) } else { unit::force(with) };
+    let change = if most > 0.0 { format!("{:+.2} %", 100.0 * (with / most - 1.0)) } else { format::force(with) };
     let part = |of: Option<f64>, text: fn(f64) -> String| {
         of.map_or_else(|| "by what is not known".to_owned(), |v| format!("by up to {}", text(v)))
     };
     let details = format!(
         ". With that the greatest tension is {} ({change}), forces on supports change {}, the shape {}",
-        unit::force(with),
-        part(found.changes.support_force_n, unit::force),
-        part(found.changes.position_m, unit::length),
+        format::force(with),
+        part(found.changes.support_force_n, format::force),
+        part(found.changes.position_m, format::length),
     );
     Some((format!("neglected: {change}"), details))
 }
@@ -332,7 +343,7 @@ fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<(
 fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
     let text = match solved.error_estimate {
         Some(e) if e < ROUNDED => "exact for this model".to_owned(),
-        Some(e) => format!("± {}", unit::percent(e)),
+        Some(e) => format!("± {}", format::percent(e)),
         None => "not estimated".to_owned(),
     };
     figure(
@@ -347,20 +358,20 @@ fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
         let normal_n: f64 = solved.contacts.iter().map(|c| c.normal_n).sum();
         let text = format!("{}, {sliding} sliding", solved.contacts.len());
         figure(ui, "Contacts", text, "Places where the cable touches an obstacle", None);
-        figure(ui, "Contact force", unit::force(normal_n), "Sum of the normal forces", None);
+        figure(ui, "Contact force", format::force(normal_n), "Sum of the normal forces", None);
     }
     if let Some(f) = &first.friction {
-        let text = format!("{} of {}", unit::force(f.used_n), unit::force(f.available_n));
+        let text = format!("{} of {}", format::force(f.used_n), format::force(f.available_n));
         let help = format!(
             "Friction called upon of all there is; `{}` uses {} of its own",
             f.obstacle,
-            unit::percent(f.greatest_ratio)
+            format::percent(f.greatest_ratio)
         );
         figure(ui, "Friction used", text, &help, None);
     }
     let (text, help) = match &first.balance {
         Some(b) => (
-            unit::percent(b.relative_residual),
+            format::percent(b.relative_residual),
             "What is left of all forces on the cable, of the largest; in motion it accelerates it",
         ),
         None => ("not known".to_owned(), "The floor of a plan view rubs with a force that no answer holds"),

@@ -1,11 +1,12 @@
-//! What the cable does to its supports: size, direction as an arrow, components.
+//! The table of reactions gives the force on each support: size, direction as an arrow, components.
 
 use cable_core::Cable;
 use cable_core::solution::{CableSolution, SupportReaction};
 use egui::{Align2, Grid, RichText, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2};
 
 use crate::command::{Command, ViewCommand};
-use crate::panels::{field, unit};
+use crate::units::{format, unit};
+use crate::widgets::field;
 
 /// Side of the square an arrow is drawn in, points.
 const ARROW: f32 = 18.0;
@@ -30,9 +31,9 @@ pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Vec
             if link.on_hover_text(explanation(cable, s)).clicked() {
                 commands.push(Command::View(ViewCommand::CentreOn([s.x_m, s.y_m])));
             }
-            ui.label(unit::force(size(s)));
-            ui.label(unit::force(s.reaction_x_n));
-            ui.label(unit::force(s.reaction_y_n));
+            ui.label(format::force(size(s)));
+            ui.label(format::force(s.reaction_x_n));
+            ui.label(format::force(s.reaction_y_n));
             ui.end_row();
         }
     });
@@ -48,14 +49,14 @@ fn hand(ui: &mut Ui, s: &SupportReaction) {
     ui.label(format!(
         "Hand at {}: {} by a spring of {}, {} ahead",
         s.name,
-        unit::force(hand.force_n()),
+        format::force(hand.force_n()),
         unit::Unit::N_PER_M.text(hand.stiffness_n_per_m),
         unit::Unit::COORDINATE.text(ahead)
     ))
     .on_hover_text(format!(
         "Force of the hand on the cable: {} to the right, {} up. What the spring's stiffness times its length lacks of it is its damper's",
-        unit::force(hand.force_x_n),
-        unit::force(hand.force_y_n)
+        format::force(hand.force_x_n),
+        format::force(hand.force_y_n)
     ));
 }
 
@@ -71,14 +72,14 @@ fn direction_deg(s: &SupportReaction) -> f64 {
 fn explanation(cable: &Cable, s: &SupportReaction) -> String {
     let mut text = format!(
         "{} at {:.1}° (anticlockwise from the right)\nAt {}, {} of {} along the cable",
-        unit::force(size(s)),
+        format::force(size(s)),
         direction_deg(s),
-        unit::position([s.x_m, s.y_m]),
+        format::position([s.x_m, s.y_m]),
         unit::Unit::COORDINATE.text(s.arc_length_m),
         unit::Unit::COORDINATE.text(cable.length_m)
     );
     if let (Some(before), Some(after)) = (s.tension_before_n, s.tension_after_n) {
-        text += &format!("\nTension {} before and {} after it", unit::force(before), unit::force(after));
+        text += &format!("\nTension {} before and {} after it", format::force(before), format::force(after));
     }
     text + "\nClick to centre on it"
 }
@@ -86,7 +87,7 @@ fn explanation(cable: &Cable, s: &SupportReaction) -> String {
 fn arrow(ui: &mut Ui, s: &SupportReaction, largest: f64) {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(ARROW), Sense::hover());
     let text = if size(s) > NOTHING * largest {
-        format!("{} at {:.0}°", unit::force(size(s)), direction_deg(s))
+        format!("{} at {:.0}°", format::force(size(s)), direction_deg(s))
     } else {
         "no force".to_owned()
     };

@@ -1,15 +1,18 @@
-//! The point loads: on which cable, where, how much.
+//! The list of point loads says on which cable, where and how much.
 
 use cable_core::Load;
 use egui::{ComboBox, Ui};
 
-use super::{GAP, KIND_WIDTH, NUMBER_WIDTH, components, headings, name_width, remove, selectable_name, show_faults};
 use crate::command::{Command, SceneCommand};
-use crate::panels::property::{Known, Quantity, row};
-use crate::panels::times::{self, Knots, Table};
-use crate::panels::unit::Unit;
-use crate::panels::{fault, field};
+use crate::panels::scene::rows::{
+    GAP, KIND_WIDTH, NUMBER_WIDTH, components, headings, name_width, remove, selectable_name, show_faults,
+};
+use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
+use crate::units::unit::Unit;
+use crate::widgets::field;
+use crate::widgets::property::{Provenance, Quantity, row};
+use crate::widgets::time_table::{self, Knots, Table};
 
 /// Force of a new load, N.
 const FIRST_LOAD_N: [f64; 2] = [0.0, -100.0];
@@ -27,17 +30,17 @@ const STRENGTH: Quantity = Quantity {
 
 /// Draws them.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    if !state.scene.loads.is_empty() {
-        let (length, force) = (Unit::M.shown().symbol, Unit::N.shown().symbol);
+    if !state.document.scene.loads.is_empty() {
+        let (length, force) = (Unit::M.display().symbol, Unit::N.display().symbol);
         let [at, right, up] = [format!("At, {length}"), format!("Right, {force}"), format!("Up, {force}")];
         let columns = [("Name", name_width(ui)), (&*at, KIND_WIDTH), (&*right, NUMBER_WIDTH), (&*up, NUMBER_WIDTH)];
         headings(ui, &columns);
     }
-    for (k, load) in state.scene.loads.iter().enumerate() {
+    for (k, load) in state.document.scene.loads.iter().enumerate() {
         ui.push_id(k, |ui| line(ui, state, k, load, commands));
-        fault::inline(ui, state, &format!("loads[{k}]"), commands);
+        scene_errors::inline(ui, state, &format!("loads[{k}]"), commands);
     }
-    let Some(cable) = state.scene.cables.get(state.current_cable()) else { return };
+    let Some(cable) = state.document.scene.cables.get(state.current_cable()) else { return };
     if ui.button("Add load").on_hover_text("A force on the middle of the cable, 100 N down").clicked() {
         let load = Load {
             cable: cable.name.clone(),
@@ -83,19 +86,19 @@ fn line(ui: &mut Ui, state: &AppState, k: usize, load: &Load, commands: &mut Vec
             remove(ui, item, &name, "Takes it off", commands);
         });
     });
-    if state.selected == Some(item) {
+    if state.selection.selected == Some(item) {
         if let Some(force_n) = load.force_n {
-            strength(ui, load, (k, force_n), commands);
+            strength(ui, load, k, force_n, commands);
         }
-        if let Some(value) = timed(ui, (&name, load), &mut faults) {
+        if let Some(value) = timed(ui, &name, load, &mut faults) {
             set(value, commands);
         }
     }
-    if state.scene.cables.len() > 1 {
+    if state.document.scene.cables.len() > 1 {
         ui.horizontal(|ui| {
             ui.label("    on");
             let shown = ComboBox::from_id_salt("cable").selected_text(&load.cable).show_ui(ui, |ui| {
-                for cable in &state.scene.cables {
+                for cable in &state.document.scene.cables {
                     if ui.selectable_label(cable.name == load.cable, &cable.name).clicked() {
                         set(Load { cable: cable.name.clone(), ..load.clone() }, commands);
                     }
@@ -108,17 +111,17 @@ fn line(ui: &mut Ui, state: &AppState, k: usize, load: &Load, commands: &mut Vec
 }
 
 /// A force that changes with time, or does from now on.
-fn timed(ui: &mut Ui, (name, load): (&str, &Load), faults: &mut Vec<String>) -> Option<Load> {
+fn timed(ui: &mut Ui, name: &str, load: &Load, faults: &mut Vec<String>) -> Option<Load> {
     let knots = Knots::of(&load.times_s, &load.forces_n);
     let on = load.force_n.is_none();
     let help = "A force at each of several times, linear in between";
-    if let Some(on) = times::toggle(ui, &format!("{name} changes with time"), on, help) {
+    if let Some(on) = time_table::toggle(ui, &format!("{name} changes with time"), on, help) {
         let force_n = load.force_n.or(knots.values.first().copied()).unwrap_or(FIRST_LOAD_N);
         let knots = if on { Knots::steady(force_n, FIRST_SPAN_S) } else { Knots::default() };
         return Some(with(load, (!on).then_some(force_n), knots));
     }
     let table = Table { of: name, columns: ["Right", "Up"], unit: Unit::N, least: 1 };
-    let changed = if on { times::ui(ui, &table, &knots, faults) } else { None };
+    let changed = if on { time_table::ui(ui, &table, &knots, faults) } else { None };
     changed.map(|knots| with(load, None, knots))
 }
 
@@ -127,9 +130,9 @@ fn with(load: &Load, force_n: Option<[f64; 2]>, knots: Knots) -> Load {
 }
 
 /// The slider of a selected load: how much, in the direction it has.
-fn strength(ui: &mut Ui, load: &Load, (k, force_n): (usize, [f64; 2]), commands: &mut Vec<Command>) {
+fn strength(ui: &mut Ui, load: &Load, k: usize, force_n: [f64; 2], commands: &mut Vec<Command>) {
     let size = force_n[0].hypot(force_n[1]);
-    let known = Known { value: size, ..Known::default() };
+    let known = Provenance { value: size, ..Provenance::default() };
     let change = row(ui, &STRENGTH, &known);
     if let Some(wanted) = change.value.filter(|v| v.is_finite() && *v >= 0.0) {
         let direction = if size > 0.0 { force_n.map(|f| f / size) } else { [0.0, -1.0] };

@@ -1,33 +1,33 @@
-//! The map picker: puts the obstacles of a known tank into the scene.
+//! The map picker puts the obstacles of a known tank into the scene.
 
 use cable_core::Scene;
 use cable_core::scene::preset::{self, MapPreset};
 use egui::{ComboBox, Ui};
 
-use crate::canvas::place;
 use crate::command::{Command, SceneCommand, ViewCommand};
-use crate::panels::cable::labelled;
-use crate::panels::unit;
+use crate::geometry::handles;
 use crate::state::{AppState, Item};
+use crate::units::format;
+use crate::widgets::property::labelled;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let present = preset::map_presets().iter().find(|m| m.obstacles == state.scene.obstacles);
+    let present = preset::map_presets().iter().find(|m| m.obstacles == state.document.scene.obstacles);
     labelled(ui, "Map", "Map", |ui| {
         let text = match present {
             Some(map) => map.name.as_str(),
-            None if state.scene.obstacles.is_empty() => "None",
+            None if state.document.scene.obstacles.is_empty() => "None",
             None => "Own",
         };
         let combo = ComboBox::from_id_salt("map").selected_text(text).width(ui.available_width() - 8.0).truncate();
         let shown = combo.show_ui(ui, |ui| {
-            if ui.selectable_label(state.scene.obstacles.is_empty(), "None").clicked() {
-                choose(&state.scene, &[], commands);
+            if ui.selectable_label(state.document.scene.obstacles.is_empty(), "None").clicked() {
+                choose(&state.document.scene, &[], commands);
             }
             for map in preset::map_presets() {
                 let entry = ui.selectable_label(present.is_some_and(|m| m.id == map.id), &map.name);
                 if entry.on_hover_text(about(map)).clicked() {
-                    choose(&state.scene, &map.obstacles, commands);
+                    choose(&state.document.scene, &map.obstacles, commands);
                 }
             }
         });
@@ -41,11 +41,11 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 /// Offers to begin the cable at the opening of the tank, where it does not.
 fn opening(ui: &mut Ui, state: &AppState, map: &MapPreset, commands: &mut Vec<Command>) {
     let item = Item::Support { cable: state.current_cable(), support: 0 };
-    let Some(at) = place::of(state, item).filter(|at| *at != map.riser_at_m) else { return };
+    let Some(at) = handles::of(state, item).filter(|at| *at != map.riser_at_m) else { return };
     let help = format!(
         "Moves the start of the cable from {} to the opening of the tank at {}",
-        unit::position(at),
-        unit::position(map.riser_at_m)
+        format::position(at),
+        format::position(map.riser_at_m)
     );
     if ui.button("Cable in by the opening").on_hover_text(help).clicked() {
         commands.push(Command::Scene(SceneCommand::EditDone));
@@ -58,9 +58,9 @@ fn about(map: &MapPreset) -> String {
     format!(
         "{}\nInside width {}, waste up to {} deep, opening at {}",
         map.note,
-        unit::length(map.inside_width_m.value),
-        unit::length(map.waste_depth_m.value),
-        unit::position(map.riser_at_m)
+        format::length(map.inside_width_m.value),
+        format::length(map.waste_depth_m.value),
+        format::position(map.riser_at_m)
     )
 }
 

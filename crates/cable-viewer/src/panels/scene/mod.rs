@@ -1,51 +1,40 @@
-//! Scene panel: name, scene and map pickers, supports, obstacles and loads with exact coordinates.
+//! The scene panel edits the name, the map and the things of the scene, with exact coordinates.
+//!
+//! - `map`, `robot`: pickers of known tanks and robots
+//! - `supports`, `obstacles`, `loads`: a list each, and everything else of the selected one
+//! - `rows`: the cells, headings and fields that lists are made of
 
 mod loads;
 mod map;
 mod obstacles;
 mod robot;
-pub mod support_kind;
+pub mod rows;
 mod supports;
 
-use cable_core::math::Point;
 use cable_core::scene::catalog;
-use egui::{Atom, Button, CollapsingHeader, ComboBox, Ui};
+use egui::{CollapsingHeader, ComboBox, Ui};
 
-use super::cable::labelled;
-use super::icon::{self, Icon};
-use super::unit::Unit;
-use super::{fault, field};
-use crate::command::{Command, FileCommand, SceneCommand, ViewCommand};
-use crate::state::{AppState, Item};
-
-/// Width of a number in a list, points: “−123.456” fits.
-const NUMBER_WIDTH: f32 = 60.0;
-/// Width of a number with its unit, points: “−123.456 m” fits.
-const VALUE_WIDTH: f32 = 84.0;
-/// Narrowest and widest column of names, points: what is left of the panel beside the others.
-const NAME_WIDTH: [f32; 2] = [70.0, 100.0];
-/// Width of the columns beside the names and of the cross at the end, points.
-const BESIDE_NAME: f32 = KIND_WIDTH + 2.0 * NUMBER_WIDTH + 3.0 * GAP + 28.0;
-/// Width of the kind in a list, points.
-const KIND_WIDTH: f32 = 70.0;
-/// Gap between columns, points.
-const GAP: f32 = 3.0;
+use crate::command::{Command, FileCommand, SceneCommand};
+use crate::panels::scene_errors;
+use crate::state::AppState;
+use crate::widgets::field;
+use crate::widgets::property::labelled;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     name(ui, state, commands);
     pickers(ui, state, commands);
-    fault::inline(ui, state, "version", commands);
+    scene_errors::inline(ui, state, "version", commands);
     let index = state.current_cable();
-    let supports = state.scene.cables.get(index).map_or(0, |c| c.supports.len());
-    let title = match state.scene.cables.get(index) {
-        Some(cable) if state.scene.cables.len() > 1 => format!("Supports of {} ({supports})", cable.name),
+    let supports = state.document.scene.cables.get(index).map_or(0, |c| c.supports.len());
+    let title = match state.document.scene.cables.get(index) {
+        Some(cable) if state.document.scene.cables.len() > 1 => format!("Supports of {} ({supports})", cable.name),
         _ => format!("Supports ({supports})"),
     };
     list(ui, "supports", &title, |ui| supports::ui(ui, state, index, commands));
-    let title = format!("Obstacles ({})", state.scene.obstacles.len());
+    let title = format!("Obstacles ({})", state.document.scene.obstacles.len());
     list(ui, "obstacles", &title, |ui| obstacles::ui(ui, state, commands));
-    let title = format!("Loads ({})", state.scene.loads.len());
+    let title = format!("Loads ({})", state.document.scene.loads.len());
     list(ui, "loads", &title, |ui| loads::ui(ui, state, commands));
 }
 
@@ -56,7 +45,7 @@ fn list(ui: &mut Ui, id: &str, title: &str, contents: impl FnOnce(&mut Ui)) {
 fn name(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut wrong = None;
     labelled(ui, "Name", "Scene name", |ui| {
-        let entry = field::text(ui, "Scene name", &state.scene.name, ui.available_width() - 8.0);
+        let entry = field::text(ui, "Scene name", &state.document.scene.name, ui.available_width() - 8.0);
         wrong = entry.fault;
         if let Some(name) = entry.value {
             commands.push(Command::Scene(SceneCommand::SetName(name)));
@@ -67,7 +56,7 @@ fn name(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if let Some(wrong) = wrong {
         field::fault(ui, &wrong);
     }
-    fault::inline(ui, state, "name", commands);
+    scene_errors::inline(ui, state, "name", commands);
 }
 
 fn pickers(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -75,7 +64,7 @@ fn pickers(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let combo = ComboBox::from_id_salt("scene").selected_text("Choose a scene…").width(ui.available_width() - 8.0);
         let shown = combo.show_ui(ui, |ui| {
             for (id, scene) in catalog::all() {
-                if ui.selectable_label(scene.name == state.scene.name, &scene.name).clicked() {
+                if ui.selectable_label(scene.name == state.document.scene.name, &scene.name).clicked() {
                     commands.push(Command::File(FileCommand::OpenCatalogue(id.to_owned())));
                 }
             }
@@ -84,105 +73,4 @@ fn pickers(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
     map::ui(ui, state, commands);
     robot::ui(ui, state, commands);
-}
-
-/// The name of a thing in a list: picks it.
-fn selectable_name(ui: &mut Ui, state: &AppState, item: Item, name: &str, commands: &mut Vec<Command>) -> bool {
-    let selected = state.selected == Some(item);
-    let button = Button::selectable(selected, (name, Atom::grow())).truncate();
-    let width = name_width(ui);
-    let response = cell(ui, width, |ui| ui.add(button.min_size(egui::vec2(width, 0.0))));
-    field::name(&response, &format!("Select {name}"));
-    if response.on_hover_text(format!("{name}: click to see and edit everything about it")).clicked() {
-        let item = if selected { None } else { Some(item) };
-        commands.push(Command::View(ViewCommand::Select(item)));
-    }
-    selected
-}
-
-/// Width of the column of names at the start of a line, points.
-fn name_width(ui: &Ui) -> f32 {
-    (ui.available_width() - BESIDE_NAME).clamp(NAME_WIDTH[0], NAME_WIDTH[1])
-}
-
-/// A cell of a list, so that columns stand under each other.
-fn cell<R>(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {
-    let size = egui::vec2(width, ui.spacing().interact_size.y);
-    let layout = egui::Layout::left_to_right(egui::Align::Center);
-    let shown = ui.allocate_ui_with_layout(size, layout, |ui| {
-        ui.set_min_width(width);
-        ui.set_max_width(width);
-        contents(ui)
-    });
-    shown.inner
-}
-
-/// The headings of a list; the last two or three stand over numbers.
-fn headings(ui: &mut Ui, texts: &[(&str, f32)]) {
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = GAP;
-        for (k, (text, width)) in texts.iter().enumerate() {
-            cell(ui, *width, |ui| {
-                if k == 0 {
-                    ui.add_space(4.0);
-                }
-                ui.weak(*text);
-            });
-        }
-    });
-}
-
-/// The button that takes a thing out.
-fn remove(ui: &mut Ui, item: Item, name: &str, help: &str, commands: &mut Vec<Command>) {
-    let response = icon::plain_button(ui, Icon::Remove, true);
-    field::name(&response, &format!("Remove {name}"));
-    if response.on_hover_text(help).clicked() {
-        commands.push(Command::Scene(SceneCommand::Remove(item)));
-    }
-}
-
-/// Two typed coordinates; the point once one was entered.
-fn coordinates(ui: &mut Ui, of: &str, at_m: Point, faults: &mut Vec<String>) -> Option<Point> {
-    components(ui, ["x of ", "y of "].map(|c| format!("{c}{of}")), Unit::COORDINATE, at_m, faults)
-}
-
-/// Two typed components of a vector; the unit stands in the heading.
-fn components(ui: &mut Ui, labels: [String; 2], unit: Unit, value: Point, faults: &mut Vec<String>) -> Option<Point> {
-    let mut entered = None;
-    for (k, label) in labels.iter().enumerate() {
-        let entry = field::number(ui, label, unit.bare(), value[k], NUMBER_WIDTH);
-        if let Some(component) = entry.value {
-            let mut changed = value;
-            changed[k] = component;
-            entered = Some(changed);
-        }
-        faults.extend(entry.fault);
-        entry.response.on_hover_text(format!("{label}: {}", unit.exact(value[k])));
-    }
-    entered
-}
-
-/// A named number that may be left out; `Some` once it was entered.
-fn optional(
-    ui: &mut Ui,
-    [name, help]: [&str; 2],
-    unit: Unit,
-    value: Option<f64>,
-    faults: &mut Vec<String>,
-) -> Option<f64> {
-    let mut entered = None;
-    labelled(ui, name, name, |ui| {
-        let entry = field::number(ui, name, unit, value.unwrap_or(0.0), VALUE_WIDTH);
-        entered = entry.value;
-        faults.extend(entry.fault);
-        entry.response.on_hover_text(help)
-    });
-    entered
-}
-
-/// Faults below the row they belong to.
-fn show_faults(ui: &mut Ui, faults: &[String]) {
-    for text in faults {
-        field::fault(ui, text);
-    }
 }

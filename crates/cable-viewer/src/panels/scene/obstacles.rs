@@ -1,33 +1,34 @@
-//! The obstacles: form, place, and everything else of the selected one.
+//! The list of obstacles gives form and place of each, and everything else of the selected one.
 
 use cable_core::Obstacle;
 use cable_core::math::Point;
 use cable_core::scene::Shape;
 use egui::{Button, Frame, ScrollArea, Ui};
 
-use super::{
+use crate::command::{Command, SceneCommand};
+use crate::panels::scene::rows::{
     GAP, KIND_WIDTH, NUMBER_WIDTH, cell, coordinates, headings, name_width, optional, remove, selectable_name,
     show_faults,
 };
-use crate::command::{Command, SceneCommand};
-use crate::panels::cable::labelled;
-use crate::panels::icon::{self, Icon};
-use crate::panels::unit::Unit;
-use crate::panels::{fault, field};
+use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
+use crate::units::unit::Unit;
+use crate::widgets::field;
+use crate::widgets::icon::{self, Icon};
+use crate::widgets::property::labelled;
 
 /// Height of the list of corners, points: about ten.
 const CORNERS_HEIGHT: f32 = 240.0;
 
 /// Draws them.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    if !state.scene.obstacles.is_empty() {
-        let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.shown().symbol));
+    if !state.document.scene.obstacles.is_empty() {
+        let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.display().symbol));
         headings(ui, &[("Name", name_width(ui)), ("Form", KIND_WIDTH), (&x, NUMBER_WIDTH), (&y, NUMBER_WIDTH)]);
     }
-    for (k, obstacle) in state.scene.obstacles.iter().enumerate() {
+    for (k, obstacle) in state.document.scene.obstacles.iter().enumerate() {
         ui.push_id(k, |ui| line(ui, state, k, obstacle, commands));
-        fault::inline(ui, state, &format!("obstacles[{k}]"), commands);
+        scene_errors::inline(ui, state, &format!("obstacles[{k}]"), commands);
     }
     let menu = ui.menu_button("Add obstacle", |ui| add(ui, state, commands));
     menu.response.on_hover_text("Ground, a beam, a post or a sheet, in the middle of the picture");
@@ -35,7 +36,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 /// New obstacles stand in the middle of the picture, where the user looks.
 fn add(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let [x, y] = state.camera.centre_m.map(|v| (v * 10.0).round() / 10.0);
+    let [x, y] = state.view.camera.centre_m.map(|v| (v * 10.0).round() / 10.0);
     let forms = [
         ("Floor", "Ground, solid below", Shape::Terrain { points_m: vec![[x - 10.0, y], [x + 10.0, y]] }),
         (
@@ -102,7 +103,7 @@ fn line(ui: &mut Ui, state: &AppState, k: usize, obstacle: &Obstacle, commands: 
         })
         .inner;
     show_faults(ui, &faults);
-    let corner_selected = matches!(state.selected, Some(Item::Corner { obstacle, .. }) if obstacle == k);
+    let corner_selected = matches!(state.selection.selected, Some(Item::Corner { obstacle, .. }) if obstacle == k);
     if selected || corner_selected {
         Frame::group(ui.style()).inner_margin(5).show(ui, |ui| details(ui, k, obstacle, commands));
     }
@@ -154,7 +155,7 @@ fn details(ui: &mut Ui, k: usize, obstacle: &Obstacle, commands: &mut Vec<Comman
 
 /// The corners with exact coordinates; only those in view are drawn, terrain can have thousands.
 fn corners(ui: &mut Ui, k: usize, points_m: &mut Vec<Point>, faults: &mut Vec<String>) {
-    ui.weak(format!("{} corners, x and y in {}", points_m.len(), Unit::M.shown().symbol));
+    ui.weak(format!("{} corners, x and y in {}", points_m.len(), Unit::M.display().symbol));
     let mut gone = None;
     let mut doubled = None;
     let height = ui.spacing().interact_size.y;

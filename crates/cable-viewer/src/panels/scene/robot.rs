@@ -1,21 +1,22 @@
-//! The robot: which, where, which way. A first one stands where it can, with the end of the cable on its hitch.
+//! The robot: which, where, which way. A first one stands where it can, with the end of the cable
+//! on its hitch.
 
+use cable_core::scene::ground::Ground;
 use cable_core::scene::preset::{self, RobotPreset};
 use cable_core::scene::{Heading, SupportKind};
 use cable_core::{Robot, Scene};
 use egui::{ComboBox, Ui};
 
-use super::{coordinates, show_faults, support_kind};
-use crate::command::{Command, SceneCommand};
-use crate::panels::cable::labelled;
-use crate::panels::fault;
-use crate::panels::unit::Unit;
+use crate::command::{Command, SceneCommand, support_kind};
+use crate::panels::scene::rows::{coordinates, show_faults};
+use crate::panels::scene_errors;
 use crate::state::AppState;
-use cable_core::scene::ground::Ground;
+use crate::units::unit::Unit;
+use crate::widgets::property::labelled;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let present = state.scene.robot.as_ref();
+    let present = state.document.scene.robot.as_ref();
     labelled(ui, "Robot", "Robot", |ui| {
         let shown = present.map(|r| preset::robot_preset(&r.preset).map_or(r.preset.as_str(), |p| p.name.as_str()));
         let combo = ComboBox::from_id_salt("robot").selected_text(shown.unwrap_or("None"));
@@ -38,7 +39,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if let Some(robot) = present {
         placed(ui, robot, commands);
     }
-    fault::inline(ui, state, "robot", commands);
+    scene_errors::inline(ui, state, "robot", commands);
 }
 
 fn about(p: &RobotPreset) -> String {
@@ -60,21 +61,22 @@ fn set(robot: Option<Robot>, commands: &mut Vec<Command>) {
 
 /// The same robot of another kind, or a first one with the end of the cable on its hitch.
 fn choose(state: &AppState, p: &RobotPreset, commands: &mut Vec<Command>) {
-    if let Some(present) = &state.scene.robot {
+    if let Some(present) = &state.document.scene.robot {
         return set(Some(Robot { preset: p.id.to_owned(), ..present.clone() }), commands);
     }
-    let mut scene = state.scene.clone();
+    let mut scene = state.document.scene.clone();
     add(&mut scene, state.current_cable(), p);
     commands.push(Command::Scene(SceneCommand::SetScene(Box::new(scene))));
 }
 
-/// Steepest ground that a first robot is put on, rad: 11°. More: much of what its tracks hold is spent before it pulls; less: rough waste
-/// has no place for it.
+/// Steepest ground that a first robot is put on, rad: 11°. More: much of what its tracks hold is
+/// spent before it pulls; less: rough waste has no place for it.
 const STEEPEST: f64 = 0.2;
 /// How far apart the places that are tried are, m, and how many to each side: a tank's width.
 const TRIED: (f64, u32) = (0.25, 100);
 
-/// Puts a robot into a scene that has none: as near as can be to below the end of a cable, which it takes over from a hand.
+/// Puts a robot into a scene that has none: as near as can be to below the end of a cable, which it
+/// takes over from a hand.
 fn add(scene: &mut Scene, cable: usize, p: &RobotPreset) {
     let end = scene.cables.get(cable).and_then(|c| c.supports.last()?.at_m);
     let at = end.unwrap_or_default();
@@ -102,7 +104,7 @@ fn add(scene: &mut Scene, cable: usize, p: &RobotPreset) {
 
 fn placed(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     let mut faults = Vec::new();
-    let at = format!("Stands at, {}", Unit::M.shown().symbol);
+    let at = format!("Stands at, {}", Unit::M.display().symbol);
     labelled(ui, &at, "Robot stands at", |ui| {
         let label = ui.weak("x, y");
         if let Some(at_m) = coordinates(ui, "robot", robot.at_m, &mut faults) {

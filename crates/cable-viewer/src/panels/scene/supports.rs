@@ -1,22 +1,23 @@
-//! The supports of a cable in order: kind, place, and everything else of the selected one.
+//! The list of supports gives kind and place of each, and everything else of the selected one.
 
 use cable_core::math::Point;
 use cable_core::scene::{Motion, PulleySide, SupportKind};
 use cable_core::{Cable, Support};
 use egui::{ComboBox, Frame, Ui};
 
-use super::loads::FIRST_SPAN_S;
-use super::support_kind::{KINDS, of_kind, refusal};
-use super::{
+use crate::command::support_kind::{KINDS, of_kind, refusal};
+use crate::command::{Command, SceneCommand};
+use crate::panels::scene::loads::FIRST_SPAN_S;
+use crate::panels::scene::rows::{
     GAP, KIND_WIDTH, NUMBER_WIDTH, cell, components, coordinates, headings, name_width, optional, remove,
     selectable_name, show_faults,
 };
-use crate::command::{Command, SceneCommand};
-use crate::panels::cable::labelled;
-use crate::panels::times::{self, Knots, Table};
-use crate::panels::unit::Unit;
-use crate::panels::{fault, field};
+use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
+use crate::units::unit::Unit;
+use crate::widgets::field;
+use crate::widgets::property::labelled;
+use crate::widgets::time_table::{self, Knots, Table};
 
 /// One support with where it stands.
 struct Row<'a> {
@@ -49,9 +50,9 @@ impl Row<'_> {
 
 /// Draws them.
 pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Command>) {
-    let Some(cable) = state.scene.cables.get(index) else { return };
+    let Some(cable) = state.document.scene.cables.get(index) else { return };
     let last = cable.supports.len().saturating_sub(1);
-    let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.shown().symbol));
+    let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.display().symbol));
     headings(ui, &[("Name", name_width(ui)), ("Kind", KIND_WIDTH), (&x, NUMBER_WIDTH), (&y, NUMBER_WIDTH)]);
     for (support, value) in cable.supports.iter().enumerate() {
         let end = support == 0 || support == last;
@@ -59,10 +60,10 @@ pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Comman
         ui.push_id((index, support), |ui| line(ui, state, &row, commands));
         if support < last {
             let path = format!("cables[{index}].supports[{support}]");
-            fault::inline(ui, state, &path, commands);
+            scene_errors::inline(ui, state, &path, commands);
         }
     }
-    fault::inline(ui, state, &format!("cables[{index}].supports[{last}]"), commands);
+    scene_errors::inline(ui, state, &format!("cables[{index}].supports[{last}]"), commands);
     let help = "A frictionless point the cable slides through, in the middle of the cable; drag it, or change its kind";
     if ui.button("Add waypoint").on_hover_text(help).clicked() {
         let arc_length_m = cable.length_m / 2.0;
@@ -74,7 +75,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Comman
 /// Where a support is in the present answer, else where the scene says.
 fn place_now(state: &AppState, cable: usize, support: usize, of: &Cable) -> (Point, f64) {
     // An answer with other supports is of an earlier scene: its places are those of the neighbours.
-    let solved = state.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable));
+    let solved = state.live.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable));
     let solved = solved.filter(|c| c.supports.len() == of.supports.len()).and_then(|c| c.supports.get(support));
     solved.map_or_else(
         || {
@@ -88,7 +89,7 @@ fn place_now(state: &AppState, cable: usize, support: usize, of: &Cable) -> (Poi
 
 /// The node of the present answer next to an arc length, m.
 pub(super) fn position_at(state: &AppState, cable: usize, arc_length_m: f64) -> Option<Point> {
-    let nodes = &state.snapshot.solution.as_ref()?.cables.get(cable)?.nodes;
+    let nodes = &state.live.snapshot.solution.as_ref()?.cables.get(cable)?.nodes;
     let k = nodes.partition_point(|n| n.arc_length_m < arc_length_m).min(nodes.len().checked_sub(1)?);
     nodes.get(k).map(|n| [n.x_m, n.y_m])
 }
@@ -135,7 +136,7 @@ fn kind(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command
     let text = KINDS.iter().find(|(k, ..)| *k == row.value.kind).map_or("", |(_, text, _)| text);
     let shown = ComboBox::from_id_salt("kind").selected_text(text).width(KIND_WIDTH - 4.0).show_ui(ui, |ui| {
         for (kind, text, help) in KINDS {
-            let refused = refusal(kind, row.end, state.scene.robot.is_some());
+            let refused = refusal(kind, row.end, state.document.scene.robot.is_some());
             let entry = ui.add_enabled(refused.is_none(), egui::Button::selectable(kind == row.value.kind, text));
             let entry = entry.on_hover_text(help).on_disabled_hover_text(refused.unwrap_or_default());
             if entry.clicked() && kind != row.value.kind {
@@ -200,7 +201,7 @@ fn release(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut
         return;
     }
     let help = "From a time on it does not hold the cable any more";
-    if let Some(on) = times::toggle(ui, "Lets go", s.release_s.is_some(), help) {
+    if let Some(on) = time_table::toggle(ui, "Lets go", s.release_s.is_some(), help) {
         row.changed(commands, |s| s.release_s = on.then_some(1.0));
     }
     if s.release_s.is_some() {
@@ -216,7 +217,7 @@ fn motion(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut 
     let s = row.value;
     let Some(at_m) = s.at_m else { return };
     let help = "It follows points at times, smoothly, and stays at the last; all of them move along when it is moved";
-    if let Some(on) = times::toggle(ui, "Moves with time", s.motion.is_some(), help) {
+    if let Some(on) = time_table::toggle(ui, "Moves with time", s.motion.is_some(), help) {
         let Knots { times_s, values } = Knots::steady(at_m, FIRST_SPAN_S);
         row.changed(commands, |s| s.motion = on.then_some(Motion { times_s, points_m: values }));
         return;
@@ -224,7 +225,7 @@ fn motion(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut 
     let Some(motion) = &s.motion else { return };
     let table = Table { of: &s.name, columns: ["x", "y"], unit: Unit::COORDINATE, least: 1 };
     let knots = Knots::of(&motion.times_s, &motion.points_m);
-    if let Some(Knots { times_s, values }) = times::ui(ui, &table, &knots, faults) {
+    if let Some(Knots { times_s, values }) = time_table::ui(ui, &table, &knots, faults) {
         row.changed(commands, |s| {
             let motion = Motion { times_s, points_m: values };
             // It stands where its motion has it at the start.
@@ -261,7 +262,7 @@ fn load(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Ve
     let s = row.value;
     let knots = Knots::of(&s.times_s, &s.forces_n);
     let help = "A force at each of several times, linear in between";
-    if let Some(on) = times::toggle(ui, "Force changes with time", s.force_n.is_none(), help) {
+    if let Some(on) = time_table::toggle(ui, "Force changes with time", s.force_n.is_none(), help) {
         let force_n = s.force_n.or(knots.values.first().copied()).unwrap_or_default();
         let knots = if on { Knots::steady(force_n, FIRST_SPAN_S) } else { Knots::default() };
         row.changed(commands, |s| {
@@ -272,14 +273,14 @@ fn load(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Ve
     }
     let Some(force_n) = s.force_n else {
         let table = Table { of: &s.name, columns: ["Right", "Up"], unit: Unit::N, least: 1 };
-        if let Some(Knots { times_s, values }) = times::ui(ui, &table, &knots, faults) {
+        if let Some(Knots { times_s, values }) = time_table::ui(ui, &table, &knots, faults) {
             row.changed(commands, |s| (s.times_s, s.forces_n) = (times_s, values));
         }
         return;
     };
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        ui.label(format!("Force right, up, {}", Unit::N.shown().symbol));
+        ui.label(format!("Force right, up, {}", Unit::N.display().symbol));
         let labels = ["Force to the right", "Force upwards"].map(str::to_owned);
         if let Some(force_n) = components(ui, labels, Unit::N, force_n, faults) {
             row.changed(commands, |s| s.force_n = Some(force_n));

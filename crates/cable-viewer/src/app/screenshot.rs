@@ -1,0 +1,52 @@
+//! The window is drawn to a picture file, without a window.
+
+use std::path::Path;
+
+use cable_core::Scene;
+use egui_kittest::Harness;
+use image::RgbaImage;
+
+use crate::ViewerApp;
+use crate::render::offscreen::renderer;
+
+/// Frames after which a picture is taken: the first lays out, the second fits and solves, the
+/// others settle scroll bars.
+const FRAMES: usize = 6;
+
+/// Draws a scene at a size in points and writes a PNG; `prepare` sets what is to be shown.
+///
+/// # Errors
+/// What is missing, in one sentence with the remedy.
+pub fn save(
+    scene: Scene,
+    path: &Path,
+    size: [u32; 2],
+    prepare: impl FnOnce(&mut ViewerApp, &egui::Context),
+) -> Result<(), String> {
+    let picture = draw(scene, size, prepare)?;
+    picture.save(path).map_err(|e| format!("{} could not be written: {e}", path.display()))
+}
+
+/// Draws a scene at a size in points.
+///
+/// # Errors
+/// What is missing, in one sentence with the remedy.
+pub fn draw(
+    scene: Scene,
+    size: [u32; 2],
+    prepare: impl FnOnce(&mut ViewerApp, &egui::Context),
+) -> Result<RgbaImage, String> {
+    let mut harness = Harness::builder()
+        .with_size([size[0] as f32, size[1] as f32])
+        .with_render_cursor(false)
+        .allow_missing_glyphs()
+        .with_accessibility_check(false)
+        .renderer(renderer()?)
+        .build_eframe(|cc| {
+            let mut app = ViewerApp::inline(&cc.egui_ctx, scene, None);
+            prepare(&mut app, &cc.egui_ctx);
+            app
+        });
+    harness.run_steps(FRAMES);
+    harness.render()
+}

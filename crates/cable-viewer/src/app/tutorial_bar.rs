@@ -1,0 +1,54 @@
+//! A strip leads through a guided scene, and a menu begins one.
+
+use egui::Ui;
+
+use crate::app::tutorials::{self, TUTORIALS};
+use crate::command::{Command, ViewCommand};
+use crate::state::AppState;
+use crate::state::tutorial_place::TutorialPlace;
+
+/// The menu of guides.
+pub fn menu(ui: &mut Ui, commands: &mut Vec<Command>) {
+    for (guide, g) in TUTORIALS.iter().enumerate() {
+        let help = "A scene and a few things to do in it; asks first if this one is not saved";
+        if ui.button(format!("{}. {}", guide + 1, g.title)).on_hover_text(help).clicked() {
+            commands.push(Command::File(tutorials::open(guide)));
+            ui.close();
+        }
+    }
+}
+
+/// Draws the strip, if a guide is on.
+pub fn strip(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let Some(place) = state.ui.tutorial else { return };
+    let (Some(guide), Some(step)) = (TUTORIALS.get(place.tutorial), tutorials::step(place)) else { return };
+    let go = |to: Option<TutorialPlace>| Command::View(ViewCommand::Guide(to));
+    let at = |step| Some(TutorialPlace { step, ..place });
+    let done = step.done.is_some_and(|done| done(state));
+    let last = place.step + 1 == guide.steps.len();
+    if done && !last {
+        commands.push(go(at(place.step + 1)));
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.strong(format!("{}, step {} of {}", guide.title, place.step + 1, guide.steps.len()));
+        ui.label(step.text);
+        if done {
+            ui.weak("Done");
+        }
+        let back = ui.add_enabled(place.step > 0, egui::Button::new("Back"));
+        if back.on_hover_text("The step before").clicked() {
+            commands.push(go(at(place.step.saturating_sub(1))));
+        }
+        if last {
+            let next = (place.tutorial + 1) % TUTORIALS.len();
+            if ui.button("Next scene").on_hover_text(TUTORIALS[next].title).clicked() {
+                commands.push(Command::File(tutorials::open(next)));
+            }
+        } else if ui.button("Next").on_hover_text("The next step, whether this one was done or not").clicked() {
+            commands.push(go(at(place.step + 1)));
+        }
+        if ui.button("End guide").on_hover_text("The scene stays open").clicked() {
+            commands.push(go(None));
+        }
+    });
+}

@@ -1,0 +1,166 @@
+//! Six guided scenes ask for a few things to do, and the window sees that they were done.
+
+use cable_core::scene::SupportKind;
+
+use crate::command::FileCommand;
+use crate::state::AppState;
+use crate::state::tutorial_place::TutorialPlace;
+
+/// A guided scene.
+pub struct Tutorial {
+    /// What it teaches.
+    pub title: &'static str,
+    /// Short id of its scene in the catalogue.
+    pub scene: &'static str,
+    /// What to do, one after the other.
+    pub steps: &'static [Step],
+}
+
+/// A thing to do.
+pub struct Step {
+    /// In words.
+    pub text: &'static str,
+    /// Whether it was done; None: it is only to be read.
+    pub done: Option<fn(&AppState) -> bool>,
+}
+
+/// What is to be done at a place.
+#[must_use]
+pub fn step(place: TutorialPlace) -> Option<&'static Step> {
+    TUTORIALS.get(place.tutorial)?.steps.get(place.step)
+}
+
+/// The command that opens a tutorial.
+#[must_use]
+pub fn open(tutorial: usize) -> FileCommand {
+    FileCommand::OpenTutorial { tutorial, scene: TUTORIALS.get(tutorial).map_or("", |t| t.scene) }
+}
+
+const fn act(text: &'static str, done: fn(&AppState) -> bool) -> Step {
+    Step { text, done: Some(done) }
+}
+
+const fn read(text: &'static str) -> Step {
+    Step { text, done: None }
+}
+
+fn changed(state: &AppState) -> bool {
+    state.document.scene != state.document.saved
+}
+
+fn supports(state: &AppState) -> usize {
+    state.document.scene.cables.first().map_or(0, |c| c.supports.len())
+}
+
+fn saved_supports(state: &AppState) -> usize {
+    state.document.saved.cables.first().map_or(0, |c| c.supports.len())
+}
+
+fn time_s(state: &AppState) -> f64 {
+    state.live.latest.solution.as_ref().map_or(0.0, |s| s.time_s)
+}
+
+/// All of them, in the order they are best taken.
+pub const TUTORIALS: [Tutorial; 6] = [
+    Tutorial {
+        title: "Drag an end",
+        scene: "hanging-span",
+        steps: &[
+            act("Drag the right support: the cable follows and its colours show the tension", changed),
+            read(
+                "Read the largest tension, its place and the sag on the right, under Readouts; the scale of colours is on the canvas",
+            ),
+            act("Undo it with Ctrl+Z, or Undo in the Edit menu", |s| !changed(s)),
+        ],
+    },
+    Tutorial {
+        title: "Change the cable",
+        scene: "over-beam",
+        steps: &[
+            act(
+                "Choose another preset or move a slider under Cable on the left: every property has a unit, a range and a source",
+                changed,
+            ),
+            read("Hover over a name to see what it is and how sure its figure is; ≈ marks an estimate"),
+            act(
+                "Type a length below 9 m: the window says what is wrong before anything fails, and offers the fix",
+                |s| s.document.fault.is_some() || s.document.scene.cables.first().is_some_and(|c| c.length_m < 9.0),
+            ),
+            act("Press the fix, or undo", |s| s.document.fault.is_none()),
+        ],
+    },
+    Tutorial {
+        title: "Lay it over waypoints",
+        scene: "hanging-span",
+        steps: &[
+            act("Double-click the cable: a waypoint, which it slides through", |s| supports(s) > saved_supports(s)),
+            act("Drag the waypoint upwards, and give it a wheel under Supports on the left if you like", |s| {
+                let of = s.document.scene.cables.first().map(|c| &c.supports);
+                of.is_some_and(|list| {
+                    list.iter().any(|p| p.kind == SupportKind::Pulley && p.at_m.is_some_and(|at| at[1] > 4.5))
+                })
+            }),
+            act("Press Delete while it is picked to take it out again", |s| supports(s) == saved_supports(s)),
+        ],
+    },
+    Tutorial {
+        title: "Let time run",
+        scene: "floor-drag",
+        steps: &[
+            act("Press Space: time runs and the graphs fill", |s| time_s(s) > 0.3),
+            act("Press Space again to stop", |s| s.live.playback.paused),
+            act("Drag the timeline below the canvas, or press the left arrow, to look at an earlier time", |s| {
+                s.live.recording.shown_s.is_some()
+            }),
+            act("Go on from there, or press Present to come back", |s| s.live.recording.shown_s.is_none()),
+        ],
+    },
+    Tutorial {
+        title: "Drive the robot",
+        scene: "robot-drive",
+        steps: &[
+            act("Hold D: the robot drives to the right and draws its cable along", |s| {
+                s.live.latest.solution.as_ref().and_then(|a| a.robot).is_some_and(|r| r.x_m > 10.4)
+            }),
+            read(
+                "Under Robot stands why it is as fast as it is: slope, ground, the pull of the cable. Drive on and it stalls or slips",
+            ),
+            act(
+                "Press Find safe reach on the right: where it can go and come back below the service tension is drawn along the ground",
+                |s| matches!(s.analysis.safe_reach.progress, crate::jobs::safe_reach::Progress::Done(..)),
+            ),
+        ],
+    },
+    Tutorial {
+        title: "Compare and keep",
+        scene: "hanging-span",
+        steps: &[
+            act("Press Hold this answer under Compare on the right", |s| !s.analysis.references.is_empty()),
+            act("Change the length: both are drawn, and what differs is told under Compare", |s| {
+                !s.analysis.references.is_empty() && changed(s)
+            }),
+            read(
+                "Export… beside a graph writes what is in view as CSV, SVG or PNG; Save run… in the File menu keeps everything",
+            ),
+        ],
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use cable_core::scene::catalog;
+
+    use super::*;
+
+    #[test]
+    fn every_guide_has_its_scene_and_begins_undone() {
+        for tutorial in &TUTORIALS {
+            let found = catalog::all().into_iter().find(|(id, _)| *id == tutorial.scene);
+            let (_, scene) = found.unwrap_or_else(|| panic!("{}", tutorial.scene));
+            let state = AppState::new(scene, None);
+            let first = tutorial.steps.first().and_then(|s| s.done).expect("begins with something to do");
+            assert!(!first(&state), "{}", tutorial.title);
+            assert!((3..=5).contains(&tutorial.steps.len()), "{}", tutorial.title);
+        }
+    }
+}

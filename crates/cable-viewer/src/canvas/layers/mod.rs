@@ -1,0 +1,20 @@
+//! The picture of the scene consists of these layers, which [`crate::canvas::ui`] draws back to
+//! front.
+//!
+//! - `grid`, `obstacles`, `robot`, `robot_path`: the surroundings
+//! - `cable`, `contact`, `supports`, `forces`: the answer
+//! - `compare_overlay`, `tension_marker`, `safe_reach`: analyses drawn over it
+//! - `legend`: what the colours mean
+
+pub mod cable;
+pub mod compare_overlay;
+pub mod contact;
+pub mod forces;
+pub mod grid;
+pub mod legend;
+pub mod obstacles;
+pub mod robot;
+pub mod robot_path;
+pub mod safe_reach;
+pub mod supports;
+pub mod tension_marker;

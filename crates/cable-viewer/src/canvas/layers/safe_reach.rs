@@ -1,0 +1,214 @@
+//! The safe reach over the map, in the colour of what it costs the cable as a share of its service
+//! tension. Of an end: the plane, with the lines of service and breaking tension; of a robot: what
+//! it passes over above the ground. What the cable may not bear is hatched, so that its colour is
+//! not all that tells it; where nothing is known, and where it does not reach, nothing is drawn.
+
+use cable_core::analysis::safe_reach::area::Area;
+use cable_core::analysis::safe_reach::line::{ReachMap, ReachPlace};
+use cable_core::math::Point;
+use cable_core::scene::preset::robot_preset;
+use egui::{Align2, Color32, Mesh, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
+
+use crate::canvas::view::CanvasView;
+use crate::jobs::safe_reach::Maps;
+use crate::render::colour::ColourMap;
+use crate::state::AppState;
+use crate::units::labels;
+
+/// How much of the picture below shines through, of 1: the grid stays readable.
+const COVER: f32 = 0.62;
+/// For lines, a place that the cable does not reach counts as this many times the breaking tension.
+const BEYOND: f64 = 2.0;
+/// Between hatching lines, points.
+const HATCH: f32 = 7.0;
+/// Height of the strip of a robot of unknown size, m.
+const HEIGHT_M: f64 = 1.0;
+/// Size of the legend, points.
+const LEGEND: [f32; 2] = [206.0, 78.0];
+
+/// Draws the map of an end.
+pub fn area(view: &CanvasView<'_>, state: &AppState) {
+    let Some((Maps::Area(there, ways), _)) = state.analysis.safe_reach.found() else { return };
+    let Some(area) = (if state.analysis.safe_reach.choice.back { ways.as_ref() } else { Some(there) }) else { return };
+    let mut mesh = Mesh::default();
+    let mut lines = Vec::new();
+    for corners in quads(area) {
+        quad(view, area, corners, &mut mesh, &mut lines);
+    }
+    view.painter.add(mesh);
+    view.painter.extend(lines);
+}
+
+/// Neighbouring places four by four, anticlockwise.
+fn quads(area: &Area) -> impl Iterator<Item = [(Point, f64); 4]> + '_ {
+    let columns = area.columns;
+    let rows = area.most_n.len() / columns.max(1);
+    let corner = move |k: usize| Some((area.at(k), area.most_n.get(k).copied()?));
+    (0..rows.saturating_sub(1) * columns)
+        .filter(move |k| k % columns + 1 < columns)
+        .filter_map(move |k| Some([corner(k)?, corner(k + 1)?, corner(k + columns + 1)?, corner(k + columns)?]))
+}
+
+fn quad(view: &CanvasView<'_>, area: &Area, corners: [(Point, f64); 4], mesh: &mut Mesh, lines: &mut Vec<Shape>) {
+    if corners.iter().any(|(_, n)| n.is_nan()) {
+        return;
+    }
+    let at = corners.map(|(p, _)| view.at(p));
+    if !view.rect.intersects(Rect::from_points(&at)) {
+        return;
+    }
+    if corners.iter().all(|(_, n)| n.is_finite()) {
+        let first = mesh.vertices.len() as u32;
+        for (p, (_, n)) in at.into_iter().zip(corners) {
+            mesh.colored_vertex(p, colour(n / area.service_n));
+        }
+        mesh.add_triangle(first, first + 1, first + 2);
+        mesh.add_triangle(first, first + 2, first + 3);
+    }
+    let over = |limit_n: f64| corners.iter().all(|(_, n)| *n > limit_n);
+    let hatch = Stroke::new(1.0, view.palette.risk);
+    if over(area.service_n) {
+        lines.push(Shape::line_segment([at[0], at[2]], hatch));
+    }
+    if over(area.breaking_n) {
+        lines.push(Shape::line_segment([at[1], at[3]], hatch));
+    }
+    let values = corners.map(|(_, n)| n.min(BEYOND * area.breaking_n));
+    for (limit_n, width) in [(area.service_n, 2.0), (area.breaking_n, 3.5)] {
+        for ends in crossing(at, values, limit_n) {
+            // Dark below light: the line stands off every colour and both themes.
+            lines.push(Shape::line_segment(ends, Stroke::new(width + 2.0, view.palette.background)));
+            lines.push(Shape::line_segment(ends, Stroke::new(width, view.palette.risk)));
+        }
+    }
+}
+
+/// Where a value is passed in a square: its ends on the sides, between which tension grows by even
+/// factors.
+fn crossing(at: [Pos2; 4], values: [f64; 4], limit: f64) -> Vec<[Pos2; 2]> {
+    let log = |v: f64| v.max(1e-9).ln();
+    let on = |k: usize| {
+        let (a, b) = (values[k], values[(k + 1) % 4]);
+        ((a > limit) != (b > limit)).then(|| {
+            let part = (log(limit) - log(a)) / (log(b) - log(a));
+            at[k] + (at[(k + 1) % 4] - at[k]) * part as f32
+        })
+    };
+    let found: Vec<Pos2> = (0..4).filter_map(on).collect();
+    found.chunks_exact(2).map(|ends| [ends[0], ends[1]]).collect()
+}
+
+/// Of a share of the service tension.
+fn colour(share: f64) -> Color32 {
+    ColourMap::Cividis.at(share).gamma_multiply(COVER)
+}
+
+/// Draws the map of a robot; its ends go to `figures` for the labels to place.
+pub fn line(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
+    let Some((Maps::Line(map), _)) = state.analysis.safe_reach.found() else { return };
+    let back = state.analysis.safe_reach.choice.back;
+    let preset = state.document.scene.robot.as_ref().and_then(|r| robot_preset(&r.preset));
+    let height = view.points(preset.map_or(HEIGHT_M, |p| p.height_m.value)).max(9.0);
+    let value = |p: &ReachPlace| if back { p.there_and_back_n } else { p.there_n };
+    let mut mesh = Mesh::default();
+    for pair in map.places.windows(2) {
+        let [a, b] = [0, 1].map(|k| (view.at(pair[k].at_m), value(&pair[k])));
+        if !a.1.is_finite() || !b.1.is_finite() {
+            continue;
+        }
+        let first = mesh.vertices.len() as u32;
+        for (at, n) in [a, b] {
+            mesh.colored_vertex(at, colour(n / map.service_n));
+            mesh.colored_vertex(at - vec2(0.0, height), colour(n / map.service_n));
+        }
+        mesh.add_triangle(first, first + 1, first + 2);
+        mesh.add_triangle(first + 1, first + 3, first + 2);
+    }
+    view.painter.add(mesh);
+    for pair in map.places.windows(2) {
+        let [a, b] = [0, 1].map(|k| (view.at(pair[k].at_m), value(&pair[k])));
+        if [a, b].iter().all(|(_, n)| n.is_finite() && *n > map.service_n) {
+            hatch(view, [a.0, b.0], height);
+        }
+    }
+    ends(view, (map, back), height, figures);
+}
+
+/// Strokes across what is above the service tension.
+fn hatch(view: &CanvasView<'_>, [a, b]: [Pos2; 2], height: f32) {
+    let strokes = ((b.x - a.x).abs() / HATCH).ceil().clamp(1.0, 40.0);
+    for k in 0..strokes as usize {
+        let at = a + (b - a) * (k as f32 / strokes);
+        view.painter.line_segment([at, at + vec2(HATCH, -height)], Stroke::new(1.0, view.palette.risk));
+    }
+}
+
+/// Marks from where to where the service tension is not passed.
+fn ends(
+    view: &CanvasView<'_>,
+    (map, back): (&ReachMap, bool),
+    height: f32,
+    figures: &mut Vec<(Pos2, String, Color32)>,
+) {
+    let Some(ends) = map.safe_m(map.service_n, back) else { return };
+    for (x, name) in ends.into_iter().zip(["safe from", "safe to"]) {
+        let Some(place) = map.places.iter().find(|p| p.at_m[0] >= x) else { continue };
+        let at = view.at(place.at_m);
+        let post = at.y - height - 8.0..=at.y + 6.0;
+        view.painter.vline(at.x, post.clone(), Stroke::new(4.0, view.palette.background));
+        view.painter.vline(at.x, post, Stroke::new(2.0, view.palette.risk));
+        let (length, _) = labels::of_length();
+        let text = format!("{name} {} {length}", labels::coordinate(place.at_m[0], 0.01));
+        figures.push((at - vec2(0.0, height), text, view.palette.text));
+    }
+}
+
+/// What the colours of the map mean, in the lower left corner.
+pub fn legend(view: &mut CanvasView<'_>, state: &AppState) {
+    let Some((maps, scene)) = state.analysis.safe_reach.found() else { return };
+    let [service_n, breaking_n] = maps.limits_n();
+    let corner = pos2(
+        view.rect.min.x + crate::canvas::layers::grid::STRIP[0] + 10.0,
+        view.rect.max.y - crate::canvas::layers::grid::STRIP[1] - 30.0,
+    );
+    let plate = Rect::from_min_size(corner - vec2(0.0, LEGEND[1]), LEGEND.into());
+    if plate.max.x > view.rect.max.x - 20.0 || plate.min.y < view.rect.min.y + 20.0 {
+        return;
+    }
+    let line = Stroke::new(1.0, view.palette.plate_line);
+    view.painter.rect(plate, 4.0, view.palette.plate, line, StrokeKind::Inside);
+    let title = if state.analysis.safe_reach.choice.back { "Safe reach, there and back" } else { "Safe reach" };
+    let title = if **scene == state.document.scene { title.to_owned() } else { format!("{title} (before edits)") };
+    view.text(plate.min + vec2(9.0, 6.0), Align2::LEFT_TOP, &title, 11.5, view.palette.text);
+    let bar = Rect::from_min_size(plate.min + vec2(9.0, 24.0), vec2(LEGEND[0] - 18.0, 9.0));
+    let mut mesh = Mesh::default();
+    const STRIPS: u32 = 24;
+    for k in 0..=STRIPS {
+        let f = k as f32 / STRIPS as f32;
+        let x = bar.min.x + f * bar.width();
+        mesh.colored_vertex(pos2(x, bar.min.y), colour(f64::from(f)));
+        mesh.colored_vertex(pos2(x, bar.max.y), colour(f64::from(f)));
+        if k > 0 {
+            let b = 2 * k;
+            mesh.add_triangle(b - 2, b - 1, b);
+            mesh.add_triangle(b - 1, b + 1, b);
+        }
+    }
+    view.painter.add(mesh);
+    let under = bar.max.y + 3.0;
+    view.text(pos2(bar.min.x, under), Align2::LEFT_TOP, &labels::force(0.0), 10.5, view.palette.text);
+    let service = format!("service {}", labels::force(service_n));
+    view.text(pos2(bar.max.x, under), Align2::RIGHT_TOP, &service, 10.5, view.palette.text);
+    let y = plate.max.y - 12.0;
+    let sample = pos2(bar.min.x, y);
+    for k in 0..3 {
+        let foot = sample + vec2(6.0 * k as f32, 5.0);
+        view.painter.line_segment([foot, foot + vec2(6.0, -10.0)], Stroke::new(1.0, view.palette.risk));
+    }
+    let over = match maps {
+        Maps::Line(_) => "above service".to_owned(),
+        Maps::Area(..) => format!("above; thick line: breaks, {}", labels::force(breaking_n)),
+    };
+    view.text(sample + vec2(27.0, 0.0), Align2::LEFT_CENTER, &over, 10.5, view.palette.text);
+    view.taken.push(plate);
+}

@@ -1,0 +1,55 @@
+//! Effects are what applying commands asks of the world outside [`AppState`].
+
+use cable_core::Scene;
+
+use crate::jobs::safe_reach::ReachQuery;
+use crate::state::AppState;
+use crate::worker::request::{Edit, Request};
+
+/// What applying commands asks of the world outside [`AppState`].
+#[derive(Debug, Default)]
+pub struct Effects {
+    /// For the worker.
+    pub request: Request,
+    /// Close the window.
+    pub quit: bool,
+    /// Remove what was kept for recovery.
+    pub forget_recovery: bool,
+    /// Start the solver thread anew.
+    pub restart_worker: bool,
+    /// Look for where the robot can go, or end that.
+    pub reach: Option<Option<Box<ReachQuery>>>,
+    /// Ask every model about a scene, or end that.
+    pub models: Option<Option<Box<Scene>>>,
+    /// Text for the clipboard of the system.
+    pub copied: Option<String>,
+}
+
+/// Sends a change of the scene to the worker: the present simulation is carried over.
+pub fn submit_edit(state: &mut AppState, effects: &mut Effects) {
+    submit(state, false, effects);
+}
+
+/// Sends another scene to the worker: nothing of the present simulation is carried over.
+pub fn submit_new_scene(state: &mut AppState, effects: &mut Effects) {
+    submit(state, true, effects);
+}
+
+fn submit(state: &mut AppState, fresh: bool, effects: &mut Effects) {
+    // An edit is of the present.
+    state.live.show_time(None);
+    let edit =
+        Edit { scene: state.document.scene.clone(), model: state.solver.model, settings: state.solver.settings, fresh };
+    effects.request.merge(Request {
+        edit: Some(edit),
+        playback: Some(state.live.playback),
+        number: next_number(state),
+        ..Request::default()
+    });
+}
+
+/// Numbers the next edit.
+pub fn next_number(state: &mut AppState) -> u64 {
+    state.solver.edits_sent += 1;
+    state.solver.edits_sent
+}

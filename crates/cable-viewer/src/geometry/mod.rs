@@ -1,0 +1,15 @@
+//! This wing says where the things of a scene are on screen and which one lies under a point.
+//!
+//! - `supports`, `arrows`, `robot`: where supports, load arrows and the robot with its path are now
+//! - `handles`: where anything that can be dragged is, and what moves with it
+//! - `hit_test`: the thing under a screen point
+//! - `bounds`: the rectangle that things take up
+//! - `triangulate`: triangles of a polygon
+
+pub mod arrows;
+pub mod bounds;
+pub mod handles;
+pub mod hit_test;
+pub mod robot;
+pub mod supports;
+pub mod triangulate;

@@ -1,0 +1,14 @@
+//! This wing reads and writes every file of the window; its errors are sentences that a dialog can
+//! show.
+//!
+//! - `scene_file`: scenes
+//! - `saved_run`: the folder of a run, read again
+//! - `graph_file`: what is in view of a graph, as CSV, SVG or PNG
+//! - `autosave`: unsaved changes, kept for a window that dies
+//! - `feedback`: what a user thinks, as a row of a table
+
+pub mod autosave;
+pub mod feedback;
+pub mod graph_file;
+pub mod saved_run;
+pub mod scene_file;

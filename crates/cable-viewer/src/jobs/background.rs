@@ -1,0 +1,90 @@
+//! A job computes something long beside the window, on a thread of its own, and ends on request.
+
+use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// How far it is.
+#[derive(Clone, Debug, Default)]
+pub enum Progress<T> {
+    /// Nothing was asked.
+    #[default]
+    None,
+    /// Share done, 0 to 1, and what is known so far, where that can be shown.
+    Running(f64, Option<T>),
+    /// What came of it.
+    Done(T),
+    /// Why nothing came of it.
+    Failed(String),
+}
+
+/// Hears the share done, 0 to 1, and what is known so far, and says whether to go on.
+pub type Listener<'a, T> = &'a mut dyn FnMut(f64, Option<T>) -> ControlFlow<()>;
+
+/// It, while it is computed. Dropped, it ends at its next word.
+#[derive(Debug)]
+pub struct Job<T> {
+    shared: Arc<Shared<T>>,
+}
+
+#[derive(Debug)]
+struct Shared<T> {
+    progress: Mutex<Progress<T>>,
+    cancelled: AtomicBool,
+}
+
+impl<T> Shared<T> {
+    fn set(&self, progress: Progress<T>) {
+        *self.progress.lock().unwrap_or_else(PoisonError::into_inner) = progress;
+    }
+}
+
+impl<T: Clone + Send + 'static> Job<T> {
+    /// Starts it on a thread of this name; `shown` is called whenever there is something new to
+    /// show.
+    #[must_use]
+    pub fn start(
+        name: &str,
+        work: impl FnOnce(Listener<'_, T>) -> Result<T, String> + Send + 'static,
+        shown: impl Fn() + Send + 'static,
+    ) -> Self {
+        let (progress, cancelled) = (Mutex::new(Progress::Running(0.0, None)), AtomicBool::new(false));
+        let shared = Arc::new(Shared { progress, cancelled });
+        let theirs = Arc::clone(&shared);
+        let job = move || {
+            let mut listen = |share: f64, so_far: Option<T>| {
+                if theirs.cancelled.load(Ordering::Relaxed) {
+                    return ControlFlow::Break(());
+                }
+                theirs.set(Progress::Running(share, so_far));
+                shown();
+                ControlFlow::Continue(())
+            };
+            let result = catch_unwind(AssertUnwindSafe(|| work(&mut listen)));
+            theirs.set(match result {
+                Ok(Ok(done)) => Progress::Done(done),
+                Ok(Err(why)) => Progress::Failed(why),
+                Err(_) => Progress::Failed("the solver stopped by a fault of its own".to_owned()),
+            });
+            shown();
+        };
+        if std::thread::Builder::new().name(name.to_owned()).spawn(job).is_err() {
+            shared.set(Progress::Failed("no thread could be started for it".to_owned()));
+        }
+        Self { shared }
+    }
+
+    /// How far it is.
+    #[must_use]
+    pub fn progress(&self) -> Progress<T> {
+        self.shared.progress.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
+impl<T> Drop for Job<T> {
+    /// Not joined: it ends at its next word.
+    fn drop(&mut self) {
+        self.shared.cancelled.store(true, Ordering::Relaxed);
+    }
+}

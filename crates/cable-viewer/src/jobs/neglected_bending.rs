@@ -1,0 +1,64 @@
+//! A job says what neglecting the bending stiffness of cables changes, when it is asked for.
+
+use std::sync::Arc;
+
+use cable_core::summary::{NeglectedBending, neglected_bending};
+use cable_core::{Scene, Settings, Solution};
+
+use crate::jobs::background;
+
+/// One a cable that is likely to be stiff and was answered without it.
+pub type Outcome = Arc<Vec<NeglectedBending>>;
+/// How far it is.
+pub type Progress = background::Progress<Outcome>;
+
+/// The question: of which answer.
+#[derive(Clone, Debug)]
+pub struct Query {
+    /// The scene of the answer.
+    pub scene: Arc<Scene>,
+    /// Mesh and accuracy.
+    pub settings: Settings,
+    /// The answer.
+    pub answer: Arc<Solution>,
+}
+
+/// What was asked last, and what came of it.
+#[derive(Clone, Debug, Default)]
+pub struct NeglectedBendingState {
+    /// The question; None: nothing was asked of what is on screen.
+    pub query: Option<Query>,
+    /// How far it is.
+    pub progress: Progress,
+}
+
+/// It, while it is computed.
+#[derive(Debug)]
+pub struct Job {
+    job: background::Job<Outcome>,
+    answer: Arc<Solution>,
+}
+
+impl Job {
+    /// Starts it; `shown` is called when there is something new to show.
+    #[must_use]
+    pub fn start(query: Query, shown: impl Fn() + Send + 'static) -> Self {
+        let answer = Arc::clone(&query.answer);
+        let work = move |_: background::Listener<'_, Outcome>| {
+            Ok(Arc::new(neglected_bending(&query.scene, &query.answer, query.settings)))
+        };
+        Self { job: background::Job::start("bending stiffness", work, shown), answer }
+    }
+
+    /// Whether it is this question that it answers.
+    #[must_use]
+    pub fn is_of(&self, query: &Query) -> bool {
+        Arc::ptr_eq(&self.answer, &query.answer)
+    }
+
+    /// How far it is.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        self.job.progress()
+    }
+}

@@ -1,0 +1,199 @@
+//! A job maps where the robot, or an end of a cable, can be taken.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use cable_core::analysis::safe_reach::area::{self, Area};
+use cable_core::analysis::safe_reach::line::{self, ReachMap};
+use cable_core::math::Point;
+use cable_core::scene::SupportKind;
+use cable_core::{Scene, Settings, Solution};
+
+use crate::jobs::background;
+
+/// Places of a robot that are looked at. More: finer and, with the way back from each, slower by
+/// the square; fewer: mounds fall between them.
+pub const PLACES: usize = 41;
+
+/// Fewest and most places of an end side by side.
+pub const ACROSS: [usize; 2] = [8, 96];
+
+/// The ways back are followed from every so manieth place, both ways: as much work as the places
+/// themselves, not thirty times.
+const RETURN_COARSENING: f64 = 2.0;
+
+/// How much more is shown at least before the next look, as a share: more often, and drawing it
+/// takes longer than finding it.
+const MIN_PROGRESS_STEP: f64 = 0.01;
+
+/// What is taken somewhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReachSubject {
+    /// The robot, along its ground.
+    Robot,
+    /// A support, through free space.
+    Support {
+        /// Index of the cable.
+        cable: usize,
+        /// Index of the support.
+        support: usize,
+    },
+}
+
+/// What the user chose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// What is taken somewhere; None: the robot, else what is picked, else what moves, else an end.
+    pub moved: Option<ReachSubject>,
+    /// Shows the way there and back instead of the place itself.
+    pub back: bool,
+    /// Places of an end side by side.
+    pub across: usize,
+}
+
+impl Default for Choice {
+    fn default() -> Self {
+        Self { moved: None, back: false, across: 24 }
+    }
+}
+
+/// What there is of it.
+#[derive(Clone, Debug, Default)]
+pub struct SafeReachState {
+    /// What the user chose.
+    pub choice: Choice,
+    /// How far it is.
+    pub progress: Progress,
+}
+
+/// What the map asks for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReachQuery {
+    /// The scene.
+    pub scene: Scene,
+    /// Where time has run: how its cables lie now.
+    pub now: Option<Arc<Solution>>,
+    /// Mesh and accuracy.
+    pub settings: Settings,
+    /// What is taken somewhere.
+    pub moved: ReachSubject,
+    /// Lower left and upper right corner of what is looked at, m.
+    pub corners_m: [Point; 2],
+    /// Places of an end side by side.
+    pub across: usize,
+}
+
+/// What was found.
+#[derive(Clone, Debug)]
+pub enum Maps {
+    /// Of a robot.
+    Line(Arc<ReachMap>),
+    /// Of an end: the places, and the way there and back, once it is begun.
+    Area(Arc<Area>, Option<Arc<Area>>),
+}
+
+impl Maps {
+    /// Service and breaking tension, N.
+    #[must_use]
+    pub fn limits_n(&self) -> [f64; 2] {
+        match self {
+            Self::Line(map) => [map.service_n, map.breaking_n],
+            Self::Area(area, _) => [area.service_n, area.breaking_n],
+        }
+    }
+}
+
+/// The map, and the scene it is of.
+pub type Outcome = (Maps, Arc<Scene>);
+/// How far it is.
+pub type Progress = background::Progress<Outcome>;
+/// A map being computed.
+pub type Job = background::Job<Outcome>;
+
+impl SafeReachState {
+    /// The map, as far as it is known.
+    #[must_use]
+    pub fn found(&self) -> Option<&Outcome> {
+        match &self.progress {
+            Progress::Done(found) => Some(found),
+            Progress::Running(_, so_far) => so_far.as_ref(),
+            Progress::None | Progress::Failed(_) => None,
+        }
+    }
+}
+
+/// Starts one; `shown` is called whenever there is something new to show.
+#[must_use]
+pub fn start(order: ReachQuery, shown: impl Fn() + Send + 'static) -> Job {
+    Job::start("safe reach", move |listen| find(order, listen), shown)
+}
+
+fn find(order: ReachQuery, listen: background::Listener<'_, Outcome>) -> Result<Outcome, String> {
+    let scene = Arc::new(order.scene);
+    let mut told = -MIN_PROGRESS_STEP;
+    let mut tell = |share: f64, maps: &dyn Fn() -> Maps| {
+        if share < told + MIN_PROGRESS_STEP {
+            return ControlFlow::Continue(());
+        }
+        told = share;
+        listen(share, Some((maps(), Arc::clone(&scene))))
+    };
+    let maps = match order.moved {
+        ReachSubject::Robot => {
+            let ends_m = order.corners_m.map(|p| p[0]);
+            let told = |map: &ReachMap, share: f64| tell(share, &|| Maps::Line(Arc::new(map.clone())));
+            let map = line::robot_reach((&scene, order.now.as_deref()), order.settings, (ends_m, PLACES), told)
+                .map_err(|e| e.to_string())?;
+            Maps::Line(Arc::new(map))
+        }
+        ReachSubject::Support { cable, support } => {
+            let [low, high] = order.corners_m;
+            let spacing_m = (high[0] - low[0]) / order.across.clamp(ACROSS[0], ACROSS[1]) as f64;
+            let (now, settings, corners_m) = (order.now, order.settings, order.corners_m);
+            let ask = area::ReachQuery {
+                scene: (*scene).clone(),
+                now,
+                settings,
+                cable,
+                support,
+                corners_m,
+                spacing_m,
+                back: false,
+            };
+            let told = |area: &Area, share: f64| tell(0.5 * share, &|| Maps::Area(Arc::new(area.clone()), None));
+            let there = Arc::new(area::area(&ask, told).map_err(|e| e.to_string())?);
+            let ask = area::ReachQuery { spacing_m: RETURN_COARSENING * spacing_m, back: true, ..ask };
+            let told = |area: &Area, share: f64| {
+                tell(0.5 + 0.5 * share, &|| Maps::Area(Arc::clone(&there), Some(Arc::new(area.clone()))))
+            };
+            let back = area::area(&ask, told).map_err(|e| e.to_string())?;
+            Maps::Area(there, Some(Arc::new(back)))
+        }
+    };
+    Ok((maps, scene))
+}
+
+/// All that can be taken somewhere.
+#[must_use]
+pub fn movable(scene: &Scene) -> Vec<ReachSubject> {
+    let hangs = |kind| scene.cables.iter().flat_map(|c| &c.supports).any(|s| s.kind == kind);
+    let robot = (scene.robot.is_some() && hangs(SupportKind::Robot)).then_some(ReachSubject::Robot);
+    let supports = scene.cables.iter().enumerate().flat_map(|(cable, c)| {
+        let placed = c.supports.iter().enumerate().filter(|(_, s)| s.at_m.is_some());
+        placed.map(move |(support, _)| ReachSubject::Support { cable, support })
+    });
+    robot.into_iter().chain(supports).collect()
+}
+
+/// In words.
+#[must_use]
+pub fn name(scene: &Scene, moved: ReachSubject) -> String {
+    match moved {
+        ReachSubject::Robot => "Robot, along the ground".to_owned(),
+        ReachSubject::Support { cable, support } => {
+            let of = scene.cables.get(cable);
+            let s = of.and_then(|c| c.supports.get(support)).map_or("?", |s| &s.name);
+            format!("Support {s} of {}", of.map_or("?", |c| &c.name))
+        }
+    }
+}

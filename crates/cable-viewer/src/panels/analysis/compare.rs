@@ -1,0 +1,274 @@
+//! The compare panel shows answers held beside the present one, and what differs in their input.
+
+use std::sync::Arc;
+
+use cable_core::summary::sag;
+use cable_core::{Model, Scene, Solution};
+use egui::{Grid, Id, ProgressBar, RichText, Ui};
+
+use crate::command::{Command, FileCommand, ViewCommand};
+use crate::jobs::background::Progress;
+use crate::record::measure::Measure;
+use crate::record::run::Peak;
+use crate::render::colour::{LINES, Quantity};
+use crate::state::dialog::Dialog;
+use crate::state::{AppState, Reference};
+use crate::units::{format, translate};
+use crate::widgets::field;
+
+/// Most lines of difference told; more are counted.
+const MAX_LINES: usize = 12;
+
+/// Draws it.
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        let full = state.analysis.references.len() == Reference::MAX_COUNT;
+        let help =
+            if full { "No more can be held: let one go" } else { "Keeps this answer on screen beside what follows" };
+        let can = state.live.snapshot.solution.is_some() && !full;
+        if ui.add_enabled(can, egui::Button::new("Hold this answer")).on_hover_text(help).clicked() {
+            commands.push(Command::View(ViewCommand::Hold));
+        }
+        let help = "Reads a run from its folder and holds it";
+        if ui.add_enabled(!full, egui::Button::new("Hold a run…")).on_hover_text(help).clicked() {
+            let dialog = Dialog::OpenRun { path: "run".to_owned(), hold: true };
+            commands.push(Command::File(FileCommand::SetDialog(Some(dialog))));
+        }
+        if !state.analysis.references.is_empty()
+            && ui.button("Let all go").on_hover_text("None is held any more").clicked()
+        {
+            commands.push(Command::View(ViewCommand::LetGo(None)));
+        }
+    });
+    every_model(ui, state, commands);
+    if state.analysis.references.is_empty() {
+        ui.weak("Nothing held: hold an answer, then change the scene or the model");
+        return;
+    }
+    let present = state
+        .live
+        .snapshot
+        .solution
+        .as_deref()
+        .map(|s| Figures::of(s, &state.document.scene, state.live.snapshot.solve_wall_s));
+    Grid::new("compare").num_columns(6).spacing([7.0, 3.0]).striped(true).show(ui, |ui| {
+        for title in ["", "Tension", "Sag", "Energy", "Cost", ""] {
+            ui.weak(title);
+        }
+        ui.end_row();
+        if let Some(present) = &present {
+            ui.strong("Now").on_hover_text("What is on screen");
+            row(ui, present, None);
+            ui.end_row();
+        }
+        for (k, held) in state.analysis.references.iter().enumerate() {
+            let colour = LINES[k % LINES.len()];
+            ui.label(RichText::new(format!("{}", k + 1)).color(colour).strong()).on_hover_text(&held.name);
+            row(ui, &Figures::of(&held.solution, &held.scene, held.wall_s), present.as_ref());
+            let away = crate::widgets::icon::plain_button(ui, crate::widgets::icon::Icon::Remove, true);
+            field::name(&away, &format!("Let go {}", k + 1));
+            if away.on_hover_text("Not held any more").clicked() {
+                commands.push(Command::View(ViewCommand::LetGo(Some(k))));
+            }
+            ui.end_row();
+        }
+    });
+    runs(ui, state);
+    for (k, held) in state.analysis.references.iter().enumerate() {
+        ui.weak(format!("{}: {}", k + 1, held.name));
+        for line in remembered(ui, k, held, state).iter() {
+            ui.label(RichText::new(line).small());
+        }
+    }
+}
+
+/// Asks every model at once, and tells why some have no answer.
+fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    if let Progress::Running(share, _) = state.analysis.models {
+        let bar = ui.add(ProgressBar::new(share as f32).show_percentage().desired_height(16.0));
+        field::name(&bar, "Progress of every model");
+        if ui.button("Cancel every model").on_hover_text("Ends it; nothing is held").clicked() {
+            commands.push(Command::View(ViewCommand::HoldModels(false)));
+        }
+        return;
+    }
+    let help = "Solves the scene at rest with each model in turn, beside the window, and holds what they answer: tension, sag, \
+                energy and cost side by side";
+    let can = state.document.fault.is_none();
+    let button = ui.add_enabled(can, egui::Button::new("Hold every model")).on_hover_text(help);
+    if button.on_disabled_hover_text("The scene has a fault: see Warnings").clicked() {
+        commands.push(Command::View(ViewCommand::HoldModels(true)));
+    }
+    match &state.analysis.models {
+        Progress::Failed(why) => field::fault(ui, why),
+        Progress::Done(found) if *found.scene == state.document.scene => {
+            for answer in &found.answers {
+                if let Err(why) = &answer.result {
+                    // Most refusals begin with the model's name.
+                    let name = if why.contains(answer.model.name()) { "" } else { answer.model.name() };
+                    let colon = if name.is_empty() { "" } else { ": " };
+                    ui.label(RichText::new(format!("{name}{colon}{}", translate::display(why))).small());
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+/// The greatest of each whole run, where time ran.
+fn runs(ui: &mut Ui, state: &AppState) {
+    if state.analysis.references.iter().all(|h| h.run.is_none()) {
+        return;
+    }
+    let measures = [Measure::Cable(Quantity::Tension), Measure::Pull];
+    let own = state.live.recording.span_s().map(|span_s| {
+        let peaks = measures.map(|m| state.live.history.peak(m.lead()?).map(|[time_s, value]| Peak { time_s, value }));
+        ("Now".to_owned(), None, (span_s, peaks, state.live.recording.events().len()))
+    });
+    ui.separator();
+    ui.strong("Whole runs");
+    Grid::new("runs").num_columns(5).spacing([7.0, 3.0]).striped(true).show(ui, |ui| {
+        for (title, help) in [
+            ("", ""),
+            ("Lasts", "From its first to its last picture"),
+            ("Most tension", "Over the whole run, and when"),
+            ("Most pull", "Of the cable on the robot"),
+            ("Events", "Warnings that began"),
+        ] {
+            let title = ui.weak(title);
+            if !help.is_empty() {
+                title.on_hover_text(help);
+            }
+        }
+        ui.end_row();
+        let held = state.analysis.references.iter().enumerate();
+        let held = held.filter_map(|(k, h)| {
+            let run = h.run.as_deref()?;
+            Some((format!("{}", k + 1), Some(k), (run.span_s(), measures.map(|m| run.peak(m)), run.events)))
+        });
+        for (name, k, ([first, last], peaks, events)) in own.into_iter().chain(held) {
+            let text = RichText::new(name).strong();
+            ui.label(k.map_or(text.clone(), |k| text.color(LINES[k % LINES.len()])));
+            ui.label(format::duration(last - first));
+            for peak in peaks {
+                let at = |p: Peak| format!("{} at {:.2} s", format::force(p.value), p.time_s);
+                ui.label(peak.map_or_else(|| "–".to_owned(), at));
+            }
+            ui.label(events.to_string());
+            ui.end_row();
+        }
+    });
+}
+
+/// What is compared.
+struct Figures {
+    tension_n: f64,
+    sag_m: Option<f64>,
+    energy_j: f64,
+    wall_s: f64,
+}
+
+impl Figures {
+    fn of(solution: &Solution, scene: &Scene, wall_s: f64) -> Self {
+        let sags = scene
+            .cables
+            .iter()
+            .zip(&solution.cables)
+            .filter_map(|(cable, c)| sag(cable, c, scene.view))
+            .map(|s| s.sag_m);
+        Self {
+            tension_n: solution.max_tension().tension_n,
+            sag_m: sags.reduce(f64::max),
+            energy_j: solution.energy.total_j(),
+            wall_s,
+        }
+    }
+}
+
+fn row(ui: &mut Ui, f: &Figures, present: Option<&Figures>) {
+    cell(ui, format::force(f.tension_n), Some(f.tension_n), present.map(|p| p.tension_n));
+    let sag = f.sag_m.map_or_else(|| "–".to_owned(), format::length);
+    cell(ui, sag, f.sag_m, present.and_then(|p| p.sag_m));
+    let energy = format::energy(f.energy_j);
+    cell(ui, energy, Some(f.energy_j), present.map(|p| p.energy_j));
+    cell(ui, format::duration(f.wall_s), None, None);
+}
+
+/// A figure, and below it how much it is above the present one.
+fn cell(ui: &mut Ui, text: String, value: Option<f64>, present: Option<f64>) {
+    ui.vertical(|ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        ui.add(egui::Label::new(text).extend());
+        if let (Some(value), Some(present)) = (value, present)
+            && present != 0.0
+            && value.is_finite()
+        {
+            let share = format!("{:+.2} %", 100.0 * (value / present - 1.0)).replace('-', "−");
+            ui.label(RichText::new(share).small().weak()).on_hover_text("Against the present answer");
+        }
+    });
+}
+
+/// What two scenes and models differ in.
+#[derive(Clone)]
+struct Summary {
+    held: Arc<Scene>,
+    present: Arc<Scene>,
+    models: [Option<Model>; 2],
+    lines: Arc<Vec<String>>,
+}
+
+/// The differences of the last frame where nothing has changed since: to write two files and
+/// compare them takes milliseconds.
+fn remembered(ui: &Ui, k: usize, held: &Reference, state: &AppState) -> Arc<Vec<String>> {
+    let id = Id::unique(("differences", k));
+    let models = [Some(held.solution.model), state.live.snapshot.solution.as_ref().map(|s| s.model)];
+    let last = ui.data(|d| d.get_temp::<Summary>(id));
+    let fits =
+        |t: &Summary| Arc::ptr_eq(&t.held, &held.scene) && t.models == models && *t.present == state.document.scene;
+    if let Some(told) = last.filter(fits) {
+        return told.lines;
+    }
+    let lines = Arc::new(differences(held, state));
+    let (present, held) = (Arc::new(state.document.scene.clone()), Arc::clone(&held.scene));
+    ui.data_mut(|d| d.insert_temp(id, Summary { held, present, models, lines: Arc::clone(&lines) }));
+    lines
+}
+
+/// What differs in the input of a held answer and the present one, line by line of their files; the
+/// models first.
+#[must_use]
+pub fn differences(held: &Reference, state: &AppState) -> Vec<String> {
+    let mut out = Vec::new();
+    if let Some(present) = &state.live.snapshot.solution
+        && present.model != held.solution.model
+    {
+        out.push(format!("model {} to {}", held.solution.model, present.model));
+    }
+    let (a, b) = (held.scene.to_toml(), state.document.scene.to_toml());
+    let (a, b): (Vec<&str>, Vec<&str>) = (a.lines().collect(), b.lines().collect());
+    if a.len() == b.len() {
+        let pairs = a.iter().zip(&b).filter(|(x, y)| x != y);
+        out.extend(pairs.map(|(x, y)| match (x.split_once(" = "), y.split_once(" = ")) {
+            (Some((key, was)), Some((_, is))) => format!("{} {} to {}", key.trim(), short(was), short(is)),
+            _ => format!("{} to {}", short(x), short(y)),
+        }));
+    } else {
+        out.extend(a.iter().filter(|x| !b.contains(x)).map(|x| format!("− {}", short(x))));
+        out.extend(b.iter().filter(|y| !a.contains(y)).map(|y| format!("+ {}", short(y))));
+    }
+    if out.is_empty() {
+        out.push("the same input".to_owned());
+    }
+    if out.len() > MAX_LINES {
+        let more = out.len() - MAX_LINES;
+        out.truncate(MAX_LINES);
+        out.push(format!("and {more} more"));
+    }
+    out
+}
+
+fn short(text: &str) -> String {
+    let text = text.trim();
+    if text.chars().count() > 40 { text.chars().take(40).collect::<String>() + "…" } else { text.to_owned() }
+}

@@ -1,0 +1,77 @@
+//! Friction that is not known well: how much less and more of it there may be, and what that does
+//! to the tension.
+
+use egui::{Grid, ProgressBar, Ui};
+
+use crate::command::{Command, ViewCommand};
+use crate::jobs::background::Progress;
+use crate::jobs::friction_range;
+use crate::state::AppState;
+use crate::units::format;
+use crate::units::unit::Unit;
+use crate::widgets::field;
+use crate::widgets::property::{Provenance, Quantity, row};
+
+const LEAST_FRICTION: Quantity = Quantity {
+    name: "Least friction",
+    unit: Unit::PERCENT,
+    usual: [0.0, 1.0],
+    logarithmic: false,
+    help: "Least friction there may be, as a share of what the scene says: of cables, obstacles and pulleys alike.",
+};
+const GREATEST_FRICTION: Quantity = Quantity {
+    name: "Most friction",
+    unit: Unit::PERCENT,
+    usual: [1.0, 3.0],
+    logarithmic: false,
+    help: "Most friction there may be, as a share of what the scene says: of cables, obstacles and pulleys alike.",
+};
+
+/// Draws it.
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let view = &state.analysis.friction_range;
+    let mut on = view.on;
+    let help = "The same question with less and with more friction, as a ribbon in the graphs of tension; computed beside the \
+                window whenever time stands still. What was moved or driven by hand meanwhile is repeated";
+    if ui.checkbox(&mut on, "Show less and more friction").on_hover_text(help).changed() {
+        commands.push(Command::View(ViewCommand::Spread(on, view.factors)));
+    }
+    if !on {
+        return;
+    }
+    let usual = friction_range::FrictionRangeState::default().factors;
+    for (k, quantity) in [LEAST_FRICTION, GREATEST_FRICTION].iter().enumerate() {
+        let origin = Some((usual[k], "the default".to_owned()));
+        let change = row(ui, quantity, &Provenance { value: view.factors[k], origin, ..Provenance::default() });
+        if let Some(value) = change.value {
+            let mut factors = view.factors;
+            factors[k] = value;
+            commands.push(Command::View(ViewCommand::Spread(true, factors)));
+        }
+    }
+    match &view.progress {
+        Progress::None => {
+            ui.weak("Begins once time stands still");
+        }
+        Progress::Running(share, _) => {
+            let bar = ui.add(ProgressBar::new(*share as f32).show_percentage().desired_height(16.0));
+            field::name(&bar, "Progress of the friction range");
+        }
+        Progress::Failed(why) => field::fault(ui, &format!("No range: {why}")),
+        Progress::Done((found, _)) => {
+            Grid::new("spread").num_columns(3).spacing([10.0, 3.0]).show(ui, |ui| {
+                for title in ["Least friction", "As in the scene", "Most friction"] {
+                    ui.weak(title).on_hover_text("Largest tension of all cables at the end of the run");
+                }
+                ui.end_row();
+                for most_n in found.most_n {
+                    ui.label(format::force(most_n));
+                }
+                ui.end_row();
+            });
+            if let Some((time_s, why)) = &found.ended {
+                field::fault(ui, &format!("Up to {time_s:.2} s: {why}"));
+            }
+        }
+    }
+}

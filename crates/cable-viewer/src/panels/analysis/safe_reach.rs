@@ -1,0 +1,163 @@
+//! Where the robot or an end can be taken without passing the service tension, and where its cable
+//! would snag: asked for, and read off.
+
+use cable_core::analysis::safe_reach::area::Area;
+use cable_core::analysis::safe_reach::line::ReachMap;
+use egui::{ComboBox, ProgressBar, Slider, Ui};
+
+use crate::command::{Command, ViewCommand};
+use crate::jobs::safe_reach::{self, ACROSS, Choice, Maps, Progress, ReachSubject};
+use crate::state::AppState;
+use crate::state::questions::reach_target;
+use crate::units::format;
+use crate::units::unit::Unit;
+use crate::widgets::field;
+
+/// Draws it.
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let Some(moved) = reach_target(state) else {
+        ui.weak("Nothing here has a place to be taken from");
+        return;
+    };
+    let view = &state.analysis.safe_reach;
+    let running = match view.progress {
+        Progress::Running(share, _) => Some(share),
+        _ => None,
+    };
+    ui.add_enabled_ui(running.is_none(), |ui| choices(ui, state, moved, commands));
+    if let Some(share) = running {
+        let bar = ui.add(ProgressBar::new(share as f32).show_percentage().desired_height(16.0));
+        field::name(&bar, "Progress of the safe reach");
+        if ui.button("Cancel safe reach").on_hover_text("Ends the search; nothing is kept").clicked() {
+            commands.push(Command::View(ViewCommand::Reach(false)));
+        }
+    } else {
+        ui.horizontal(|ui| {
+            let help = "Looks at places along the ground, or all over the part of the picture that is in view, each there and back, \
+                        from where the cable lies now; first coarsely, then finer. The window stays usable meanwhile. Nothing \
+                        limits what moves: the question is what the cable would bear";
+            if ui.button("Find safe reach").on_hover_text(help).clicked() {
+                commands.push(Command::View(ViewCommand::Reach(true)));
+            }
+            let shown = !matches!(view.progress, Progress::None);
+            if ui
+                .add_enabled(shown, egui::Button::new("Clear"))
+                .on_hover_text("Takes the map away")
+                .on_disabled_hover_text("There is no map yet")
+                .clicked()
+            {
+                commands.push(Command::View(ViewCommand::Reach(false)));
+            }
+        });
+    }
+    if let Progress::Failed(why) = &view.progress {
+        field::fault(ui, &format!("No map: {why}"));
+    }
+    let Some((maps, scene)) = view.found() else { return };
+    both_ways(ui, view.choice, commands);
+    if **scene != state.document.scene {
+        ui.colored_label(ui.visuals().warn_fg_color, "Of the scene before the last edits");
+    }
+    for line in describe(maps, view.choice.back) {
+        ui.label(line);
+    }
+}
+
+fn choices(ui: &mut Ui, state: &AppState, moved: ReachSubject, commands: &mut Vec<Command>) {
+    let choice = state.analysis.safe_reach.choice;
+    ui.horizontal(|ui| {
+        ui.label("Moves");
+        let combo = ComboBox::from_id_salt("moved").selected_text(safe_reach::name(&state.document.scene, moved));
+        let shown = combo.width(ui.available_width() - 8.0).truncate().show_ui(ui, |ui| {
+            for other in safe_reach::movable(&state.document.scene) {
+                if ui.selectable_label(other == moved, safe_reach::name(&state.document.scene, other)).clicked() {
+                    commands.push(set(Choice { moved: Some(other), ..choice }));
+                }
+            }
+        });
+        field::name(&shown.response, "What is taken somewhere");
+        shown
+            .response
+            .on_hover_text("The robot along its ground, or a support by a hand or a crane through free space");
+    });
+    if moved != ReachSubject::Robot {
+        ui.horizontal(|ui| {
+            ui.label("Places side by side");
+            let mut across = choice.across;
+            let slider = ui.add(Slider::new(&mut across, ACROSS[0]..=ACROSS[1]));
+            field::name(&slider, "Places side by side");
+            let help =
+                "How finely the part of the picture in view is looked at: twice as many take up to four times as long";
+            if slider.on_hover_text(help).changed() {
+                commands.push(set(Choice { across, ..choice }));
+            }
+        });
+    }
+}
+
+fn both_ways(ui: &mut Ui, choice: Choice, commands: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        let there = "The largest tension with the end at each place";
+        let back = "Snags: the largest tension on the way there and back";
+        for (back, text, help) in [(false, "There", there), (true, "There and back", back)] {
+            if ui.radio(choice.back == back, text).on_hover_text(help).clicked() {
+                commands.push(set(Choice { back, ..choice }));
+            }
+        }
+    });
+}
+
+fn set(choice: Choice) -> Command {
+    Command::View(ViewCommand::SetReach(choice))
+}
+
+/// The map in words.
+#[must_use]
+pub fn describe(maps: &Maps, back: bool) -> Vec<String> {
+    let limits = ["service", "breaking"].into_iter().zip(maps.limits_n());
+    limits
+        .map(|(name, tension_n)| match maps {
+            Maps::Line(map) => of_line(map, back, name, tension_n),
+            Maps::Area(there, None) if !back => of_area(there, name, tension_n),
+            Maps::Area(_, None) => "The ways back are not known yet".to_owned(),
+            Maps::Area(there, Some(ways)) => of_area(if back { ways } else { there }, name, tension_n),
+        })
+        .collect()
+}
+
+fn to(x: f64) -> String {
+    Unit { decimals: Some(2), ..Unit::M }.text(x)
+}
+
+fn of_line(map: &ReachMap, back: bool, name: &str, tension_n: f64) -> String {
+    let Some([left, right]) = map.safe_m(tension_n, back) else {
+        return format!("Above {name} {} where it stands", format::force(tension_n));
+    };
+    let why = |x: f64, side: f64| {
+        let next = map.places.iter().filter(|p| side * (p.at_m[0] - x) > 0.0);
+        let next = next.min_by(|a, b| (a.at_m[0] - x).abs().total_cmp(&(b.at_m[0] - x).abs()));
+        match next.map(|p| (p.jammed, if back { p.there_and_back_n } else { p.there_n })) {
+            None => "",
+            Some((true, _)) => " (its cable in the way)",
+            Some((_, n)) if n.is_nan() => " (no answer)",
+            Some((_, n)) if n.is_infinite() => " (cable too short)",
+            Some(_) => "",
+        }
+    };
+    let force = format::force(tension_n);
+    format!("Below {name} {force} from x = {}{} to {}{}", to(left), why(left, -1.0), to(right), why(right, 1.0))
+}
+
+fn of_area(area: &Area, name: &str, tension_n: f64) -> String {
+    let force = format::force(tension_n);
+    match area.below(tension_n) {
+        Some((_, [low, high])) => format!(
+            "Below {name} {force} between x = {} and {}, y = {} and {}",
+            to(low[0]),
+            to(high[0]),
+            to(low[1]),
+            to(high[1])
+        ),
+        None => format!("Nowhere below {name} {force}"),
+    }
+}

@@ -1,0 +1,198 @@
+//! The tension budget shows what adds to the tension at a place and what takes from it, as a bar
+//! and as figures.
+
+use cable_core::analysis::tension_budget::{Cause, Contribution, StartEnd, TensionBudget, tension_budget};
+use cable_core::scene::View;
+use cable_core::{Scene, Solution};
+use egui::{Color32, Grid, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+
+use crate::command::{Command, ViewCommand};
+use crate::state::{AppState, TensionMarker};
+use crate::units::format::{self, significant};
+use crate::units::unit::Unit;
+use crate::widgets::property::{Provenance, Quantity, row};
+
+/// Height of each of the two rows of the bar, points.
+const ROW: f32 = 15.0;
+/// Terms below this share of the greatest are not listed: rounding.
+const NOTHING: f64 = 1e-6;
+
+const END: Color32 = Color32::from_rgb(136, 136, 136);
+const WEIGHT: Color32 = Color32::from_rgb(0, 114, 178);
+const WIND: Color32 = Color32::from_rgb(86, 180, 233);
+/// Neighbouring contacts differ.
+const CONTACTS: [Color32; 2] = [Color32::from_rgb(213, 94, 0), Color32::from_rgb(230, 159, 0)];
+const SUPPORT: Color32 = Color32::from_rgb(0, 158, 115);
+const LOAD: Color32 = Color32::from_rgb(204, 121, 167);
+const REST: Color32 = Color32::from_rgb(190, 190, 190);
+
+/// Draws it.
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let Some(answer) = state.live.snapshot.solution.as_deref() else {
+        ui.weak("Nothing solved yet");
+        return;
+    };
+    let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
+    ui.horizontal_wrapped(|ui| {
+        let help = "Takes the largest tension apart: what of it is weight, friction of each contact, pull at the end";
+        if ui.button("At the largest").on_hover_text(help).clicked() {
+            let most = answer.max_tension();
+            let from = state.analysis.tension_marker.map(|p| p.from).unwrap_or_default();
+            let probe = TensionMarker { cable: most.cable, arc_length_m: most.arc_length_m, from };
+            commands.push(Command::View(ViewCommand::MarkTension(Some(probe))));
+        }
+        let help = "No place is marked any more";
+        if state.analysis.tension_marker.is_some() && ui.button("Unmark").on_hover_text(help).clicked() {
+            commands.push(Command::View(ViewCommand::MarkTension(None)));
+        }
+    });
+    let Some(probe) = state.analysis.tension_marker else {
+        ui.weak("Click on the cable: where does its tension come from?");
+        return;
+    };
+    let Some(found) = tension_budget(scene, answer, (probe.cable, probe.arc_length_m), probe.from) else {
+        ui.weak("This cable is not solved");
+        return;
+    };
+    place(ui, scene, probe, commands);
+    ui.horizontal(|ui| {
+        ui.label("Tension there");
+        ui.strong(format::force(found.tension_n));
+    });
+    let listed = listed(&found);
+    bar(ui, &found, &listed, &|t| title(scene, answer, probe.cable, t));
+    figures(ui, &listed, &|t| title(scene, answer, probe.cable, t), &|t| how(answer, probe.cable, t));
+}
+
+/// The place and the end the sum begins at, both to be set by keys as well.
+fn place(ui: &mut Ui, scene: &Scene, probe: TensionMarker, commands: &mut Vec<Command>) {
+    let Some(cable) = scene.cables.get(probe.cable) else { return };
+    let quantity = Quantity {
+        name: "Place on the cable",
+        unit: Unit::COORDINATE,
+        usual: [0.0, cable.length_m],
+        logarithmic: false,
+        help: "Unstretched length from the start of the cable to the place whose tension is taken apart",
+    };
+    let change = row(ui, &quantity, &Provenance { value: probe.arc_length_m, ..Provenance::default() });
+    if let Some(value) = change.value {
+        let arc_length_m = value.clamp(0.0, cable.length_m);
+        commands.push(Command::View(ViewCommand::MarkTension(Some(TensionMarker { arc_length_m, ..probe }))));
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.weak("From").on_hover_text("The end at which the sum begins");
+        let name = |end: Option<&cable_core::Support>, other: &str| end.map_or(other.to_owned(), |s| s.name.clone());
+        let ends = [
+            (StartEnd::Slacker, "the slacker end".to_owned()),
+            (StartEnd::Start, name(cable.supports.first(), "start")),
+            (StartEnd::End, name(cable.supports.last(), "end")),
+        ];
+        for (from, name) in ends {
+            let chosen = ui.selectable_label(probe.from == from, &name);
+            crate::widgets::field::name(&chosen, &format!("From {name}"));
+            if chosen.on_hover_text("The sum begins at this end").clicked() {
+                commands.push(Command::View(ViewCommand::MarkTension(Some(TensionMarker { from, ..probe }))));
+            }
+        }
+    });
+}
+
+/// The terms worth a line.
+fn listed(found: &TensionBudget) -> Vec<Contribution> {
+    let greatest = found.contributions.iter().map(|t| t.tension_n.abs()).fold(0.0, f64::max);
+    found.contributions.iter().filter(|t| t.tension_n.abs() > NOTHING * greatest).copied().collect()
+}
+
+fn title(scene: &Scene, answer: &Solution, cable: usize, term: &Contribution) -> String {
+    let support = |k: usize| {
+        let s = scene.cables.get(cable).and_then(|c| c.supports.get(k));
+        s.map_or_else(|| "a support".to_owned(), |s| s.name.clone())
+    };
+    match term.cause {
+        Cause::End => "Pull at the end".to_owned(),
+        Cause::Weight => "Weight".to_owned(),
+        Cause::Wind => "Wind".to_owned(),
+        Cause::Contact(k) => {
+            let contact = answer.cables.get(cable).and_then(|c| c.contacts.get(k));
+            format!("Friction on {}", contact.map_or("an obstacle", |c| c.obstacle.as_str()))
+        }
+        Cause::Support(k) => format!("At {}", support(k)),
+        Cause::Load(k) => format!("Load {}", k + 1),
+        Cause::Rest if scene.view == View::Plan => "Floor and motion".to_owned(),
+        Cause::Rest => "Motion, bending, mesh".to_owned(),
+    }
+}
+
+/// By what factor, and over what turn.
+fn how(answer: &Solution, cable: usize, term: &Contribution) -> String {
+    let factor = term.factor.map_or_else(String::new, |f| format!("× {}", significant(f, 3)));
+    let Cause::Contact(k) = term.cause else { return factor };
+    let turn = answer.cables.get(cable).and_then(|c| c.contacts.get(k)).map_or(0.0, |c| c.turn_deg.abs());
+    if turn >= 0.5 { format!("{factor} over {turn:.0}°") } else { factor }
+}
+
+fn colour(term: &Contribution) -> Color32 {
+    match term.cause {
+        Cause::End => END,
+        Cause::Weight => WEIGHT,
+        Cause::Wind => WIND,
+        Cause::Contact(k) => CONTACTS[k % CONTACTS.len()],
+        Cause::Support(_) => SUPPORT,
+        Cause::Load(_) => LOAD,
+        Cause::Rest => REST,
+    }
+}
+
+/// What adds, from left to right; below it what takes away, from there back to the tension.
+fn bar(ui: &mut Ui, found: &TensionBudget, listed: &[Contribution], title: &dyn Fn(&Contribution) -> String) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 2.0 * ROW + 2.0), Sense::hover());
+    let words: Vec<String> = listed.iter().map(|t| format!("{} {}", title(t), format::force(t.tension_n))).collect();
+    let spoken = format!("{} = {}", format::force(found.tension_n), words.join(" + "));
+    response.widget_info(|| WidgetInfo::labeled(Role::Figure, true, "Where the tension comes from"));
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_description(spoken.as_str()));
+    let added: f64 = listed.iter().map(|t| t.tension_n.max(0.0)).sum();
+    if !(added > 0.0) {
+        return;
+    }
+    let x = |n: f64| rect.left() + (n / added) as f32 * rect.width();
+    let painter = ui.painter();
+    painter.rect_filled(rect, 2.0, ui.visuals().faint_bg_color);
+    let gap = Stroke::new(1.0, ui.visuals().panel_fill);
+    let piece = |from: f64, to: f64, row: f32, term: &Contribution| {
+        let top = rect.top() + row * (ROW + 2.0);
+        let piece = Rect::from_x_y_ranges(x(from.min(to))..=x(from.max(to)), top..=top + ROW);
+        painter.rect(piece, 0.0, colour(term), gap, egui::StrokeKind::Inside);
+    };
+    let mut sum = 0.0;
+    for t in listed.iter().filter(|t| t.tension_n > 0.0) {
+        piece(sum, sum + t.tension_n, 0.0, t);
+        sum += t.tension_n;
+    }
+    for t in listed.iter().filter(|t| t.tension_n < 0.0) {
+        piece(sum + t.tension_n, sum, 1.0, t);
+        sum += t.tension_n;
+    }
+    let end = x(sum);
+    painter
+        .line_segment([pos2(end, rect.top()), pos2(end, rect.bottom())], Stroke::new(2.0, ui.visuals().text_color()));
+    response.on_hover_text("Above: what adds. Below: what takes away, from the right. The line: the tension");
+}
+
+fn figures(
+    ui: &mut Ui,
+    listed: &[Contribution],
+    title: &dyn Fn(&Contribution) -> String,
+    how: &dyn Fn(&Contribution) -> String,
+) {
+    Grid::new("origin").num_columns(4).min_col_width(0.0).spacing([7.0, 3.0]).show(ui, |ui| {
+        for t in listed {
+            let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+            ui.painter().rect_filled(rect, 1.0, colour(t));
+            ui.label(title(t));
+            let sign = if t.tension_n < 0.0 { "" } else { "+" };
+            ui.label(format!("{sign}{}", format::force(t.tension_n)));
+            ui.weak(how(t)).on_hover_text("Tension beyond it over tension before it, on the way from the end");
+            ui.end_row();
+        }
+    });
+}

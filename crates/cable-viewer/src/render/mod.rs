@@ -1,0 +1,12 @@
+//! This wing says how things are drawn: colours, themes, and renderers for machines without a GPU
+//! or window.
+//!
+//! - `colour`: a quantity along the cable as a colour
+//! - `theme`: the palettes of light and dark
+//! - `software`: egui's picture, drawn faster where there is no GPU
+//! - `offscreen`: a renderer without a window
+
+pub mod colour;
+pub mod offscreen;
+pub mod software;
+pub mod theme;

@@ -1,0 +1,447 @@
+//! Drawing without a GPU.
+//!
+//! egui's own shader asks, for every pixel, whether it is to dither and whether it is to filter the
+//! font by hand. A GPU skips what is not asked for; Mesa's software Vulkan works out everything and
+//! throws it away: 93 ns a pixel, 150 ms a screen of 1280×800. Where the adapter is software, what
+//! egui would draw is drawn by a shader that only multiplies colour and font; large pieces of one
+//! opaque colour (backgrounds, panels, the ground) by one that asks nothing and reads nothing back:
+//! whole tiles of the screen are then filled at once, and what lay below them is not drawn at all.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use eframe::egui_wgpu::{self, CallbackResources, CallbackTrait, RenderState, ScreenDescriptor, wgpu};
+use egui::epaint::{ClippedPrimitive, ClippedShape, ImageData, ImageDelta, Mesh, Primitive, Shape, WHITE_UV};
+use egui::{Context, FullOutput, Rect, TextureId};
+
+/// Colour times font.
+const SHADER: &str = "
+struct Corner { @builtin(position) at: vec4f, @location(0) uv: vec2f, @location(1) colour: vec4f };
+@group(0) @binding(0) var<uniform> screen: vec4f;
+@group(0) @binding(1) var font: texture_2d<f32>;
+@group(0) @binding(2) var font_sampler: sampler;
+@vertex fn corner(@location(0) p: vec2f, @location(1) uv: vec2f, @location(2) colour: vec4f) -> Corner {
+    return Corner(vec4f(2.0 * p.x / screen.x - 1.0, 1.0 - 2.0 * p.y / screen.y, 0.0, 1.0), uv, colour);
+}
+@fragment fn pixel(c: Corner) -> @location(0) vec4f { return c.colour * textureSample(font, font_sampler, c.uv); }
+@fragment fn plain(c: Corner) -> @location(0) vec4f { return c.colour; }
+struct Solid { @builtin(position) at: vec4f, @location(0) @interpolate(flat) colour: vec4f };
+@vertex fn solid_corner(@location(0) p: vec2f, @location(2) colour: vec4f) -> Solid {
+    return Solid(vec4f(2.0 * p.x / screen.x - 1.0, 1.0 - 2.0 * p.y / screen.y, 0.0, 1.0), colour);
+}
+@fragment fn solid(c: Solid) -> @location(0) vec4f { return c.colour; }
+";
+
+/// Twice the area, points², from which a triangle of one colour, or a row of small ones, is drawn
+/// without asking the font. Smaller: changing the shader costs more than the pixels; larger:
+/// buttons and plots ask the font for nothing.
+const PLAIN: f32 = 4000.0;
+
+/// Bytes of a corner: place, place in the font, colour.
+const CORNER_BYTES: u64 = 20;
+
+/// Takes over what egui would draw.
+pub struct Software {
+    format: wgpu::TextureFormat,
+    /// Changes of the font not yet on the device: a frame that is never drawn must not lose them.
+    font: Arc<Mutex<Vec<ImageDelta>>>,
+}
+
+impl Software {
+    /// For a device that is software; None where a GPU draws, which egui's shader suits.
+    #[must_use]
+    pub fn of(state: &RenderState) -> Option<Self> {
+        let software = state.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+        // egui blends in the eye's scale of brightness: a target that converts by itself would need
+        // another shader.
+        let plain = !state.target_format.is_srgb();
+        (software && plain).then(|| Self { format: state.target_format, font: Arc::default() })
+    }
+}
+
+impl egui::Plugin for Software {
+    fn debug_name(&self) -> &'static str {
+        "software drawing"
+    }
+
+    fn output_hook(&mut self, ctx: &Context, output: &mut FullOutput) {
+        let changes = output.textures_delta.set.get(&TextureId::default());
+        let mut font = self.font.lock().unwrap_or_else(PoisonError::into_inner);
+        for change in changes.into_iter().flatten() {
+            if change.pos.is_none() {
+                font.clear();
+            }
+            font.push(change.clone());
+        }
+        drop(font);
+        // What this cannot draw is left to egui: other pictures than the font, other programs'
+        // drawing.
+        let own =
+            |s: &ClippedShape| !matches!(s.shape, Shape::Callback(_)) && s.shape.texture_id() == TextureId::default();
+        if output.shapes.is_empty() || !output.shapes.iter().all(own) {
+            return;
+        }
+        let jobs = ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
+        let screen = ctx.viewport_rect();
+        let picture = Picture::of(&jobs, screen, (self.format, Arc::clone(&self.font)));
+        let callback = egui_wgpu::Callback::new_paint_callback(screen, picture);
+        output.shapes = vec![ClippedShape::new(screen, callback)];
+    }
+}
+
+/// Triangles that are drawn alike.
+struct Part {
+    clip: Rect,
+    /// Their end in the list of indices.
+    end: u32,
+    fill: Fill,
+}
+
+/// What a triangle is filled with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Fill {
+    /// Colours and the font.
+    Font,
+    /// Colours.
+    Plain,
+    /// One opaque colour.
+    Solid,
+}
+
+/// A frame.
+struct Picture {
+    corners: Vec<u8>,
+    indices: Vec<u32>,
+    parts: Vec<Part>,
+    screen: Rect,
+    format: wgpu::TextureFormat,
+    font: Arc<Mutex<Vec<ImageDelta>>>,
+}
+
+impl Picture {
+    fn of(
+        jobs: &[ClippedPrimitive],
+        screen: Rect,
+        (format, font): (wgpu::TextureFormat, Arc<Mutex<Vec<ImageDelta>>>),
+    ) -> Self {
+        let meshes = || {
+            jobs.iter().filter_map(|job| match &job.primitive {
+                Primitive::Mesh(mesh) => Some((job.clip_rect, mesh)),
+                Primitive::Callback(_) => None,
+            })
+        };
+        let corners: usize = meshes().map(|(_, m)| m.vertices.len()).sum();
+        let indices: usize = meshes().map(|(_, m)| m.indices.len()).sum();
+        let mut picture = Self {
+            corners: Vec::with_capacity(corners * CORNER_BYTES as usize),
+            indices: Vec::with_capacity(indices),
+            parts: Vec::new(),
+            screen,
+            format,
+            font,
+        };
+        let mut first = 0;
+        for (clip, mesh) in meshes() {
+            picture.corners.extend_from_slice(bytemuck::cast_slice(&mesh.vertices));
+            let fills = fills(mesh);
+            for (triangle, fill) in mesh.indices.chunks_exact(3).zip(fills) {
+                picture.add(clip, fill, triangle.iter().map(|i| first + i));
+            }
+            first += mesh.vertices.len() as u32;
+        }
+        picture
+    }
+
+    /// A triangle, in order: in the last part if it is drawn alike.
+    fn add(&mut self, clip: Rect, fill: Fill, indices: impl Iterator<Item = u32>) {
+        self.indices.extend(indices);
+        let end = self.indices.len() as u32;
+        match self.parts.last_mut() {
+            Some(part) if part.clip == clip && part.fill == fill => part.end = end,
+            _ => self.parts.push(Part { clip, end, fill }),
+        }
+    }
+
+    /// A clip in pixels of a target; None where nothing is left.
+    fn scissor(clip: Rect, scale: f32, [width, height]: [u32; 2]) -> Option<[u32; 4]> {
+        let pixel = |v: f32, most: u32| ((v * scale).round().max(0.0) as u32).min(most);
+        let (x0, y0) = (pixel(clip.min.x, width), pixel(clip.min.y, height));
+        let (x1, y1) = (pixel(clip.max.x, width), pixel(clip.max.y, height));
+        (x1 > x0 && y1 > y0).then(|| [x0, y0, x1 - x0, y1 - y0])
+    }
+}
+
+impl CallbackTrait for Picture {
+    fn prepare(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        _screen: &ScreenDescriptor,
+        _encoder: &mut wgpu::CommandEncoder,
+        resources: &mut CallbackResources,
+    ) -> Vec<wgpu::CommandBuffer> {
+        if !resources.contains::<Device>() {
+            resources.insert(Device::new(device, self.format));
+        }
+        let Some(own) = resources.get_mut::<Device>() else { return Vec::new() };
+        for change in self.font.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
+            own.set_font(device, queue, &change);
+        }
+        let size = [self.screen.width(), self.screen.height(), 0.0, 0.0].map(f32::to_le_bytes);
+        queue.write_buffer(&own.screen, 0, size.as_flattened());
+        let indices: &[u8] = bytemuck::cast_slice(&self.indices);
+        for (buffer, bytes) in [(&mut own.corners, self.corners.as_slice()), (&mut own.indices, indices)] {
+            if buffer.size() < bytes.len() as u64 {
+                *buffer = buffer_of(device, 2 * bytes.len() as u64, buffer.usage());
+            }
+            queue.write_buffer(buffer, 0, bytes);
+        }
+        Vec::new()
+    }
+
+    fn paint(
+        &self,
+        info: egui::PaintCallbackInfo,
+        pass: &mut wgpu::RenderPass<'static>,
+        resources: &CallbackResources,
+    ) {
+        let Some(own) = resources.get::<Device>() else { return };
+        pass.set_bind_group(0, &own.bound, &[]);
+        pass.set_vertex_buffer(0, own.corners.slice(..));
+        pass.set_index_buffer(own.indices.slice(..), wgpu::IndexFormat::Uint32);
+        let (mut first, mut fill) = (0, None);
+        for part in &self.parts {
+            if let Some([x, y, w, h]) = Self::scissor(part.clip, info.pixels_per_point, info.screen_size_px) {
+                if fill != Some(part.fill) {
+                    pass.set_pipeline(match part.fill {
+                        Fill::Font => &own.pipeline,
+                        Fill::Plain => &own.plain,
+                        Fill::Solid => &own.solid,
+                    });
+                    fill = Some(part.fill);
+                }
+                pass.set_scissor_rect(x, y, w, h);
+                pass.draw_indexed(first..part.end, 0, 0..1);
+            }
+            first = part.end;
+        }
+    }
+}
+
+/// How each triangle can be drawn: large ones by themselves, small ones that ask the font for
+/// nothing where enough of them follow each other.
+fn fills(mesh: &Mesh) -> Vec<Fill> {
+    let mut fills = Vec::with_capacity(mesh.indices.len() / 3);
+    // Where the row of small white ones began, and twice its area, points².
+    let (mut began, mut area) = (0, 0.0);
+    for triangle in mesh.indices.chunks_exact(3) {
+        let (size, fill) = alone(mesh, triangle);
+        if fill == Some(Fill::Plain) && size <= PLAIN {
+            area += size;
+            fills.push(Fill::Font);
+            continue;
+        }
+        settle(&mut fills, began, area);
+        fills.push(fill.unwrap_or(Fill::Font));
+        (began, area) = (fills.len(), 0.0);
+    }
+    settle(&mut fills, began, area);
+    fills
+}
+
+/// A row of small triangles is over.
+fn settle(fills: &mut [Fill], began: usize, area: f32) {
+    if area > PLAIN {
+        fills.iter_mut().skip(began).for_each(|f| *f = Fill::Plain);
+    }
+}
+
+/// Twice the area of a triangle, points², and how it can be drawn without the font, if it can.
+fn alone(mesh: &Mesh, triangle: &[u32]) -> (f32, Option<Fill>) {
+    let corner = |k: usize| triangle.get(k).and_then(|i| mesh.vertices.get(*i as usize));
+    let (Some(a), Some(b), Some(c)) = (corner(0), corner(1), corner(2)) else { return (0.0, None) };
+    let (u, v) = (b.pos - a.pos, c.pos - a.pos);
+    let size = (u.x * v.y - u.y * v.x).abs();
+    if [a, b, c].iter().any(|p| p.uv != WHITE_UV) {
+        return (size, None);
+    }
+    let even = a.color.is_opaque() && a.color == b.color && a.color == c.color;
+    (size, Some(if even && size > PLAIN { Fill::Solid } else { Fill::Plain }))
+}
+
+/// What stays on the device.
+struct Device {
+    pipeline: wgpu::RenderPipeline,
+    plain: wgpu::RenderPipeline,
+    solid: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+    sampler: wgpu::Sampler,
+    screen: wgpu::Buffer,
+    font: wgpu::Texture,
+    bound: wgpu::BindGroup,
+    corners: wgpu::Buffer,
+    indices: wgpu::Buffer,
+}
+
+impl Device {
+    fn new(device: &wgpu::Device, format: wgpu::TextureFormat) -> Self {
+        let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
+        let uniform = wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Uniform,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        };
+        let texture = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("software drawing"),
+            entries: &[
+                entry(0, wgpu::ShaderStages::VERTEX, uniform),
+                entry(1, wgpu::ShaderStages::FRAGMENT, texture),
+                entry(2, wgpu::ShaderStages::FRAGMENT, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
+            ],
+        });
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            // Letters lie on whole pixels at every scale: to mix four points of the font for each
+            // costs an eighth of a frame and changes nothing.
+            mag_filter: wgpu::FilterMode::Nearest,
+            min_filter: wgpu::FilterMode::Nearest,
+            ..Default::default()
+        });
+        let screen = buffer_of(device, 16, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST);
+        let font = font_of(device, [1, 1]);
+        let bound = bind(device, &layout, (&screen, &font, &sampler));
+        Self {
+            pipeline: pipeline(device, format, (&layout, ["corner", "pixel"])),
+            plain: pipeline(device, format, (&layout, ["corner", "plain"])),
+            solid: pipeline(device, format, (&layout, ["solid_corner", "solid"])),
+            corners: buffer_of(device, 1 << 20, wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST),
+            indices: buffer_of(device, 1 << 20, wgpu::BufferUsages::INDEX | wgpu::BufferUsages::COPY_DST),
+            layout,
+            sampler,
+            screen,
+            font,
+            bound,
+        }
+    }
+
+    /// Takes in a change of the font: the whole of it, or a part.
+    fn set_font(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, change: &ImageDelta) {
+        let ImageData::Color(image) = &change.image;
+        let [width, height] = image.size.map(|s| s as u32);
+        let at = match change.pos {
+            Some(at) => at.map(|v| v as u32),
+            None => {
+                self.font = font_of(device, [width, height]);
+                self.bound = bind(device, &self.layout, (&self.screen, &self.font, &self.sampler));
+                [0, 0]
+            }
+        };
+        // Before the first whole one there is nothing to change.
+        if at[0] + width > self.font.width() || at[1] + height > self.font.height() {
+            return;
+        }
+        let to = wgpu::TexelCopyTextureInfo {
+            origin: wgpu::Origin3d { x: at[0], y: at[1], z: 0 },
+            ..self.font.as_image_copy()
+        };
+        let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * width), rows_per_image: None };
+        queue.write_texture(
+            to,
+            bytemuck::cast_slice(&image.pixels),
+            rows,
+            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        );
+    }
+}
+
+fn buffer_of(device: &wgpu::Device, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("software drawing"),
+        size,
+        usage,
+        mapped_at_creation: false,
+    })
+}
+
+fn font_of(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("font"),
+        size: wgpu::Extent3d { width: width.max(1), height: height.max(1), depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba8Unorm,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    })
+}
+
+fn bind(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    (screen, font, sampler): (&wgpu::Buffer, &wgpu::Texture, &wgpu::Sampler),
+) -> wgpu::BindGroup {
+    let view = font.create_view(&wgpu::TextureViewDescriptor::default());
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("software drawing"),
+        layout,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: screen.as_entire_binding() },
+            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&view) },
+            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(sampler) },
+        ],
+    })
+}
+
+fn pipeline(
+    device: &wgpu::Device,
+    format: wgpu::TextureFormat,
+    (layout, [vertex, fragment]): (&wgpu::BindGroupLayout, [&str; 2]),
+) -> wgpu::RenderPipeline {
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("software drawing"),
+        source: wgpu::ShaderSource::Wgsl(SHADER.into()),
+    });
+    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("software drawing"),
+        bind_group_layouts: &[Some(layout)],
+        ..Default::default()
+    });
+    // As egui blends: colours are premultiplied.
+    let part =
+        |src_factor, dst_factor| wgpu::BlendComponent { src_factor, dst_factor, operation: wgpu::BlendOperation::Add };
+    let blend = wgpu::BlendState {
+        color: part(wgpu::BlendFactor::One, wgpu::BlendFactor::OneMinusSrcAlpha),
+        alpha: part(wgpu::BlendFactor::OneMinusDstAlpha, wgpu::BlendFactor::One),
+    };
+    // What is opaque covers what is below it: nothing is read back.
+    let blend = (fragment != "solid").then_some(blend);
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("software drawing"),
+        layout: Some(&layout),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some(vertex),
+            buffers: &[Some(wgpu::VertexBufferLayout {
+                array_stride: CORNER_BYTES,
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Unorm8x4],
+            })],
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+        },
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some(fragment),
+            targets: &[Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL })],
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+        }),
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        multiview_mask: None,
+        cache: None,
+    })
+}

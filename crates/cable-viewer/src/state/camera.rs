@@ -1,0 +1,122 @@
+//! The part of the world on screen: metres to points and back. f64 until the last step.
+
+use cable_core::math::Point;
+use egui::{Pos2, Rect, Vec2, pos2};
+
+/// Which point of the world is in the middle of the canvas, and how large a metre is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// World point in the middle of the canvas, m.
+    pub centre_m: Point,
+    /// Points (logical pixels) per metre.
+    pub points_per_m: f64,
+    /// Fit the scene at the next frame (the canvas size is not known before).
+    pub fit_wanted: bool,
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        Self { centre_m: [0.0; 2], points_per_m: 50.0, fit_wanted: true }
+    }
+}
+
+/// Smallest and largest scale, points per metre. Beyond them f32 screen coordinates lose whole
+/// pixels.
+const SCALE: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
+
+/// Free border of a fitted scene, points: left (axis numbers), right (legend), top, bottom.
+/// Smaller and labels or the legend cover the ends of the cable; larger wastes the window.
+const BORDER: [f32; 4] = [84.0, 146.0, 56.0, 64.0];
+
+impl Camera {
+    /// World (m) to screen.
+    #[must_use]
+    pub fn to_screen(&self, canvas: Rect, p: Point) -> Pos2 {
+        let c = canvas.center();
+        let x = f64::from(c.x) + (p[0] - self.centre_m[0]) * self.points_per_m;
+        let y = f64::from(c.y) - (p[1] - self.centre_m[1]) * self.points_per_m;
+        // Far outside points are kept finite and small enough for the tessellator.
+        pos2(x.clamp(-1e6, 1e6) as f32, y.clamp(-1e6, 1e6) as f32)
+    }
+
+    /// Screen to world (m).
+    #[must_use]
+    pub fn to_world(&self, canvas: Rect, p: Pos2) -> Point {
+        let c = canvas.center();
+        [
+            self.centre_m[0] + f64::from(p.x - c.x) / self.points_per_m,
+            self.centre_m[1] - f64::from(p.y - c.y) / self.points_per_m,
+        ]
+    }
+
+    /// Moves the world with the pointer.
+    pub fn pan(&mut self, delta: Vec2) {
+        self.centre_m[0] -= f64::from(delta.x) / self.points_per_m;
+        self.centre_m[1] += f64::from(delta.y) / self.points_per_m;
+    }
+
+    /// Scales by a factor; the world point `about_m` stays where it is on screen.
+    pub fn zoom(&mut self, about_m: Point, factor: f64) {
+        if !(factor.is_finite() && factor > 0.0) {
+            return;
+        }
+        let scale = (self.points_per_m * factor).clamp(*SCALE.start(), *SCALE.end());
+        let k = self.points_per_m / scale;
+        for i in 0..2 {
+            self.centre_m[i] = about_m[i] + (self.centre_m[i] - about_m[i]) * k;
+        }
+        self.points_per_m = scale;
+    }
+
+    /// Puts a world rectangle (least and greatest corner, m) in view.
+    pub fn fit(&mut self, canvas: Rect, [low, high]: [Point; 2]) {
+        self.fit_wanted = false;
+        if !(low.iter().chain(&high).all(|v| v.is_finite()) && canvas.is_positive()) {
+            return;
+        }
+        // In a small canvas the border gives way, the scene does not.
+        let share = |k: usize, points: f32| BORDER[k] * (0.5 * points / (BORDER[k & 2] + BORDER[(k & 2) + 1])).min(1.0);
+        let (width, height) = (canvas.width(), canvas.height());
+        let [left, right, top, bottom] = [share(0, width), share(1, width), share(2, height), share(3, height)];
+        let room =
+            |k: usize, points: f32, border: f32| f64::from((points - border).max(40.0)) / (high[k] - low[k]).max(1e-3);
+        let scale = room(0, canvas.width(), left + right).min(room(1, canvas.height(), top + bottom));
+        self.points_per_m = scale.clamp(*SCALE.start(), *SCALE.end());
+        // The middle of the free part is off the middle of the canvas.
+        self.centre_m = [
+            0.5 * (low[0] + high[0]) + f64::from(right - left) / 2.0 / self.points_per_m,
+            0.5 * (low[1] + high[1]) + f64::from(top - bottom) / 2.0 / self.points_per_m,
+        ];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CANVAS: Rect = Rect { min: pos2(200.0, 30.0), max: pos2(1000.0, 630.0) };
+
+    #[test]
+    fn screen_and_world_are_inverse_and_zoom_keeps_the_point_under_the_pointer() {
+        let mut camera = Camera { centre_m: [3.0, -2.0], points_per_m: 37.0, fit_wanted: false };
+        let pointer = pos2(431.0, 222.0);
+        let before = camera.to_world(CANVAS, pointer);
+        assert!(camera.to_screen(CANVAS, before).distance(pointer) < 1e-3);
+        for factor in [1.7, 0.2, 1e9, 1e-30, f64::NAN, 0.0] {
+            camera.zoom(before, factor);
+            assert!(camera.to_screen(CANVAS, before).distance(pointer) < 1e-2, "factor {factor}");
+        }
+    }
+
+    #[test]
+    fn a_fitted_scene_lies_inside_its_border() {
+        let mut camera = Camera::default();
+        for bounds in [[[0.0, 0.0], [10.0, 1.0]], [[-5.0, 100.0], [-4.0, 220.0]], [[2.0, 2.0], [2.0, 2.0]]] {
+            camera.fit(CANVAS, bounds);
+            let free = Rect::from_min_max(CANVAS.min + egui::vec2(83.0, 55.0), CANVAS.max - egui::vec2(145.0, 63.0));
+            for corner in bounds {
+                assert!(free.contains(camera.to_screen(CANVAS, corner)), "{bounds:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! The clipboard holds what was copied, for this window and as text for other programs.
+
+use cable_core::math::Point;
+use cable_core::scene::Support;
+use cable_core::{Cable, Load, Obstacle};
+
+/// What was copied.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Clipboard {
+    /// The things.
+    pub things: Vec<Thing>,
+    /// The middle of it all, m.
+    pub middle_m: Point,
+    /// As it was given to the system: pasted text that differs comes from another program.
+    pub text: String,
+}
+
+impl Clipboard {
+    /// Nothing was copied.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.things.is_empty()
+    }
+}
+
+/// A copy of a thing of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Thing {
+    /// A cable.
+    Cable(Box<Cable>),
+    /// A support, and where it was, m.
+    Support(Box<Support>, Point),
+    /// An obstacle.
+    Obstacle(Obstacle),
+    /// A point load.
+    Load(Load),
+}

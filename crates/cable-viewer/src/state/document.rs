@@ -1,0 +1,44 @@
+//! The document is the scene being edited, where it comes from and whether it is saved.
+
+use std::path::PathBuf;
+
+use cable_core::{Scene, SceneError};
+
+use crate::state::undo::Undo;
+
+/// The scene being edited.
+#[derive(Clone, Debug)]
+pub struct Document {
+    /// The scene; may be half-typed.
+    pub scene: Scene,
+    /// What is wrong with it now, if anything.
+    pub fault: Option<SceneError>,
+    /// Its file, if it has one.
+    pub path: Option<PathBuf>,
+    /// As it was when last saved or loaded.
+    pub saved: Scene,
+    /// It comes from what a window that died had kept: it is in no file of the user's.
+    pub recovered: bool,
+    /// Scenes before and after the present one.
+    pub undo: Undo,
+}
+
+impl Document {
+    /// A scene as it is when opened.
+    #[must_use]
+    pub fn new(scene: Scene, path: Option<PathBuf>) -> Self {
+        let (fault, saved) = (scene.validate().err(), scene.clone());
+        Self { scene, fault, path, saved, recovered: false, undo: Undo::default() }
+    }
+
+    /// The scene differs from its file.
+    #[must_use]
+    pub fn unsaved(&self) -> bool {
+        self.recovered || self.scene != self.saved
+    }
+
+    /// Looks again at what is wrong with the scene.
+    pub fn validate(&mut self) {
+        self.fault = self.scene.validate().err();
+    }
+}

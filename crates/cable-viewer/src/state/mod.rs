@@ -1,0 +1,34 @@
+//! The state is what is on screen: everything panels and the canvas read.
+//!
+//! Only [`crate::command::apply`] changes it.
+//! - `app_state`: the parts put together
+//! - `document`, `undo`: the scene being edited, and the scenes before and after it
+//! - `selection`, `clipboard`: what is picked, hovered, dragged and copied
+//! - `view`, `camera`: how the scene is drawn
+//! - `live`: what the worker answered, and how time runs
+//! - `solver`: what the worker is asked for
+//! - `analysis`, `questions`: what is asked beyond the answer, and of which scene
+//! - `ui`, `dialog`, `tutorial_place`: the window itself, its dialog and the tutorial that is on
+
+pub mod analysis;
+pub mod app_state;
+pub mod camera;
+pub mod clipboard;
+pub mod dialog;
+pub mod document;
+pub mod live;
+pub mod questions;
+pub mod selection;
+pub mod solver;
+pub mod tutorial_place;
+pub mod ui;
+pub mod undo;
+pub mod view;
+
+pub use crate::state::analysis::{Reference, TensionMarker};
+pub use crate::state::app_state::AppState;
+pub use crate::state::document::Document;
+pub use crate::state::live::{Playback, Snapshot};
+pub use crate::state::selection::{Grab, Item};
+pub use crate::state::solver::WorkerStatus;
+pub use crate::state::view::Layers;

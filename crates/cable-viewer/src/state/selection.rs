@@ -1,0 +1,80 @@
+//! The selection is what is picked, hovered and dragged on the canvas.
+
+use cable_core::math::Point;
+
+use crate::state::clipboard::Clipboard;
+
+/// What is picked, hovered, dragged and copied.
+#[derive(Clone, Debug, Default)]
+pub struct Selection {
+    /// What the user picked.
+    pub selected: Option<Item>,
+    /// What was picked besides: moved, copied and removed with it.
+    pub also: Vec<Item>,
+    /// Two corners of the frame being drawn round things to pick, m.
+    pub frame_m: Option<[Point; 2]>,
+    /// What was copied.
+    pub clipboard: Clipboard,
+    /// What the pointer is over.
+    pub hovered: Option<Item>,
+    /// What is being dragged.
+    pub grab: Option<Grab>,
+    /// The support that the pointer holds by a spring while time runs.
+    pub spring_support: Option<(usize, usize)>,
+    /// Where the pointer is, m; None outside the canvas.
+    pub cursor_m: Option<Point>,
+}
+
+impl Selection {
+    /// Everything picked.
+    #[must_use]
+    pub fn picks(&self) -> Vec<Item> {
+        self.selected.into_iter().chain(self.also.iter().copied()).collect()
+    }
+
+    /// Whether a thing is picked.
+    #[must_use]
+    pub fn contains(&self, item: Item) -> bool {
+        self.selected == Some(item) || self.also.contains(&item)
+    }
+}
+
+/// A thing on the canvas that can be picked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Item {
+    /// A whole cable.
+    Cable(usize),
+    /// A support of a cable.
+    Support {
+        /// Index of the cable.
+        cable: usize,
+        /// Index of the support.
+        support: usize,
+    },
+    /// A whole obstacle.
+    Obstacle(usize),
+    /// A corner of an obstacle.
+    Corner {
+        /// Index of the obstacle.
+        obstacle: usize,
+        /// Index of the corner.
+        corner: usize,
+    },
+    /// A point load.
+    Load(usize),
+    /// The head of a load's arrow: its force.
+    Head(usize),
+    /// The robot.
+    Robot,
+    /// Where a leg of the robot's path ends.
+    Leg(usize),
+}
+
+/// A thing being dragged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grab {
+    /// What.
+    pub item: Item,
+    /// From the pointer to it when it was picked up, m.
+    pub offset_m: Point,
+}

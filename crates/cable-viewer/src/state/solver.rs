@@ -1,0 +1,42 @@
+//! The solver part is what the worker is asked for, and how it is doing.
+
+use cable_core::{Model, Settings};
+
+/// What the worker is asked for, and how it is doing.
+#[derive(Clone, Debug)]
+pub struct Solver {
+    /// The model asked for.
+    pub model: Model,
+    /// Mesh and accuracy asked for.
+    pub settings: Settings,
+    /// How the solver thread is doing.
+    pub status: WorkerStatus,
+    /// Number of the last edit sent to the worker.
+    pub edits_sent: u64,
+    /// Time from the last edit to the first picture that shows it, s.
+    pub edit_latency_s: Option<f64>,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self {
+            model: Model::Auto,
+            settings: Settings::default(),
+            status: WorkerStatus::Idle,
+            edits_sent: 0,
+            edit_latency_s: None,
+        }
+    }
+}
+
+/// How the solver thread is doing.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum WorkerStatus {
+    /// Waiting for work.
+    #[default]
+    Idle,
+    /// Working on an edit.
+    Busy,
+    /// Gone, with what it said last.
+    Dead(String),
+}

@@ -1,0 +1,207 @@
+//! Figures are written with four digits and their unit, for panels and graphs.
+
+use crate::units::system;
+use crate::units::unit::{DIGITS, TIMES, Unit};
+
+/// The round step (1, 2 or 5 times a power of ten) that cuts a range into about so many parts.
+pub fn round_step(range: f64, parts: f64) -> f64 {
+    let raw = range / parts;
+    if !(raw.is_finite() && raw > 0.0) {
+        return 1.0;
+    }
+    let power = 10_f64.powf(raw.log10().floor());
+    let step = [1.0, 2.0, 5.0].map(|k| k * power).into_iter().find(|step| *step >= raw * (1.0 - 1e-9));
+    step.unwrap_or(10.0 * power)
+}
+
+/// A factor of real time with three digits.
+#[must_use]
+pub fn times(factor: f64) -> String {
+    with_symbol(significant(factor, 3), "×")
+}
+
+/// A force with N, kN or MN, N.
+#[must_use]
+pub fn force(value_n: f64) -> String {
+    scaled(value_n, system::Kind::Force)
+}
+
+/// A force and what it is measured against, N, in the unit of the larger.
+#[must_use]
+pub fn force_of(value_n: f64, limit_n: f64) -> String {
+    let (symbol, si) = system::for_size(system::Kind::Force, value_n.abs().max(limit_n.abs()));
+    format!("{} of {}", significant(value_n / si, DIGITS), with_symbol(significant(limit_n / si, DIGITS), symbol))
+}
+
+/// A stress with Pa, kPa, MPa or GPa, Pa.
+#[must_use]
+pub fn stress(value_pa: f64) -> String {
+    scaled(value_pa, system::Kind::Stress)
+}
+
+/// A strain in % or µm/m.
+#[must_use]
+pub fn strain(value: f64) -> String {
+    if value.abs() >= 1e-3 {
+        format!("{} %", significant(value * 1e2, DIGITS))
+    } else {
+        format!("{} µm/m", significant(value * 1e6, DIGITS))
+    }
+}
+
+/// An energy, J.
+#[must_use]
+pub fn energy(value_j: f64) -> String {
+    scaled(value_j, system::Kind::Energy)
+}
+
+/// A length in m, mm or µm, m.
+#[must_use]
+pub fn length(value_m: f64) -> String {
+    scaled(value_m, system::Kind::Length)
+}
+
+/// A duration in s, ms or µs, s.
+#[must_use]
+pub fn duration(value_s: f64) -> String {
+    let size = value_s.abs();
+    let found = TIMES.iter().find(|(_, si)| size >= *si).or(TIMES.last());
+    let (symbol, si) = found.filter(|_| size > 0.0 && size.is_finite()).copied().unwrap_or(("s", 1.0));
+    with_symbol(significant(value_s / si, DIGITS), symbol)
+}
+
+/// A ratio in per cent with three digits.
+#[must_use]
+pub fn percent(ratio: f64) -> String {
+    format!("{} %", significant(ratio * 1e2, 3))
+}
+
+/// A position, m, to the millimetre.
+#[must_use]
+pub fn position(at_m: [f64; 2]) -> String {
+    let Unit { symbol, si, .. } = Unit::M.display();
+    format!("({:.3}, {:.3}) {symbol}", at_m[0] / si, at_m[1] / si).replace('-', "−")
+}
+
+fn scaled(value: f64, kind: system::Kind) -> String {
+    let (symbol, si) = system::for_size(kind, value);
+    with_symbol(significant(value / si, DIGITS), symbol)
+}
+
+/// A number with so many significant digits; very large and small ones as powers of ten.
+#[must_use]
+pub fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return "not a number".to_owned();
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let last = digits.saturating_sub(1);
+    // Rounded first, so that 9.9999 counts as 10.00.
+    let scientific = format!("{value:.last$e}");
+    let exponent: i32 = scientific.rsplit('e').next().and_then(|e| e.parse().ok()).unwrap_or(0);
+    let text = if (-4..=7).contains(&exponent) {
+        let decimals = usize::try_from(i32::try_from(last).unwrap_or(0) - exponent).unwrap_or(0);
+        format!("{value:.decimals$}")
+    } else {
+        scientific
+    };
+    text.replace('-', "−")
+}
+
+/// A number and the symbol behind it.
+#[must_use]
+pub fn with_symbol(number: String, symbol: &str) -> String {
+    match symbol {
+        "" => number,
+        "°" | "×" => number + symbol,
+        _ => format!("{number} {symbol}"),
+    }
+}
+
+impl Unit {
+    /// A value (SI) with [`DIGITS`] digits, or the unit's own decimals, and the unit.
+    #[must_use]
+    pub fn text(self, value: f64) -> String {
+        let unit = self.display();
+        let number = match unit.decimals {
+            Some(decimals) if value.is_finite() => format!("{:.decimals$}", value / unit.si).replace('-', "−"),
+            _ => significant(value / unit.si, DIGITS),
+        };
+        with_symbol(number, unit.symbol)
+    }
+
+    /// A value (SI) with all its digits and the unit, to be edited.
+    #[must_use]
+    pub fn exact(self, value: f64) -> String {
+        let unit = self.display();
+        let shown = value / unit.si;
+        // Division by the unit may add a last wrong digit; 15 digits are what decimal text keeps.
+        let rounded = format!("{shown:.14e}").parse().unwrap_or(shown);
+        let written = if (1e-4..1e9).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") };
+        with_symbol(if rounded == 0.0 { "0".to_owned() } else { written }, unit.symbol)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_keep_their_digits() {
+        for (value, text) in [
+            (12.0, "12.00"),
+            (1.246, "1.246"),
+            (9.9999, "10.00"),
+            (0.0, "0"),
+            (-0.5, "−0.5000"),
+            (123_456.7, "123457"),
+            (1.5e-9, "1.500e−9"),
+            (f64::NAN, "not a number"),
+        ] {
+            assert_eq!(significant(value, 4), text);
+        }
+    }
+
+    #[test]
+    fn prefixes_follow_the_size() {
+        assert_eq!(force(812.3), "812.3 N");
+        assert_eq!(force(9_999.0), "9999 N");
+        assert_eq!(force(12_345.0), "12.35 kN");
+        assert_eq!(force(2.5e6), "2.500 MN");
+        assert_eq!(force(-0.25), "−0.2500 N");
+        assert_eq!(force(0.0), "0 N");
+        assert_eq!(stress(1.3e6), "1.300 MPa");
+        assert_eq!(stress(0.0), "0 Pa");
+        assert_eq!(strain(4.0e-4), "400.0 µm/m");
+        assert_eq!(strain(0.0125), "1.250 %");
+        assert_eq!(duration(0.001_234), "1.234 ms");
+        assert_eq!(length(0.14), "140.0 mm");
+        assert_eq!(length(31.416), "31.42 m");
+    }
+
+    #[test]
+    fn typed_text_is_read_with_and_without_a_unit() {
+        assert_eq!(Unit::KN.parse("12"), Ok(12e3));
+        assert_eq!(Unit::KN.parse(" 12 N "), Ok(12.0));
+        assert_eq!(Unit::KN.parse("2 MN"), Ok(2e6));
+        assert_eq!(Unit::MM.parse("0.14 m"), Ok(0.14));
+        assert_eq!(Unit::N.parse("−3e2"), Ok(-300.0));
+        assert_eq!(Unit::NONE.parse("0.5"), Ok(0.5));
+        for wrong in ["", "abc", "1,5", "12 s", "inf", "NaN", "1e999"] {
+            assert!(Unit::N.parse(wrong).is_err(), "{wrong}");
+        }
+        assert!(Unit::N.parse("1,5").is_err_and(|e| e.contains("point")));
+    }
+
+    #[test]
+    fn the_exact_text_reads_back_bit_for_bit_where_the_unit_is_the_si_one() {
+        for value in [12.345_678_9, 1e-12, 0.1 + 0.2, 9.80665, 5e8, 0.0] {
+            let back = Unit::M.parse(&Unit::M.exact(value)).unwrap();
+            assert!((back - value).abs() <= 1e-14 * value.abs(), "{value} {back}");
+        }
+        assert_eq!(Unit::MM.exact(0.028), "28 mm");
+        assert_eq!(Unit::PPM_PER_K.exact(1.7e-5), "17 ppm/K");
+    }
+}

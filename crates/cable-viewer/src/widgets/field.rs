@@ -1,0 +1,127 @@
+//! Number and text fields. What is typed is kept until it can be read: a slip is shown, never lost.
+
+use egui::text::{CCursor, CCursorRange};
+use egui::{Align2, Id, Key, Margin, Response, TextEdit, Ui};
+
+use crate::units::unit::Unit;
+use crate::widgets::icon::{self, Icon};
+
+/// What a field holds while it differs from the value behind it.
+#[derive(Clone, Debug, Default)]
+struct Draft {
+    text: String,
+    /// The value when typing began: if it changed since, the draft is about something else.
+    value: String,
+    /// What is wrong with the text, once it was entered.
+    fault: Option<String>,
+}
+
+/// What a field says this frame.
+#[derive(Debug)]
+pub struct Entry<T> {
+    /// A new value, entered just now.
+    pub value: Option<T>,
+    /// Why the text in the field cannot be read.
+    pub fault: Option<String>,
+    /// The field itself.
+    pub response: Response,
+}
+
+/// Gives a widget without text of its own the name that screen readers and tests find it by.
+pub fn name(response: &Response, label: &str) {
+    response.ctx.accesskit_node_builder(response.id, |node| node.set_label(label));
+}
+
+/// A field for a number in a unit; `value` is SI. Enter or leaving the field enters the text,
+/// Escape drops it.
+pub fn number(ui: &mut Ui, label: &str, unit: Unit, value: f64, width: f32) -> Entry<f64> {
+    let shown = [unit.text(value), unit.exact(value)];
+    let entry = text_field(ui, label, &shown, (width, Align2::RIGHT_CENTER), |text| unit.parse(text));
+    // Text shown with fewer digits than the value has must not round it when it is entered
+    // unchanged.
+    let value = entry.value.filter(|&v| unit.exact(v) != shown[1]);
+    Entry { value, ..entry }
+}
+
+/// A field for a name.
+pub fn text(ui: &mut Ui, label: &str, value: &str, width: f32) -> Entry<String> {
+    let shown = [value.to_owned(), value.to_owned()];
+    let read = |text: &str| match text.trim() {
+        "" => Err("a name must not be empty".to_owned()),
+        name => Ok(name.to_owned()),
+    };
+    let entry = text_field(ui, label, &shown, (width, Align2::LEFT_CENTER), read);
+    Entry { value: entry.value.filter(|v| v != value), ..entry }
+}
+
+/// `shown`: the value at rest, and to be edited.
+fn text_field<T>(
+    ui: &mut Ui,
+    label: &str,
+    shown: &[String; 2],
+    (width, align): (f32, Align2),
+    read: impl FnOnce(&str) -> Result<T, String>,
+) -> Entry<T> {
+    let id = ui.scope_id().with(("field", label));
+    let [at_rest, exact] = shown;
+    let mut draft: Option<Draft> = ui.data(|d| d.get_temp(id)).filter(|d: &Draft| d.value == *exact);
+    let began = draft.is_none() && ui.memory(|m| m.has_focus(id));
+    if began {
+        draft = Some(Draft { text: exact.clone(), value: exact.clone(), fault: None });
+        select_all(ui, id, exact);
+    }
+    let mut text = draft.as_ref().map_or_else(|| at_rest.clone(), |d| d.text.clone());
+    let mut edit =
+        TextEdit::singleline(&mut text).id(id).desired_width(width).align(align).margin(Margin::symmetric(4, 2));
+    if draft.as_ref().is_some_and(|d| d.fault.is_some()) {
+        edit = edit.text_color(ui.visuals().error_fg_color);
+    }
+    let response = ui.add(edit);
+    name(&response, label);
+    let mut entered = None;
+    if response.lost_focus() {
+        let dropped = ui.input(|i| i.key_pressed(Key::Escape));
+        draft = match read(&text) {
+            _ if dropped || text == *exact || text == *at_rest => None,
+            Ok(value) => {
+                entered = Some(value);
+                None
+            }
+            Err(fault) => Some(Draft { text, value: exact.clone(), fault: Some(fault) }),
+        };
+    } else if response.changed() {
+        draft = Some(Draft { text, value: exact.clone(), fault: None });
+    }
+    let fault = draft.as_ref().and_then(|d| d.fault.clone());
+    ui.data_mut(|d| match draft {
+        Some(draft) => {
+            d.insert_temp(id, draft);
+        }
+        None => {
+            d.remove_temp::<Draft>(id);
+        }
+    });
+    Entry { value: entered, fault, response }
+}
+
+/// Forgets what was typed into a field of this `ui`.
+pub fn forget(ui: &Ui, label: &str) {
+    ui.data_mut(|d| d.remove_temp::<Draft>(ui.scope_id().with(("field", label))));
+}
+
+fn select_all(ui: &Ui, id: Id, text: &str) {
+    let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
+    let end = CCursor::new(text.chars().count());
+    state.cursor.set_char_range(Some(CCursorRange::two(CCursor::new(0), end)));
+    state.store(ui.ctx(), id);
+}
+
+/// A line in the error colour that says what is wrong.
+pub fn fault(ui: &mut Ui, text: &str) {
+    ui.horizontal_top(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let colour = ui.visuals().error_fg_color;
+        icon::sign(ui, Icon::Caution, colour);
+        ui.vertical(|ui| ui.colored_label(colour, text));
+    });
+}

@@ -1,0 +1,11 @@
+//! This wing holds the small parts that panels, dialogs and graphs are made of.
+//!
+//! - `field`: number and text fields that keep what is typed until it can be read
+//! - `property`: one quantity in a row with name, slider, value and reset
+//! - `time_table`: a vector that changes with time, as a table
+//! - `icon`: painted signs
+
+pub mod field;
+pub mod icon;
+pub mod property;
+pub mod time_table;

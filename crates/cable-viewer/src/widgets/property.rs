@@ -1,0 +1,165 @@
+//! A property row edits one quantity: name, slider, typed value with its unit, reset.
+
+use egui::{Response, RichText, Slider, SliderClamping, Ui};
+
+use crate::units::unit::Unit;
+use crate::widgets::field;
+use crate::widgets::icon::{self, Icon};
+
+/// What a quantity is called, shown in and usually worth.
+#[derive(Clone, Copy, Debug)]
+pub struct Quantity {
+    /// Its name on screen, found by tests.
+    pub name: &'static str,
+    /// The unit it is shown and typed in.
+    pub unit: Unit,
+    /// Ends of the slider, SI; other values can be typed.
+    pub usual: [f64; 2],
+    /// Even steps of the slider are even factors.
+    pub logarithmic: bool,
+    /// What it is and what it does, in a sentence or two.
+    pub help: &'static str,
+}
+
+/// The present value and what is known about it.
+#[derive(Clone, Debug, Default)]
+pub struct Provenance {
+    /// Now, SI.
+    pub value: f64,
+    /// What reset returns to, SI, and where that comes from in a few words.
+    pub origin: Option<(f64, String)>,
+    /// Where the value comes from and how sure it is, for the hover text.
+    pub source: Option<String>,
+    /// The value is estimated: a mark says so.
+    pub estimated: bool,
+}
+
+/// What a row asks for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Change {
+    /// A new value, SI.
+    pub value: Option<f64>,
+    /// The edit is complete: the next one is undone by itself.
+    pub done: bool,
+}
+
+/// Width of the typed value, points: “9.807 m/s²” and “17.00 ppm/K” fit.
+const FIELD_WIDTH: f32 = 84.0;
+/// Narrowest slider that can still be aimed at, points.
+const LEAST_SLIDER: f32 = 36.0;
+/// Width of the reset button, points.
+const RESET_WIDTH: f32 = 18.0;
+/// Width of the names, points: “Bending stiffness ≈” fits.
+pub const NAME_WIDTH: f32 = 122.0;
+
+/// Smallest value above zero that a logarithmic slider from zero resolves, as a fraction of its
+/// top.
+const LEAST_OF_TOP: f64 = 1e-4;
+
+/// Draws the row; faults stand below it.
+pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Provenance) -> Change {
+    let mut change = Change::default();
+    let mut fault = None;
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let left = ui.available_width();
+        let mark = if known.estimated { " ≈" } else { "" };
+        let label = ui
+            .allocate_ui_with_layout(
+                egui::vec2(NAME_WIDTH, ui.spacing().interact_size.y),
+                egui::Layout::left_to_right(egui::Align::Center),
+                |ui| {
+                    ui.set_min_width(NAME_WIDTH);
+                    ui.add(egui::Label::new(format!("{}{mark}", quantity.name)).truncate().selectable(false))
+                },
+            )
+            .inner;
+        let label_id = label.on_hover_ui(|ui| explanation(ui, quantity, known)).id;
+        let spent = NAME_WIDTH + FIELD_WIDTH + RESET_WIDTH + 3.0 * 4.0;
+        ui.spacing_mut().slider_width = (left - spent).max(LEAST_SLIDER);
+        slider(ui, quantity, known, &mut change);
+        let entry = field::number(ui, quantity.name, quantity.unit, known.value, FIELD_WIDTH);
+        let response = entry.response.labelled_by(label_id);
+        field::name(&response, quantity.name);
+        response.on_hover_ui(|ui| explanation(ui, quantity, known));
+        if let Some(value) = entry.value {
+            change = Change { value: Some(value), done: true };
+        }
+        fault = entry.fault;
+        if reset(ui, quantity, known, fault.is_some()) {
+            field::forget(ui, quantity.name);
+            fault = None;
+            change = Change { value: known.origin.as_ref().map(|(v, _)| *v), done: true };
+        }
+    });
+    if let Some(fault) = fault {
+        field::fault(ui, &fault);
+    }
+    change
+}
+
+fn slider(ui: &mut Ui, quantity: &Quantity, known: &Provenance, change: &mut Change) {
+    let si = quantity.unit.display().si;
+    let [low, high] = quantity.usual.map(|v| v / si);
+    let mut shown = known.value / si;
+    if !shown.is_finite() {
+        shown = low;
+    }
+    let widget = Slider::new(&mut shown, low..=high)
+        .show_value(false)
+        .clamping(SliderClamping::Edits)
+        .logarithmic(quantity.logarithmic)
+        .smallest_positive(LEAST_OF_TOP * high);
+    let response = ui.add(widget);
+    field::name(&response, &format!("{} slider", quantity.name));
+    if response.changed() {
+        change.value = Some(shown * si);
+    }
+    change.done |= response.drag_stopped() || response.lost_focus();
+    response.on_hover_ui(|ui| explanation(ui, quantity, known));
+}
+
+fn reset(ui: &mut Ui, quantity: &Quantity, known: &Provenance, typed_wrong: bool) -> bool {
+    let differs = known.origin.as_ref().is_some_and(|(v, _)| *v != known.value) || typed_wrong;
+    let response = icon::plain_button(ui, Icon::Reset, differs);
+    field::name(&response, &format!("Reset {}", quantity.name.to_lowercase()));
+    let text = known.origin.as_ref().map_or_else(
+        || "Nothing to go back to".to_owned(),
+        |(v, from)| format!("Back to {} ({from})", quantity.unit.exact(*v)),
+    );
+    response.on_hover_text(&text).on_disabled_hover_text(text).clicked()
+}
+
+fn explanation(ui: &mut Ui, quantity: &Quantity, known: &Provenance) {
+    ui.set_max_width(300.0);
+    ui.label(RichText::new(quantity.name).strong());
+    ui.label(quantity.help);
+    ui.label(format!("Now {}", quantity.unit.exact(known.value)));
+    let [low, high] = quantity.usual;
+    ui.weak(format!(
+        "Usually {} to {}; other values can be typed",
+        quantity.unit.exact(low),
+        quantity.unit.exact(high)
+    ));
+    if let Some(source) = &known.source {
+        ui.separator();
+        ui.label(source);
+    }
+}
+
+/// A text in the column of names, and the widget it names beside it; `name` is what tests and
+/// screen readers call it.
+pub fn labelled(ui: &mut Ui, text: &str, name: &str, contents: impl FnOnce(&mut Ui) -> Response) {
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let height = ui.spacing().interact_size.y;
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        let label =
+            ui.allocate_ui_with_layout(egui::vec2(crate::widgets::property::NAME_WIDTH, height), layout, |ui| {
+                ui.set_min_width(crate::widgets::property::NAME_WIDTH);
+                ui.add(egui::Label::new(text).truncate().selectable(false))
+            });
+        let named = contents(ui).labelled_by(label.inner.id);
+        field::name(&named, name);
+    });
+}
