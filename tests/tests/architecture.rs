@@ -23,7 +23,10 @@ fn architecture_names_only_paths_that_exist() {
     let text = read("ARCHITECTURE.md");
     let named = paths(&text);
     assert!(named.len() > 15, "the document names its rooms");
-    let missing: Vec<_> = named.iter().filter(|p| !root().join(p).exists()).collect();
+    // Walks through a crate name its files from its sources on.
+    let from = ["", "crates/cable-core/src", "crates/cable-viewer/src"];
+    let exists = |p: &str| from.iter().any(|f| root().join(f).join(p).exists());
+    let missing: Vec<_> = named.iter().filter(|p| !exists(p)).collect();
     assert!(missing.is_empty(), "ARCHITECTURE.md names what is not there: {missing:?}");
 }
 
