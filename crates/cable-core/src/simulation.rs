@@ -392,7 +392,7 @@ impl Simulation {
     /// Advances time with inertia by `dt_s` (s).
     ///
     /// # Errors
-    /// See [`Mechanics::advance`](crate::model::Mechanics::advance).
+    /// See [`Mechanics::advance`].
     pub fn step(&mut self, dt_s: f64) -> Result<(), SolveError> {
         self.advance(dt_s, Inertia::Dynamic)
     }
@@ -400,7 +400,7 @@ impl Simulation {
     /// Advances time without inertia by `dt_s` (s).
     ///
     /// # Errors
-    /// See [`Mechanics::advance`](crate::model::Mechanics::advance).
+    /// See [`Mechanics::advance`].
     pub fn step_quasi_static(&mut self, dt_s: f64) -> Result<(), SolveError> {
         self.advance(dt_s, Inertia::QuasiStatic)
     }
@@ -500,7 +500,7 @@ impl Simulation {
     }
 
     /// Asks every cable the same. Where one of several fails, all are as before: never some of them a step ahead. (A
-    /// cable alone stays where it came, see [`Mechanics::advance`](crate::model::Mechanics::advance).)
+    /// cable alone stays where it came, see [`Mechanics::advance`].)
     fn for_each_cable(
         &mut self,
         mut f: impl FnMut(&mut BreakableCable) -> Result<StepReport, SolveError>,
@@ -567,7 +567,7 @@ impl Simulation {
         }
     }
 
-    /// Leads a support to a place (m) whatever that takes: see [`Mechanics::drag_support`](crate::model::Mechanics::drag_support).
+    /// Leads a support to a place (m) whatever that takes: see [`Mechanics::drag_support`].
     pub fn drag_support(&mut self, cable: usize, support: usize, target_m: Vec2) {
         if let Some(c) = self.cables.get_mut(cable) {
             c.drag_support(support, target_m);
@@ -575,7 +575,7 @@ impl Simulation {
     }
 
     /// Holds a support by a hand at `hand_m` (m), by a spring while masses move: what it pulls with stands in the answer
-    /// ([`SupportReaction::hand`](crate::solution::SupportReaction::hand)). See [`Mechanics::pull_support`](crate::model::Mechanics::pull_support).
+    /// ([`SupportReaction::hand`](crate::solution::SupportReaction::hand)). See [`Mechanics::pull_support`].
     pub fn pull_support(&mut self, cable: usize, support: usize, hand_m: Vec2) {
         if let Some(c) = self.cables.get_mut(cable) {
             c.pull_support(support, hand_m);

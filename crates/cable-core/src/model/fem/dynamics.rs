@@ -572,8 +572,8 @@ impl Dynamics {
     }
 
     /// Smallest gap of any free node or segment, m (infinite if nothing is near).
-    #[must_use]
-    pub fn smallest_gap(&self) -> f64 {
+    #[cfg(test)]
+    pub(super) fn smallest_gap(&self) -> f64 {
         let mut touches = Vec::new();
         self.contacts.find(&self.problem, &self.mesh, &self.motion.x, &mut touches);
         touches.iter().map(|t| t.pair.gap.gap_m).fold(f64::INFINITY, |a, b| if b < a { b } else { a })

@@ -2,29 +2,29 @@
 //!
 //! | room | what it holds |
 //! |---|---|
-//! | [`dynamics`] | the cable in contact: its mesh, contacts, history and settings in one place |
-//! | [`free`] | equilibrium of a flexible cable that touches nothing but its supports |
-//! | [`beam`], [`elastica`] | equilibrium of a stiff cable, free and in contact |
-//! | [`equilibrium`] | equilibria in contact, and steps without inertia |
-//! | [`time`] | BDF2, step sizes, sleep, hands, momentum |
-//! | [`newton`] | one step: its input, its Newton iterations, and what bounds them |
-//! | [`system`] | the energies of a step: value, gradient and banded Hessian |
-//! | [`mesh`] | sliding nodes, paths round corners, edits between steps |
-//! | [`obstacle`], [`transfer`] | the robot's outline; states and answers of other models |
-//! | [`results`], [`mesh_comparison`] | what is read out of a state, and how wrong it is |
+//! | `dynamics` | the cable in contact: its mesh, contacts, history and settings in one place |
+//! | `free` | equilibrium of a flexible cable that touches nothing but its supports |
+//! | `beam`, `elastica` | equilibrium of a stiff cable, free and in contact |
+//! | `equilibrium` | equilibria in contact, and steps without inertia |
+//! | `time` | BDF2, step sizes, sleep, hands, momentum |
+//! | `newton` | one step: its input, its Newton iterations, and what bounds them |
+//! | `system` | the energies of a step: value, gradient and banded Hessian |
+//! | `mesh` | sliding nodes, paths round corners, edits between steps |
+//! | `obstacle`, `transfer` | the robot's outline; states and answers of other models |
+//! | `results`, `mesh_comparison` | what is read out of a state, and how wrong it is |
 //!
 //! [`FemModel`] decides which part answers, and hands the state over when the question changes.
 
 mod beam;
-pub mod dynamics;
+mod dynamics;
 mod elastica;
-pub mod equilibrium;
-pub mod free;
+mod equilibrium;
+mod free;
 mod mesh;
 mod mesh_comparison;
-pub mod newton;
+pub(in crate::model) mod newton;
 mod obstacle;
-pub mod results;
+mod results;
 pub mod system;
 #[cfg(test)]
 mod tests;

@@ -2,13 +2,13 @@
 //!
 //! | room | what it holds |
 //! |---|---|
-//! | [`mesh`] | nodes, masses and the first shape |
-//! | [`integrator`] | how dynamic steps are taken: explicit, or as a preview |
-//! | [`dynamics`] | one explicit sub-step: forces, impacts, limits, rollback, momentum, hands |
-//! | [`xpbd`] | the preview's sub-steps of compliant constraints |
-//! | [`equilibrium`] | equilibria, steps without inertia, and how wrong their figures are |
-//! | [`pulleys`], [`bending`] | material that slides through pulleys; bending forces |
-//! | [`results`], [`corner_error`] | the answer, and what a mesh cannot know of tension beyond a corner |
+//! | `mesh` | nodes, masses and the first shape |
+//! | `integrator` | how dynamic steps are taken: explicit, or as a preview |
+//! | `dynamics` | one explicit sub-step: forces, impacts, limits, rollback, momentum, hands |
+//! | `xpbd` | the preview's sub-steps of compliant constraints |
+//! | `equilibrium` | equilibria, steps without inertia, and how wrong their figures are |
+//! | `pulleys`, `bending` | material that slides through pulleys; bending forces |
+//! | `results`, `corner_error` | the answer, and what a mesh cannot know of tension beyond a corner |
 //!
 //! The leapfrog keeps velocities half a sub-step behind places. The discretisation error is of second order in the
 //! element; at equilibrium and without inertia it is estimated, in motion only for corners.

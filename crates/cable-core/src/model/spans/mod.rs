@@ -5,17 +5,17 @@
 //!
 //! | room | what it holds |
 //! |---|---|
-//! | [`boundary`] | the boundary as the centre line runs along it, and the capstan law on it |
-//! | [`contact`] | a contact: friction memory, equations, loads on it, supports on it, wheels |
-//! | [`run`] | free spans and contacts in a row between two grips: the unknowns |
-//! | [`boundary_conditions`] | supports and loads at an instant, and how a cable falls into runs |
-//! | [`newton`], [`numerics`] | all unknowns of a run at once; band LU, root finding |
-//! | [`changes`] | contacts that come, go, join and part |
-//! | [`initial`] | the first shape: route, shortest path, contacts, tension; or another answer |
-//! | [`continuation`], [`reversed`] | from one instant to the next; the cable counted from its other end |
-//! | [`slack`] | cable that lies without tension |
-//! | [`verify`] | checks of an answer that do not use the solver |
-//! | [`results`], [`failure`] | the answer; why there is none |
+//! | `boundary` | the boundary as the centre line runs along it, and the capstan law on it |
+//! | `contact` | a contact: friction memory, equations, loads on it, supports on it, wheels |
+//! | `run` | free spans and contacts in a row between two grips: the unknowns |
+//! | `boundary_conditions` | supports and loads at an instant, and how a cable falls into runs |
+//! | `newton`, `numerics` | all unknowns of a run at once; band LU, root finding |
+//! | `changes` | contacts that come, go, join and part |
+//! | `initial` | the first shape: route, shortest path, contacts, tension; or another answer |
+//! | `continuation`, `reversed` | from one instant to the next; the cable counted from its other end |
+//! | `slack` | cable that lies without tension |
+//! | `verify` | checks of an answer that do not use the solver |
+//! | `results`, `failure` | the answer; why there is none |
 //!
 //! The model refuses what it cannot do: bending, self-contact, inertia, plan view, supports that let go. A cable that
 //! loses its tension is said to have lost it, with the place.

@@ -87,12 +87,6 @@ impl Material {
         (side(1.0) + side(-1.0)) * half + force * (self.thermal_stretch / self.axial_stiffness)
     }
 
-    /// Tension that stretches `rest` metres (at temperature) to `length` metres, N; negative = compression.
-    #[must_use]
-    pub fn tension(&self, length: f64, rest: f64) -> f64 {
-        self.axial_stiffness * (length / rest - 1.0)
-    }
-
     /// What the chord lacks to that of the exact elastic catenary, m: the element's local error. With e = −q/|q|,
     /// H = F across e, V = F along e and both ends a, b:
     /// ```text
@@ -115,13 +109,6 @@ impl Material {
         let exact = (across * (h * 2.0 * stretch) + up * (2.0 * v)) * (rest / ends) + elastic;
         exact - self.respond(ds, force).chord
     }
-}
-
-/// The rest length (m, at temperature) that gives a *straight* bar of chord `d` the force it has in a corrected bar:
-/// with it a state found here is at rest in a model of straight bars.
-#[must_use]
-pub fn straight_rest_length(d: Vec2, middle_tension: f64, axial_stiffness: f64) -> f64 {
-    d.norm() / (1.0 + middle_tension / axial_stiffness)
 }
 
 /// The angle from one tension force to another, rad, and how it changes with each: ∂φ/∂F = perp(F)/|F|².
