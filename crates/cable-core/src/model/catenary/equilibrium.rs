@@ -1,4 +1,4 @@
-//! The solve: which pulleys slip, where the material lies, where wheels are touched.
+//! This module solves for the equilibrium: which pulleys slip, where the material lies, where wheels are touched.
 
 use super::layout::{Anchor, Layout, angle_near, angle_of, unsupported};
 use super::slide::{Arc, Mode, Slide, Stretches};

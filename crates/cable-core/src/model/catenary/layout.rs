@@ -1,4 +1,4 @@
-//! What holds the cable at an instant, and what pulls on it.
+//! A layout lists what holds the cable at an instant, and what pulls on it.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! The answer: nodes close enough that straight lines between them are good, and what supports feel.
+//! The report turns a solution into nodes, close enough for straight lines between them, and support reactions.
 
 use super::equilibrium::{Equilibrium, called_upon};
 use super::layout::Layout;

@@ -1,4 +1,4 @@
-//! Where the material lies: catenaries between holds, joined by the material point σ at each pulley.
+//! The material slides between catenaries that are joined by the material point σ at each pulley.
 //!
 //! With the σ given every stretch is one convex problem (see [`Chain`]), so σ are the only unknowns. The energy
 //! of the whole has the gradient (ψ = T + T²/2EA, a after the pulley, b before, p₂ − p₁ across its wheel)

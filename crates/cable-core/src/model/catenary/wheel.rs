@@ -1,4 +1,4 @@
-//! The cable on a wheel: how tension changes round it, and how much material lies on it.
+//! The cable lies on a wheel: this module says how tension changes round it, and how much material lies on it.
 //!
 //! The centre line runs on a circle of radius R, ψ the angle turned since it arrived, t its direction, n the
 //! outward normal, b the load per unstretched metre, λ = (1 + αΔT)(1 + T/EA) the stretch, ds/dψ = R/λ. Balance

@@ -1,4 +1,4 @@
-//! A cable in contact: what its implicit dynamics, its slow motion and its resting places share.
+//! `Dynamics` is a cable in contact: what its motion, its quasi-static steps and its equilibria share.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! How wrong the figures of a cable in contact are.
+//! Two meshes are compared to estimate how wrong the figures of a cable in contact are.
 //!
 //! Where `spans` laid the cable its answer has no error of a mesh, and the bars only came to rest from it: the two differ by what mesh,
 //! barrier and grips do, and that is what is said of each figure. On the way without inertia `spans` goes on beside the bars: it costs a small

@@ -1,4 +1,4 @@
-//! Reads tensions, reactions and contacts out of a state.
+//! This module reads tensions, reactions and contacts out of a state.
 
 use crate::contact::friction;
 use crate::energy::bending::turn;

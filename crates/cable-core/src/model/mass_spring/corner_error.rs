@@ -1,4 +1,4 @@
-//! What a mesh cannot know about tension beyond a corner.
+//! This module bounds what a mesh cannot know about tension beyond a corner.
 //!
 //! Where the cable turns, forces along an element balance, not along the cable: with a and b the angles of the strands to the
 //! element that lies on a smooth corner, T₁ cos a = T₂ cos b. As the cable is drawn over it, a and b share the whole turn φ in

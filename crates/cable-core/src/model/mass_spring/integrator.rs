@@ -1,4 +1,4 @@
-//! How dynamic steps are taken: explicit, or as a preview.
+//! The integrator of dynamic steps is explicit, or that of the preview.
 
 use crate::model::mass_spring::MassSpringModel;
 use crate::model::settings::Stepping;

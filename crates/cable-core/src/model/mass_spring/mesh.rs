@@ -1,4 +1,4 @@
-//! Nodes, masses and the first shape.
+//! The mesh has nodes, masses and the first shape.
 
 use std::sync::Arc;
 

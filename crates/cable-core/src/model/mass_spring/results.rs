@@ -1,4 +1,4 @@
-//! The answer of the model.
+//! This module reads the answer out of the model's state.
 
 use crate::contact::Gap;
 use crate::energy::bending::turn;

@@ -1,4 +1,4 @@
-//! What is given at an instant, and how a scene's cable falls into strands.
+//! Boundary conditions say what is given at an instant, and how a scene's cable falls into runs.
 
 use std::sync::Arc;
 

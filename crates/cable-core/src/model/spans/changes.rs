@@ -1,4 +1,4 @@
-//! What a converged strand may have to change: contacts released, joined, met, made.
+//! Changes are what a converged run may need: contacts released, joined, met, made.
 //!
 //! R a contact whose interval has turned round is let go; M two contacts of one chain are one; L one that pulls is parted (`lift`); P where a span runs into
 //! an obstacle the neighbouring contact is drawn out to it, or a new one begins at a point. After each the strand is

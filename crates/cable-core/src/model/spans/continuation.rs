@@ -1,4 +1,4 @@
-//! From one instant to another, in as many steps as it takes; and the rest from which it starts.
+//! The continuation leads from one instant to another, in as many steps as it takes; it begins with the initial equilibrium.
 
 use crate::contact::swept_corners;
 use crate::math::{Vec2, larger};

@@ -1,4 +1,4 @@
-//! Why a strand has no answer here, before it is put in the words of [`SolveError`](crate::SolveError).
+//! A failure says why a run has no answer here, before it becomes a [`SolveError`](crate::SolveError).
 
 use crate::math::Vec2;
 

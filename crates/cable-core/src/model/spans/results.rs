@@ -1,4 +1,4 @@
-//! The answer: nodes, what supports feel, what obstacles feel.
+//! This module reads the answer: nodes, forces on supports, forces on obstacles.
 
 use crate::catenary::PointForce;
 use crate::math::{GAUSS, Vec2, larger};

@@ -1,4 +1,4 @@
-//! A cable counted from its other end.
+//! A cable may be counted from its other end.
 //!
 //! Where friction leaves several rests, which one is found must not depend on the end from which a scene counts its cable: it is laid and
 //! followed counted from its *upper* end, and what is found is turned back.

@@ -1,4 +1,4 @@
-//! One stretch of cable between two grips: free spans and contacts in a row.
+//! A run is one stretch of cable between two grips: free spans and contacts in a row.
 //!
 //! Unknown are for each span the force G that the cable would carry at the strand's start if its law went on there,
 //! F(s) = G − b(s − s_a) − Σ P_k [s_k < s], and for each contact its interval (p₁, p₂) of the boundary and the material

@@ -1,4 +1,4 @@
-//! A cable with bending stiffness at rest, in the angles of its tangent.
+//! This module finds the equilibrium of a cable with bending stiffness in the angles of its tangent.
 //!
 //! The tangent t(θ) is followed by quadratic finite elements: an angle at each node and one at the middle of each bar
 //! (numbered 2e, 2e + 1, 2e + 2 in bar e). The force F(s) follows from the force F₀ at the start of its span as in a flexible

@@ -1,4 +1,4 @@
-//! Where the nodes of a stiff cable lie: close together in the boundary layers at its stops.
+//! The nodes of a stiff cable lie close together in the boundary layers at its stations.
 //!
 //! Beside a clamp, a load or a support the curvature of a taut stiff cable falls as e^{−s/λ}, λ = √(EI/T). The bars follow
 //! a density that gives a third of them to each end of a stretch,

@@ -1,4 +1,4 @@
-//! From a solved stiff cable to its nodes: places, tensions, moments and curvatures.
+//! This module reads nodes out of a solved stiff cable: places, tensions, moments and curvatures.
 
 use crate::math::{Vec2, larger};
 use crate::model::fem::beam::equilibrium::{BEND, Beam, GAUSS, dot};

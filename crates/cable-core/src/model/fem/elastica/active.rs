@@ -1,4 +1,4 @@
-//! Which contacts there are, and which of them are a point and which a stretch.
+//! The active set says which contacts there are, and which of them are a point and which a stretch.
 
 use crate::math::{Vec2, perp};
 use crate::model::fem::elastica::start::contact_at;

@@ -1,4 +1,4 @@
-//! From a solved elastica to an answer.
+//! This module reads an answer out of a solved elastica.
 
 use crate::math::{Vec2, larger, perp};
 use crate::model::fem::elastica::{

@@ -1,5 +1,5 @@
-//! LU factorisation with partial pivoting of a matrix with a band whose width is known at run time: G. H. Golub and C. F. Van
-//! Loan, *Matrix Computations*, Johns Hopkins, 4th ed. 2013, §4.3.
+//! This solver factorises a matrix whose band width is known at run time, LU with partial pivoting (G. H. Golub and C. F. Van
+//! Loan, *Matrix Computations*, Johns Hopkins, 4th ed. 2013, §4.3).
 
 /// A band matrix with as many entries on either side of the diagonal, factorised in place.
 #[derive(Clone, Debug)]

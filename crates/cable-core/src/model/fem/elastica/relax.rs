@@ -1,5 +1,5 @@
-//! The resting place of a stiff cable as a chain of bars, found by letting go of it: where the elastica begins when the cable's contacts are
-//! not those of a flexible one.
+//! A chain of bars that is let go finds the equilibrium of a stiff cable: the elastica begins there when the contacts are
+//! not those of a flexible cable.
 //!
 //! Bars of rest length l̂ between nodes x, the angle ψ between two of them, weight and loads b, obstacles at gaps g:
 //! ```text

@@ -1,4 +1,4 @@
-//! From the answer for a flexible cable to the first guess of a stiff one, and up in its stiffness.
+//! The first guess of a stiff cable comes from the answer for a flexible one, by continuation in its stiffness.
 
 use crate::contact::Gap;
 use crate::math::{Vec2, cross, perp};

@@ -1,4 +1,4 @@
-//! Where a cable is first laid: its material spread along a route that goes round what is in the way.
+//! The initial guess spreads the material of a cable along a route that goes round what is in the way.
 
 use crate::contact::Gap;
 use crate::math::{Vec2, cross};

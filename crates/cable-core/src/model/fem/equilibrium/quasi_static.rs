@@ -1,4 +1,4 @@
-//! Resting places and slow motion in contact.
+//! This module finds equilibria in contact, and takes quasi-static steps.
 
 use crate::error::SolveError;
 use crate::math::{Vec2, bounded, larger};

@@ -1,4 +1,4 @@
-//! How wrong the forces are: the dual-weighted residual.
+//! The dual-weighted residual estimates how wrong the forces are.
 //!
 //! Each element's chord lacks δ to the chord of the exact catenary under the same force. The span then closes with
 //! another start force, and pulleys slide a little to keep their balance:

@@ -1,4 +1,4 @@
-//! The corrected bar: one element of a free cable, from its force to its chord.
+//! The corrected bar is one element of a free cable: it goes from its force to its chord.
 //!
 //! Between two nodes acts the body force q (N per metre of arc length, any direction), so the tension force
 //! varies as F(s) = F − q s about the middle. A perfectly flexible cable points along it:

@@ -1,4 +1,4 @@
-//! Spans joined at pulleys: how much cable lies on each side.
+//! The pulley balance finds how much cable lies on each side of the pulleys that join the spans.
 //!
 //! Each span is solved for itself (`span`); what joins them is the arc length `s` at each pulley. With the tension
 //! before and after a pulley, ρ = ln(T_after/T_before), and the bounds of Coulomb's law (capstan: ±μ·turn):

@@ -1,4 +1,4 @@
-//! Pulleys that rub: the balance of all pulleys together, with what friction remembers of each.
+//! This module balances all pulleys with friction together, with what friction remembers of each.
 //!
 //! What is unknown at a wheel are the angles p₁, p₂ at which the cable meets and leaves it and the material s₁, s₂ there; at a point
 //! only the material. The spans between follow from these (`span`), so the equations are few:

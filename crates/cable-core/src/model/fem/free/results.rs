@@ -1,4 +1,4 @@
-//! From a solved network to nodes and support reactions.
+//! This module reads nodes and support reactions out of a solved network.
 
 use crate::math::{Vec2, cross, larger, perp};
 use crate::model::arc_nodes;

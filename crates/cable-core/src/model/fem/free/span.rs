@@ -1,4 +1,4 @@
-//! A span: the elements between two anchors, solved for the force at its start.
+//! A span consists of the elements between two anchors; it is solved for the force at its start.
 //!
 //! Node by node the tension force is known once it is known at the start: F drops by q Δs along an element and by
 //! the load at a stop. What is left are two unknowns however many elements there are, and their equation is the

@@ -1,4 +1,4 @@
-//! The stops of a cable in order of arc length: supports and point loads, and the elements between them.
+//! Stations are supports and point loads in order of arc length, with the elements between them.
 //!
 //! A stop either anchors the cable (held, or a pulley it slides through) or carries a load on a free point. The
 //! elements between two stops follow them when the arc length at a pulley changes, so a pulley needs no new mesh:

@@ -1,4 +1,4 @@
-//! Changing the mesh between steps: sliding nodes come and go, and nodes beside them make room.
+//! The mesh adapts between steps: sliding nodes come and go, and nodes beside them make room.
 //!
 //! After every accepted step
 //! - a sliding node that no longer presses on its corner is let go (the round is as far out as the barrier reaches,

@@ -1,4 +1,4 @@
-//! Marks: the places on a round at which its material is counted.
+//! Marks are the places on a round at which its material is counted.
 
 use crate::math::{Vec2, smaller};
 use crate::model::fem::dynamics::Dynamics;

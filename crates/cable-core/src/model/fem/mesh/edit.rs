@@ -1,4 +1,4 @@
-//! Putting nodes into a mesh and taking them out: material, place and momentum of what stays are left as they are.
+//! An edit puts a node into a mesh or takes one out: material, place and momentum of what stays do not change.
 
 use crate::math::Vec2;
 use crate::model::fem::dynamics::Dynamics;

@@ -1,4 +1,4 @@
-//! Sliding nodes: points in space that the cable runs over, and that no mesh has to be fine enough for.
+//! Sliding nodes are points in space over which the cable runs, and for which no mesh has to be fine enough.
 //!
 //! A chain of bars that is drawn over a sharp corner jerks at every node, and no refinement removes it. So where the
 //! cable bends round a corner, a post or a pulley, the mesh has a node that stays there while the material slides
@@ -58,9 +58,9 @@ pub struct SlidingNode {
     pub factor: f64,
     /// μφ with the turn last seen.
     pub exponent: f64,
-    /// Plan view: the floor's friction as the scaled energy sees it, in parts of its own size (see `floor.rs`).
+    /// Plan view: the floor's friction as the scaled energy sees it, in parts of its own size (see `floor_friction.rs`).
     pub floor_factor: f64,
-    /// Parts of the weight of the bars before and after it on rounds that act there; less than 1 where they are nearly slack (see `weight.rs`).
+    /// Parts of the weight of the bars before and after it on rounds that act there; less than 1 where they are nearly slack (see `bar_weight.rs`).
     pub lies: [f64; 2],
     /// What friction acted between in the last step with inertia. None at rest and of a new node.
     pub balanced: Option<Balanced>,

@@ -1,4 +1,4 @@
-//! The way of one bar: straight between two points, or tangent to the rounds at its ends.
+//! The path of a bar is straight between two points, or tangent to the rounds at its ends.
 //!
 //! A round is a circle (centre C, radius r) passed in a sense σ (+1 counter-clockwise, −1 clockwise); a point is a
 //! round of radius 0. The outward normal where a tangent of direction t touches it is n = −σ perp(t), so that with

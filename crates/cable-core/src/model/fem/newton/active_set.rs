@@ -1,4 +1,4 @@
-//! Contacts that a Newton step is about to make, foreseen.
+//! The active set predicts the contacts that a Newton step is about to make.
 //!
 //! The barrier is felt from a gap of d̂ on only. A Newton step that knows nothing of what lies beyond runs into it, is cut
 //! where the first node would touch, and the next runs into the next node: where a cable comes down on the ground a step

@@ -1,4 +1,4 @@
-//! What a Newton step may not come nearer to: a contact as a constraint on the step.
+//! A gap constraint is a contact that a Newton step may not come nearer to.
 
 use crate::contact::self_contact::SelfPair;
 use crate::math::{Vec2, cross, larger};

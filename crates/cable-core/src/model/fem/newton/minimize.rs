@@ -1,4 +1,4 @@
-//! One implicit step as a minimisation, by Newton with a banded factor and steps that cross nothing.
+//! This solver minimises the energy of one implicit step by Newton's method with a banded factor and steps that cross nothing.
 //!
 //! ```text
 //! Φ(x) = ½ Σ mᵢ a² |xᵢ − x̃ᵢ|² + E(x) − Σ fᵢ·xᵢ + Σ w B(g(x)) + Σ D(y(x))

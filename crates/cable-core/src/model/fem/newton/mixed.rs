@@ -1,4 +1,4 @@
-//! A step in contact, quickly: Newton with the pulls of the bars carried, and no line search.
+//! This solver takes a step in contact by Newton's method with the pulls of the bars as unknowns, without line search.
 //!
 //! As in [`crate::model::fem::newton::mixed_free`] a pull Q follows its linear equation, so that the stiffness across a bar is that of the tension to come
 //! and not of a bar stretched for a moment: the iterations no longer grow with the number of bars. The energy may rise on the

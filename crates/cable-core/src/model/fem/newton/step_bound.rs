@@ -1,4 +1,4 @@
-//! How far a step of all nodes may go: no node too far, nothing crossed, some cable left beside sliding nodes.
+//! The step bound keeps a step of all nodes short: no node goes too far, nothing is crossed, some cable stays beside sliding nodes.
 
 use crate::contact::sweep::Sweep;
 use crate::math::{Vec2, larger};

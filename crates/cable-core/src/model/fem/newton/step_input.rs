@@ -1,4 +1,4 @@
-//! What a step is about, its unknowns, and how it ended.
+//! The step input says what a step is about; beside it stand its unknowns and how it ended.
 
 use crate::math::Vec2;
 
@@ -14,7 +14,7 @@ pub struct Pose {
 /// What a step is about.
 #[derive(Clone, Debug, Default)]
 pub struct StepInput {
-    /// Factor of each bar's energy (see `sliding`); 1 without friction at sliding nodes.
+    /// Factor of each bar's energy (see `sliding_node`); 1 without friction at sliding nodes.
     pub scale: Vec<f64>,
     /// Distributed force, N/m.
     pub body: Vec2,

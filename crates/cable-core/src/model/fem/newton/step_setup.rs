@@ -1,4 +1,4 @@
-//! What one step is about: forces, targets, inertia, damping and grip at an instant.
+//! The setup of a step collects forces, targets, inertia, damping and stick-slip states at an instant.
 
 use crate::math::Vec2;
 use crate::model::fem::dynamics::{Dynamics, INNER_STEP, REACH};

@@ -1,4 +1,4 @@
-//! Whether the cable, as a mesh has it, runs through obstacles.
+//! This check finds whether the cable, as a mesh has it, runs through obstacles.
 //!
 //! The search of a step crosses nothing (`contact/sweep.rs`). What is looked at here is what nobody searched: ways that change when a
 //! node is put in, moved or taken out beside a corner, and states that come from elsewhere. A bar that is tangent to the round of a

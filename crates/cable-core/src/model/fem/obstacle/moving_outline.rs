@@ -1,4 +1,4 @@
-//! The outline of a robot among the obstacles of a cable: how it gets from where it is to where it is led.
+//! The outline of a robot moves among the obstacles of a cable, from where it is to where it is led.
 //!
 //! Within a step it stands where it will be at the end of it. What it moved into is pushed out of its way first, and the step
 //! is worked out from there: histories, inertia and anchors stay those of where the cable was, so what pushes is the barrier

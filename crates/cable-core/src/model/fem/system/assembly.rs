@@ -1,4 +1,4 @@
-//! The mesh of one cable and the assembly of its energies into value, gradient and banded Hessian.
+//! The system assembles the energies of a mesh into value, gradient and banded Hessian.
 //!
 //! Unknowns are node positions, `2·node + axis`. Bars reach one node away (half-bandwidth 3), bending two (5).
 //! Nodes that are held keep their rows: [`System::pin_held`] turns these into rows of the identity, so the band

@@ -1,4 +1,4 @@
-//! The energy of one bar in a step: stretching, damping, and the weight that its material carries along.
+//! The energy of a bar in a step consists of stretching, damping, and the weight that its material carries along.
 //!
 //! With P the length of its way and L its unstretched length, ε = P/L − 1:
 //! ```text
@@ -6,7 +6,7 @@
 //! ∂²E/∂P² = EA/L,    ∂²E/∂P∂L = −EA P/L²,   ∂²E/∂L² = EA P²/L³
 //! ```
 //! At a node that moves with the material P depends on where the node is; at a sliding node L depends on its slide.
-//! The weight of the bar acts at the centroid c of its way (`weight.rs`), so a change δL of the material adds −b·(c − x₀) δL, with x₀
+//! The weight of the bar acts at the centroid c of its way (`bar_weight.rs`), so a change δL of the material adds −b·(c − x₀) δL, with x₀
 //! the sliding node it came through.
 //! Viscous loss with time constant τ is a second bar of stiffness EA τ a whose strain is measured from the one predicted; so is that of
 //! relaxation branches in a taut bar (`loss.rs`).

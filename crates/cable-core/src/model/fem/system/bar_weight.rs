@@ -1,4 +1,4 @@
-//! Where the weight of a bar acts that lies on a round in part.
+//! The weight of a bar that lies on a round in part acts at the centroid of its path.
 //!
 //! A bar is strained evenly, so its material is spread evenly over its way, of length P: with C = ∫r over the way, the weight of L metres
 //! does the work L b·C/P. A free end x of the bar beyond a round draws the straight part (length l, middle m, direction u away from

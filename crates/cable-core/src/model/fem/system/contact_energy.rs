@@ -1,4 +1,4 @@
-//! What contacts with obstacles add to the equations of a step.
+//! Contacts with obstacles add their energies to the equations of a step.
 
 use crate::contact::friction::{self, Branch};
 use crate::energy::Curvature;

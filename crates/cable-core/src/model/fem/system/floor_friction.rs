@@ -1,4 +1,4 @@
-//! The floor of a plan view under what runs over a round.
+//! The floor of a plan view rubs on what runs over a round.
 //!
 //! A node that moves with its material takes the floor's friction of the straight halves of the bars beside it as a force on itself. What a
 //! sliding node answers for lies before its round, on it and after it, and the floor's friction f₀, f, f₂ on each is no friction of the round. With A and B

@@ -1,4 +1,4 @@
-//! The contacts of a mesh at an instant, and the friction each carries.
+//! The friction state holds the contacts of a mesh at an instant, and the friction of each.
 
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;

@@ -1,4 +1,4 @@
-//! Loss of the material in stretching that is the same at every frequency.
+//! The material loses the same part of its energy of stretching at every frequency.
 //!
 //! Beside the spring EA a bar has relaxation branches, each a spring EA y in series with a dashpot of relaxation time θ (generalised
 //! Maxwell body: H. Emmerich, M. Korn, "Incorporation of attenuation into time-domain computations of seismic wave fields", Geophysics

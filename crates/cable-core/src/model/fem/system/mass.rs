@@ -1,4 +1,4 @@
-//! The mass of a cable of straight bars, of fourth order in the frequencies of its free motion.
+//! The mass matrix of straight bars is of fourth order in the frequencies of free motion.
 //!
 //! A chain with the mass in its nodes has an action that differs from that of the cable in the order h². Put the true motion x(s, t)
 //! into both: the trapezoidal sums of motion and weight are off by h²/12 of what their slopes change along each bar, and the bar is

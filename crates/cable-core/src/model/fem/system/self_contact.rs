@@ -1,4 +1,4 @@
-//! Contact of the cable with itself in a step: friction, its memory, and landing.
+//! The cable touches itself in a step: this module has the friction, its memory, and landing.
 //!
 //! As with obstacles the normal force of friction is that of the step before, and sliding is measured from an anchor.
 

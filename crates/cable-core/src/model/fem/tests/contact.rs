@@ -1,4 +1,4 @@
-//! Friction, landing, corners and thrown ends against closed forms and against crossing.
+//! These tests compare friction, landing, corners and thrown ends with closed forms, and ask that nothing is crossed.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Cables drawn over corners, posts and pulleys against the capstan, and against their own ripple.
+//! These tests draw cables over corners, posts and pulleys and compare them with the capstan law and their own ripple.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! One step of implicit dynamics (BDF2) of a cable in contact.
+//! This module takes one step of implicit dynamics (BDF2) of a cable in contact.
 //!
 //! BDF2 with a step ratio ω = h/h₋ (Hairer, Wanner, "Solving ordinary differential equations II", 1996): with
 //! α₀ = (1 + 2ω)/(1 + ω) and the history x̂ = ((1 + ω) x₀ − ω²/(1 + ω) x₋)/α₀,

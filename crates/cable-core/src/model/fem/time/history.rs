@@ -1,4 +1,4 @@
-//! Where the cable is and how it moves, and the state that a step which fails goes back to.
+//! The history holds where the cable is and how it moves, and the checkpoint to which a failed step returns.
 
 use crate::math::RigidPose;
 use crate::math::{Vec2, cross, perp};

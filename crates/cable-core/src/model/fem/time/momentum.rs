@@ -1,6 +1,6 @@
-//! The account of a cable's momentum in a step of its caller: what each kind of force gave it.
+//! The momentum account says what each kind of force gave the cable in a step of its caller.
 //!
-//! With p the momentum and F a force at the end of a step, its history gives (see `integrate`)
+//! With p the momentum and F a force at the end of a step, its history gives (see `bdf2`)
 //! ```text
 //! Δp = F/a + (past − older) Δp₋ − older Δp₌
 //! ```

@@ -1,4 +1,4 @@
-//! Going on from an answer of another model, or of an earlier instant, without letting go of what friction holds.
+//! This module continues from a solution, of another model or an earlier instant, and keeps what friction holds.
 //!
 //! A [`State`] says where a cable is; an answer also says what tension it has. Between two places of the cable with forces
 //! F₁ = T₁t₁ and F₂ = T₂t₂ the obstacles must push with C = F₁ − F₂ − bΔs: N = C·n is the normal force there and C·t friction.

@@ -1,4 +1,4 @@
-//! Taking over a state of another mesh or model, and threading the cable through its pulleys.
+//! This module continues from a state of another mesh or model, and threads the cable through its pulleys.
 
 use std::sync::Arc;
 

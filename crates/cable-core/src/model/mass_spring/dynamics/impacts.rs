@@ -1,4 +1,4 @@
-//! Impulses where the cable meets an obstacle in a sub-step.
+//! Impulses act where the cable meets an obstacle in a sub-step.
 
 use crate::error::SolveError;
 use crate::math::{Vec2, bounded};

@@ -1,4 +1,4 @@
-//! The state before a step, kept to go back to where the step fails, in the same memory step after step.
+//! A rollback keeps the state before a step, in the same memory step after step, to return to it where the step fails.
 
 use crate::model::mass_spring::MassSpringModel;
 

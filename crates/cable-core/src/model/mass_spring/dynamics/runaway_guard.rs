@@ -1,4 +1,4 @@
-//! What holds back a motion that runs away, and says so.
+//! The runaway guard holds back a motion that runs away, and says so.
 //!
 //! Steps are stable by construction, so nothing here acts in a sound run. It is there for what construction does not
 //! cover (a stiff contact, a support thrown about): the picture stays finite and the answer says that it was held back,

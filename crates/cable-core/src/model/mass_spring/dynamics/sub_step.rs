@@ -1,4 +1,4 @@
-//! Forces, contacts and one sub-step; nothing here allocates once the buffers have grown.
+//! A sub-step computes forces and contacts and moves the nodes; it allocates nothing once the buffers have grown.
 
 use crate::error::SolveError;
 use crate::math::{Vec2, smaller};

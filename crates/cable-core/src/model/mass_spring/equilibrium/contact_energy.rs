@@ -1,4 +1,4 @@
-//! Contacts and friction of a resting chain, as energies.
+//! Contacts and friction of a resting chain are energies.
 //!
 //! A contact is a spring from `OFFSET` on, ½k(gap − δ)² for gap < δ, on the signed sums of pairs that make the force of a
 //! polyline continuous (see [`crate::contact::pairs`]). Friction is measured from an anchor: the material point that was

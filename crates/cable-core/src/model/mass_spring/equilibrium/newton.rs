@@ -1,7 +1,7 @@
-//! Where the chain rests: Newton's method on one energy.
+//! Newton's method on one energy finds where the chain rests.
 //!
 //! Springs that only pull, U = EA (length − l₀)²/2l₀ for length > l₀, are convex in nodes and material coordinates
-//! together, so no compressed state can come out; weight is linear. Bending, contacts and friction (see `rest_contact`)
+//! together, so no compressed state can come out; weight is linear. Bending, contacts and friction (see `contact_energy`)
 //! add their terms, the σ of a pulley stands in the place of its node's x. The tangent is a band: a step costs about as
 //! much as a few sweeps of relaxation, of which a stiff chain needs N·√(EA/T) for each swing. The diagonal is shifted
 //! (K. Levenberg, A method for the solution of certain non-linear problems in least squares, Quarterly of Applied

@@ -1,4 +1,4 @@
-//! Steps without inertia: the supports go a little way, the chain comes to rest there, friction remembers.
+//! A quasi-static step moves the supports a little; the chain comes to rest there, and friction remembers.
 
 use crate::error::SolveError;
 use crate::math::Vec2;

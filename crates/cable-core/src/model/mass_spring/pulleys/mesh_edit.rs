@@ -1,4 +1,4 @@
-//! Nodes put into the chain and taken out of it beside pulleys.
+//! Nodes are put into the chain and taken out of it beside pulleys.
 //!
 //! Mass and momentum are conserved, kinetic energy falls or stays (it is convex). A node taken out shortens the way by
 //! the sag it stood for, one put in hangs on that sag: the difference of rest length is spread over the whole stretch

@@ -1,4 +1,4 @@
-//! A pulley: a node fixed in space whose material slides through it.
+//! A pulley is a node fixed in space whose material slides through it.
 //!
 //! The node holds the centre x of the wheel and the material coordinate σ at a *mark* fixed on the wheel. The elements
 //! beside it run to where they touch the wheel and on along the arc to the mark. With R the radius of the centre line, f

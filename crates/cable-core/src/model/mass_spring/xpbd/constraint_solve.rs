@@ -1,4 +1,4 @@
-//! The balance of a preview's springs, solved for the whole chain at once.
+//! This solver balances the preview's springs for the whole chain at once.
 //!
 //! With λ = −T h² (T tension, h the sub-step), w the inverse masses, t the directions and C = length − l₀ at the predicted
 //! place, Δx = w ∇C λ and C + λ l₀/(EA h²) = 0 make

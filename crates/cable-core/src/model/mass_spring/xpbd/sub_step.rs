@@ -1,4 +1,4 @@
-//! Stiff cables in real time: compliant constraints in fixed small sub-steps instead of stable explicit ones.
+//! The preview moves stiff cables in real time: compliant constraints in fixed small sub-steps instead of stable explicit ones.
 //!
 //! A spring is the constraint C = length − l₀ with compliance l₀/EA (M. Macklin, M. Müller, N. Chentanez, "XPBD:
 //! position-based simulation of compliant constrained dynamics", Motion in Games, 2016), one iteration in each of many

@@ -1,4 +1,4 @@
-//! A stretch of an arc in closed form.
+//! A stretch of an arc has closed forms of tension and material.
 //!
 //! With λ = λ₀ frozen dT/dψ = mT − (c/λ)(b·t + m b·n) is solved by T⁰, see [`law`](crate::model::spans::boundary::capstan). What is left of it, and the
 //! material, are integrals of functions that hardly change along a stretch, and whose derivatives at both ends are known:

@@ -1,5 +1,5 @@
-//! The boundary of an obstacle as the centre line of the cable runs along it, with a coordinate p that grows along the
-//! cable.
+//! A curve is the boundary of an obstacle as the centre line of the cable runs along it, with a coordinate p that grows
+//! along the cable.
 //!
 //! The centre line runs at the offset c (cable radius and what the obstacle adds) from the obstacle. On an edge p counts
 //! metres, on an arc (a convex corner, a post, a wheel) radians, so that a sharp corner needs no case of its own. With

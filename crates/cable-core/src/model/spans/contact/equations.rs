@@ -1,4 +1,4 @@
-//! A contact's two equations for its material, with their derivatives.
+//! A contact has two equations for its material; they stand here with their derivatives.
 //!
 //! Where some of it sticks, at the fronts p_l and p_r, with A the material between end and front as it slides:
 //!

@@ -1,4 +1,4 @@
-//! What friction remembers of a contact, in closed form.
+//! A contact remembers its friction as a profile of tension, in closed form.
 //!
 //! Where the cable has stuck the tension is what it was, where it slides it follows the law of sliding from one end:
 //!

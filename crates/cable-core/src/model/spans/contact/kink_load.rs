@@ -1,4 +1,4 @@
-//! Loads in a concave kink of a boundary, held by both its edges.
+//! A load in a concave kink of a boundary is held by both its edges.
 //!
 //! What slides down into a kink stays there as long as the force V on it lies between the cones of friction of the two edges:
 //! it leaves along its own edge where V·t back from the kink is more than μN, with N = −V·n of that edge alone, and likewise along

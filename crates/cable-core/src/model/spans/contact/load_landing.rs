@@ -1,5 +1,5 @@
-//! Loads and ends of the cable that come down onto a boundary, found and laid down where they did; what they are there is said
-//! in `weight`.
+//! Loads and ends of the cable that come down onto a boundary are found and put down where they did; `point_load` says
+//! what they are there.
 
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, larger, perp};

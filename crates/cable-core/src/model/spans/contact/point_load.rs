@@ -1,8 +1,8 @@
-//! Dead loads that lie on a boundary, inside the cable or at an end of it.
+//! A dead load may lie on a boundary, inside the cable or at an end of it.
 //!
 //! Such a load P is a contact without extent: p₁ = p₂ = q, and its material is its own (after it the next number, so that
 //! what is summed up to there has the load in it, and what is summed up to before it has not). With F₋ and F₊ the force of
-//! the cable before and after it, pressed by N n and rubbed by −mN t as all that lies (see `law`), V = F₊ − F₋ + P:
+//! the cable before and after it, pressed by N n and rubbed by −mN t as all that lies (see `capstan`), V = F₊ − F₋ + P:
 //!
 //! ```text
 //! V + N n − m N t = 0:      N = −V·n,      V·(t + m n) = 0  where it slides with m,      |V·t| ≤ μN  where it sticks

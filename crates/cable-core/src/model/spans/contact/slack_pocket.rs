@@ -1,4 +1,4 @@
-//! Slack in a concave kink.
+//! A pocket is slack in a concave kink.
 //!
 //! A cable under tension bridges a kink of δ by a span that is tangent to both its edges; its size goes with its tension,
 //! x = T tan(δ/2)/w on each edge. Where there is more cable than that the span shrinks to nothing: the cable lies in the kink

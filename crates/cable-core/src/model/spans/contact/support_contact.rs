@@ -1,4 +1,4 @@
-//! Supports that come to lie on a boundary, slide along it, or lift the cable off it.
+//! A support may come to lie on a boundary, slide along it, or lift the cable off it.
 
 use crate::math::Vec2;
 use crate::model::spans::changes::ON;

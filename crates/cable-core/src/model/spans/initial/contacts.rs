@@ -1,5 +1,5 @@
-//! The first guess of a strand: contacts where the taut string of its route bends, the material spread evenly along the
-//! route.
+//! The first guess of a run has contacts where the shortest path of its route bends, and its material spread evenly along
+//! the route.
 
 use crate::contact::World;
 use crate::math::{Vec2, cross, smaller};

@@ -1,4 +1,4 @@
-//! The way of a cable that has drained down from its route.
+//! A drained route is the way of a cable that has drained down from its route.
 //!
 //! With cable enough, nothing is held up but by what is below it: each point of the route falls along the load, on to the first
 //! boundary that faces it. On the way down nothing is passed through, so that what comes of it lies on the same sides of everything as the

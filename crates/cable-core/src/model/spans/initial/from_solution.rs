@@ -1,4 +1,4 @@
-//! Strands laid where another model's answer has the cable, with the friction it has there.
+//! Runs are set up where another model's answer has the cable, with the friction it has there.
 //!
 //! Nodes that lie on one chain of a boundary, one after the other, are a contact. On an arc it goes on from its outer nodes to
 //! where the cable beside it is tangent, s by the length of the arc. What friction remembers are the tensions midway between its

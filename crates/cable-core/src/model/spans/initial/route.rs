@@ -1,4 +1,4 @@
-//! The route of a strand: as the scene gives it, or from support to support and over what is in the way.
+//! The route of a run is that of the scene, or goes from support to support and over what is in the way.
 
 use crate::contact::World;
 use crate::math::{Vec2, bounded};

@@ -1,4 +1,4 @@
-//! The taut string of a route: the shortest way with the same obstacles on the same sides, turns round posts included.
+//! The shortest path keeps the same obstacles on the same sides as a route, turns round posts included.
 //!
 //! The route's end is drawn along it, the string from the last corner it bends round to the end sweeping a triangle. Two
 //! things can happen first: a corner comes on to the string, which then bends round it; or the string at its last corner

@@ -1,4 +1,4 @@
-//! A strand along its taut string.
+//! This module lays a run along its shortest path.
 
 use crate::model::spans::contact::friction_memory::TensionProfile;
 use crate::model::spans::initial::contacts::{measure, spread};

@@ -1,4 +1,4 @@
-//! Unknowns and equations of a strand, and the equations' derivatives.
+//! The system of a run has its unknowns, its equations, and their derivatives.
 
 use crate::math::{Vec2, cross, larger};
 use crate::model::spans::boundary::capstan::Track;

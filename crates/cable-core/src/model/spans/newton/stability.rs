@@ -1,4 +1,4 @@
-//! Whether a balance is stable.
+//! This check finds whether an equilibrium is stable.
 
 use crate::model::spans::contact::friction_memory::Mode;
 use crate::model::spans::newton::{Work, assemble, lies};

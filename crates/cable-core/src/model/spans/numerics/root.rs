@@ -1,4 +1,4 @@
-//! The root of a function of one variable that is bracketed and has a slope.
+//! This method finds the root of a function of one variable that is bracketed and has a slope.
 
 /// Roots are found to this part of the interval searched: rounding.
 const ROOT: f64 = 1e-15;

@@ -1,4 +1,4 @@
-//! A span from a support to a crest that draws it tight.
+//! A bridge is a span from a support to a crest that draws it tight.
 //!
 //! Where a support is so near above a crest that what hangs beyond it pulls more than friction holds at the foot of its plumb line, the cable
 //! has slid until it is a free span, tangent to the crest at p with the tension that friction leaves there. Seen from p, with H the force

@@ -1,4 +1,4 @@
-//! Folds in one place: where nothing lies without tension but at a foot or in a kink, what is over is a heap there.
+//! A heap is where folds lie in one place: where nothing lies without tension but at a foot or in a kink, the rest is there.
 //!
 //! The two edges of a kink carry it pressed alone where its weight is between their normals; else the one it lies on does, within its
 //! cone.

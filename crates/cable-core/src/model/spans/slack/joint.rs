@@ -1,4 +1,4 @@
-//! Tensions along stretches, and the spans over concave kinks in which the cable has some.
+//! This module finds tensions along stretches, and the spans over concave kinks in which the cable has some.
 //!
 //! On slopes beyond their cone what lies draws at what lies above it, through every kink on the way. With slopes m₁ and m₂ of the edges on
 //! either side, seen along the way, and H the force across the load, a span leaves the one and meets the other along its tangent:

@@ -1,6 +1,6 @@
 //! A strand that lies without tension.
 //!
-//! With more cable than it takes to drain down its route (see `drained`), no part of it needs any tension but what hangs: plumb, F is the
+//! With more cable than it takes to drain down its route (see `drained_route`), no part of it needs any tension but what hangs: plumb, F is the
 //! weight below, and it is nothing at each foot and in each kink, where a cable under tension would not turn. Between two such points the
 //! cable goes over one crest: from both sides its tension falls as it does where it slides down there,
 //!

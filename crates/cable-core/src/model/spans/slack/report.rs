@@ -1,4 +1,4 @@
-//! What lies loose in the answer: nodes, and what carries it.
+//! This module reports what lies slack: nodes, and what carries it.
 
 use crate::math::Vec2;
 use crate::model::arc_nodes;

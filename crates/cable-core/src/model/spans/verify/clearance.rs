@@ -1,4 +1,4 @@
-//! The check that no answer is inside anything, which shares nothing with the search for contacts (`seek`).
+//! This check asks that no answer is inside anything; it shares nothing with the search for contacts (`penetration`).
 //!
 //! A stretch of a catenary or of an arc that turns by no more than a right angle is convex: with its ends a, b and its
 //! tangents there it lies in the triangle of a, b and the point where the tangents meet. What is nowhere nearer to that

@@ -1,5 +1,5 @@
-//! The check of an answer that does not use the solver: lengths by quadrature of the law of the free cable, balance of
-//! each contact from its ends, the cone of friction along it. That nothing is inside an obstacle is looked at in `gaps`.
+//! This check does not use the solver: it finds lengths by quadrature of the law of the free cable, the balance of each
+//! contact from its ends, and the cone of friction along it. `clearance` asks that nothing is inside an obstacle.
 
 use crate::math::{GAUSS, Vec2, bounded, cross};
 use crate::model::spans::boundary::capstan::{Step, Track};

@@ -1,4 +1,4 @@
-//! Where a free span runs into an obstacle.
+//! This search finds where a free span runs into an obstacle.
 //!
 //! Under an even load a catenary is nowhere deeper in an edge than where it runs along it, F × t = 0, which is one
 //! division; nowhere nearer to a corner or a centre v than where (x − v)·F = 0, which is a root of one variable. Those

@@ -1,4 +1,4 @@
-//! Whether a step failed because the cable lost its tension, and where.
+//! This check finds whether a step failed because the cable lost its tension, and where.
 
 use crate::error::TensionLoss;
 use crate::math::{Vec2, cross};

@@ -1,4 +1,4 @@
-//! The cable's shape as points, by which it is told whether it has passed through something (`contact/passed.rs`), and when that need not be asked.
+//! The shape of the cable as points tells whether it has passed through something (`contact/swept_corners.rs`), and when that need not be asked.
 
 use crate::contact::swept_corners::Corner;
 use crate::math::{Vec2, cross, larger, smaller};
