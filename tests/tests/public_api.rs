@@ -1,0 +1,77 @@
+//! What a user of `cable-core` can name is listed in `docs/public-api.txt`: this test compares the list with the crate.
+//!
+//! A change that means to add or take away a public item writes the list anew:
+//! ```text
+//! UPDATE_PUBLIC_API=1 cargo test --locked -p cable-tests --test public_api
+//! ```
+
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// The file of a module below a folder.
+fn file_of(folder: &Path, name: &str) -> Option<PathBuf> {
+    let own = folder.join(format!("{name}.rs"));
+    let entrance = folder.join(name).join("mod.rs");
+    [own, entrance].into_iter().find(|p| p.exists())
+}
+
+/// The word that an item's line names, after its keyword.
+fn name_after(line: &str, keyword: &str) -> Option<String> {
+    let rest = line.strip_prefix(keyword)?.strip_prefix(' ')?;
+    let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+    Some(rest[..end].to_owned())
+}
+
+/// Public items of a module and of the public modules inside it. Items begin a line; methods are indented once.
+fn list(module: &str, file: &Path, folder: &Path, out: &mut BTreeSet<String>) {
+    let text = std::fs::read_to_string(file).expect("a source");
+    let mut owner = String::new();
+    for line in text.split("\n#[cfg(test)]\nmod tests").next().unwrap_or_default().lines() {
+        if line.starts_with("impl") {
+            // `impl<T> Trait for Type {` and `impl Type {`: the last word that begins with a capital is the type.
+            let head = line.trim_end_matches([' ', '{']);
+            let head = head.rsplit(" for ").next().unwrap_or(head);
+            let head = head.strip_prefix("impl").unwrap_or(head).trim();
+            owner = head.split(['<', ' ']).next().unwrap_or_default().to_owned();
+        }
+        if let Some(name) = name_after(line, "pub mod") {
+            out.insert(format!("{module}::{name}"));
+            let file = file_of(folder, &name).expect("the module has a file");
+            list(&format!("{module}::{name}"), &file, &folder.join(&name), out);
+        }
+        for keyword in ["struct", "enum", "trait", "fn", "const", "type", "static", "const fn"] {
+            if let Some(name) = line.strip_prefix("pub ").and_then(|l| name_after(l, keyword)) {
+                out.insert(format!("{module}::{name}"));
+            }
+            if let Some(name) = line.strip_prefix("    pub ").and_then(|l| name_after(l, keyword))
+                && ["fn", "const", "const fn"].contains(&keyword)
+            {
+                out.insert(format!("{module}::{owner}::{name}"));
+            }
+        }
+        if let Some(used) = line.strip_prefix("pub use ") {
+            out.insert(format!("{module}: use {}", used.trim_end_matches(';')));
+        }
+    }
+}
+
+#[test]
+fn the_list_of_public_items_is_that_of_the_crate() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let sources = root.join("crates/cable-core/src");
+    let mut found = BTreeSet::new();
+    list("cable_core", &sources.join("lib.rs"), &sources, &mut found);
+    assert!(found.contains("cable_core::simulation::Simulation::settle"), "methods are seen");
+    let path = root.join("docs/public-api.txt");
+    let text: String = found.iter().map(|item| item.clone() + "\n").collect();
+    if std::env::var_os("UPDATE_PUBLIC_API").is_some() {
+        std::fs::write(&path, &text).unwrap();
+    }
+    let listed = std::fs::read_to_string(&path).unwrap_or_default();
+    let listed: BTreeSet<String> = listed.lines().map(str::to_owned).collect();
+    let added: Vec<_> = found.difference(&listed).collect();
+    let gone: Vec<_> = listed.difference(&found).collect();
+    assert!(added.is_empty() && gone.is_empty(), "new: {added:#?}, gone: {gone:#?}; see the head of this test");
+}
