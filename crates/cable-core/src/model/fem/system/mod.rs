@@ -1,11 +1,11 @@
 //! These modules assemble the energies of one step into value, gradient and banded Hessian.
 
-pub mod assembly;
+pub(in crate::model::fem) mod assembly;
 pub(in crate::model::fem) mod bar_energy;
 pub(in crate::model::fem) mod bar_weight;
 pub(in crate::model::fem) mod contact_energy;
 pub(in crate::model::fem) mod floor_friction;
-pub mod friction_state;
+pub(in crate::model::fem) mod friction_state;
 pub(in crate::model::fem) mod loss;
 pub mod mass;
 pub(in crate::model::fem) mod self_contact;
