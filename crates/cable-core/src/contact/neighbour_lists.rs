@@ -46,12 +46,6 @@ impl NeighbourLists {
         self.entries.len()
     }
 
-    /// Whether there is no list.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.entries.is_empty()
-    }
-
     /// Appends the list of the next segment: all parts within `within` (m) of the box of its ends.
     pub fn push(&mut self, geometry: &Geometry, ends: [Vec2; 2], within: f64) {
         self.entries.push(Entry { ends, within, first: self.parts.len() });

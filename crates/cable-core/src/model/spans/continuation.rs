@@ -98,6 +98,15 @@ impl Default for Seen {
     }
 }
 
+/// Where the search for an initial equilibrium may begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::spans) enum SearchStart {
+    /// With friction only.
+    WithFriction,
+    /// Without friction, too: friction holds the cable from then on.
+    AlsoWithoutFriction,
+}
+
 /// What a step took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::model::spans) struct StepStats {
@@ -117,14 +126,14 @@ impl CableEquilibrium {
     /// # Errors
     /// Why none was found, and how far the cable was let out where that stopped the search.
     pub fn rest(layout: &Layout, instant: &BoundaryConditions, work: &mut Work) -> Result<(Self, StepStats), Unfound> {
-        Self::rest_of(layout, instant, true, work)
+        Self::rest_from(layout, instant, SearchStart::AlsoWithoutFriction, work)
     }
 
-    /// The same, `eased`: whether it may begin without friction.
-    pub fn rest_of(
+    /// The same, with the places where the search may begin.
+    pub fn rest_from(
         layout: &Layout,
         instant: &BoundaryConditions,
-        eased: bool,
+        start: SearchStart,
         work: &mut Work,
     ) -> Result<(Self, StepStats), Unfound> {
         let curves = layout.curves();
@@ -134,7 +143,8 @@ impl CableEquilibrium {
         let ways =
             [(instant, None), (&smooth, None), (&smooth, Some(TAUT)), (instant, Some(TAUT)), (&smooth, Some(TAUTER))];
         // What is not held at both ends would run to where it needs no friction.
-        let held = eased && layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
+        let held = start == SearchStart::AlsoWithoutFriction
+            && layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
         let seen = ways.map(|(begin, cooled)| (begin, Seen { cooled, ..Seen::default() }));
         let nearer = Self::seen(layout).into_iter().skip(1).map(|seen| (instant, seen));
         let (mut first, mut stopped) = (None, None);
@@ -465,8 +475,8 @@ impl CableEquilibrium {
         }
         equilibrium::sound(&self.strands[k], &self.course)?;
         clearance::clear(&self.strands[k], &self.course, world)?;
-        // What it hung by before is not what it hangs by now where it was let out or loaded in this step: seen with today's load and lengths
-        // its spans would end beside where they did.
+        // The shape before the step is drawn with the load and the lengths of before: with those of after it spans of a cable that is let
+        // out or loaded in this step would end beside their contacts.
         let was = &work.instants[0];
         let other =
             was.load != self.instant.load || was.thermal != self.instant.thermal || was.forces != self.instant.forces;

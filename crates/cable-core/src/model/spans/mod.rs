@@ -42,7 +42,7 @@ use crate::math::{Vec2, larger, smaller};
 use crate::model::catenary::slack_without_weight;
 use crate::model::gauge::TensionGauge;
 use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, unsupported};
-use crate::model::spans::continuation::{CableEquilibrium, StepStats, Unfound};
+use crate::model::spans::continuation::{CableEquilibrium, SearchStart, StepStats, Unfound};
 use crate::model::spans::failure::Failure;
 use crate::model::spans::newton::Work;
 use crate::model::spans::results::Report;
@@ -196,8 +196,8 @@ impl SpansModel {
 
     /// What other histories would have left in the cable, in words: as it was laid, and drawn towards either end.
     ///
-    /// `eased`: whether it rests where it does without friction. Laid so again it would come to the place that it is drawn from here.
-    fn histories(&self, eased: bool, work: &mut Work) -> String {
+    /// An equilibrium that was found without friction is not sought so again: the search would come to the place from which the cable is drawn here.
+    fn histories(&self, start: SearchStart, work: &mut Work) -> String {
         let Some(network) = &self.network else { return String::new() };
         let turned = self.layout.turned;
         let tensions = |network: &CableEquilibrium| {
@@ -208,7 +208,7 @@ impl SpansModel {
         let drawn = [FrictionMobilised::TowardsStart, FrictionMobilised::TowardsEnd].map(|drawn| {
             let drawn = if turned { reversed::mobilised(drawn) } else { drawn };
             let found = network.drawn(&self.layout, drawn.way(), work);
-            found.or_else(|| self.laid_anew(drawn, eased, work)).map(|n| tensions(&n))
+            found.or_else(|| self.laid_anew(drawn, start, work)).map(|n| tensions(&n))
         });
         let all = || std::iter::once(laid).chain(drawn.into_iter().flatten());
         let range = |k: usize| {
@@ -233,11 +233,11 @@ impl SpansModel {
     }
 
     /// The cable laid anew along its way while it is drawn.
-    fn laid_anew(&self, drawn: FrictionMobilised, eased: bool, work: &mut Work) -> Option<CableEquilibrium> {
+    fn laid_anew(&self, drawn: FrictionMobilised, start: SearchStart, work: &mut Work) -> Option<CableEquilibrium> {
         let mut layout = self.layout.clone();
         Arc::make_mut(&mut layout.problem).cable.friction_mobilised = drawn;
         let instant = self.network.as_ref()?.instant.clone();
-        CableEquilibrium::rest_of(&layout, &instant, !eased, work).ok().map(|n| n.0).filter(|n| n.loose().is_none())
+        CableEquilibrium::rest_from(&layout, &instant, start, work).ok().map(|n| n.0).filter(|n| n.loose().is_none())
     }
 
     /// Whether some of the cable is held by nothing but friction.
@@ -330,8 +330,11 @@ impl Mechanics for SpansModel {
         let needed = if slides { CableEquilibrium::friction_needed(&self.layout, &instant, &mut work) } else { None };
         let loose = self.network.as_ref().and_then(CableEquilibrium::loose);
         let seeks = self.histories && found.is_ok() && loose.is_none() && self.rubs();
-        let eased = found.as_ref().is_ok_and(|taken| taken.eased);
-        let range = if seeks { self.histories(eased, &mut work) } else { String::new() };
+        let start = match &found {
+            Ok(taken) if taken.eased => SearchStart::WithFriction,
+            _ => SearchStart::AlsoWithoutFriction,
+        };
+        let range = if seeks { self.histories(start, &mut work) } else { String::new() };
         self.work = work;
         if let Some(part) = needed {
             return Err(slides_away(part));

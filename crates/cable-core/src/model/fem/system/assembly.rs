@@ -1,7 +1,7 @@
 //! The system assembles the energies of a mesh into value, gradient and banded Hessian.
 //!
 //! Unknowns are node positions, `2·node + axis`. Bars reach one node away (half-bandwidth 3), bending two (5).
-//! Nodes that are held keep their rows: [`System::pin_held`] turns these into rows of the identity, so the band
+//! Nodes that are held keep their rows: `System::pin_held` turns these into rows of the identity, so the band
 //! and the numbering never change. Before pinning, minus the gradient at a held node is the force of the cable
 //! on its support.
 
@@ -165,18 +165,6 @@ impl Mesh {
         let k = self.arc_length.partition_point(|&s| s < arc_length - near);
         (k < self.nodes() && (self.arc_length[k] - arc_length).abs() <= near).then_some(k)
     }
-
-    /// The tension force (tension times direction of growing arc length, N) just after the first node and just
-    /// before the last node of bar `e`, under a body force per metre of arc length (N/m). The bar's own force is
-    /// the one at its middle; dF/ds = −body.
-    #[must_use]
-    pub fn end_forces(&self, e: usize, x: &[Vec2], body: Vec2) -> [Vec2; 2] {
-        let d = x[e + 1] - x[e];
-        let length = d.norm();
-        let middle = if length > 0.0 { d * (self.bar(e).tension(length) / length) } else { d };
-        let half = body * (0.5 * (self.arc_length[e + 1] - self.arc_length[e]));
-        [middle + half, middle - half]
-    }
 }
 
 /// Whether the turn at an inner node bends the cable: not where it or a neighbour slides over something.
@@ -235,6 +223,7 @@ impl System {
 
     /// Sets gradient and Hessian to those of stretching and bending at `x` (m), less the external forces `force`
     /// (N a node); returns the energy less the work of the external forces, J.
+    #[cfg(test)]
     pub fn assemble(&mut self, mesh: &Mesh, x: &[Vec2], force: &[Vec2], curvature: Curvature) -> f64 {
         self.hessian.clear();
         let mut value = 0.0;
@@ -307,6 +296,7 @@ impl System {
     }
 
     /// Prescribes the held nodes: zero gradient, identity rows.
+    #[cfg(test)]
     pub fn pin_held(&mut self, mesh: &Mesh) {
         for (node, _) in mesh.held.iter().enumerate().filter(|(_, held)| **held) {
             for k in [2 * node, 2 * node + 1] {
