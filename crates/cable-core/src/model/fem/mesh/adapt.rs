@@ -10,7 +10,7 @@
 //! Material, place and momentum of what stays are left as they are.
 
 use crate::contact::friction;
-use crate::math::{Vec2, bounded, perp};
+use crate::math::{Vec2, bounded, perp, smaller};
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::{Load, Seat, SlidingNode, StickSlip, round_of};
 use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
@@ -143,6 +143,16 @@ impl Dynamics {
     /// Length of an even bar, m of arc length.
     pub(in crate::model::fem) fn even(&self) -> f64 {
         self.problem.length / self.even_bars as f64
+    }
+
+    /// How far outside of contact the cable runs round a corner or circle, m: as far as the barrier
+    /// reaches, but no farther than an end of the cable that is fixed on that round.
+    pub(in crate::model::fem) fn clearance(&self, feature: usize) -> f64 {
+        let reach = self.contacts.barrier.reach;
+        let Some((center, radius)) = round_of(self.problem.world.geometry(), feature, 0.0, 0.0) else { return reach };
+        let fixed = [0, self.mesh.nodes() - 1].into_iter().filter(|&k| self.mesh.held[k]);
+        let gaps = fixed.map(|k| bounded((self.motion.x[k] - center).norm() - radius, 0.0, reach));
+        gaps.fold(reach, smaller)
     }
 
     /// The load of a sliding node as the cable lies now.
@@ -470,7 +480,7 @@ impl Dynamics {
     fn seat_for(&self, node: usize, on_segment: bool, gap: &crate::contact::Gap) -> Option<(usize, f64, SlidingNode)> {
         let (mesh, x, last) = (&self.mesh, &self.motion.x, self.mesh.nodes() - 1);
         let (center, radius) =
-            round_of(self.problem.world.geometry(), gap.feature, self.contacts.barrier.reach, LEAST_TURN)?;
+            round_of(self.problem.world.geometry(), gap.feature, self.clearance(gap.feature), LEAST_TURN)?;
         let (bar, fraction) = match (on_segment, node) {
             (true, e) => (e, gap.fraction),
             (false, k) if k > 0 && k < last => (k - 1, 1.0),

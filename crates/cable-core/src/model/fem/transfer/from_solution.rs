@@ -218,7 +218,8 @@ impl Dynamics {
                 continue;
             };
             let seat = Seat::Obstacle { obstacle: gap.obstacle, feature: gap.feature };
-            let round = round_of(geometry, gap.feature, self.contacts.barrier.reach, LEAST_TURN);
+            let clearance = self.clearance(gap.feature);
+            let round = round_of(geometry, gap.feature, clearance, LEAST_TURN);
             let (Some((center, radius)), true) = (round, gap.feature % 2 == 1) else { continue };
             if out.last().is_some_and(|a| a.node.seat == seat && a.nodes[1] + 1 >= i) {
                 continue;
@@ -239,7 +240,7 @@ impl Dynamics {
                     balanced: None,
                 },
             };
-            arc.grow(told, radius - self.contacts.barrier.reach);
+            arc.grow(told, radius - clearance);
             if arc.turn > LEAST_TURN {
                 out.push(arc);
             }
