@@ -420,7 +420,13 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &SlidingNode, &Load), x: &[Ve
     let small = same == [false; 2] && whole * radius < SMALL * d.even();
     let most = node.friction * whole;
     let rate = if small && grown.abs() > HUNG * most { most.copysign(grown) } else { grown };
-    let begins = (0.5 * (grown - rate)).exp();
+    // What is beside it stands where the weight hangs: before the round and after it by the angle there between
+    // the cable's force and the end of the arc.
+    let tangents = [-before, after].map(|turned| perp(normal(turned)) * sense);
+    let hangs = [angle_between(ends[0], tangents[0]), angle_between(tangents[1], ends[1])]
+        .map(|angle| larger(sense * angle, 0.0));
+    let part_before = if hangs[0] + hangs[1] > 0.0 { hangs[0] / (hangs[0] + hangs[1]) } else { 0.5 };
+    let begins = (part_before * (grown - rate)).exp();
     let at = |i: f64| {
         let f = i / count;
         let turned = f * whole - before;
