@@ -10,6 +10,14 @@ use std::time::Instant;
 use cable_core::model::Settings;
 use cable_core::{Model, Scene, Simulation};
 
+/// Pages of memory that the process has had to be given so far, without reading a disk; 0 where the
+/// system does not say. It is the tenth field of `/proc/self/stat`, the eighth after the name.
+fn page_faults() -> u64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let after_name = stat.rsplit(')').next().unwrap_or_default();
+    after_name.split_whitespace().nth(7).and_then(|n| n.parse().ok()).unwrap_or(0)
+}
+
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let text = std::fs::read_to_string(args.first().expect("a scene")).expect("a file");
@@ -20,6 +28,7 @@ fn main() {
     let settings = Settings { histories: last != "quick", ..Settings::default() };
     let (mut least, mut built) = (f64::INFINITY, f64::INFINITY);
     for k in 0..times {
+        let pages = page_faults();
         let start = Instant::now();
         let mut simulation = Simulation::with_settings(scene.clone(), model, settings).expect("a simulation");
         let made = start.elapsed().as_secs_f64();
@@ -27,10 +36,11 @@ fn main() {
         let whole = start.elapsed().as_secs_f64();
         if k == 0 {
             println!(
-                "first: built {:.1} us, settled {:.1} us, {} iterations",
+                "first: built {:.1} us, settled {:.1} us, {} iterations, {} pages of memory first touched",
                 1e6 * made,
                 1e6 * (whole - made),
-                report.cost.iterations
+                report.cost.iterations,
+                page_faults() - pages
             );
         }
         (least, built) = (least.min(whole - made), built.min(made));
