@@ -12,6 +12,8 @@ pub struct Series {
     pub colour: &'static str,
     /// Corners of its mark: 0 a disc, 3, 4 … a polygon, so that colour is not needed either.
     pub corners: u32,
+    /// Whether a line joins its points.
+    pub joined: bool,
     /// x, y, both > 0.
     pub points: Vec<(f64, f64)>,
 }
@@ -130,7 +132,8 @@ fn panel(out: &mut String, p: &Panel, (x0, y0): (f64, f64)) {
     );
     for s in &p.series {
         let points: Vec<(f64, f64)> = s.points.iter().map(|q| at(*q)).collect();
-        let line: Vec<String> = points.iter().map(|(x, y)| format!("{x:.2},{y:.2}")).collect();
+        let joined = if s.joined { &points[..] } else { &[] };
+        let line: Vec<String> = joined.iter().map(|(x, y)| format!("{x:.2},{y:.2}")).collect();
         let _ = writeln!(
             out,
             r#"<polyline points="{}" fill="none" stroke="{}" stroke-width="1.5"/>"#,

@@ -9,11 +9,12 @@
 
 use std::time::Instant;
 
+use cable_core::solution::Node;
 use cable_core::{Model, Scene, Simulation, Solution, SolveError};
 
 use crate::fresh;
 
-/// A cost is the median of this many solves, or of as many as fit the time below, at least one.
+/// A cost is the least of this many solves, or of as many as fit the time below, at least one.
 const REPEATS: usize = 15;
 const LONGEST_S: f64 = 1.5;
 
@@ -91,10 +92,12 @@ pub struct Row {
     pub model: Model,
     /// With how many elements; None: it has none.
     pub segments: Option<usize>,
-    /// Wall time, s.
+    /// Least elapsed time of several solves, s.
     pub cost_s: f64,
     /// Relative error.
     pub error: f64,
+    /// Greatest distance of a node from where its material point is, over the cable's length.
+    pub shape_error: f64,
     /// Relative error it states itself, if it does.
     pub said: Option<f64>,
 }
@@ -128,6 +131,22 @@ impl Reference {
         Some(this)
     }
 
+    /// Greatest distance of a node of an answer from where the reference has that point of the
+    /// material, over the cable's length.
+    #[must_use]
+    pub fn shape_error(&self, answer: &Solution) -> f64 {
+        let mut worst = 0.0;
+        for (a, b) in answer.cables.iter().zip(&self.answer.cables) {
+            let Some(length) = b.nodes.last().map(|n| n.arc_length_m) else { continue };
+            for node in &a.nodes {
+                let off = position(&b.nodes, node.arc_length_m)
+                    .map_or(f64::NAN, |[x, y]| (node.x_m - x).hypot(node.y_m - y) / length);
+                worst = if off > worst || off.is_nan() { off } else { worst };
+            }
+        }
+        worst
+    }
+
     /// Relative error of an answer of the same scene.
     #[must_use]
     pub fn error(&self, answer: &Solution) -> f64 {
@@ -141,6 +160,25 @@ impl Reference {
         }
         worst / top
     }
+}
+
+/// Where nodes have a point of the material, m: on the cubic with the direction of the tension at both nodes,
+/// or on a straight line where there is none.
+fn position(nodes: &[Node], arc_length_m: f64) -> Option<[f64; 2]> {
+    let next = nodes.partition_point(|n| n.arc_length_m < arc_length_m).clamp(1, nodes.len().checked_sub(1)?);
+    let [a, b] = [nodes.get(next - 1)?, nodes.get(next)?];
+    let way = b.arc_length_m - a.arc_length_m;
+    let u = if way > 0.0 { (arc_length_m - a.arc_length_m) / way } else { 0.0 };
+    let [p, q] = [a, b].map(|n| [n.x_m, n.y_m]);
+    let chord = (q[0] - p[0]).hypot(q[1] - p[1]);
+    let slope = |n: &Node, k: usize| {
+        let size = n.force_n[0].hypot(n.force_n[1]);
+        if size > 0.0 { n.force_n[k] / size * chord } else { q[k] - p[k] }
+    };
+    let [low, high] = [u * (1.0 - u) * (1.0 - u), -u * u * (1.0 - u)];
+    let smooth = u * u * (3.0 - 2.0 * u);
+    let along = |k: usize| p[k] + smooth * (q[k] - p[k]) + low * slope(a, k) + high * slope(b, k);
+    Some([along(0), along(1)])
 }
 
 /// Error and cost of a model; None, with a note, where it does not answer.
@@ -190,5 +228,13 @@ fn repeated(
     costs.sort_by(f64::total_cmp);
     let answer = answer?;
     let said = answer.cables.iter().filter_map(|c| c.error_estimate).reduce(f64::max);
-    Some(Row { scene: id, model, segments, cost_s: costs[costs.len() / 2], error: reference.error(&answer), said })
+    Some(Row {
+        scene: id,
+        model,
+        segments,
+        cost_s: costs[0],
+        error: reference.error(&answer),
+        shape_error: reference.shape_error(&answer),
+        said,
+    })
 }

@@ -3,6 +3,7 @@
 pub mod chart;
 pub mod compare;
 pub mod dots;
+pub mod maps;
 pub mod motion;
 pub mod ridges;
 pub mod table;

@@ -147,6 +147,7 @@ fn ladder(rows: &[Record]) -> Option<Panel> {
         name: if model == Model::Spans { model.to_string() } else { format!("{model}, 25 to 400 elements") },
         colour,
         corners,
+        joined: true,
         points: rows
             .iter()
             .filter(|r| r.is_of(model) && r.error().is_finite() && !r.is_its_reference())

@@ -213,6 +213,7 @@ fn panels(rows: &[Row]) -> Vec<Panel> {
                         },
                         colour,
                         corners,
+                        joined: true,
                         points: rows
                             .iter()
                             .filter(|r| r.scene == scene && r.model == model)

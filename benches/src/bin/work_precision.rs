@@ -1,0 +1,418 @@
+//! Work–precision charts: the error of every model over what it costs, on its meshes and steps, for every scene
+//! of the catalogue and every motion of [`cable_benches::motion`], with other programs beside them.
+//!
+//! Run from the root of the repository: `cargo run --release -p cable-benches --bin work-precision`. It measures,
+//! and writes `docs/charts/work_precision.csv`, a chart a scene into `docs/charts/work_precision/` and the page
+//! `docs/charts/work_precision.md`. `-- tank swing` measures some of them and prints their points; `-- draw`
+//! draws the table again. Points of other programs are read from `docs/charts/peers.csv`, which
+//! `benches/peers/run` writes.
+//!
+//! A cost is the least elapsed time of several solves, on one core, without building the model.
+
+use std::collections::BTreeSet;
+use std::error::Error;
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::Instant;
+
+use cable_benches::chart::{Panel, Series, svg};
+use cable_benches::compare::{self, Question, Reference, lies_in_itself};
+use cable_benches::dots::{self, Dot, Line, Plot};
+use cable_benches::motion::{Motion, motions};
+use cable_core::catenary::{Catenary, Span};
+use cable_core::math::vec2;
+use cable_core::scene::catalog;
+use cable_core::{Model, Scene, Vec2};
+use serde::{Deserialize, Serialize};
+
+const FOLDER: &str = "docs/charts";
+const TABLE: &str = "docs/charts/work_precision.csv";
+const PEERS: &str = "docs/charts/peers.csv";
+const PAGE: &str = "docs/charts/work_precision.md";
+
+/// Meshes of scenes at rest, and of slow motion, in elements.
+const REST_MESHES: [usize; 7] = [10, 20, 40, 80, 160, 320, 640];
+const SLOW_MESHES: [usize; 4] = [20, 40, 80, 160];
+/// Elements of the reference where there is none without a mesh: the first that answers.
+const FINEST_AT_REST: [usize; 3] = [2560, 640, 160];
+const FINEST_SLOW: [usize; 3] = [640, 320, 160];
+/// Steps of motions, s.
+const STEPS: [f64; 4] = [1.0 / 120.0, 1.0 / 240.0, 1.0 / 480.0, 1.0 / 960.0];
+/// A finer mesh is not tried where this one took longer, s.
+const LONGEST_S: f64 = 6.0;
+/// A motion is followed so often, and the least time counts.
+const MOTION_REPEATS: usize = 3;
+/// The catenary as a function is asked so often, and the least time counts.
+const FUNCTION_REPEATS: usize = 2000;
+/// Errors below this are drawn at it, as a logarithm must be of something.
+const LEAST_ERROR: f64 = 1e-13;
+/// Errors for which the cheapest way is told.
+const GOALS: [f64; 3] = [1e-2, 1e-3, 1e-6];
+
+/// Colour and mark of everyone who answers. Colours are those of M. Okabe and K. Ito, "Color universal design"
+/// (2008), and grey tones for peers beyond eight.
+const MARKS: [(&str, &str, u32); 14] = [
+    ("catenary", "#000000", 4),
+    ("spans", "#009E73", 3),
+    ("fem", "#0072B2", 0),
+    ("mass-spring", "#D55E00", 4),
+    ("MoorPy", "#CC79A7", 5),
+    ("MoorDyn", "#CC79A7", 3),
+    ("OpenSees", "#56B4E9", 5),
+    ("Exudyn", "#56B4E9", 3),
+    ("MuJoCo", "#E69F00", 5),
+    ("pymunk", "#E69F00", 3),
+    ("Box2D", "#999999", 5),
+    ("rapier2d", "#999999", 3),
+    ("CableDyn", "#666666", 6),
+    ("other", "#BBBBBB", 6),
+];
+
+/// One measured point, a line of the table.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+struct Point {
+    scene: String,
+    who: String,
+    setting: String,
+    cost_s: Option<f64>,
+    error: Option<f64>,
+    shape_error: Option<f64>,
+    note: String,
+}
+
+impl Point {
+    /// Cost (s) and error, where it has both.
+    fn measured(&self) -> Option<(f64, f64)> {
+        let (cost, error) = (self.cost_s?, self.error?);
+        (cost > 0.0 && error.is_finite()).then_some((cost, if error > LEAST_ERROR { error } else { LEAST_ERROR }))
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let asked: Vec<String> = std::env::args().skip(1).collect();
+    if asked.iter().any(|a| a == "draw") {
+        return draw(&read(TABLE)?);
+    }
+    let wanted = |id: &str| asked.is_empty() || asked.iter().any(|a| a == id);
+    let mut points = Vec::new();
+    for (id, scene) in catalog::all() {
+        if wanted(id) {
+            points.extend(at_rest(id, &scene));
+        }
+    }
+    for motion in motions().iter().filter(|m| wanted(m.id)) {
+        points.extend(in_motion(motion)?);
+    }
+    if !asked.is_empty() {
+        return Ok(());
+    }
+    write(TABLE, &points)?;
+    draw(&points)
+}
+
+fn tell(point: &Point) {
+    let number = |n: Option<f64>| n.map_or("–".to_owned(), |n| format!("{n:.2e}"));
+    let [cost, error, shape] = [point.cost_s, point.error, point.shape_error].map(number);
+    println!("{} {} {}: {cost} s, error {error}, shape {shape} {}", point.scene, point.who, point.setting, point.note);
+}
+
+/// Every model on a scene at rest, or at the end of its slow motion.
+fn at_rest(id: &'static str, scene: &Scene) -> Vec<Point> {
+    let rests = Question::of(scene) == Question::Rest;
+    let (meshes, finest) = if rests { (&REST_MESHES[..], FINEST_AT_REST) } else { (&SLOW_MESHES[..], FINEST_SLOW) };
+    let usable = |n: &usize| !lies_in_itself(scene, *n);
+    let Some(reference) = finest.into_iter().filter(usable).find_map(|n| Reference::of(scene, n)) else {
+        eprintln!("skipped: {id} has no reference");
+        return Vec::new();
+    };
+    let mut out: Vec<Point> = catenary_alone(id, scene).into_iter().collect();
+    let mut ask = |model: Model, segments: Option<usize>| {
+        let point = measured((id, scene), &reference, (model, segments))?;
+        out.push(point.clone());
+        point.cost_s
+    };
+    ask(Model::Catenary, None);
+    ask(Model::Spans, None);
+    for model in [Model::Fem, Model::MassSpring] {
+        for &n in meshes.iter().filter(|n| usable(n)) {
+            if ask(model, Some(n)).is_some_and(|cost| cost > LONGEST_S) {
+                break;
+            }
+        }
+    }
+    out
+}
+
+/// A model on a scene; None, with a line on stderr, where it has no answer.
+fn measured(
+    (id, scene): (&'static str, &Scene),
+    reference: &Reference,
+    (model, segments): (Model, Option<usize>),
+) -> Option<Point> {
+    let row = compare::measure(id, scene, reference, (model, segments))?;
+    let own = reference.by == model.name();
+    let note = match reference.by.as_str() {
+        "catenary" | "spans" => format!("against {}", reference.by),
+        by => format!("against {by}, known to {:.0e}", reference.uncertainty),
+    };
+    let point = Point {
+        scene: id.to_owned(),
+        who: model.name().to_owned(),
+        setting: segments.map_or_else(|| "no mesh".to_owned(), |n| format!("N={n}")),
+        cost_s: Some(row.cost_s),
+        // The reference itself is known to rounding, which it states.
+        error: Some(if own { row.said.unwrap_or(0.0) } else { row.error }),
+        shape_error: (!own).then_some(row.shape_error),
+        note,
+    };
+    tell(&point);
+    Some(point)
+}
+
+/// The catenary as a function, without a simulation, of a scene of one span; its closure is its error.
+fn catenary_alone(id: &str, scene: &Scene) -> Option<Point> {
+    let [cable] = scene.cables.as_slice() else { return None };
+    let ends: Vec<Vec2> = cable.supports.iter().filter_map(|s| s.at_m.map(vec2)).collect();
+    let plain = scene.obstacles.is_empty() && scene.loads.is_empty() && cable.bending_stiffness_n_m2 == 0.0;
+    let ([a, b], true) = (ends.as_slice(), plain && cable.supports.len() == 2) else { return None };
+    let weight = cable.linear_density_kg_per_m * scene.environment.gravity_m_per_s2;
+    let span = Span {
+        chord: b - a,
+        length: cable.length_m,
+        weight: vec2(scene.environment.wind_n_per_m) - Vec2::y() * weight,
+        axial_stiffness: cable.axial_stiffness_n,
+        thermal_stretch: 1.0 + cable.thermal_expansion_per_k * scene.environment.temperature_change_k,
+    };
+    let mut least = f64::INFINITY;
+    for _ in 0..FUNCTION_REPEATS {
+        let clock = Instant::now();
+        let solved = std::hint::black_box(Catenary::solve(std::hint::black_box(&span)));
+        least = least.min(clock.elapsed().as_secs_f64());
+        solved.ok()?;
+    }
+    let error = (Catenary::solve(&span).ok()?.position_at(span.length) - span.chord).norm() / span.length;
+    let point = Point {
+        scene: id.to_owned(),
+        who: "catenary".to_owned(),
+        setting: "the function alone".to_owned(),
+        cost_s: Some(least),
+        error: Some(error),
+        shape_error: None,
+        note: "how far its end is off, over its length".to_owned(),
+    };
+    tell(&point);
+    Some(point)
+}
+
+/// `fem` and `mass-spring` through a motion.
+fn in_motion(motion: &Motion) -> Result<Vec<Point>, Box<dyn Error>> {
+    let exact = match motion.exact {
+        Some(exact) => exact(),
+        None => extrapolated(motion)?,
+    };
+    let mut out = Vec::new();
+    for model in [Model::Fem, Model::MassSpring] {
+        // `mass-spring` takes the longest steps that its mesh is stable with.
+        let steps = if model == Model::Fem { &STEPS[..] } else { &STEPS[1..2] };
+        'meshes: for &n in motion.meshes {
+            for &step_s in steps {
+                let runs = (0..MOTION_REPEATS).map(|_| motion.measure(model, n, step_s));
+                let found: Result<Vec<_>, _> = runs.collect();
+                let (cost, error, note) = match &found {
+                    Ok(runs) => {
+                        let cost = runs.iter().map(|r| r.elapsed_s).fold(f64::INFINITY, f64::min);
+                        let figure = runs.first().map_or_else(Vec2::zeros, |r| r.figure);
+                        (Some(cost), Some((figure - exact).norm() / exact.norm()), String::new())
+                    }
+                    Err(e) => (None, None, e.to_string()),
+                };
+                let setting =
+                    if model == Model::Fem { format!("N={n} dt=1/{:.0}", 1.0 / step_s) } else { format!("N={n}") };
+                let (scene, who) = (motion.id.to_owned(), model.name().to_owned());
+                let point = Point { scene, who, setting, cost_s: cost, error, shape_error: None, note };
+                tell(&point);
+                out.push(point);
+                if cost.is_some_and(|c| c > LONGEST_S) {
+                    break 'meshes;
+                }
+            }
+        }
+    }
+    Ok(out)
+}
+
+/// The figure of a motion without the errors of mesh and step, both of the second order.
+fn extrapolated(motion: &Motion) -> Result<Vec2, Box<dyn Error>> {
+    let finest = motion.meshes.last().copied().ok_or("a motion without meshes")?;
+    let step = 0.5 * STEPS[STEPS.len() - 1];
+    let at = |n: usize, step_s: f64| motion.measure(Model::Fem, n, step_s).map(|m| m.figure);
+    let fine = at(finest, step)?;
+    let [mesh, steps] = [at(finest / 2, step)?, at(finest, 2.0 * step)?];
+    Ok(fine + (fine - mesh) / 3.0 + (fine - steps) / 3.0)
+}
+
+fn read(path: &str) -> Result<Vec<Point>, Box<dyn Error>> {
+    Ok(csv::Reader::from_path(path)?.deserialize().collect::<Result<_, _>>()?)
+}
+
+fn write(path: &str, points: &[Point]) -> Result<(), Box<dyn Error>> {
+    let mut csv = csv::Writer::from_path(path)?;
+    for p in points {
+        let rounded = |n: Option<f64>| n.and_then(|n| format!("{n:.3e}").parse().ok());
+        let [cost_s, error, shape_error] = [p.cost_s, p.error, p.shape_error].map(rounded);
+        csv.serialize(Point { cost_s, error, shape_error, ..p.clone() })?;
+    }
+    Ok(csv.flush()?)
+}
+
+/// Charts and page of the table and of what other programs were measured with.
+fn draw(own: &[Point]) -> Result<(), Box<dyn Error>> {
+    let peers = if Path::new(PEERS).exists() { read(PEERS)? } else { Vec::new() };
+    let all: Vec<Point> = own.iter().chain(&peers).cloned().collect();
+    let mut scenes: Vec<String> = Vec::new();
+    for p in own {
+        if !scenes.contains(&p.scene) {
+            scenes.push(p.scene.clone());
+        }
+    }
+    std::fs::create_dir_all(format!("{FOLDER}/work_precision"))?;
+    let mut page = HEAD.to_owned();
+    for id in &scenes {
+        let points: Vec<&Point> = all.iter().filter(|p| p.scene == *id).collect();
+        std::fs::write(format!("{FOLDER}/work_precision/{id}.svg"), svg(&panels(id, &points), 2))?;
+        section(&mut page, id, &points);
+    }
+    std::fs::write(format!("{FOLDER}/work_precision.svg"), dots::svg(&front(&scenes, &all)))?;
+    std::fs::write(PAGE, page)?;
+    println!("{} points of {} scenes drawn on {PAGE}", all.len(), scenes.len());
+    Ok(())
+}
+
+const HEAD: &str = "# Work and precision
+
+This page shows what an answer costs at what error, scene by scene: each model on its meshes and steps,
+and other programs on the same scenes where they can express them ([how](../../benches/peers/README.md)).
+`cargo run --release -p cable-benches --bin work-precision` makes it; with `benches/peers/run` before it
+the points of other programs are of the same machine and hour. A cost is the least elapsed time of
+several solves on one core, without building the model. At rest the error is the largest of any
+support's force and of the greatest tension, over the greatest tension; in motion that of the figure
+named in [convergence.md](../convergence.md). Figures are in
+[work_precision.csv](work_precision.csv) and [peers.csv](peers.csv).
+
+![Cost of an error of 1e-2 and of 1e-3 in every scene](work_precision.svg)
+";
+
+/// What a panel shows of a point.
+type Read = fn(&Point) -> Option<(f64, f64)>;
+
+fn panels(id: &str, points: &[&Point]) -> Vec<Panel> {
+    let shape: Read = |p| {
+        let error = p.shape_error?;
+        (error.is_finite() && p.cost_s? > 0.0)
+            .then_some((p.cost_s?, if error > LEAST_ERROR { error } else { LEAST_ERROR }))
+    };
+    let reads: [(Read, &'static str); 2] =
+        [(Point::measured, "error of forces or figure (relative)"), (shape, "error of shape (distance / length)")];
+    let shown: Vec<_> = reads.into_iter().filter(|(read, _)| points.iter().any(|p| read(p).is_some())).collect();
+    let who: BTreeSet<&str> = points.iter().map(|p| p.who.as_str()).collect();
+    let known = |name: &str| MARKS.iter().any(|m| m.0 == name);
+    shown
+        .into_iter()
+        .map(|(read, y_label)| {
+            let mut series = Vec::new();
+            for (name, colour, corners) in MARKS {
+                let is = |p: &&&Point| p.who == name || (name == "other" && !known(&p.who));
+                if !who.iter().any(|w| *w == name || (name == "other" && !known(w))) {
+                    continue;
+                }
+                let mut all: Vec<(f64, f64)> = points.iter().filter(is).filter_map(|p| read(p)).collect();
+                all.sort_by(|a, b| a.0.total_cmp(&b.0));
+                let mut best = f64::INFINITY;
+                let (front, rest): (Vec<_>, Vec<_>) = all.into_iter().partition(|p| {
+                    let better = p.1 < best;
+                    best = best.min(p.1);
+                    better
+                });
+                let name = name.to_owned();
+                series.push(Series { name, colour, corners, joined: true, points: front });
+                series.push(Series { name: String::new(), colour, corners, joined: false, points: rest });
+            }
+            let title = id.to_owned();
+            Panel { title, x_label: "cost of an answer (s)", y_label, x_decades: (-7, 2), y_decades: (-13, 0), series }
+        })
+        .collect()
+}
+
+/// The cheapest of some points that keeps an error.
+fn cheapest<'a>(points: &[&'a Point], goal: f64) -> Option<(&'a Point, f64)> {
+    let within = points.iter().filter_map(|p| p.measured().filter(|m| m.1 <= goal).map(|m| (*p, m.0)));
+    within.min_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+fn is_ours(p: &Point) -> bool {
+    Model::from_name(&p.who).is_some()
+}
+
+/// A cost for people.
+fn cost(seconds: f64) -> String {
+    match seconds {
+        s if s < 1e-3 => format!("{:.3} µs", 1e6 * s),
+        s if s < 1.0 => format!("{:.3} ms", 1e3 * s),
+        s => format!("{s:.2} s"),
+    }
+}
+
+fn section(page: &mut String, id: &str, points: &[&Point]) {
+    let _ = write!(page, "\n## {id}\n\n![Error over cost in {id}](work_precision/{id}.svg)\n\n");
+    let _ = writeln!(
+        page,
+        "| error | cheapest | cost | cheapest other program | cost | times ours |\n|---|---|---|---|---|---|"
+    );
+    let ours: Vec<&Point> = points.iter().copied().filter(|p| is_ours(p)).collect();
+    let others: Vec<&Point> = points.iter().copied().filter(|p| !is_ours(p)).collect();
+    for goal in GOALS {
+        let way = |of: &[&Point]| {
+            cheapest(of, goal)
+                .map_or(["–".to_owned(), "–".to_owned()], |(p, s)| [format!("{}, {}", p.who, p.setting), cost(s)])
+        };
+        let ([a, b], [c, d]) = (way(&ours), way(&others));
+        let times = match (cheapest(&ours, goal), cheapest(&others, goal)) {
+            (Some((_, own)), Some((_, other))) => format!("{:.1}", other / own),
+            _ => "–".to_owned(),
+        };
+        let _ = writeln!(page, "| {goal:.0e} | {a} | {b} | {c} | {d} | {times} |");
+    }
+    let notes: BTreeSet<String> = points
+        .iter()
+        .filter(|p| p.measured().is_none() && !p.note.is_empty())
+        .map(|p| format!("{} ({}): {}", p.who, p.setting, p.note))
+        .collect();
+    if !notes.is_empty() {
+        let _ = writeln!(page, "\nWithout an answer:\n");
+        for note in notes {
+            let _ = writeln!(page, "- {note}");
+        }
+    }
+}
+
+/// The front over all scenes: what an error of 1e-2 and one of 1e-3 costs each.
+fn front(scenes: &[String], all: &[Point]) -> Plot {
+    let line = |id: &String| {
+        let points: Vec<&Point> = all.iter().filter(|p| p.scene == *id).collect();
+        let dots = [GOALS[0], GOALS[1]].map(|goal| {
+            let of = |(name, colour, corners): (&str, &'static str, u32)| {
+                let own: Vec<&Point> = points.iter().copied().filter(|p| p.who == name).collect();
+                cheapest(&own, goal).map(|(_, value)| Dot { value, colour, corners })
+            };
+            MARKS.into_iter().filter_map(of).collect()
+        });
+        Line { name: id.clone(), note: String::new(), blind_to: 0.0, dots }
+    };
+    let present = |name: &str| all.iter().any(|p| p.who == name && p.measured().is_some());
+    Plot {
+        title: "What an error of 1e-2 and of 1e-3 costs (further left is better)".to_owned(),
+        legend: MARKS.into_iter().filter(|m| present(m.0)).map(|(n, c, k)| (n.to_owned(), c, k)).collect(),
+        columns: [("cost of an error of 1e-2 (s)", (-7, 1)), ("cost of an error of 1e-3 (s)", (-7, 1))],
+        lines: scenes.iter().map(line).collect(),
+    }
+}
