@@ -8,7 +8,7 @@ use super::mechanics::Mechanics;
 use super::settings::Settings;
 use super::switching::SwitchingModel;
 use super::{catenary, fem, mass_spring, similar, spans};
-use crate::error::SolveError;
+use crate::error::{SolveError, Unsupported};
 use crate::model_id::Model;
 use crate::problem::Problem;
 
@@ -18,6 +18,8 @@ use crate::problem::Problem;
 pub struct Capabilities {
     /// Its masses can accelerate.
     pub inertia: bool,
+    /// It meets obstacles.
+    pub contact: bool,
     /// It meets the outline of the robot; another model is given the cable without it.
     pub robot_contact: bool,
     /// It answers friction that is fully mobilised towards one end.
@@ -37,6 +39,7 @@ pub struct Capabilities {
 /// No ability at all; each entry names those it has.
 const NO_CAPABILITIES: Capabilities = Capabilities {
     inertia: false,
+    contact: false,
     robot_contact: false,
     mobilised_friction: false,
     nodes_catch: false,
@@ -76,7 +79,7 @@ const SOLVERS: [ModelInfo; 4] = [
     ModelInfo {
         model: Model::Spans,
         summary: "exact catenaries between contacts that are intervals of a boundary: friction without a mesh, no motion",
-        capabilities: Capabilities { mobilised_friction: true, long_rests: true, ..NO_CAPABILITIES },
+        capabilities: Capabilities { contact: true, mobilised_friction: true, long_rests: true, ..NO_CAPABILITIES },
         accuracy: [1e-9, 1e-9],
         construct: |problem, settings| Ok(Box::new(spans::SpansModel::new(problem, settings)?)),
     },
@@ -85,6 +88,7 @@ const SOLVERS: [ModelInfo; 4] = [
         summary: "finite elements with contact, friction, bending and dynamics",
         capabilities: Capabilities {
             inertia: true,
+            contact: true,
             robot_contact: true,
             nodes_catch: true,
             explores_histories: true,
@@ -98,7 +102,7 @@ const SOLVERS: [ModelInfo; 4] = [
     ModelInfo {
         model: Model::MassSpring,
         summary: "lumped masses and springs, explicit in time",
-        capabilities: Capabilities { inertia: true, findings_are_told: true, ..NO_CAPABILITIES },
+        capabilities: Capabilities { inertia: true, contact: true, findings_are_told: true, ..NO_CAPABILITIES },
         accuracy: [1e-3, 2e-5],
         construct: |problem, settings| Ok(Box::new(mass_spring::MassSpringModel::new(problem, settings)?)),
     },
@@ -108,7 +112,13 @@ const SOLVERS: [ModelInfo; 4] = [
 const AUTO: ModelInfo = ModelInfo {
     model: Model::Auto,
     summary: "the cheapest model that can answer",
-    capabilities: Capabilities { inertia: true, robot_contact: true, mobilised_friction: true, ..NO_CAPABILITIES },
+    capabilities: Capabilities {
+        inertia: true,
+        contact: true,
+        robot_contact: true,
+        mobilised_friction: true,
+        ..NO_CAPABILITIES
+    },
     accuracy: [1e-5, 1e-6],
     construct: |problem, settings| match auto::choose(&problem, Question::Rest).0 {
         Model::Spans => Ok(Box::new(SwitchingModel::new(problem, settings)?)),
@@ -120,10 +130,10 @@ const AUTO: ModelInfo = ModelInfo {
 const EXTERNAL: ModelInfo = ModelInfo {
     model: Model::External,
     summary: "a model that the program brings along",
-    capabilities: Capabilities { inertia: true, ..NO_CAPABILITIES },
+    capabilities: Capabilities { inertia: true, contact: true, ..NO_CAPABILITIES },
     accuracy: [1e-5, 1e-6],
     construct: |_, _| {
-        let feature = "it is built by the program that brings it along".to_owned();
+        let feature = Unsupported::ExternalModel;
         Err(SolveError::Unsupported { model: Model::External, feature })
     },
 };
@@ -201,8 +211,7 @@ pub(super) fn refuse_mobilised(model: Model, problem: &Problem) -> Result<(), So
     if mobilised.is_default() || model.capabilities().mobilised_friction {
         return Ok(());
     }
-    let feature =
-        format!("friction mobilised {} (only spans answers that, of a flexible cable at rest)", mobilised.name());
+    let feature = Unsupported::MobilisedFriction { towards: mobilised.name() };
     Err(SolveError::Unsupported { model, feature })
 }
 
