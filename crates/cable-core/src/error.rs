@@ -1,10 +1,14 @@
 //! The errors of a scene and of a solve, by operation, with the numbers in them.
 
+mod unsupported;
+
 use thiserror::Error;
 
 use crate::math::Vec2;
 use crate::model_id::Model;
 use crate::solution::verification::Finding;
+
+pub use self::unsupported::{Unsupported, UnsupportedReach};
 
 /// Why a scene is refused.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -270,7 +274,7 @@ pub enum SolveError {
         /// The model.
         model: Model,
         /// What it lacks.
-        feature: String,
+        feature: Unsupported,
     },
     /// A number blew up.
     #[error("{quantity} is no finite number {} along the cable at {}: a time step, a load or a stiffness is far out of proportion to the others", metres(*.arc_length_m), seconds(*.time_s))]
@@ -411,10 +415,9 @@ mod tests {
         assert_eq!(SolveError::clearer(vague(Model::Spans), clear.clone()), clear);
         let both = SolveError::clearer(vague(Model::Spans), vague(Model::Fem)).to_string();
         assert!(both.contains("spans") && both.contains("fem"), "{both}");
-        let lifts =
-            SolveError::Unsupported { model: Model::Spans, feature: "the cable lifts off the wheel".to_owned() };
+        let lifts = SolveError::Unsupported { model: Model::Spans, feature: Unsupported::NothingHolds };
         let told = SolveError::clearer(SolveError::clearer(lifts, vague(Model::Fem)), vague(Model::Fem)).to_string();
-        assert!(told.starts_with("spans cannot answer this scene: the cable lifts off the wheel; and"), "{told}");
+        assert!(told.starts_with("spans cannot answer this scene: no support holds the cable: two loads or loose ends, and obstacles at most; and"), "{told}");
         assert_eq!(told.matches("fem").count(), 1, "{told}");
     }
 }

@@ -24,7 +24,7 @@ use std::sync::Arc;
 
 use partition::{CablePart, Cut};
 
-use crate::error::SolveError;
+use crate::error::{SolveError, Unsupported};
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::gauge::{Limit, TensionGauge};
@@ -63,9 +63,6 @@ const PULLEY_RELEASE_ELEMENTS: f64 = 2.0;
 /// `mass-spring` cuts velocities, and air, which no model has, would rule.
 const MAX_SUPPORT_SPEED: f64 = 300.0;
 
-/// A velocity that changes nothing, m/s, and tells a model that a piece which broke at rest is not at rest any more.
-const WAKE_VELOCITY: f64 = 1e-100;
-
 /// A break.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Break {
@@ -98,8 +95,8 @@ pub(crate) struct BreakableCable {
     peaks: Option<TensionPeaks>,
     /// When that was, s.
     since_s: f64,
-    /// A motion that is too fast for masses that move, in words.
-    too_fast: Option<String>,
+    /// A motion that is too fast for masses that move.
+    too_fast: Option<Unsupported>,
 }
 
 /// A part of the cable that holds together.
@@ -241,7 +238,7 @@ impl BreakableCable {
         let breaking_n = self.problem.cable.breaking_tension_n;
         let mut k = 0;
         while k < self.pieces.len() {
-            let may_break = self.pieces.len() < MAX_PIECES;
+            let may_break = self.settings.breaks && self.pieces.len() < MAX_PIECES;
             let Some(piece) = self.pieces.get_mut(k) else { break };
             // A whole cable takes the very step it was asked for.
             let rest_s = if self.breaks.is_empty() { dt_s } else { end_s - piece.mechanics.time_s() };
@@ -295,9 +292,8 @@ impl BreakableCable {
         let mut new_pieces = Vec::with_capacity(2);
         for part in parts {
             let mut own = rupture::section(state, part.from - from, part.to - from);
-            if inertia == Inertia::Dynamic {
-                mark_moving(&mut own);
-            }
+            // A piece that broke at rest is not at rest any more.
+            own.in_motion = inertia == Inertia::Dynamic;
             let there_and_back_s =
                 2.0 * part.length() * (self.problem.linear_density / self.problem.axial_stiffness).sqrt();
             let mut new_piece = self.build(part, &own)?;
@@ -339,9 +335,7 @@ impl BreakableCable {
                 && let Some(support) = piece.pulley_at_new_end(&self.problem)
             {
                 let mut state = piece.mechanics.state();
-                if inertia == Inertia::Dynamic {
-                    mark_moving(&mut state);
-                }
+                state.in_motion = inertia == Inertia::Dynamic;
                 let next = self.build(piece.part.without(support), &state)?;
                 if let Some(piece) = self.pieces.get_mut(k) {
                     *piece = next;
@@ -442,7 +436,7 @@ impl BreakableCable {
             }
             pieces => {
                 let model = pieces.first().map_or(Model::Auto, |p| p.mechanics.model());
-                let feature = "the state of a whole cable for one that broke (reset first)".to_owned();
+                let feature = Unsupported::StateOfWholeCable;
                 Err(SolveError::Unsupported { model, feature })
             }
         }
@@ -465,7 +459,7 @@ impl BreakableCable {
             || self.problem.length != old.problem.length
             || self.problem.loads.len() != old.problem.loads.len()
         {
-            let feature = "another length, other supports or loads for a cable that broke (reset first)".to_owned();
+            let feature = Unsupported::EditOfBrokenCable;
             return Err(SolveError::Unsupported { model, feature });
         }
         self.dragged.clone_from(&old.dragged);
@@ -661,22 +655,14 @@ impl Piece {
 }
 
 /// What is to be said of a motion that is too fast.
-fn too_fast(support: &SupportPoint) -> Option<String> {
-    let (speed, time_s) = support.motion.as_ref()?.fastest();
-    (speed > MAX_SUPPORT_SPEED).then(|| {
-        format!(
-            "the motion of support `{}`, which reaches {speed:.1} m/s at {time_s:.4} s: with inertia one is followed up to {MAX_SUPPORT_SPEED} m/s",
-            support.name
-        )
+fn too_fast(support: &SupportPoint) -> Option<Unsupported> {
+    let (speed_m_per_s, time_s) = support.motion.as_ref()?.fastest();
+    (speed_m_per_s > MAX_SUPPORT_SPEED).then(|| Unsupported::MotionTooFast {
+        support: support.name.clone(),
+        speed_m_per_s,
+        time_s,
+        limit_m_per_s: MAX_SUPPORT_SPEED,
     })
-}
-
-fn mark_moving(state: &mut State) {
-    if state.velocity_m_per_s.iter().all(|v| v.norm() == 0.0)
-        && let Some(v) = state.velocity_m_per_s.first_mut()
-    {
-        v.x = WAKE_VELOCITY;
-    }
 }
 
 fn add(sum: &mut StepReport, more: StepReport) {

@@ -218,6 +218,7 @@ mod tests {
             position_m: vec![Vec2::zeros(), Vec2::x(), Vec2::x() * 2.0],
             velocity_m_per_s: vec![Vec2::zeros(); 3],
             time_s: 0.0,
+            in_motion: false,
         };
         let piece = &cut(&p, 2.0, true)[0];
         let own = piece.problem(&p, &state);

@@ -110,6 +110,7 @@ mod tests {
             arc_length_m: vec![0.0, 1.0],
             position_m: vec![Vec2::zeros(), Vec2::x() * x],
             velocity_m_per_s: vec![Vec2::zeros(), Vec2::y() * x],
+            in_motion: false,
         };
         let mid = between(&at(1.0, 2.0), &at(3.0, 6.0), 0.25);
         assert_eq!(mid, at(1.5, 3.0));

@@ -28,6 +28,9 @@ pub struct Settings {
     /// each, which takes some times as long as the rest. No figure of the answer hangs on it.
     #[serde(default = "yes")]
     pub histories: bool,
+    /// Whether a cable breaks where its tension reaches its breaking tension; a whole one is only warned of else.
+    #[serde(default = "yes")]
+    pub breaks: bool,
 }
 
 fn yes() -> bool {
@@ -48,6 +51,7 @@ impl Default for Settings {
             hand_speed_m_per_s: hand_speed(),
             hand_stiffness_n_per_m: None,
             histories: true,
+            breaks: true,
         }
     }
 }

@@ -81,7 +81,8 @@ impl Similar {
             }
             SolveError::NoRestingPlace { why } => SolveError::NoRestingPlace { why: self.told(why) },
             SolveError::Unsupported { model, feature } => {
-                SolveError::Unsupported { model, feature: self.told(feature) }
+                let feature = feature.with_places(|s| s / l, |at| self.at_back(at));
+                SolveError::Unsupported { model, feature }
             }
             SolveError::NonFinite { quantity, arc_length_m, time_s } => {
                 SolveError::NonFinite { quantity, arc_length_m: arc_length_m / l, time_s: time_s / t }
@@ -135,6 +136,7 @@ impl Similar {
             arc_length_m: state.arc_length_m.iter().map(|s| s * self.by.length).collect(),
             position_m: state.position_m.iter().map(|p| self.by.place(*p)).collect(),
             velocity_m_per_s: state.velocity_m_per_s.iter().map(|v| v * speed).collect(),
+            in_motion: state.in_motion,
         }
     }
 
@@ -145,6 +147,7 @@ impl Similar {
             arc_length_m: state.arc_length_m.iter().map(|s| s / self.by.length).collect(),
             position_m: state.position_m.iter().map(|p| self.by.place_back(*p)).collect(),
             velocity_m_per_s: state.velocity_m_per_s.iter().map(|v| v * speed).collect(),
+            in_motion: state.in_motion,
         }
     }
 }

@@ -310,7 +310,7 @@ impl Mechanics for SwitchingModel {
 
     fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         self.spans.set_state(state)?;
-        let moves = state.velocity_m_per_s.iter().any(|v| v.norm() > 0.0);
+        let moves = state.moves();
         self.adopted = Some(state.clone());
         self.fem = None;
         self.reason = None;

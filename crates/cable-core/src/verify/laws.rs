@@ -394,7 +394,7 @@ impl CheckedCable<'_> {
         if !(beyond <= allowed) {
             let mut finding = self.finding(Law::Friction, worst.1, (beyond, allowed));
             let here = near.of(worst.1).first();
-            self.surroundings.name(here.map_or(usize::MAX, |n| n.body)).clone_into(&mut finding.with);
+            here.map_or("", |n| self.surroundings.name(n.body)).clone_into(&mut finding.with);
             found.report(finding);
         }
         self.sums(found, sums, [contacts, wheels]);

@@ -14,6 +14,7 @@ use exploration::Exploration;
 use super::{lay, least, stilled, unsupported};
 use crate::any_error::Error;
 use crate::contact::World;
+use crate::error::UnsupportedReach;
 use crate::math::{Point, larger, vec2};
 use crate::model::auto::Question;
 use crate::model::{Inertia, Model, Settings};
@@ -114,18 +115,18 @@ pub fn area(query: &ReachQuery, mut progress: impl FnMut(&Area, f64) -> ControlF
 /// The search before its first step, and the cable as it is laid.
 fn begin(query: &ReachQuery) -> Result<(Exploration<'_>, Simulation), Error> {
     let still = unmanned(&stilled(&query.scene, query.now.as_deref()))?;
-    let cable = still.cables.get(query.cable).ok_or_else(|| unsupported("a cable that is not there"))?;
+    let cable = still.cables.get(query.cable).ok_or_else(|| unsupported(UnsupportedReach::NoSuchCable))?;
     let start = cable.supports.get(query.support).and_then(|s| s.at_m);
-    let start = vec2(start.ok_or_else(|| unsupported("a support without a place"))?);
+    let start = vec2(start.ok_or_else(|| unsupported(UnsupportedReach::SupportWithoutPlace))?);
     if !(query.spacing_m > 0.0 && query.corners_m.iter().flatten().all(|v| v.is_finite())) {
-        return Err(unsupported("a grid without places"));
+        return Err(unsupported(UnsupportedReach::EmptyGrid));
     }
     // The start is a place of the grid.
     let before = [0, 1].map(|k| ((start[k] - query.corners_m[0][k]) / query.spacing_m).floor().max(0.0));
     let after = [0, 1].map(|k| ((query.corners_m[1][k] - start[k]) / query.spacing_m).floor().max(0.0));
     let [columns, rows] = [0, 1].map(|k| (before[k] + after[k]) as usize + 1);
     if columns.saturating_mul(rows) > MAX_PLACES {
-        return Err(unsupported("a grid of so many places"));
+        return Err(unsupported(UnsupportedReach::GridTooLarge));
     }
     let found = Area {
         origin_m: [0, 1].map(|k| start[k] - before[k] * query.spacing_m),
@@ -154,7 +155,8 @@ fn begin(query: &ReachQuery) -> Result<(Exploration<'_>, Simulation), Error> {
     };
     let question = Question::History(Inertia::QuasiStatic);
     let bars = still.cables.iter().map(|c| (c.length_m / SLACK_ELEMENT_M).ceil()).fold(1.0, larger);
-    let settings = Settings { segments: Some(query.settings.segments.unwrap_or(bars as usize)), ..query.settings };
+    let segments = Some(query.settings.segments.unwrap_or(bars as usize));
+    let settings = Settings { segments, breaks: false, ..query.settings };
     let mut laid = Simulation::for_question(still.clone(), Model::Auto, settings, question)?;
     lay(&mut laid, query.now.as_deref())?;
     Ok((exploration, laid))
@@ -165,7 +167,7 @@ fn unmanned(scene: &Scene) -> Result<Scene, Error> {
     let mut scene = scene.clone();
     let hitch = scene.hitch_m();
     for support in scene.cables.iter_mut().flat_map(|c| &mut c.supports).filter(|s| s.kind == SupportKind::Robot) {
-        let at = hitch.ok_or_else(|| unsupported("a cable on a robot that is not there"))?;
+        let at = hitch.ok_or_else(|| unsupported(UnsupportedReach::HitchWithoutRobot))?;
         *support = Support { arc_length_m: support.arc_length_m, ..Support::fixed(support.name.clone(), at) };
     }
     scene.robot = None;

@@ -7,6 +7,7 @@ use std::ops::ControlFlow;
 
 use super::{STEP_S, UNREACHABLE_FACTOR, lay, least, stilled, unsupported};
 use crate::any_error::Error;
+use crate::error::UnsupportedReach;
 use crate::math::{Point, larger};
 use crate::model::auto::Question;
 use crate::model::{Inertia, Model, Settings};
@@ -86,12 +87,12 @@ pub fn robot_reach(
     mut progress: impl FnMut(&ReachMap, f64) -> ControlFlow<()>,
 ) -> Result<ReachMap, Error> {
     let still = stilled(scene, now);
-    let vehicle = still.robot.as_ref().ok_or_else(|| unsupported("a scene without a robot"))?;
-    let preset = robot_preset(&vehicle.preset).ok_or_else(|| unsupported("a robot of no known kind"))?;
+    let vehicle = still.robot.as_ref().ok_or_else(|| unsupported(UnsupportedReach::NoRobot))?;
+    let preset = robot_preset(&vehicle.preset).ok_or_else(|| unsupported(UnsupportedReach::UnknownRobot))?;
     let hangs = |k: &usize| scene.cables[*k].supports.iter().any(|s| s.kind == SupportKind::Robot);
     let cables: Vec<usize> = (0..scene.cables.len()).filter(hangs).collect();
     if cables.is_empty() {
-        return Err(unsupported("a robot that no cable hangs on"));
+        return Err(unsupported(UnsupportedReach::RobotWithoutCable));
     }
     let ground = Ground::of(scene);
     let start_x_m = vehicle.at_m[0];
@@ -102,6 +103,7 @@ pub fn robot_reach(
         ..ReachMap::default()
     };
     let question = Question::History(Inertia::QuasiStatic);
+    let settings = Settings { breaks: false, ..settings };
     let mut start = Simulation::for_question(still.clone(), Model::Auto, settings, question)?;
     lay(&mut start, now)?;
     let walk = Traverse { cables: &cables, limit_n: UNREACHABLE_FACTOR * map.breaking_n };

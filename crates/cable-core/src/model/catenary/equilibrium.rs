@@ -2,7 +2,7 @@
 
 use super::layout::{Anchor, Layout, angle_near, angle_of, unsupported};
 use super::slide::{Arc, Mode, Slide, Stretches};
-use crate::error::{Place, SolveError};
+use crate::error::{Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::Model;
 use crate::problem::Problem;
@@ -110,7 +110,7 @@ pub(super) fn solve(p: &Problem, layout: &Layout, start: Start<'_>) -> Result<Eq
     match lifted {
         Some(k) => {
             let name = p.supports.get(layout.anchors[k].support).map_or("", |s| s.name.as_str());
-            Err(unsupported(format!("the cable lifts off the wheel of `{name}`")))
+            Err(unsupported(Unsupported::OffWheel { support: name.to_owned() }))
         }
         None => Err(not_converged(p, layout, 0, iterations, f64::NAN)),
     }

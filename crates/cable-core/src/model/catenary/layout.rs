@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::equilibrium::first_arcs;
 use crate::catenary::PointForce;
-use crate::error::SolveError;
+use crate::error::{SolveError, Unsupported};
 use crate::math::{Vec2, perp};
 use crate::model::Model;
 use crate::problem::{Problem, SupportPoint};
@@ -272,6 +272,6 @@ impl Anchor {
 }
 
 /// The model's refusal.
-pub(super) fn unsupported(feature: impl Into<String>) -> SolveError {
-    SolveError::Unsupported { model: Model::Catenary, feature: feature.into() }
+pub(super) fn unsupported(feature: Unsupported) -> SolveError {
+    SolveError::Unsupported { model: Model::Catenary, feature }
 }

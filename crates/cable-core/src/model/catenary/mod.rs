@@ -20,7 +20,7 @@ use self::report::{report, straight};
 use self::slide::Mode;
 use super::gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
-use crate::error::SolveError;
+use crate::error::{SolveError, Unsupported};
 use crate::math::{Vec2, bounded};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, Node, SupportReaction, Warning, WarningKind};
@@ -57,13 +57,13 @@ impl CatenaryModel {
     /// `Unsupported` when the scene needs what the model lacks.
     pub fn new(problem: Arc<Problem>, _settings: Settings) -> Result<Self, SolveError> {
         if problem.bending_stiffness > 0.0 {
-            return Err(unsupported("the cable has bending stiffness"));
+            return Err(unsupported(Unsupported::BendingStiffness));
         }
         if problem.floor_friction.is_some() {
-            return Err(unsupported("in plan view the floor rubs everywhere"));
+            return Err(unsupported(Unsupported::PlanView));
         }
         if problem.cable.self_contact {
-            return Err(unsupported("the cable can touch itself"));
+            return Err(unsupported(Unsupported::SelfContact));
         }
         let n = problem.supports.len();
         let mut model = Self {
@@ -156,7 +156,7 @@ impl CatenaryModel {
         }
         let at = |n: &Node| Vec2::new(n.x_m, n.y_m);
         let laid = laid(&self.problem, layout);
-        let reached = |s: f64| unsupported(format!("the cable reaches an obstacle {s:.3} m along it"));
+        let reached = |s: f64| unsupported(Unsupported::Obstacle { arc_length_m: s });
         for w in nodes.windows(2) {
             let (s0, s1) = (w[0].arc_length_m, w[1].arc_length_m);
             if let (Some(a), Some(b)) = (laid.position_at(s0), laid.position_at(s1)) {
@@ -271,7 +271,7 @@ impl Mechanics for CatenaryModel {
         _gauge: &mut TensionGauge,
     ) -> Result<StepReport, SolveError> {
         if inertia == Inertia::Dynamic {
-            return Err(unsupported("motion with inertia"));
+            return Err(unsupported(Unsupported::Inertia));
         }
         if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
             return Err(SolveError::TimeStep { dt_s, allowed: "0 < dt ≤ 1e6 s" });

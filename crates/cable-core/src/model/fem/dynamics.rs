@@ -3,19 +3,18 @@
 use std::sync::Arc;
 
 use crate::contact::barrier::Barrier;
-use crate::error::{Place, SolveError};
+use crate::error::{Place, SolveError, Unsupported};
 use crate::math::{Vec2, bounded};
 use crate::model::fem::equilibrium::initial_guess::{lay, push_out, way};
 use crate::model::fem::mesh::sliding_node::Seat;
 use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::newton::mixed_free::FreeStep;
-use crate::model::fem::newton::step_input::{Converged, Failure, Pose, StepInput};
+use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose, StepInput, WorkBudget};
 use crate::model::fem::newton::step_setup::{load_scale, tolerance};
 use crate::model::fem::obstacle::moving_outline::MovingOutline;
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::friction_state::{ContactPair, ContactSet, SLIDE, slip_at_rest};
 use crate::model::fem::system::loss::Loss;
-use crate::model::fem::time::bdf2::PULLED;
 use crate::model::fem::time::history::{Checkpoint, Motion};
 use crate::model::fem::time::sleeping::Sleep;
 use crate::model::fem::time::step_size::StepSizeController;
@@ -139,7 +138,7 @@ pub struct Dynamics {
     pub(super) keeps: bool,
     pub(super) kept: Option<Box<CableSolution>>,
     /// Iterations times nodes that the search for a resting place may still take.
-    pub(super) work_left: usize,
+    pub(super) work_left: WorkBudget,
     /// Room for where hands draw supports in a part of a step.
     aims: Vec<Option<Vec2>>,
     /// The outline of the robot, if there is one.
@@ -224,7 +223,7 @@ impl Dynamics {
             stepped: None,
             keeps: false,
             kept: None,
-            work_left: usize::MAX,
+            work_left: WorkBudget::Unlimited,
             aims: Vec::new(),
             rider,
             gauged: Gauged::default(),
@@ -295,10 +294,10 @@ impl Dynamics {
     }
 
     pub(super) fn refuse(&self) -> Result<(), SolveError> {
-        let feature = |s: &str| SolveError::Unsupported { model: Model::Fem, feature: s.to_owned() };
         let pulleys = self.mesh.sliding.iter().flatten().any(|s| matches!(s.seat, Seat::Pulley(_)));
         if self.problem.cable.self_contact && pulleys {
-            return Err(feature("contact of the cable with itself in a scene with pulleys"));
+            let feature = Unsupported::SelfContactWithPulleys;
+            return Err(SolveError::Unsupported { model: Model::Fem, feature });
         }
         Ok(())
     }
@@ -435,7 +434,7 @@ impl Dynamics {
                     let mut aims = std::mem::take(&mut self.aims);
                     self.aim(&mut aims, dragged, piece / (due - start));
                     let tried = self.quiet_step(to, &aims).or_else(|failure| {
-                        if failure.cause == PULLED || depth < QUIET_DEPTH {
+                        if failure.cause == FailureCause::CornerPulls || depth < QUIET_DEPTH {
                             return Err(failure);
                         }
                         self.restore();
@@ -466,9 +465,13 @@ impl Dynamics {
                     size = began.filter(|_| depth == 0).map_or(size, |b: f64| b - left).min(left);
                 }
                 other => {
-                    let f = other.err().unwrap_or(Failure { node: 0, residual: f64::NAN, cause: "not finite" });
+                    let f = other.err().unwrap_or(Failure {
+                        node: 0,
+                        residual: f64::NAN,
+                        cause: FailureCause::StateNotFinite,
+                    });
                     self.restore();
-                    if f.cause == PULLED && self.settle_down(f.node) {
+                    if f.cause == FailureCause::CornerPulls && self.settle_down(f.node) {
                         self.renew_task();
                         continue;
                     }
@@ -494,7 +497,7 @@ impl Dynamics {
                             dt_s: size,
                             residual_n: f.residual,
                             place: self.place(f.node),
-                            cause: f.cause.to_owned(),
+                            cause: f.cause.to_string(),
                         });
                     }
                 }
@@ -550,6 +553,7 @@ impl Dynamics {
             arc_length_m: self.mesh.arc_length.clone(),
             position_m: self.motion.x.clone(),
             velocity_m_per_s: self.motion.v.clone(),
+            in_motion: false,
         }
     }
 

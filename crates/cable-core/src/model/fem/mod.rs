@@ -37,6 +37,7 @@ use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
 use crate::model::fem::mesh_comparison::TwoMeshes;
+use crate::model::fem::newton::step_input::WorkBudget;
 use crate::model::gauge::TensionGauge;
 use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium, slid_first, slides_on, work};
 use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
@@ -401,9 +402,9 @@ impl Mechanics for FemModel {
         if let Some(report) = self.bend() {
             return Ok(report);
         }
-        self.dynamics.work_left = equilibrium::quasi_static::REST_WORK;
+        self.dynamics.work_left = WorkBudget::Left(equilibrium::quasi_static::REST_WORK);
         let found = self.rest_in_touch();
-        self.dynamics.work_left = usize::MAX;
+        self.dynamics.work_left = WorkBudget::Unlimited;
         found
     }
 
@@ -452,7 +453,7 @@ impl Mechanics for FemModel {
         self.bent = None;
         self.unbent = None;
         // Statics has no velocities: what moves is taken over by the part that can move.
-        if self.present == Part::Statics && state.velocity_m_per_s.iter().any(|v| v.norm() > 0.0) {
+        if self.present == Part::Statics && state.moves() {
             self.dynamics.set_state(state)?;
             self.present = Part::Dynamics;
             return Ok(());

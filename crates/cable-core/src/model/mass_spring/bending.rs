@@ -4,7 +4,6 @@ use crate::energy::Energy;
 use crate::energy::bending::{BendingEnergy, ClampBend};
 use crate::math::Vec2;
 use crate::model::mass_spring::MassSpringModel;
-use crate::model::mass_spring::pulleys::pulley::NONE;
 use crate::scene::SupportKind;
 
 impl MassSpringModel {
@@ -18,7 +17,7 @@ impl MassSpringModel {
 
     /// The bend at an inner node, if it resists.
     pub(super) fn bend_at(&self, n: usize) -> Option<BendingEnergy> {
-        let inner = n > 0 && n + 1 < self.x.len() && self.pulley_at[n] == NONE;
+        let inner = n > 0 && n + 1 < self.x.len() && self.pulley_at[n].is_none();
         inner.then(|| BendingEnergy {
             stiffness: self.problem.bending_stiffness,
             length: 0.5 * (self.rest[n - 1] + self.rest[n]),

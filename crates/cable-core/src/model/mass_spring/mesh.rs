@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::math::{Vec2, bounded};
 use crate::model::Settings;
 use crate::model::mass_spring::MassSpringModel;
-use crate::model::mass_spring::pulleys::pulley::{NONE, Pulley};
+use crate::model::mass_spring::pulleys::pulley::Pulley;
 use crate::problem::Problem;
 use crate::solution::Cost;
 use crate::state::State;
@@ -67,11 +67,11 @@ impl MassSpringModel {
             mass[k] += p.mass;
             lump[k] += p.mass;
         }
-        let mut pulley_at = vec![NONE; s.len()];
+        let mut pulley_at = vec![None; s.len()];
         for (k, p) in pulleys.iter_mut().enumerate() {
-            p.node = node_of[p.support];
-            p.anchor = s[p.node];
-            pulley_at[p.node] = k;
+            let node = node_of[p.support];
+            p.sit(node, s[node]);
+            pulley_at[p.node] = Some(k);
         }
         let load_node = problem.loads.iter().map(|l| nearest(l.arc_length)).collect();
         let x = first_shape(&problem, &s, &node_of);

@@ -32,7 +32,7 @@ mod xpbd;
 use std::sync::Arc;
 
 use crate::contact::Gap;
-use crate::error::SolveError;
+use crate::error::{SolveError, Unsupported};
 use crate::math::Vec2;
 use crate::model::fem::FemModel;
 use crate::model::gauge::TensionGauge;
@@ -103,8 +103,8 @@ pub struct MassSpringModel {
     /// Lumped mass at each node, kg.
     lump: Vec<f64>,
     pulleys: Vec<Pulley>,
-    /// Index of the pulley at each node, or `pulleys::pulley::NONE`.
-    pulley_at: Vec<usize>,
+    /// Index of the pulley at each node, if there is one.
+    pulley_at: Vec<Option<usize>>,
     /// Where friction holds, between steps without inertia.
     anchors: Vec<Anchor>,
     warnings: Vec<Warning>,
@@ -119,10 +119,19 @@ pub struct MassSpringModel {
     errors: ErrorEstimates,
 }
 
+/// What an anchor holds the cable to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Surface {
+    /// The floor of a plan view, which rubs everywhere.
+    Floor,
+    /// The obstacle of this index.
+    Obstacle(usize),
+}
+
 /// Where friction holds the cable: the material point, m, and where it lies.
 #[derive(Clone, Copy, Debug)]
 struct Anchor {
-    obstacle: usize,
+    surface: Surface,
     s: f64,
     at: Vec2,
 }
@@ -141,8 +150,8 @@ struct Touch {
 /// The longest step, s: longer is a mistake in the caller's clock.
 const MAX_STEP_S: f64 = 60.0;
 
-fn unsupported(feature: &str) -> SolveError {
-    SolveError::Unsupported { model: Model::MassSpring, feature: feature.to_owned() }
+fn unsupported(feature: Unsupported) -> SolveError {
+    SolveError::Unsupported { model: Model::MassSpring, feature }
 }
 
 /// The resting shape of the corrected bars and where the supports sit on it.
@@ -174,7 +183,7 @@ impl MassSpringModel {
     /// `Unsupported` when the scene needs what the model lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
         if problem.cable.self_contact {
-            return Err(unsupported("self-contact"));
+            return Err(unsupported(Unsupported::SelfContact));
         }
         let slid = mesh::lay_supports(&problem);
         Ok(Self::mesh(problem, settings, &slid))
@@ -338,7 +347,7 @@ impl Mechanics for MassSpringModel {
             return Err(e);
         }
         let slid = self.slid_in(state);
-        let next = self.shaped(state, &slid).ok_or_else(|| unsupported("a state of no nodes"))?;
+        let next = self.shaped(state, &slid).ok_or_else(|| unsupported(Unsupported::EmptyState))?;
         next.refuse_buried()?;
         *self = next;
         Ok(())

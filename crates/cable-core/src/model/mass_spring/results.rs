@@ -132,6 +132,7 @@ impl MassSpringModel {
             arc_length_m: nodes.iter().map(|n| n.arc_length_m).collect(),
             position_m: nodes.iter().map(|n| Vec2::new(n.x_m, n.y_m)).collect(),
             velocity_m_per_s: nodes.iter().map(|n| Vec2::new(n.vx_m_per_s, n.vy_m_per_s)).collect(),
+            in_motion: false,
         }
     }
 

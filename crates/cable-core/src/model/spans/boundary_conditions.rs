@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::catenary::PointForce;
 use crate::contact::swept_corners::{self, Corner};
-use crate::error::SolveError;
+use crate::error::{SolveError, Unsupported};
 use crate::math::Vec2;
 use crate::model::Model;
 use crate::model::catenary::layout::hint_of_weight;
@@ -73,8 +73,8 @@ pub(in crate::model::spans) struct Part {
 }
 
 /// The model's refusal.
-pub(in crate::model::spans) fn unsupported(feature: impl Into<String>) -> SolveError {
-    SolveError::Unsupported { model: Model::Spans, feature: feature.into() }
+pub(in crate::model::spans) fn unsupported(feature: Unsupported) -> SolveError {
+    SolveError::Unsupported { model: Model::Spans, feature }
 }
 
 impl Layout {
@@ -85,16 +85,16 @@ impl Layout {
     pub fn new(problem: &Arc<Problem>, turned: bool) -> Result<Self, SolveError> {
         let p = problem;
         if p.bending_stiffness > 0.0 {
-            return Err(unsupported("the cable has bending stiffness"));
+            return Err(unsupported(Unsupported::BendingStiffness));
         }
         if p.floor_friction.is_some() {
-            return Err(unsupported("in plan view the floor rubs everywhere"));
+            return Err(unsupported(Unsupported::PlanView));
         }
         if p.cable.self_contact {
-            return Err(unsupported("the cable can touch itself"));
+            return Err(unsupported(Unsupported::SelfContact));
         }
         if p.supports.iter().any(|s| s.release.is_some()) {
-            return Err(unsupported("a support lets go"));
+            return Err(unsupported(Unsupported::Release));
         }
         let mut loads = Vec::new();
         for (load, l) in p.loads.iter().enumerate() {
@@ -116,7 +116,9 @@ impl Layout {
                     wheels += 1;
                 }
                 SupportKind::Fixed | SupportKind::Clamped | SupportKind::Robot => {
-                    let Some(arc_length) = s.arc_length else { return Err(unsupported("a grip without a place")) };
+                    let Some(arc_length) = s.arc_length else {
+                        return Err(unsupported(Unsupported::SupportWithoutPlace));
+                    };
                     if arc_length > part.material[0] {
                         part.material[1] = arc_length;
                         part.supports[1] = Some(k);

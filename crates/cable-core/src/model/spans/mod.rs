@@ -37,7 +37,7 @@ mod verify;
 
 use std::sync::Arc;
 
-use crate::error::{Place, SolveError};
+use crate::error::{Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger, smaller};
 use crate::model::catenary::slack_without_weight;
 use crate::model::gauge::TensionGauge;
@@ -284,21 +284,15 @@ fn said(problem: &Problem, trouble: Failure) -> SolveError {
         Failure::Compressed { s, at, tension } => {
             SolveError::Compressed { model: Model::Spans, tension_n: tension, place: problem.place(s, at, 0.0) }
         }
-        Failure::Restless { s } => unsupported(format!("contacts come and go without end near {s:.3} m")),
-        Failure::OffWheel { support } => unsupported(format!("the cable lifts off the wheel of `{}`", name(support))),
-        Failure::Passed { at } => {
-            unsupported(format!("the cable springs past a corner at ({:.3} m, {:.3} m)", at.x, at.y))
-        }
-        Failure::SupportInside { at } => {
-            unsupported(format!("a support is inside an obstacle at ({:.3} m, {:.3} m)", at.x, at.y))
-        }
-        Failure::LoadLies { s } => unsupported(format!("the load at {s:.3} m lies on an obstacle")),
-        Failure::NoSeat { s, at } => {
-            unsupported(format!("an obstacle is met {s:.3} m along the cable at ({:.3} m, {:.3} m)", at.x, at.y))
-        }
-        Failure::Drawn { s } => unsupported(format!("the cable lies loose and is drawn along, from {s:.3} m")),
+        Failure::Restless { s } => unsupported(Unsupported::EndlessContacts { arc_length_m: s }),
+        Failure::OffWheel { support } => unsupported(Unsupported::OffWheel { support: name(support).to_owned() }),
+        Failure::Passed { at } => unsupported(Unsupported::CornerPassed { at_m: at }),
+        Failure::SupportInside { at } => unsupported(Unsupported::SupportInside { at_m: at }),
+        Failure::LoadLies { s } => unsupported(Unsupported::LoadOnObstacle { arc_length_m: s }),
+        Failure::NoSeat { s, at } => unsupported(Unsupported::ContactWithoutSeat { arc_length_m: s, at_m: at }),
+        Failure::Drawn { s } => unsupported(Unsupported::LooseCableDrawn { arc_length_m: s }),
         Failure::Unsound { what, s, at } => {
-            unsupported(format!("{what} {s:.3} m along it at ({:.3} m, {:.3} m)", at.x, at.y))
+            unsupported(Unsupported::Unverified { finding: what, arc_length_m: s, at_m: at })
         }
     }
 }
@@ -314,7 +308,7 @@ impl Mechanics for SpansModel {
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
         if self.layout.strands.is_empty() {
-            return Err(unsupported("no support holds the cable: two loads or loose ends, and obstacles at most"));
+            return Err(unsupported(Unsupported::NothingHolds));
         }
         let mut instant = BoundaryConditions::default();
         self.layout.instant(&self.dragged, self.time_s, &mut instant);
@@ -381,7 +375,7 @@ impl Mechanics for SpansModel {
         _gauge: &mut TensionGauge,
     ) -> Result<StepReport, SolveError> {
         if inertia == Inertia::Dynamic {
-            return Err(unsupported("motion with inertia"));
+            return Err(unsupported(Unsupported::Inertia));
         }
         if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
             return Err(SolveError::TimeStep { dt_s, allowed: "0 < dt ≤ 1e6 s" });

@@ -1,21 +1,18 @@
 //! This module finds equilibria in contact, and takes quasi-static steps.
 
-use crate::error::SolveError;
+use crate::error::{SolveError, Unsupported};
 use crate::math::{Vec2, bounded, larger};
 use crate::model::fem::dynamics::{Dynamics, REACH};
 use crate::model::fem::equilibrium::initial_guess::push_out;
-use crate::model::fem::newton::minimize::{DRIFT, WORK_SPENT};
-use crate::model::fem::newton::step_input::{Converged, Failure, Pose, StepInput};
+use crate::model::fem::newton::minimize::DRIFT;
+use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose, StepInput};
 use crate::model::fem::newton::step_setup::{StickSlipChanges, load_scale, tolerance};
 use crate::model::fem::obstacle::moving_outline::MovingOutline;
 use crate::model::fem::results;
 use crate::model::fem::system::friction_state::SLIDE;
-use crate::model::fem::time::bdf2::{NOT_FOUND, PULLED, ROUNDS_EACH};
+use crate::model::fem::time::bdf2::ROUNDS_EACH;
 use crate::model::{Model, StepReport};
 use crate::state::State;
-
-/// What is said of a way down that does not end.
-const STILL_MOVES: &str = "it never came to rest";
 
 /// Work of one search for a resting place: iterations times nodes. Less: scenes that come to rest slowly are refused; more: nobody is
 /// told for minutes. It is
@@ -93,7 +90,7 @@ impl Dynamics {
     /// The same of a cable whose friction counts.
     ///
     /// # Errors
-    /// `PULLED` where a corner would have to pull, before anything is accepted: what slides meanwhile would keep what that did.
+    /// `CornerPulls` where a corner would have to pull, before anything is accepted: what slides meanwhile would keep what that did.
     pub(in crate::model::fem) fn quiet_step(
         &mut self,
         to: f64,
@@ -112,7 +109,7 @@ impl Dynamics {
             self.task.most_noise = NEGLIGIBLE * self.task.tolerance;
             let mut pose = self.still_pose();
             let mut done = self.lag_wholly(&mut pose);
-            if done.is_err_and(|f| f.cause != WORK_SPENT) && self.contacts.slip < SLIDE {
+            if done.is_err_and(|f| f.cause != FailureCause::WorkSpent) && self.contacts.slip < SLIDE {
                 // Where grips change all along the cable, as on a first lay, ground that gives way is easier to come to rest on.
                 self.contacts.set_slip(SLIDE);
                 pose = self.still_pose();
@@ -123,7 +120,7 @@ impl Dynamics {
                 && let Some(node) = self.pulled_by(&pose.x, pull)
             {
                 let residual = done.map_or_else(|f| f.residual, |d| d.residual);
-                return Err(Failure { node, residual, cause: PULLED });
+                return Err(Failure { node, residual, cause: FailureCause::CornerPulls });
             }
             let done = done?;
             total = Converged { iterations: total.iterations + done.iterations, ..done };
@@ -236,7 +233,7 @@ impl Dynamics {
             return Ok(found.done);
         }
         let node = self.mesh.sliding.iter().position(Option::is_some).unwrap_or(0);
-        Err(Failure { node, residual: found.done.residual, cause: NOT_FOUND })
+        Err(Failure { node, residual: found.done.residual, cause: FailureCause::StickSlipUndecided })
     }
 
     /// Takes a pose as the state at rest at the time `to`; returns whether what the cable runs over changed.
@@ -277,7 +274,7 @@ impl Dynamics {
         let kept = (self.saved.clone(), self.can_restore);
         self.save();
         let mut found = self.relax_within(f64::INFINITY, to, dragged);
-        if found.is_err_and(|f| f.cause != WORK_SPENT && f.residual > NEGLIGIBLE * self.task.tolerance) {
+        if found.is_err_and(|f| f.cause != FailureCause::WorkSpent && f.residual > NEGLIGIBLE * self.task.tolerance) {
             self.restore();
             found = self.relax_within(NEGLIGIBLE, to, dragged);
         }
@@ -297,7 +294,7 @@ impl Dynamics {
         // Set where Newton without resistance has failed: then steps are solved exactly, until what resists is nothing.
         let mut stubborn = false;
         let mut total = 0;
-        let mut last = Failure { node: 0, residual: f64::NAN, cause: STILL_MOVES };
+        let mut last = Failure { node: 0, residual: f64::NAN, cause: FailureCause::StillMoves };
         for round in 0..MAX_RELAX {
             self.prepare_task(to, Some(dragged));
             self.adapt_slip();
@@ -330,10 +327,11 @@ impl Dynamics {
                             (resists, slowest) = (force, k);
                         }
                     }
-                    last = Failure { node: slowest, residual: done.residual + resists, cause: STILL_MOVES };
+                    last =
+                        Failure { node: slowest, residual: done.residual + resists, cause: FailureCause::StillMoves };
                     let remeshed = self.accept_rest(&pose, self.motion.time);
                     if self.ran_away(&laid).is_some() {
-                        return Err(Failure { node: 0, residual: f64::NAN, cause: "it slides away" });
+                        return Err(Failure { node: 0, residual: f64::NAN, cause: FailureCause::SlidesAway });
                     }
                     if remeshed {
                         moved = moved.max(0.1);
@@ -349,7 +347,7 @@ impl Dynamics {
                     if resistance < floor || (moved < 1e-4 && round % 8 == 7) || moved < 1e-7 {
                         match self.rest_step(to, dragged) {
                             Ok(done) => return Ok(Converged { iterations: total + done.iterations, ..done }),
-                            Err(failure) if failure.cause == WORK_SPENT => return Err(failure),
+                            Err(failure) if failure.cause == FailureCause::WorkSpent => return Err(failure),
                             Err(failure) => {
                                 last = failure;
                                 stubborn = true;
@@ -358,7 +356,7 @@ impl Dynamics {
                         }
                     }
                 }
-                Err(failure) if failure.cause == WORK_SPENT => return Err(failure),
+                Err(failure) if failure.cause == FailureCause::WorkSpent => return Err(failure),
                 Err(failure) => {
                     last = failure;
                     resistance *= 8.0;
@@ -403,7 +401,7 @@ impl Dynamics {
                         "nothing holds the cable where it is laid: it slides away by more than its length".to_owned();
                     return Err(SolveError::NoRestingPlace { why });
                 }
-                if f.cause == WORK_SPENT {
+                if f.cause == FailureCause::WorkSpent {
                     let (model, segments) = (Model::Fem, self.mesh.rest_length.len());
                     let iterations = REST_WORK / self.mesh.nodes().max(1);
                     let (residual_n, place) = (f.residual, self.place(f.node));
@@ -479,9 +477,8 @@ impl Dynamics {
         }
         let overlap = self.contacts.own.smallest_gap(&self.mesh, &self.motion.x, 0.0);
         if overlap.is_some() || self.crosses_itself() {
-            let s = self.mesh.arc_length[overlap.map_or(0, |o| o.1)];
-            let feature =
-                format!("a cable that touches itself where it is laid (near {s:.2} m): draw it a route that does not");
+            let arc_length_m = self.mesh.arc_length[overlap.map_or(0, |o| o.1)];
+            let feature = Unsupported::SelfContactAtStart { arc_length_m };
             return Err(SolveError::Unsupported { model: Model::Fem, feature });
         }
         Ok(self.relax(time, dragged))

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use crate::error::{Place, SolveError};
+use crate::error::{Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::fem::beam::equilibrium::{Beam, Outcome};
 use crate::model::fem::free::dual_weighted_residual;
@@ -221,7 +221,7 @@ impl Statics {
         iterations += network.steps;
         if self.problem.bending_stiffness > 0.0 {
             if self.problem.supports.iter().any(|s| s.kind == SupportKind::Pulley) {
-                let feature = "bending stiffness over pulleys".to_owned();
+                let feature = Unsupported::BendingOverPulleys;
                 return Err(SolveError::Unsupported { model: Model::Fem, feature });
             }
             return self.bend(network, time, hinted);
@@ -482,7 +482,7 @@ impl Statics {
             && state.arc_length_m.first().is_some_and(|s| s.abs() <= near)
             && state.arc_length_m.last().is_some_and(|s| (s - self.problem.length).abs() <= near);
         if !fits {
-            let feature = "a state of a cable of another length".to_owned();
+            let feature = Unsupported::StateOfOtherLength;
             return Err(SolveError::Unsupported { model: Model::Fem, feature });
         }
         self.time = state.time_s;
@@ -513,6 +513,7 @@ impl Statics {
             arc_length_m: self.points.iter().map(|p| p.arc_length).collect(),
             position_m: self.points.iter().map(|p| p.at).collect(),
             velocity_m_per_s: vec![Vec2::zeros(); self.points.len()],
+            in_motion: false,
         }
     }
 

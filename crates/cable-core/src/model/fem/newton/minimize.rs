@@ -14,7 +14,7 @@ use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger, smaller};
 use crate::model::fem::newton::active_set::PredictedContacts;
-use crate::model::fem::newton::step_input::{Converged, Failure, Pose, StepInput};
+use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose, StepInput, WorkBudget};
 use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::contact_energy::{add_floor, add_rubs, add_touch};
@@ -50,9 +50,6 @@ pub(in crate::model::fem) const DRIFT: f64 = 4.0;
 /// Short moves of held nodes towards their targets before they are stopped. Fewer: supports lag that could have got there;
 /// more: iterations spent on what the next step does as well.
 const MAX_PUSHES: usize = 12;
-
-/// Why a search ends that has spent its work.
-pub(in crate::model::fem) const WORK_SPENT: &str = "the work for one resting place is spent";
 
 /// What is left unbalanced at the worst node.
 #[derive(Clone, Copy, Debug)]
@@ -121,7 +118,7 @@ pub struct Workspace {
     pub(in crate::model::fem) begun: Pose,
     pub(in crate::model::fem) near_enough: bool,
     /// Iterations times nodes that may still be spent.
-    pub(in crate::model::fem) work_left: usize,
+    pub(in crate::model::fem) work_left: WorkBudget,
     /// Iterations in a hurry of this step.
     pub(in crate::model::fem) hurried: usize,
 }
@@ -151,7 +148,7 @@ impl Workspace {
             slid: Vec::with_capacity(mesh.nodes()),
             begun: Pose::default(),
             near_enough: false,
-            work_left: usize::MAX,
+            work_left: WorkBudget::Unlimited,
             hurried: 0,
             system,
             factor,
@@ -354,7 +351,7 @@ impl Workspace {
             let Residual { force: residual, node, excess, drift } = self.residual(mesh, task);
             let failed = |cause| Err(Failure { node, residual, cause });
             if !value.is_finite() || !residual.is_finite() {
-                return failed("the energy is not finite");
+                return failed(FailureCause::EnergyNotFinite);
             }
             let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != pose.x[k]);
             // A support that squeezes the cable harder than numbers can tell has come as far as it can.
@@ -372,12 +369,12 @@ impl Workspace {
                 return Ok(done);
             }
             if done.iterations >= task.max_iterations {
-                return failed("too many iterations");
+                return failed(FailureCause::TooManyIterations);
             }
-            if self.work_left == 0 {
-                return failed(WORK_SPENT);
+            if self.work_left.is_spent() {
+                return failed(FailureCause::WorkSpent);
             }
-            self.work_left = self.work_left.saturating_sub(mesh.nodes());
+            self.work_left.spend(mesh.nodes());
             done.iterations += 1;
             // The gradient is needed after pinning overwrote the Hessian only, so it stays valid.
             if !self.solve(mesh, task, (&pose.x, shift)) {
@@ -390,7 +387,7 @@ impl Workspace {
                     shift = grow(shift, task);
                     tries += 1;
                     if tries > 40 {
-                        return failed("the tangent is not positive definite");
+                        return failed(FailureCause::TangentIndefinite);
                     }
                 }
             }
@@ -415,7 +412,7 @@ impl Workspace {
                     if left && fraction < 0.5 {
                         pushes += 1;
                         if pushes > MAX_PUSHES && !task.may_lag {
-                            return failed("a support cannot reach its place");
+                            return failed(FailureCause::SupportShort);
                         } else if pushes > MAX_PUSHES {
                             self.goal.clone_from(&pose.x);
                         }
@@ -427,7 +424,7 @@ impl Workspace {
                         return Ok(done);
                     }
                     if shift > 1e12 * task.shift.max(1e-6) {
-                        return failed("no descent");
+                        return failed(FailureCause::NoDescent);
                     }
                     shift = grow(shift, task);
                     value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Clipped);

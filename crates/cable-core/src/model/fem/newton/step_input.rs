@@ -1,5 +1,7 @@
 //! The step input says what a step is about; beside it stand its unknowns and how it ended.
 
+use thiserror::Error;
+
 use crate::math::Vec2;
 
 /// The unknowns of a step.
@@ -102,6 +104,30 @@ impl StepInput {
     }
 }
 
+/// The work that a search may still do: iterations times nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WorkBudget {
+    /// The caller bounds the work in another way.
+    Unlimited,
+    /// So many more.
+    Left(usize),
+}
+
+impl WorkBudget {
+    /// Whether nothing is left.
+    #[must_use]
+    pub fn is_spent(self) -> bool {
+        self == Self::Left(0)
+    }
+
+    /// Takes one iteration of so many nodes off it.
+    pub fn spend(&mut self, nodes: usize) {
+        if let Self::Left(left) = self {
+            *left = left.saturating_sub(nodes);
+        }
+    }
+}
+
 /// Why a step failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Failure {
@@ -109,8 +135,52 @@ pub struct Failure {
     pub node: usize,
     /// Its unbalanced force, N.
     pub residual: f64,
-    /// In words.
-    pub cause: &'static str,
+    /// Why.
+    pub cause: FailureCause,
+}
+
+/// The reasons for which a step, or the search for an equilibrium, fails.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum FailureCause {
+    /// The energy or its gradient is not finite.
+    #[error("the energy is not finite")]
+    EnergyNotFinite,
+    /// A position or velocity after the step is not finite.
+    #[error("not finite")]
+    StateNotFinite,
+    /// The iteration has not converged in as many iterations as it may take.
+    #[error("too many iterations")]
+    TooManyIterations,
+    /// All the work that one equilibrium may take is done: no other way is tried.
+    #[error("the work for one resting place is spent")]
+    WorkSpent,
+    /// No shift makes the tangent stiffness positive definite.
+    #[error("the tangent is not positive definite")]
+    TangentIndefinite,
+    /// A sliding node holds a corner that would have to pull: the step is tried again without it.
+    #[error("a corner would have to pull")]
+    CornerPulls,
+    /// No consistent set of sliding nodes that stick and that slip was found.
+    #[error("it was not found which corners hold the cable and over which it slips")]
+    StickSlipUndecided,
+    /// A bar would pass through a corner.
+    #[error("the cable would run through a corner")]
+    CornerCrossed,
+    /// The relaxation ends with nodes that still move.
+    #[error("it never came to rest")]
+    StillMoves,
+    /// The relaxation carries the cable away without end.
+    #[error("it slides away")]
+    SlidesAway,
+    /// A held node stays short of its target.
+    #[error("a support cannot reach its place")]
+    SupportShort,
+    /// No step length lowers the energy.
+    #[error("no descent")]
+    NoDescent,
+    /// The working memory cannot be had.
+    #[error("there is no memory for it")]
+    OutOfMemory,
 }
 
 /// What a step did.

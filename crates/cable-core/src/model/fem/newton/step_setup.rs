@@ -4,7 +4,7 @@ use crate::math::Vec2;
 use crate::model::fem::dynamics::{Dynamics, INNER_STEP, REACH};
 use crate::model::fem::mesh::sliding_node::Seat;
 use crate::model::fem::newton::minimize::Workspace;
-use crate::model::fem::newton::step_input::{Converged, Failure, Pose};
+use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose};
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::floor_friction;
 use crate::model::input_filter::MAX_SPEED;
@@ -289,7 +289,7 @@ impl Dynamics {
             _ => Box::new(Workspace::new(&self.mesh).map_err(|_| Failure {
                 node: 0,
                 residual: f64::NAN,
-                cause: "there is no memory for it",
+                cause: FailureCause::OutOfMemory,
             })?),
         };
         memory.work_left = self.work_left;

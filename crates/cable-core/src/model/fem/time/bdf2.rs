@@ -15,7 +15,7 @@
 use crate::math::{Vec2, bounded, larger, perp};
 use crate::model::fem::dynamics::{Dynamics, STIFFNESS_CHANGE};
 use crate::model::fem::mesh::sliding_node::{Balanced, StickSlip};
-use crate::model::fem::newton::step_input::{Converged, Failure, Pose};
+use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose};
 use crate::model::fem::newton::step_setup::damping_time;
 use crate::model::fem::system::friction_state::SLIDE;
 use crate::model::fem::time::history::Motion;
@@ -35,13 +35,6 @@ pub(in crate::model::fem) fn carried_on(against: Vec2, normal: Vec2, friction: f
     let pressed = if pressed > 0.0 { pressed } else { 0.0 };
     normal * pressed + along * bounded(against.dot(&along), -friction * pressed, friction * pressed)
 }
-
-/// Why a step is tried again without a sliding node.
-pub(in crate::model::fem) const PULLED: &str = "a corner would have to pull";
-
-/// Why a step is halved in which it was not found which sliding nodes hold and which slip.
-pub(in crate::model::fem) const NOT_FOUND: &str =
-    "it was not found which corners hold the cable and over which it slips";
 
 /// Rounds of finding that out in which no fewer grips are wrong than before, until they are changed one at a time; and rounds beside those for each
 /// sliding node. Fewer: steps of a few nodes that free each other in turn take longer, or are halved.
@@ -210,7 +203,7 @@ impl Dynamics {
         self.task.tolerance = exact;
         let done = done?;
         if let Some(node) = self.pulled(&pose.x) {
-            return Err(Failure { node, residual: done.residual, cause: PULLED });
+            return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerPulls });
         }
         self.note_lag(&pose);
         self.note_hands(&pose);
@@ -252,7 +245,7 @@ impl Dynamics {
             self.keeps = false;
             self.stepped = self.kept.take();
             if let Some(node) = self.crossing() {
-                return Err(Failure { node, residual: done.residual, cause: "the cable would run through a corner" });
+                return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerCrossed });
             }
         }
         Ok(done)
@@ -350,7 +343,7 @@ impl Dynamics {
             done = Converged { iterations: done.iterations + more.iterations, ..more };
         }
         let node = self.mesh.sliding.iter().position(Option::is_some).unwrap_or(0);
-        Err(Failure { node, residual: done.residual, cause: NOT_FOUND })
+        Err(Failure { node, residual: done.residual, cause: FailureCause::StickSlipUndecided })
     }
 
     /// Unbalanced force to reach in a step with inertia, N: not below the rounding of m a² (x − x̃). That grows as the

@@ -143,6 +143,7 @@ impl Dynamics {
             position_m: s.iter().map(at).collect(),
             velocity_m_per_s: s.iter().map(|s| whole.velocity_at(*s).unwrap_or_default()).collect(),
             arc_length_m: s,
+            in_motion: whole.in_motion,
         }
     }
 

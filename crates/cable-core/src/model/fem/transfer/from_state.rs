@@ -91,7 +91,7 @@ impl Dynamics {
             self.thread_pulleys(Some(state));
         }
         // What moves goes on from where it is; a state at rest is brought to rest on this mesh.
-        let still = self.motion.v.iter().all(|v| v.norm() == 0.0);
+        let still = !state.in_motion && self.motion.v.iter().all(|v| v.norm() == 0.0);
         if !same && !still {
             self.follow_corners(state);
         }

@@ -3,7 +3,6 @@
 use crate::error::SolveError;
 use crate::math::{Vec2, bounded};
 use crate::model::Model;
-use crate::model::mass_spring::pulleys::pulley::NONE;
 use crate::model::mass_spring::{MassSpringModel, Touch};
 
 /// Distance kept ready for contact beside what is travelled, m.
@@ -23,7 +22,7 @@ impl MassSpringModel {
         if world.is_empty() {
             return Ok(());
         }
-        let free = (0..self.x.len()).filter(|&n| !self.held[n] && self.pulley_at[n] == NONE);
+        let free = (0..self.x.len()).filter(|&n| !self.held[n] && self.pulley_at[n].is_none());
         let gaps = free.filter_map(|n| Some((n, world.signed_gap(self.x[n], f64::INFINITY)?)));
         let inside = gaps.filter(|(_, gap)| gap.gap_m < -self.problem.radius);
         if let Some((n, deepest)) = inside.min_by(|a, b| a.1.gap_m.total_cmp(&b.1.gap_m)) {

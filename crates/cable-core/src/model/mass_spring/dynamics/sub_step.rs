@@ -4,7 +4,6 @@ use crate::error::SolveError;
 use crate::math::{Vec2, smaller};
 use crate::model::gauge::TensionGauge;
 use crate::model::input_filter::is_led;
-use crate::model::mass_spring::pulleys::pulley::NONE;
 use crate::model::mass_spring::{MassSpringModel, SmoothedTarget};
 
 /// Fraction of the stable sub-step that is used: more is unstable as elements stretch, less is slower.
@@ -219,9 +218,9 @@ impl MassSpringModel {
             self.x[p.node] = (b.end + a.start) * 0.5;
             self.v[p.node] -= along * p.rate;
             self.pulleys.remove(k);
-            self.pulley_at.fill(NONE);
+            self.pulley_at.fill(None);
             for (j, q) in self.pulleys.iter().enumerate() {
-                self.pulley_at[q.node] = j;
+                self.pulley_at[q.node] = Some(j);
             }
             self.measure();
         }

@@ -10,7 +10,7 @@ use crate::contact::friction;
 use crate::contact::pairs::Pair;
 use crate::math::{Mat2, Vec2, larger, perp};
 use crate::model::mass_spring::equilibrium::newton::System;
-use crate::model::mass_spring::{Anchor, MassSpringModel, Touch};
+use crate::model::mass_spring::{Anchor, MassSpringModel, Surface, Touch};
 
 /// Gap at which a contact begins to push, m; the whole load on one contact closes it. Less is stiffer and takes more
 /// steps, more lifts the cable.
@@ -23,8 +23,6 @@ const LAID: f64 = 2e-3;
 const SLIP: f64 = 5e-6;
 /// A contact takes the anchor of material this near, in even lengths.
 const NEAR: f64 = 0.75;
-/// The obstacle of an anchor on the floor of a plan view.
-const FLOOR: usize = usize::MAX;
 
 /// Friction at one place, frozen for a step.
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +53,7 @@ impl Push {
     fn anchor(&self, model: &MassSpringModel) -> Anchor {
         let (e, c) = (self.element, self.fraction);
         let at = model.x[e] + (model.x[e + 1] - model.x[e]) * c;
-        Anchor { obstacle: self.pair.gap.obstacle, s: model.s[e] + model.span[e] * c, at }
+        Anchor { surface: Surface::Obstacle(self.pair.gap.obstacle), s: model.s[e] + model.span[e] * c, at }
     }
 }
 
@@ -71,10 +69,10 @@ impl Contacts {
     pub(in crate::model::mass_spring) fn new(model: &MassSpringModel, anew: bool) -> Self {
         let mut anchors = if anew { Vec::new() } else { model.anchors.clone() };
         // Those of the floor come first, one a node.
-        let on_floor = anchors.iter().filter(|a| a.obstacle == FLOOR).count();
+        let on_floor = anchors.iter().filter(|a| a.surface == Surface::Floor).count();
         if model.problem.floor_friction.is_some() && on_floor != model.x.len() {
-            let others = anchors.iter().copied().filter(|a| a.obstacle != FLOOR);
-            let floor = model.s.iter().zip(&model.x).map(|(&s, &at)| Anchor { obstacle: FLOOR, s, at });
+            let others = anchors.iter().copied().filter(|a| a.surface != Surface::Floor);
+            let floor = model.s.iter().zip(&model.x).map(|(&s, &at)| Anchor { surface: Surface::Floor, s, at });
             anchors = floor.chain(others).collect();
         }
         let stiffness = model.problem.force_scale() / OFFSET;
@@ -151,7 +149,7 @@ impl Contacts {
             let e = push.element;
             let s = model.s[e] + model.span[e] * push.fraction;
             let nearest = (0..known)
-                .filter(|&a| !taken[a] && self.anchors[a].obstacle == gap.obstacle)
+                .filter(|&a| !taken[a] && self.anchors[a].surface == Surface::Obstacle(gap.obstacle))
                 .min_by(|&a, &b| (self.anchors[a].s - s).abs().total_cmp(&(self.anchors[b].s - s).abs()))
                 .filter(|&a| (self.anchors[a].s - s).abs() < NEAR * model.even);
             let anchor = match nearest {
@@ -296,7 +294,7 @@ impl MassSpringModel {
     /// way there left, up to μ times what presses. 0 where nothing is remembered.
     pub(in crate::model::mass_spring) fn held_by_floor(&self) -> f64 {
         let Some((mu, normal)) = self.problem.floor_friction else { return 0.0 };
-        let on_floor = self.anchors.iter().take_while(|a| a.obstacle == FLOOR).count();
+        let on_floor = self.anchors.iter().take_while(|a| a.surface == Surface::Floor).count();
         let top = self.tension.iter().copied().fold(0.0, larger);
         if on_floor != self.x.len() || !(top > 0.0) {
             return 0.0;

@@ -20,7 +20,6 @@ use crate::math::{Mat2, Vec2, larger};
 use crate::model::Model;
 use crate::model::mass_spring::MassSpringModel;
 use crate::model::mass_spring::equilibrium::contact_energy::Contacts;
-use crate::model::mass_spring::pulleys::pulley::NONE;
 
 /// Unbalanced force at rest, of the force scale: round-off allows little less, more shows in the reactions.
 const RESIDUAL: f64 = 1e-9;
@@ -224,7 +223,7 @@ impl MassSpringModel {
             system.hessian.add(2 * i + 1, 2 * i + 1, shift);
         }
         for i in 0..n {
-            let slides = self.pulley_at[i] != NONE;
+            let slides = self.pulley_at[i].is_some();
             for axis in 0..2 {
                 if self.held[i] && !(slides && axis == 0) {
                     system.gradient[2 * i + axis] = 0.0;
@@ -240,7 +239,7 @@ impl MassSpringModel {
         let limit = if self.problem.world.is_empty() { f64::INFINITY } else { MOST_MOVE * self.problem.radius };
         let mut scale = 1.0;
         for i in 0..n {
-            let (size, limit) = if self.pulley_at[i] != NONE {
+            let (size, limit) = if self.pulley_at[i].is_some() {
                 (system.step[2 * i].abs(), MOST_SLIDE * self.even)
             } else {
                 (system.step[2 * i].hypot(system.step[2 * i + 1]), limit)
@@ -251,7 +250,7 @@ impl MassSpringModel {
         }
         for i in 0..n {
             let step = Vec2::new(system.step[2 * i], system.step[2 * i + 1]) * scale;
-            if self.pulley_at[i] != NONE {
+            if self.pulley_at[i].is_some() {
                 self.s[i] -= step.x;
             } else {
                 self.x[i] -= step;
@@ -295,7 +294,7 @@ impl MassSpringModel {
                 let r = self.reach(e);
                 // σ moves half of the weight to the other end's side.
                 for (node, other, sign) in [(e, e + 1, 1.0), (e + 1, e, -1.0)] {
-                    if self.pulley_at[node] != NONE && self.pulley_at[other] == NONE {
+                    if self.pulley_at[node].is_some() && self.pulley_at[other].is_none() {
                         system.hessian.add(2 * other, 2 * node, 0.5 * sign * body.x);
                         system.hessian.add(2 * other + 1, 2 * node, 0.5 * sign * body.y);
                     }
@@ -334,7 +333,7 @@ impl MassSpringModel {
         let ea = if taut { ea } else { ea * system.fade };
         let across = if tension > lent { tension } else { lent };
         let k = along * (ea / l0) + (Mat2::identity() - along) * if r.free > 0.0 { across / r.free } else { 0.0 };
-        let slides = [self.pulley_at[e] != NONE, self.pulley_at[e + 1] != NONE];
+        let slides = [self.pulley_at[e].is_some(), self.pulley_at[e + 1].is_some()];
         let cross = t * (lambda * ea * r.length / (l0 * l0));
         let square = lambda * lambda * ea * r.length * r.length / l0.powi(3);
         for (i, sign, slides) in [(e, -1.0, slides[0]), (e + 1, 1.0, slides[1])] {
@@ -380,7 +379,7 @@ impl MassSpringModel {
         let mut out = (0.0, 0);
         for i in 0..self.x.len() {
             let g = Vec2::new(system.gradient[2 * i], system.gradient[2 * i + 1]);
-            let force = match (self.pulley_at[i] != NONE, self.held[i]) {
+            let force = match (self.pulley_at[i].is_some(), self.held[i]) {
                 (true, _) => g.x.abs(),
                 (false, true) => 0.0,
                 (false, false) => g.norm(),

@@ -6,7 +6,6 @@
 
 use crate::math::Vec2;
 use crate::model::mass_spring::MassSpringModel;
-use crate::model::mass_spring::pulleys::pulley::NONE;
 
 /// Free part of an element beside a pulley, of the even length, below which its other node is taken out: less shortens
 /// the stable step, more remeshes more often.
@@ -46,7 +45,7 @@ impl MassSpringModel {
     fn plain(&self, n: usize) -> bool {
         n > 0
             && n + 1 < self.x.len()
-            && self.pulley_at[n] == NONE
+            && self.pulley_at[n].is_none()
             && !self.node_of.contains(&n)
             && !self.load_node.contains(&n)
     }
@@ -58,7 +57,7 @@ impl MassSpringModel {
         }
         let far = 2 * n - i;
         // Two wheels keep a node between them.
-        if self.pulley_at[far] != NONE {
+        if self.pulley_at[far].is_some() {
             return false;
         }
         let (inner, outer) = if n < i { (n, n - 1) } else { (i, n) };
@@ -152,7 +151,7 @@ impl MassSpringModel {
         self.f.insert(n, Vec2::zeros());
         self.held_acceleration.insert(n, Vec2::zeros());
         self.held.insert(n, false);
-        self.pulley_at.insert(n, NONE);
+        self.pulley_at.insert(n, None);
         let tension = self.tension[e];
         for (list, value) in [
             (&mut self.span, 0.0),

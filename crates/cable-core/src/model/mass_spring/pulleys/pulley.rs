@@ -21,9 +21,6 @@ use crate::model::mass_spring::MassSpringModel;
 use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 
-/// No pulley at a node.
-pub(in crate::model::mass_spring) const NONE: usize = usize::MAX;
-
 /// Tension over the weight of half an element below which the direction of the force there says nothing.
 const SLACK: f64 = 4.0;
 
@@ -90,7 +87,7 @@ pub(in crate::model::mass_spring) fn angle_of(v: Vec2) -> f64 {
 }
 
 impl Pulley {
-    /// The pulleys of a cable, without nodes yet; `way` gives the direction in which the cable comes and goes.
+    /// The pulleys of a cable, at its first node until [`Self::sit`]; `way` gives the direction in which the cable comes and goes.
     pub(in crate::model::mass_spring) fn all(p: &Problem) -> Vec<Self> {
         let at = |k: usize| p.supports.get(k).and_then(|s| s.position_at(0.0)).map(|a| a.0);
         let down = p.body_force(0.0).try_normalize(0.0).unwrap_or(Vec2::new(0.0, -1.0));
@@ -110,7 +107,7 @@ impl Pulley {
                 };
                 Some(Self {
                     support: k,
-                    node: NONE,
+                    node: 0,
                     radius: s.wheel_radius,
                     friction: s.friction,
                     facing,
@@ -136,6 +133,11 @@ impl Pulley {
         center + Vec2::new(-sin, cos) * (self.facing * self.radius * flat)
     }
 
+    /// Puts it on a node, whose arc length (m) friction at rest is measured from.
+    pub(in crate::model::mass_spring) fn sit(&mut self, node: usize, arc_length: f64) {
+        (self.node, self.anchor) = (node, arc_length);
+    }
+
     /// Greatest |T_b − T_a| over T_b + T_a that friction holds.
     pub(in crate::model::mass_spring) fn grip(&self) -> f64 {
         (0.5 * self.friction * self.turn.abs()).tanh()
@@ -144,7 +146,7 @@ impl Pulley {
 
 impl MassSpringModel {
     pub(in crate::model::mass_spring) fn pulley_of(&self, node: usize) -> Option<&Pulley> {
-        self.pulley_at.get(node).and_then(|&k| self.pulleys.get(k))
+        self.pulley_at.get(node).copied().flatten().and_then(|k| self.pulleys.get(k))
     }
 
     /// How element `e` lies at positions `x`.
@@ -182,7 +184,7 @@ impl MassSpringModel {
 
     /// Whether an end of the element is on a pulley.
     pub(in crate::model::mass_spring) fn at_pulley(&self, e: usize) -> bool {
-        self.pulley_at[e] != NONE || self.pulley_at[e + 1] != NONE
+        self.pulley_at[e].is_some() || self.pulley_at[e + 1].is_some()
     }
 
     /// Whether an end of the element is on a wheel with a radius.

@@ -22,7 +22,7 @@
 
 use crate::math::Vec2;
 use crate::model::mass_spring::MassSpringModel;
-use crate::model::mass_spring::pulleys::pulley::{NONE, Pulley};
+use crate::model::mass_spring::pulleys::pulley::Pulley;
 
 /// Rounds of letting go of elements that would push, and of pulleys that hold or slide. In most sub-steps one does; the
 /// last round stands as it is, its error is that of one sub-step.
@@ -149,7 +149,7 @@ impl MassSpringModel {
             for e in [p.node - 1, p.node] {
                 // Its other node, unless that is a pulley too: then what it does is added below.
                 let other = if e < p.node { e } else { e + 1 };
-                let inverse = if self.pulley_at[other] == NONE { b.inverse[other] } else { 0.0 };
+                let inverse = if self.pulley_at[other].is_none() { b.inverse[other] } else { 0.0 };
                 b.diagonal[e] = inverse + self.rest[e] / (ea * h * h);
                 b.gap[e] = self.reach_at(e, &b.x).length - self.rest[e];
             }

@@ -56,8 +56,8 @@ pub(in crate::model::spans) struct Piece {
     pub extent: f64,
     /// Whether a concave kink lies before it.
     pub kink_before: bool,
-    /// Feature of the obstacle it belongs to.
-    pub feature: usize,
+    /// Feature of the obstacle it belongs to; None of a wheel.
+    pub feature: Option<usize>,
 }
 
 /// A boundary, in one sense of travel.
@@ -116,7 +116,7 @@ impl Curve {
             Some(center) => {
                 let arc = Form::Arc { center, radius: c, from: Vec2::x() };
                 let extent = f64::INFINITY;
-                (vec![Piece { form: arc, extent, kink_before: false, feature: body.first + 1 }], false)
+                (vec![Piece { form: arc, extent, kink_before: false, feature: Some(body.first + 1) }], false)
             }
             None => boundary(body, c),
         };
@@ -128,7 +128,7 @@ impl Curve {
     /// A wheel of a radius (of the centre line, m) about the origin; shift it to its place.
     pub fn wheel(radius: f64, friction: f64, sense: f64) -> Self {
         let form = Form::Arc { center: Vec2::zeros(), radius, from: Vec2::x() };
-        let piece = Piece { form, extent: f64::INFINITY, kink_before: false, feature: usize::MAX };
+        let piece = Piece { form, extent: f64::INFINITY, kink_before: false, feature: None };
         Self::new(vec![piece], false, (None, friction, sense))
     }
 
@@ -305,7 +305,7 @@ impl Curve {
     /// The piece of one turn that stands for a feature of the obstacle, the nearest to a point where it has several.
     pub fn piece_of(&self, feature: usize, at: Vec2) -> Option<i64> {
         let mut best: Option<(f64, i64)> = None;
-        for k in (0..self.pieces.len()).filter(|&k| self.pieces[k].feature == feature) {
+        for k in (0..self.pieces.len()).filter(|&k| self.pieces[k].feature == Some(feature)) {
             let i = k as i64;
             let d = (self.place_on(i, self.project(i, at) - self.origin(i)).at - at).norm();
             if best.is_none_or(|(b, _)| d < b) {
@@ -427,7 +427,7 @@ fn boundary(body: &Body, c: f64) -> (Vec<Piece>, bool) {
         let first = out.len();
         if arc > 0.0 {
             let form = Form::Arc { center: e.p, radius: c, from: direction(arc_from) };
-            out.push(Piece { form, extent: arc, kink_before, feature: corner_feature(k) });
+            out.push(Piece { form, extent: arc, kink_before, feature: Some(corner_feature(k)) });
         }
         // A kink takes c tan(δ/2) of both its edges.
         let cut = [kink(k), kink(k + 1)].map(|d| c * (0.5 * d).tan());
@@ -435,10 +435,10 @@ fn boundary(body: &Body, c: f64) -> (Vec<Piece>, bool) {
         let extent = e.length() - cut[0] - cut[1];
         let extent = if extent > 0.0 { extent } else { 0.0 };
         let kink_before = kink_before && out.len() == first;
-        out.push(Piece { form, extent, kink_before, feature: body.first + 2 * index });
+        out.push(Piece { form, extent, kink_before, feature: Some(body.first + 2 * index) });
         if !closed && k + 1 == n && angle > -up {
             let form = Form::Arc { center: e.q, radius: c, from: direction(angle) };
-            out.push(Piece { form, extent: angle + up, kink_before: false, feature: body.first + 2 * n + 1 });
+            out.push(Piece { form, extent: angle + up, kink_before: false, feature: Some(body.first + 2 * n + 1) });
         }
     }
     (out, closed)

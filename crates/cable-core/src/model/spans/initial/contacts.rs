@@ -433,7 +433,7 @@ fn seats(
         let (stop, w) = match pulley {
             Some(q) => {
                 let at = instant.places[q.support];
-                (at, way.nearest(at, reached, last.saturating_sub(1)))
+                (at, way.nearest(at, reached, Some(last.saturating_sub(1))))
             }
             None => (way.points[last], way.along[last]),
         };
@@ -445,7 +445,7 @@ fn seats(
         route.push(stop);
         let bends = shortest_path::pull(&route, &corners)?;
         for (j, b) in bends.iter().enumerate() {
-            reached = way.nearest(b.corner.at, reached, begin.1 + b.leg);
+            reached = way.nearest(b.corner.at, reached, Some(begin.1 + b.leg));
             let before = j.checked_sub(1).and_then(|i| bends.get(i)).map_or(begin.0, |a| a.corner.at);
             let after = bends.get(j + 1).map_or(stop, |a| a.corner.at);
             let (u, v) = (b.corner.at - before, after - b.corner.at);

@@ -28,9 +28,10 @@ impl Way {
     }
 
     /// How far along it comes nearest to a point, not before `from`, up to the end of leg `last`.
-    pub fn nearest(&self, at: Vec2, from: f64, last: usize) -> f64 {
+    pub fn nearest(&self, at: Vec2, from: f64, last: Option<usize>) -> f64 {
         let (mut best, mut found) = (f64::INFINITY, from);
-        for k in 0..self.points.len().saturating_sub(1).min(last + 1) {
+        let pieces = self.points.len().saturating_sub(1);
+        for k in 0..last.map_or(pieces, |last| pieces.min(last + 1)) {
             let d = self.points[k + 1] - self.points[k];
             let l = d.norm();
             if l == 0.0 || self.along[k + 1] < from {
@@ -124,10 +125,8 @@ pub(in crate::model::spans) fn way(layout: &Layout, part: &Part, instant: &Bound
     if p.route.len() > 1 {
         let whole = Way::new(p.route.clone());
         // The part of the route between the grips.
-        let a = ends[0].filter(|_| part.material[0] > 0.0).map_or(0.0, |at| whole.nearest(at, 0.0, usize::MAX - 1));
-        let b = ends[1]
-            .filter(|_| part.material[1] < p.length)
-            .map_or(whole.total(), |at| whole.nearest(at, a, usize::MAX - 1));
+        let a = ends[0].filter(|_| part.material[0] > 0.0).map_or(0.0, |at| whole.nearest(at, 0.0, None));
+        let b = ends[1].filter(|_| part.material[1] < p.length).map_or(whole.total(), |at| whole.nearest(at, a, None));
         let mut points: Vec<Vec2> = Vec::with_capacity(whole.points.len() + 2);
         points.extend(ends[0].or(whole.points.first().copied()));
         for (k, q) in whole.points.iter().enumerate() {

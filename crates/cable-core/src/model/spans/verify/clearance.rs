@@ -137,7 +137,7 @@ fn contact(c: &Contact, course: &Course, world: &World) -> Option<(f64, Vec2)> {
             let place = track.place(p);
             (place.at, place.tangent)
         };
-        let found = inside_on(world, &point, [p, q], arc.then_some(piece.feature));
+        let found = inside_on(world, &point, [p, q], piece.feature.filter(|_| arc));
         if let Some((_, at)) = found {
             return Some((c.ends.s[0], at));
         }
