@@ -254,7 +254,12 @@ struct TableFile {
 }
 
 /// What a [`TableFile`] held at some moment.
-type Mark = (u64, Fingerprint, Pages);
+#[derive(Clone)]
+struct Mark {
+    bytes: u64,
+    hash: Fingerprint,
+    pages: Pages,
+}
 
 impl TableFile {
     /// Makes a file that is not there yet.
@@ -264,11 +269,12 @@ impl TableFile {
     }
 
     fn mark(&self) -> Mark {
-        (self.bytes, self.hash, self.pages)
+        Mark { bytes: self.bytes, hash: self.hash, pages: self.pages }
     }
 
     /// Takes back what was written since.
-    fn rewind(&mut self, (bytes, hash, pages): Mark) {
+    fn rewind(&mut self, mark: Mark) {
+        let Mark { bytes, hash, pages } = mark;
         // Where even that fails the table ends within a line, which readers leave out.
         let _ = self.file.set_len(bytes);
         (self.bytes, self.hash, self.pages) = (bytes, hash, pages);

@@ -90,16 +90,16 @@ impl Simulation {
         let problems = problems(&scene)?;
         if model != Model::Auto {
             let reason = "asked for".to_owned();
-            return Self::from_source(scene, &problems, settings, (model, ModelSource::Registered(model), reason));
+            return Self::from_source(scene, &problems, settings, model, ModelSource::Registered(model), reason);
         }
         let (chosen, reason) = auto::choose_for_all(&problems, question);
         let source = ModelSource::Registered(auto::built_for(chosen));
-        let built = Self::from_source(scene.clone(), &problems, settings, (chosen, source, reason));
+        let built = Self::from_source(scene.clone(), &problems, settings, chosen, source, reason);
         let mut this = match built {
             Err(Error::Solve(SolveError::Unsupported { feature, .. })) if chosen != Model::MOST_CAPABLE => {
                 let reason = format!("{chosen} cannot answer this scene: {feature}");
                 let source = ModelSource::Registered(Model::MOST_CAPABLE);
-                Self::from_source(scene, &problems, settings, (Model::MOST_CAPABLE, source, reason))?
+                Self::from_source(scene, &problems, settings, Model::MOST_CAPABLE, source, reason)?
             }
             built => built?,
         };
@@ -125,7 +125,7 @@ impl Simulation {
             return Self::with_settings(scene, model, settings);
         }
         let problems = problems(&scene)?;
-        Self::from_source(scene, &problems, settings, (source.model(), source, "asked for".to_owned()))
+        Self::from_source(scene, &problems, settings, source.model(), source, "asked for".to_owned())
     }
 
     /// Builds every cable by one source, said to be that model for that reason.
@@ -133,7 +133,9 @@ impl Simulation {
         scene: Scene,
         problems: &[Arc<Problem>],
         settings: Settings,
-        (model, source, reason): (Model, ModelSource, String),
+        model: Model,
+        source: ModelSource,
+        reason: String,
     ) -> Result<Self, Error> {
         let cables = problems.iter().map(|p| BreakableCable::new(source.clone(), p.clone(), settings));
         let cables = cables.collect::<Result<Vec<_>, SolveError>>()?;
@@ -196,7 +198,7 @@ impl Simulation {
     /// What the laws say of answers for the cables, with the robot as it is.
     fn verify(&self, answers: &[CableSolution]) -> Verification {
         let robot = self.vehicle.as_ref().map(Vehicle::report);
-        self.verifier.check_cables(&self.scene, (answers, robot.as_ref()), self.time_s(), Depth::Always)
+        self.verifier.check_cables(&self.scene, answers, robot.as_ref(), self.time_s(), Depth::Always)
     }
 
     /// Says where an answer lies through the robot: models other than `fem` know nothing of it.
@@ -358,7 +360,7 @@ impl Simulation {
                 continue;
             }
             let seek =
-                || initial_equilibrium(&Arc::new(problem.clone()), Settings::default(), (&[], None)).ok().flatten();
+                || initial_equilibrium(&Arc::new(problem.clone()), Settings::default(), &[], None).ok().flatten();
             let known = if self.settings.histories { seek() } else { None };
             let mut known: Vec<Warning> = known.map(|lay| lay.warnings).unwrap_or_default();
             known.retain(said);

@@ -103,7 +103,8 @@ struct DistributedLoad {
 pub fn tension_budget(
     scene: &Scene,
     solution: &Solution,
-    (cable, arc_length_m): (usize, f64),
+    cable: usize,
+    arc_length_m: f64,
     from: StartEnd,
 ) -> Option<TensionBudget> {
     let solved = solution.cables.get(cable)?;

@@ -114,11 +114,20 @@ struct Piece {
     account: Option<MomentumAccount>,
 }
 
+/// Where a piece breaks.
+struct BreakPoint {
+    /// When, s.
+    time_s: f64,
+    /// Where the piece then is.
+    state: State,
+    /// Where on it.
+    at: rupture::Rupture,
+}
+
 /// What became of a piece in a step.
 enum StepOutcome {
     Intact,
-    /// When (s), and where it then is.
-    Broke(Box<(f64, State, rupture::Rupture)>),
+    Broke(Box<BreakPoint>),
 }
 
 impl BreakableCable {
@@ -260,12 +269,8 @@ impl BreakableCable {
     }
 
     /// Replaces a piece by those it breaks into.
-    fn split(
-        &mut self,
-        k: usize,
-        (time_s, state, at): &(f64, State, rupture::Rupture),
-        inertia: Inertia,
-    ) -> Result<(), SolveError> {
+    fn split(&mut self, k: usize, point: &BreakPoint, inertia: Inertia) -> Result<(), SolveError> {
+        let BreakPoint { time_s, state, at } = point;
         let support_arc_lengths = self.support_arc_lengths();
         let Some(piece) = self.pieces.get(k) else { return Ok(()) };
         let nodes = &piece.answer.nodes;
@@ -347,15 +352,15 @@ impl BreakableCable {
 
     /// From now on a support follows what leads it.
     pub fn drag_support(&mut self, support: usize, target_m: Vec2) {
-        self.draw_support(support, (target_m, false));
+        self.draw_support(support, target_m, false);
     }
 
     /// From now on a hand holds a support by a spring.
     pub fn pull_support(&mut self, support: usize, hand_m: Vec2) {
-        self.draw_support(support, (hand_m, true));
+        self.draw_support(support, hand_m, true);
     }
 
-    fn draw_support(&mut self, support: usize, (to, by_spring): (Vec2, bool)) {
+    fn draw_support(&mut self, support: usize, to: Vec2, by_spring: bool) {
         if !to.iter().all(|c| c.is_finite()) {
             return;
         }
@@ -553,7 +558,7 @@ impl Piece {
                     rupture::Rupture { node: rupture::nearest(&self.answer.nodes, reached.arc_length_m), fraction };
                 let state =
                     if 1.0 - fraction < MIN_STEP_REMAINDER { now } else { rupture::between(&state, &now, fraction) };
-                return Ok(StepOutcome::Broke(Box::new((reached.time_s, state, at))));
+                return Ok(StepOutcome::Broke(Box::new(BreakPoint { time_s: reached.time_s, state, at })));
             }
         }
         Ok(StepOutcome::Intact)
@@ -609,7 +614,7 @@ impl Piece {
                 let time_s = state.time_s + (now.time_s - state.time_s) * at.fraction;
                 let rest = 1.0 - at.fraction;
                 let state = if rest < MIN_STEP_REMAINDER { now } else { rupture::between(&state, &now, at.fraction) };
-                return Ok(StepOutcome::Broke(Box::new((time_s, state, at))));
+                return Ok(StepOutcome::Broke(Box::new(BreakPoint { time_s, state, at })));
             }
         }
         Ok(StepOutcome::Intact)

@@ -256,7 +256,8 @@ fn two_pieces_have_the_mass_and_the_momentum_of_the_whole() {
             let strand = &mut sim.cables_mut()[0];
             let whole = strand.pieces[0].mechanics.state();
             let at = super::rupture::Rupture { node, fraction: 1.0 };
-            strand.split(0, &(whole.time_s, whole.clone(), at), Inertia::Dynamic).unwrap();
+            let point = super::BreakPoint { time_s: whole.time_s, state: whole.clone(), at };
+            strand.split(0, &point, Inertia::Dynamic).unwrap();
             let now: Vec<State> = strand.pieces.iter().map(|p| p.mechanics.state()).collect();
             assert_eq!(now.len(), 2);
             let (m0, p0) = mass_and_momentum(std::slice::from_ref(&whole), 1.0);

@@ -4,7 +4,7 @@
 //! Between loads the force is that of a catenary, at a load it jumps by it: F(s) = F_a − b s − Σ P_k [s > s_k].
 //! The complementary energy of the whole is a function of F_a alone, two unknowns however many loads there are.
 
-use super::kernel::{self, ChainPiece, DualEnergy};
+use super::kernel::{self, ChainPiece, DualEnergy, HorizontalForce};
 use super::{Catenary, Frame, Span, SpanError};
 use crate::math::{Mat2, Vec2};
 
@@ -111,7 +111,7 @@ impl<'a> Chain<'a> {
         let (h, v) = frame.split(start_force);
         let e = self.energy(frame, h, v);
         let turn = Mat2::from_columns(&[frame.across, frame.up]);
-        (frame.join((e.x, e.z)), turn * Mat2::new(e.k11, e.k12, e.k12, e.k22) * turn.transpose())
+        (frame.join(e.x, e.z), turn * Mat2::new(e.k11, e.k12, e.k12, e.k22) * turn.transpose())
     }
 
     fn energy(&self, frame: Frame, h: f64, v: f64) -> DualEnergy {
@@ -148,15 +148,16 @@ impl<'a> Chain<'a> {
             Some(f) => f,
             None => self.guess(chord, length)?,
         };
-        let d = frame.split(chord);
-        let lengths = length + d.0.abs() + d.1.abs();
-        let start = frame.split(start);
-        let m = kernel::minimise(|h, v| self.energy(frame, h, v), d, start, lengths, false);
+        let (x, z) = frame.split(chord);
+        let lengths = length + x.abs() + z.abs();
+        let (h, v) = frame.split(start);
+        let energy = |h, v| self.energy(frame, h, v);
+        let m = kernel::minimise(energy, [x, z], [h, v], lengths, HorizontalForce::Any);
         if !m.converged {
             return Err(SpanError::NotConverged { iterations: m.iterations, closure_m: m.closure });
         }
         let e = self.energy(frame, m.h, m.v);
-        let start = frame.join((m.h, m.v));
+        let start = frame.join(m.h, m.v);
         let turn = Mat2::from_columns(&[frame.across, frame.up]);
         Ok(ChainForce {
             start,
@@ -180,7 +181,7 @@ impl<'a> Chain<'a> {
         }
         let frame = Frame::new(load, chord).facing(chord);
         let (x, z) = frame.split(chord / length);
-        let (h, v) = kernel::guess((x, z), total / self.axial_stiffness);
-        Ok(frame.join((h * total, v * total)))
+        let (h, v) = kernel::guess([x, z], total / self.axial_stiffness);
+        Ok(frame.join(h * total, v * total))
     }
 }

@@ -196,19 +196,28 @@ pub(super) struct Minimum {
     pub converged: bool,
 }
 
-/// Minimises φ(h, v) − (h, v)·d by Newton with Armijo's line search.
+/// Whether a horizontal force is known to be positive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum HorizontalForce {
+    /// It may have either sign.
+    Any,
+    /// It is positive: a single span whose ends are apart sideways.
+    Positive,
+}
+
+/// Minimises φ(h, v) − (h, v)·`chord` by Newton with Armijo's line search.
 ///
-/// `lengths` says how large lengths are (for round-off), `positive` keeps h > 0 (a single span, X > 0).
+/// `lengths` says how large lengths are (for round-off).
 pub(super) fn minimise(
     energy: impl Fn(f64, f64) -> DualEnergy,
-    d: (f64, f64),
-    start: (f64, f64),
+    chord: [f64; 2],
+    start: [f64; 2],
     lengths: f64,
-    positive: bool,
+    sign: HorizontalForce,
 ) -> Minimum {
-    let (mut h, mut v) = start;
+    let [mut h, mut v] = start;
     let mut e = energy(h, v);
-    let (mut gx, mut gz) = (e.x - d.0, e.z - d.1);
+    let (mut gx, mut gz) = (e.x - chord[0], e.z - chord[1]);
     let mut iterations = 0;
     loop {
         let closure = gx.abs() + gz.abs();
@@ -223,17 +232,17 @@ pub(super) fn minimise(
         }
         iterations += 1;
         let slope = gx * ph + gz * pv;
-        let value = e.phi - h * d.0 - v * d.1;
+        let value = e.phi - h * chord[0] - v * chord[1];
         let mut alpha = 1.0;
-        if positive && h + ph < MIN_FORCE_RATIO * h {
+        if sign == HorizontalForce::Positive && h + ph < MIN_FORCE_RATIO * h {
             alpha = (1.0 - MIN_FORCE_RATIO) * h / -ph;
         }
         let mut accepted = false;
         for _ in 0..MAX_HALVINGS {
             let (hn, vn) = (h + alpha * ph, v + alpha * pv);
             let en = energy(hn, vn);
-            let (gxn, gzn) = (en.x - d.0, en.z - d.1);
-            let decrease = en.phi - hn * d.0 - vn * d.1 - value;
+            let (gxn, gzn) = (en.x - chord[0], en.z - chord[1]);
+            let decrease = en.phi - hn * chord[0] - vn * chord[1] - value;
             let in_noise = -slope * alpha <= ENERGY_NOISE * (e.phi.abs() + value.abs());
             if decrease <= ARMIJO * alpha * slope || (in_noise && gxn.abs() + gzn.abs() < closure) {
                 (h, v, e, gx, gz) = (hn, vn, en, gxn, gzn);
@@ -252,9 +261,8 @@ pub(super) fn minimise(
     }
 }
 
-/// A start for a single piece of unit weight and unit length (w = l = 1): `d` its chord, d.0 ≥ 0.
-pub(super) fn guess(d: (f64, f64), eps: f64) -> (f64, f64) {
-    let (dx, dz) = d;
+/// A start for a single piece of unit weight and unit length (w = l = 1) with a chord of dx ≥ 0.
+pub(super) fn guess([dx, dz]: [f64; 2], eps: f64) -> (f64, f64) {
     let chord = (dx * dx + dz * dz).sqrt();
     // Nearly taut: elastic stretch + the excess of a flat parabola make up the difference,
     // εT = (c − 1) + p²/24T², p the load across the chord. One positive root; Newton from above.

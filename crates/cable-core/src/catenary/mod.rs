@@ -20,7 +20,7 @@ mod kernel;
 
 pub use chain::{Chain, ChainForce, PointForce};
 
-use kernel::ChainPiece;
+use kernel::{ChainPiece, HorizontalForce};
 
 use crate::error::SolveError;
 use crate::math::{Vec2, bounded, perp};
@@ -112,7 +112,7 @@ impl Frame {
         (v.dot(&self.across), v.dot(&self.up))
     }
 
-    fn join(&self, (x, z): (f64, f64)) -> Vec2 {
+    fn join(&self, x: f64, z: f64) -> Vec2 {
         self.across * x + self.up * z
     }
 }
@@ -180,12 +180,15 @@ impl Catenary {
         // In units of the load and the length.
         let frame = Frame::new(span.weight, span.chord).facing(span.chord);
         let (x, z) = frame.split(span.chord);
-        let d = (x / length, z / length);
+        let chord = [x / length, z / length];
         let piece = ChainPiece { w: 1.0, l: 1.0, eps };
-        let (h, v, iterations) = if d.0 < f64::MIN_POSITIVE {
-            (0.0, kernel::vertical(d.1, eps), 0)
+        let (h, v, iterations) = if chord[0] < f64::MIN_POSITIVE {
+            (0.0, kernel::vertical(chord[1], eps), 0)
         } else {
-            let m = kernel::minimise(|h, v| piece.energy(h, v), d, kernel::guess(d, eps), 1.0 + d.0 + d.1.abs(), true);
+            let (h, v) = kernel::guess(chord, eps);
+            let lengths = 1.0 + chord[0] + chord[1].abs();
+            let energy = |h, v| piece.energy(h, v);
+            let m = kernel::minimise(energy, chord, [h, v], lengths, HorizontalForce::Positive);
             if !m.converged {
                 return Err(SpanError::NotConverged { iterations: m.iterations, closure_m: m.closure * length });
             }
@@ -235,7 +238,7 @@ impl Catenary {
     /// Force the rest of the cable exerts on the part before s, N: along the tangent of growing arc length.
     #[must_use]
     pub(crate) fn force_at(&self, s: f64) -> Vec2 {
-        self.frame.join((self.h, self.v(s)))
+        self.frame.join(self.h, self.v(s))
     }
 
     /// Force at the start, N: what the cable does to what holds its start.
@@ -266,7 +269,8 @@ impl Catenary {
     /// Position at s from the start, m.
     #[must_use]
     pub fn position_at(&self, s: f64) -> Vec2 {
-        self.frame.join(self.span.piece(s).displacement(self.h, self.va))
+        let (x, z) = self.span.piece(s).displacement(self.h, self.va);
+        self.frame.join(x, z)
     }
 
     /// Stretched length up to s, m.

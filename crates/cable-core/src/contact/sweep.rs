@@ -78,11 +78,11 @@ impl Geometry {
                 (Some(e), _) if way_off([a, b], e.p, e.normal()) - body.offset > sweep.clear(free) => {}
                 (Some(e), _) => {
                     let way = |[a, b]: [Vec2; 2]| between_segments(a, b, e.p, e.q);
-                    free = advance(moving, (way, [e.p, e.q]), body.offset, how, free);
+                    free = advance(moving, way, [e.p, e.q], body.offset, how, free);
                 }
                 (None, Some(c)) => {
                     let way = |[a, b]: [Vec2; 2]| -from_segment(c, a, b);
-                    free = advance(moving, (way, [c; 2]), body.offset, how, free);
+                    free = advance(moving, way, [c; 2], body.offset, how, free);
                 }
                 (None, None) => {}
             }
@@ -195,7 +195,8 @@ impl Geometry {
 /// is the shortest from the feature to where the ends are. The part `keep` of the gap is left, or `most` (m) where that is less.
 pub(super) fn advance(
     moving: [(Vec2, Vec2); 2],
-    (way, feature): (impl Fn([Vec2; 2]) -> Vec2, [Vec2; 2]),
+    way: impl Fn([Vec2; 2]) -> Vec2,
+    feature: [Vec2; 2],
     offset: f64,
     [keep, most, noise]: [f64; 3],
     limit: f64,

@@ -125,7 +125,7 @@ impl TensionGauge {
     pub fn peaks(&self) -> Option<TensionPeaks> {
         let greatest = self.greatest?;
         // In a step between two looks the mean is what it was.
-        let held = self.held.or_else(|| higher(None, (&self.points, &self.mean), most_of(&self.mean), self.time_s));
+        let held = self.held.or_else(|| higher(None, &self.points, &self.mean, most_of(&self.mean), self.time_s));
         Some(TensionPeaks { greatest, held: held.unwrap_or(greatest), over_s: self.over_s })
     }
 
@@ -233,18 +233,18 @@ impl TensionGauge {
         if self.over_s > 0.0 {
             self.take_means(from_s, to_s);
         } else {
-            let found = (self.held, self.reached);
-            (self.held, self.reached) =
-                look_at((&self.points, &self.limit), [from_s, to_s], [&self.now, &self.next], found);
+            let before = Found { held: self.held, reached: self.reached };
+            Found { held: self.held, reached: self.reached } =
+                look_at(&self.points, &self.limit, [from_s, to_s], [&self.now, &self.next], before);
         }
         let end_s = self.reached.map_or(to_s, |r| r.time_s);
         if end_s >= to_s {
-            self.greatest = higher(self.greatest, (&self.points, &self.next), most_of(&self.next), to_s);
+            self.greatest = higher(self.greatest, &self.points, &self.next, most_of(&self.next), to_s);
         } else if end_s > from_s {
             // A cable that broke in this step was not pulled on to its end.
             let part = (end_s - from_s) / h;
             self.now.iter_mut().zip(&self.next).for_each(|(a, b)| *a += (b - *a) * part);
-            self.greatest = higher(self.greatest, (&self.points, &self.now), most_of(&self.now), end_s);
+            self.greatest = higher(self.greatest, &self.points, &self.now, most_of(&self.now), end_s);
         }
         std::mem::swap(&mut self.now, &mut self.next);
         self.time_s = to_s;
@@ -261,7 +261,7 @@ impl TensionGauge {
     fn take_means(&mut self, from_s: f64, to_s: f64) {
         let (part_s, per_s) = (self.over_s / LOOKS as f64, (to_s - from_s).recip());
         let (count, per_window) = (self.points.len().max(1), self.over_s.recip());
-        let (sum, ends) = (&mut self.sum, (&self.now, &self.next));
+        let (sum, now, next) = (&mut self.sum, &self.now, &self.next);
         let mut at_s = from_s;
         loop {
             let (before_s, mut until_s) = (self.look * part_s, (self.look + 1.0) * part_s);
@@ -274,7 +274,7 @@ impl TensionGauge {
                 (self.look, self.oldest) = (last - LOOKS as f64, 0);
                 for slot in self.sums.chunks_exact_mut(count) {
                     until_s = self.look * part_s;
-                    add(sum, ends, [at_s, until_s].map(|t| (t - from_s) * per_s), until_s - at_s);
+                    add(sum, now, next, [at_s, until_s].map(|t| (t - from_s) * per_s), until_s - at_s);
                     slot.copy_from_slice(sum);
                     (self.look, at_s) = (self.look + 1.0, until_s);
                 }
@@ -282,7 +282,7 @@ impl TensionGauge {
             } else {
                 self.look += 1.0;
             }
-            add(sum, ends, [at_s, until_s].map(|t| (t - from_s) * per_s), until_s - at_s);
+            add(sum, now, next, [at_s, until_s].map(|t| (t - from_s) * per_s), until_s - at_s);
             at_s = until_s;
             self.spare.resize(self.points.len(), 0.0);
             if let Some(slot) = self.sums.chunks_exact_mut(count).nth(self.oldest) {
@@ -293,16 +293,16 @@ impl TensionGauge {
             }
             self.oldest = (self.oldest + 1) % LOOKS;
             std::mem::swap(&mut self.mean, &mut self.spare);
-            let found = (self.held, self.reached);
-            (self.held, self.reached) =
-                look_at((&self.points, &self.limit), [before_s, until_s], [&self.spare, &self.mean], found);
+            let before = Found { held: self.held, reached: self.reached };
+            Found { held: self.held, reached: self.reached } =
+                look_at(&self.points, &self.limit, [before_s, until_s], [&self.spare, &self.mean], before);
         }
-        add(sum, ends, [at_s, to_s].map(|t| (t - from_s) * per_s), to_s - at_s);
+        add(sum, now, next, [at_s, to_s].map(|t| (t - from_s) * per_s), to_s - at_s);
     }
 }
 
 /// Adds the integral of tensions over a time (s) between two parts of a step, N s.
-fn add(sum: &mut [f64], (now, next): (&Vec<f64>, &Vec<f64>), [from, to]: [f64; 2], time_s: f64) {
+fn add(sum: &mut [f64], now: &Vec<f64>, next: &Vec<f64>, [from, to]: [f64; 2], time_s: f64) {
     let middle = 0.5 * (from + to);
     let (low, high) = ((1.0 - middle) * time_s, middle * time_s);
     for ((sum, a), b) in sum.iter_mut().zip(now).zip(next) {
@@ -311,17 +311,17 @@ fn add(sum: &mut [f64], (now, next): (&Vec<f64>, &Vec<f64>), [from, to]: [f64; 2
 }
 
 /// The highest mean, and where the limit was first reached.
-type Found = (Option<TensionPeak>, Option<TensionPeak>);
+#[derive(Clone, Copy)]
+struct Found {
+    held: Option<TensionPeak>,
+    reached: Option<TensionPeak>,
+}
 
 /// Looks at means (N) between two times (s) at which they are known.
-fn look_at(
-    (points, limit): (&[f64], &Limit),
-    [from_s, to_s]: [f64; 2],
-    [was, is]: [&[f64]; 2],
-    (held, reached): Found,
-) -> Found {
-    if reached.is_some() {
-        return (held, reached);
+fn look_at(points: &[f64], limit: &Limit, [from_s, to_s]: [f64; 2], [was, is]: [&[f64]; 2], before: Found) -> Found {
+    let held = before.held;
+    if before.reached.is_some() {
+        return before;
     }
     let most = most_of(is);
     if most >= limit.tension_n && to_s >= limit.from_s {
@@ -339,10 +339,11 @@ fn look_at(
             }
         }
         if let Some((first, _)) = first {
-            return (held.filter(|h| h.tension_n >= first.tension_n).or(Some(first)), Some(first));
+            let held = held.filter(|h| h.tension_n >= first.tension_n).or(Some(first));
+            return Found { held, reached: Some(first) };
         }
     }
-    (higher(held, (points, is), most, to_s), None)
+    Found { held: higher(held, points, is, most, to_s), reached: None }
 }
 
 /// The greatest of some figures, 0 of none. In lanes: one after the other each waits for the one before.
@@ -363,7 +364,8 @@ fn most_of(figures: &[f64]) -> f64 {
 /// A peak, or the greatest of some tensions (N) at points (m) at a time (s) where that is more.
 fn higher(
     before: Option<TensionPeak>,
-    (points, tensions): (&[f64], &[f64]),
+    points: &[f64],
+    tensions: &[f64],
     most: f64,
     time_s: f64,
 ) -> Option<TensionPeak> {

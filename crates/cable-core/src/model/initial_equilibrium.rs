@@ -39,7 +39,8 @@ pub struct InitialEquilibrium {
 pub fn initial_equilibrium(
     problem: &Arc<Problem>,
     settings: Settings,
-    (dragged, robot_pose): (&[Option<Vec2>], Option<RigidPose>),
+    dragged: &[Option<Vec2>],
+    robot_pose: Option<RigidPose>,
 ) -> Result<Option<InitialEquilibrium>, SolveError> {
     let Ok(mut spans) = SpansModel::new(as_flexible(problem), settings) else { return Ok(None) };
     for (k, at) in dragged.iter().enumerate() {
@@ -77,7 +78,7 @@ fn of_flexible(warning: &mut Warning) {
 pub(crate) fn slides_on(problem: &Arc<Problem>, settings: Settings, answer: &CableSolution) -> bool {
     let route = answer.nodes.iter().map(Node::at).collect();
     let there = Arc::new(Problem { route, ..Problem::clone(&Problem::without_outline(problem.clone())) });
-    let slides = initial_equilibrium(&there, settings, (&[], None));
+    let slides = initial_equilibrium(&there, settings, &[], None);
     problem.bending_stiffness == 0.0 && matches!(slides, Err(SolveError::NoRestingPlace { .. }))
 }
 

@@ -61,7 +61,8 @@ pub(crate) fn held_warning(
     problem: &Problem,
     support: usize,
     arc_length_m: f64,
-    (f, fastest): (&SmoothedTarget, f64),
+    f: &SmoothedTarget,
+    fastest: f64,
 ) -> Warning {
     let name = problem.supports.get(support).map_or("", |s| s.name.as_str());
     let behind = f.behind_m();
@@ -94,7 +95,7 @@ impl Hand {
     /// Takes hold of a support at `at` (m) with the force (N, on the cable) that has held it so far, so nothing jerks; `stiffness` N/m, by default that of
     /// [`default_hand_stiffness`].
     #[must_use]
-    pub fn grip(problem: &Problem, stiffness: Option<f64>, (at, force): (Vec2, Vec2)) -> Self {
+    pub fn grip(problem: &Problem, stiffness: Option<f64>, at: Vec2, force: Vec2) -> Self {
         let stiffness = stiffness.unwrap_or_else(|| default_hand_stiffness(problem));
         let mass = problem.linear_density * problem.length + problem.supports.iter().map(|s| s.mass).sum::<f64>();
         let damping = 2.0 * HAND_DAMPING_RATIO * (stiffness * mass).sqrt();
@@ -140,8 +141,11 @@ impl Hand {
     #[must_use]
     pub fn warning(
         &self,
-        (problem, support, arc_length_m): (&Problem, usize, f64),
-        (at, force): (Vec2, Vec2),
+        problem: &Problem,
+        support: usize,
+        arc_length_m: f64,
+        at: Vec2,
+        force: Vec2,
         fastest: f64,
     ) -> Option<Warning> {
         let name = problem.supports.get(support).map_or("", |s| s.name.as_str());

@@ -14,7 +14,7 @@ impl Scene {
         let preset = robot_preset(&robot.preset)?;
         let corners = preset.meets_cable_m(robot.heading);
         let hitch = vec2(Pose { heading: robot.heading, ..Pose::default() }.hitch_m(preset));
-        let outline = Outline::new((&corners, hitch), pose.placement(), cable_friction, "robot".to_owned());
+        let outline = Outline::new(&corners, hitch, pose.placement(), cable_friction, "robot".to_owned());
         outline.filter(|_| self.view == View::Elevation)
     }
 }

@@ -132,7 +132,7 @@ impl Vehicle {
         };
         let (sin, cos) = pose.pitch.sin_cos();
         let forces = Forces { normal: vehicle.weight * cos, thrust: vehicle.weight * sin };
-        vehicle.tell([Vec2::zeros(); 2], forces, (0.0, Going::Standing));
+        vehicle.tell([Vec2::zeros(); 2], forces, 0.0, Going::Standing);
         Some(vehicle)
     }
 
@@ -154,7 +154,7 @@ impl Vehicle {
             let forces = Forces { normal: old.report.normal_n, thrust: old.report.thrust_n };
             let hitch = Vec2::new(old.report.hitch_x_n, old.report.hitch_y_n);
             let push = Vec2::new(old.report.push_x_n, old.report.push_y_n);
-            self.tell([hitch, push], forces, (old.report.commanded_m_per_s, old.report.going));
+            self.tell([hitch, push], forces, old.report.commanded_m_per_s, old.report.going);
         }
     }
 
@@ -167,7 +167,7 @@ impl Vehicle {
             let forces = Forces { normal: then.normal_n, thrust: then.thrust_n };
             let hitch = Vec2::new(then.hitch_x_n, then.hitch_y_n);
             let push = Vec2::new(then.push_x_n, then.push_y_n);
-            self.tell([hitch, push], forces, (then.commanded_m_per_s, then.going));
+            self.tell([hitch, push], forces, then.commanded_m_per_s, then.going);
         }
     }
 
@@ -276,13 +276,7 @@ impl Vehicle {
     }
 
     /// Ends a step at a place with a speed (m/s) that a balance gave, or that it was given beside one.
-    pub(crate) fn arrive(
-        &mut self,
-        drive: Drive,
-        (to, led): (Pose, f64),
-        (balance, speed): (SpeedBalance, f64),
-        pulls: Pulls,
-    ) {
+    pub(crate) fn arrive(&mut self, drive: Drive, to: Pose, led: f64, balance: SpeedBalance, speed: f64, pulls: Pulls) {
         let way = 0.5 * drive.h * (self.speed + led);
         let SpeedBalance { tracks, rolling, pull, weight, slips, .. } = balance;
         let along = Vec2::new(self.pose.pitch.cos(), self.pose.pitch.sin());
@@ -301,7 +295,7 @@ impl Vehicle {
         self.rate = (pulls.hitch - self.pulls.hitch) / drive.h;
         self.pulls = pulls;
         let forces = Forces { normal: balance.normal, thrust: tracks };
-        self.tell([pulls.hitch, pulls.outline], forces, (drive.wanted, balance.going));
+        self.tell([pulls.hitch, pulls.outline], forces, drive.wanted, balance.going);
     }
 
     /// It cannot go on: it stays where it is.
@@ -309,7 +303,7 @@ impl Vehicle {
         let balance = self.balance(drive, pulls);
         self.report.work.impact_j -= self.kinetic_j();
         self.speed = 0.0;
-        self.arrive(drive, (self.pose, 0.0), (SpeedBalance { going, ..balance }, 0.0), pulls);
+        self.arrive(drive, self.pose, 0.0, SpeedBalance { going, ..balance }, 0.0, pulls);
     }
 
     /// Unbalanced impulse over time (N) that counts as none beside forces of the cable.
@@ -368,7 +362,7 @@ impl Vehicle {
                 (slid, if tracks < 0.0 { -grip.hold } else { grip.hold }, rolls, true)
             }
         };
-        let going = grip.going((v, speed), slips);
+        let going = grip.going(v, speed, slips);
         let [speed, tracks, rolling, asked] = [speed, tracks, rolling, grip.asked].map(|x| x * sense);
         SpeedBalance { speed, tracks, rolling, asked, slips, going, ..SpeedBalance::default() }
     }
@@ -424,7 +418,7 @@ impl Vehicle {
         0.0
     }
 
-    fn tell(&mut self, [hitch, push]: [Vec2; 2], forces: Forces, (commanded, going): (f64, Going)) {
+    fn tell(&mut self, [hitch, push]: [Vec2; 2], forces: Forces, commanded: f64, going: Going) {
         self.report = RobotReport {
             x_m: self.pose.at_m[0],
             y_m: self.pose.at_m[1],
@@ -540,7 +534,7 @@ impl TrackGrip {
     }
 
     /// Why it comes from one speed to another, m/s.
-    fn going(&self, (from, to): (f64, f64), slips: bool) -> Going {
+    fn going(&self, from: f64, to: f64, slips: bool) -> Going {
         let against = if self.drives { -to } else { to.abs() };
         match (self.drives, slips) {
             (_, true) if against > STANDSTILL_M_PER_S => Going::Dragged,

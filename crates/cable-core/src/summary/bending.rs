@@ -121,7 +121,8 @@ fn matters(kind: WarningKind) -> bool {
 /// As [`Simulation::with_settings`] and [`Simulation::settle`].
 pub fn settle_with_bending(
     scene: &Scene,
-    (model, settings): (Model, Settings),
+    model: Model,
+    settings: Settings,
     bending: Bending,
 ) -> Result<(Scene, Solution), Error> {
     let settle = |scene: &Scene| -> Result<Solution, Error> {

@@ -293,8 +293,8 @@ fn what_bending_would_change_is_told_where_it_was_left_out() {
 /// Asked for, the likely stiffness is taken and said: of every cable that has one, or only where the flexible answer is bent too tightly.
 #[test]
 fn the_likely_bending_stiffness_is_taken_where_it_is_asked_for() {
-    let by = (Model::Auto, Settings::default());
-    let answered = |scene: &Scene, bending| settle_with_bending(scene, by, bending).unwrap();
+    let answered =
+        |scene: &Scene, bending| settle_with_bending(scene, Model::Auto, Settings::default(), bending).unwrap();
     let stiffness = |a: &Solution| a.cables[0].assumptions.bending_stiffness_n_m2;
     let span = catalog::hanging_span();
     for (bending, taken) in [(Bending::AsWritten, 0.0), (Bending::Likely, 1.4), (Bending::WhereItMatters, 0.0)] {

@@ -154,7 +154,7 @@ impl CheckedCable<'_> {
         self.scene.loads.iter().filter(|l| l.cable == self.cable.name).map(|l| l.arc_length_m).collect()
     }
 
-    pub fn finding(&self, law: Law, node: usize, (value, limit): (f64, f64)) -> Finding {
+    pub fn finding(&self, law: Law, node: usize, value: f64, limit: f64) -> Finding {
         let n = self.answer.nodes.get(node).or(self.answer.nodes.last()).copied().unwrap_or_default();
         Finding {
             law,
@@ -183,7 +183,7 @@ impl CheckedCable<'_> {
                 && all(&[c.tension_before_n, c.tension_after_n, c.begins_m, c.ends_m])
         };
         let bad = |k: usize, with: &str| {
-            let mut finding = self.finding(Law::Finite, k, (f64::INFINITY, 0.0));
+            let mut finding = self.finding(Law::Finite, k, f64::INFINITY, 0.0);
             with.clone_into(&mut finding.with);
             finding
         };
@@ -224,13 +224,13 @@ impl CheckedCable<'_> {
         let last = nodes.last().map_or(f64::NAN, |n| (n.arc_length_m - self.cable.length_m).abs());
         for (node, value) in [(0, first), (nodes.len() - 1, last)] {
             if !(value <= limit) {
-                found.report(self.finding(Law::Material, node, (value, limit)));
+                found.report(self.finding(Law::Material, node, value, limit));
             }
         }
         for (k, pair) in nodes.windows(2).enumerate() {
             let back = pair[0].arc_length_m - pair[1].arc_length_m;
             if !(back <= limit) {
-                found.report(self.finding(Law::Material, k + 1, (back, limit)));
+                found.report(self.finding(Law::Material, k + 1, back, limit));
             }
         }
         found.findings.len() == before
@@ -264,7 +264,7 @@ impl CheckedCable<'_> {
                 if depth <= on_surface && held.contains(&n.at()) {
                     continue;
                 }
-                let mut finding = self.finding(Law::Penetration, k, (depth + radius, allowed));
+                let mut finding = self.finding(Law::Penetration, k, depth + radius, allowed);
                 self.surroundings.name(body).clone_into(&mut finding.with);
                 found.report(finding);
             }
@@ -281,7 +281,7 @@ impl CheckedCable<'_> {
                 let given = if held.contains(&n.at) { radius } else { 0.0 };
                 let limit = allowed + given + if end { 0.0 } else { sagitta };
                 if !(value <= limit) {
-                    let mut finding = self.finding(Law::Penetration, k, (value, limit));
+                    let mut finding = self.finding(Law::Penetration, k, value, limit);
                     self.surroundings.name(n.body).clone_into(&mut finding.with);
                     finding.at_m = n.at.into();
                     found.report(finding);
@@ -308,7 +308,7 @@ impl CheckedCable<'_> {
             let node = self.answer.nodes.partition_point(|n| n.arc_length_m < c.arc_length_m);
             let mut tell = |law: Law, value: f64, limit: f64| {
                 if !(value <= limit) {
-                    let mut finding = self.finding(law, node, (value, limit));
+                    let mut finding = self.finding(law, node, value, limit);
                     finding.with.clone_from(&c.obstacle);
                     found.report(finding);
                 }
@@ -371,7 +371,7 @@ impl CheckedCable<'_> {
                 for square in [adrift.norm_squared(), piece.contact.norm_squared()] {
                     in_air = f64::max(in_air, square);
                     if !(square <= limit * limit) {
-                        found.report(self.finding(Law::Balance, piece.nodes[0], (square.sqrt(), limit)));
+                        found.report(self.finding(Law::Balance, piece.nodes[0], square.sqrt(), limit));
                     }
                 }
                 continue;
@@ -392,7 +392,7 @@ impl CheckedCable<'_> {
         let allowed = limit + CONE_EXCESS * pressed;
         let allowed = if beyond <= allowed { allowed } else { allowed + self.lumped_friction(near) };
         if !(beyond <= allowed) {
-            let mut finding = self.finding(Law::Friction, worst.1, (beyond, allowed));
+            let mut finding = self.finding(Law::Friction, worst.1, beyond, allowed);
             let here = near.of(worst.1).first();
             here.map_or("", |n| self.surroundings.name(n.body)).clone_into(&mut finding.with);
             found.report(finding);
@@ -431,7 +431,7 @@ impl CheckedCable<'_> {
         sums.residual_n = larger(sums.residual_n, off);
         let limit = if self.answer.contacts.is_empty() { limit } else { REPORTED_BALANCE * self.scale };
         if !(off <= limit) {
-            let mut finding = self.finding(Law::Balance, 0, (off, limit));
+            let mut finding = self.finding(Law::Balance, 0, off, limit);
             "the whole cable".clone_into(&mut finding.with);
             found.report(finding);
         }
@@ -580,7 +580,7 @@ impl CheckedCable<'_> {
         let least = super::surroundings::distance(before, after, Vec2::zeros(), Vec2::zeros());
         let value = larger(tension - most, least - tension);
         if !(value <= limit) {
-            found.report(self.finding(Law::Tension, bar.k, (value, limit)));
+            found.report(self.finding(Law::Tension, bar.k, value, limit));
         }
     }
 
@@ -595,7 +595,7 @@ impl CheckedCable<'_> {
         let value = (after - before - sum).norm();
         let limit = MOMENTUM * largest;
         if !(value <= limit) {
-            found.report(self.finding(Law::Momentum, 0, (value, limit)));
+            found.report(self.finding(Law::Momentum, 0, value, limit));
         }
     }
 
@@ -614,7 +614,7 @@ impl CheckedCable<'_> {
         let pushes = if most < 0.0 { -0.5 * most / bar.way.norm() } else { 0.0 };
         let (value, limit) = (larger(pushes, -least), COMPRESSION * self.scale);
         if !(value <= limit) {
-            found.report(self.finding(Law::Compression, bar.k, (value, limit)));
+            found.report(self.finding(Law::Compression, bar.k, value, limit));
         }
     }
 
@@ -633,7 +633,7 @@ impl CheckedCable<'_> {
     fn flexible_length(&self, found: &mut Verification, near: &Neighbours, bar: &CheckedBar<'_>) {
         let touches = self.touches(near, bar.k);
         let [spread, at_end] = self.forces_at_end(bar);
-        let spread = self.strained(bar, (spread, bar.forces[1]), touches);
+        let spread = self.strained(bar, spread, bar.forces[1], touches);
         if spread.is_some_and(|(off, limit)| off.norm_squared() <= limit * limit) {
             return;
         }
@@ -645,7 +645,7 @@ impl CheckedCable<'_> {
         if spread.value <= spread.limit && spread.folded == 0.0 {
             return;
         }
-        let at_end = lengths(self.strained(bar, (at_end, at_end.norm()), touches), at_end.norm());
+        let at_end = lengths(self.strained(bar, at_end, at_end.norm(), touches), at_end.norm());
         let off = |l: &Lengths| l.value / l.limit;
         self.tell_length(found, bar, if off(&at_end) < off(&spread) { at_end } else { spread });
     }
@@ -653,7 +653,7 @@ impl CheckedCable<'_> {
     fn tell_length(&self, found: &mut Verification, bar: &CheckedBar<'_>, lengths: Lengths) {
         found.folded_m += lengths.folded;
         if !(lengths.value <= lengths.limit) {
-            found.report(self.finding(Law::Length, bar.k, (lengths.value, lengths.limit)));
+            found.report(self.finding(Law::Length, bar.k, lengths.value, lengths.limit));
         }
     }
 
@@ -666,7 +666,7 @@ impl CheckedCable<'_> {
     /// How far the way of a bar of a flexible cable, whose internal force is `end` (N) of size `q` (N) at its end, is from what it
     /// should be, and how far it may, m; None where the force has no direction.
     #[inline]
-    fn strained(&self, bar: &CheckedBar<'_>, (end, q): (Vec2, f64), touches: bool) -> Option<(Vec2, f64)> {
+    fn strained(&self, bar: &CheckedBar<'_>, end: Vec2, q: f64, touches: bool) -> Option<(Vec2, f64)> {
         let (compliance, start, p) = (1.0 / self.cable.axial_stiffness_n, bar.from.force(), bar.forces[0]);
         let (least, most) = if p < q { (p, q) } else { (q, p) };
         let turn = (end - start).norm_squared() / (least * least);
@@ -729,7 +729,7 @@ impl CheckedCable<'_> {
             let off = self.forces_at_end(&bar).map(|end| cross(bar.way, (bar.from.force() + end) * 0.5) + change);
             let value = smaller(off[0].abs(), off[1].abs());
             if !(value <= limit) {
-                found.report(self.finding(Law::Moment, bar.k, (value, limit)));
+                found.report(self.finding(Law::Moment, bar.k, value, limit));
             }
         }
     }
@@ -763,7 +763,7 @@ impl CheckedCable<'_> {
                 let ((a, b), (c, d)) = (edge(i), edge(j));
                 let value = thick - super::surroundings::distance(a, b, c, d);
                 if !(value <= limit) {
-                    found.report(self.finding(Law::SelfContact, i, (value, limit)));
+                    found.report(self.finding(Law::SelfContact, i, value, limit));
                 }
             }
         }

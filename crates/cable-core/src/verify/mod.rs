@@ -60,14 +60,15 @@ impl Verifier {
     /// Asks every law of an answer of `scene`, the one it was made for.
     #[must_use]
     pub fn check(&self, scene: &Scene, solution: &Solution, depth: Depth) -> Verification {
-        self.check_cables(scene, (&solution.cables, solution.robot.as_ref()), solution.time_s, depth)
+        self.check_cables(scene, &solution.cables, solution.robot.as_ref(), solution.time_s, depth)
     }
 
     /// The same of the answers for its cables and of its robot at a time, s.
     pub(crate) fn check_cables(
         &self,
         scene: &Scene,
-        (answers, robot): (&[CableSolution], Option<&RobotReport>),
+        answers: &[CableSolution],
+        robot: Option<&RobotReport>,
         time_s: f64,
         depth: Depth,
     ) -> Verification {

@@ -42,7 +42,7 @@ impl CheckedCable<'_> {
             let limit = CONE_EXCESS * larger(most, after.norm()) + BALANCE * self.scale();
             let mut tell = |law: Law, value: f64, limit: f64| {
                 if !(value <= limit) {
-                    let mut finding = self.finding(law, first, (value, limit));
+                    let mut finding = self.finding(law, first, value, limit);
                     finding.with.clone_from(&led.reaction.name);
                     found.report(finding);
                 }

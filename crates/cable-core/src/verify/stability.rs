@@ -48,7 +48,7 @@ impl CheckedCable<'_> {
         let ends = [holds.first(), holds.last()].map(|h| h.copied().flatten().is_some());
         let stiffness = self.answer.assumptions.bending_stiffness_n_m2 / self.thermal;
         if let Some((bar, push, most)) = excess(&bars, stiffness, ends) {
-            found.report(self.finding(Law::Stability, first_node[bar], (push, most)));
+            found.report(self.finding(Law::Stability, first_node[bar], push, most));
         }
     }
 }

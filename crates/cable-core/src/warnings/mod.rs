@@ -109,7 +109,7 @@ impl WarningMonitor {
             self.hold_tension(cable, observed, time_s);
             for (k, warning) in found.iter().enumerate() {
                 let number = found[..k].iter().filter(|w| w.kind == warning.kind).count();
-                self.raise((cable, number), warning, time_s, since_s);
+                self.raise(cable, number, warning, time_s, since_s);
             }
         }
         let holds =
@@ -119,7 +119,7 @@ impl WarningMonitor {
         self.last_s = Some(time_s);
     }
 
-    fn raise(&mut self, (cable, number): (usize, usize), warning: &Warning, time_s: f64, since_s: Option<f64>) {
+    fn raise(&mut self, cable: usize, number: usize, warning: &Warning, time_s: f64, since_s: Option<f64>) {
         let same = |s: &&mut ActiveWarning| (s.cable, s.number, s.warning.kind) == (cable, number, warning.kind);
         if let Some(active) = self.active.iter_mut().find(same) {
             let since_s = warning.since_s.or(active.warning.since_s);

@@ -81,9 +81,11 @@ impl ReachMap {
 /// # Errors
 /// The scene is wrong or has no robot with a cable on ground in a side view, or its start has no answer.
 pub fn robot_reach(
-    (scene, now): (&Scene, Option<&Solution>),
+    scene: &Scene,
+    now: Option<&Solution>,
     settings: Settings,
-    ([from_m, to_m], count): ([f64; 2], usize),
+    [from_m, to_m]: [f64; 2],
+    count: usize,
     mut progress: impl FnMut(&ReachMap, f64) -> ControlFlow<()>,
 ) -> Result<ReachMap, Error> {
     let still = stilled(scene, now);
@@ -122,7 +124,7 @@ pub fn robot_reach(
     let stands = |x: f64| vehicle.pose_on(&ground, preset, x).map(|stand| stand.at_m);
     let mut sides = Vec::with_capacity(2);
     for xs in [right, left] {
-        match walk.out(&start, (&xs, stands), &mut map, &mut progress) {
+        match walk.out(&start, &xs, stands, &mut map, &mut progress) {
             ControlFlow::Continue(side) => sides.push(side),
             ControlFlow::Break(()) => return Ok(map),
         }
@@ -185,7 +187,8 @@ impl Traverse<'_> {
     fn out(
         &self,
         start: &Simulation,
-        (xs, stands): (&[f64], impl Fn(f64) -> Option<Point>),
+        xs: &[f64],
+        stands: impl Fn(f64) -> Option<Point>,
         map: &mut ReachMap,
         progress: LineProgress<'_>,
     ) -> ControlFlow<(), Vec<VisitedPlace>> {
@@ -262,7 +265,7 @@ impl Traverse<'_> {
         for k in 1..=steps as usize {
             let x = from + (to - from) * (k as f64 / steps);
             // Where it cannot stand the cable is led past.
-            let left_m = simulation.lead_robot(x, (STEP_S, Inertia::QuasiStatic)).map_err(|_| Obstruction::NoAnswer)?;
+            let left_m = simulation.lead_robot(x, STEP_S, Inertia::QuasiStatic).map_err(|_| Obstruction::NoAnswer)?;
             most = larger(most, simulation.largest_n(self.cables.iter().copied()));
             if left_m.is_some_and(|m| m > MAX_SHORTFALL_M) {
                 self.shove(simulation, [x - (to - from) / steps, x])?;
@@ -282,11 +285,11 @@ impl Traverse<'_> {
         let mut left_m = None;
         for k in 1..=parts as usize {
             let x = from + (to - from) * (k as f64 / parts);
-            left_m = simulation.lead_robot(x, (robot::STEP_S, Inertia::Dynamic)).map_err(|_| Obstruction::NoAnswer)?;
+            left_m = simulation.lead_robot(x, robot::STEP_S, Inertia::Dynamic).map_err(|_| Obstruction::NoAnswer)?;
         }
         // What it threw over has come down.
         let rests =
-            simulation.lead_robot(to, (STEP_S, Inertia::QuasiStatic)).map_err(|_| Obstruction::NoAnswer)?.or(left_m);
+            simulation.lead_robot(to, STEP_S, Inertia::QuasiStatic).map_err(|_| Obstruction::NoAnswer)?.or(left_m);
         if rests.is_some_and(|m| m > MAX_SHORTFALL_M) { Err(Obstruction::Jammed) } else { Ok(()) }
     }
 }
@@ -299,7 +302,7 @@ mod tests {
     fn map(change: impl FnOnce(&mut Scene), ends: [f64; 2], count: usize) -> ReachMap {
         let mut scene = catalog::robot_drive();
         change(&mut scene);
-        robot_reach((&scene, None), Settings::default(), (ends, count), |_, _| ControlFlow::Continue(())).unwrap()
+        robot_reach(&scene, None, Settings::default(), ends, count, |_, _| ControlFlow::Continue(())).unwrap()
     }
 
     #[test]
@@ -320,7 +323,7 @@ mod tests {
     fn it_ends_when_it_is_told_to() {
         let scene = catalog::robot_drive();
         let mut progress = 0;
-        let map = robot_reach((&scene, None), Settings::default(), ([8.0, 12.0], 9), |_, _| {
+        let map = robot_reach(&scene, None, Settings::default(), [8.0, 12.0], 9, |_, _| {
             progress += 1;
             if progress < 3 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
@@ -329,9 +332,8 @@ mod tests {
 
     #[test]
     fn what_has_no_robot_is_refused_in_words() {
-        let error = robot_reach((&catalog::tank(), None), Settings::default(), ([0.0, 1.0], 3), |_, _| {
-            ControlFlow::Continue(())
-        });
+        let error =
+            robot_reach(&catalog::tank(), None, Settings::default(), [0.0, 1.0], 3, |_, _| ControlFlow::Continue(()));
         assert!(error.unwrap_err().to_string().contains("robot"));
     }
 }

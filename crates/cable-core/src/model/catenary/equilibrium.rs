@@ -98,7 +98,7 @@ pub(super) fn solve(p: &Problem, layout: &Layout, start: Start<'_>) -> Result<Eq
     let (mut lifted, mut near) = (None, None);
     for _ in 0..MAX_ROUNDS {
         let slide = Slide { problem: p, layout, arcs: &arcs };
-        let found = contact(&slide, held, (sigma, near), modes)?;
+        let found = contact(&slide, held, sigma, near, modes)?;
         iterations += found.iterations;
         let m = |k: usize| called_upon(&slide, &found.stretches, k, found.modes[k]);
         let (turned, off, lift) = slide.turned(&found.stretches, m);
@@ -142,13 +142,14 @@ fn not_converged(p: &Problem, layout: &Layout, anchor: usize, iterations: usize,
 fn contact(
     slide: &Slide<'_>,
     held: &[f64],
-    (mut sigma, mut near): (Vec<f64>, Option<Stretches>),
+    mut sigma: Vec<f64>,
+    mut near: Option<Stretches>,
     mut modes: Vec<Mode>,
 ) -> Result<Equilibrium, SolveError> {
     let layout = slide.layout;
     let mut iterations = 0;
     for round in 0..4 * TOGETHER + 4 * layout.anchors.len() {
-        let found = match newton(slide, (sigma.clone(), near.as_ref()), &modes) {
+        let found = match newton(slide, sigma.clone(), near.as_ref(), &modes) {
             Ok(e) => e,
             // Another branch of the slip law drew it away: come from the smooth pulley's rest, the first error if not.
             Err(e) => from_smooth(slide, sigma, &modes).map_err(|_| e)?,
@@ -188,11 +189,11 @@ fn from_smooth(slide: &Slide<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equ
     let with = |part: f64| -> Vec<Mode> {
         modes.iter().map(|m| if let Mode::Slip(m) = m { Mode::Slip(part * m) } else { *m }).collect()
     };
-    let mut found = newton(slide, (sigma, None), &with(0.0))?;
+    let mut found = newton(slide, sigma, None, &with(0.0))?;
     let (mut reached, mut rise, mut iterations) = (0.0f64, 1.0f64, found.iterations);
     for _ in 0..MAX_RISES {
         let next = if reached + rise < 1.0 { reached + rise } else { 1.0 };
-        match newton(slide, (found.sigma.clone(), Some(&found.stretches)), &with(next)) {
+        match newton(slide, found.sigma.clone(), Some(&found.stretches), &with(next)) {
             Ok(e) => {
                 iterations += e.iterations;
                 (found, reached, rise) = (Equilibrium { iterations, ..e }, next, 2.0 * rise);
@@ -291,7 +292,8 @@ fn room(slide: &Slide<'_>, s: &Stretches, p: &[f64]) -> f64 {
 /// Newton for σ with the modes given, from a σ and the stretches near it where they are known.
 fn newton(
     slide: &Slide<'_>,
-    (sigma, near): (Vec<f64>, Option<&Stretches>),
+    sigma: Vec<f64>,
+    near: Option<&Stretches>,
     modes: &[Mode],
 ) -> Result<Equilibrium, SolveError> {
     let layout = slide.layout;

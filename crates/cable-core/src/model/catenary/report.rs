@@ -95,26 +95,26 @@ impl<'a> Nodes<'a> {
         };
         let (a, b) = (point(0.0), point(c.span().length));
         self.push(a);
-        self.refine(&point, (a, b), (0.0, c.span().length), 0);
+        self.refine(&point, [a, b], 0.0, c.span().length, 0);
         self.push(b);
     }
 
-    fn refine(&mut self, point: &impl Fn(f64) -> Point, ends: (Point, Point), (s0, s1): (f64, f64), depth: u32) {
+    fn refine(&mut self, point: &impl Fn(f64) -> Point, ends: [Point; 2], s0: f64, s1: f64, depth: u32) {
         let s = 0.5 * (s0 + s1);
         let middle = point(s);
-        let off = ((ends.0.at + ends.1.at) * 0.5 - middle.at).norm();
-        let [before, after, here] = [ends.0, ends.1, middle].map(|p| p.force.norm());
+        let off = ((ends[0].at + ends[1].at) * 0.5 - middle.at).norm();
+        let [before, after, here] = [ends[0], ends[1], middle].map(|p| p.force.norm());
         let tension = (0.5 * (before + after) - here).abs();
         let scale = if here > self.least_tension { here } else { self.least_tension };
         // What is off falls to a quarter with the node in the middle, which is known already.
         let rough = off > 4.0 * self.flat || tension > 4.0 * TENSION_FLATNESS * scale;
         let deeper = depth + 1 < LEAST_DEPTH || rough && depth + 1 < MOST_DEPTH;
         if deeper {
-            self.refine(point, (ends.0, middle), (s0, s), depth + 1);
+            self.refine(point, [ends[0], middle], s0, s, depth + 1);
         }
         self.push(middle);
         if deeper {
-            self.refine(point, (middle, ends.1), (s, s1), depth + 1);
+            self.refine(point, [middle, ends[1]], s, s1, depth + 1);
         }
     }
 }
@@ -178,7 +178,7 @@ fn wheel_nodes(nodes: &mut Nodes<'_>, slide: &Slide<'_>, e: &Equilibrium, k: usi
     let parts = arc_nodes::parts(a.radius, arc.turn, slide.problem.radius);
     for i in 0..=parts {
         let psi = arc.turn * i as f64 / parts as f64;
-        let passed = pass(&chain, a, before.norm(), (arc.arrive, psi), m);
+        let passed = pass(&chain, a, before.norm(), arc.arrive, psi, m);
         let lambda = chain.thermal_stretch * (1.0 + passed.tension / chain.axial_stiffness);
         nodes.push(Point {
             s: from + passed.material,

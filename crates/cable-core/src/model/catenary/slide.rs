@@ -123,7 +123,7 @@ impl Slide<'_> {
                 Some(self.dangling(from, to, false))
             } else {
                 let (a, b) = (self.touches(i - 1).1, self.touches(i).0);
-                Some(self.held(from, to, (a, b), near)?)
+                Some(self.held(from, to, a, b, near)?)
             };
             if let Some(s) = &stretch {
                 if !(s.start.iter().chain(s.end.iter()).all(|v| v.is_finite())) {
@@ -138,7 +138,7 @@ impl Slide<'_> {
     }
 
     /// A stretch between two anchors.
-    fn held(&self, from: f64, to: f64, (a, b): (Vec2, Vec2), near: Option<Vec2>) -> Option<Stretch> {
+    fn held(&self, from: f64, to: f64, a: Vec2, b: Vec2, near: Option<Vec2>) -> Option<Stretch> {
         let chain = self.chain(from, to);
         let f: ChainForce = match chain.solve(b - a, near) {
             Ok(f) => f,
@@ -208,11 +208,11 @@ impl Slide<'_> {
         let (tb, ta) = (before.norm(), after.norm());
         let turn = self.turn(k, before, after);
         let chain = self.chain(0.0, 1.0);
-        let way = (self.arcs[k].arrive, turn);
-        let passed = pass(&chain, a, tb, way, m).tension;
+        let arrive = self.arcs[k].arrive;
+        let passed = pass(&chain, a, tb, arrive, turn, m).tension;
         let slope = if a.radius > 0.0 {
             let d = 1e-6 * tb;
-            (pass(&chain, a, tb + d, way, m).tension - passed) / d * tb / passed
+            (pass(&chain, a, tb + d, arrive, turn, m).tension - passed) / d * tb / passed
         } else {
             1.0
         };
@@ -274,7 +274,7 @@ impl Slide<'_> {
                 arrive = 0.5 * (arrive + leave);
                 turn = 0.0;
             }
-            let passed = pass(&self.chain(0.0, 1.0), a, fb.norm(), (arrive, turn), m(k));
+            let passed = pass(&self.chain(0.0, 1.0), a, fb.norm(), arrive, turn, m(k));
             let change = (passed.material - arc.material).abs() / a.radius;
             worst = larger(worst, change);
             out.push(Arc { arrive, turn, material: passed.material, ..*arc });

@@ -246,8 +246,8 @@ proptest::proptest! {
         let layout = Layout::new(m.problem(), &m.dragged, 0.0).expect("a layout");
         let e = m.balance.as_ref().expect("a balance");
         let slide = slide::Slide { problem: m.problem(), layout: &layout, arcs: &e.arcs };
-        let way = (e.arcs[1].arrive, e.arcs[1].turn);
-        let by = |mu: f64| wheel::pass(&slide.chain(0.0, 1.0), &layout.anchors[1], tb, way, mu).tension;
+        let (from, turn) = (e.arcs[1].arrive, e.arcs[1].turn);
+        let by = |mu: f64| wheel::pass(&slide.chain(0.0, 1.0), &layout.anchors[1], tb, from, turn, mu).tension;
         proptest::prop_assert!(ta > by(-mu) * (1.0 - 1e-6) && ta < by(mu) * (1.0 + 1e-6), "{ta} {} {}", by(-mu), by(mu));
         if let Mode::Slip(m) = e.modes[1] {
             proptest::prop_assert!((ta - by(m)).abs() < 1e-6 * ta, "{ta} {}", by(m));

@@ -31,7 +31,7 @@ pub(super) struct Passed {
 }
 
 /// Follows the tension round a wheel from `tension` where the cable arrives at angle `from`, over `turn` rad.
-pub(super) fn pass(chain: &Chain<'_>, a: &Anchor, tension: f64, (from, turn): (f64, f64), m: f64) -> Passed {
+pub(super) fn pass(chain: &Chain<'_>, a: &Anchor, tension: f64, from: f64, turn: f64, m: f64) -> Passed {
     if a.radius == 0.0 {
         return Passed { tension: tension * (m * turn).exp(), material: 0.0 };
     }

@@ -307,7 +307,7 @@ impl Dynamics {
     /// # Errors
     /// As `Mechanics::advance`.
     pub fn advance(&mut self, dt_s: f64, inertia: Inertia, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
-        self.advance_gauged((dt_s, inertia), dragged, &mut TensionGauge::off())
+        self.advance_gauged(dt_s, inertia, dragged, &mut TensionGauge::off())
     }
 
     /// The same; every inner step with inertia tells `gauge` the tension.
@@ -316,7 +316,8 @@ impl Dynamics {
     /// As `Mechanics::advance`.
     pub fn advance_gauged(
         &mut self,
-        (dt_s, inertia): (f64, Inertia),
+        dt_s: f64,
+        inertia: Inertia,
         dragged: &[Option<Vec2>],
         gauge: &mut TensionGauge,
     ) -> Result<StepReport, SolveError> {
@@ -356,7 +357,7 @@ impl Dynamics {
         let h = dt_s / pieces;
         let (mut total, mut halved) = (Converged::default(), 0);
         for _ in 0..pieces as usize {
-            let done = self.halving((h, end), (inertia, dragged), &mut halved, gauge)?;
+            let done = self.halving(h, end, inertia, dragged, &mut halved, gauge)?;
             total = Converged { iterations: total.iterations + done.iterations, ..done };
         }
         self.motion.time = end;
@@ -407,8 +408,10 @@ impl Dynamics {
     /// supports evenly to where they are to be at `due` (s).
     fn halving(
         &mut self,
-        (h, due): (f64, f64),
-        (inertia, dragged): (Inertia, &[Option<Vec2>]),
+        h: f64,
+        due: f64,
+        inertia: Inertia,
+        dragged: &[Option<Vec2>],
         halved: &mut usize,
         gauge: &mut TensionGauge,
     ) -> Result<Converged, SolveError> {
@@ -528,7 +531,7 @@ impl Dynamics {
         });
         let drawn = self.motion.followers.iter().enumerate().filter_map(|(k, f)| {
             let (f, node) = (f.as_ref().filter(|f| f.behind_m() > 0.0)?, node_of(k)?);
-            Some(held_warning(&self.problem, k, self.mesh.arc_length[node], (f, self.hand_speed)))
+            Some(held_warning(&self.problem, k, self.mesh.arc_length[node], f, self.hand_speed))
         });
         let warnings = held.chain(drawn).chain(self.hand_warnings()).collect();
         StepReport { cost, warnings }

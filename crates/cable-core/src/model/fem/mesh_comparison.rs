@@ -38,14 +38,25 @@ pub(in crate::model::fem) struct TwoMeshes {
     pub errors: ErrorEstimates,
 }
 
+/// Whether the comparison may change the mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refinement {
+    /// The scene leaves the number of bars open.
+    Allowed,
+    /// The scene or the settings give it.
+    Forbidden,
+}
+
 impl TwoMeshes {
-    /// Looks at a cable that came to rest, beside the answer without a mesh where there is one; makes its mesh finer where it may be
-    /// (`refines`) and that comes nearer.
+    /// Looks at a cable that came to rest, beside the answer without a mesh where there is one; makes its mesh finer where that
+    /// is allowed and comes nearer.
     pub fn compare(
         &mut self,
         problem: &Arc<Problem>,
-        (settings, refines): (Settings, bool),
-        (fine, exact): (&mut Dynamics, Option<InitialEquilibrium>),
+        settings: Settings,
+        refinement: Refinement,
+        fine: &mut Dynamics,
+        exact: Option<InitialEquilibrium>,
         dragged: &[Option<Vec2>],
     ) {
         *self = Self::default();
@@ -66,9 +77,12 @@ impl TwoMeshes {
         if let Some(exact) = exact {
             let mut answer = fine.solution();
             self.errors = beside(&answer, &exact.answer, problem);
-            while refines && exceeds(&self.errors, &answer, settings) && 2 * fine.even_bars <= MOST_BARS {
+            while refinement == Refinement::Allowed
+                && exceeds(&self.errors, &answer, settings)
+                && 2 * fine.even_bars <= MOST_BARS
+            {
                 let bars = 2 * fine.even_bars;
-                let Some(finer) = laid_over(problem, settings, (fine, bars), (&exact.answer, dragged)) else { break };
+                let Some(finer) = laid_over(problem, settings, fine, bars, &exact.answer, dragged) else { break };
                 let next = finer.solution();
                 let errors = beside(&next, &exact.answer, problem);
                 if !(errors.relative(&next) < self.errors.relative(&answer)) {
@@ -88,7 +102,8 @@ impl TwoMeshes {
     /// Goes on beside the cable without inertia; with inertia nothing is said.
     pub fn follow(
         &mut self,
-        (problem, settings): (&Arc<Problem>, Settings),
+        problem: &Arc<Problem>,
+        settings: Settings,
         fine: &Dynamics,
         dt_s: f64,
         inertia: Inertia,
@@ -107,7 +122,7 @@ impl TwoMeshes {
                     return;
                 }
                 // The cable has no answer without a mesh from here on.
-                laid_over(problem, settings, (fine, fine.even_bars / 2), (&answer, dragged)).map(Box::new)
+                laid_over(problem, settings, fine, fine.even_bars / 2, &answer, dragged).map(Box::new)
             }
             (None, Some(mut coarse)) => coarse.advance(dt_s, inertia, dragged).is_ok().then_some(coarse),
             (None, None) => None,
@@ -141,11 +156,10 @@ fn coarser(
         return None;
     }
     let answer = fine.solution();
-    let laid = (&answer, dragged);
-    let coarse = laid_over(problem, settings, (fine, fine.even_bars / 2), laid)?;
+    let coarse = laid_over(problem, settings, fine, fine.even_bars / 2, &answer, dragged)?;
     let other = coarse.solution();
     let errors = ErrorEstimates::between(&other, &answer).plus(&ErrorEstimates::rounding(&answer, problem));
-    let coarsest = laid_over(problem, settings, (fine, fine.even_bars / 4), laid);
+    let coarsest = laid_over(problem, settings, fine, fine.even_bars / 4, &answer, dragged);
     let change = coarsest.map(|c| ErrorEstimates::between(&c.solution(), &other).times(COARSER));
     Some((change.map_or(errors, |change| errors.or_larger(&change)), coarse))
 }
@@ -163,8 +177,10 @@ fn exceeds(errors: &ErrorEstimates, answer: &CableSolution, settings: Settings) 
 fn laid_over(
     problem: &Arc<Problem>,
     settings: Settings,
-    (like, bars): (&Dynamics, usize),
-    (answer, dragged): (&CableSolution, &[Option<Vec2>]),
+    like: &Dynamics,
+    bars: usize,
+    answer: &CableSolution,
+    dragged: &[Option<Vec2>],
 ) -> Option<Dynamics> {
     let mut other = Dynamics::new(problem.clone(), Settings { segments: Some(bars), ..settings }).ok()?;
     other.slides = like.slides;

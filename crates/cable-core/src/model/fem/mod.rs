@@ -36,7 +36,7 @@ use std::sync::Arc;
 use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
-use crate::model::fem::mesh_comparison::TwoMeshes;
+use crate::model::fem::mesh_comparison::{Refinement, TwoMeshes};
 use crate::model::fem::newton::step_input::WorkBudget;
 use crate::model::gauge::TensionGauge;
 use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium, slid_first, slides_on, work};
@@ -144,7 +144,7 @@ impl FemModel {
     /// # Errors
     /// That it slides from where it is laid.
     fn lay(&mut self) -> Result<(Laid, Option<InitialEquilibrium>), SolveError> {
-        let laid = initial_equilibrium(&self.problem, self.settings, (&self.dragged, self.led))?;
+        let laid = initial_equilibrium(&self.problem, self.settings, &self.dragged, self.led)?;
         let Some(lay) = laid else { return Ok((Laid::Unknown, None)) };
         // A stiff cable is laid as a flexible one: that is where it begins, not how it lies.
         let flexible = self.problem.bending_stiffness == 0.0;
@@ -279,10 +279,10 @@ impl FemModel {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let lay = initial_equilibrium(&self.problem, self.settings, (&self.dragged, self.led)).ok()?;
-        let at = (self.dynamics.time(), self.dragged.as_slice());
-        let (answer, cost) =
-            elastica::rest(&self.problem, at, lay.as_ref().map(|l| &l.answer), SAFETY * self.settings.tolerance)?;
+        let lay = initial_equilibrium(&self.problem, self.settings, &self.dragged, self.led).ok()?;
+        let (time_s, tolerance) = (self.dynamics.time(), SAFETY * self.settings.tolerance);
+        let flexible = lay.as_ref().map(|l| &l.answer);
+        let (answer, cost) = elastica::rest(&self.problem, time_s, &self.dragged, flexible, tolerance)?;
         self.bent = Some(answer);
         let mut warnings = lay.map_or_else(Vec::new, |l| l.warnings);
         warnings.extend(self.bent_warning());
@@ -296,7 +296,7 @@ impl FemModel {
         }
         let answer = self.dynamics.solution();
         let bar = self.dynamics.even();
-        let found = Elastica::from_mesh(&self.problem, self.dynamics.time(), &self.dragged, (&answer, bar))?;
+        let found = Elastica::from_mesh(&self.problem, self.dynamics.time(), &self.dragged, &answer, bar)?;
         let cost = self.take_bent(found)?;
         // What the mesh found is followed, not left: places that differ by more are another rest.
         let near = |n: &Node| {
@@ -348,7 +348,9 @@ impl FemModel {
     /// leaves that open.
     fn compare_meshes(&mut self, exact: Option<InitialEquilibrium>) {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
-        self.meshes.compare(&self.problem, (self.settings, !given), (&mut self.dynamics, exact), &self.dragged);
+        let refinement = if given { Refinement::Forbidden } else { Refinement::Allowed };
+        let (meshes, dynamics) = (&mut self.meshes, &mut self.dynamics);
+        meshes.compare(&self.problem, self.settings, refinement, dynamics, exact, &self.dragged);
     }
 
     /// What there is to say of a mesh that is coarser than the tolerance asks for.
@@ -426,8 +428,8 @@ impl Mechanics for FemModel {
             if let Some(answer) = self.bent.take() {
                 self.dynamics.warm_start(&answer, self.dynamics.time(), &self.dragged)?;
             }
-            let mut report = self.dynamics.advance_gauged((dt_s, inertia), &self.dragged, gauge)?;
-            self.meshes.follow((&self.problem, self.settings), &self.dynamics, dt_s, inertia, &self.dragged);
+            let mut report = self.dynamics.advance_gauged(dt_s, inertia, &self.dragged, gauge)?;
+            self.meshes.follow(&self.problem, self.settings, &self.dynamics, dt_s, inertia, &self.dragged);
             let led = !touches_nothing(&self.problem) || self.dynamics.slides_anywhere();
             match if led { self.bend_warning() } else { None } {
                 Some(warning) => report.warnings.push(warning),

@@ -35,7 +35,7 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
     let (ends, lain) = end_forces(d, x, &tension);
     CableSolution {
         name: problem.cable.name.clone(),
-        nodes: nodes(d, (x, v), &tension, &ends),
+        nodes: nodes(d, x, v, &tension, &ends),
         supports: supports(d, x, &ends, &tension),
         contacts: contacts(d, x, &tension, &lain),
         assumptions: Assumptions {
@@ -140,7 +140,7 @@ fn bar_tension(d: &Dynamics, x: &[Vec2], e: usize) -> f64 {
 }
 
 /// Arc length from a node to the middle of the straight part of the bar before it (`side` 0) or after it (1), m.
-fn half(d: &Dynamics, (node, side): (usize, usize), x: &[Vec2]) -> f64 {
+fn half(d: &Dynamics, node: usize, side: usize, x: &[Vec2]) -> f64 {
     let e = node + side - 1;
     let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
     Weight::of(&d.mesh, e, &d.mesh.path(e, x), d.task.body).carried(material)[1 - side]
@@ -180,7 +180,7 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
             return (taken - hung) * sign;
         }
         let middle = d.mesh.path(e, x).direction * tension[e];
-        let half = half(d, (node, usize::from(sign > 0.0)), x);
+        let half = half(d, node, usize::from(sign > 0.0), x);
         let body = d.problem.body_force(d.time()) * half;
         let Some(ground) = ground else { return middle + body * sign };
         let grounded = ground_force(d, next, x) * (half / d.mesh.share(next));
@@ -275,7 +275,7 @@ pub(in crate::model::fem) fn rub_force(contacts: &ContactSet, rub: &FrictionCont
     -rub.tangent * friction::at(rub.sliding(x), rub.limit, contacts.slip).1
 }
 
-fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2; 2]) -> Vec<Node> {
+fn nodes(d: &Dynamics, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 2]) -> Vec<Node> {
     let (mesh, n) = (&d.mesh, x.len());
     let area = d.problem.cable.area_m2();
     let moments = moments(d, x);
@@ -295,7 +295,7 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
     let mut out: Vec<Node> = Vec::with_capacity(n + 2);
     for k in 0..n {
         if let (Some(sliding), Some(load)) = (&mesh.sliding[k], d.load(k)) {
-            for p in on_round(d, (k, sliding, &load), x, tension) {
+            for p in on_round(d, k, sliding, &load, x, tension) {
                 let velocity = p.force.try_normalize(0.0).unwrap_or_default() * (-d.motion.w[k] * p.stretch);
                 let curvature =
                     if sliding.end.radius > 0.0 { p.stretch * sliding.end.sense / sliding.end.radius } else { 0.0 };
@@ -316,7 +316,7 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
         let force = match k {
             0 => ends[0] + shear(mesh, &moments, 0, x),
             k if k + 1 == n => ends[1] + shear(mesh, &moments, k - 1, x),
-            k => bar(k) + d.task.body * half(d, (k, 1), x),
+            k => bar(k) + d.task.body * half(d, k, 1, x),
         };
         // Where a round reaches to it within a step, the round ends there.
         while out.last().is_some_and(|l: &Node| l.arc_length_m >= mesh.arc_length[k]) {
@@ -360,7 +360,7 @@ struct OnRound {
 
 /// The cable round a corner, post or pulley, from where it meets the round, or from halfway to the sliding node before, to where it
 /// leaves it, or halfway to the next. Its tension is that of its weight, and beyond that grows evenly in its logarithm, as friction makes it.
-fn on_round(d: &Dynamics, (k, node, load): (usize, &SlidingNode, &Load), x: &[Vec2], tension: &[f64]) -> Vec<OnRound> {
+fn on_round(d: &Dynamics, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2], tension: &[f64]) -> Vec<OnRound> {
     let mesh = &d.mesh;
     let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
     let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(node)));
@@ -525,7 +525,7 @@ fn pulley(d: &Dynamics, support: usize, x: &[Vec2], tension: &[f64]) -> Option<S
     let last = (1..x.len() - 1).rev().find(on)?;
     let (before, after) = (d.load(first)?, d.load(last)?);
     let inner = d.mesh.arc_length[last] - d.mesh.arc_length[first];
-    let share = half(d, (first, 0), x) + inner + half(d, (last, 1), x);
+    let share = half(d, first, 0, x) + inner + half(d, last, 1, x);
     let directions = [d.mesh.path(first - 1, x).direction, d.mesh.path(last, x).direction];
     let force = directions[1] * tension[last] - directions[0] * tension[first - 1] + d.task.body * share;
     let center = d.mesh.sliding[first]?.end.center;
@@ -593,12 +593,12 @@ fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64], lain: &[Option<Lain>; 2])
         let mut stretch: Vec<ContactPair> = Vec::new();
         for t in touches.iter().filter(|t| t.pair.gap.obstacle == obstacle) {
             if stretch.last().is_some_and(|l| t.node > l.node + 1) {
-                out.push(report(d, x, (tension, lain), &stretch));
+                out.push(report(d, x, tension, lain, &stretch));
                 stretch.clear();
             }
             stretch.push(*t);
         }
-        out.push(report(d, x, (tension, lain), &stretch));
+        out.push(report(d, x, tension, lain, &stretch));
     }
     for end in lain.iter().flatten() {
         let (tip, at) = (d.mesh.arc_length[end.node], d.mesh.arc_length[end.next]);
@@ -700,7 +700,8 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
 fn report(
     d: &Dynamics,
     x: &[Vec2],
-    (tension, lain): (&[f64], &[Option<Lain>; 2]),
+    tension: &[f64],
+    lain: &[Option<Lain>; 2],
     stretch: &[ContactPair],
 ) -> ContactReport {
     let (Some(first), Some(last)) = (stretch.first(), stretch.last()) else {

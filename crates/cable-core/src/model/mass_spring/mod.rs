@@ -284,7 +284,7 @@ impl MassSpringModel {
         for (k, f) in self.followers.iter().enumerate() {
             if let Some(f) = f.as_ref().filter(|f| f.behind_m() > 0.0) {
                 let fastest = self.settings.hand_speed_m_per_s;
-                self.warnings.push(held_warning(&self.problem, k, self.s[self.node_of[k]], (f, fastest)));
+                self.warnings.push(held_warning(&self.problem, k, self.s[self.node_of[k]], f, fastest));
             }
         }
         self.warn_of_hands();

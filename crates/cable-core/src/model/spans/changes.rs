@@ -51,7 +51,8 @@ pub(in crate::model::spans) const ON: f64 = 1e-9;
 pub(in crate::model::spans) fn solve(
     strand: &mut CableRun,
     course: &mut Course,
-    (world, corners): (&World, &[Corner]),
+    world: &World,
+    corners: &[Corner],
     came: Option<&[Vec2]>,
     work: &mut Work,
 ) -> Result<Solved, Failure> {
@@ -86,7 +87,7 @@ pub(in crate::model::spans) fn solve(
             || point_load::settle(strand, course)?
             || slack_pocket::open(strand, course)
             || match came {
-                Some(came) => passed(strand, course, (corners, came), work)?,
+                Some(came) => passed(strand, course, corners, came, work)?,
                 None => false,
             }
             || meet(strand, course, world, came.is_some())?;
@@ -244,7 +245,7 @@ fn meet(strand: &mut CableRun, course: &Course, world: &World, resting: bool) ->
     let mut any = false;
     // From the last span, so that those before keep their number.
     for k in (0..strand.spans()).rev() {
-        if let Some(landing) = load_landing::find(strand, course, world, (k, deep)) {
+        if let Some(landing) = load_landing::find(strand, course, world, k, deep) {
             load_landing::touch(strand, course, k, &landing)?;
             any = true;
             continue;
@@ -261,7 +262,8 @@ fn meet(strand: &mut CableRun, course: &Course, world: &World, resting: bool) ->
 fn passed(
     strand: &mut CableRun,
     course: &Course,
-    (corners, came): (&[Corner], &[Vec2]),
+    corners: &[Corner],
+    came: &[Vec2],
     work: &mut Work,
 ) -> Result<bool, Failure> {
     let mut shape = Vec::new();
@@ -331,7 +333,7 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
     let bears = |c: &Contact, (from, to): (f64, f64)| {
         let track = course.track(c);
         let mut bears = true;
-        track.bottoms((from, to), |p| bears &= track.law.press(&track.place(p), force) >= 0.0);
+        track.bottoms(from, to, |p| bears &= track.law.press(&track.place(p), force) >= 0.0);
         bears || !curve.is_round()
     };
     if let Some(c) = k
@@ -339,12 +341,12 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
         .and_then(|j| strand.contacts.get_mut(j))
         .filter(|c| same(c) && p > c.ends.p[1] && bears(c, (c.ends.p[1], p)))
     {
-        let p = beyond_edges(curve, home, (p, 1), ends[1]);
+        let p = beyond_edges(curve, home, p, 1, ends[1]);
         (c.ends.p[1], c.ends.s[1], c.ends.t[1]) = (p, hit.s, force);
         return Ok(());
     }
     if let Some(c) = strand.contacts.get_mut(k).filter(|c| same(c) && p < c.ends.p[0] && bears(c, (p, c.ends.p[0]))) {
-        let p = beyond_edges(curve, home, (p, 0), ends[0]);
+        let p = beyond_edges(curve, home, p, 0, ends[0]);
         (c.ends.p[0], c.ends.s[0], c.ends.t[0]) = (p, hit.s, force);
         return Ok(());
     }
@@ -399,7 +401,7 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
 
 /// From p, where a contact ends on a side, on to the corner behind each edge that the way to the far end of the span there
 /// leads into: along an edge nothing turns, and Newton's method does not find across it.
-fn beyond_edges(curve: &Curve, home: ChainRange, (mut p, side): (f64, usize), far: Option<Vec2>) -> f64 {
+fn beyond_edges(curve: &Curve, home: ChainRange, mut p: f64, side: usize, far: Option<Vec2>) -> f64 {
     let (step, forward) = if side == 0 { (-1, -1.0) } else { (1, 1.0) };
     let Some(far) = far else { return p };
     let inside = |i: i64| i >= home.first && i <= home.last;
@@ -440,7 +442,7 @@ fn lead(strand: &mut CableRun, course: &Course, k: usize) {
 fn lead_end(strand: &mut CableRun, course: &Course, j: usize, side: usize) -> bool {
     let far = strand.ends_of(course, j + side)[side];
     let c = &mut strand.contacts[j];
-    let p = beyond_edges(&course.curves[c.curve], c.home, (c.ends.p[side], side), far);
+    let p = beyond_edges(&course.curves[c.curve], c.home, c.ends.p[side], side, far);
     if p == c.ends.p[side] {
         return false;
     }

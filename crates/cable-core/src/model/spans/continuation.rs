@@ -173,7 +173,7 @@ impl CableEquilibrium {
     /// A cable that comes down in a heap and hangs over crests, without tension where it lies.
     pub fn heaped(layout: &Layout, instant: &BoundaryConditions) -> Option<Self> {
         let course = layout.course(layout.curves(), instant);
-        let strands = strands_of(layout, |k| slack::lay(layout, k, (&course, instant)))?;
+        let strands = strands_of(layout, |k| slack::lay(layout, k, &course, instant))?;
         Some(Self { strands, course, instant: instant.clone() })
     }
 
@@ -250,7 +250,7 @@ impl CableEquilibrium {
         let mut first = None;
         for within in WITHIN {
             let course = layout.course(layout.curves(), instant);
-            let Some(strands) = from_solution::take(layout, &course, instant, (nodes, within)) else { continue };
+            let Some(strands) = from_solution::take(layout, &course, instant, nodes, within) else { continue };
             let mut network = Self { strands, course, instant: instant.clone() };
             match network.step(layout, instant, work) {
                 Ok(_) => return Ok(network),
@@ -276,13 +276,13 @@ impl CableEquilibrium {
         let mut came = Vec::new();
         for k in 0..layout.strands.len() {
             let may = taut.is_none() && seen.loose;
-            let loose = if may { slack::lay(layout, k, (&self.course, &begin)) } else { None };
+            let loose = if may { slack::lay(layout, k, &self.course, &begin) } else { None };
             if let Some(strand) = loose.filter(|s| s.loose.as_ref().is_some_and(Loose::spreads)) {
                 self.strands.push(strand);
                 came.push(Vec::new());
                 continue;
             }
-            let laid = contacts::lay(layout, k, (&self.course, &begin), seen.ring);
+            let laid = contacts::lay(layout, k, &self.course, &begin, seen.ring);
             let no_way = Failure::NoSeat { s: layout.strands[k].material[0], at: goal.places[0] };
             let (strand, way) = laid.ok_or(no_way)?;
             self.strands.push(strand);
@@ -398,7 +398,7 @@ impl CableEquilibrium {
     ) -> Result<StepStats, Failure> {
         let [mut start, mut moved] = std::mem::take(&mut work.strands);
         start.clone_from(&self.strands[k]);
-        let found = self.solve_from(layout, k, came, ([&mut start, &mut moved], work));
+        let found = self.solve_from(layout, k, came, [&mut start, &mut moved], work);
         if found.is_err() {
             self.strands[k].clone_from(&start);
         }
@@ -412,7 +412,8 @@ impl CableEquilibrium {
         layout: &Layout,
         k: usize,
         came: Option<&[Vec2]>,
-        ([start, moved], work): ([&mut CableRun; 2], &mut Work),
+        [start, moved]: [&mut CableRun; 2],
+        work: &mut Work,
     ) -> Result<StepStats, Failure> {
         if self.strands[k].loose.is_some() {
             return self.lie(layout, k);
@@ -424,7 +425,7 @@ impl CableEquilibrium {
         if came.is_none() && self.course.mobilised == 0.0 {
             foresee(strand, &self.course, &mut work.foresight);
         }
-        let mut found = changes::solve(strand, &mut self.course, (world, &layout.corners), came, work);
+        let mut found = changes::solve(strand, &mut self.course, world, &layout.corners, came, work);
         if found.is_err() {
             // From where each span by itself would be.
             strand.clone_from(moved);
@@ -438,7 +439,7 @@ impl CableEquilibrium {
                 }
             }
             if other {
-                found = changes::solve(strand, &mut self.course, (world, &layout.corners), came, work);
+                found = changes::solve(strand, &mut self.course, world, &layout.corners, came, work);
             }
         }
         if found.is_err() {
@@ -450,7 +451,7 @@ impl CableEquilibrium {
                 for (_, k) in &loose[..n] {
                     slack_pocket::fill(strand, &self.course, *k);
                 }
-                let again = changes::solve(strand, &mut self.course, (world, &layout.corners), came, work);
+                let again = changes::solve(strand, &mut self.course, world, &layout.corners, came, work);
                 if again.is_ok() {
                     found = again;
                     break;
@@ -466,7 +467,7 @@ impl CableEquilibrium {
             if c.weight {
                 c.ends.p[1] = c.ends.p[0];
             }
-            c.history.commit(&track, &c.ends, (c.mode, c.held), &mut work.past);
+            c.history.commit(&track, &c.ends, c.mode, c.held, &mut work.past);
             // What came down in this step rubs from now on.
             if c.smooth && came.is_none() {
                 c.smooth = false;
@@ -501,7 +502,7 @@ impl CableEquilibrium {
     /// A strand that lies loose goes on lying so while its supports stay where they are: as they move they draw its folds over
     /// the ground, and what that takes is not known here.
     fn lie(&mut self, layout: &Layout, k: usize) -> Result<StepStats, Failure> {
-        let found = slack::lay(layout, k, (&self.course, &self.instant));
+        let found = slack::lay(layout, k, &self.course, &self.instant);
         let strand = &mut self.strands[k];
         let Some(found) = found.filter(|f| f.ties == strand.ties) else {
             return Err(Failure::Drawn { s: strand.from });
@@ -600,12 +601,12 @@ impl CableEquilibrium {
         to: &BoundaryConditions,
         first: f64,
         work: &mut Work,
-    ) -> Result<StepStats, (Failure, f64)> {
+    ) -> Result<StepStats, Stopped> {
         self.take_up(layout, to, work);
         let [old, mut from, mut at] = std::mem::take(&mut work.instants);
         work.instants[0] = old;
         from.clone_from(&self.instant);
-        let found = self.travel_from(layout, (&from, to, &mut at), first, work);
+        let found = self.travel_from(layout, &from, to, &mut at, first, work);
         let old = std::mem::take(&mut work.instants[0]);
         work.instants = [old, from, at];
         found
@@ -614,10 +615,12 @@ impl CableEquilibrium {
     fn travel_from(
         &mut self,
         layout: &Layout,
-        (from, to, at): (&BoundaryConditions, &BoundaryConditions, &mut BoundaryConditions),
+        from: &BoundaryConditions,
+        to: &BoundaryConditions,
+        at: &mut BoundaryConditions,
         first: f64,
         work: &mut Work,
-    ) -> Result<StepStats, (Failure, f64)> {
+    ) -> Result<StepStats, Stopped> {
         let (mut done, mut step, mut taken) = (0.0, first, StepStats::default());
         let mut halvings: u32 = 0;
         // Not on the way to a first rest; and the step that was taken but had something come down in it.
@@ -659,7 +662,7 @@ impl CableEquilibrium {
                 at.between(from, to, next);
                 let t = match self.follow(layout, at, work) {
                     Ok(t) => t,
-                    Err(other) => return Err((self.reason(trouble, other), done)),
+                    Err(other) => return Err(Stopped { failure: self.reason(trouble, other), done }),
                 };
                 (taken, done, halvings, step) = (taken.and(t), next, 0, RUN);
                 taken.ran += 1;
@@ -674,9 +677,18 @@ fn strands_of(layout: &Layout, lay: impl Fn(usize) -> Option<CableRun>) -> Optio
     (0..layout.strands.len()).map(lay).collect()
 }
 
-impl From<(Failure, f64)> for Failure {
-    fn from((trouble, _): (Failure, f64)) -> Self {
-        trouble
+/// How a way to an instant ended that was not gone to its end.
+#[derive(Clone, Debug)]
+pub(in crate::model::spans) struct Stopped {
+    /// Why.
+    pub failure: Failure,
+    /// The part of it that was gone.
+    pub done: f64,
+}
+
+impl From<Stopped> for Failure {
+    fn from(stopped: Stopped) -> Self {
+        stopped.failure
     }
 }
 

@@ -316,7 +316,9 @@ impl Mechanics for SpansModel {
         // What lies loose remembers nothing.
         self.network = self.network.take().filter(|n| n.loose().is_none());
         let found = match &mut self.network {
-            Some(network) => network.travel(&self.layout, &instant, 1.0, &mut work).map_err(|t| (t.0, None)),
+            Some(network) => {
+                network.travel(&self.layout, &instant, 1.0, &mut work).map_err(|stopped| (stopped.failure, None))
+            }
             None => self.lay(&mut instant, &mut work),
         };
         let stable = self.network.as_ref().is_none_or(|n| n.stable(&mut work));
@@ -412,9 +414,9 @@ impl Mechanics for SpansModel {
                     ran += taken.ran;
                     self.time_s = time_s;
                 }
-                Err((trouble, done)) => {
-                    self.time_s += (time_s - self.time_s) * done;
-                    failed = Some(trouble);
+                Err(stopped) => {
+                    self.time_s += (time_s - self.time_s) * stopped.done;
+                    failed = Some(stopped.failure);
                     break;
                 }
             }

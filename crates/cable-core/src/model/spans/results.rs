@@ -73,20 +73,20 @@ pub(in crate::model::spans) fn report(layout: &Layout, network: &CableEquilibriu
             }
             if let Some(c) = strand.contacts.get(k) {
                 let track = course.track(c).seen_from(c.ends.p[0]);
-                let stretches = stretches((&track, layout.problem.radius), &c.history, c.ends.p);
+                let stretches = stretches(&track, layout.problem.radius, &c.history, c.ends.p);
                 if c.weight {
-                    load_nodes(&mut nodes, (strand, course, k), &track);
+                    load_nodes(&mut nodes, strand, course, k, &track);
                 } else {
                     contact_nodes(&mut nodes, &track, c, &stretches);
                 }
                 if let Some(obstacle) = track.curve.obstacle {
                     let name = layout.problem.world.obstacle_name(obstacle);
                     contacts.push(match c.weight {
-                        true => load((strand, course, k), (&track, name)),
-                        false => contact((&track, name), c, &stretches),
+                        true => load(strand, course, k, &track, name),
+                        false => contact(&track, name, c, &stretches),
                     });
                     if c.pocket {
-                        contacts.extend(heap((strand, course, k), name));
+                        contacts.extend(heap(strand, course, k, name));
                     }
                 }
             }
@@ -118,7 +118,7 @@ struct Stretch {
 }
 
 impl Stretch {
-    fn new((track, cable_radius): (&Track<'_>, f64), history: &TensionProfile, [from, to]: [f64; 2]) -> Self {
+    fn new(track: &Track<'_>, cable_radius: f64, history: &TensionProfile, [from, to]: [f64; 2]) -> Self {
         let middle = 0.5 * (from + to);
         let (tension, s) = history.at(track, from);
         let pivot = match track.pivot {
@@ -145,7 +145,7 @@ impl Stretch {
     }
 }
 
-fn stretches((track, cable_radius): (&Track<'_>, f64), history: &TensionProfile, [p1, p2]: [f64; 2]) -> Vec<Stretch> {
+fn stretches(track: &Track<'_>, cable_radius: f64, history: &TensionProfile, [p1, p2]: [f64; 2]) -> Vec<Stretch> {
     let knots = history.knots();
     let mut out = Vec::with_capacity(knots.len() + 1);
     let (mut p, mut k) = (p1, 0);
@@ -155,7 +155,7 @@ fn stretches((track, cable_radius): (&Track<'_>, f64), history: &TensionProfile,
             k += 1;
         }
         let next = knots.get(k).map_or(border, |knot| if knot.p < border { knot.p } else { border });
-        out.push(Stretch::new((track, cable_radius), history, [p, next]));
+        out.push(Stretch::new(track, cable_radius, history, [p, next]));
         p = next;
     }
     out
@@ -180,7 +180,7 @@ fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, c: &Contact, stretche
 }
 
 /// The nodes of the load that is contact j: what comes down on it from the air pulls as it comes, what lies beside it along the ground.
-fn load_nodes(nodes: &mut Nodes<'_>, (strand, course, j): (&CableRun, &Course, usize), track: &Track<'_>) {
+fn load_nodes(nodes: &mut Nodes<'_>, strand: &CableRun, course: &Course, j: usize, track: &Track<'_>) {
     let c = &strand.contacts[j];
     let place = track.place(c.ends.p[0]);
     let pulls = |side: usize| strand.force_at_contact(course, j, side);
@@ -216,7 +216,7 @@ fn pressed(track: &Track<'_>, stretches: &[Stretch]) -> (f64, Vec2, f64, f64) {
     (normal, push, along, turned)
 }
 
-fn contact((track, name): (&Track<'_>, &str), c: &Contact, stretches: &[Stretch]) -> ContactReport {
+fn contact(track: &Track<'_>, name: &str, c: &Contact, stretches: &[Stretch]) -> ContactReport {
     let friction = track.friction;
     let (normal_n, push, along, turned) = pressed(track, stretches);
     let middle = track.place(0.5 * (c.ends.p[0] + c.ends.p[1]));
@@ -339,7 +339,7 @@ pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquili
 }
 
 /// The contact of the load that is contact j.
-fn load((strand, course, j): (&CableRun, &Course, usize), (track, name): (&Track<'_>, &str)) -> ContactReport {
+fn load(strand: &CableRun, course: &Course, j: usize, track: &Track<'_>, name: &str) -> ContactReport {
     let c = &strand.contacts[j];
     let felt = point_load::felt(strand, course, j);
     let at = track.place(c.ends.p[0]).at;
@@ -367,7 +367,7 @@ fn load((strand, course, j): (&CableRun, &Course, usize), (track, name): (&Track
 }
 
 /// The contacts of the heap in the pocket after contact j: one with each edge that carries a part of it.
-fn heap((strand, course, j): (&CableRun, &Course, usize), name: &str) -> Vec<ContactReport> {
+fn heap(strand: &CableRun, course: &Course, j: usize, name: &str) -> Vec<ContactReport> {
     let ([before, after], at) = match (&strand.contacts[j], strand.contacts.get(j + 1)) {
         (c, Some(next)) => ([c.ends.s[1], next.ends.s[0]], course.track(c).place(c.ends.p[1]).at),
         (_, None) => return Vec::new(),

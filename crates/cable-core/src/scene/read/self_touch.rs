@@ -117,7 +117,7 @@ impl<'a> EdgeTree<'a> {
         } else if self.closed && i == 0 && j + 1 == self.edges {
             turns_back(a, b, c)
         } else {
-            meet((a, b), (c, d))
+            meet(a, b, c, d)
         }
     }
 }
@@ -132,7 +132,7 @@ fn turns_back(corner: Point, a: Point, b: Point) -> bool {
     turn(corner, a, b) == 0.0 && along > 0.0
 }
 
-fn meet((a, b): (Point, Point), (c, d): (Point, Point)) -> bool {
+fn meet(a: Point, b: Point, c: Point, d: Point) -> bool {
     let (c_side, d_side, a_side, b_side) = (turn(a, b, c), turn(a, b, d), turn(c, d, a), turn(c, d, b));
     let between = |side: f64, p: Point, from: Point, to: Point| {
         side == 0.0 && (0..2).all(|k| (p[k] >= from[k].min(to[k])) && p[k] <= from[k].max(to[k]))

@@ -23,7 +23,7 @@ use crate::math::{Vec2, larger, perp};
 use crate::model::fem::beam::mesh::places;
 use crate::model::fem::free::element::Material;
 use crate::model::fem::free::pulley_balance::Network;
-use crate::model::fem::free::stations::{Layout, Stop};
+use crate::model::fem::free::stations::{Layout, SpanEnds, Stop};
 
 /// Newton steps at one bending stiffness. Measured: 4 to 12.
 const MAX_STEPS: usize = 40;
@@ -55,7 +55,7 @@ pub struct Beam {
     pub(in crate::model::fem) layout: Layout,
     pub(in crate::model::fem) material: Material,
     pub(in crate::model::fem) bending: f64,
-    ends: Vec<(usize, usize)>,
+    ends: Vec<SpanEnds>,
     pub(in crate::model::fem) bars: Vec<Bar>,
     pub(in crate::model::fem) angles: Vec<f64>,
     /// Prescribed angles: which, and its value, rad.
@@ -255,7 +255,7 @@ impl Beam {
         let mut out = vec![Vec2::zeros(); stops.len()];
         let mut force = Vec2::zeros();
         for k in 0..stops.len() {
-            if let Some(i) = self.ends.iter().position(|e| e.0 == k) {
+            if let Some(i) = self.ends.iter().position(|e| e.first == k) {
                 force = self.forces[i];
             } else if k == last_anchor {
                 let loads: Vec2 = stops[k + 1..].iter().map(|s| s.load).sum();
@@ -390,7 +390,7 @@ impl Beam {
         let (mut g, mut b, mut c) = (vec![0.0; n], vec![vec![0.0; n]; m], DMatrix::zeros(m, m));
         let mut gap = vec![0.0; m];
         h.clear();
-        for (i, &(first, last)) in self.ends.iter().enumerate() {
+        for (i, &SpanEnds { first, last }) in self.ends.iter().enumerate() {
             let points = (self.layout.stops[first].point(1), self.layout.stops[last].point(0));
             if let (Some(a), Some(z)) = points {
                 gap[2 * i] -= z.x - a.x;
@@ -399,7 +399,7 @@ impl Beam {
         }
         let (ea, starts) = (self.material.axial_stiffness, self.stretch_starts());
         for (e, bar) in self.bars.iter().enumerate() {
-            let span = self.ends.iter().position(|&(first, last)| first <= bar.stretch && bar.stretch < last);
+            let span = self.ends.iter().position(|ends| ends.first <= bar.stretch && bar.stretch < ends.last);
             let stiff = bending / (3.0 * self.rest(e));
             for r in 0..3 {
                 g[2 * e + r] += stiff * dot(&BEND[r], &self.angles[2 * e..2 * e + 3]);

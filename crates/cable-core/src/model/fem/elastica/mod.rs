@@ -204,30 +204,31 @@ fn slant(contact: &Contact, u: &[f64; STATES]) -> f64 {
 /// else as a chain of bars with what halving them changes as its error.
 pub fn rest(
     problem: &Problem,
-    at: (f64, &[Option<Vec2>]),
+    time_s: f64,
+    dragged: &[Option<Vec2>],
     lay: Option<&CableSolution>,
     tolerance: f64,
 ) -> Option<(CableSolution, Cost)> {
-    let bent = lay.and_then(|lay| Elastica::from_flexible(problem, at.0, at.1, lay));
+    let bent = lay.and_then(|lay| Elastica::from_flexible(problem, time_s, dragged, lay));
     let bent = bent.and_then(|e| e.answer(problem, tolerance));
     let bent = bent.filter(|(found, _)| lay.is_some_and(|lay| keeps_sides(problem, &lay.nodes, found)));
     let chain = match &bent {
         // An equilibrium may be one that a cable runs away from: a chain that is let go there tells.
-        Some((answer, _)) => match relax::let_go(problem, at, answer) {
+        Some((answer, _)) => match relax::let_go(problem, time_s, dragged, answer) {
             LetGo::Stays | LetGo::Unknown => return bent,
             LetGo::Leaves(chain) => *chain,
             LetGo::Totters => return None,
         },
-        None => relax::relaxed(problem, at, lay)?,
+        None => relax::relaxed(problem, time_s, dragged, lay)?,
     };
     let bend = |chain: &Chain<'_>| {
-        let found = Elastica::from_chain(chain, at.1).and_then(|e| e.answer(problem, tolerance))?;
+        let found = Elastica::from_chain(chain, dragged).and_then(|e| e.answer(problem, tolerance))?;
         keeps_sides(problem, &chain.nodes(), &found.0).then_some(found)
     };
     if let Some(found) = bend(&chain) {
         return Some(found);
     }
-    let (fine, rests) = chain.halved(at.1)?;
+    let (fine, rests) = chain.halved(dragged)?;
     if let Some(found) = if rests { bend(&fine) } else { None } {
         return Some(found);
     }

@@ -152,7 +152,8 @@ fn has_pockets(problem: &Problem, answer: &CableSolution) -> bool {
 /// A chain at rest from the answer for a flexible cable, or from where it is first laid; None where it finds none.
 pub(super) fn relaxed<'a>(
     problem: &'a Problem,
-    at: (f64, &[Option<Vec2>]),
+    time_s: f64,
+    dragged: &[Option<Vec2>],
     lay: Option<&'a CableSolution>,
 ) -> Option<Chain<'a>> {
     let lay = lay.filter(|l| l.nodes.len() > 1 && l.breaks.is_empty() && !has_pockets(problem, l));
@@ -160,8 +161,8 @@ pub(super) fn relaxed<'a>(
     if first.len() < 2 {
         return None;
     }
-    let laid = lay.and_then(|l| Chain::new(problem, at, &Curve::new(&l.nodes), lay, 1.0));
-    let mut chain = laid.or_else(|| Chain::new(problem, at, &Curve::new(&first), None, 1.0))?;
+    let laid = lay.and_then(|l| Chain::new(problem, time_s, dragged, &Curve::new(&l.nodes), lay, 1.0));
+    let mut chain = laid.or_else(|| Chain::new(problem, time_s, dragged, &Curve::new(&first), None, 1.0))?;
     (chain.settle(1.0) && chain.stable).then_some(chain)
 }
 
@@ -178,8 +179,13 @@ pub(super) enum LetGo<'a> {
 }
 
 /// Lets a chain go from an answer for the stiff cable.
-pub(super) fn let_go<'a>(problem: &'a Problem, at: (f64, &[Option<Vec2>]), answer: &'a CableSolution) -> LetGo<'a> {
-    let Some(mut chain) = Chain::new(problem, at, &Curve::new(&answer.nodes), Some(answer), 1.0) else {
+pub(super) fn let_go<'a>(
+    problem: &'a Problem,
+    time_s: f64,
+    dragged: &[Option<Vec2>],
+    answer: &'a CableSolution,
+) -> LetGo<'a> {
+    let Some(mut chain) = Chain::new(problem, time_s, dragged, &Curve::new(&answer.nodes), Some(answer), 1.0) else {
         return LetGo::Unknown;
     };
     let from = chain.x.clone();
@@ -200,7 +206,7 @@ impl<'a> Chain<'a> {
     pub fn halved(&self, dragged: &[Option<Vec2>]) -> Option<(Self, bool)> {
         let nodes = self.nodes();
         let finer = 2.0 * self.finer;
-        let mut fine = Self::new(self.problem, (self.time_s, dragged), &Curve::new(&nodes), self.lay, finer)?;
+        let mut fine = Self::new(self.problem, self.time_s, dragged, &Curve::new(&nodes), self.lay, finer)?;
         let rests = fine.settle(NEAR);
         Some((fine, rests))
     }
@@ -208,7 +214,8 @@ impl<'a> Chain<'a> {
     /// The chain along a curve: the way of a flexible cable or its first lay. None where the scene has what this knows nothing of.
     pub fn new(
         problem: &'a Problem,
-        (time_s, dragged): (f64, &[Option<Vec2>]),
+        time_s: f64,
+        dragged: &[Option<Vec2>],
         curve: &Curve<'_>,
         lay: Option<&'a CableSolution>,
         finer: f64,
@@ -310,7 +317,7 @@ impl<'a> Chain<'a> {
                 chain.load[k] += body * (0.5 * ds);
             }
         }
-        push_chain_out(problem, (&chain.held, &|_, _| false), &mut chain.x, CLEAR * problem.radius);
+        push_chain_out(problem, &chain.held, &|_, _| false, &mut chain.x, CLEAR * problem.radius);
         (chain.depth(&chain.x) < DEEPEST * problem.radius).then_some(chain)
     }
 
@@ -397,7 +404,7 @@ impl<'a> Chain<'a> {
             // too as long as that leads to rest, and is resisted where it does not.
             let (mut found, mut exact) = (None, small);
             for _ in 0..MOST_RESISTED {
-                found = self.step(&mut matrix, &mut factor, (shift, exact));
+                found = self.step(&mut matrix, &mut factor, shift, exact);
                 if found.is_some() {
                     break;
                 }
@@ -497,7 +504,8 @@ impl<'a> Chain<'a> {
         &mut self,
         matrix: &mut BandMatrix,
         factor: &mut BandFactor,
-        (shift, exact): (f64, bool),
+        shift: f64,
+        exact: bool,
     ) -> Option<(Vec<Vec2>, bool)> {
         let n = self.x.len();
         let stiff = self.stiffness();
@@ -759,7 +767,7 @@ mod tests {
         for (part, stays) in [(0.5, true), (0.98, true), (1.02, false), (2.0, false)] {
             let (problem, straight) = strut(part)?;
             let mut chain =
-                Chain::new(&problem, (0.0, &[None, None]), &Curve::new(&straight.nodes), Some(&straight), 1.0)
+                Chain::new(&problem, 0.0, &[None, None], &Curve::new(&straight.nodes), Some(&straight), 1.0)
                     .ok_or("no chain")?;
             assert!(chain.settle(NEAR), "{part}");
             let off = chain.x.iter().map(|x| (x.y - 1.0).abs()).fold(0.0, larger);

@@ -141,7 +141,7 @@ impl Elastica {
         dragged: &[Option<Vec2>],
         answer: &CableSolution,
     ) -> Option<Self> {
-        Self::guess(problem, (time_s, dragged), answer, None, None)
+        Self::guess(problem, time_s, dragged, answer, None, None)
     }
 
     /// The same from the answer of a mesh for the cable as stiff as it is; `bar`: the length of its bars, m, over which it knows where
@@ -150,16 +150,17 @@ impl Elastica {
         problem: &Problem,
         time_s: f64,
         dragged: &[Option<Vec2>],
-        (answer, bar): (&CableSolution, f64),
+        answer: &CableSolution,
+        bar: f64,
     ) -> Option<Self> {
-        Self::guess(problem, (time_s, dragged), answer, Some(bar), None)
+        Self::guess(problem, time_s, dragged, answer, Some(bar), None)
     }
 
     /// The same from a chain of bars at rest.
     pub(super) fn from_chain(chain: &Chain<'_>, dragged: &[Option<Vec2>]) -> Option<Self> {
         let contacts = chain.lay.map_or_else(Vec::new, |l| l.contacts.clone());
         let answer = CableSolution { nodes: chain.nodes(), contacts, ..CableSolution::default() };
-        Self::guess(chain.problem, (chain.time_s, dragged), &answer, Some(chain.bar), Some(&chain.pushes()))
+        Self::guess(chain.problem, chain.time_s, dragged, &answer, Some(chain.bar), Some(&chain.pushes()))
     }
 
     /// The contacts of a chain.
@@ -168,7 +169,8 @@ impl Elastica {
         problem: &Problem,
         answer: &CableSolution,
         curve: &Curve<'_>,
-        (bar, pushes): (f64, &[ContactPair]),
+        bar: f64,
+        pushes: &[ContactPair],
         events: &mut Vec<Event>,
     ) {
         let mut done = vec![false; pushes.len()];
@@ -206,7 +208,8 @@ impl Elastica {
 
     fn guess(
         problem: &Problem,
-        (time_s, dragged): (f64, &[Option<Vec2>]),
+        time_s: f64,
+        dragged: &[Option<Vec2>],
         answer: &CableSolution,
         bar: Option<f64>,
         pushes: Option<&[ContactPair]>,
@@ -265,9 +268,9 @@ impl Elastica {
         };
         match bar {
             Some(bar) if pushes.is_some() => {
-                this.chain_contacts(problem, answer, &curve, (bar, pushes.unwrap_or_default()), &mut events);
+                this.chain_contacts(problem, answer, &curve, bar, pushes.unwrap_or_default(), &mut events);
             }
-            None => this.find_contacts(problem, (time_s, dragged), answer, &curve, &mut events),
+            None => this.find_contacts(problem, time_s, dragged, answer, &curve, &mut events),
             Some(bar) => this.read_contacts(problem, answer, &curve, bar, &mut events),
         }
         events.sort_by(|a, b| a.from.total_cmp(&b.from));
@@ -355,7 +358,8 @@ impl Elastica {
     fn find_contacts(
         &mut self,
         problem: &Problem,
-        (time_s, dragged): (f64, &[Option<Vec2>]),
+        time_s: f64,
+        dragged: &[Option<Vec2>],
         answer: &CableSolution,
         curve: &Curve<'_>,
         events: &mut Vec<Event>,
@@ -372,7 +376,7 @@ impl Elastica {
             let gap = problem.world.signed_gap(n.at(), within).filter(|g| g.gap_m <= within);
             let on = gap
                 .and_then(|g| contact_at(problem, &g, n.at(), along(i)))
-                .or_else(|| self.pulley_at(problem, (time_s, dragged), n.at(), along(i), within));
+                .or_else(|| self.pulley_at(problem, time_s, dragged, n.at(), along(i), within));
             match (&mut open, on) {
                 (Some((c, _, to)), Some(new))
                     if c.owner == new.owner
@@ -405,7 +409,8 @@ impl Elastica {
     fn pulley_at(
         &self,
         problem: &Problem,
-        (time_s, dragged): (f64, &[Option<Vec2>]),
+        time_s: f64,
+        dragged: &[Option<Vec2>],
         x: Vec2,
         t: Vec2,
         within: f64,

@@ -200,13 +200,14 @@ pub fn lay(mesh: &Mesh, way: &[(f64, Vec2)]) -> Vec<Vec2> {
 
 /// Pushes free nodes and segments out of obstacles until every gap is at least half of `clear` (m) or it gives up.
 pub fn push_out(problem: &Problem, mesh: &Mesh, x: &mut [Vec2], clear: f64) {
-    push_chain_out(problem, (&mesh.held, &|e, feature| mesh.rounds(e).contains(&Some(feature))), x, clear);
+    push_chain_out(problem, &mesh.held, &|e, feature| mesh.rounds(e).contains(&Some(feature)), x, clear);
 }
 
 /// The same of a chain of which nodes are held, and bars lie on rounds.
 pub fn push_chain_out(
     problem: &Problem,
-    (held, lies_on): (&[bool], &dyn Fn(usize, usize) -> bool),
+    held: &[bool],
+    lies_on: &dyn Fn(usize, usize) -> bool,
     x: &mut [Vec2],
     clear: f64,
 ) {

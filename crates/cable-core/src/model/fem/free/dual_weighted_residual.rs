@@ -20,7 +20,7 @@ use crate::model::fem::free::pulley_balance::Network;
 use crate::model::fem::free::results::Point;
 use crate::model::fem::free::span;
 use crate::model::fem::free::span::{Span, elements};
-use crate::model::fem::free::stations::Layout;
+use crate::model::fem::free::stations::{Layout, SpanEnds};
 
 /// Rounds of the correction, and the part of it below which another round changes nothing that shows.
 const ROUNDS: usize = 8;
@@ -80,7 +80,7 @@ pub fn position_error(network: &mut Network) -> f64 {
         elements(&network.material, layout, ends, span.force, |ds, f| {
             lack += network.material.chord_error(ds, f).norm();
         });
-        let closing = changes.get(ends.0).map_or(0.0, |c| (span.walk.compliance * c[1]).norm());
+        let closing = changes.get(ends.first).map_or(0.0, |c| (span.walk.compliance * c[1]).norm());
         most = larger(most, lack + closing);
     }
     most + ROUNDING * f64::EPSILON * layout.length
@@ -102,7 +102,7 @@ pub fn apart(some: &[Point], others: &[Point]) -> f64 {
 /// What rounding of lengths does to the stiffest span, N.
 fn rounding(network: &Network) -> f64 {
     let mut most = 0.0;
-    for (&(first, last), span) in network.ends.iter().zip(&network.spans) {
+    for (&SpanEnds { first, last }, span) in network.ends.iter().zip(&network.spans) {
         let length = network.layout.stops[last].arc_length - network.layout.stops[first].leaves();
         let stiffness = span.walk.compliance.try_inverse().map_or(0.0, |k| k.norm());
         most = larger(most, stiffness * length * ROUNDING * f64::EPSILON);
@@ -115,8 +115,8 @@ fn force_errors(network: &mut Network) -> Vec<[Vec2; 2]> {
     let mut errors = vec![[Vec2::zeros(); 2]; network.layout.stops.len()];
     for (&ends, span) in network.ends.iter().zip(&network.spans) {
         let off = closing_force(network, ends, span);
-        errors[ends.0][1] = off;
-        errors[ends.1][0] = off;
+        errors[ends.first][1] = off;
+        errors[ends.last][0] = off;
     }
     if network.rubbing.is_empty() {
         let_pulleys_follow(network, &mut errors);
@@ -128,23 +128,23 @@ fn force_errors(network: &mut Network) -> Vec<[Vec2; 2]> {
 
 /// By how much more force at its start the exact catenary would close a span, N. Where a fold lies in one element its lack says
 /// nothing about the force: the span is solved on finer elements until it does.
-fn closing_force(network: &Network, ends: (usize, usize), span: &Span) -> Vec2 {
+fn closing_force(network: &Network, ends: SpanEnds, span: &Span) -> Vec2 {
     let (material, goal) = (&network.material, span.walk.reach);
-    if let Some(off) = correction(material, &network.layout, ends, (span.force, goal)) {
+    if let Some(off) = correction(material, &network.layout, ends, span.force, goal) {
         return off;
     }
     let mut layout = network.layout.clone();
     let mut force = span.force;
     for _ in 0..MOST_FINER {
-        layout.stops[ends.0..ends.1].iter_mut().for_each(|s| s.cells *= FINER);
-        if layout.stops[ends.0..ends.1].iter().map(|s| s.cells).sum::<usize>() > MOST_CELLS {
+        layout.stops[ends.first..ends.last].iter_mut().for_each(|s| s.cells *= FINER);
+        if layout.stops[ends.first..ends.last].iter().map(|s| s.cells).sum::<usize>() > MOST_CELLS {
             break;
         }
         let guess = span::first_guess(material, &layout, ends, goal);
         let solve = |start| span::solve(material, &layout, ends, goal, start);
         let Some(fine) = solve(force).or_else(|| solve(guess)) else { continue };
         force = fine.force;
-        if let Some(off) = correction(material, &layout, ends, (force, goal)) {
+        if let Some(off) = correction(material, &layout, ends, force, goal) {
             return (force + off - span.force) * (1.0 + SETTLED);
         }
     }
@@ -153,7 +153,7 @@ fn closing_force(network: &Network, ends: (usize, usize), span: &Span) -> Vec2 {
 }
 
 /// The same by rounds of the correction; None where they do not settle.
-fn correction(material: &Material, layout: &Layout, ends: (usize, usize), (force, goal): (Vec2, Vec2)) -> Option<Vec2> {
+fn correction(material: &Material, layout: &Layout, ends: SpanEnds, force: Vec2, goal: Vec2) -> Option<Vec2> {
     let (mut off, mut before) = (Vec2::zeros(), f64::INFINITY);
     for _ in 0..ROUNDS {
         let mut lack = Vec2::zeros();

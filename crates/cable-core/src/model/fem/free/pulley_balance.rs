@@ -17,7 +17,7 @@ use crate::model::fem::free::element::{Material, turn_between};
 use crate::model::fem::free::pulley_friction::Rubbing;
 use crate::model::fem::free::span;
 use crate::model::fem::free::span::{Span, elements};
-use crate::model::fem::free::stations::{Hold, Layout, Wheel};
+use crate::model::fem::free::stations::{Hold, Layout, SpanEnds, Wheel};
 
 /// Newton steps for the pulleys together. Measured: 3 to 8.
 const MAX_STEPS: usize = 40;
@@ -55,7 +55,7 @@ pub struct Network {
     /// What the elements share.
     pub material: Material,
     /// The stops at each span's ends.
-    pub ends: Vec<(usize, usize)>,
+    pub ends: Vec<SpanEnds>,
     /// The spans' answers, as `ends`.
     pub spans: Vec<Span>,
     /// Tension force just before and just after each stop, N.
@@ -140,15 +140,16 @@ impl Network {
     }
 
     fn solve_span(&mut self, i: usize) -> Result<(), Failure> {
-        let (first, last) = self.ends[i];
+        let ends = self.ends[i];
+        let SpanEnds { first, last } = ends;
         let (Some(a), Some(b)) = (self.layout.stops[first].point(1), self.layout.stops[last].point(0)) else {
             return Err(Failure::Span(first, f64::NAN));
         };
         let d = b - a;
-        let solve = |guess| span::solve(&self.material, &self.layout, (first, last), d, guess);
+        let solve = |guess| span::solve(&self.material, &self.layout, ends, d, guess);
         let warm = if self.warm || self.spans[i].steps > 0 { solve(self.spans[i].force) } else { None };
-        let guess = span::first_guess(&self.material, &self.layout, (first, last), d);
-        let span = warm.or_else(|| solve(guess)).or_else(|| self.unfold((first, last), d, guess));
+        let guess = span::first_guess(&self.material, &self.layout, ends, d);
+        let span = warm.or_else(|| solve(guess)).or_else(|| self.unfold(ends, d, guess));
         let span = span.ok_or(Failure::Span(first, f64::NAN))?;
         self.steps += span.steps;
         self.residual = larger(self.residual, span.residual);
@@ -160,7 +161,7 @@ impl Network {
 
     /// A span folded so sharply that one element turns round in itself: where its tension vanishes D has a kink, which is
     /// rounded off and then sharpened tenfold at a time.
-    fn unfold(&self, ends: (usize, usize), d: Vec2, guess: Vec2) -> Option<Span> {
+    fn unfold(&self, ends: SpanEnds, d: Vec2, guess: Vec2) -> Option<Span> {
         let (mut force, mut steps) = (guess, 0);
         for power in (0..=ROUNDED).rev() {
             let material = Material { smoothing: self.material.smoothing * 10f64.powi(power), ..self.material };
@@ -181,7 +182,8 @@ impl Network {
         self.forces[end][1] = Vec2::zeros();
         if first > 0 {
             let start = -self.layout.stops[0].load;
-            self.forces[first][0] = elements(&self.material, &self.layout, (0, first), start, |_, _| ());
+            self.forces[first][0] =
+                elements(&self.material, &self.layout, SpanEnds { first: 0, last: first }, start, |_, _| ());
         }
         if last < end {
             let stops = &self.layout.stops;
@@ -208,7 +210,7 @@ impl Network {
         let ratio = (after.norm() / before.norm()).ln();
         if wheel.radius > 0.0 {
             let clockwise = self.clockwise_at(stop, wheel);
-            let law = [-1.0, 0.0, 1.0].map(|sign| self.round_wheel(wheel, (before, clockwise), sign));
+            let law = [-1.0, 0.0, 1.0].map(|sign| self.round_wheel(wheel, before, clockwise, sign));
             return Balance { ratio, law };
         }
         let bound = wheel.friction * turn_between(before, after).abs();
@@ -371,17 +373,17 @@ impl Network {
     pub(in crate::model::fem) fn rates_at(&self, k: usize, of: usize) -> [Vec2; 2] {
         let mut rates = [Vec2::zeros(); 2];
         for (span, &ends) in self.spans.iter().zip(&self.ends) {
-            let by_end = if ends.1 == of {
+            let by_end = if ends.last == of {
                 true
-            } else if ends.0 == of {
+            } else if ends.first == of {
                 false
             } else {
                 continue;
             };
-            if ends.1 == k {
+            if ends.last == k {
                 rates[0] += span.force_rates(&self.material, &self.layout, ends, by_end)[1];
             }
-            if ends.0 == k {
+            if ends.first == k {
                 rates[1] += span.force_rates(&self.material, &self.layout, ends, by_end)[0];
             }
         }
@@ -469,7 +471,7 @@ impl Network {
     fn try_at(&mut self, stop: usize, arc_length: f64) -> Result<(), Failure> {
         self.layout.stops[stop].arc_length = arc_length;
         for i in 0..self.ends.len() {
-            if self.ends[i].0 == stop || self.ends[i].1 == stop {
+            if self.ends[i].first == stop || self.ends[i].last == stop {
                 self.solve_span(i)?;
             }
         }

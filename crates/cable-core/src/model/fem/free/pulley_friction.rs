@@ -340,7 +340,7 @@ impl Network {
         let mut out = Vec::with_capacity(4);
         let both = unknown == Unknown::Both;
         for side in 0..2 {
-            let span = self.ends.iter().position(|e| if side == 0 { e.1 == k } else { e.0 == k });
+            let span = self.ends.iter().position(|e| if side == 0 { e.last == k } else { e.first == k });
             let material = both || unknown == Unknown::Material(side);
             let Some(i) = span else {
                 if material && (if side == 0 { k > 0 } else { k + 1 < self.layout.stops.len() }) {
@@ -361,8 +361,8 @@ impl Network {
             } else {
                 continue;
             };
-            out.push((ends.0, 1, slopes[0]));
-            out.push((ends.1, 0, slopes[1]));
+            out.push((ends.first, 1, slopes[0]));
+            out.push((ends.last, 0, slopes[1]));
         }
         out
     }

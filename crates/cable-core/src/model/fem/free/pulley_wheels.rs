@@ -21,7 +21,7 @@ const WHEEL_STILL_AT_LEAST: f64 = 1e-8;
 
 impl Network {
     /// ln(T_after/T_before) round a wheel, passed `clockwise` (+1) or the other way (−1), with friction pulling along (`sign` +1) or against.
-    pub(in crate::model::fem) fn round_wheel(&self, wheel: &Wheel, (before, clockwise): (Vec2, f64), sign: f64) -> f64 {
+    pub(in crate::model::fem) fn round_wheel(&self, wheel: &Wheel, before: Vec2, clockwise: f64, sign: f64) -> f64 {
         let m = &self.material;
         let [meets, leaves] = wheel.contact;
         let turn = arc(meets, leaves, clockwise);

@@ -5,7 +5,7 @@ use crate::model::arc_nodes;
 use crate::model::fem::free::pulley_balance::Network;
 use crate::model::fem::free::pulley_wheels;
 use crate::model::fem::free::span::elements;
-use crate::model::fem::free::stations::{Hold, Layout, Stop};
+use crate::model::fem::free::stations::{Hold, Layout, SpanEnds, Stop};
 use crate::problem::Problem;
 use crate::solution::{Node, SupportReaction};
 
@@ -53,19 +53,21 @@ pub fn points(network: &Network, cable_radius: f64, out: &mut Vec<Point>) {
     if first > 0 {
         let force = -layout.stops[0].load;
         let mut reach = Vec2::zeros();
-        elements(&network.material, layout, (0, first), force, |ds, f| reach += network.material.respond(ds, f).chord);
+        elements(&network.material, layout, SpanEnds { first: 0, last: first }, force, |ds, f| {
+            reach += network.material.respond(ds, f).chord
+        });
         let anchor = layout.stops[first].point(0).unwrap_or_default();
-        run(network, (0, first), anchor - reach, force, out);
+        run(network, SpanEnds { first: 0, last: first }, anchor - reach, force, out);
     }
     for (&ends, span) in network.ends.iter().zip(&network.spans) {
-        let start = layout.stops[ends.0].point(1).unwrap_or_default();
-        anchor(network, ends.0, cable_radius, out);
+        let start = layout.stops[ends.first].point(1).unwrap_or_default();
+        anchor(network, ends.first, cable_radius, out);
         run(network, ends, start, span.force, out);
     }
     anchor(network, last, cable_radius, out);
     if last < end {
         let start = layout.stops[last].point(1).unwrap_or_default();
-        run(network, (last, end), start, network.forces[last][1], out);
+        run(network, SpanEnds { first: last, last: end }, start, network.forces[last][1], out);
         let load = layout.stops[end].load;
         let tip = out.last().map_or(start, |p| p.at) + last_chord(network, end);
         out.push(Point { arc_length: layout.length, at: tip, tension: load.norm(), curvature: 0.0, force: load });
@@ -85,7 +87,7 @@ fn free_curvature(force: Vec2, body: Vec2, smoothing: f64) -> f64 {
 }
 
 /// The points between two stops; of the two only the first, and only where it does not anchor.
-fn run(network: &Network, (first, last): (usize, usize), start: Vec2, force: Vec2, out: &mut Vec<Point>) {
+fn run(network: &Network, SpanEnds { first, last }: SpanEnds, start: Vec2, force: Vec2, out: &mut Vec<Point>) {
     let (layout, material) = (&network.layout, &network.material);
     let (mut at, mut force) = (start, force);
     for k in first..last {

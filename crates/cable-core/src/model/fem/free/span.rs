@@ -11,7 +11,7 @@
 
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::free::element::Material;
-use crate::model::fem::free::stations::Layout;
+use crate::model::fem::free::stations::{Layout, SpanEnds};
 
 /// Newton steps a span may take. Measured: 3 to 14, up to 40 for a span folded on itself.
 const MAX_STEPS: usize = 200;
@@ -56,7 +56,7 @@ pub struct Span {
 impl Span {
     /// How the forces at both ends change with the arc length at an end (`by_end`: the last stop, else the first).
     #[must_use]
-    pub fn force_rates(&self, material: &Material, layout: &Layout, ends: (usize, usize), by_end: bool) -> [Vec2; 2] {
+    pub fn force_rates(&self, material: &Material, layout: &Layout, ends: SpanEnds, by_end: bool) -> [Vec2; 2] {
         let rate = reach_rate(material, layout, ends, self.force, by_end);
         let start = self.walk.compliance.try_inverse().map_or(Vec2::repeat(f64::NAN), |k| -(k * rate));
         [start, start + material.body * if by_end { -1.0 } else { 1.0 }]
@@ -67,7 +67,7 @@ impl Span {
 pub fn elements(
     material: &Material,
     layout: &Layout,
-    (first, last): (usize, usize),
+    SpanEnds { first, last }: SpanEnds,
     start: Vec2,
     mut each: impl FnMut(f64, Vec2),
 ) -> Vec2 {
@@ -89,7 +89,7 @@ pub fn elements(
 
 /// The shape of a span under a start force.
 #[must_use]
-pub fn walk(material: &Material, layout: &Layout, ends: (usize, usize), start: Vec2) -> Walk {
+pub fn walk(material: &Material, layout: &Layout, ends: SpanEnds, start: Vec2) -> Walk {
     let mut w = Walk::default();
     w.end_force = elements(material, layout, ends, start, |ds, force| {
         let r = material.respond(ds, force);
@@ -101,7 +101,13 @@ pub fn walk(material: &Material, layout: &Layout, ends: (usize, usize), start: V
 }
 
 /// ∂reach/∂(arc length at one end), at a constant start force.
-fn reach_rate(material: &Material, layout: &Layout, (first, last): (usize, usize), start: Vec2, by_end: bool) -> Vec2 {
+fn reach_rate(
+    material: &Material,
+    layout: &Layout,
+    SpanEnds { first, last }: SpanEnds,
+    start: Vec2,
+    by_end: bool,
+) -> Vec2 {
     let (moving, sign) = if by_end { (last - 1, 1.0) } else { (first, -1.0) };
     let mut rate = Vec2::zeros();
     let mut force = start;
@@ -128,7 +134,7 @@ fn reach_rate(material: &Material, layout: &Layout, (first, last): (usize, usize
 }
 
 /// The whole load on a span, N, and its length, m of arc length.
-fn load_and_length(material: &Material, layout: &Layout, (first, last): (usize, usize)) -> (Vec2, f64) {
+fn load_and_length(material: &Material, layout: &Layout, SpanEnds { first, last }: SpanEnds) -> (Vec2, f64) {
     let length = layout.stops[last].arc_length - layout.stops[first].leaves();
     let loads: Vec2 = layout.stops[first + 1..last].iter().map(|s| s.load).sum();
     (material.body * length + loads, length)
@@ -137,7 +143,7 @@ fn load_and_length(material: &Material, layout: &Layout, (first, last): (usize, 
 /// A start force near the answer: the parabola where the span is taut, else the catenary's own first guess (A. Peyrot
 /// and A. Goulois, *Analysis of cable structures*, Computers & Structures 1979), point loads spread evenly.
 #[must_use]
-pub fn first_guess(material: &Material, layout: &Layout, ends: (usize, usize), d: Vec2) -> Vec2 {
+pub fn first_guess(material: &Material, layout: &Layout, ends: SpanEnds, d: Vec2) -> Vec2 {
     let (load, length) = load_and_length(material, layout, ends);
     let rest = length * material.thermal_stretch;
     let (chord, weight) = (d.norm(), load.norm());
@@ -189,7 +195,7 @@ const STEEP: f64 = 1e-6;
 
 /// Solves a span between points `d` apart (m) from a start force. `None` when Newton fails (a number blew up).
 #[must_use]
-pub fn solve(material: &Material, layout: &Layout, ends: (usize, usize), d: Vec2, guess: Vec2) -> Option<Span> {
+pub fn solve(material: &Material, layout: &Layout, ends: SpanEnds, d: Vec2, guess: Vec2) -> Option<Span> {
     let (load, length) = load_and_length(material, layout, ends);
     let size = length.max(d.norm());
     let mut force = guess;

@@ -240,7 +240,7 @@ impl Statics {
             estimate = dual_weighted_residual::relative_error(&mut network);
         }
         if rubs {
-            estimate += self.follow_finer(&network, (time, dragged), first);
+            estimate += self.follow_finer(&network, time, dragged, first);
             network.commit_friction();
             // What friction remembers is as wrong as the steps it remembers were.
             let before = if first { None } else { self.estimate };
@@ -273,7 +273,7 @@ impl Statics {
         }
         if self.time == 0.0
             && !self.adopted
-            && let Ok(Some(lay)) = initial_equilibrium(&self.problem, self.settings, (dragged, None))
+            && let Ok(Some(lay)) = initial_equilibrium(&self.problem, self.settings, dragged, None)
         {
             let mut laid = network.clone();
             if laid.remember_answer(&lay.answer) && laid.rub().is_ok() {
@@ -289,8 +289,8 @@ impl Statics {
     /// Goes the same way with bars half as long in steps half as long and with a memory of its own: by how much the forces differ, in
     /// parts of the greatest. What mesh and steps do to friction adds up in what friction remembers, of which the present balance
     /// knows nothing.
-    fn follow_finer(&mut self, network: &Network, (time, dragged): (f64, &[Option<Vec2>]), first: bool) -> f64 {
-        let Some(finer) = self.finer(network, (time, dragged), first) else {
+    fn follow_finer(&mut self, network: &Network, time: f64, dragged: &[Option<Vec2>], first: bool) -> f64 {
+        let Some(finer) = self.finer(network, time, dragged, first) else {
             // It begins anew from here.
             self.finer = None;
             return 0.0;
@@ -300,7 +300,7 @@ impl Statics {
         off
     }
 
-    fn finer(&self, network: &Network, (time, dragged): (f64, &[Option<Vec2>]), first: bool) -> Option<Network> {
+    fn finer(&self, network: &Network, time: f64, dragged: &[Option<Vec2>], first: bool) -> Option<Network> {
         let segments: usize = network.layout.stops.iter().map(|s| s.cells).sum();
         let cut = |mut layout: Layout| {
             layout.cut(2 * segments);

@@ -78,6 +78,15 @@ impl Stop {
     }
 }
 
+/// The stops at both ends of a span.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SpanEnds {
+    /// Index of the stop at its start.
+    pub first: usize,
+    /// Index of the stop at its end.
+    pub last: usize,
+}
+
 /// The stops of one cable at a time, first and last at its ends.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
@@ -153,9 +162,9 @@ impl Layout {
     }
 
     /// The spans: runs of stops from one anchor to the next.
-    pub fn spans(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+    pub fn spans(&self) -> impl Iterator<Item = SpanEnds> + '_ {
         let anchors = self.stops.iter().enumerate().filter(|(_, s)| s.anchors()).map(|(k, _)| k);
-        anchors.clone().zip(anchors.skip(1))
+        anchors.clone().zip(anchors.skip(1)).map(|(first, last)| SpanEnds { first, last })
     }
 
     /// The first and last anchor.

@@ -194,11 +194,11 @@ impl Dynamics {
             let per_m = friction::at(slid, rough * normal, self.contacts.slip).1;
             floor_friction::reaches(mesh, k, x, slide).map(|reach| per_m * reach)
         });
-        let load = Load::new(node, straight, [&path[0], &path[1]], (body, share));
+        let load = Load::new(node, straight, [&path[0], &path[1]], body, share);
         // Between steps the task may be of another mesh, and nothing is balanced.
         let at_material = slide.map_or(load.pull, |slide| {
             [k - 1, k]
-                .map(|e| crate::model::fem::system::bar_energy::pull_at_slide((mesh, &self.task), e, k - e, x, slide))
+                .map(|e| crate::model::fem::system::bar_energy::pull_at_slide(mesh, &self.task, e, k - e, x, slide))
         });
         let lifted = [0, 1].map(|j| tension[j] + body.dot(&(weight[j].center - x[k])));
         Some(Load { floor, lifted, at_material, ..load })

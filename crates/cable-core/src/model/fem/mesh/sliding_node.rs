@@ -135,7 +135,7 @@ impl Load {
     /// dF/ds = −b: the tension force at the node is that of the bar's middle ∓ b·share, and the turn is from one to
     /// the other.
     #[must_use]
-    pub fn new(node: &SlidingNode, tension: [f64; 2], path: [&Path; 2], (body, share): (Vec2, [f64; 2])) -> Self {
+    pub fn new(node: &SlidingNode, tension: [f64; 2], path: [&Path; 2], body: Vec2, share: [f64; 2]) -> Self {
         let t = [path[0].direction, path[1].direction];
         let force = [t[0] * tension[0] - body * share[0], t[1] * tension[1] + body * share[1]];
         let ends = [force[0].norm(), force[1].norm()];

@@ -19,13 +19,12 @@ use crate::contact::self_contact::{SelfPair, SortedNodes};
 use crate::linalg::{BandFactor, solve_coupled};
 use crate::math::Vec2;
 use crate::model::fem::newton::gap_constraint::Stop;
-use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::newton::minimize::{StepContext, Workspace};
 use crate::model::fem::newton::step_bound::longest;
 use crate::model::fem::newton::step_input::Pose;
-use crate::model::fem::system::assembly::{Mesh, System};
-use crate::model::fem::system::friction_state::{ContactPair, ContactSet};
+use crate::model::fem::system::assembly::System;
+use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::self_contact::Coupling;
-use crate::problem::Problem;
 
 /// Rounds of adding constraints. More find nothing new where a front of contact runs along the cable.
 const MAX_ROUNDS: usize = 6;
@@ -54,6 +53,16 @@ pub struct PredictedContacts {
     step: Vec<f64>,
 }
 
+/// The linear equations of a Newton iteration, pinned at held nodes.
+pub(in crate::model::fem) struct Equations<'a> {
+    /// Gradient and Hessian.
+    pub system: &'a mut System,
+    /// The Hessian's factor.
+    pub factor: &'a mut BandFactor,
+    /// What couples nodes that are far apart along the cable.
+    pub coupling: &'a mut Coupling,
+}
+
 impl PredictedContacts {
     /// Room for a mesh of so many nodes that each touch one thing.
     #[must_use]
@@ -75,13 +84,9 @@ impl PredictedContacts {
     }
 
     /// Stops each node of a step at its landing gap, whatever its neighbours do.
-    pub fn stop(
-        &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        (contacts, x): (&ContactSet, &[Vec2]),
-        direction: &mut [f64],
-    ) {
-        self.look((problem, mesh), (contacts, x), direction);
+    pub(in crate::model::fem) fn stop(&mut self, step: &StepContext<'_>, x: &[Vec2], direction: &mut [f64]) {
+        let StepContext { mesh, contacts, .. } = *step;
+        self.look(step, x, direction);
         for touch in self.touches.iter().filter(|t| !t.on_segment && t.pair.weight > 0.0 && mesh.is_free(t.node)) {
             let (n, k) = (touch.pair.gap.normal, 2 * touch.node);
             let least = landing(touch.pair.gap.gap_m, contacts.barrier.reach);
@@ -94,28 +99,31 @@ impl PredictedContacts {
     }
 
     /// Finds all that a step of this size could touch.
-    fn look(&mut self, (problem, mesh): (&Problem, &Mesh), (contacts, x): (&ContactSet, &[Vec2]), step: &[f64]) {
-        contacts.find_within(problem, mesh, x, contacts.barrier.reach + longest(step), &mut self.touches);
+    fn look(&mut self, step: &StepContext<'_>, x: &[Vec2], direction: &[f64]) {
+        let StepContext { problem, mesh, contacts, .. } = *step;
+        contacts.find_within(problem, mesh, x, contacts.barrier.reach + longest(direction), &mut self.touches);
     }
 
     /// Solves again, with contacts ahead as constraints; `system` is pinned, and `direction` the step that ran into them.
     /// Where that fails `direction` stays as it is.
-    pub fn solve(
+    pub(in crate::model::fem) fn solve(
         &mut self,
-        (system, factor, coupling): (&mut System, &mut BandFactor, &mut Coupling),
-        (problem, mesh): (&Problem, &Mesh),
-        (contacts, x): (&ContactSet, &[Vec2]),
+        context: &StepContext<'_>,
+        equations: Equations<'_>,
+        x: &[Vec2],
         direction: &mut [f64],
     ) {
-        self.look((problem, mesh), (contacts, x), direction);
+        let StepContext { mesh, contacts, .. } = *context;
+        let Equations { system, factor, coupling } = equations;
+        self.look(context, x, direction);
         let reach = contacts.barrier.reach;
         self.stops.clear();
         for touch in self.touches.iter().filter(|t| t.pair.weight > 0.0) {
-            self.stops.push(Stop::of(touch, (mesh, system), landing(touch.pair.gap.gap_m, reach)));
+            self.stops.push(Stop::of(touch, mesh, system, landing(touch.pair.gap.gap_m, reach)));
         }
         if contacts.own.shape.is_on() {
             let within = reach + 2.0 * longest(direction);
-            contacts.own.shape.pairs((x, &mesh.arc_length), within, &mut self.order, &mut self.pairs);
+            contacts.own.shape.pairs(x, &mesh.arc_length, within, &mut self.order, &mut self.pairs);
             for pair in self.pairs.iter().filter(|p| p.weight > 0.0) {
                 self.stops.push(Stop::of_own(pair, system, landing(pair.gap_m, reach)));
             }
@@ -126,7 +134,7 @@ impl PredictedContacts {
         for _ in 0..MAX_ROUNDS {
             let (mut stiffer, mut changed) = (false, false);
             for stop in stops.iter_mut() {
-                let [new, moved] = stop.hold((system, coupling, right), mesh, (x, step));
+                let [new, moved] = stop.hold(system, coupling, right, mesh, x, step);
                 stiffer |= new;
                 changed |= moved;
             }
@@ -158,26 +166,21 @@ impl Workspace {
     }
 
     /// Finds the direction again if something is in its way; returns how much of it is free.
-    pub(in crate::model::fem) fn look_ahead(
-        &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        pose: &Pose,
-    ) -> f64 {
-        let free = self.free_from_here((problem, mesh), contacts, pose, 1.0);
+    pub(in crate::model::fem) fn look_ahead(&mut self, step: &StepContext<'_>, pose: &Pose) -> f64 {
+        let free = self.free_from_here(step, pose, 1.0);
         if free >= FREE_ENOUGH {
             return free;
         }
         let downhill = self.slope();
         self.plain.clone_from(&self.direction);
-        let equations = (&mut self.system, &mut self.factor, &mut self.coupling);
-        self.ahead.solve(equations, (problem, mesh), (contacts, &pose.x), &mut self.direction);
+        let equations = Equations { system: &mut self.system, factor: &mut self.factor, coupling: &mut self.coupling };
+        self.ahead.solve(step, equations, &pose.x, &mut self.direction);
         // In a hurry nothing is asked of the energy.
         if self.carried.is_empty() && !(self.slope() <= DOWNHILL * downhill) {
             self.direction.clone_from(&self.plain);
             return free;
         }
-        self.free_from_here((problem, mesh), contacts, pose, 1.0)
+        self.free_from_here(step, pose, 1.0)
     }
 }
 
@@ -233,7 +236,7 @@ mod tests {
         d.begin_step(STEP, &[]);
         let mut pose = d.still_pose();
         let mut memory = Workspace::new(&d.mesh).unwrap();
-        let done = memory.descend((&d.problem, &d.mesh), &d.contacts, &d.task, &mut pose).unwrap();
+        let done = memory.descend(&d.step_context(), &mut pose).unwrap();
         let landed = memory.touches.len();
         println!("{} iterations, {landed} nodes landed", done.iterations);
         assert!(landed > 90 && done.iterations <= 8, "{landed} {}", done.iterations);

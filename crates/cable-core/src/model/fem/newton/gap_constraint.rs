@@ -42,7 +42,7 @@ pub struct Stop {
 
 impl Stop {
     /// The contact of an obstacle.
-    pub fn of(touch: &ContactPair, (mesh, system): (&Mesh, &System), least: f64) -> Self {
+    pub fn of(touch: &ContactPair, mesh: &Mesh, system: &System, least: f64) -> Self {
         let (gap, [a, b]) = (&touch.pair.gap, touch.shares());
         let next = touch.node + usize::from(touch.on_segment);
         let turns = touch.on_segment && [touch.node, next].iter().all(|&k| mesh.sliding[k].is_none());
@@ -105,9 +105,12 @@ impl Stop {
     /// the matrix changed, and whether anything did.
     pub fn hold(
         &mut self,
-        (system, coupling, right): (&mut System, &mut Coupling, &mut [f64]),
+        system: &mut System,
+        coupling: &mut Coupling,
+        right: &mut [f64],
         mesh: &Mesh,
-        (x, step): (&[Vec2], &[f64]),
+        x: &[Vec2],
+        step: &[f64],
     ) -> [bool; 2] {
         let bend = self.bend(x, step);
         let new = self.held_to.is_none();
@@ -185,7 +188,7 @@ mod tests {
             let after = touch(&then).unwrap();
             // The gap has no sign: what is crossed is left to the sweep.
             prop_assume!(after.pair.gap.normal.dot(&before.pair.gap.normal) > 0.0);
-            let stop = Stop::of(&before, (&d.mesh, &System::new(&d.mesh)), 0.0);
+            let stop = Stop::of(&before, &d.mesh, &System::new(&d.mesh), 0.0);
             let change = stop.opening(&moves) + stop.bend(&x, &moves);
             prop_assert!((after.pair.gap.gap_m - before.pair.gap.gap_m - change).abs() < 1e-12);
         }
@@ -199,7 +202,7 @@ mod tests {
             let arc = [0.0, 1.0, 2.0, 3.0, 4.0];
             let pair = |x: &[Vec2]| {
                 let mut found = Vec::new();
-                SelfContact { diameter: 0.01 }.pairs((x, &arc), 0.2, &mut SortedNodes::default(), &mut found);
+                SelfContact { diameter: 0.01 }.pairs(x, &arc, 0.2, &mut SortedNodes::default(), &mut found);
                 found.into_iter().find(|p| (p.node, p.segment) == (4, 0)).unwrap()
             };
             let (before, after) = (pair(&x), pair(&then));

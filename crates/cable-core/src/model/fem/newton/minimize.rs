@@ -51,6 +51,19 @@ pub(in crate::model::fem) const DRIFT: f64 = 4.0;
 /// more: iterations spent on what the next step does as well.
 const MAX_PUSHES: usize = 12;
 
+/// What the solve of a step reads: cable, mesh, contacts, and the input of the step.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::fem) struct StepContext<'a> {
+    /// The cable and its obstacles.
+    pub problem: &'a Problem,
+    /// Its nodes and bars.
+    pub mesh: &'a Mesh,
+    /// The barrier, and friction as it is frozen for the step.
+    pub contacts: &'a ContactSet,
+    /// Forces, inertia and targets of the step.
+    pub task: &'a StepInput,
+}
+
 /// What is left unbalanced at the worst node.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct Residual {
@@ -123,6 +136,17 @@ pub struct Workspace {
     pub(in crate::model::fem) hurried: usize,
 }
 
+/// Where a line search begins.
+#[derive(Clone, Copy, Debug)]
+struct Descent {
+    /// Φ, J.
+    value: f64,
+    /// How fast it changes along the direction, J.
+    slope: f64,
+    /// Held nodes are still on the way to their targets: that may cost energy.
+    supports_move: bool,
+}
+
 impl Workspace {
     /// Room for a mesh.
     ///
@@ -168,14 +192,8 @@ impl Workspace {
     }
 
     /// Φ with gradient and Hessian at a pose.
-    pub fn assemble(
-        &mut self,
-        problem: &Problem,
-        mesh: &Mesh,
-        contacts: &ContactSet,
-        (task, pose): (&StepInput, &Pose),
-        curvature: Curvature,
-    ) -> f64 {
+    pub(in crate::model::fem) fn assemble(&mut self, step: &StepContext<'_>, pose: &Pose, curvature: Curvature) -> f64 {
+        let StepContext { problem, mesh, contacts, task } = *step;
         let x = &pose.x;
         let mut touches = std::mem::take(&mut self.touches);
         contacts.find(problem, mesh, x, &mut touches);
@@ -189,7 +207,7 @@ impl Workspace {
         let measured = self.carried.is_empty();
         for e in 0..mesh.rest_length.len() {
             let carried = self.carried.get(e).copied();
-            let (energy, size) = bar_energy::add(s, (mesh, task), (e, pose), curvature, carried);
+            let (energy, size) = bar_energy::add(s, mesh, task, e, pose, curvature, carried);
             value += energy;
             self.magnitude += size;
         }
@@ -199,7 +217,7 @@ impl Workspace {
         if mesh.bending_stiffness > 0.0 {
             value += s.add_bending(mesh, x, curvature);
             if task.bending_damping > 0.0 {
-                value += s.add_bends(mesh, (task.bending_damping, Some(&task.start)), x, curvature);
+                value += s.add_bends(mesh, task.bending_damping, Some(&task.start), x, curvature);
             }
         }
         self.magnitude += value.abs();
@@ -226,20 +244,19 @@ impl Workspace {
         }
         for touch in &touches {
             let scale = task.scale.get(touch.node).copied().unwrap_or(node_scale(task, touch.node));
-            let (energy, stiffness) = add_touch(s, mesh, (touch, scale), contacts, x, curvature);
+            let (energy, stiffness) = add_touch(s, mesh, touch, scale, contacts, x, curvature);
             value += energy;
             let rounding = GAP_ROUNDING * x[touch.node].norm();
             round.add(&contacts.barrier, touch.pair.gap.gap_m, stiffness, rounding);
         }
-        value += add_rubs(s, (mesh, task), contacts, &self.branches, x);
-        value += add_floor(s, (mesh, task), contacts, pose);
+        value += add_rubs(s, mesh, task, contacts, &self.branches, x);
+        value += add_floor(s, mesh, task, contacts, pose);
         self.touches = touches;
         if contacts.own.shape.is_on() {
-            let place = (x.as_slice(), mesh.arc_length.as_slice());
-            contacts.own.shape.pairs(place, contacts.barrier.reach, &mut self.order, &mut self.own_pairs);
+            contacts.own.shape.pairs(x, &mesh.arc_length, contacts.barrier.reach, &mut self.order, &mut self.own_pairs);
             self.coupling.clear();
             let (energy, size) =
-                self_contact::add((&mut self.system, &mut self.coupling), contacts, (&self.own_pairs, x), curvature);
+                self_contact::add(&mut self.system, &mut self.coupling, contacts, &self.own_pairs, x, curvature);
             value += energy;
             self.magnitude += size;
             for pair in &self.own_pairs {
@@ -281,7 +298,7 @@ impl Workspace {
     }
 
     /// Sets `direction` to the Newton step; false if the matrix is not positive definite.
-    pub(in crate::model::fem) fn solve(&mut self, mesh: &Mesh, task: &StepInput, (x, shift): (&[Vec2], f64)) -> bool {
+    pub(in crate::model::fem) fn solve(&mut self, mesh: &Mesh, task: &StepInput, x: &[Vec2], shift: f64) -> bool {
         let s = &mut self.system;
         for (d, g) in self.direction.iter_mut().zip(&s.gradient) {
             *d = -g;
@@ -337,16 +354,15 @@ impl Workspace {
     /// With the worst node and its unbalanced force.
     pub(in crate::model::fem) fn descend(
         &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        task: &StepInput,
+        step: &StepContext<'_>,
         pose: &mut Pose,
     ) -> Result<Converged, Failure> {
+        let StepContext { mesh, task, .. } = *step;
         self.goal.clone_from(&task.target);
         let mut shift = task.shift;
         let mut pushes = 0;
         let mut done = Converged::default();
-        let mut value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Exact);
+        let mut value = self.assemble(step, pose, Curvature::Exact);
         loop {
             let Residual { force: residual, node, excess, drift } = self.residual(mesh, task);
             let failed = |cause| Err(Failure { node, residual, cause });
@@ -377,11 +393,11 @@ impl Workspace {
             self.work_left.spend(mesh.nodes());
             done.iterations += 1;
             // The gradient is needed after pinning overwrote the Hessian only, so it stays valid.
-            if !self.solve(mesh, task, (&pose.x, shift)) {
+            if !self.solve(mesh, task, &pose.x, shift) {
                 let mut tries = 0;
                 loop {
-                    self.assemble(problem, mesh, contacts, (task, pose), Curvature::Clipped);
-                    if self.solve(mesh, task, (&pose.x, shift)) {
+                    self.assemble(step, pose, Curvature::Clipped);
+                    if self.solve(mesh, task, &pose.x, shift) {
                         break;
                     }
                     shift = grow(shift, task);
@@ -392,13 +408,13 @@ impl Workspace {
                 }
             }
             if task.moves {
-                self.look_ahead((problem, mesh), contacts, pose);
+                self.look_ahead(step, pose);
             }
             let mut slope = self.slope();
             if !(slope < 0.0) && !left {
                 slope = 0.0;
             }
-            match self.search((problem, mesh), contacts, (task, left), (pose, value, slope)) {
+            match self.search(step, pose, Descent { value, slope, supports_move: left }) {
                 Some((new_value, fraction)) => {
                     value = new_value;
                     if fraction > 0.5 {
@@ -427,7 +443,7 @@ impl Workspace {
                         return failed(FailureCause::NoDescent);
                     }
                     shift = grow(shift, task);
-                    value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Clipped);
+                    value = self.assemble(step, pose, Curvature::Clipped);
                 }
             }
         }
@@ -435,37 +451,33 @@ impl Workspace {
 
     /// Moves `pose` along the direction as far as is free and lowers Φ; None if nothing does. Returns Φ and the part of
     /// the step taken; the system is assembled there.
-    fn search(
-        &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        (task, moving): (&StepInput, bool),
-        (pose, value, slope): (&mut Pose, f64, f64),
-    ) -> Option<(f64, f64)> {
+    fn search(&mut self, step: &StepContext<'_>, pose: &mut Pose, descent: Descent) -> Option<(f64, f64)> {
+        let StepContext { mesh, task, .. } = *step;
+        let Descent { value, slope, supports_move } = descent;
         let n = mesh.nodes();
         let whole = self.whole(task);
-        let mut fraction = self.free_from_here((problem, mesh), contacts, pose, whole);
+        let mut fraction = self.free_from_here(step, pose, whole);
         let noise = ENERGY_NOISE * (self.magnitude.abs() + value.abs());
         for _ in 0..MAX_HALVINGS {
             let mut trial = std::mem::take(&mut self.trial);
             for k in 0..n {
-                let step = Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]) * fraction;
+                let moves = Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]) * fraction;
                 if mesh.sliding[k].is_some() {
-                    trial.slide[k] = pose.slide[k] + step.x;
+                    trial.slide[k] = pose.slide[k] + moves.x;
                     trial.x[k] = pose.x[k];
                     continue;
                 }
                 trial.slide[k] = 0.0;
-                trial.x[k] = pose.x[k] + step;
+                trial.x[k] = pose.x[k] + moves;
                 // A full step ends exactly on target.
                 if mesh.held[k] && fraction == 1.0 {
                     trial.x[k] = self.goal[k];
                 }
             }
-            let new_value = self.assemble(problem, mesh, contacts, (task, &trial), Curvature::Exact);
+            let new_value = self.assemble(step, &trial, Curvature::Exact);
             self.trial = trial;
             let lower = new_value <= value + DECREASE * fraction * slope + noise;
-            if new_value.is_finite() && (moving || lower) {
+            if new_value.is_finite() && (supports_move || lower) {
                 std::mem::swap(pose, &mut self.trial);
                 return Some((new_value, fraction));
             }

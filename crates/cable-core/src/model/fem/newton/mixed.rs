@@ -11,12 +11,11 @@
 use crate::contact::friction::Branch;
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
-use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::newton::minimize::{StepContext, Workspace};
 use crate::model::fem::newton::step_input::{Converged, Failure, Pose, StepInput};
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::friction_state::ContactSet;
-use crate::problem::Problem;
 
 /// Iterations before the minimiser is asked. Fewer: one of its iterations costs as much as five of these, and with 24 eleven steps of a
 /// cable of 1000 bars dropped on a floor came to it, of 336; more: where it is needed after all they are lost.
@@ -35,33 +34,40 @@ const ROUNDING: f64 = 1e-12;
 /// Part of the sliding at which friction changes from holding to slipping that counts as none: of friction as much.
 const BRANCH_ROUNDING: f64 = 1e-14;
 
+/// Whether a solve goes on where the cable comes within reach of itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::fem) enum SelfTouch {
+    /// It gives up.
+    Avoid,
+    /// It goes on.
+    Allow,
+}
+
 impl Workspace {
     /// Minimises Φ from `pose`, which becomes the answer; on failure it is where it got to.
     ///
     /// # Errors
     /// With the worst node and its unbalanced force.
-    pub fn minimise(
+    pub(in crate::model::fem) fn minimise(
         &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        task: &StepInput,
+        step: &StepContext<'_>,
         pose: &mut Pose,
     ) -> Result<Converged, Failure> {
-        if !task.moves {
-            return self.descend((problem, mesh), contacts, task, pose);
+        if !step.task.moves {
+            return self.descend(step, pose);
         }
-        if let Some(done) = self.rush((problem, mesh), contacts, (task, false), pose) {
+        if let Some(done) = self.rush(step, SelfTouch::Avoid, pose) {
             return Ok(done);
         }
         let mut in_a_hurry = self.hurried;
-        let mut done = self.descend((problem, mesh), contacts, task, pose);
+        let mut done = self.descend(step, pose);
         if done.is_err() && self.near_enough {
             self.go_back(pose);
-            done = self.descend((problem, mesh), contacts, task, pose);
+            done = self.descend(step, pose);
         }
-        if done.is_err() && contacts.own.shape.is_on() {
+        if done.is_err() && step.contacts.own.shape.is_on() {
             self.go_back(pose);
-            if let Some(found) = self.rush((problem, mesh), contacts, (task, true), pose) {
+            if let Some(found) = self.rush(step, SelfTouch::Allow, pose) {
                 done = Ok(found);
             } else {
                 in_a_hurry += self.hurried;
@@ -70,20 +76,14 @@ impl Workspace {
         done.map(|d| Converged { iterations: d.iterations + in_a_hurry, ..d })
     }
 
-    /// The pose at the end of a step; None where this does not find it, the pose then as it was or not far from it. Unless it
-    /// `meets` itself the cable must not come within reach of itself on the way.
-    fn rush(
-        &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        (task, meets): (&StepInput, bool),
-        pose: &mut Pose,
-    ) -> Option<Converged> {
+    /// The pose at the end of a step; None where this does not find it, the pose then as it was or not far from it. Unless that
+    /// is allowed the cable must not come within reach of itself on the way.
+    fn rush(&mut self, step: &StepContext<'_>, self_touch: SelfTouch, pose: &mut Pose) -> Option<Converged> {
         self.begun.x.clone_from(&pose.x);
         self.begun.slide.clone_from(&pose.slide);
-        self.goal.clone_from(&task.target);
-        self.carry_pulls(mesh, pose);
-        let done = self.rush_on((problem, mesh), contacts, (task, meets), pose);
+        self.goal.clone_from(&step.task.target);
+        self.carry_pulls(step.mesh, pose);
+        let done = self.rush_on(step, self_touch, pose);
         self.carried.clear();
         self.branches.clear();
         if done.is_none() && !self.near_enough {
@@ -109,13 +109,8 @@ impl Workspace {
     }
 
     /// Moves a pose that is still where the step began to where its speed carries it, as far as nothing is in the way.
-    fn move_on(
-        &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        task: &StepInput,
-        pose: &mut Pose,
-    ) {
+    fn move_on(&mut self, step: &StepContext<'_>, pose: &mut Pose) {
+        let StepContext { mesh, task, .. } = *step;
         if pose.x != task.begins() {
             return;
         }
@@ -127,28 +122,23 @@ impl Workspace {
             };
             (d[0], d[1]) = (to.x - pose.x[k].x, to.y - pose.x[k].y);
         }
-        self.ahead.stop((problem, mesh), (contacts, &pose.x), &mut self.direction);
+        self.ahead.stop(step, &pose.x, &mut self.direction);
         let whole = self.whole(task);
-        let free = self.free_way((problem, mesh), contacts, pose, whole);
+        let free = self.free_way(step, pose, whole);
         self.place(mesh, pose, free);
     }
 
-    fn rush_on(
-        &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        (task, meets): (&StepInput, bool),
-        pose: &mut Pose,
-    ) -> Option<Converged> {
-        self.move_on((problem, mesh), contacts, task, pose);
+    fn rush_on(&mut self, step: &StepContext<'_>, self_touch: SelfTouch, pose: &mut Pose) -> Option<Converged> {
+        let StepContext { mesh, contacts, task, .. } = *step;
+        self.move_on(step, pose);
         self.branches.clear();
         self.branches.extend(contacts.rubs.iter().map(|r| Branch::at(r.sliding(&pose.x), contacts.slip)));
         let mut first = f64::NAN;
         self.near_enough = false;
         for iterations in 0..=MAX_STEPS {
             self.hurried = iterations;
-            let value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Exact);
-            if !meets && !self.coupling.is_empty() {
+            let value = self.assemble(step, pose, Curvature::Exact);
+            if self_touch == SelfTouch::Avoid && !self.coupling.is_empty() {
                 self.near_enough = false;
                 return None;
             }
@@ -165,13 +155,13 @@ impl Workspace {
             if iterations == MAX_STEPS || !sound {
                 return None;
             }
-            if !self.solve(mesh, task, (&pose.x, task.shift)) && !self.ease(mesh, task, &pose.x) {
-                self.assemble(problem, mesh, contacts, (task, pose), Curvature::Clipped);
-                if !self.solve(mesh, task, (&pose.x, task.shift)) {
+            if !self.solve(mesh, task, &pose.x, task.shift) && !self.ease(mesh, task, &pose.x) {
+                self.assemble(step, pose, Curvature::Clipped);
+                if !self.solve(mesh, task, &pose.x, task.shift) {
                     return None;
                 }
             }
-            let free = self.look_ahead((problem, mesh), contacts, pose);
+            let free = self.look_ahead(step, pose);
             let whole = self.whole(task);
             self.slid.clear();
             self.slid.extend(contacts.rubs.iter().map(|r| r.sliding(&pose.x)));
@@ -242,7 +232,7 @@ impl Workspace {
         for (e, carried) in self.carried.iter_mut().enumerate() {
             let d = pose.x[e + 1] - pose.x[e];
             let p = d.norm();
-            let (now, slope) = bar_energy::pull(mesh, task, (e, carried.taut), p);
+            let (now, slope) = bar_energy::pull(mesh, task, e, carried.taut, p);
             let along = if p > 0.0 { d.dot(&(step(e + 1) - step(e))) / p } else { 0.0 };
             *carried = bar_energy::Carried { pull: now + slope * along, taut: p + along >= mesh.rest_length[e] };
         }
@@ -359,9 +349,9 @@ mod tests {
                 let mut expected = trial.still_pose();
                 trial.contacts.prepare(&trial.problem, &trial.mesh, &expected.x, &trial.motion.x);
                 let mut memory = Workspace::new(&trial.mesh).unwrap();
-                let (setting, mut found) = ((&*trial.problem, &trial.mesh), expected.clone());
-                let rushed = memory.rush(setting, &trial.contacts, (&trial.task, false), &mut found).is_some();
-                if rushed && memory.descend(setting, &trial.contacts, &trial.task, &mut expected).is_ok() {
+                let (step, mut found) = (trial.step_context(), expected.clone());
+                let rushed = memory.rush(&step, SelfTouch::Avoid, &mut found).is_some();
+                if rushed && memory.descend(&step, &mut expected).is_ok() {
                     let off = found.x.iter().zip(&expected.x).map(|(a, b)| (a - b).norm());
                     worst = off.fold(worst, larger);
                     compared += 1;

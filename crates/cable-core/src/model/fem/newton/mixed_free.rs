@@ -139,7 +139,7 @@ impl FreeStep {
             let (d, l) = (x[e + 1] - x[e], mesh.rest_length[e]);
             let p = d.norm();
             let elastic = bar_energy::stiffness(mesh, self.taut[e]) / l;
-            let (loss, slope) = task.loss_at((e, self.taut[e] || !mesh.is_flexible()), l, p);
+            let (loss, slope) = task.loss_at(e, self.taut[e] || !mesh.is_flexible(), l, p);
             let (stiffness, now) = (elastic + slope, elastic * (p - l) + loss);
             let t = if p > 0.0 { d / p } else { Vec2::x() };
             let pull = self.pull[e];
@@ -254,7 +254,7 @@ fn product(a: &Symmetric, b: &Symmetric) -> [f64; 4] {
 mod tests {
     use super::*;
     use crate::model::fem::dynamics::Dynamics;
-    use crate::model::fem::newton::minimize::Workspace;
+    use crate::model::fem::newton::minimize::{StepContext, Workspace};
     use crate::model::{Inertia, Settings};
     use crate::problem::problems;
     use crate::scene::{Support, SupportKind, catalog};
@@ -295,7 +295,8 @@ mod tests {
             let Some(done) = free.solve(&d.mesh, &task, &mut found) else { return Err(TestCaseError::fail("not solved")) };
             prop_assert!(done.residual <= 1e-7 && done.iterations <= 12, "{done:?}");
             let (mut general, mut expected) = (Workspace::new(&d.mesh).unwrap(), start);
-            prop_assert!(general.minimise((&d.problem, &d.mesh), &d.contacts, &task, &mut expected).is_ok());
+            let step = StepContext { task: &task, ..d.step_context() };
+            prop_assert!(general.minimise(&step, &mut expected).is_ok());
             let off = found.x.iter().zip(&expected.x).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
             prop_assert!(off < 1e-7, "{off}");
             let scale = 1e-4 * (1.0 + general.gradient_at(0).norm());

@@ -70,7 +70,7 @@ impl StepInput {
     /// What the loss of bar `e` of rest length `l` pulls with at a length `p` (m), and its slope by that, N and N/m: c (P − P̂)/L, and where it
     /// is slack that of P = L with the slope of a slack bar from there on.
     #[must_use]
-    pub fn loss_at(&self, (e, taut): (usize, bool), l: f64, p: f64) -> (f64, f64) {
+    pub fn loss_at(&self, e: usize, taut: bool, l: f64, p: f64) -> (f64, f64) {
         let [c, slack] = self.loss.get(e).copied().unwrap_or_default();
         let late = self.predicted_length[e];
         if taut || c == slack {
@@ -82,7 +82,7 @@ impl StepInput {
 
     /// The energy of which that is the slope, J.
     #[must_use]
-    pub fn loss_energy(&self, (e, taut): (usize, bool), l: f64, p: f64) -> f64 {
+    pub fn loss_energy(&self, e: usize, taut: bool, l: f64, p: f64) -> f64 {
         let [c, slack] = self.loss.get(e).copied().unwrap_or_default();
         let late = self.predicted_length[e];
         if taut || c == slack {

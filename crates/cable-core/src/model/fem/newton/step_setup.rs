@@ -3,7 +3,7 @@
 use crate::math::Vec2;
 use crate::model::fem::dynamics::{Dynamics, INNER_STEP, REACH};
 use crate::model::fem::mesh::sliding_node::Seat;
-use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::newton::minimize::{StepContext, Workspace};
 use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose};
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::floor_friction;
@@ -59,6 +59,11 @@ impl StickSlipChanges {
 }
 
 impl Dynamics {
+    /// What the solve of the present step reads.
+    pub(in crate::model::fem) fn step_context(&self) -> StepContext<'_> {
+        StepContext { problem: &self.problem, mesh: &self.mesh, contacts: &self.contacts, task: &self.task }
+    }
+
     /// Sets held nodes, their targets and all forces for the time `to` (s); dragged supports go where `dragged` says.
     pub(in crate::model::fem) fn prepare_task(&mut self, to: f64, dragged: Option<&[Option<Vec2>]>) {
         self.prepare_step([to, to], dragged);
@@ -251,7 +256,7 @@ impl Dynamics {
         [k - 1, k].map(|e| {
             let path = mesh.path(e, x);
             let tension = mesh.axial_stiffness * (path.length / mesh.rest_length[e] - 1.0);
-            bar_weight::may_lie(mesh, e, &path, (self.task.body, tension))
+            bar_weight::may_lie(mesh, e, &path, self.task.body, tension)
         })
     }
 
@@ -294,7 +299,7 @@ impl Dynamics {
         };
         memory.work_left = self.work_left;
         self.freely = false;
-        let done = memory.minimise((&self.problem, &self.mesh), &self.contacts, &self.task, pose);
+        let done = memory.minimise(&self.step_context(), pose);
         self.work_left = memory.work_left;
         for k in 0..self.mesh.nodes() {
             let scale = self.task.scale.get(k.saturating_sub(1)).copied().unwrap_or(1.0);

@@ -270,7 +270,7 @@ impl Dynamics {
             x[k] = self.task.target[k];
         }
         self.give_back(carriage, larger(2.0 * way, self.contacts.barrier.reach), &mut x);
-        self.is_free_way(carriage, (ends, &x), &near).then_some(x)
+        self.is_free_way(carriage, ends, &x, &near).then_some(x)
     }
 
     /// Whether a bar is nearer to the outline than `within`, m.
@@ -322,7 +322,7 @@ impl Dynamics {
     }
 
     /// Whether nothing is passed on the way to `x`: neither what stands nor, seen from it, the outline.
-    fn is_free_way(&self, carriage: &OutlineMotion, (ends, x): (&[[Vec2; 2]], &[Vec2]), near: &[bool]) -> bool {
+    fn is_free_way(&self, carriage: &OutlineMotion, ends: &[[Vec2; 2]], x: &[Vec2], near: &[bool]) -> bool {
         let (mesh, geometry) = (&self.mesh, self.problem.world.geometry());
         let own = geometry.bodies().len().saturating_sub(1);
         let swept = |e: usize, from: [Vec2; 2], of_outline: bool| {
@@ -340,7 +340,7 @@ impl Dynamics {
         let step = |k: usize| x[k] - self.task.start[k];
         let arc = mesh.arc_length.as_slice();
         let own_way = |order: &mut SortedNodes| {
-            self.contacts.own.shape.free_fraction((&self.task.start, arc), &step, [KEEP[1], f64::INFINITY, 1.0], order)
+            self.contacts.own.shape.free_fraction(&self.task.start, arc, &step, [KEEP[1], f64::INFINITY, 1.0], order)
         };
         clear && own_way(&mut SortedNodes::default()) >= 1.0
     }

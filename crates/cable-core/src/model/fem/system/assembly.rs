@@ -262,7 +262,7 @@ impl System {
 
     /// Adds the bending energy at `x` (m); returns its value, J.
     pub fn add_bending(&mut self, mesh: &Mesh, x: &[Vec2], curvature: Curvature) -> f64 {
-        self.add_bends(mesh, (mesh.bending_stiffness, None), x, curvature)
+        self.add_bends(mesh, mesh.bending_stiffness, None, x, curvature)
     }
 
     /// Bends of this stiffness (N m²), measured from those at `from` (m), if there is such; returns their energy, J. With EI τ/h and where
@@ -270,7 +270,8 @@ impl System {
     pub fn add_bends(
         &mut self,
         mesh: &Mesh,
-        (stiffness, from): (f64, Option<&[Vec2]>),
+        stiffness: f64,
+        from: Option<&[Vec2]>,
         x: &[Vec2],
         curvature: Curvature,
     ) -> f64 {

@@ -37,7 +37,7 @@ impl Weight {
     pub fn of(mesh: &Mesh, e: usize, path: &Path, body: Vec2) -> Self {
         let full = Self::spread_evenly(mesh, e, path, body);
         let lies = lies(mesh, e);
-        if lies == 1.0 { full } else { full.lying(lies, mesh, e, (path, body)) }
+        if lies == 1.0 { full } else { full.lying(lies, mesh, e, path, body) }
     }
 
     /// The same if its material is spread evenly over its way.
@@ -74,7 +74,7 @@ impl Weight {
     }
 
     /// The same where only a part of the weight on rounds (0 to 1) acts there, and of the rest half at each end of the bar.
-    fn lying(self, part: f64, mesh: &Mesh, e: usize, (path, body): (&Path, Vec2)) -> Self {
+    fn lying(self, part: f64, mesh: &Mesh, e: usize, path: &Path, body: Vec2) -> Self {
         let at = |j: usize| mesh.sliding[e + j].map_or(path.ends[j], |s| s.position());
         let slide = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
         let half = slide.map(|slides| if slides { Vec2::zeros() } else { body * 0.5 });
@@ -89,7 +89,7 @@ impl Weight {
 
     /// ∂²(b·c)/∂x² at the free end `j` (0 or 1) of bar `e`, N/m².
     #[must_use]
-    pub fn bend(mesh: &Mesh, (e, j): (usize, usize), (path, at): (&Path, Vec2), body: Vec2) -> Mat2 {
+    pub fn bend(mesh: &Mesh, e: usize, j: usize, path: &Path, at: Vec2, body: Vec2) -> Mat2 {
         let Some(round) = mesh.sliding[e + 1 - j].map(|s| s.end).filter(|end| end.radius > 0.0) else {
             return Mat2::zeros();
         };
@@ -148,7 +148,7 @@ fn lies(mesh: &Mesh, e: usize) -> f64 {
 /// The part of the weight of bar `e` on rounds that may act there while the bar as a whole pulls with `tension` (N): the middle of its straight part
 /// would push beyond.
 #[must_use]
-pub fn may_lie(mesh: &Mesh, e: usize, path: &Path, (body, tension): (Vec2, f64)) -> f64 {
+pub fn may_lie(mesh: &Mesh, e: usize, path: &Path, body: Vec2, tension: f64) -> f64 {
     let excess = Weight::spread_evenly(mesh, e, path, body).excess * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
     let pull = larger(tension, 0.0);
     if !mesh.is_flexible() || pull >= excess { 1.0 } else { pull / excess }
@@ -156,7 +156,7 @@ pub fn may_lie(mesh: &Mesh, e: usize, path: &Path, (body, tension): (Vec2, f64))
 
 /// The weight of bar `e` that acts on its first end and on its second with the slides `slide` (m), N; what no free end carries acts on rounds.
 #[must_use]
-pub fn on_ends(mesh: &Mesh, e: usize, (x, slide): (&[Vec2], Option<&[f64]>), body: Vec2) -> [Vec2; 2] {
+pub fn on_ends(mesh: &Mesh, e: usize, x: &[Vec2], slide: Option<&[f64]>, body: Vec2) -> [Vec2; 2] {
     let slid = slide.map_or(0.0, |s| s[e + 1] - s[e]);
     let material = mesh.arc_length[e + 1] - mesh.arc_length[e] + slid;
     match [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()] {
@@ -179,8 +179,8 @@ pub fn on_node(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> Vec2 {
     if (k.saturating_sub(1)..=(k + 1).min(last)).all(|j| mesh.sliding[j].is_none()) {
         return body * mesh.share(k);
     }
-    let before = if k > 0 { on_ends(mesh, k - 1, (x, None), body)[1] } else { Vec2::zeros() };
-    let after = if k < last { on_ends(mesh, k, (x, None), body)[0] } else { Vec2::zeros() };
+    let before = if k > 0 { on_ends(mesh, k - 1, x, None, body)[1] } else { Vec2::zeros() };
+    let after = if k < last { on_ends(mesh, k, x, None, body)[0] } else { Vec2::zeros() };
     before + after
 }
 
@@ -214,7 +214,7 @@ mod tests {
     }
 
     /// A bar with its mark on a round at the origin at one end (`j` the free one), and a mark at an angle from its tangent point.
-    fn bar(j: usize, at: Vec2, (radius, sense, lap): (f64, f64, f64)) -> (Mesh, Vec<Vec2>) {
+    fn bar(j: usize, at: Vec2, radius: f64, sense: f64, lap: f64) -> (Mesh, Vec<Vec2>) {
         let round = |mark: Vec2| End { center: Vec2::zeros(), radius, mark, sense };
         let ends = |mark: Vec2| if j == 1 { [round(mark), End::point(at)] } else { [End::point(at), round(mark)] };
         let [a, b] = ends(Vec2::x());
@@ -247,7 +247,7 @@ mod tests {
             lies in 0.0f64..1.5,
         ) {
             let (j, sense) = (usize::from(first), if round.1 { 1.0 } else { -1.0 });
-            let (mut mesh, x) = bar(j, unit(place.1) * place.0, (round.0, sense, round.2));
+            let (mut mesh, x) = bar(j, unit(place.1) * place.0, round.0, sense, round.2);
             let path = mesh.path(0, &x);
             prop_assume!(path.length > 0.1);
             if let Some(node) = &mut mesh.sliding[1 - j] {
@@ -274,7 +274,7 @@ mod tests {
                 x[j] += d;
                 (weight(&mesh, &x), BODY.dot(&weight(&mesh, &x).center))
             };
-            let bend = Weight::bend(&mesh, (0, j), (&path, x[j]), BODY);
+            let bend = Weight::bend(&mesh, 0, j, &path, x[j], BODY);
             for axis in [Vec2::x(), Vec2::y()] {
                 let ((plus, up), (minus, down)) = (at(axis * h), at(-axis * h));
                 prop_assert!(((up - down) / (2.0 * h) - w.slope[j].dot(&axis)).abs() < 1e-6);
@@ -295,7 +295,7 @@ mod tests {
             use crate::model::fem::newton::step_input::{Pose, StepInput};
             use crate::energy::Curvature;
             let (j, sense) = (usize::from(first), if round.1 { 1.0 } else { -1.0 });
-            let (mut mesh, x) = bar(j, unit(place.1) * place.0, (round.0, sense, round.2));
+            let (mut mesh, x) = bar(j, unit(place.1) * place.0, round.0, sense, round.2);
             // Taut, and far from where it is not.
             mesh.rest_length = vec![0.8 * mesh.path(0, &x).length];
             mesh.arc_length[1] = mesh.rest_length[0];
@@ -304,7 +304,7 @@ mod tests {
             let energy = |x: &[Vec2], slide: &[f64]| {
                 let mut s = System::new(&mesh);
                 let pose = Pose { x: x.to_vec(), slide: slide.to_vec() };
-                (bar_energy::add(&mut s, (&mesh, &task), (0, &pose), Curvature::Exact, None).0, s)
+                (bar_energy::add(&mut s, &mesh, &task, 0, &pose, Curvature::Exact, None).0, s)
             };
             let mut slides = [0.0; 2];
             slides[1 - j] = slide;

@@ -34,7 +34,8 @@ pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &ContactPair, gradient: Vec2
 pub fn add_touch(
     s: &mut System,
     mesh: &Mesh,
-    (touch, scale): (&ContactPair, f64),
+    touch: &ContactPair,
+    scale: f64,
     contacts: &ContactSet,
     x: &[Vec2],
     curvature: Curvature,
@@ -81,7 +82,8 @@ pub fn add_touch(
 /// Friction of the contacts with obstacles, on these branches or, where there are none, where it is; returns its energy, J.
 pub fn add_rubs(
     s: &mut System,
-    (mesh, task): (&Mesh, &StepInput),
+    mesh: &Mesh,
+    task: &StepInput,
     contacts: &ContactSet,
     branches: &[Branch],
     x: &[Vec2],
@@ -102,7 +104,7 @@ pub fn add_rubs(
 }
 
 /// Plan view: friction of every node on the floor; returns its energy, J.
-pub fn add_floor(s: &mut System, (mesh, task): (&Mesh, &StepInput), contacts: &ContactSet, pose: &Pose) -> f64 {
+pub fn add_floor(s: &mut System, mesh: &Mesh, task: &StepInput, contacts: &ContactSet, pose: &Pose) -> f64 {
     let mut value = 0.0;
     for (i, &limit) in task.floor_limit.iter().enumerate() {
         let scale = node_scale(task, i);

@@ -339,7 +339,8 @@ impl ContactSet {
     /// it could before: `same` tells that of the greatest change and of the most that one can carry (N). Returns whether it took them.
     pub fn renew(
         &mut self,
-        (problem, mesh): (&Problem, &Mesh),
+        problem: &Problem,
+        mesh: &Mesh,
         [now, start]: [&[Vec2]; 2],
         same: impl Fn(f64, f64) -> bool,
     ) -> bool {
@@ -452,7 +453,8 @@ impl ContactSet {
             }
         }
         old.clear();
-        merge(all.split_at(now), &mut old);
+        let (known, lost) = all.split_at(now);
+        merge(known, lost, &mut old);
         (self.memory, self.spare) = (old, all);
         if problem.floor_friction.is_some() {
             for (k, (slid, (e, s))) in self.floor_slid.iter_mut().zip(end.iter().zip(start)).enumerate() {
@@ -469,7 +471,7 @@ impl ContactSet {
 }
 
 /// Merges two lists, each by node, into one: of one node those of the first list come first.
-fn merge((first, second): (&[Memory], &[Memory]), out: &mut Vec<Memory>) {
+fn merge(first: &[Memory], second: &[Memory], out: &mut Vec<Memory>) {
     let mut rest = second.iter().peekable();
     for m in first {
         while let Some(n) = rest.next_if(|n| n.node < m.node) {

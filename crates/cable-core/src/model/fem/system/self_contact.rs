@@ -69,7 +69,7 @@ impl Own {
         if !self.shape.is_on() {
             return;
         }
-        self.shape.pairs((now, &mesh.arc_length), barrier.reach, &mut self.order, &mut self.scratch);
+        self.shape.pairs(now, &mesh.arc_length, barrier.reach, &mut self.order, &mut self.scratch);
         for pair in &self.scratch {
             let load = -barrier.at(pair.gap_m).slope * pair.weight;
             if load > 0.0 {
@@ -109,9 +109,11 @@ pub type Coupling = Vec<(usize, usize, f64)>;
 /// joint:   ∇²d = (I − m mᵀ)/d on δp − δc
 /// ```
 pub fn add(
-    (s, coupling): (&mut System, &mut Coupling),
+    s: &mut System,
+    coupling: &mut Coupling,
     contacts: &ContactSet,
-    (pairs, x): (&[SelfPair], &[Vec2]),
+    pairs: &[SelfPair],
+    x: &[Vec2],
     curvature: Curvature,
 ) -> (f64, f64) {
     let (own, exact) = (&contacts.own, curvature == Curvature::Exact);
@@ -177,7 +179,7 @@ impl Dynamics {
     /// Takes the normal speed out of contacts of the cable with itself that are faster than `quiet` (m/s); momentum is kept.
     pub(in crate::model::fem) fn land_on_itself(&mut self, quiet: f64, [h, a]: [f64; 2]) {
         let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
-        let mass = |k: usize| mass_with((&self.problem, &self.mesh, &self.support_node), k);
+        let mass = |k: usize| mass_with(&self.problem, &self.mesh, &self.support_node, k);
         let m = &mut self.motion;
         for rub in &self.contacts.own.rubs {
             let n = rub.pair.normal;

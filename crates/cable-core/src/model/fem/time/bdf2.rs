@@ -116,7 +116,7 @@ impl Dynamics {
     /// press by half too much in the next step; without what the others gave BDF2 would give two thirds of their next impulse only.
     fn land(&mut self, h: f64, a: f64) {
         let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
-        let mass = |k: usize| mass_with((&self.problem, &self.mesh, &self.support_node), k);
+        let mass = |k: usize| mass_with(&self.problem, &self.mesh, &self.support_node, k);
         let m = &mut self.motion;
         for (touch, load) in self.contacts.pressing() {
             let n = touch.pair.gap.normal;
@@ -229,7 +229,7 @@ impl Dynamics {
             m.w[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
         }
         self.slide(&pose.slide);
-        self.account_for_step(weights, given, (slid, &pose.slide));
+        self.account_for_step(weights, given, slid, &pose.slide);
         self.pose = pose;
         self.motion.time += h;
         self.gauge_tension();
@@ -312,7 +312,7 @@ impl Dynamics {
         let mut done = self.grip_and_minimise(pose)?;
         for _ in 0..RUB_ROUNDS {
             let same = |change: f64, most: f64| change <= larger(RUB_CHANGE * most, self.bar_weight);
-            if !self.contacts.renew((&self.problem, &self.mesh), [&pose.x, &self.motion.x], same) {
+            if !self.contacts.renew(&self.problem, &self.mesh, [&pose.x, &self.motion.x], same) {
                 break;
             }
             let more = self.grip_and_minimise(pose)?;

@@ -22,9 +22,8 @@ impl Dynamics {
             let node = self.support_node[k].filter(|_| self.problem.supports[k].holds_from(self.motion.time));
             if let Some(node) = node.filter(|_| self.pulled[k]) {
                 let known = self.motion.hands[k];
-                let mut hand = known.unwrap_or_else(|| {
-                    Hand::grip(&self.problem, self.hand_stiffness, (at, self.holding_force(k, node)))
-                });
+                let mut hand = known
+                    .unwrap_or_else(|| Hand::grip(&self.problem, self.hand_stiffness, at, self.holding_force(k, node)));
                 hand.follow(target, h, fastest);
                 (self.motion.hands[k], self.motion.followers[k]) = (Some(hand), None);
             } else {
@@ -68,8 +67,8 @@ impl Dynamics {
         self.motion.hands.iter().enumerate().filter_map(|(k, hand)| {
             let (hand, node) = (hand.as_ref()?, self.support_node[k]?);
             let fastest = self.hand_speed;
-            let support = (self.problem.as_ref(), k, self.mesh.arc_length[node]);
-            hand.warning(support, (self.motion.x[node], -self.reaction[node]), fastest)
+            let (at, force) = (self.motion.x[node], -self.reaction[node]);
+            hand.warning(&self.problem, k, self.mesh.arc_length[node], at, force, fastest)
         })
     }
 }

@@ -68,7 +68,9 @@ fn kind_of(seat: Seat) -> usize {
 
 /// Mass that moves with a node, kg.
 pub(in crate::model::fem) fn mass_with(
-    (problem, mesh, support_node): (&Problem, &Mesh, &[Option<usize>]),
+    problem: &Problem,
+    mesh: &Mesh,
+    support_node: &[Option<usize>],
     node: usize,
 ) -> f64 {
     let lumps = problem.supports.iter().zip(support_node).filter(|(_, k)| **k == Some(node));
@@ -112,7 +114,7 @@ impl Dynamics {
 
     /// Mass that moves with a node, kg.
     pub(in crate::model::fem) fn node_mass(&self, node: usize) -> f64 {
-        mass_with((&self.problem, &self.mesh, &self.support_node), node)
+        mass_with(&self.problem, &self.mesh, &self.support_node, node)
     }
 
     /// Momentum of cable and lumps, kg m/s.
@@ -211,13 +213,13 @@ impl Dynamics {
             let Some(node) = &mesh.sliding[k] else { continue };
             let round = &mut sum[kind_of(node.seat)];
             if moves(k - 1) {
-                *round += mesh.path(k - 1, x).direction * bar_energy::pull_on((mesh, task), k - 1, x, &pose.slide);
+                *round += mesh.path(k - 1, x).direction * bar_energy::pull_on(mesh, task, k - 1, x, &pose.slide);
             }
             if moves(k + 1) {
-                *round -= mesh.path(k, x).direction * bar_energy::pull_on((mesh, task), k, x, &pose.slide);
+                *round -= mesh.path(k, x).direction * bar_energy::pull_on(mesh, task, k, x, &pose.slide);
             }
             for (e, side) in [(k - 1, 1), (k, 0)] {
-                *round -= bar_weight::on_ends(mesh, e, (x, Some(&pose.slide)), task.body)[side];
+                *round -= bar_weight::on_ends(mesh, e, x, Some(&pose.slide), task.body)[side];
             }
         }
         sum
@@ -229,7 +231,8 @@ impl Dynamics {
         &mut self,
         weights: Weights,
         forces: Kinds,
-        (slid, slide): ([Vec2; 2], &[f64]),
+        slid: [Vec2; 2],
+        slide: &[f64],
     ) {
         let now = self.sliding_momentum();
         let mut over = [now[0] - slid[0], now[1] - slid[1]];

@@ -11,9 +11,8 @@ impl MassSpringModel {
     pub(in crate::model::mass_spring) fn follow_hand(&mut self, support: usize, h: f64) {
         let (node, Some(target)) = (self.node_of[support], self.drag[support]) else { return };
         let (known, held_by) = (self.hands[support], -self.f[node]);
-        let mut hand = known.unwrap_or_else(|| {
-            Hand::grip(&self.problem, self.settings.hand_stiffness_n_per_m, (self.x[node], held_by))
-        });
+        let mut hand = known
+            .unwrap_or_else(|| Hand::grip(&self.problem, self.settings.hand_stiffness_n_per_m, self.x[node], held_by));
         hand.follow(target, h, self.settings.hand_speed_m_per_s);
         (self.hands[support], self.followers[support]) = (Some(hand), None);
     }
@@ -54,8 +53,8 @@ impl MassSpringModel {
             let (Some(hand), node) = (hand, self.node_of[k]) else { continue };
             let force = -self.on_support(node);
             let fastest = self.settings.hand_speed_m_per_s;
-            let at = (self.problem.as_ref(), k, self.s[node]);
-            self.warnings.extend(hand.warning(at, (self.x[node], force), fastest));
+            let warning = hand.warning(&self.problem, k, self.s[node], self.x[node], force, fastest);
+            self.warnings.extend(warning);
         }
     }
 }

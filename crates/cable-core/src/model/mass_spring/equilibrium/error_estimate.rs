@@ -38,7 +38,7 @@ impl MassSpringModel {
         let flexible = self.problem.bending_stiffness == 0.0;
         if first
             && flexible
-            && let Ok(Some(lay)) = initial_equilibrium(&self.problem, self.settings, (&self.drag, None))
+            && let Ok(Some(lay)) = initial_equilibrium(&self.problem, self.settings, &self.drag, None)
         {
             self.errors = self.apart(&lay.answer);
             self.beside = ErrorEstimator::Exact(lay.spans);

@@ -79,7 +79,7 @@ impl Way {
         let mut on = |t: f64| {
             let (bt, bn) = load;
             let end = (bt * cos - bn * sin, bn * cos + bt * sin);
-            let found = self.stretch(law, [load, end], (t, m, grown));
+            let found = self.stretch(law, [load, end], t, m, grown);
             load = end;
             found
         };
@@ -95,24 +95,24 @@ impl Way {
     /// No more than a hair's breadth.
     fn hair(&self, law: &Law, t: f64, m: f64) -> (Step, Rates) {
         let ((c, h), (bt, bn)) = ((self.c, self.h), self.load);
-        let start = Point::new(law, (c, law.thermal * law.compliance), (bt + m * bn, m * bt - bn), (t, m));
-        let rates = start.rates((c, law.thermal * law.compliance), (1.0, m));
+        let start = Point::new(law, c, law.thermal * law.compliance, bt + m * bn, m * bt - bn, t, m);
+        let rates = start.rates(c, law.thermal * law.compliance, 1.0, m);
         let step = rates.on(&Step::none(t), h);
         let shifted = |[a, b, d]: [f64; 3]| [a + h * (b + 0.5 * h * d), b + h * d, d];
         (step, Rates { tension: shifted(rates.tension), material: shifted(rates.material), ..rates })
     }
 
     /// A stretch, with the loads at its start and end; `grown` = e^{mh}.
-    fn stretch(&self, law: &Law, load: [(f64, f64); 2], (t, m, grown): (f64, f64, f64)) -> (Step, Rates) {
+    fn stretch(&self, law: &Law, load: [(f64, f64); 2], t: f64, m: f64, grown: f64) -> (Step, Rates) {
         let (c, h, [(bt, bn), (bt1, bn1)]) = (self.c, self.h, load);
         let k = law.thermal * law.compliance;
-        let start = Point::new(law, (c, k), (bt + m * bn, m * bt - bn), (t, m));
+        let start = Point::new(law, c, k, bt + m * bn, m * bt - bn, t, m);
         let (q, r, [f, f1, f2]) = (start.q, start.r, start.f);
         // T⁰ at the end.
         let divided = c * f / (1.0 + m * m);
         let (alpha, beta) = (2.0 * divided * m, divided * (m * m - 1.0));
         let tension = alpha * bt1 + beta * bn1 + (t - alpha * bt - beta * bn) * grown;
-        let mut end = Point::new(law, (c, k), (bt1 + m * bn1, m * bt1 - bn1), (tension, m));
+        let mut end = Point::new(law, c, k, bt1 + m * bn1, m * bt1 - bn1, tension, m);
         // G and its derivatives at both ends.
         let (more, q1, r1) = (end.f[0] - f, end.q, end.r);
         let first = grown * q * f1;
@@ -130,7 +130,7 @@ impl Way {
         let by = h * (0.5 * (squares[0] + squares[1]) + h / 12.0 * change);
         let step =
             Step { tension: end.tension, material: c * material, by_tension: grown, material_by_tension: -c * k * by };
-        (step, end.rates((c, k), (grown, m)))
+        (step, end.rates(c, k, grown, m))
     }
 }
 
@@ -146,7 +146,7 @@ struct Point {
 }
 
 impl Point {
-    fn new(law: &Law, (c, k): (f64, f64), (q, r): (f64, f64), (tension, m): (f64, f64)) -> Self {
+    fn new(law: &Law, c: f64, k: f64, q: f64, r: f64, tension: f64, m: f64) -> Self {
         let stretch = law.stretch(tension);
         let f = 1.0 / stretch;
         let slope = m * tension - c * f * q;
@@ -158,7 +158,7 @@ impl Point {
     }
 
     /// As it goes on from there; `grown`: its tension by that at the start.
-    fn rates(&self, (c, k): (f64, f64), (grown, m): (f64, f64)) -> Rates {
+    fn rates(&self, c: f64, k: f64, grown: f64, m: f64) -> Rates {
         let [f, f1, f2] = self.f;
         Rates { tension: self.slopes, material: [c * f, c * f1, c * f2], by_tension: -c * k * f * f * grown, m }
     }

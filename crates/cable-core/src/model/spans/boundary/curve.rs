@@ -120,7 +120,7 @@ impl Curve {
             }
             None => boundary(body, c),
         };
-        let forward = Self::new(pieces, closed, (Some(body.obstacle), body.friction, 1.0));
+        let forward = Self::new(pieces, closed, Some(body.obstacle), body.friction, 1.0);
         let back = forward.reversed();
         [forward, back]
     }
@@ -129,10 +129,10 @@ impl Curve {
     pub fn wheel(radius: f64, friction: f64, sense: f64) -> Self {
         let form = Form::Arc { center: Vec2::zeros(), radius, from: Vec2::x() };
         let piece = Piece { form, extent: f64::INFINITY, kink_before: false, feature: None };
-        Self::new(vec![piece], false, (None, friction, sense))
+        Self::new(vec![piece], false, None, friction, sense)
     }
 
-    fn new(pieces: Vec<Piece>, closed: bool, (obstacle, friction, sense): (Option<usize>, f64, f64)) -> Self {
+    fn new(pieces: Vec<Piece>, closed: bool, obstacle: Option<usize>, friction: f64, sense: f64) -> Self {
         let mut starts = Vec::with_capacity(pieces.len());
         let mut sum = 0.0;
         for p in &pieces {
@@ -161,7 +161,7 @@ impl Curve {
             Piece { form, kink_before, ..p }
         };
         let pieces = (0..n).map(back).collect();
-        Self::new(pieces, self.period.is_some(), (self.obstacle, self.friction, -self.sense))
+        Self::new(pieces, self.period.is_some(), self.obstacle, self.friction, -self.sense)
     }
 
     /// Whether it is round all the way: a post or a wheel.
@@ -358,7 +358,7 @@ impl Curve {
     }
 
     /// Calls back with each place between p and q, on arc i, at which its tangent is that of `along`.
-    pub fn running(&self, i: i64, along: Vec2, (p, q): (f64, f64), mut each: impl FnMut(f64)) {
+    pub fn running(&self, i: i64, along: Vec2, p: f64, q: f64, mut each: impl FnMut(f64)) {
         let Form::Arc { from, .. } = self.piece(i).form else { return };
         let turn = std::f64::consts::TAU;
         let mut x = self.origin(i) - self.sense * cross(from, along).atan2(from.dot(&along));

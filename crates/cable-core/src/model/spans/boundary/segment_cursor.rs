@@ -181,7 +181,7 @@ impl SegmentCursor<'_> {
         let both = |p: f64| [self.slide(p, t, m), self.slide(p, u, n)];
         let last = Cell::new((f64::NAN, [Step::none(t); 2]));
         let ends = ((t - u) * sign, end);
-        let x = crossing((self.p0, p1), FLOOR * t.abs(), Some(ends), |x| {
+        let x = crossing(self.p0, p1, FLOOR * t.abs(), Some(ends), |x| {
             let [a, b] = both(x);
             last.set((x, [a, b]));
             let spot = self.from.on(x - self.p0);

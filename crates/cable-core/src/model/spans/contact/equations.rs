@@ -29,15 +29,17 @@ pub(in crate::model::spans) struct Rows {
 /// `pinned`: which ends are held on the boundary, so that their tension is unknown by itself; `spots`: the places of its ends.
 pub(in crate::model::spans) fn rows(
     track: &Track<'_>,
-    (history, e): (&TensionProfile, &Ends),
+    history: &TensionProfile,
+    e: &Ends,
     spots: &[Place; 2],
-    (mode, pinned): (Mode, [bool; 2]),
+    mode: Mode,
+    pinned: [bool; 2],
 ) -> (Rows, Option<Held>) {
     // Lifted (Newton looks there): a point without friction.
     let mode = if e.p[1] < e.p[0] { Mode::Slide(0.0) } else { mode };
     match mode {
         Mode::Slide(m) if track.floored && m != 0.0 => (drawn(track, e, spots, m), None),
-        Mode::Slide(m) => (sliding(track, (history, e), spots, m), None),
+        Mode::Slide(m) => (sliding(track, history, e, spots, m), None),
         Mode::Hold => {
             let held = history.hold(track, e);
             let (mut out, fronts) = match held {
@@ -45,13 +47,13 @@ pub(in crate::model::spans) fn rows(
                 Held::Between(fronts) | Held::Beyond(_, fronts) => (holding(track, e, spots, &fronts), fronts),
                 Held::Meet(fronts) => {
                     let mut out = holding(track, e, spots, &fronts);
-                    meeting(&mut out, (track, history, e), spots, &fronts);
+                    meeting(&mut out, track, history, e, spots, &fronts);
                     (out, fronts)
                 }
             };
             for side in 0..2 {
                 if pinned[side] {
-                    pin(&mut out, (track, history, e), side, &fronts[side]);
+                    pin(&mut out, track, history, e, side, &fronts[side]);
                 }
             }
             (out, Some(held))
@@ -64,7 +66,7 @@ pub(in crate::model::spans) fn rows(
 /// Near the old tension what a change x of it moves is φ = ∓ k x|x|, k = 1/(2·D·EA·τ), D the difference of the slopes
 /// of tension at the front: flat at x = 0, where Newton starts. Its root √|φ| is straight. Where the end has not moved
 /// the answer is x = 0, with nothing to solve.
-fn pin(out: &mut Rows, (track, history, e): (&Track<'_>, &TensionProfile, &Ends), side: usize, front: &Front) {
+fn pin(out: &mut Rows, track: &Track<'_>, history: &TensionProfile, e: &Ends, side: usize, front: &Front) {
     let (old_t, old_s) = history.at(track, e.p[side]);
     let gap = e.s[side] - old_s;
     let x = e.t[side] - old_t;
@@ -90,7 +92,7 @@ fn pin(out: &mut Rows, (track, history, e): (&Track<'_>, &TensionProfile, &Ends)
         out.of_tension[side] = false;
         if x == 0.0 {
             let nudged = old_t + NUDGE * (old_t.abs() + law.load.norm() * size) * target.signum();
-            let way = history.front(track, (e.p[side], nudged), e.p[1 - side]).way;
+            let way = history.front(track, e.p[side], nudged, e.p[1 - side]).way;
             out.by[side][3 * side + 2] = way.material_by_tension;
         }
         return;
@@ -116,7 +118,7 @@ fn pin(out: &mut Rows, (track, history, e): (&Track<'_>, &TensionProfile, &Ends)
 }
 
 /// Where a cable runs away it is followed with a drag η: T₂ less what the law makes of T₁ is η (s_old(p₁) − s₁), the slip.
-fn sliding(track: &Track<'_>, (history, e): (&TensionProfile, &Ends), [a, b]: &[Place; 2], m: f64) -> Rows {
+fn sliding(track: &Track<'_>, history: &TensionProfile, e: &Ends, [a, b]: &[Place; 2], m: f64) -> Rows {
     let way = track.slide(e.p[0], e.p[1], e.t[0], m);
     let slope = track.law.slope(a, e.t[0], m);
     let (mut held, mut held_by) = (0.0, 0.0);
@@ -191,7 +193,9 @@ fn holding(track: &Track<'_>, e: &Ends, spots: &[Place; 2], fronts: &[Front; 2])
 /// the new one.
 fn meeting(
     out: &mut Rows,
-    (track, history, e): (&Track<'_>, &TensionProfile, &Ends),
+    track: &Track<'_>,
+    history: &TensionProfile,
+    e: &Ends,
     spots: &[Place; 2],
     fronts: &[Front; 2],
 ) {
@@ -220,9 +224,11 @@ fn meeting(
 /// `held`: where it sticks; `patience`: how many times rounding that is; 1 while it costs nothing to change.
 pub(in crate::model::spans) fn next_mode(
     track: &Track<'_>,
-    (history, e): (&TensionProfile, &Ends),
+    history: &TensionProfile,
+    e: &Ends,
     held: Option<Held>,
-    (mode, pinned): (Mode, [bool; 2]),
+    mode: Mode,
+    pinned: [bool; 2],
     patience: f64,
 ) -> Mode {
     let friction = track.friction;
@@ -252,8 +258,7 @@ pub(in crate::model::spans) fn next_mode(
             // With m = +μ material goes on along p, so there is less of it than was, s < s_old, at every p. The slip is
             // least where the tension is what it was: before it the one stretch is the greater, after it the other.
             let (old, _) = history.at(track, e.p[0]);
-            let least =
-                if (old - e.t[0]) * m > 0.0 { history.front(track, (e.p[0], e.t[0]), e.p[1]).p } else { e.p[0] };
+            let least = if (old - e.t[0]) * m > 0.0 { history.front(track, e.p[0], e.t[0], e.p[1]).p } else { e.p[0] };
             let s = e.s[0] + track.slide(e.p[0], least, e.t[0], m).material;
             let slid = s - history.at(track, least).1;
             if m * slid > 0.0 && slid.abs() > stuck * (s.abs() + e.s[1].abs()) { Mode::Hold } else { mode }

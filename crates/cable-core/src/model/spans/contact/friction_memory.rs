@@ -141,7 +141,7 @@ impl TensionProfile {
         }
         let by = NUDGE * friction;
         let goal = *tension;
-        sign * crossing((-friction, friction), FLOOR * goal.abs(), None, |m| {
+        sign * crossing(-friction, friction, FLOOR * goal.abs(), None, |m| {
             (goal - reach(m * sign), (reach((m - by) * sign) - reach((m + by) * sign)) / (2.0 * by))
         })
     }
@@ -309,7 +309,7 @@ impl TensionProfile {
     }
 
     /// Slides from an end at p with tension `t` towards `to`, as far as the old tension lets it.
-    pub fn front(&self, track: &Track<'_>, (p, t): (f64, f64), to: f64) -> Front {
+    pub fn front(&self, track: &Track<'_>, p: f64, t: f64, to: f64) -> Front {
         let right = to > p;
         let (mut old, mut s) = self.at(track, p);
         let sign = if t < old { 1.0 } else { -1.0 };
@@ -339,8 +339,8 @@ impl TensionProfile {
         let friction = track.friction;
         let [p1, p2] = e.p;
         let [t1, t2] = e.t;
-        let left = self.front(track, (p1, t1), p2);
-        let right = self.front(track, (p2, t2), p1);
+        let left = self.front(track, p1, t1, p2);
+        let right = self.front(track, p2, t2, p1);
         if left.met && right.met && left.p <= right.p {
             return Held::Between([left, right]);
         }
@@ -361,7 +361,7 @@ impl TensionProfile {
         }
         // … or they slide towards or away from each other.
         let sign = if left.m > 0.0 { 1.0 } else { -1.0 };
-        let meet = crossing((p1, p2), FLOOR * (t1.abs() + t2.abs()), None, |x| {
+        let meet = crossing(p1, p2, FLOOR * (t1.abs() + t2.abs()), None, |x| {
             let (r, l) = (track.slide(p2, x, t2, right.m).tension, track.slide(p1, x, t1, left.m).tension);
             let place = track.place(x);
             let slope = track.law.slope(&place, r, right.m) - track.law.slope(&place, l, left.m);
@@ -373,7 +373,7 @@ impl TensionProfile {
     }
 
     /// Takes what came of a step as the new past. `held`: where it sticks, where that is known; `old`: memory.
-    pub fn commit(&mut self, track: &Track<'_>, e: &Ends, (mode, held): (Mode, Option<Held>), old: &mut Self) {
+    pub fn commit(&mut self, track: &Track<'_>, e: &Ends, mode: Mode, held: Option<Held>, old: &mut Self) {
         let [first, last] = [0, 1].map(|k| Knot { p: e.p[k], s: e.s[k], tension: e.t[k], m: 0.0 });
         if last.p <= first.p {
             self.clear();

@@ -57,7 +57,7 @@ fn other(course: &Course, c: &Contact, kink: Kink) -> Option<(Vec2, Vec2)> {
 }
 
 /// The way V pushes the load out of its kink: away along its own edge, or on along the other (`true`).
-fn leaves(course: &Course, c: &Contact, (kink, f): (Kink, &LoadBalance), room: f64) -> Option<bool> {
+fn leaves(course: &Course, c: &Contact, kink: Kink, f: &LoadBalance, room: f64) -> Option<bool> {
     let out = |along: f64, press: f64| along > course.friction(c) * larger(press, 0.0) + room * f.size;
     if out(-kink.sign() * f.sum.dot(&f.tangent), -f.sum.dot(&f.normal)) {
         return Some(false);
@@ -75,8 +75,8 @@ pub(in crate::model::spans) fn press(course: &Course, c: &Contact, f: &LoadBalan
 }
 
 /// Whether the load keeps its kink, to a part of its forces.
-pub(in crate::model::spans) fn holds(course: &Course, c: &Contact, (kink, f): (Kink, &LoadBalance), room: f64) -> bool {
-    leaves(course, c, (kink, f), room).is_none()
+pub(in crate::model::spans) fn holds(course: &Course, c: &Contact, kink: Kink, f: &LoadBalance, room: f64) -> bool {
+    leaves(course, c, kink, f, room).is_none()
 }
 
 /// K: loads that have come into a kink stay there; whether there was one.
@@ -101,7 +101,7 @@ pub(in crate::model::spans) fn leave(strand: &mut CableRun, course: &Course, j: 
     let f = felt(strand, course, j);
     let c = &strand.contacts[j];
     let Some(kink) = c.kink else { return Ok(false) };
-    let Some(on) = leaves(course, c, (kink, &f), CONE) else { return Ok(false) };
+    let Some(on) = leaves(course, c, kink, &f, CONE) else { return Ok(false) };
     let (curve, friction) = (&course.curves[c.curve], course.friction(c));
     let mut home = c.home;
     if on {
@@ -118,13 +118,13 @@ pub(in crate::model::spans) fn leave(strand: &mut CableRun, course: &Course, j: 
     (c.home, c.ends.p, c.history, c.kink) = (home, [p; 2], TensionProfile::new(knot, knot), None);
     c.mode = Mode::Slide(friction * if on { kink.sign() } else { -kink.sign() });
     for side in 0..2 {
-        part(strand, course, (j, side));
+        part(strand, course, j, side);
     }
     Ok(true)
 }
 
 /// What is joined to the load that is contact j but lies on another chain leaves it by a span.
-fn part(strand: &mut CableRun, course: &Course, (j, side): (usize, usize)) {
+fn part(strand: &mut CableRun, course: &Course, j: usize, side: usize) {
     if !strand.is_joined(j, side) {
         return;
     }
@@ -133,12 +133,12 @@ fn part(strand: &mut CableRun, course: &Course, (j, side): (usize, usize)) {
         return;
     }
     strand.contacts[if side == 0 { i } else { j }].joined = false;
-    give_way(strand, (i, 1 - side));
+    give_way(strand, i, 1 - side);
     resolve(strand, course, j + side);
 }
 
 /// An end of contact i gives way by a little, for a span to begin there.
-pub(in crate::model::spans) fn give_way(strand: &mut CableRun, (i, end): (usize, usize)) {
+pub(in crate::model::spans) fn give_way(strand: &mut CableRun, i: usize, end: usize) {
     let gives = GIVES * (strand.to - strand.from);
     let e = &mut strand.contacts[i].ends;
     let (most, sign) = (0.5 * (e.s[1] - e.s[0]), if end == 0 { 1.0 } else { -1.0 });

@@ -27,7 +27,8 @@ pub(in crate::model::spans) fn find(
     strand: &CableRun,
     course: &Course,
     world: &World,
-    (k, deep): (usize, f64),
+    k: usize,
+    deep: f64,
 ) -> Option<Landing> {
     let hangs = [k == 0, k == strand.contacts.len()];
     let (from, to) = strand.material(k);

@@ -161,7 +161,7 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course, j: usiz
         return Err(unsound("a load is held down"));
     }
     if let Some(kink) = c.kink {
-        if !kink_load::holds(course, c, (kink, &f), HOLDS) {
+        if !kink_load::holds(course, c, kink, &f, HOLDS) {
             return Err(unsound("a load is out of its kink"));
         }
     } else if !(f.sum.dot(&f.tangent).abs() <= course.friction(c) * f.press() + room) {
@@ -200,7 +200,7 @@ pub(in crate::model::spans) fn settle(strand: &mut CableRun, course: &Course) ->
 fn lift(strand: &mut CableRun, course: &Course, j: usize) {
     for side in 0..2 {
         if strand.is_joined(j, side) {
-            kink_load::give_way(strand, (j + 2 * side - 1, 1 - side));
+            kink_load::give_way(strand, j + 2 * side - 1, 1 - side);
         }
     }
     let last = strand.contacts.len() - 1;
@@ -298,7 +298,7 @@ pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> 
     let c = &strand.contacts[j];
     let e = c.ends;
     let p = walk(&course.track(c), e.p[side], (s - e.s[side]) * course.law.stretch(e.t[side]));
-    let load = lying(c, (p, [s, s.next_up()]), e.t[side], true);
+    let load = lying(c, p, [s, s.next_up()], e.t[side], true);
     let left = if side == 0 { e.p[1] - p } else { p - e.p[0] };
     if left <= 0.0 {
         // Nothing else of it is left.
@@ -348,7 +348,7 @@ fn set_down(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     let track = course.track(c);
     let [p0, p1] = c.ends.p;
     let floor = FLOOR * (strand.to - strand.from);
-    let q = crossing((p0, p1), floor, None, |p| {
+    let q = crossing(p0, p1, floor, None, |p| {
         let place = track.place(p);
         let (tension, laid) = c.history.at(&track, p);
         (s - laid, -place.stretch / track.law.stretch(tension))
@@ -359,7 +359,7 @@ fn set_down(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     let fresh = c.smooth || !knots.first().zip(knots.last()).is_some_and(|(a, b)| q >= a.p && q <= b.p);
     let (first, second) = c.history.split(&track, q);
     let after = s.next_up();
-    let mut load = lying(c, (q, [s, after]), tension, fresh);
+    let mut load = lying(c, q, [s, after], tension, fresh);
     (load.joined, load.smooth) = (true, fresh);
     let mut rest = c.clone();
     (rest.ends.p[0], rest.ends.s[0], rest.ends.t[0], rest.history) = (q, after, tension, second);
@@ -384,7 +384,7 @@ fn press_end(strand: &mut CableRun, course: &Course, j: usize) -> bool {
             continue;
         }
         let (p, s, tension) = (c.ends.p[side], c.ends.s[side], c.ends.t[side]);
-        let load = lying(c, (p, [s; 2]), tension, c.smooth);
+        let load = lying(c, p, [s; 2], tension, c.smooth);
         let k = j + side;
         strand.contacts.insert(k, load);
         strand.contacts[j].joined = true;
@@ -395,7 +395,7 @@ fn press_end(strand: &mut CableRun, course: &Course, j: usize) -> bool {
 }
 
 /// A load on what a contact lies on.
-fn lying(on: &Contact, (p, s): (f64, [f64; 2]), tension: f64, fresh: bool) -> Contact {
+fn lying(on: &Contact, p: f64, s: [f64; 2], tension: f64, fresh: bool) -> Contact {
     Contact {
         ends: Ends { p: [p; 2], s, t: [tension; 2] },
         mode: if fresh { Mode::Slide(0.0) } else { Mode::Hold },

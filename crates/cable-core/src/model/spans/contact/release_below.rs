@@ -18,7 +18,7 @@ const PULLS: f64 = 1e-9;
 /// Whether a bottom of a round boundary lies between two places on it.
 pub(in crate::model::spans) fn hangs_between(track: &Track<'_>, from: f64, to: f64) -> bool {
     let mut found = false;
-    track.bottoms((from, to), |_| found = true);
+    track.bottoms(from, to, |_| found = true);
     found
 }
 
@@ -38,7 +38,7 @@ pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> b
         }
         let past = after(&track, c);
         let most = -PULLS * (c.ends.t[0].abs() + c.ends.t[1].abs());
-        track.bottoms((first, last), |p| {
+        track.bottoms(first, last, |p| {
             let pressed = press(&track, &past, p).0;
             if pressed < most && worst.as_ref().is_none_or(|w| pressed < w.0) {
                 worst = Some((pressed, j, p, past.clone()));
@@ -55,7 +55,7 @@ pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> b
         let far = bottom + half;
         let far = if (c.ends.p[side] - far) * half < 0.0 { c.ends.p[side] } else { far };
         if press(&track, &past, far).0 > 0.0 {
-            crossing((far, bottom), floor, None, |p| press(&track, &past, p))
+            crossing(far, bottom, floor, None, |p| press(&track, &past, p))
         } else {
             far
         }
@@ -95,7 +95,7 @@ pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> b
 /// What the contact remembers after the present state.
 fn after(track: &Track<'_>, c: &Contact) -> TensionProfile {
     let mut past = c.history.clone();
-    past.commit(track, &c.ends, (c.mode, c.held), &mut TensionProfile::default());
+    past.commit(track, &c.ends, c.mode, c.held, &mut TensionProfile::default());
     past
 }
 

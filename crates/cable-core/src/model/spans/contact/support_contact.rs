@@ -25,8 +25,8 @@ pub(in crate::model::spans) fn place(strand: &mut CableRun, course: &Course, sid
                 c.ends.t[side] = c.history.at(&course.track(c), p).0;
             }
         }
-        (Tie::Lies(_), None) => lift(strand, course, side, (outer, at)),
-        (Tie::Held(_), Some(p)) if beyond(strand, outer, side, p) => lay(strand, side, (outer, p)),
+        (Tie::Lies(_), None) => lift(strand, course, side, outer, at),
+        (Tie::Held(_), Some(p)) if beyond(strand, outer, side, p) => lay(strand, side, outer, p),
         (Tie::Held(_), _) => strand.ties[side] = Tie::Held(at),
         _ => {}
     }
@@ -39,7 +39,7 @@ fn beyond(strand: &CableRun, j: usize, side: usize, p: f64) -> bool {
 }
 
 /// An end that comes down to lie on the boundary: its span is gone.
-fn lay(strand: &mut CableRun, side: usize, (j, p): (usize, f64)) {
+fn lay(strand: &mut CableRun, side: usize, j: usize, p: f64) {
     strand.ties[side] = Tie::Lies(p);
     let s = if side == 0 { strand.from } else { strand.to };
     let e = &mut strand.contacts[j].ends;
@@ -48,7 +48,7 @@ fn lay(strand: &mut CableRun, side: usize, (j, p): (usize, f64)) {
 
 /// An end that leaves the boundary: a span begins where a parabola of the height h and tension T there would,
 /// x = √(2Th/w_n).
-fn lift(strand: &mut CableRun, course: &Course, side: usize, (j, at): (usize, Vec2)) {
+fn lift(strand: &mut CableRun, course: &Course, side: usize, j: usize, at: Vec2) {
     let c = &mut strand.contacts[j];
     let track = course.track(c);
     let curve = track.curve;

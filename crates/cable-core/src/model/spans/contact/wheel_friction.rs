@@ -106,7 +106,7 @@ impl WheelFriction {
     pub fn rows(&mut self, on: &OnWheel, ends: &WheelEnds) -> WheelRows {
         let (e, track) = (Ends::from(ends), self.track(on));
         let spots = e.p.map(|p| track.place(p));
-        let (rows, held) = equations::rows(&track, (&self.history, &e), &spots, (self.mode, [false; 2]));
+        let (rows, held) = equations::rows(&track, &self.history, &e, &spots, self.mode, [false; 2]);
         self.held = held;
         WheelRows { residual: rows.residual, by: rows.by, of_tension: rows.of_tension }
     }
@@ -115,7 +115,7 @@ impl WheelFriction {
     /// rounding a violation must be.
     pub fn change_mode(&mut self, on: &OnWheel, ends: &WheelEnds, patience: f64) -> bool {
         let e = Ends::from(ends);
-        let next = equations::next_mode(&self.track(on), (&self.history, &e), None, (self.mode, [false; 2]), patience);
+        let next = equations::next_mode(&self.track(on), &self.history, &e, None, self.mode, [false; 2], patience);
         let changed = next != self.mode;
         self.mode = next;
         changed
@@ -125,7 +125,7 @@ impl WheelFriction {
     pub fn commit(&mut self, on: &OnWheel, ends: &WheelEnds) {
         let e = Ends::from(ends);
         let mut history = std::mem::take(&mut self.history);
-        history.commit(&self.track(on), &e, (self.mode, None), &mut TensionProfile::default());
+        history.commit(&self.track(on), &e, self.mode, None, &mut TensionProfile::default());
         self.history = history;
     }
 

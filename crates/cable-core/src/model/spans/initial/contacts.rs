@@ -59,18 +59,21 @@ struct Seat {
 pub(in crate::model::spans) fn lay(
     layout: &Layout,
     index: usize,
-    (course, instant): (&Course, &BoundaryConditions),
+    course: &Course,
+    instant: &BoundaryConditions,
     ring: Ring,
 ) -> Option<(CableRun, Vec<Vec2>)> {
     let way = way(layout, layout.strands.get(index)?, instant);
-    Some((along(layout, index, (course, instant), (&way, ring))?, way.points))
+    Some((along(layout, index, course, instant, &way, ring)?, way.points))
 }
 
 fn along(
     layout: &Layout,
     index: usize,
-    (course, instant): (&Course, &BoundaryConditions),
-    (way, ring): (&Way, Ring),
+    course: &Course,
+    instant: &BoundaryConditions,
+    way: &Way,
+    ring: Ring,
 ) -> Option<CableRun> {
     let part = layout.strands.get(index)?;
     let [from, to] = part.material;
@@ -86,7 +89,7 @@ fn along(
     let heads = [0, 1].map(|side| {
         let near = if part.supports[side].is_none() { [FALLS; 2] } else { [LIES, NEAR] };
         let near = near.map(|n| n * layout.problem.radius);
-        lying(course, &layout.problem.world, near, (&way.points, side)).filter(|h| match ties[side] {
+        lying(course, &layout.problem.world, near, &way.points, side).filter(|h| match ties[side] {
             Tie::Hangs(force) => {
                 let place = course.curves[h.curve].place(h.p[side], h.home);
                 force.dot(&place.normal) <= LIFTS * force.norm()
@@ -129,15 +132,22 @@ fn along(
     if first > last {
         return None;
     }
-    let mut contacts = bends(layout, part, (course, instant), (way, first, last, ring), (&at, tension))?;
-    let join = joint(course, &heads, (first == last, tension));
+    let mut contacts = bends(
+        layout,
+        part,
+        course,
+        instant,
+        &TautString { way, first, last, ring },
+        &FirstMaterial { at: &at, tension },
+    )?;
+    let join = joint(course, &heads, first == last, tension);
     for (side, h) in heads.iter().enumerate() {
         let Some(h) = h else { continue };
         let way_at = |k: usize| at(way.along[k]);
         let join = smaller(join, 0.5 * (h.p[1] - h.p[0]));
         let s = if side == 0 { [from, way_at(first) - join] } else { [way_at(last) + join, to] };
         let p = if side == 0 { [h.p[0], h.p[1] - join] } else { [h.p[0] + join, h.p[1]] };
-        let c = contact(course, (h.curve, h.home), (p, s), tension);
+        let c = contact(course, h.curve, h.home, p, s, tension);
         contacts.insert(if side == 0 { 0 } else { contacts.len() }, c);
         strand.ties[side] = end_tie(ties[side], h.p[side]);
     }
@@ -170,7 +180,7 @@ fn solve_spans(strand: &mut CableRun, course: &Course) -> Option<()> {
 
 /// A strand that lies on one boundary from end to end.
 fn lies_whole(mut strand: CableRun, course: &Course, [a, b]: [&Head; 2], tension: f64) -> CableRun {
-    let mut c = contact(course, (a.curve, a.home), ([a.p[0], b.p[1]], [strand.from, strand.to]), tension);
+    let mut c = contact(course, a.curve, a.home, [a.p[0], b.p[1]], [strand.from, strand.to], tension);
     c.wheel = None;
     strand.ties = [0, 1].map(|side| end_tie(strand.ties[side], if side == 0 { a.p[0] } else { b.p[1] }));
     strand.contacts.push(c);
@@ -187,7 +197,7 @@ fn lies_whole(mut strand: CableRun, course: &Course, [a, b]: [&Head; 2], tension
 }
 
 /// Two stretches that meet at a kink of δ are joined by a span of length Tδ/w: half of it, m; 0 where they do not meet.
-fn joint(course: &Course, heads: &[Option<Head>; 2], (meet, tension): (bool, f64)) -> f64 {
+fn joint(course: &Course, heads: &[Option<Head>; 2], meet: bool, tension: f64) -> f64 {
     match heads {
         [Some(a), Some(b)] if meet => {
             let (u, v) = (course.curves[a.curve].place(a.p[1], a.home), course.curves[b.curve].place(b.p[0], b.home));
@@ -198,17 +208,41 @@ fn joint(course: &Course, heads: &[Option<Head>; 2], (meet, tension): (bool, f64
     }
 }
 
-/// Contacts where the taut string of the route bends, `at` the material at a length along the way (m), laid with a tension.
+/// The part of a route along which a string is pulled taut.
+#[derive(Clone, Copy)]
+struct TautString<'a> {
+    way: &'a Way,
+    /// Index of the route's point at which it begins.
+    first: usize,
+    /// Index of the point at which it ends.
+    last: usize,
+    /// The outline about the corners.
+    ring: Ring,
+}
+
+/// The material of the cable in its first shape.
+#[derive(Clone, Copy)]
+struct FirstMaterial<'a> {
+    /// Arc length (m) at a length along the route (m).
+    at: &'a dyn Fn(f64) -> f64,
+    /// Tension, N.
+    tension: f64,
+}
+
+/// Contacts where the taut string of the route bends.
 fn bends(
     layout: &Layout,
     part: &Part,
-    (course, instant): (&Course, &BoundaryConditions),
-    (way, first, last, ring): (&Way, usize, usize, Ring),
-    (at, tension): (&dyn Fn(f64) -> f64, f64),
+    course: &Course,
+    instant: &BoundaryConditions,
+    string: &TautString<'_>,
+    material: &FirstMaterial<'_>,
 ) -> Option<Vec<Contact>> {
-    let mut seats = seats(layout, part, (course, instant), (way, first, last), ring)?;
+    let TautString { way, first, last, .. } = *string;
+    let FirstMaterial { at, tension } = *material;
+    let mut seats = seats(layout, part, course, instant, string)?;
     let mut contacts = Vec::with_capacity(seats.len() + 2);
-    let rounds = stretched(course, &mut seats, (way.points[first], way.points[last]));
+    let rounds = stretched(course, &mut seats, [way.points[first], way.points[last]]);
     for (k, seat) in seats.iter().enumerate() {
         let arrive = tangent(rounds[k][1], rounds[k + 1][0]);
         let leave = tangent(rounds[k + 1][1], rounds[k + 2][0]);
@@ -231,7 +265,7 @@ fn bends(
             if curve.is_round() { way.close(place.at, w, ROUND * place.stretch) } else { w }
         };
         let s = at(0.5 * (seen(p1, seat.way[0]) + seen(p2, seat.way[1])));
-        let mut c = contact(course, (index, seat.home), ([p1, p2], [s - half, s + half]), tension);
+        let mut c = contact(course, index, seat.home, [p1, p2], [s - half, s + half], tension);
         c.wheel = seat.wheel;
         contacts.push(c);
     }
@@ -368,7 +402,7 @@ fn lay_down(track: &Track<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> Tensio
     TensionProfile::laid(track, start, e.p)
 }
 
-fn contact(course: &Course, (curve, home): (usize, ChainRange), (p, s): ([f64; 2], [f64; 2]), tension: f64) -> Contact {
+fn contact(course: &Course, curve: usize, home: ChainRange, p: [f64; 2], s: [f64; 2], tension: f64) -> Contact {
     let knot = |k: usize| Knot { p: p[k], s: s[k], tension, m: 0.0 };
     Contact {
         curve,
@@ -397,7 +431,7 @@ struct Head {
 }
 
 /// Whether the first points of a route (the last, for side 1) lie on one chain: the end and the others as `near` as that, m.
-fn lying(course: &Course, world: &World, near: [f64; 2], (points, side): (&[Vec2], usize)) -> Option<Head> {
+fn lying(course: &Course, world: &World, near: [f64; 2], points: &[Vec2], side: usize) -> Option<Head> {
     let n = points.len();
     let point = |k: usize| points[if side == 0 { k } else { n - 1 - k }];
     let gap = world.signed_gap(point(0), 2.0 * near[0]).filter(|g| g.gap_m.abs() <= near[0])?;
@@ -419,10 +453,11 @@ fn lying(course: &Course, world: &World, near: [f64; 2], (points, side): (&[Vec2
 fn seats(
     layout: &Layout,
     part: &Part,
-    (course, instant): (&Course, &BoundaryConditions),
-    (way, first, last): (&Way, usize, usize),
-    ring: Ring,
+    course: &Course,
+    instant: &BoundaryConditions,
+    string: &TautString<'_>,
 ) -> Option<Vec<Seat>> {
+    let TautString { way, first, last, ring } = *string;
     let world = &layout.problem.world;
     let corners = shortest_path::corners(world, ring);
     let mut out: Vec<Seat> = Vec::new();
@@ -449,7 +484,7 @@ fn seats(
             let before = j.checked_sub(1).and_then(|i| bends.get(i)).map_or(begin.0, |a| a.corner.at);
             let after = bends.get(j + 1).map_or(stop, |a| a.corner.at);
             let (u, v) = (b.corner.at - before, after - b.corner.at);
-            push(&mut out, course, b, (reached, cross(u, v).atan2(u.dot(&v)).abs()))?;
+            push(&mut out, course, b, reached, cross(u, v).atan2(u.dot(&v)).abs())?;
         }
         if let Some(q) = pulley {
             let curve = q.curve + usize::from(q.facing < 0.0);
@@ -469,7 +504,7 @@ fn seats(
 }
 
 /// Adds a bend to what there is, or to the last seat where it goes on there.
-fn push(out: &mut Vec<Seat>, course: &Course, b: &Bend, (w, turn): (f64, f64)) -> Option<()> {
+fn push(out: &mut Vec<Seat>, course: &Course, b: &Bend, w: f64, turn: f64) -> Option<()> {
     let curve_index = 2 * b.corner.body + usize::from(b.sense < 0.0);
     let curve = course.curves.get(curve_index)?;
     let i = curve.piece_of(b.corner.feature, b.corner.at)?;
@@ -492,8 +527,8 @@ fn push(out: &mut Vec<Seat>, course: &Course, b: &Bend, (w, turn): (f64, f64)) -
 ///
 /// The string of points passes just by such a corner, that of the cable's radius bends round it: along the edge nothing
 /// turns, and Newton's method does not find across it.
-fn stretched(course: &Course, seats: &mut [Seat], ends: (Vec2, Vec2)) -> Vec<[Round; 2]> {
-    let mut found = rounds(course, seats, ends);
+fn stretched(course: &Course, seats: &mut [Seat], ends: [Vec2; 2]) -> Vec<[Round; 2]> {
+    let mut found = rounds(course, seats, ends[0], ends[1]);
     for _ in 0..MOST_STRETCHED {
         let mut changed = false;
         for (k, seat) in seats.iter_mut().enumerate() {
@@ -513,7 +548,7 @@ fn stretched(course: &Course, seats: &mut [Seat], ends: (Vec2, Vec2)) -> Vec<[Ro
         if !changed {
             break;
         }
-        found = rounds(course, seats, ends);
+        found = rounds(course, seats, ends[0], ends[1]);
     }
     found
 }
@@ -522,7 +557,7 @@ fn stretched(course: &Course, seats: &mut [Seat], ends: (Vec2, Vec2)) -> Vec<[Ro
 type Round = (Vec2, f64, f64);
 
 /// The circles on which the string arrives at each seat and leaves it; points at both ends.
-fn rounds(course: &Course, seats: &[Seat], (start, end): (Vec2, Vec2)) -> Vec<[Round; 2]> {
+fn rounds(course: &Course, seats: &[Seat], start: Vec2, end: Vec2) -> Vec<[Round; 2]> {
     let mut out = vec![[(start, 0.0, 1.0); 2]];
     for s in seats {
         let curve = &course.curves[s.curve];

@@ -182,7 +182,7 @@ impl Roofs {
         let mut all = Vec::new();
         for body in 0..bodies {
             if let Some(curve) = course.curves.get(2 * body) {
-                curve.pieces().for_each(|piece| roofs_of(curve, (body, piece), frame, &mut all));
+                curve.pieces().for_each(|piece| roofs_of(curve, body, piece, frame, &mut all));
             }
         }
         all.sort_by(|a, b| a.u[0].total_cmp(&b.u[0]));
@@ -199,7 +199,7 @@ impl Roofs {
     }
 }
 
-fn roofs_of(curve: &Curve, (body, piece): (usize, i64), frame: Frame, out: &mut Vec<Roof>) {
+fn roofs_of(curve: &Curve, body: usize, piece: i64, frame: Frame, out: &mut Vec<Roof>) {
     let (given, friction) = (curve.piece(piece), curve.friction);
     match given.form {
         Form::Edge { from, tangent } => {
@@ -285,7 +285,7 @@ impl Drained {
     }
 
     /// From a point plumb down, or up to it from there.
-    pub fn plumb(roofs: &Roofs, bodies: &[Body], frame: Frame, (from, up): (Vec2, bool)) -> Option<Self> {
+    pub fn plumb(roofs: &Roofs, bodies: &[Body], frame: Frame, from: Vec2, up: bool) -> Option<Self> {
         let at = frame.split(from);
         let mut draining = Draining { roofs, bodies, frame, legs: Vec::new(), height: at.y };
         draining.down(at.x, at.y)?;
@@ -373,7 +373,7 @@ impl Draining<'_> {
                 next += 1;
             }
             active.retain(|k| self.roofs.all[*k].u[1] >= middle);
-            self.between((at, stop), &active, &route, &mut fallen)?;
+            self.between(at, stop, &active, &route, &mut fallen)?;
             at = stop;
         }
         if to.x < from.x {
@@ -390,7 +390,8 @@ impl Draining<'_> {
     /// What it falls on where the same roofs are below and above all the way.
     fn between(
         &self,
-        (low, high): (f64, f64),
+        low: f64,
+        high: f64,
         active: &[usize],
         route: &Top,
         out: &mut Vec<(usize, [f64; 2])>,

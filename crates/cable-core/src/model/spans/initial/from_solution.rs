@@ -42,7 +42,8 @@ pub(in crate::model::spans) fn take(
     layout: &Layout,
     course: &Course,
     instant: &BoundaryConditions,
-    (nodes, within): (&[Node], f64),
+    nodes: &[Node],
+    within: f64,
 ) -> Option<Vec<CableRun>> {
     let strand = |part: &Part| {
         let mut stations = stations(nodes, part.material);
@@ -51,7 +52,7 @@ pub(in crate::model::spans) fn take(
         }
         pulleys(part, course, instant, &mut stations);
         seat(layout, course, &mut stations);
-        laid(layout, part, (course, instant), &stations, within)
+        laid(layout, part, course, instant, &stations, within)
     };
     layout.strands.iter().map(strand).collect()
 }
@@ -122,7 +123,8 @@ fn seat(layout: &Layout, course: &Course, stations: &mut [Station]) {
 fn laid(
     layout: &Layout,
     part: &Part,
-    (course, instant): (&Course, &BoundaryConditions),
+    course: &Course,
+    instant: &BoundaryConditions,
     stations: &[Station],
     within: f64,
 ) -> Option<CableRun> {

@@ -73,7 +73,7 @@ pub(in crate::model::spans) fn pull(route: &[Vec2], corners: &[Corner]) -> Optio
             }
             let pivot = bends.last().map_or(start, |b| b.corner.at);
             let left = leaves(start, &bends, from, way, done);
-            let met = meets(corners, (pivot, bends.last().map(|b| b.index)), (from, way), done, skip);
+            let met = meets(corners, pivot, bends.last().map(|b| b.index), from, way, done, skip);
             match (left, met) {
                 (Some(u), met) if met.is_none_or(|(v, _)| u <= v) => {
                     skip = bends.pop().map(|b| b.index);
@@ -111,8 +111,10 @@ fn leaves(start: Vec2, bends: &[Bend], from: Vec2, way: Vec2, done: f64) -> Opti
 /// The first corner the string meets: how far along the leg, and which.
 fn meets(
     corners: &[Corner],
-    (pivot, own): (Vec2, Option<usize>),
-    (from, way): (Vec2, Vec2),
+    pivot: Vec2,
+    own: Option<usize>,
+    from: Vec2,
+    way: Vec2,
     done: f64,
     skip: Option<usize>,
 ) -> Option<(f64, usize)> {

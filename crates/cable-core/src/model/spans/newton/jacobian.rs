@@ -225,7 +225,7 @@ fn contact_rows(strand: &mut CableRun, course: &Course, j: usize, sheet: &mut Sy
     let c = &strand.contacts[j];
     let track = Track { pivot: Some(*pivot), ..course.track(c) };
     let row = 6 * j + 2;
-    let (rows, held) = equations::rows(&track, (&c.history, &c.ends), spots, (c.mode, pinned(strand, j)));
+    let (rows, held) = equations::rows(&track, &c.history, &c.ends, spots, c.mode, pinned(strand, j));
     strand.contacts[j].held = held;
     let c = &strand.contacts[j];
     let tension = larger(larger(c.ends.t[0].abs(), c.ends.t[1].abs()), 1e-9 * course.law.load.norm());

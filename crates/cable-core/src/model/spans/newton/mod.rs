@@ -278,7 +278,7 @@ pub(super) fn solve(strand: &mut CableRun, course: &Course, work: &mut Work) -> 
 }
 
 /// The mode that the state of contact j asks for.
-fn asked(strand: &CableRun, course: &Course, (sheet, j): (&System, usize), patience: f64) -> Mode {
+fn asked(strand: &CableRun, course: &Course, sheet: &System, j: usize, patience: f64) -> Mode {
     let c = &strand.contacts[j];
     if course.mobilised != 0.0 && c.kink.is_none() {
         return Mode::Slide(course.mobilised * course.friction(c));
@@ -291,14 +291,14 @@ fn asked(strand: &CableRun, course: &Course, (sheet, j): (&System, usize), patie
         return c.mode;
     }
     let track = Track { pivot: sheet.spots.get(j).map(|s| s.1), ..course.track(c) };
-    equations::next_mode(&track, (&c.history, &c.ends), c.held, (c.mode, pinned(strand, j)), patience)
+    equations::next_mode(&track, &c.history, &c.ends, c.held, c.mode, pinned(strand, j), patience)
 }
 
 /// Whether every contact is in the mode that its state asks for; the sheet is that of the state.
 fn agreed(strand: &CableRun, course: &Course, sheet: &System) -> bool {
     // What is rounding grows with the stiffness as the residual does.
     let patience = PATIENT * tolerance(strand, course) / RESIDUAL;
-    (0..strand.contacts.len()).all(|j| asked(strand, course, (sheet, j), patience) == strand.contacts[j].mode)
+    (0..strand.contacts.len()).all(|j| asked(strand, course, sheet, j, patience) == strand.contacts[j].mode)
 }
 
 /// Gives contacts the mode they ask for; whether any was changed, and whether none asked for another.
@@ -306,7 +306,7 @@ fn change_modes(strand: &mut CableRun, course: &Course, most: u32, sheet: &mut S
     let (mut changed, mut content) = (false, true);
     for j in 0..strand.contacts.len() {
         let flips = strand.contacts[j].flips;
-        let next = asked(strand, course, (sheet, j), if flips < MOST_FLIPS { 1.0 } else { PATIENT });
+        let next = asked(strand, course, sheet, j, if flips < MOST_FLIPS { 1.0 } else { PATIENT });
         let c = &mut strand.contacts[j];
         content &= next == c.mode;
         if next != c.mode && c.flips < most {

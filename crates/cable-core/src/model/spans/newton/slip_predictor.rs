@@ -95,9 +95,9 @@ pub(in crate::model::spans) fn foresee(strand: &mut CableRun, course: &Course, m
     spots.clear();
     spots.extend(strand.contacts.iter().map(seen));
     bars.clear();
-    bars.extend((0..strand.spans()).map(|k| span(strand, course, (spots, k))));
+    bars.extend((0..strand.spans()).map(|k| span(strand, course, spots, k)));
     links.clear();
-    links.extend((0..strand.contacts.len()).map(|j| link(strand, course, (spots, j))));
+    links.extend((0..strand.contacts.len()).map(|j| link(strand, course, spots, j)));
     let Some(settled) = memory.rounds(strand, course) else { return };
     for (c, l) in strand.contacts.iter_mut().zip(&memory.links).filter(|(_, l)| l.reach.is_some()) {
         let friction = course.friction(c);
@@ -116,7 +116,7 @@ pub(in crate::model::spans) fn foresee(strand: &mut CableRun, course: &Course, m
 }
 
 /// A span as it is, to begin with.
-fn span(strand: &CableRun, course: &Course, (spots, k): (&[Spots], usize)) -> Bar {
+fn span(strand: &CableRun, course: &Course, spots: &[Spots], k: usize) -> Bar {
     if !strand.has_span(k) {
         return Bar::default();
     }
@@ -164,7 +164,7 @@ impl Bar {
     }
 }
 
-fn link(strand: &CableRun, course: &Course, (spots, j): (&[Spots], usize)) -> Link {
+fn link(strand: &CableRun, course: &Course, spots: &[Spots], j: usize) -> Link {
     let c = &strand.contacts[j];
     let e = &c.ends;
     let ties = [(j == 0).then(|| strand.ties[0]), (j + 1 == strand.contacts.len()).then(|| strand.ties[1])];

@@ -29,7 +29,7 @@ pub(in crate::model::spans) fn stable(strand: &CableRun, course: &Course, work: 
     let found = sign(&mut stuck);
     for c in &mut stuck.contacts {
         let track = course.track(c);
-        c.history.commit(&track, &c.ends, (c.mode, c.held), &mut work.past);
+        c.history.commit(&track, &c.ends, c.mode, c.held, &mut work.past);
         c.mode = Mode::Hold;
     }
     match (found, sign(&mut stuck)) {

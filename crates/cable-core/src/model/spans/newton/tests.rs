@@ -9,20 +9,17 @@ use crate::scene::{Load, Support, catalog};
 const CLOSE: f64 = 1e-4;
 
 /// A flexible cable over shapes, at rest, then moved.
-fn strand(
-    shapes: Vec<Shape>,
-    route_m: Vec<[f64; 2]>,
-    (length, friction): (f64, f64),
-    moved: Vec2,
-) -> (CableRun, Course) {
-    loaded(shapes, (route_m, Vec::new()), (length, friction), moved)
+fn strand(shapes: Vec<Shape>, route_m: Vec<[f64; 2]>, length: f64, friction: f64, moved: Vec2) -> (CableRun, Course) {
+    loaded(shapes, route_m, Vec::new(), length, friction, moved)
 }
 
 /// The same with loads.
 fn loaded(
     shapes: Vec<Shape>,
-    (route_m, loads): (Vec<[f64; 2]>, Vec<Load>),
-    (length, friction): (f64, f64),
+    route_m: Vec<[f64; 2]>,
+    loads: Vec<Load>,
+    length: f64,
+    friction: f64,
     moved: Vec2,
 ) -> (CableRun, Course) {
     let mut scene = catalog::hanging_span();
@@ -121,13 +118,13 @@ fn the_jacobian_is_that_of_differences() {
     let valley = || Shape::Terrain { points_m: vec![[-5.0, 0.5], [0.5, 0.5], [4.0, 0.0], [7.5, 0.5], [15.0, 0.5]] };
     for (seed, friction) in [0.0, 0.1, 0.3, 0.8].into_iter().enumerate() {
         for moved in [Vec2::new(0.05, 0.1), Vec2::new(0.02, -0.2), Vec2::new(0.1, 0.3)] {
-            let (s, c) = strand(vec![hills()], vec![[0.0, 1.0], [10.0, 1.0]], (10.7, friction), moved);
+            let (s, c) = strand(vec![hills()], vec![[0.0, 1.0], [10.0, 1.0]], 10.7, friction, moved);
             compare(&s, &c, seed);
-            let (s, c) = strand(posts(), vec![[0.0, 2.0], [3.0, 3.0], [6.0, 3.0], [9.0, 2.0]], (9.8, friction), moved);
+            let (s, c) = strand(posts(), vec![[0.0, 2.0], [3.0, 3.0], [6.0, 3.0], [9.0, 2.0]], 9.8, friction, moved);
             compare(&s, &c, seed + 7);
         }
         // With slack in the kink.
-        let (s, c) = strand(vec![valley()], vec![[0.0, 1.0], [8.0, 1.0]], (8.5, friction), Vec2::new(-0.05, 0.0));
+        let (s, c) = strand(vec![valley()], vec![[0.0, 1.0], [8.0, 1.0]], 8.5, friction, Vec2::new(-0.05, 0.0));
         assert!(s.contacts.iter().any(|c| c.pocket));
         compare(&s, &c, seed + 13);
     }
@@ -148,15 +145,11 @@ fn the_jacobian_is_that_of_differences_where_loads_lie() {
                     forces_n: Vec::new(),
                 }]
             };
-            let (s, c) = loaded(vec![floor()], (vec![[0.0, 1.0], [10.0, 2.5]], load(6.0)), (11.0, friction), moved);
+            let (s, c) = loaded(vec![floor()], vec![[0.0, 1.0], [10.0, 2.5]], load(6.0), 11.0, friction, moved);
             assert!(s.contacts.iter().any(|c| c.weight), "{s:?}");
             compare(&s, &c, seed + k);
-            let (s, c) = loaded(
-                vec![post()],
-                (vec![[0.0, 1.0], [5.0, 3.1], [10.0, 2.5]], load(5.6)),
-                (11.2, friction),
-                moved * 0.1,
-            );
+            let (s, c) =
+                loaded(vec![post()], vec![[0.0, 1.0], [5.0, 3.1], [10.0, 2.5]], load(5.6), 11.2, friction, moved * 0.1);
             assert!(s.contacts.iter().any(|c| c.weight), "{s:?}");
             compare(&s, &c, seed + k);
         }

@@ -12,7 +12,8 @@ const MAX_ROUNDS: usize = 100;
 /// the root. `f`: value and slope; `floor`: a value that is rounding; the values at a and b and a place near the root where
 /// they are known.
 pub(in crate::model::spans) fn crossing(
-    (a, b): (f64, f64),
+    a: f64,
+    b: f64,
     floor: f64,
     ends: Option<(f64, f64)>,
     f: impl Fn(f64) -> (f64, f64),

@@ -47,9 +47,9 @@ impl Drape<'_> {
         let sign = if side == 0 { 1.0 } else { -1.0 };
         let seen = |k: usize, p: f64| {
             let s = &lies[k];
-            let t = s.slide(course, (s.p[other], p), tensions[k], sign * s.friction(course)).tension;
+            let t = s.slide(course, s.p[other], p, tensions[k], sign * s.friction(course)).tension;
             let place = s.place(course, p);
-            self.seen((place.at, -place.tangent * sign), t, support)
+            self.seen(place.at, -place.tangent * sign, t, support)
         };
         let order: Vec<usize> = if side == 0 { (0..lies.len()).collect() } else { (0..lies.len()).rev().collect() };
         for k in order {
@@ -79,7 +79,7 @@ impl Drape<'_> {
     }
 
     /// The span that leaves a point in a direction with a tension, up to the plumb line of the support; None where it never comes there.
-    fn seen(&self, (at, towards): (Vec2, Vec2), tension: f64, support: Vec2) -> Option<Seen> {
+    fn seen(&self, at: Vec2, towards: Vec2, tension: f64, support: Vec2) -> Option<Seen> {
         let (law, frame) = (&self.course.law, self.frame);
         let b = law.load.norm();
         let away = frame.split(support - at);

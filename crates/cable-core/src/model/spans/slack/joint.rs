@@ -48,19 +48,14 @@ pub(super) struct Profile {
 impl Drape<'_> {
     /// Tensions along stretches from their start (side 0) or end, as little as friction lets them have, from a tension there (N); `walls`:
     /// material up what hangs behind each, as the cable goes, m. None where a kink cannot be bridged.
-    pub(super) fn profile(
-        &self,
-        (lies, walls): (&[Stretch], &[Option<f64>]),
-        side: usize,
-        begins: f64,
-    ) -> Option<Profile> {
+    pub(super) fn profile(&self, lies: &[Stretch], walls: &[Option<f64>], side: usize, begins: f64) -> Option<Profile> {
         let n = lies.len();
         let mut out = Profile { lies: lies.to_vec(), enters: vec![0.0; n], spans: vec![None; n], leaves: begins };
         for i in 0..n {
             let k = if side == 0 { i } else { n - 1 - i };
             let (s, enters) = (out.lies[k], out.leaves);
             out.enters[k] = enters;
-            out.leaves = self.least(&s, (side, enters), s.p[1 - side]);
+            out.leaves = self.least(&s, side, enters, s.p[1 - side]);
             let first = if side == 0 { k } else { k.wrapping_sub(1) };
             let (Some(a), Some(b)) = (out.lies.get(first).copied(), out.lies.get(first.wrapping_add(1)).copied())
             else {
@@ -73,7 +68,7 @@ impl Drape<'_> {
                     let from =
                         Stretch { p: bounds(side, out.lies[left].p[side], lies[left].p[1 - side]), ..lies[left] };
                     let enters = out.enters[left];
-                    if let Some(over) = self.climb([&from, to], way, &|p| self.least(&from, (side, enters), p))? {
+                    if let Some(over) = self.climb([&from, to], way, &|p| self.least(&from, side, enters, p))? {
                         break over;
                     }
                     // From further away.
@@ -93,7 +88,7 @@ impl Drape<'_> {
                     continue;
                 }
                 None if out.leaves > self.most && self.bends_in(&a, &b) => {
-                    self.over([from, to], way, &|p| self.least(&s, (side, enters), p))?
+                    self.over([from, to], way, &|p| self.least(&s, side, enters, p))?
                 }
                 None => continue,
             };
@@ -109,10 +104,10 @@ impl Drape<'_> {
     }
 
     /// Tension at p of a stretch that is entered on a side with another: as little as friction lets it have, N.
-    fn least(&self, s: &Stretch, (side, enters): (usize, f64), p: f64) -> f64 {
+    fn least(&self, s: &Stretch, side: usize, enters: f64, p: f64) -> f64 {
         let friction = s.friction(self.course);
         let against = if side == 0 { -friction } else { friction };
-        larger(s.slide(self.course, (s.p[side], p), enters, against).tension, 0.0)
+        larger(s.slide(self.course, s.p[side], p, enters, against).tension, 0.0)
     }
 
     /// Whether a cable under tension would bridge what is between two stretches.

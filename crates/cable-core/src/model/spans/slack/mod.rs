@@ -89,7 +89,7 @@ impl Stretch {
     }
 
     /// How the tension `t` at one place of it goes on to another.
-    fn slide(&self, course: &Course, (from, to): (f64, f64), t: f64, m: f64) -> Step {
+    fn slide(&self, course: &Course, from: f64, to: f64, t: f64, m: f64) -> Step {
         course.law.along(&course.law.spot(&self.place(course, from)), to - from, t, m)
     }
 
@@ -109,7 +109,8 @@ impl Part {
 pub(in crate::model::spans) fn lay(
     layout: &Layout,
     index: usize,
-    (course, instant): (&Course, &BoundaryConditions),
+    course: &Course,
+    instant: &BoundaryConditions,
 ) -> Option<CableRun> {
     let part = layout.strands.get(index)?;
     let (load, [from, to]) = (course.law.load, part.material);
@@ -128,7 +129,7 @@ pub(in crate::model::spans) fn lay(
     let strand = |drained: Drained| {
         let lines = drape.lines(&roofs, &drained.legs);
         let parts = drape.parts(&lines, ends)?;
-        let parts = pay_out(parts, course, frame, (part.material, drawn, ends))?;
+        let parts = pay_out(parts, course, frame, part.material, drawn, ends)?;
         let ties = [0, 1].map(|k| held[k].map_or(Tie::Loose(drawn), Tie::Held));
         let loose = Some(Loose { parts, drawn });
         Some(CableRun { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()], loose })
@@ -143,7 +144,7 @@ pub(in crate::model::spans) fn lay(
             laid.filter(|s| {
                 s.loose.as_ref().is_some_and(|l| l.spreads() && l.hangs() <= layout.problem.cable.diameter_m)
             })
-            .or_else(|| strand(Drained::plumb(&roofs, bodies, frame, (at, held[0].is_none()))?))
+            .or_else(|| strand(Drained::plumb(&roofs, bodies, frame, at, held[0].is_none())?))
         }
         [None, None] => None,
     }
@@ -155,7 +156,9 @@ fn pay_out(
     mut parts: Vec<Part>,
     course: &Course,
     frame: Frame,
-    ([from, to], drawn, held): ([f64; 2], Vec2, [bool; 2]),
+    [from, to]: [f64; 2],
+    drawn: Vec2,
+    held: [bool; 2],
 ) -> Option<Vec<Part>> {
     let own = |p: &Part| p.s[1] - p.s[0];
     let mut over = to - from - parts.iter().map(own).sum::<f64>();
@@ -239,7 +242,7 @@ impl Drape<'_> {
         }
         stops.push(lines.len());
         loop {
-            let tight = match self.chains(lines, (&stops, held)) {
+            let tight = match self.chains(lines, &stops, held) {
                 Ok(parts) => return Some(parts),
                 Err(stop) => stop?,
             };
@@ -256,7 +259,7 @@ impl Drape<'_> {
     }
 
     /// The parts between such stops; else the stop, if that is it, at which a tension is not nothing.
-    fn chains(&self, lines: &[Line], (stops, held): (&[usize], [bool; 2])) -> Result<Vec<Part>, Option<usize>> {
+    fn chains(&self, lines: &[Line], stops: &[usize], held: [bool; 2]) -> Result<Vec<Part>, Option<usize>> {
         let (mut out, mut bridged) = (Vec::new(), false);
         let support = |line: &Line, end: usize| match line {
             Line::Hangs(ends) => Some(ends[end]),
@@ -271,7 +274,7 @@ impl Drape<'_> {
             if end < lines.len() || !bridged {
                 let ends = [begin == 0 && held[0], end == lines.len() && held[1]];
                 let tight = |side: Option<usize>| side.map(|side| pair[side]);
-                bridged = self.chain(&lines[begin..end], (ends, near), &mut out).map_err(tight)?;
+                bridged = self.chain(&lines[begin..end], ends, near, &mut out).map_err(tight)?;
             }
         }
         Ok(out)
@@ -310,7 +313,8 @@ impl Drape<'_> {
     fn chain(
         &self,
         lines: &[Line],
-        (held, near): ([bool; 2], [Option<Vec2>; 2]),
+        held: [bool; 2],
+        near: [Option<Vec2>; 2],
         out: &mut Vec<Part>,
     ) -> Result<bool, Option<usize>> {
         let weight = self.course.law.load.norm();
@@ -348,8 +352,8 @@ impl Drape<'_> {
                 _ => {}
             }
         }
-        let forth = self.profile((&lies, &walls), 0, ends[0]).ok_or(None)?;
-        let back = self.profile((&lies, &walls), 1, ends[1]).ok_or(None)?;
+        let forth = self.profile(&lies, &walls, 0, ends[0]).ok_or(None)?;
+        let back = self.profile(&lies, &walls, 1, ends[1]).ok_or(None)?;
         let begins_tight = !held[0] && back.leaves > ends[0] + self.most;
         let ends_tight = !held[1] && forth.leaves > ends[1] + self.most;
         let bridge = match (begins_tight, ends_tight) {
@@ -418,8 +422,8 @@ impl Drape<'_> {
     /// A stretch in its parts: where the tension from its start holds, where there is none, where that from its end does.
     fn stretch(&self, s: &Stretch, [forth, back]: [f64; 2], out: &mut Vec<Part>) {
         let (course, friction, [p0, p1]) = (self.course, s.friction(self.course), s.p);
-        let forth_at = |p: f64| if p == p0 { forth } else { s.slide(course, (p0, p), forth, -friction).tension };
-        let back_at = |p: f64| if p == p1 { back } else { s.slide(course, (p1, p), back, friction).tension };
+        let forth_at = |p: f64| if p == p0 { forth } else { s.slide(course, p0, p, forth, -friction).tension };
+        let back_at = |p: f64| if p == p1 { back } else { s.slide(course, p1, p, back, friction).tension };
         // Each ends at once or rises and falls again; from where it has fallen to nothing there is none.
         let seek = |mut has: f64, mut not: f64, holds: &dyn Fn(f64) -> bool| {
             if holds(not) {
@@ -461,14 +465,14 @@ impl Drape<'_> {
             out.push(Part { s: [0.0, way.material.abs()], tension, form });
         };
         if ends > p0 {
-            let way = s.slide(course, (p0, ends), forth, -friction);
+            let way = s.slide(course, p0, ends, forth, -friction);
             push([p0, ends], -friction, way, [forth, larger(way.tension, 0.0)]);
         }
         if begins > ends || p0 == p1 {
             push([ends, begins], 0.0, Step { material: self.rest_of(s, begins - ends), ..Step::none(0.0) }, [0.0; 2]);
         }
         if p1 > begins {
-            let way = s.slide(course, (p1, begins), back, friction);
+            let way = s.slide(course, p1, begins, back, friction);
             push([begins, p1], friction, way, [larger(way.tension, 0.0), back]);
         }
     }

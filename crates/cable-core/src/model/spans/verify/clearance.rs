@@ -49,7 +49,7 @@ impl Hull {
     }
 
     /// Whether a box comes within r of it, as far as its sides tell.
-    fn meets(&self, (low, high): (Vec2, Vec2), r: f64) -> bool {
+    fn meets(&self, low: Vec2, high: Vec2, r: f64) -> bool {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         self.sides.iter().all(|(at, n)| (middle - at).dot(n) + half.x * n.x.abs() + half.y * n.y.abs() > -r)
     }
@@ -91,7 +91,7 @@ impl Hull {
         let (first, last) = self.bounds(r);
         let beside_box =
             |low: Vec2, high: Vec2| low.x > last.x || low.y > last.y || high.x < first.x || high.y < first.y;
-        let near = |low: Vec2, high: Vec2| !beside_box(low, high) && self.meets((low, high), r);
+        let near = |low: Vec2, high: Vec2| !beside_box(low, high) && self.meets(low, high, r);
         body.candidates_where(near)
             .filter(|&k| !beside.is_some_and(|feature| body.is_beside(k, feature)))
             .filter_map(|k| body.edges.get(k))
@@ -153,17 +153,19 @@ fn inside_on(
     part: [f64; 2],
     beside: Option<usize>,
 ) -> Option<(f64, Vec2)> {
-    let ends = part.map(point);
-    world.geometry().bodies().iter().find_map(|body| search(body, point, (part, ends), (beside, 0)))
+    let ends = part.map(|s| (s, point(s)));
+    world.geometry().bodies().iter().find_map(|body| search(body, point, ends, beside, 0))
 }
 
 /// Where a stretch is inside a body, halved until it is clear or no stretch any more.
 fn search(
     body: &Body,
     point: &dyn Fn(f64) -> (Vec2, Vec2),
-    ([from, to], [a, b]): ([f64; 2], [(Vec2, Vec2); 2]),
-    (beside, depth): (Option<usize>, u32),
+    part: [(f64, (Vec2, Vec2)); 2],
+    beside: Option<usize>,
+    depth: u32,
 ) -> Option<(f64, Vec2)> {
+    let [(from, a), (to, b)] = part;
     if Hull::of([a.0, b.0], [a.1, b.1]).misses(body, beside) {
         return None;
     }
@@ -172,6 +174,6 @@ fn search(
     if depth >= MOST_HALVINGS || (b.0 - a.0).norm() <= DEPTH * DEPTH {
         return Some((s, middle.0));
     }
-    search(body, point, ([from, s], [a, middle]), (beside, depth + 1))
-        .or_else(|| search(body, point, ([s, to], [middle, b]), (beside, depth + 1)))
+    search(body, point, [(from, a), (s, middle)], beside, depth + 1)
+        .or_else(|| search(body, point, [(s, middle), (to, b)], beside, depth + 1))
 }

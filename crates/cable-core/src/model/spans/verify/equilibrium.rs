@@ -53,7 +53,7 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course) -> Resu
             span(strand, course, k)?;
         }
         if k < strand.contacts.len() {
-            contact(strand, course, (k, greatest))?;
+            contact(strand, course, k, greatest)?;
         }
     }
     Ok(())
@@ -126,7 +126,7 @@ fn way(strand: &CableRun, course: &Course, k: usize, [from, to]: [f64; 2]) -> Ve
 }
 
 /// A contact presses, does not push along itself, keeps the cone, and the spans leave it along its tangent.
-fn contact(strand: &CableRun, course: &Course, (j, greatest): (usize, f64)) -> Result<(), Failure> {
+fn contact(strand: &CableRun, course: &Course, j: usize, greatest: f64) -> Result<(), Failure> {
     let c = &strand.contacts[j];
     let (track, e) = (course.track(c).seen_from(c.ends.p[0]), &c.ends);
     let unsound = |what: &'static str, p: f64, s: f64| Failure::Unsound { what, s, at: track.place(p).at };
@@ -167,7 +167,7 @@ fn contact(strand: &CableRun, course: &Course, (j, greatest): (usize, f64)) -> R
     {
         return Err(Failure::LoadLies { s: l.arc_length });
     }
-    along(&track, c, (greatest, strand.to - strand.from))
+    along(&track, c, greatest, strand.to - strand.from)
 }
 
 /// Material that may be missing along a contact, of the strand's length. Smaller: contacts laid along the nodes of another model, which
@@ -177,7 +177,7 @@ const LOST: f64 = 1e-4;
 /// Along a contact friction keeps its cone, nothing pushes along it and nothing pulls it off. On each stretch between two knots
 /// one part of friction is called upon: what holds for that and at the next knot holds all along. No material of the strand's
 /// `length` (m) is lost between two knots, nor between the ends and the first and last of them.
-fn along(track: &Track<'_>, c: &Contact, (greatest, length): (f64, f64)) -> Result<(), Failure> {
+fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(), Failure> {
     let friction = track.friction;
     let room = HOLDS * (greatest + 1e-9);
     let lost = |found: f64, kept: f64| !((found - kept).abs() <= LOST * length);
@@ -207,9 +207,9 @@ fn along(track: &Track<'_>, c: &Contact, (greatest, length): (f64, f64)) -> Resu
                 }
                 Ok(())
             };
-            if !firm(track, (p, q), t, knot.m) {
+            if !firm(track, p, q, t, knot.m) {
                 let mut found = look(q, whole);
-                track.loosest((p, q), knot.m, |x| {
+                track.loosest(p, q, knot.m, |x| {
                     found = found.clone().and_then(|()| look(x, track.slide(p, x, t, knot.m)))
                 });
                 found?;
@@ -234,7 +234,7 @@ fn along(track: &Track<'_>, c: &Contact, (greatest, length): (f64, f64)) -> Resu
 }
 
 /// Whether tension and pressure cannot vanish on a short way round an arc: dT/dp > −|m|T − 2cb, and N ds/dp > T − cb.
-fn firm(track: &Track<'_>, (p, q): (f64, f64), t: f64, m: f64) -> bool {
+fn firm(track: &Track<'_>, p: f64, q: f64, t: f64, m: f64) -> bool {
     let place = track.place(p);
     let load = place.stretch * track.law.load.norm() / track.law.thermal;
     place.turn != 0.0 && track.law.stiffness > 0.0 && t - (q - p) * (m.abs() * t + 2.0 * load) > load && m.abs() <= 1.0

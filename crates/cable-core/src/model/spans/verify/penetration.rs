@@ -57,7 +57,7 @@ pub(in crate::model::spans) fn tangent(at: Vec2, force: Vec2, load: Vec2) -> Opt
 }
 
 impl<'a> Arc<'a> {
-    fn new((s0, at, shape): (f64, Vec2, &'a Catenary), load: Vec2) -> Self {
+    fn new(s0: f64, at: Vec2, shape: &'a Catenary, load: Vec2) -> Self {
         let (start, end) = (shape.start_force(), shape.end_force());
         let sides = [tangent(at, start, load), tangent(at + shape.span().chord, end, load)];
         Self { s0, at, shape, load, sides }
@@ -153,10 +153,10 @@ pub(in crate::model::spans) fn deepest(
     }
     let mut best: Option<Penetration> = None;
     shapes(strand, course, k, |s0, at, shape| {
-        let arc = Arc::new((s0, at, shape), course.law.load);
+        let arc = Arc::new(s0, at, shape, course.law.load);
         let (low, high) = arc.bounds();
         for (index, body) in world.geometry().bodies().iter().enumerate() {
-            search(&arc, body, (low, high), tolerance, |s| {
+            search(&arc, body, low, high, tolerance, |s| {
                 let at = arc.point(s);
                 let reach = (high - low).norm() + body.offset;
                 let Some(gap) = world.signed_gap(at, reach) else { return };
@@ -194,7 +194,7 @@ pub(in crate::model::spans) fn shapes(
 }
 
 /// Calls back with the points of a catenary that may be deepest in a body.
-fn search(arc: &Arc<'_>, body: &Body, (low, high): (Vec2, Vec2), tolerance: f64, mut found: impl FnMut(f64)) {
+fn search(arc: &Arc<'_>, body: &Body, low: Vec2, high: Vec2, tolerance: f64, mut found: impl FnMut(f64)) {
     if let Some(center) = body.center {
         if arc.misses(center, body.offset - tolerance) {
             return;

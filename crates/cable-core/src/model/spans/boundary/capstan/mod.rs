@@ -288,28 +288,28 @@ impl Track<'_> {
     /// With P the [`Law::press`] of a place, P' = mP − 2(c/λ) b·t and T' = mT − (c/λ)(b·t + m b·n), both but for the change of λ: P e^{−mψ}
     /// is least where b·t = 0 with the load out of the arc, below it, T e^{−mψ} where b·t + m b·n = 0. If neither is below nothing
     /// there and at the ends, it is nowhere.
-    pub fn loosest(&self, (p, q): (f64, f64), m: f64, mut each: impl FnMut(f64)) {
+    pub fn loosest(&self, p: f64, q: f64, m: f64, mut each: impl FnMut(f64)) {
         let middle = self.curve.locate(0.5 * (p + q), self.home);
         if !self.curve.is_arc(middle) {
             return;
         }
         let least = self.law.load - perp(self.law.load) * (m * self.curve.sense);
         for out in [self.law.load, least] {
-            self.facing(middle, out, (p, q), &mut each);
+            self.facing(middle, out, p, q, &mut each);
         }
     }
 
     /// Calls back with the places between p and q at which a round boundary faces the load: its bottoms.
-    pub fn bottoms(&self, (p, q): (f64, f64), each: impl FnMut(f64)) {
-        self.facing(self.home.first, self.law.load, (p, q), each);
+    pub fn bottoms(&self, p: f64, q: f64, each: impl FnMut(f64)) {
+        self.facing(self.home.first, self.law.load, p, q, each);
     }
 
     /// The places between p and q, on arc i, whose outward normal is along `out`.
-    fn facing(&self, i: i64, out: Vec2, (p, q): (f64, f64), each: impl FnMut(f64)) {
+    fn facing(&self, i: i64, out: Vec2, p: f64, q: f64, each: impl FnMut(f64)) {
         // No cable is wound further.
         if out.norm() > 0.0 && q - p <= MOST_TURN {
             // n = σ perp t.
-            self.curve.running(i, perp(out) * -self.curve.sense, (p, q), each);
+            self.curve.running(i, perp(out) * -self.curve.sense, p, q, each);
         }
     }
 
