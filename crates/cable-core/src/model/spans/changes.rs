@@ -18,7 +18,7 @@ use crate::model::spans::contact::slack_pocket;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::newton;
 use crate::model::spans::newton::{Solved, Work};
-use crate::model::spans::run::{CableRun, Contact, Course, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 use crate::model::spans::verify::penetration;
 use crate::model::spans::verify::penetration::Penetration;
 use crate::model::spans::verify::tunnelling;
@@ -125,7 +125,7 @@ fn lifted(strand: &CableRun, course: &Course) -> Option<usize> {
 /// whether there was any.
 fn shed(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> {
     let least = SHED * (strand.to - strand.from);
-    let small = |c: &Contact| !c.weight && c.ends.s[1] - c.ends.s[0] < least;
+    let small = |c: &Contact| !c.is_load() && c.ends.s[1] - c.ends.s[0] < least;
     let beside = |j: usize| strand.is_joined(j, 0) || strand.is_joined(j, 1);
     let Some(j) = (0..strand.contacts.len()).find(|&j| small(&strand.contacts[j]) && beside(j)) else {
         return Ok(false);
@@ -144,12 +144,12 @@ fn let_go(strand: &mut CableRun, course: &mut Course, j: usize) -> Result<bool, 
     let contact = strand.contacts.remove(j);
     let m = strand.contacts.len();
     if let Some(before) = j.checked_sub(1).and_then(|i| strand.contacts.get_mut(i)) {
-        before.pocket = false;
+        before.next.end_pocket();
     }
     // Beside a load there was no span; now there is the one that was on the other side.
-    let before = j.checked_sub(1).is_some_and(|i| std::mem::take(&mut strand.contacts[i].joined));
-    if before || contact.joined {
-        let (k, other) = if contact.joined { (j + 1, j) } else { (j, j + 1) };
+    let before = j.checked_sub(1).is_some_and(|i| strand.contacts[i].next.part());
+    if before || contact.next == Next::Joined {
+        let (k, other) = if contact.next == Next::Joined { (j + 1, j) } else { (j, j + 1) };
         let ends = (other == 0 && !strand.ties[0].has_span()) || (other > m && !strand.ties[1].has_span());
         if ends {
             return Err(Failure::LoadLies { s: contact.ends.s[0] });
@@ -208,7 +208,7 @@ fn turn_eye(c: &mut Contact) {
 fn join(strand: &mut CableRun, course: &Course) -> bool {
     for j in 1..strand.contacts.len() {
         let (a, b) = (&strand.contacts[j - 1], &strand.contacts[j]);
-        let loads = a.weight || b.weight;
+        let loads = a.is_load() || b.is_load();
         let apart =
             |track: &Track<'_>| track.curve.is_round() && release_below::hangs_between(track, a.ends.p[1], b.ends.p[0]);
         if a.curve == b.curve
@@ -223,7 +223,7 @@ fn join(strand: &mut CableRun, course: &Course) -> bool {
             let a = &mut strand.contacts[j - 1];
             a.history.append(&course.track(&b), &b.history);
             a.smooth &= b.smooth;
-            (a.pocket, a.joined) = (b.pocket, b.joined);
+            a.next = b.next;
             (a.ends.p[1], a.ends.s[1], a.ends.t[1]) = (b.ends.p[1], b.ends.s[1], b.ends.t[1]);
             if let (Mode::Slide(m), Mode::Hold) = (a.mode, b.mode)
                 && m != 0.0
@@ -321,7 +321,7 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
     let p = if edge { curve.project(i, hit.at) } else { curve.with_tangent(i, hit.tangent) };
     let ends = strand.ends_of(course, k);
     let force = strand.force(course, k, hit.s).norm();
-    let same = |c: &Contact| c.curve == curve_index && c.home == home && c.wheel.is_none() && !c.weight;
+    let same = |c: &Contact| c.curve == curve_index && c.home == home && c.wheel.is_none() && !c.is_load();
     let end = |j: Option<usize>, side: usize| {
         j.and_then(|j| strand.contacts.get(j)).filter(|c| same(c)).map(|c| c.ends.p[side])
     };
@@ -359,10 +359,8 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
         wheel: None,
         flips: 0,
         held: None,
-        pocket: false,
-        joined: false,
-        weight: false,
-        kink: None,
+        next: Next::Span,
+        load: None,
         smooth: resting,
     };
     let track = course.track(&contact);
@@ -432,7 +430,7 @@ fn beyond_edges(curve: &Curve, home: ChainRange, mut p: f64, side: usize, far: O
 /// What has been laid down in span k leads the contacts beside it over their edges.
 fn lead(strand: &mut CableRun, course: &Course, k: usize) {
     for (j, side) in [(k.checked_sub(1), 1), (Some(k + 1), 0)] {
-        if let Some(j) = j.filter(|&j| strand.contacts.get(j).is_some_and(|c| c.wheel.is_none() && !c.weight)) {
+        if let Some(j) = j.filter(|&j| strand.contacts.get(j).is_some_and(|c| c.wheel.is_none() && !c.is_load())) {
             lead_end(strand, course, j, side);
         }
     }
@@ -490,7 +488,7 @@ fn grow(strand: &mut CableRun, course: &Course) -> bool {
             let i = curve.locate(p, c.home);
             let border = |q: f64| (p - q).abs() <= AT_BORDER * (1.0 + p.abs());
             if c.wheel.is_none()
-                && !c.weight
+                && !c.is_load()
                 && strand.has_span(j + side)
                 && (border(curve.origin(i)) || border(curve.end(i)))
             {

@@ -464,7 +464,7 @@ impl CableEquilibrium {
         }
         for c in &mut self.strands[k].contacts {
             let track = self.course.track(c).seen_from(c.ends.p[0]);
-            if c.weight {
+            if c.is_load() {
                 c.ends.p[1] = c.ends.p[0];
             }
             c.history.commit(&track, &c.ends, c.mode, c.held, &mut work.past);

@@ -12,7 +12,7 @@ use crate::model::spans::contact::friction_memory::{Mode, TensionProfile};
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::slack_pocket;
 use crate::model::spans::continuation::CableEquilibrium;
-use crate::model::spans::run::{CableRun, Contact, Course, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 use crate::model::spans::verify::penetration;
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
@@ -74,18 +74,18 @@ pub(in crate::model::spans) fn report(layout: &Layout, network: &CableEquilibriu
             if let Some(c) = strand.contacts.get(k) {
                 let track = course.track(c).seen_from(c.ends.p[0]);
                 let stretches = stretches(&track, layout.problem.radius, &c.history, c.ends.p);
-                if c.weight {
+                if c.is_load() {
                     load_nodes(&mut nodes, strand, course, k, &track);
                 } else {
                     contact_nodes(&mut nodes, &track, c, &stretches);
                 }
                 if let Some(obstacle) = track.curve.obstacle {
                     let name = layout.problem.world.obstacle_name(obstacle);
-                    contacts.push(match c.weight {
+                    contacts.push(match c.is_load() {
                         true => load(strand, course, k, &track, name),
                         false => contact(&track, name, c, &stretches),
                     });
-                    if c.pocket {
+                    if c.next == Next::Pocket {
                         contacts.extend(heap(strand, course, k, name));
                     }
                 }
@@ -275,7 +275,7 @@ fn held_by(track: &Track<'_>, c: &Contact) -> Vec2 {
 /// The material that lies loose in the kink behind contact j, m.
 pub(in crate::model::spans) fn loose(strand: &CableRun, j: usize) -> Option<[f64; 2]> {
     let (c, next) = (strand.contacts.get(j)?, strand.contacts.get(j + 1)?);
-    (c.pocket && next.ends.s[0] > c.ends.s[1]).then_some([c.ends.s[1], next.ends.s[0]])
+    (c.next == Next::Pocket && next.ends.s[0] > c.ends.s[1]).then_some([c.ends.s[1], next.ends.s[0]])
 }
 
 /// Tension at the start, at the end, and the greatest, N.
@@ -325,7 +325,7 @@ pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquili
             add(loose.held(course));
         }
         for (j, c) in strand.contacts.iter().enumerate() {
-            add(match (c.wheel, c.weight) {
+            add(match (c.wheel, c.is_load()) {
                 (Some(_), _) => -wheel_force(course, strand, j).0,
                 (None, true) => -point_load::felt(strand, course, j).sum,
                 (None, false) => held_by(&course.track(c), c),

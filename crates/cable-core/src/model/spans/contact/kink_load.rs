@@ -9,7 +9,7 @@ use crate::model::spans::changes::resolve;
 use crate::model::spans::contact::friction_memory::{Knot, Mode, TensionProfile};
 use crate::model::spans::contact::point_load::{LoadBalance, felt};
 use crate::model::spans::failure::Failure;
-use crate::model::spans::run::{CableRun, Contact, Course};
+use crate::model::spans::run::{CableRun, Contact, Course, RestingLoad};
 
 /// A load so far beyond the end of its chain (m or rad) is in the kink there. Smaller: rounding.
 const BEYOND: f64 = 1e-12;
@@ -68,7 +68,7 @@ fn leaves(course: &Course, c: &Contact, kink: Kink, f: &LoadBalance, room: f64) 
 
 /// N of both edges together.
 pub(in crate::model::spans) fn press(course: &Course, c: &Contact, f: &LoadBalance) -> f64 {
-    match c.kink.and_then(|kink| other(course, c, kink)) {
+    match c.kink().and_then(|kink| other(course, c, kink)) {
         Some((_, normal)) => -f.sum.dot(&(f.normal + normal).normalize()),
         None => f.press(),
     }
@@ -81,14 +81,15 @@ pub(in crate::model::spans) fn holds(course: &Course, c: &Contact, kink: Kink, f
 
 /// K: loads that have come into a kink stay there; whether there was one.
 pub(in crate::model::spans) fn enter(strand: &mut CableRun, course: &Course) -> bool {
-    for c in strand.contacts.iter_mut().filter(|c| c.weight && c.kink.is_none()) {
+    for c in strand.contacts.iter_mut().filter(|c| c.load.is_some_and(|l| l.kink.is_none())) {
         for kink in [Kink::Back, Kink::Ahead] {
             let Some((_, p)) = beyond(course, c, kink) else { continue };
             if (c.ends.p[0] - p) * kink.sign() > BEYOND {
                 let knot = Knot { p, s: c.ends.s[0], tension: c.ends.t[0], m: 0.0 };
                 c.ends.p = [p; 2];
                 c.history = TensionProfile::new(knot, knot);
-                (c.kink, c.mode, c.smooth) = (Some(kink), Mode::Hold, false);
+                c.load = Some(RestingLoad { kink: Some(kink) });
+                (c.mode, c.smooth) = (Mode::Hold, false);
                 return true;
             }
         }
@@ -100,7 +101,7 @@ pub(in crate::model::spans) fn enter(strand: &mut CableRun, course: &Course) -> 
 pub(in crate::model::spans) fn leave(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Failure> {
     let f = felt(strand, course, j);
     let c = &strand.contacts[j];
-    let Some(kink) = c.kink else { return Ok(false) };
+    let Some(kink) = c.kink() else { return Ok(false) };
     let Some(on) = leaves(course, c, kink, &f, CONE) else { return Ok(false) };
     let (curve, friction) = (&course.curves[c.curve], course.friction(c));
     let mut home = c.home;
@@ -115,7 +116,8 @@ pub(in crate::model::spans) fn leave(strand: &mut CableRun, course: &Course, j: 
     };
     let c = &mut strand.contacts[j];
     let knot = Knot { p, s: c.ends.s[0], tension: c.ends.t[0], m: 0.0 };
-    (c.home, c.ends.p, c.history, c.kink) = (home, [p; 2], TensionProfile::new(knot, knot), None);
+    (c.home, c.ends.p, c.history) = (home, [p; 2], TensionProfile::new(knot, knot));
+    c.load = Some(RestingLoad::default());
     c.mode = Mode::Slide(friction * if on { kink.sign() } else { -kink.sign() });
     for side in 0..2 {
         part(strand, course, j, side);
@@ -132,7 +134,7 @@ fn part(strand: &mut CableRun, course: &Course, j: usize, side: usize) {
     if strand.contacts[i].home == strand.contacts[j].home {
         return;
     }
-    strand.contacts[if side == 0 { i } else { j }].joined = false;
+    strand.contacts[if side == 0 { i } else { j }].next.part();
     give_way(strand, i, 1 - side);
     resolve(strand, course, j + side);
 }
@@ -149,7 +151,7 @@ pub(in crate::model::spans) fn give_way(strand: &mut CableRun, i: usize, end: us
 
 /// Whether contact `c` lies on the chain beyond the kink that a load is in, on that side.
 pub(in crate::model::spans) fn follows(course: &Course, load: &Contact, c: &Contact, side: usize) -> bool {
-    load.kink.is_some_and(|kink| {
+    load.kink().is_some_and(|kink| {
         kink.side() == side
             && c.curve == load.curve
             && beyond(course, load, kink).is_some_and(|(i, p)| {

@@ -6,7 +6,7 @@ use crate::math::{Vec2, larger, perp};
 use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
 use crate::model::spans::contact::point_load::LIFTS;
 use crate::model::spans::failure::Failure;
-use crate::model::spans::run::{CableRun, Contact, Course, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Next, RestingLoad, Tie};
 use crate::model::spans::verify::penetration;
 
 /// A load of span k, or the tip of it, that is deeper inside something than `deep` (m).
@@ -96,10 +96,8 @@ pub(in crate::model::spans) fn touch(
         history: TensionProfile::new(knot(p, l.s, tension), knot(p, l.s, tension)),
         wheel: None,
         flips: 0,
-        pocket: false,
-        joined: false,
-        weight: true,
-        kink: None,
+        next: Next::Span,
+        load: Some(RestingLoad::default()),
         smooth: true,
     };
     let Some(side) = l.tip else {
@@ -122,7 +120,7 @@ pub(in crate::model::spans) fn touch(
         let below = -l.gap.gap_m / larger(steep, 0.1);
         let sign = if side == 0 { -1.0 } else { 1.0 };
         let (inner, tension) = (1 - side, rate * below);
-        (c.weight, c.smooth) = (false, false);
+        (c.load, c.smooth) = (None, false);
         c.ends.p[side] += sign * below;
         c.ends.s[inner] -= sign * below;
         (c.ends.t[side], c.ends.t[inner]) = (0.0, tension);

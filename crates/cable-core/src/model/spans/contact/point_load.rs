@@ -20,7 +20,7 @@ use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionPro
 use crate::model::spans::contact::kink_load;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::numerics::root::{FLOOR, crossing};
-use crate::model::spans::run::{CableRun, Contact, Course, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Next, RestingLoad, Tie};
 
 /// Part of the forces at a load that is rounding. Smaller: chatter at the edge of the cone. Larger: creep.
 const CONE: f64 = 1e-12;
@@ -91,7 +91,7 @@ fn load(strand: &CableRun, course: &Course, j: usize) -> Vec2 {
 pub(in crate::model::spans) fn next_mode(strand: &CableRun, course: &Course, j: usize, patience: f64) -> Mode {
     let c = &strand.contacts[j];
     let friction = course.friction(c);
-    if c.kink.is_some() {
+    if c.kink().is_some() {
         return Mode::Hold;
     }
     if friction <= 0.0 {
@@ -117,12 +117,12 @@ pub(in crate::model::spans) fn next_mode(strand: &CableRun, course: &Course, j: 
 pub(in crate::model::spans) fn fresh(strand: &CableRun, course: &Course) -> f64 {
     let missing = |j: usize| {
         let c = &strand.contacts[j];
-        if c.weight && c.smooth {
+        if c.is_load() && c.smooth {
             let f = felt(strand, course, j);
             return course.curves[c.curve].friction * larger(f.press(), 0.0) / larger(f.size, f64::MIN_POSITIVE);
         }
         let [t1, t2] = c.ends.t;
-        let new = !c.weight && c.wheel.is_none() && c.history.knots().len() == 1 && c.ends.p[1] > c.ends.p[0];
+        let new = !c.is_load() && c.wheel.is_none() && c.history.knots().len() == 1 && c.ends.p[1] > c.ends.p[0];
         if new { (t2 - t1).abs() / larger(larger(t1, t2), f64::MIN_POSITIVE) } else { 0.0 }
     };
     (0..strand.contacts.len()).map(missing).fold(0.0, larger)
@@ -133,7 +133,7 @@ pub(in crate::model::spans) fn fresh(strand: &CableRun, course: &Course) -> f64 
 pub(in crate::model::spans) fn mobilised(strand: &CableRun, course: &Course, way: f64, near: f64) -> bool {
     let slides = |(j, c): (usize, &Contact)| {
         let m = way * course.friction(c);
-        if c.weight {
+        if c.is_load() {
             let felt = felt(strand, course, j);
             return felt.sum.dot(&(felt.tangent + felt.normal * m)).abs() <= near * felt.size;
         }
@@ -160,7 +160,7 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course, j: usiz
     if !(kink_load::press(course, c, &f) >= -room) {
         return Err(unsound("a load is held down"));
     }
-    if let Some(kink) = c.kink {
+    if let Some(kink) = c.kink() {
         if !kink_load::holds(course, c, kink, &f, HOLDS) {
             return Err(unsound("a load is out of its kink"));
         }
@@ -180,7 +180,7 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course, j: usiz
 /// on one chain beside a load is joined to it; whether there was any.
 pub(in crate::model::spans) fn settle(strand: &mut CableRun, course: &Course) -> Result<bool, Failure> {
     for j in 0..strand.contacts.len() {
-        if strand.contacts[j].weight {
+        if strand.contacts[j].is_load() {
             let f = felt(strand, course, j);
             if kink_load::press(course, &strand.contacts[j], &f) < -CONE * f.size {
                 lift(strand, course, j);
@@ -204,8 +204,8 @@ fn lift(strand: &mut CableRun, course: &Course, j: usize) {
         }
     }
     let last = strand.contacts.len() - 1;
-    let before = j.checked_sub(1).is_some_and(|i| std::mem::take(&mut strand.contacts[i].joined));
-    let after = strand.contacts[j].joined;
+    let before = j.checked_sub(1).is_some_and(|i| strand.contacts[i].next.part());
+    let after = strand.contacts[j].next == Next::Joined;
     for (side, end) in [(0, 0), (1, last)] {
         if let (true, Tie::Loose(force)) = (j == end, strand.ties[side]) {
             let lies = if side == 0 { after } else { before };
@@ -227,7 +227,7 @@ fn lift(strand: &mut CableRun, course: &Course, j: usize) {
 pub(in crate::model::spans) fn join(strand: &mut CableRun, course: &Course) -> Result<(), Failure> {
     let mut j = 0;
     while j < strand.contacts.len() {
-        while strand.contacts[j].weight && join_one(strand, course, j)? {}
+        while strand.contacts[j].is_load() && join_one(strand, course, j)? {}
         j += 1;
     }
     Ok(())
@@ -245,7 +245,7 @@ fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Fa
             continue;
         }
         let (k, first) = (j + side, if side == 0 { i } else { j });
-        if c.weight {
+        if c.is_load() {
             // What lies between two loads of one chain lies, too.
             let [a, b] = [first, first + 1].map(|k| strand.contacts[k].ends);
             if !same || !(b.p[0] > a.p[0]) {
@@ -256,9 +256,9 @@ fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Fa
             let knot = |side: usize| Knot { p: ends.p[side], s: ends.s[side], tension, m: 0.0 };
             let history = TensionProfile::new(knot(0), knot(1));
             let mode = Mode::Slide(0.0);
-            let between = Contact { ends, history, mode, weight: false, smooth: true, joined: true, ..load };
-            strand.contacts[first].joined = true;
-            strand.contacts.insert(first + 1, Contact { kink: None, ..between });
+            let between = Contact { ends, history, mode, load: None, smooth: true, next: Next::Joined, ..load };
+            strand.contacts[first].next = Next::Joined;
+            strand.contacts.insert(first + 1, between);
             strand.forces[k] = Vec2::new(tension, 0.0);
             strand.forces.insert(k, Vec2::new(tension, 0.0));
             return Ok(true);
@@ -267,7 +267,7 @@ fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Fa
         let e = &mut strand.contacts[i].ends;
         (e.p[1 - side], e.s[1 - side]) = (load.ends.p[0], load.ends.s[side]);
         strand.forces[k] = Vec2::new(tension, 0.0);
-        strand.contacts[first].joined = true;
+        strand.contacts[first].next = Next::Joined;
         return Ok(true);
     }
     Ok(false)
@@ -277,9 +277,9 @@ fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Fa
 /// that is nearest to an end is set down; whether there was one.
 pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> bool {
     let mut best: Option<(f64, usize, usize, f64)> = None;
-    let lies = |s: f64| strand.contacts.iter().any(|c| c.weight && c.ends.s[0] == s);
+    let lies = |s: f64| strand.contacts.iter().any(|c| c.is_load() && c.ends.s[0] == s);
     for (j, c) in strand.contacts.iter().enumerate() {
-        for side in (0..2).filter(|&side| strand.has_span(j + side) && !c.weight && c.wheel.is_none()) {
+        for side in (0..2).filter(|&side| strand.has_span(j + side) && !c.is_load() && c.wheel.is_none()) {
             let [from, to] = [strand.material(j + side).0, strand.material(j + side).1];
             let inside = |l: &&PointForce| l.arc_length > strand.from && l.arc_length < strand.to;
             let near = |l: &&PointForce| l.force.norm() > 0.0 && inside(l) && !lies(l.arc_length);
@@ -302,17 +302,17 @@ pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> 
     let left = if side == 0 { e.p[1] - p } else { p - e.p[0] };
     if left <= 0.0 {
         // Nothing else of it is left.
-        strand.contacts[j] = Contact { joined: c.joined, pocket: c.pocket, ..load };
+        strand.contacts[j] = Contact { next: c.next, ..load };
         return true;
     }
     let c = &mut strand.contacts[j];
     (c.ends.p[side], c.ends.s[side]) = (p, if side == 0 { s.next_up() } else { s });
     let joint = Vec2::new(e.t[side], 0.0);
     if side == 0 {
-        strand.contacts.insert(j, Contact { joined: true, ..load });
+        strand.contacts.insert(j, Contact { next: Next::Joined, ..load });
         strand.forces.insert(j + 1, joint);
     } else {
-        c.joined = true;
+        c.next = Next::Joined;
         strand.contacts.insert(j + 1, load);
         strand.forces.insert(j + 1, joint);
     }
@@ -360,12 +360,12 @@ fn set_down(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     let (first, second) = c.history.split(&track, q);
     let after = s.next_up();
     let mut load = lying(c, q, [s, after], tension, fresh);
-    (load.joined, load.smooth) = (true, fresh);
+    (load.next, load.smooth) = (Next::Joined, fresh);
     let mut rest = c.clone();
     (rest.ends.p[0], rest.ends.s[0], rest.ends.t[0], rest.history) = (q, after, tension, second);
     let c = &mut strand.contacts[j];
     (c.ends.p[1], c.ends.s[1], c.ends.t[1], c.history) = (q, s, tension, first);
-    (c.pocket, c.joined) = (false, true);
+    c.next = Next::Joined;
     strand.contacts.insert(j + 1, load);
     strand.contacts.insert(j + 2, rest);
     for _ in 0..2 {
@@ -387,7 +387,7 @@ fn press_end(strand: &mut CableRun, course: &Course, j: usize) -> bool {
         let load = lying(c, p, [s; 2], tension, c.smooth);
         let k = j + side;
         strand.contacts.insert(k, load);
-        strand.contacts[j].joined = true;
+        strand.contacts[j].next = Next::Joined;
         strand.forces.insert(j + 1, Vec2::new(tension, 0.0));
         return true;
     }
@@ -402,10 +402,8 @@ fn lying(on: &Contact, p: f64, s: [f64; 2], tension: f64, fresh: bool) -> Contac
         held: None,
         history: TensionProfile::new(Knot { p, s: s[0], tension, m: 0.0 }, Knot { p, s: s[0], tension, m: 0.0 }),
         flips: 0,
-        pocket: false,
-        joined: false,
-        weight: true,
-        kink: None,
+        next: Next::Span,
+        load: Some(RestingLoad::default()),
         smooth: fresh,
         ..on.clone()
     }

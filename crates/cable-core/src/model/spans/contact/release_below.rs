@@ -9,7 +9,7 @@ use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::changes::resolve;
 use crate::model::spans::contact::friction_memory::{Ends, Mode, TensionProfile};
 use crate::model::spans::numerics::root::{FLOOR, crossing};
-use crate::model::spans::run::{CableRun, Contact, Course};
+use crate::model::spans::run::{CableRun, Contact, Course, Next};
 
 /// Pull on a post that is none, of the tensions at the ends of the contact: rounding. Larger than what the check lets pass: contacts
 /// that it refuses are not parted.
@@ -33,7 +33,7 @@ pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> b
     for (j, c) in strand.contacts.iter().enumerate() {
         let track = course.track(c);
         let [first, last] = c.ends.p;
-        if c.weight || c.wheel.is_some() || !track.curve.is_round() || !hangs_between(&track, first, last) {
+        if c.is_load() || c.wheel.is_some() || !track.curve.is_round() || !hangs_between(&track, first, last) {
             continue;
         }
         let past = after(&track, c);
@@ -73,7 +73,7 @@ pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> b
             other.ends = Ends { p: [edges[1], e.p[1]], s: [s1, e.s[1]], t: [t1, e.t[1]] };
             c.history = history.split(&course.track(c), edges[0]).0;
             other.history = history.split(&course.track(&other), edges[1]).1;
-            (c.pocket, c.joined) = (false, false);
+            c.next = Next::Span;
             strand.contacts.insert(j + 1, other);
             let g = strand.forces[j + 1];
             strand.forces.insert(j + 1, g);

@@ -14,7 +14,7 @@
 //! e = x (2 − δ/tan(δ/2)), the tension being w x/tan(δ/2).
 
 use crate::math::{Vec2, cross};
-use crate::model::spans::run::{CableRun, Contact, Course};
+use crate::model::spans::run::{CableRun, Contact, Course, Next};
 
 /// A pocket opens when material is short by this part of the strand. Smaller: rounding opens it. Larger: the cable there is
 /// too short by as much.
@@ -32,7 +32,7 @@ const PART: f64 = 0.3;
 /// Where the ends of the contacts before and after span k would lie in a kink: p on both, the turn, rad.
 fn kink(strand: &CableRun, course: &Course, k: usize) -> Option<([f64; 2], f64)> {
     let (a, b) = (strand.contacts.get(k.checked_sub(1)?)?, strand.contacts.get(k)?);
-    if a.curve != b.curve || a.wheel.is_some() || b.wheel.is_some() || a.weight || b.weight {
+    if a.curve != b.curve || a.wheel.is_some() || b.wheel.is_some() || a.is_load() || b.is_load() {
         return None;
     }
     let curve = &course.curves[a.curve];
@@ -65,7 +65,7 @@ pub(in crate::model::spans) fn fill(strand: &mut CableRun, course: &Course, k: u
         c.ends.s[end] += (p - c.ends.p[end]) / stretch;
         (c.ends.p[end], c.ends.t[end]) = (p, 0.0);
     }
-    strand.contacts[k - 1].pocket = true;
+    strand.contacts[k - 1].next = Next::Pocket;
     strand.forces[k] = Vec2::zeros();
 }
 
@@ -111,7 +111,7 @@ pub(in crate::model::spans) fn heap(strand: &CableRun, course: &Course, k: usize
 /// U: draws a span across the kink whose material is shortest.
 pub(in crate::model::spans) fn open(strand: &mut CableRun, course: &Course) -> bool {
     let surplus = |k: usize| strand.contacts[k].ends.s[0] - strand.contacts[k - 1].ends.s[1];
-    let pockets = (1..strand.contacts.len()).filter(|&k| strand.contacts[k - 1].pocket);
+    let pockets = (1..strand.contacts.len()).filter(|&k| strand.contacts[k - 1].next == Next::Pocket);
     let Some(k) = pockets.min_by(|&a, &b| surplus(a).total_cmp(&surplus(b))) else { return false };
     let short = -surplus(k);
     if !(short > SHORT * (strand.to - strand.from)) {
@@ -134,7 +134,7 @@ pub(in crate::model::spans) fn open(strand: &mut CableRun, course: &Course) -> b
         c.ends.s[end] += sign * x / stretch;
         c.ends.t[end] = tension;
     }
-    strand.contacts[k - 1].pocket = false;
+    strand.contacts[k - 1].next = Next::Span;
     if let Some(g) = strand.solve_span(course, k) {
         strand.forces[k] = g;
     }

@@ -10,7 +10,7 @@ const LEFT: f64 = 0.02;
 /// Moves an end that is held to `at`, m.
 pub(in crate::model::spans) fn place(strand: &mut CableRun, course: &Course, side: usize, at: Vec2) {
     let outer = if side == 0 { 0 } else { strand.contacts.len().wrapping_sub(1) };
-    let on = strand.contacts.get(outer).filter(|c| c.wheel.is_none() && !c.weight).and_then(|c| {
+    let on = strand.contacts.get(outer).filter(|c| c.wheel.is_none() && !c.is_load()).and_then(|c| {
         let curve = course.track(c).curve;
         curve.on_chain(c.home, at, ON)
     });

@@ -12,7 +12,7 @@ use crate::model::spans::initial::route::{Way, way};
 use crate::model::spans::initial::shortest_path;
 use crate::model::spans::initial::shortest_path::{Bend, Ring};
 use crate::model::spans::initial::tension;
-use crate::model::spans::run::{CableRun, Contact, Course, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 
 /// Ends of a route this near to a boundary lie on it, of the cable's radius.
 const LIES: f64 = 0.05;
@@ -413,10 +413,8 @@ fn contact(course: &Course, curve: usize, home: ChainRange, p: [f64; 2], s: [f64
         wheel: None,
         flips: 0,
         held: None,
-        pocket: false,
-        joined: false,
-        weight: false,
-        kink: None,
+        next: Next::Span,
+        load: None,
         smooth: false,
     }
 }

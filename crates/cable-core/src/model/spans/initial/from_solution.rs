@@ -11,7 +11,7 @@ use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part}
 use crate::model::spans::changes::ON;
 use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
 use crate::model::spans::contact::point_load::LIFTS;
-use crate::model::spans::run::{CableRun, Contact, Course, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 use crate::solution::Node;
 
 /// A node this near to a boundary (m) lies on it: a barrier keeps nodes as far off as it reaches, 1e-4 m.
@@ -208,10 +208,8 @@ impl Run<'_> {
             flips: 0,
             held: None,
             smooth: false,
-            pocket: false,
-            joined: false,
-            weight: false,
-            kink: None,
+            next: Next::Span,
+            load: None,
         };
         for side in 0..2 {
             let (p, s, t) = self.end(strand, course, stations, side)?;

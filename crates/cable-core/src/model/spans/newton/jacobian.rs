@@ -102,7 +102,7 @@ pub(super) fn assemble(strand: &mut CableRun, course: &Course, sheet: &mut Syste
 
 /// As [`assemble`], where nothing but the mode of contact j has changed since.
 pub(super) fn renew(strand: &mut CableRun, course: &Course, j: usize, sheet: &mut System) {
-    if strand.contacts[j].weight {
+    if strand.contacts[j].is_load() {
         // What is joined to it is held or let go with it.
         return assemble(strand, course, sheet);
     }
@@ -218,7 +218,7 @@ fn weight_rows(strand: &CableRun, course: &Course, j: usize, sheet: &mut System)
 }
 
 fn contact_rows(strand: &mut CableRun, course: &Course, j: usize, sheet: &mut System) {
-    if strand.contacts[j].weight {
+    if strand.contacts[j].is_load() {
         return weight_rows(strand, course, j, sheet);
     }
     let (r, b, (spots, pivot), scale) = (&mut sheet.residual, &mut sheet.band, &sheet.spots[j], scale(strand));

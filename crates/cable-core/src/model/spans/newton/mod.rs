@@ -222,7 +222,7 @@ pub(super) fn solve(strand: &mut CableRun, course: &Course, work: &mut Work) -> 
     strand.take_tensions(course);
     for c in &mut strand.contacts {
         c.flips = 0;
-        if course.mobilised != 0.0 && c.kink.is_none() {
+        if course.mobilised != 0.0 && c.kink().is_none() {
             c.mode = Mode::Slide(course.mobilised * course.friction(c));
         }
     }
@@ -280,10 +280,10 @@ pub(super) fn solve(strand: &mut CableRun, course: &Course, work: &mut Work) -> 
 /// The mode that the state of contact j asks for.
 fn asked(strand: &CableRun, course: &Course, sheet: &System, j: usize, patience: f64) -> Mode {
     let c = &strand.contacts[j];
-    if course.mobilised != 0.0 && c.kink.is_none() {
+    if course.mobilised != 0.0 && c.kink().is_none() {
         return Mode::Slide(course.mobilised * course.friction(c));
     }
-    if c.weight {
+    if c.is_load() {
         return point_load::next_mode(strand, course, j, patience);
     }
     // What holds within its cone goes on so, and what is smooth slides.

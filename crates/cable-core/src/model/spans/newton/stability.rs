@@ -2,7 +2,7 @@
 
 use crate::model::spans::contact::friction_memory::Mode;
 use crate::model::spans::newton::{Work, assemble, lies};
-use crate::model::spans::run::{CableRun, Course, Tie};
+use crate::model::spans::run::{CableRun, Course, Next, Tie};
 
 /// Whether a balance without friction is a rest: what is pushed comes back.
 ///
@@ -13,7 +13,7 @@ use crate::model::spans::run::{CableRun, Course, Tie};
 /// friction holds: that came there by its own motion.
 pub(in crate::model::spans) fn stable(strand: &CableRun, course: &Course, work: &mut Work) -> bool {
     let rubs = strand.contacts.iter().any(|c| course.friction(c) > 0.0);
-    let pockets = strand.contacts.iter().any(|c| c.pocket || c.weight);
+    let pockets = strand.contacts.iter().any(|c| c.next == Next::Pocket || c.is_load());
     if rubs || pockets || strand.contacts.is_empty() || strand.ties.iter().any(|t| matches!(t, Tie::Loose(_))) {
         return true;
     }

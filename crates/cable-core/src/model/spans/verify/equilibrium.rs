@@ -134,7 +134,7 @@ fn contact(strand: &CableRun, course: &Course, j: usize, greatest: f64) -> Resul
     if !(track.curve.is_round() || e.p[0] >= first - BEYOND && e.p[1] <= last + BEYOND) {
         return Err(unsound("a contact goes on beyond what it lies on", e.p[0], e.s[0]));
     }
-    if c.weight {
+    if c.is_load() {
         return point_load::sound(strand, course, j);
     }
     for side in 0..2 {

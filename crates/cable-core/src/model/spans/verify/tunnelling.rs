@@ -2,7 +2,7 @@
 
 use crate::contact::swept_corners::Corner;
 use crate::math::{Vec2, cross, larger, smaller};
-use crate::model::spans::run::{CableRun, Contact, Course};
+use crate::model::spans::run::{CableRun, Contact, Course, Next};
 use crate::model::spans::verify::penetration;
 
 /// Points of each catenary and contact.
@@ -20,7 +20,8 @@ pub(in crate::model::spans) fn clear(old: &CableRun, new: &CableRun, course: &Co
     let load = course.law.load;
     let same = |(a, b): (&Contact, &Contact)| {
         let moved = |side: usize| (a.ends.p[side] - b.ends.p[side]).abs();
-        (a.curve, a.home, a.wheel, a.pocket, a.weight) == (b.curve, b.home, b.wheel, b.pocket, b.weight)
+        (a.curve, a.home, a.wheel, a.next == Next::Pocket, a.is_load())
+            == (b.curve, b.home, b.wheel, b.next == Next::Pocket, b.is_load())
             && moved(0) < SMALL
             && moved(1) < SMALL
     };
