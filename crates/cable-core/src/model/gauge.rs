@@ -14,7 +14,7 @@ use crate::solution::{TensionPeak, TensionPeaks};
 
 /// Looks at the mean in the time it is taken over. Of a triangular jerk as long as that, the greatest mean is missed by 1/(4·4²) of its
 /// height at most, 1.6 %; with 8 looks by 0.4 %, and a step of `fem`, which is as long as that time, costs 3 % more.
-const LOOKS: usize = 4;
+const LOOKS_PER_MEAN: usize = 4;
 
 /// Two times (s) that differ by less are the same: sums of steps round.
 const SAME_TIME_S: f64 = 1e-9;
@@ -54,7 +54,7 @@ pub struct TensionGauge {
     /// What was noted of a step that may still be discarded.
     next_s: f64,
     next: Vec<f64>,
-    /// Time of the last look at the mean, in parts of `over_s / LOOKS`.
+    /// Time of the last look at the mean, in parts of `over_s / LOOKS_PER_MEAN`.
     look: f64,
     /// ∫T dt since the history began, N s.
     sum: Vec<f64>,
@@ -168,14 +168,14 @@ impl TensionGauge {
         self.note(time_s, arcs, tension);
         self.time_s = self.next_s;
         std::mem::swap(&mut self.now, &mut self.next);
-        let (count, part_s) = (self.now.len(), self.over_s / LOOKS as f64);
+        let (count, part_s) = (self.now.len(), self.over_s / LOOKS_PER_MEAN as f64);
         self.look = if self.over_s > 0.0 { (self.time_s / part_s).floor() } else { 0.0 };
         let (past, mean) = (&self.now, if at_rest { 1.0 } else { 0.0 });
         self.mean.clear();
         self.mean.extend(past.iter().map(|t| t * mean));
         self.sums.clear();
-        for k in 0..LOOKS {
-            let before_s = self.time_s - (self.look - (LOOKS - 1 - k) as f64) * part_s;
+        for k in 0..LOOKS_PER_MEAN {
+            let before_s = self.time_s - (self.look - (LOOKS_PER_MEAN - 1 - k) as f64) * part_s;
             self.sums.extend(past.iter().map(|t| -t * mean * before_s));
         }
         self.sum.clear();
@@ -259,7 +259,7 @@ impl TensionGauge {
 
     /// Looks at the means between two times (s).
     fn take_means(&mut self, from_s: f64, to_s: f64) {
-        let (part_s, per_s) = (self.over_s / LOOKS as f64, (to_s - from_s).recip());
+        let (part_s, per_s) = (self.over_s / LOOKS_PER_MEAN as f64, (to_s - from_s).recip());
         let (count, per_window) = (self.points.len().max(1), self.over_s.recip());
         let (sum, now, next) = (&mut self.sum, &self.now, &self.next);
         let mut at_s = from_s;
@@ -269,9 +269,9 @@ impl TensionGauge {
                 break;
             }
             let last = (to_s / part_s).floor();
-            if at_s - from_s >= self.over_s && last - self.look > LOOKS as f64 {
+            if at_s - from_s >= self.over_s && last - self.look > LOOKS_PER_MEAN as f64 {
                 // In a step this long the mean goes on evenly from here to its end.
-                (self.look, self.oldest) = (last - LOOKS as f64, 0);
+                (self.look, self.oldest) = (last - LOOKS_PER_MEAN as f64, 0);
                 for slot in self.sums.chunks_exact_mut(count) {
                     until_s = self.look * part_s;
                     add(sum, now, next, [at_s, until_s].map(|t| (t - from_s) * per_s), until_s - at_s);
@@ -291,7 +291,7 @@ impl TensionGauge {
                     *slot = *sum;
                 }
             }
-            self.oldest = (self.oldest + 1) % LOOKS;
+            self.oldest = (self.oldest + 1) % LOOKS_PER_MEAN;
             std::mem::swap(&mut self.mean, &mut self.spare);
             let before = Found { held: self.held, reached: self.reached };
             Found { held: self.held, reached: self.reached } =

@@ -57,11 +57,11 @@ impl Motion {
     #[must_use]
     pub fn fastest(&self) -> (f64, f64) {
         /// Looks between two knots: the speed, a quartic in each coordinate, is missed by 1e-3 of it at most.
-        const LOOKS: u32 = 64;
+        const SPEED_SAMPLES: u32 = 64;
         let mut most = (0.0, 0.0);
         for pair in self.times_s.windows(2) {
-            for k in 0..LOOKS {
-                let time_s = pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(LOOKS);
+            for k in 0..SPEED_SAMPLES {
+                let time_s = pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(SPEED_SAMPLES);
                 let speed = self.at(time_s).1.norm();
                 if speed > most.0 {
                     most = (speed, time_s);

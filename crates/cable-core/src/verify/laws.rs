@@ -8,7 +8,7 @@
 use super::supports::{self, Role, SupportHold};
 use super::surroundings::{NearestFeature, Neighbours, Surroundings};
 use super::tolerance::{
-    BALANCE, COMPRESSION, CONE_EXCESS, CONTACT_SHIFT_DIAMETERS, DEPTH_DIAMETERS, DEPTH_M, FOLD_TURN, LENGTH,
+    BALANCE_FRACTION, COMPRESSION, CONE_EXCESS, CONTACT_SHIFT_DIAMETERS, DEPTH_DIAMETERS, DEPTH_M, FOLD_TURN, LENGTH,
     LUMPED_WEIGHT_TURN, MATERIAL_TOLERANCE, MIN_STRAIN, MOMENT, MOMENTUM, NORMAL_TOLERANCE, REACH_DIAMETERS, REACH_M,
     REPORTED_BALANCE, TURN,
 };
@@ -299,7 +299,7 @@ impl CheckedCable<'_> {
     fn reported_contacts(&self, found: &mut Verification) {
         found.ask(Law::Push);
         found.ask(Law::Friction);
-        let noise = BALANCE * self.scale;
+        let noise = BALANCE_FRACTION * self.scale;
         for c in &self.answer.contacts {
             let friction = match self.surroundings.find(&c.obstacle) {
                 Some(body) => self.surroundings.friction(body, self.cable.friction),
@@ -359,7 +359,7 @@ impl CheckedCable<'_> {
 
     fn balance(&self, found: &mut Verification, near: &Neighbours) {
         found.ask(Law::Balance);
-        let limit = BALANCE * self.scale;
+        let limit = BALANCE_FRACTION * self.scale;
         let mut sums = Balance { scale_n: larger(found.balance.scale_n, self.scale), ..found.balance };
         let (mut adrift, mut beyond, mut pressed, mut in_air) = (Vec2::zeros(), 0.0, 0.0, 0.0);
         let (mut contacts, mut wheels, mut worst) = (Vec2::zeros(), Vec2::zeros(), (0.0, 0));
@@ -418,7 +418,7 @@ impl CheckedCable<'_> {
 
     /// What is reported of contacts and wheels adds up to what the cable asks for.
     fn sums(&self, found: &mut Verification, mut sums: Balance, [contacts, wheels]: [Vec2; 2]) {
-        let limit = BALANCE * self.scale;
+        let limit = BALANCE_FRACTION * self.scale;
         let known_here = |c: &&ContactReport| self.surroundings.find(&c.obstacle).is_some();
         let reported: Vec2 = self.answer.contacts.iter().filter(known_here).map(|c| vec2(c.force_n)).sum::<Vec2>()
             + self.foreign().map(|p| p.force).sum::<Vec2>();
@@ -671,7 +671,7 @@ impl CheckedCable<'_> {
         let (least, most) = if p < q { (p, q) } else { (q, p) };
         let turn = (end - start).norm_squared() / (least * least);
         // A force no greater than what is let pass unbalanced has no direction, and may be none.
-        if !(turn < FOLD_TURN * FOLD_TURN && least > BALANCE * self.scale) {
+        if !(turn < FOLD_TURN * FOLD_TURN && least > BALANCE_FRACTION * self.scale) {
             return None;
         }
         // Simpson's rule for ∫ F/|F| (1 + |F|/EA) ds with F linear in s.
@@ -718,7 +718,7 @@ impl CheckedCable<'_> {
         [Law::Length, Law::Moment].into_iter().for_each(|law| found.ask(law));
         let stiffness = self.answer.assumptions.bending_stiffness_n_m2 / self.thermal;
         let greatest = self.answer.nodes.iter().map(|n| n.curvature_per_m.abs()).fold(0.0, larger) * stiffness;
-        let limit = MOMENT * greatest + BALANCE * self.scale * 0.5 * self.cable.diameter_m;
+        let limit = MOMENT * greatest + BALANCE_FRACTION * self.scale * 0.5 * self.cable.diameter_m;
         for bar in self.bars() {
             self.tell_length(found, &bar, self.stiff_length(&bar));
             // A bar that is longer than the bend beside a clamp or a contact, √(EI/T), cannot show it.

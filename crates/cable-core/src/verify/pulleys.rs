@@ -6,7 +6,7 @@
 
 use super::laws::CheckedCable;
 use super::supports::Role;
-use super::tolerance::{BALANCE, CONE_EXCESS, MATERIAL_TOLERANCE, REPORTED_BALANCE};
+use super::tolerance::{BALANCE_FRACTION, CONE_EXCESS, MATERIAL_TOLERANCE, REPORTED_BALANCE};
 use super::{Law, Verification};
 use crate::math::{Vec2, cross, larger};
 use crate::solution::SupportReaction;
@@ -39,7 +39,7 @@ impl CheckedCable<'_> {
             let after = nodes[last].force();
             let [least, most] = [-led.friction, led.friction].map(|m| self.passed(&led, before, m));
             let value = larger(after.norm() - most, least - after.norm());
-            let limit = CONE_EXCESS * larger(most, after.norm()) + BALANCE * self.scale();
+            let limit = CONE_EXCESS * larger(most, after.norm()) + BALANCE_FRACTION * self.scale();
             let mut tell = |law: Law, value: f64, limit: f64| {
                 if !(value <= limit) {
                     let mut finding = self.finding(law, first, value, limit);

@@ -3,7 +3,7 @@
 
 /// Unbalanced force of the whole and of any piece, of the greatest force in the scene. Smaller: the models' own stopping rules
 /// (1e-6 of the whole load for `fem`, over some tens of nodes) are refused; larger: cables that slide away pass (0.3 % were missing).
-pub const BALANCE: f64 = 1e-5;
+pub const BALANCE_FRACTION: f64 = 1e-5;
 
 /// Momentum that came from nowhere in a step, of the greatest impulse. Smaller: what `fem` leaves unbalanced in a step (1e-6 of the whole load at each
 /// node: up to 1.2e-5 was seen in steps of 600 violent scenes) is refused; larger: what one node of a thousand does is not seen.
@@ -55,7 +55,7 @@ pub(crate) const MIN_STRAIN: f64 = 1e-7;
 
 /// What contacts and supports as they are reported, and tensions at nodes where something touches, may leave of the whole, of the greatest force. `fem` lags the normal forces that
 /// friction uses by a round, and its contacts at corners are read off bars beside them: up to 1.8e-3 was seen. That every piece is
-/// balanced by what touches it is asked to [`BALANCE`]. Smaller: slow draws under beams by `fem` are refused; larger: a report that
+/// balanced by what touches it is asked to [`BALANCE_FRACTION`]. Smaller: slow draws under beams by `fem` are refused; larger: a report that
 /// leaves a contact out passes.
 pub(crate) const REPORTED_BALANCE: f64 = 2e-3;
 

@@ -37,24 +37,24 @@ const MAX_HALVINGS: usize = 40;
 /// Rounds of wheel geometry at most; κR = 0.5 takes 12.
 const MAX_ROUNDS: usize = 60;
 /// Balance wanted at a pulley, relative to its tension.
-const BALANCE: f64 = 1e-13;
+const PULLEY_BALANCE_TOLERANCE: f64 = 1e-13;
 /// Balance accepted where round-off allows no better.
 const BALANCE_ACCEPTED: f64 = 1e-9;
 /// Wheel angles wanted, rad.
 const ANGLE: f64 = 1e-12;
 /// A step keeps this part of every stretch. Smaller: stretches shrink to nothing in a bad step.
-const KEEP: f64 = 0.2;
+const KEPT_STRETCH_FRACTION: f64 = 0.2;
 /// A dangling end shorter than this part of the cable has run off its pulley.
-const RUN_OFF: f64 = 1e-6;
+const RUN_OFF_LENGTH_FRACTION: f64 = 1e-6;
 /// Below this part of the energy a predicted decrease is round-off.
 const ENERGY_NOISE: f64 = 1e-9;
 /// A pulley slips when friction is exceeded by this much (in ln T). Smaller: chatter of round-off.
-const CONE: f64 = 1e-10;
+const CONE_TOLERANCE: f64 = 1e-10;
 /// Rises of friction from none to what it is, failed ones included: as many halve the rise to 1e-6. One has done for
 /// every scene tried (400 random dead loads over a rubbing wheel, EA 3e4 to 1e9).
 const MAX_RISES: usize = 20;
 /// Sets of modes changed together; after that one pulley at a time, which cannot cycle so easily.
-const TOGETHER: usize = 12;
+const JOINT_MODE_ROUNDS: usize = 12;
 
 /// Direction of the straight line that touches two anchors one after the other, rad. With t along it, n = perp t and
 /// the touch points c + f R n: (c₂ − c₁)·n = f₁R₁ − f₂R₂. None where they are in one place.
@@ -148,7 +148,7 @@ fn contact(
 ) -> Result<Equilibrium, SolveError> {
     let layout = slide.layout;
     let mut iterations = 0;
-    for round in 0..4 * TOGETHER + 4 * layout.anchors.len() {
+    for round in 0..4 * JOINT_MODE_ROUNDS + 4 * layout.anchors.len() {
         let found = match newton(slide, sigma.clone(), near.as_ref(), &modes) {
             Ok(e) => e,
             // Another branch of the slip law drew it away: come from the smooth pulley's rest, the first error if not.
@@ -158,13 +158,13 @@ fn contact(
         sigma = found.sigma;
         let mut changed = false;
         for (k, a) in layout.anchors.iter().enumerate() {
-            if a.held.is_some() || a.friction <= 0.0 || (changed && round >= TOGETHER) {
+            if a.held.is_some() || a.friction <= 0.0 || (changed && round >= JOINT_MODE_ROUNDS) {
                 continue;
             }
             let (Some(b), Some(f)) = Slide::forces(&found.stretches, k) else { continue };
             let next = match modes[k] {
-                Mode::Stick if slide.excess(k, b, f, a.friction).0 > CONE => Mode::Slip(a.friction),
-                Mode::Stick if slide.excess(k, b, f, -a.friction).0 < -CONE => Mode::Slip(-a.friction),
+                Mode::Stick if slide.excess(k, b, f, a.friction).0 > CONE_TOLERANCE => Mode::Slip(a.friction),
+                Mode::Stick if slide.excess(k, b, f, -a.friction).0 < -CONE_TOLERANCE => Mode::Slip(-a.friction),
                 // Friction +μ holds material back from going on to the side after: σ must have fallen.
                 Mode::Slip(m) if m * (sigma[k] - held[k]) > 1e-12 * a.friction * slide.problem.length => {
                     sigma[k] = held[k];
@@ -282,8 +282,8 @@ fn room(slide: &Slide<'_>, s: &Stretches, p: &[f64]) -> f64 {
         let from = if i == 0 { 0.0 } else { p[i - 1] };
         let to = if i == slide.arcs.len() { 0.0 } else { p[i] };
         let (length, change) = (stretch.to - stretch.from, to - from);
-        if change < 0.0 && alpha * -change > (1.0 - KEEP) * length {
-            alpha = (1.0 - KEEP) * length / -change;
+        if change < 0.0 && alpha * -change > (1.0 - KEPT_STRETCH_FRACTION) * length {
+            alpha = (1.0 - KEPT_STRETCH_FRACTION) * length / -change;
         }
     }
     alpha
@@ -312,7 +312,7 @@ fn newton(
             iterations,
             residual,
         };
-        if worst <= BALANCE {
+        if worst <= PULLEY_BALANCE_TOLERANCE {
             return if smooth || stable(&j) { Ok(end(sigma, s, newtons)) } else { Err(lost(iterations)) };
         }
         run_off(slide, &s)?;
@@ -350,7 +350,7 @@ fn newton(
 fn run_off(slide: &Slide<'_>, s: &Stretches) -> Result<(), SolveError> {
     let ends = [(0, 0), (s.all.len() - 1, slide.arcs.len() - 1)];
     for (i, k) in ends {
-        let short = s.all[i].is_some_and(|e| e.to - e.from < RUN_OFF * slide.problem.length);
+        let short = s.all[i].is_some_and(|e| e.to - e.from < RUN_OFF_LENGTH_FRACTION * slide.problem.length);
         let anchor = &slide.layout.anchors[k];
         if short && anchor.held.is_none() {
             let name = slide.problem.supports.get(anchor.support).map_or("", |p| p.name.as_str());

@@ -51,12 +51,12 @@ const HINT_OF_LOADS: f64 = 1e-15;
 const HINT_OF_STIFFNESS: f64 = 1e-18;
 /// Tension that such a weight can make, in weights: a slack of 1e-9 of the length gives 6e3. Smaller: a trace of tension is told where
 /// there is none. Larger: tensions that loads make are told to be none.
-const HINT_SHOWS: f64 = 1e4;
+const HINT_TENSION_FACTOR: f64 = 1e4;
 
 /// The hint of weight (N/m) of a weightless cable with dead loads of a size (N), and the force up to which it alone may be the cause, N.
 pub(in crate::model) fn hint_of_weight(p: &Problem, loads: f64) -> (Vec2, f64) {
     let whole = if loads > 0.0 { HINT_OF_LOADS * loads } else { HINT_OF_STIFFNESS * p.axial_stiffness };
-    (Vec2::new(0.0, -whole / p.length), HINT_SHOWS * whole)
+    (Vec2::new(0.0, -whole / p.length), HINT_TENSION_FACTOR * whole)
 }
 
 /// Where a support is now: by hand, by its motion, or not at all.

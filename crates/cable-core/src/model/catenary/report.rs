@@ -20,7 +20,7 @@ const TENSION_FLATNESS: f64 = 5e-5;
 const TENSION_FLOOR: f64 = 0.02;
 /// Tensions either side of a point that differ by no more than this part are one: ten times the balance accepted at a
 /// pulley. Smaller: two nodes where the balance was found badly. Larger: a light load on a taut cable shows no jump.
-const SAME_TENSION: f64 = 1e-8;
+const TENSION_JUMP_TOLERANCE: f64 = 1e-8;
 /// Nodes a catenary has at least: 2 to this power + 1.
 const LEAST_DEPTH: u32 = 2;
 /// Halvings of a catenary at most.
@@ -73,7 +73,7 @@ impl<'a> Nodes<'a> {
         // A node twice at the same material point only where the tension jumps (a load, a rubbing pulley).
         if let Some(last) = self.out.last_mut()
             && node.arc_length_m - last.arc_length_m <= 1e-12 * self.problem.length
-            && (node.tension_n - last.tension_n).abs() <= SAME_TENSION * node.tension_n
+            && (node.tension_n - last.tension_n).abs() <= TENSION_JUMP_TOLERANCE * node.tension_n
         {
             if !self.turned {
                 last.curvature_per_m = node.curvature_per_m;

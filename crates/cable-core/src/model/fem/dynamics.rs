@@ -44,7 +44,7 @@ pub(super) const STIFFNESS: f64 = 20.0;
 const TAUT_STIFFNESS: f64 = 0.05;
 
 /// Times the barrier's stiffness for its tension that a step is tried again with: the tension may grow in it.
-const SNATCH: f64 = 8.0;
+const RETRY_STIFFENING_LIMIT: f64 = 8.0;
 
 /// Change of the barrier's stiffness from one step to the next: up, so that it follows a snatch, and down.
 pub(super) const STIFFNESS_CHANGE: [f64; 2] = [2.0, 0.8];
@@ -54,7 +54,7 @@ pub(super) const STIFFNESS_CHANGE: [f64; 2] = [2.0, 0.8];
 const QUIET_DEPTH: usize = 4;
 
 /// A step is halved this often before the robot has to wait for the cable. Less: it jerks; more: it costs.
-const PATIENCE: usize = 3;
+const HALVINGS_BEFORE_ROBOT_WAITS: usize = 3;
 
 /// A step is halved at most this often.
 const MAX_DEPTH: usize = 10;
@@ -62,7 +62,7 @@ const MAX_DEPTH: usize = 10;
 /// Part of a step that the first one of a motion takes, the next ones each as long as all before. It has no history: implicit
 /// Euler carries a cable let go ½ a h² too far, and BDF2 makes ¾ a h² of that. Larger: a free fall at 1/240 s is off by
 /// ¾ of this part's square times 1.7e-4 m; smaller: one step more for each halving.
-const FIRST: f64 = 0.125;
+const FIRST_STEP_FRACTION: f64 = 0.125;
 
 /// The minimiser's memory; a copy of the model makes its own.
 #[derive(Debug, Default)]
@@ -421,8 +421,8 @@ impl Dynamics {
         let mut began = None;
         loop {
             let begins = self.motion.step_before == 0.0 && inertia == Inertia::Dynamic && self.meets_nothing();
-            if begins && depth == 0 && left > FIRST * h {
-                (began, size) = (Some(left), FIRST * left);
+            if begins && depth == 0 && left > FIRST_STEP_FRACTION * h {
+                (began, size) = (Some(left), FIRST_STEP_FRACTION * left);
             }
             self.save();
             let start = self.motion.time;
@@ -479,12 +479,12 @@ impl Dynamics {
                         continue;
                     }
                     // A cable that cannot get out of the way of the robot holds it.
-                    if depth >= PATIENCE && self.outline_waits() {
+                    if depth >= HALVINGS_BEFORE_ROBOT_WAITS && self.outline_waits() {
                         (depth, size) = (0, left);
                         continue;
                     }
                     // The barrier may be too soft for what this step does.
-                    self.adapt_stiffness([2.0, 1.0], SNATCH);
+                    self.adapt_stiffness([2.0, 1.0], RETRY_STIFFENING_LIMIT);
                     *halved += 1;
                     depth += 1;
                     size *= 0.5;

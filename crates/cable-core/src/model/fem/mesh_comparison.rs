@@ -27,7 +27,7 @@ const LEAST_BARS: usize = 8;
 /// Most bars to which the mesh is refined by itself. More: 1e-3 is met by more scenes, each twice as dear as with half as many.
 const MOST_BARS: usize = 800;
 /// Part of what the coarser two of three meshes differ by that the error of the finest is at least: that of the first order.
-const COARSER: f64 = 0.5;
+const FIRST_ORDER_ERROR_FRACTION: f64 = 0.5;
 
 /// Who goes on beside the cable, and what is said.
 #[derive(Clone, Debug, Default)]
@@ -160,7 +160,7 @@ fn coarser(
     let other = coarse.solution();
     let errors = ErrorEstimates::between(&other, &answer).plus(&ErrorEstimates::rounding(&answer, problem));
     let coarsest = laid_over(problem, settings, fine, fine.even_bars / 4, &answer, dragged);
-    let change = coarsest.map(|c| ErrorEstimates::between(&c.solution(), &other).times(COARSER));
+    let change = coarsest.map(|c| ErrorEstimates::between(&c.solution(), &other).times(FIRST_ORDER_ERROR_FRACTION));
     Some((change.map_or(errors, |change| errors.or_larger(&change)), coarse))
 }
 

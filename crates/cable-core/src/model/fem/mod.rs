@@ -50,16 +50,16 @@ use elastica::Elastica;
 
 /// Part of the greatest tension by which the force on a support may change when a first lay is taken over. Less: coarse meshes lay themselves, in folds; more:
 /// bars too long for the ground, held by friction at both ends, keep a pull that nothing else asks for (25 bars on a robot's ground: 220 %).
-const JAMMED: f64 = 0.1;
+const SUPPORT_FORCE_CHANGE_LIMIT: f64 = 0.1;
 
 /// The same of a stiff cable, which is laid as a flexible one: its bending takes part in what supports feel.
-const JAMMED_STIFF: f64 = 0.5;
+const STIFF_SUPPORT_FORCE_CHANGE_LIMIT: f64 = 0.5;
 
 /// Segments from which a first rest begins at that of a coarser mesh. Fewer: meshes that need no help pay for two; more: the way down
 /// of a thousand bars takes minutes.
-const FINE: usize = 500;
+const TWO_MESH_START_SEGMENTS: usize = 500;
 /// How much coarser that mesh is. Less: more meshes, each nearer to the next; more: it lies otherwise than the fine one will.
-const COARSER: usize = 8;
+const FIRST_MESH_COARSENING: usize = 8;
 
 /// What `spans` says of where the cable is laid.
 enum Laid {
@@ -72,11 +72,11 @@ enum Laid {
 }
 
 /// Part of the tolerance that the error of a stiff cable's rest must stay below.
-const SAFETY: f64 = 0.5;
+const STIFF_ESTIMATE_FRACTION: f64 = 0.5;
 
 /// Part of its length by which a stiff cable may lie elsewhere than where its mesh has it at rest. Less: coarse meshes are left as they are;
 /// more: another resting place is taken for the same.
-const STRAY: f64 = 0.05;
+const STIFF_SHIFT_LIMIT: f64 = 0.05;
 
 /// Which part holds the present state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -154,7 +154,11 @@ impl FemModel {
         let found = self.dynamics.solution();
         let pairs = lay.answer.supports.iter().zip(&found.supports);
         let off = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
-        let jammed = if self.problem.bending_stiffness > 0.0 { JAMMED_STIFF } else { JAMMED };
+        let jammed = if self.problem.bending_stiffness > 0.0 {
+            STIFF_SUPPORT_FORCE_CHANGE_LIMIT
+        } else {
+            SUPPORT_FORCE_CHANGE_LIMIT
+        };
         if taken && off.fold(0.0, larger) <= jammed * greatest {
             return Ok((Laid::TakenOver(lay.warnings.clone()), flexible.then_some(lay)));
         }
@@ -255,10 +259,10 @@ impl FemModel {
     /// run along the bars, which a coarse mesh does cheaply.
     fn begin_coarse(&mut self) {
         let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
-        if fine <= FINE {
+        if fine <= TWO_MESH_START_SEGMENTS {
             return;
         }
-        let settings = Settings { segments: Some(fine / COARSER), ..self.settings };
+        let settings = Settings { segments: Some(fine / FIRST_MESH_COARSENING), ..self.settings };
         let Ok(coarse) = Self::new(self.problem.clone(), settings) else { return };
         let mut coarse = Self { dragged: self.dragged.clone(), ..coarse.laid_alone() };
         if let Some(to) = self.led {
@@ -280,7 +284,7 @@ impl FemModel {
             return None;
         }
         let lay = initial_equilibrium(&self.problem, self.settings, &self.dragged, self.led).ok()?;
-        let (time_s, tolerance) = (self.dynamics.time(), SAFETY * self.settings.tolerance);
+        let (time_s, tolerance) = (self.dynamics.time(), STIFF_ESTIMATE_FRACTION * self.settings.tolerance);
         let flexible = lay.as_ref().map(|l| &l.answer);
         let (answer, cost) = elastica::rest(&self.problem, time_s, &self.dragged, flexible, tolerance)?;
         self.bent = Some(answer);
@@ -301,7 +305,7 @@ impl FemModel {
         // What the mesh found is followed, not left: places that differ by more are another rest.
         let near = |n: &Node| {
             let at = self.bent.as_ref().and_then(|b| State::of_nodes(&b.nodes, 0.0).position_at(n.arc_length_m));
-            at.is_some_and(|at| (at - n.at()).norm() <= STRAY * self.problem.length)
+            at.is_some_and(|at| (at - n.at()).norm() <= STIFF_SHIFT_LIMIT * self.problem.length)
         };
         if !answer.nodes.iter().all(near) {
             self.bent = None;
@@ -323,7 +327,7 @@ impl FemModel {
         if !found.stiffen(&self.problem) {
             return None;
         }
-        let (estimate, errors) = found.refine(&self.problem, SAFETY * self.settings.tolerance)?;
+        let (estimate, errors) = found.refine(&self.problem, STIFF_ESTIMATE_FRACTION * self.settings.tolerance)?;
         let (iterations, residual_n) = found.cost();
         self.bent = Some(CableSolution { error_estimate: Some(estimate), errors, ..found.solution(&self.problem) });
         Some(Cost { iterations, residual_n, ..Cost::default() })

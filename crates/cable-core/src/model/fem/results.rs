@@ -5,7 +5,7 @@ use crate::energy::bending::turn;
 use crate::math::{Vec2, bounded, larger, perp, smaller};
 use crate::model::arc_nodes;
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::mesh::arc_nodes::SMALL;
+use crate::model::fem::mesh::arc_nodes::ONE_MARK_BAR_FRACTION;
 use crate::model::fem::mesh::sliding_node::{Balanced, Load, Seat, SlidingNode};
 use crate::model::fem::mesh::tangent_path::angle_between;
 use crate::model::fem::system::assembly::Mesh;
@@ -25,7 +25,7 @@ const SAG_ROUNDS: usize = 4;
 /// Part of the diameter by which the way may be drawn longer than its material where a bar sags and leaves a round sooner or later than straight,
 /// which makes it rδ³/6 longer at an angle δ. More: of slack bars, whose sag is not known, more cable is drawn than there is; less: the force leads
 /// away from the round that is drawn.
-const DRAWN_LONGER: f64 = 0.005;
+const PATH_EXCESS_DIAMETERS: f64 = 0.005;
 
 /// The answer at positions `x` and velocities `v`.
 #[must_use]
@@ -342,10 +342,10 @@ fn by_round(load: &Load) -> Vec2 {
 /// Growth of the logarithm of tension over a small round, in parts of what friction makes of its turn, from which on weight that hangs over it from the
 /// bars beside it is told from sag. Less: what a sagging bar rubs in the air beside a corner is said to rub there; more: short pieces rub beyond
 /// their cone.
-const HUNG: f64 = 1.2;
+const HANGING_TENSION_GROWTH: f64 = 1.2;
 
 /// Part of what chords are shorter than their arc that goes to the ways beside it. More: they were longer than their material.
-const SPARED: f64 = 0.8;
+const CHORD_CORRECTION_FRACTION: f64 = 0.8;
 
 /// A point of the cable on a round.
 struct OnRound {
@@ -372,7 +372,7 @@ fn on_round(d: &Dynamics, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2],
     let sag = |j: usize, from: Vec2, to: Vec2| {
         let sag = sense * angle_between(from, to);
         let longer = radius * sag.abs().powi(3) / 6.0;
-        if same[j] || longer > DRAWN_LONGER * 2.0 * d.problem.radius { 0.0 } else { sag }
+        if same[j] || longer > PATH_EXCESS_DIAMETERS * 2.0 * d.problem.radius { 0.0 } else { sag }
     };
     let normal = |turned: f64| {
         let (sin, cos) = (sense * turned).sin_cos();
@@ -417,9 +417,9 @@ fn on_round(d: &Dynamics, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2],
     // On a round that is small beside its bars, friction of the weight that hangs over it from them is beside it: on the round it is no more than
     // its turn there allows.
     let grown = (b / last).ln();
-    let small = same == [false; 2] && whole * radius < SMALL * d.even();
+    let small = same == [false; 2] && whole * radius < ONE_MARK_BAR_FRACTION * d.even();
     let most = node.friction * whole;
-    let rate = if small && grown.abs() > HUNG * most { most.copysign(grown) } else { grown };
+    let rate = if small && grown.abs() > HANGING_TENSION_GROWTH * most { most.copysign(grown) } else { grown };
     // What is beside it stands where the weight hangs: before the round and after it by the angle there between
     // the cable's force and the end of the arc.
     let tangents = [-before, after].map(|turned| perp(normal(turned)) * sense);
@@ -452,7 +452,7 @@ fn on_round(d: &Dynamics, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2],
     // round has material to spare.
     let half = 0.5 * whole / count;
     let sides = if same.contains(&true) { 1.0 } else { 2.0 };
-    let spare = SPARED / sides * (whole - count * 2.0 * half.sin()) * radius;
+    let spare = CHORD_CORRECTION_FRACTION / sides * (whole - count * 2.0 * half.sin()) * radius;
     for j in [0, 1] {
         let (bar, beside) = (k + j - 1, if j == 0 { k - 1 } else { k + 1 });
         let Some(p) = (if j == 0 { points.first_mut() } else { points.last_mut() }) else { continue };

@@ -24,9 +24,9 @@ const ROUND_NODES: usize = 3;
 /// Part of the largest turn at a node that makes another one count.
 const COUNTS: f64 = 0.2;
 /// Turn that is none, rad: the nodes of a cable that lies on a flat floor differ by less.
-const FLAT: f64 = 1e-3;
+const TURN_TOLERANCE: f64 = 1e-3;
 /// Beyond this (rad, 80°) an angle is taken as this: the tangent says no more than that nothing is known.
-const STEEPEST: f64 = 1.4;
+const STEEPEST_ANGLE: f64 = 1.4;
 
 /// How the cable goes round what it touches.
 #[derive(Clone, Copy, Debug, Default)]
@@ -48,12 +48,12 @@ impl MassSpringModel {
             whole += t;
             sharpest = if t.abs() > sharpest { t.abs() } else { sharpest };
         }
-        if sharpest < FLAT {
+        if sharpest < TURN_TOLERANCE {
             return Wrap::default();
         }
         let nodes = inner.filter(|&n| turn_at(n).abs() > COUNTS * sharpest).count();
         let angle = if nodes < ROUND_NODES { whole.abs() } else { 0.5 * sharpest };
-        let bounded = if angle > STEEPEST { STEEPEST } else { angle };
+        let bounded = if angle > STEEPEST_ANGLE { STEEPEST_ANGLE } else { angle };
         Wrap { turn: whole, uncertain: bounded.cos().recip() - 1.0 + mu * angle }
     }
 

@@ -4,14 +4,14 @@ use crate::contact::Gap;
 use crate::energy::bending::turn;
 use crate::math::{Vec2, angle, larger, perp};
 use crate::model::arc_nodes;
-use crate::model::mass_spring::dynamics::impacts::SKIN;
+use crate::model::mass_spring::dynamics::impacts::CONTACT_SKIN;
 use crate::model::mass_spring::pulleys::pulley::Pulley;
 use crate::model::mass_spring::{MassSpringModel, Touch};
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 use crate::state::State;
 
 /// Tensions of both sides of a point that are the same to this part make one node.
-const NO_JUMP: f64 = 1e-9;
+const TENSION_JUMP_TOLERANCE: f64 = 1e-9;
 
 /// Below this speed (m/s) a held node does not rub.
 const RESTING_SPEED: f64 = 1e-9;
@@ -68,7 +68,7 @@ impl MassSpringModel {
     fn wheel_nodes(&self, p: Pulley, out: &mut Vec<Node>) {
         let [s0, s1] = self.on_wheel_from_to(&p);
         let (b, a) = (self.reach(p.node - 1), self.reach(p.node));
-        let jump = (p.tension[1] - p.tension[0]).abs() > NO_JUMP * p.tension[0];
+        let jump = (p.tension[1] - p.tension[0]).abs() > TENSION_JUMP_TOLERANCE * p.tension[0];
         let count = arc_nodes::parts(p.radius, p.turn, self.problem.radius);
         let strain = |f: f64| self.tension_round(&p, f) / self.problem.axial_stiffness;
         let material = arc_nodes::material(count, strain);
@@ -269,7 +269,7 @@ impl MassSpringModel {
         let tension = self.tension.get(e).copied().unwrap_or(0.0);
         let hung = support.map_or(tension, |k| self.problem.hung_on(k, self.time_s).norm());
         // On the ground a part of it presses there.
-        if self.problem.world.signed_gap(self.x[i], SKIN).is_some() && hung > tension { tension } else { hung }
+        if self.problem.world.signed_gap(self.x[i], CONTACT_SKIN).is_some() && hung > tension { tension } else { hung }
     }
 
     /// From a clamp at an end to the middle of its element `e`, which lies along `d`; 0 where nothing is clamped.
@@ -299,7 +299,7 @@ impl MassSpringModel {
     /// what the cable pulls along it, but the support is there for that.
     fn under_end(&self, i: usize) -> Option<Under> {
         let force = self.on_all_that_holds(i);
-        let gap = self.problem.world.signed_gap(self.x[i], SKIN)?;
+        let gap = self.problem.world.signed_gap(self.x[i], CONTACT_SKIN)?;
         let pressed = -force.dot(&gap.normal);
         if !(pressed > 0.0) {
             return None;

@@ -298,7 +298,7 @@ pub(in crate::model::spans) fn place_ends(
         let at = instant.places[support];
         let world = &layout.problem.world;
         let gap = world.signed_gap(at, layout.problem.radius).map(|g| g.gap_m);
-        if gap.is_some_and(|g| g < -crate::model::spans::changes::ON) {
+        if gap.is_some_and(|g| g < -crate::model::spans::changes::SUPPORT_CONTACT_DISTANCE_M) {
             return Err(Failure::SupportInside { at });
         }
         crate::model::spans::contact::support_contact::place(strand, course, side, at);

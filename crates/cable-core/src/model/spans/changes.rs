@@ -27,23 +27,23 @@ use crate::model::spans::verify::tunnelling;
 const MAX_EVENTS: usize = 200;
 /// A contact is let go when its interval has turned round by this much (m or rad). Smaller: rounding releases what
 /// touches in a point. Larger: a contact that pulls is accepted.
-const TURNED: f64 = 1e-10;
+const RELEASE_OVERLAP: f64 = 1e-10;
 /// Depth inside an obstacle that is met, of the strand's length, and at most, m. Smaller: rounding at touch points; larger: it
 /// is seen.
-const DEEP: f64 = 1e-9;
-const DEEPEST: f64 = 1e-6;
+const DEPTH_FRACTION: f64 = 1e-9;
+const DEPTH_LIMIT_M: f64 = 1e-6;
 /// Times in one solve at most that something is done about loads where Newton stalls.
 const MOST_CAUGHT: usize = 4;
 /// What lies beside a load is let go where it is shorter than this part of the strand when Newton stalls. Smaller: Newton comes
 /// so near to its end only after many halvings. Larger: it is laid down again for nothing.
-const SHED: f64 = 1e-4;
+const SHED_LENGTH_FRACTION: f64 = 1e-4;
 /// Edges that a contact grows over at once.
 const MOST_EDGES: usize = 8;
 /// Part of p by which an end of a contact may be off the end of an arc and be taken to be there: Newton's steps go beyond it by
 /// less.
-const AT_BORDER: f64 = 1e-8;
+const ARC_END_FRACTION: f64 = 1e-8;
 /// A support this near to a boundary lies on it, m.
-pub(in crate::model::spans) const ON: f64 = 1e-9;
+pub(in crate::model::spans) const SUPPORT_CONTACT_DISTANCE_M: f64 = 1e-9;
 
 /// Solves a strand, events and all.
 ///
@@ -105,7 +105,7 @@ fn release(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> 
     let worst = (0..strand.contacts.len())
         .filter(|&j| !is_round_wheel(&strand.contacts[j], course))
         .min_by(|&a, &b| turned(&strand.contacts[a]).total_cmp(&turned(&strand.contacts[b])));
-    let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -TURNED) else { return Ok(false) };
+    let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -RELEASE_OVERLAP) else { return Ok(false) };
     let_go(strand, course, j)
 }
 
@@ -118,13 +118,13 @@ fn is_round_wheel(c: &Contact, course: &Course) -> bool {
 fn lifted(strand: &CableRun, course: &Course) -> Option<usize> {
     let wheels = strand.contacts.iter().filter(|c| is_round_wheel(c, course));
     let turned = |c: &&Contact| c.ends.p[1] - c.ends.p[0];
-    wheels.min_by(|a, b| turned(a).total_cmp(&turned(b))).filter(|c| turned(c) < -TURNED)?.wheel
+    wheels.min_by(|a, b| turned(a).total_cmp(&turned(b))).filter(|c| turned(c) < -RELEASE_OVERLAP)?.wheel
 }
 
 /// S: lets go of what has shrunk to next to nothing beside a load, whose weight a span that turned round past it would count;
 /// whether there was any.
 fn shed(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> {
-    let least = SHED * (strand.to - strand.from);
+    let least = SHED_LENGTH_FRACTION * (strand.to - strand.from);
     let small = |c: &Contact| !c.is_load() && c.ends.s[1] - c.ends.s[0] < least;
     let beside = |j: usize| strand.is_joined(j, 0) || strand.is_joined(j, 1);
     let Some(j) = (0..strand.contacts.len()).find(|&j| small(&strand.contacts[j]) && beside(j)) else {
@@ -241,7 +241,7 @@ fn meet(strand: &mut CableRun, course: &Course, world: &World, resting: bool) ->
     if world.is_empty() {
         return Ok(false);
     }
-    let deep = smaller(DEEP * (strand.to - strand.from), DEEPEST);
+    let deep = smaller(DEPTH_FRACTION * (strand.to - strand.from), DEPTH_LIMIT_M);
     let mut any = false;
     // From the last span, so that those before keep their number.
     for k in (0..strand.spans()).rev() {
@@ -272,8 +272,8 @@ fn passed(
     let mut best: Option<(f64, usize, f64, Vec2, Vec2)> = None;
     for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
         penetration::shapes(strand, course, k, |s0, at, c| {
-            for i in 1..PASSED_POINTS {
-                let s = c.span().length * i as f64 / PASSED_POINTS as f64;
+            for i in 1..CORNER_SEARCH_POINTS {
+                let s = c.span().length * i as f64 / CORNER_SEARCH_POINTS as f64;
                 let p = at + c.position_at(s);
                 let d = (p - corner.at).norm();
                 if best.is_none_or(|b| d < b.0) {
@@ -300,7 +300,7 @@ fn passed(
 }
 
 /// Points of a catenary among which the nearest to a corner is sought.
-const PASSED_POINTS: usize = 64;
+const CORNER_SEARCH_POINTS: usize = 64;
 
 /// Lays span k down where it hit.
 ///
@@ -368,7 +368,7 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
     for side in 0..2 {
         let outer = if side == 0 { k == 0 } else { k == strand.contacts.len() };
         if let (true, Tie::Held(at)) = (outer, strand.ties[side])
-            && let Some(end) = curve.on_chain(home, at, ON)
+            && let Some(end) = curve.on_chain(home, at, SUPPORT_CONTACT_DISTANCE_M)
             && (if side == 0 { end <= p } else { end >= p })
         {
             let s = if side == 0 { strand.from } else { strand.to };
@@ -486,7 +486,7 @@ fn grow(strand: &mut CableRun, course: &Course) -> bool {
             let curve = &course.curves[c.curve];
             let p = c.ends.p[side];
             let i = curve.locate(p, c.home);
-            let border = |q: f64| (p - q).abs() <= AT_BORDER * (1.0 + p.abs());
+            let border = |q: f64| (p - q).abs() <= ARC_END_FRACTION * (1.0 + p.abs());
             if c.wheel.is_none()
                 && !c.is_load()
                 && strand.has_span(j + side)

@@ -27,45 +27,45 @@ use crate::solution::Node;
 /// Halvings of a step at most: 2⁻¹² of a step of 1 % of the cable is a hair's breadth.
 const MAX_HALVINGS: u32 = 12;
 /// Part of a step over which a cable that runs away is followed at least.
-const RUN: f64 = 1e-3;
+const RUNAWAY_STEP_FRACTION: f64 = 1e-3;
 /// Drag with which it is followed at first, of the load per metre. Less: steps fail where it runs fast. More: more of them.
 const DRAG: f64 = 10.0;
 /// It has come to rest when it needs no more than this part of that drag.
 const LEAST_DRAG: f64 = 1e-3;
 /// A force that differs by less than this part is the same.
-const SAME: f64 = 1e-9;
+const FORCE_TOLERANCE: f64 = 1e-9;
 /// Steps it is followed for at most, and times in a row the drag is raised.
 const MOST_DRAGGED: usize = 200;
 const MOST_RAISED: usize = 5;
 /// Friction, of the force there, that may be missing in the step in which a load comes down, and the shortest step taken for its
 /// sake. More: forces are off by as much while such a step lasts. Less: more steps.
-const FRESH: f64 = 3e-4;
-const LANDS: f64 = 1.0 / 64.0;
+const MISSING_FRICTION_FRACTION: f64 = 3e-4;
+const LANDING_STEP_FRACTION: f64 = 1.0 / 64.0;
 /// Spans that are tried as pockets in one step. More: dearer failures, each halving tries again.
 const MOST_POCKETS: usize = 3;
 /// Tension at which a rest is first sought, of the weight of the cable: so taut that it touches only what it is led
 /// round. Less: it lies on more than the string of the route. More: nothing gained.
-const TAUT: f64 = 4.0;
+const FIRST_TENSION_WEIGHTS: f64 = 4.0;
 /// The same where that finds none: corners that the string of the route bends round and the cable does not give away more
 /// than it was shrunk by.
-const TAUTER: f64 = 400.0;
+const SECOND_TENSION_WEIGHTS: f64 = 400.0;
 /// Part of the load that acts at first. More: a long span sags into what is below it before it can be met step by step.
 /// Less: nothing gained.
-const LIGHT: f64 = 1e-3;
+const FIRST_LOAD_FRACTION: f64 = 1e-3;
 /// First step of the way from taut to what it is, and how large (at most twice this) steps become that succeed.
 const FIRST_STEP: f64 = 0.05;
 const LARGEST_STEP: f64 = 0.2;
 
 /// Parts of the cone of friction that a cable taken over may use: along the very edge of the cone sliding from an end would
 /// stop anywhere, and Newton stalls. The first changes nothing that shows, the second holds a little first.
-const WITHIN: [f64; 3] = [1.0 - 1e-5, 1.0 - 1e-3, 0.99];
+const ADOPTED_CONE_FRACTIONS: [f64; 3] = [1.0 - 1e-5, 1.0 - 1e-3, 0.99];
 
 /// Friction over what there is that is first tried where a cable slides, then twice that, and so on to the last, as parts of what
 /// there is. First smaller: more of them are tried. Last larger: dearer where no friction holds it.
 const FIRST_PART: f64 = 0.04;
 const MOST_PART: f64 = 1e4;
 /// Part of the friction that is missing to which it is found: three digits are shown.
-const NEEDED: f64 = 2e-4;
+const MISSING_FRICTION_TOLERANCE: f64 = 2e-4;
 /// Less than this part that is missing is none: rounding. Larger: a cable that slides by so little has no answer and no cause.
 const LEAST_PART: f64 = 1e-7;
 /// Part of the tensions by which a contact may be off sliding where less friction does not hold. Smaller: what is missing would
@@ -140,8 +140,13 @@ impl CableEquilibrium {
         let course = layout.course(curves, instant);
         // As it is laid; else where it needs no friction; either may have to begin taut.
         let smooth = BoundaryConditions { friction: 0.0, ..instant.clone() };
-        let ways =
-            [(instant, None), (&smooth, None), (&smooth, Some(TAUT)), (instant, Some(TAUT)), (&smooth, Some(TAUTER))];
+        let ways = [
+            (instant, None),
+            (&smooth, None),
+            (&smooth, Some(FIRST_TENSION_WEIGHTS)),
+            (instant, Some(FIRST_TENSION_WEIGHTS)),
+            (&smooth, Some(SECOND_TENSION_WEIGHTS)),
+        ];
         // What is not held at both ends would run to where it needs no friction.
         let held = start == SearchStart::AlsoWithoutFriction
             && layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
@@ -182,7 +187,7 @@ impl CableEquilibrium {
         let loose = layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none));
         let rings = if loose { &RINGS[..] } else { &RINGS[..1] };
         let laid = rings.iter().map(|ring| Seen { ring: *ring, ..Seen::default() });
-        laid.chain(loose.then_some(Seen { cooled: Some(TAUT), ..Seen::default() })).collect()
+        laid.chain(loose.then_some(Seen { cooled: Some(FIRST_TENSION_WEIGHTS), ..Seen::default() })).collect()
     }
 
     /// The same cable where all friction acts against it as it is drawn one way (1: towards its end, −1: towards its start): what it
@@ -219,7 +224,7 @@ impl CableEquilibrium {
             }
             (low, step) = (high, 2.0 * step);
         };
-        while high - low > NEEDED * (high - 1.0) {
+        while high - low > MISSING_FRICTION_TOLERANCE * (high - 1.0) {
             let middle = 0.5 * (low + high);
             if rests(middle, seen).is_some() {
                 high = middle;
@@ -231,7 +236,7 @@ impl CableEquilibrium {
             }
         }
         let found = rests(high, seen)?;
-        let near = MOBILISED * (1.0 + NEEDED * (high - 1.0));
+        let near = MOBILISED * (1.0 + MISSING_FRICTION_TOLERANCE * (high - 1.0));
         let slides = |s: &CableRun| [1.0, -1.0].iter().any(|way| point_load::mobilised(s, &found.course, *way, near));
         let loose = layout.strands.iter().zip(&found.strands).filter(|(p, _)| p.supports.iter().all(Option::is_none));
         loose.map(|(_, s)| s).any(slides).then_some(high)
@@ -248,7 +253,7 @@ impl CableEquilibrium {
         work: &mut Work,
     ) -> Result<Self, Failure> {
         let mut first = None;
-        for within in WITHIN {
+        for within in ADOPTED_CONE_FRACTIONS {
             let course = layout.course(layout.curves(), instant);
             let Some(strands) = from_solution::take(layout, &course, instant, nodes, within) else { continue };
             let mut network = Self { strands, course, instant: instant.clone() };
@@ -290,8 +295,8 @@ impl CableEquilibrium {
         }
         if let Some(taut) = taut {
             begin.thermal = self.shrunk_thermal(layout, goal, taut);
-            begin.load *= LIGHT;
-            begin.forces.iter_mut().for_each(|f| *f *= LIGHT);
+            begin.load *= FIRST_LOAD_FRACTION;
+            begin.forces.iter_mut().for_each(|f| *f *= FIRST_LOAD_FRACTION);
             layout.give(&mut self.course, &begin);
             for (strand, part) in self.strands.iter_mut().zip(&layout.strands) {
                 if part.supports.iter().all(Option::is_some) {
@@ -434,7 +439,7 @@ impl CableEquilibrium {
                 if strand.has_span(j)
                     && let Some(g) = strand.solve_span(&self.course, j)
                 {
-                    other |= (strand.forces[j] - g).norm() > SAME * g.norm();
+                    other |= (strand.forces[j] - g).norm() > FORCE_TOLERANCE * g.norm();
                     strand.forces[j] = g;
                 }
             }
@@ -630,7 +635,7 @@ impl CableEquilibrium {
             at.between(from, to, next);
             let trouble = match self.step(layout, at, work) {
                 // What comes down has no friction in the step in which it does: that shall be a short one.
-                Ok(t) if moves && t.fresh > FRESH && step > LANDS => {
+                Ok(t) if moves && t.fresh > MISSING_FRICTION_FRACTION && step > LANDING_STEP_FRACTION => {
                     self.undo(layout, work);
                     whole = whole.or(Some(step));
                     (step, taken.halved) = (0.5 * step, taken.halved + 1);
@@ -658,13 +663,13 @@ impl CableEquilibrium {
             taken.halved += 1;
             if halvings > MAX_HALVINGS {
                 // Where nothing near by holds the cable it runs away, to the next place that does.
-                let next = if done + RUN < 1.0 { done + RUN } else { 1.0 };
+                let next = if done + RUNAWAY_STEP_FRACTION < 1.0 { done + RUNAWAY_STEP_FRACTION } else { 1.0 };
                 at.between(from, to, next);
                 let t = match self.follow(layout, at, work) {
                     Ok(t) => t,
                     Err(other) => return Err(Stopped { failure: self.reason(trouble, other), done }),
                 };
-                (taken, done, halvings, step) = (taken.and(t), next, 0, RUN);
+                (taken, done, halvings, step) = (taken.and(t), next, 0, RUNAWAY_STEP_FRACTION);
                 taken.ran += 1;
             }
         }

@@ -22,7 +22,7 @@ const EDGE_NODES: usize = 8;
 /// Longest stretch of an arc over which forces are summed with one rule of 5 Gauss points, rad: exact to 1e-11.
 const PANEL: f64 = 1.0;
 /// Longest one for which 3 points are as good, rad.
-const SHORT: f64 = 0.1;
+const THREE_POINT_ARC: f64 = 0.1;
 
 /// Nodes and weights of 3-point Gauss–Legendre quadrature on [0, 1].
 const THREE: [(f64, f64); 3] =
@@ -200,7 +200,7 @@ fn pressed(track: &Track<'_>, stretches: &[Stretch]) -> (f64, Vec2, f64, f64) {
         let (a, way, turns) = (stretch.from, stretch.to - stretch.from, stretch.pivot.turns());
         let panels = if turns { (way / PANEL).ceil().max(1.0) } else { 1.0 };
         let h = way / panels;
-        let rule: &[(f64, f64)] = if turns && h <= SHORT { &THREE } else { &GAUSS };
+        let rule: &[(f64, f64)] = if turns && h <= THREE_POINT_ARC { &THREE } else { &GAUSS };
         for k in 0..panels as usize {
             for (u, weight) in rule {
                 let p = a + (k as f64 + u) * h;

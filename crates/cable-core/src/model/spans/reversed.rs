@@ -12,7 +12,7 @@ use crate::solution::{ContactPart, ContactReport, ContactSample, Node, SupportRe
 
 /// Heights that differ by less than this part of the cable are one. Smaller: rounding, which is another one in a scene that is moved or
 /// mirrored, says from where it is counted. Larger: a cable whose ends differ by so little is counted from either.
-const LEVEL: f64 = 1e-9;
+const HEIGHT_TOLERANCE: f64 = 1e-9;
 
 /// Whether a cable is counted from its end when its rest is sought: that is its upper one; of two that are level the one beside which
 /// the cable is led higher.
@@ -26,7 +26,7 @@ pub(in crate::model::spans) fn is_led_up(p: &Problem) -> bool {
     let height = |v: &Vec2| -v.dot(&load) / load.norm();
     let n = places.len();
     let pairs = places.iter().zip(places.iter().rev()).take(n / 2);
-    let higher = pairs.map(|(a, b)| height(b) - height(a)).find(|d| d.abs() > LEVEL * p.length);
+    let higher = pairs.map(|(a, b)| height(b) - height(a)).find(|d| d.abs() > HEIGHT_TOLERANCE * p.length);
     higher.is_some_and(|d| d > 0.0)
 }
 

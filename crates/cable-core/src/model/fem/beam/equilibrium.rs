@@ -30,14 +30,15 @@ const MAX_STEPS: usize = 40;
 /// Longest turn of a node in one step, rad. Larger steps jump to other windings, smaller ones cost steps.
 const LONGEST_TURN: f64 = 0.5;
 /// Angles and forces are found when a step changes them by less than this.
-const STILL: f64 = 1e-11;
+const STEP_TOLERANCE: f64 = 1e-11;
 /// Tries with other bending stiffnesses on the way to the real one.
 const MAX_TRIES: usize = 80;
 /// Gauss points of a bar from 0 to 1 and their weights.
 pub(in crate::model::fem) const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 /// 3l ∫φₐ'φ_b' ds of a bar of length l.
-pub(in crate::model::fem) const BEND: [[f64; 3]; 3] = [[7.0, -8.0, 1.0], [-8.0, 16.0, -8.0], [1.0, -8.0, 7.0]];
+pub(in crate::model::fem) const BEND_STIFFNESS_INTEGRALS: [[f64; 3]; 3] =
+    [[7.0, -8.0, 1.0], [-8.0, 16.0, -8.0], [1.0, -8.0, 7.0]];
 
 /// One bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -376,7 +377,7 @@ impl Beam {
             }
             self.steps += 1;
             let size = turn.max(change);
-            if size <= STILL || (size <= 1e3 * STILL && size > 0.5 * before) {
+            if size <= STEP_TOLERANCE || (size <= 1e3 * STEP_TOLERANCE && size > 0.5 * before) {
                 return if negative == down { Outcome::Stable } else { Outcome::Unstable };
             }
             before = size;
@@ -402,9 +403,9 @@ impl Beam {
             let span = self.ends.iter().position(|ends| ends.first <= bar.stretch && bar.stretch < ends.last);
             let stiff = bending / (3.0 * self.rest(e));
             for r in 0..3 {
-                g[2 * e + r] += stiff * dot(&BEND[r], &self.angles[2 * e..2 * e + 3]);
+                g[2 * e + r] += stiff * dot(&BEND_STIFFNESS_INTEGRALS[r], &self.angles[2 * e..2 * e + 3]);
                 for s in r..3 {
-                    h.add(2 * e + r, 2 * e + s, stiff * BEND[r][s]);
+                    h.add(2 * e + r, 2 * e + s, stiff * BEND_STIFFNESS_INTEGRALS[r][s]);
                 }
             }
             for p in self.samples(e, &starts) {
@@ -469,7 +470,7 @@ mod tests {
         for a in 0..3 {
             for b in 0..3 {
                 let sum: f64 = GAUSS.iter().map(|&(x, w)| 3.0 * w * slope(x)[a] * slope(x)[b]).sum();
-                assert!((sum - BEND[a][b]).abs() < 1e-12, "{a} {b}: {sum}");
+                assert!((sum - BEND_STIFFNESS_INTEGRALS[a][b]).abs() < 1e-12, "{a} {b}: {sum}");
             }
         }
     }

@@ -1,7 +1,7 @@
 //! This module reads nodes out of a solved stiff cable: places, tensions, moments and curvatures.
 
 use crate::math::{Vec2, larger};
-use crate::model::fem::beam::equilibrium::{BEND, Beam, GAUSS, dot};
+use crate::model::fem::beam::equilibrium::{BEND_STIFFNESS_INTEGRALS, Beam, GAUSS, dot};
 use crate::model::fem::free::results::Point;
 use crate::model::fem::free::stations::Stop;
 
@@ -15,7 +15,7 @@ impl Beam {
     /// Moments at both nodes of bar `e`, N·m: those that balance it.
     fn moments(&self, e: usize, starts: &[Vec2]) -> [f64; 2] {
         let stiff = self.bending / (3.0 * self.rest(e));
-        let mut pull = [0, 2].map(|r| stiff * dot(&BEND[r], &self.angles[2 * e..2 * e + 3]));
+        let mut pull = [0, 2].map(|r| stiff * dot(&BEND_STIFFNESS_INTEGRALS[r], &self.angles[2 * e..2 * e + 3]));
         for p in self.samples(e, starts) {
             for (pull, shape) in pull.iter_mut().zip([p.shapes[0], p.shapes[2]]) {
                 *pull -= p.length * p.across * (1.0 + p.tau) * shape;

@@ -11,7 +11,7 @@ use crate::problem::Problem;
 const MAX_CHANGES: usize = 60;
 
 /// Part of the cable's radius by which a cable may lie in an obstacle: what elements are off between their ends.
-const DEEP: f64 = 1e-3;
+const OVERLAP_TOLERANCE: f64 = 1e-3;
 
 /// Elements of a new stretch of contact.
 const ELEMENTS: usize = 8;
@@ -24,7 +24,7 @@ const NEW: f64 = 0.05;
 const POINT: f64 = 1e-4;
 
 /// Part by which a cable may be more bent than the round it touches, or pull at it in parts of the scene's forces.
-const SLACK: f64 = 1e-7;
+const CONTACT_CURVATURE_TOLERANCE: f64 = 1e-7;
 
 /// The same for the bend of what was found to be no stretch: at the very limit it is either, and would go to and fro.
 const POINT_SLACK: f64 = 1e-3;
@@ -175,7 +175,7 @@ impl Elastica {
             let c = self.contacts[k];
             let u = *self.pieces[j].nodes.last()?;
             let pulley = matches!(c.owner, Owner::Pulley(_));
-            if !pulley && self.push(j) < -SLACK * size {
+            if !pulley && self.push(j) < -CONTACT_CURVATURE_TOLERANCE * size {
                 self.release(j);
                 return Some(true);
             }
@@ -185,7 +185,7 @@ impl Elastica {
             let bent = c.sense * (u[MOMENT] / self.bending - c.curvature());
             let least = 1.0 / self.length;
             let limit = if c.curvature().abs() > least { c.curvature().abs() } else { least };
-            let slack = if points.contains(&k) { POINT_SLACK } else { SLACK };
+            let slack = if points.contains(&k) { POINT_SLACK } else { CONTACT_CURVATURE_TOLERANCE };
             if bent > slack * limit {
                 self.stretch(j, k);
                 return Some(true);
@@ -201,7 +201,7 @@ impl Elastica {
             let pulley = matches!(c.owner, Owner::Pulley(_));
             for u in &self.pieces[k].nodes {
                 let deeper = !pulley && self.better(problem, c, place(u), tangent(u)).is_some();
-                if deeper || (!pulley && self.pressure(c, u) * self.length < -SLACK * size) {
+                if deeper || (!pulley && self.pressure(c, u) * self.length < -CONTACT_CURVATURE_TOLERANCE * size) {
                     return None;
                 }
             }
@@ -214,7 +214,7 @@ impl Elastica {
         for (which, tip) in tips {
             let Some((piece, Some(u))) = tip else { continue };
             let contact = piece.lies.and_then(|c| self.contacts.get(c));
-            if contact.is_some_and(|c| self.tip_push(which, c, u) < -SLACK * size) {
+            if contact.is_some_and(|c| self.tip_push(which, c, u) < -CONTACT_CURVATURE_TOLERANCE * size) {
                 return None;
             }
         }
@@ -245,7 +245,7 @@ impl Elastica {
 
     /// What a place on a contact lies deeper in than in that contact.
     fn better(&self, problem: &Problem, c: &Contact, x: Vec2, t: Vec2) -> Option<Contact> {
-        let deep = DEEP * problem.radius;
+        let deep = OVERLAP_TOLERANCE * problem.radius;
         let gap = problem.world.signed_gap(x, 0.0).filter(|g| g.gap_m < -deep)?;
         let other = contact_at(problem, &gap, x, t)?;
         Some(Contact { mobilised: c.mobilised, slips: c.slips, sense: c.sense, ..other })
@@ -253,7 +253,7 @@ impl Elastica {
 
     /// Looks for what free pieces run into; a contact in one point where they are deepest.
     fn meet(&mut self, problem: &Problem) -> Option<bool> {
-        let deep = DEEP * problem.radius;
+        let deep = OVERLAP_TOLERANCE * problem.radius;
         let mut worst: Option<(f64, usize, usize, crate::contact::Gap)> = None;
         let world = &problem.world;
         for (k, piece) in self.pieces.iter().enumerate().filter(|(_, p)| p.lies.is_none()) {

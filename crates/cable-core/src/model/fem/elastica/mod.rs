@@ -52,21 +52,21 @@ const MAX_STEPS: usize = 40;
 const LONGEST_TURN: f64 = 0.4;
 
 /// Part of its length that a piece may lose in one step: it must not turn over.
-const MOST_OF_LENGTH: f64 = 0.6;
+const PIECE_SHORTENING_LIMIT: f64 = 0.6;
 
 /// Steps in which a stretch of contact wants to be shorter than nothing before it is taken for a point. Fewer: first guesses that are too
 /// long are; more: all others wait for it.
-const PATIENCE: usize = 3;
+const STEPS_BEFORE_POINT_CONTACT: usize = 3;
 
 /// Newton steps times nodes that are spent on a cable from one guess. Less: cables with ten contacts are left to a chain of bars; more: seconds go
 /// into what is not found. Chosen so that a guess costs some tenths of a second; not tuned further.
 const MOST_WORK: usize = 25_000;
 
 /// Newton has ended where no unknown moves by more than this part of its size.
-const STILL: f64 = 1e-10;
+const STEP_TOLERANCE: f64 = 1e-10;
 
 /// Part of an unknown's size by which it is moved to find a slope, with central differences: their error is its square.
-const NUDGE: f64 = 1e-6;
+const DIFFERENCE_STEP: f64 = 1e-6;
 
 /// What the cable can lie on, at one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -403,8 +403,8 @@ impl Elastica {
                 }
                 turn = if d[ANGLE].abs() <= turn { turn } else { d[ANGLE].abs() };
                 let shrinks = -d[LENGTH] / u[LENGTH].abs();
-                if shrinks > MOST_OF_LENGTH {
-                    part = part.min(MOST_OF_LENGTH / shrinks);
+                if shrinks > PIECE_SHORTENING_LIMIT {
+                    part = part.min(PIECE_SHORTENING_LIMIT / shrinks);
                 }
             }
             if !most.is_finite() {
@@ -417,7 +417,7 @@ impl Elastica {
                 wanting[k] = if gone { wanting[k] + 1 } else { 0 };
                 at += STATES * p.nodes.len();
             }
-            self.shrinking = wanting.iter().position(|w| *w >= PATIENCE);
+            self.shrinking = wanting.iter().position(|w| *w >= STEPS_BEFORE_POINT_CONTACT);
             if self.shrinking.is_some() {
                 return false;
             }
@@ -428,7 +428,7 @@ impl Elastica {
                 }
             }
             self.steps += 1;
-            if part == 1.0 && most < STILL {
+            if part == 1.0 && most < STEP_TOLERANCE {
                 return true;
             }
         }
@@ -451,7 +451,7 @@ impl Elastica {
             let mut moved = near.to_vec();
             for j in 0..STATES * near.len() {
                 let (node, i) = (j / STATES, j % STATES);
-                let by = NUDGE * if i == LENGTH { near[node][i].abs() } else { sizes[i] };
+                let by = DIFFERENCE_STEP * if i == LENGTH { near[node][i].abs() } else { sizes[i] };
                 high.clear();
                 low.clear();
                 moved[node][i] = near[node][i] + by;

@@ -36,50 +36,50 @@ const MOST_BARS: f64 = 500.0;
 const MAX_STEPS: usize = 1200;
 
 /// Steps before anything that is not definite is resisted.
-const PATIENT: usize = 700;
+const STEPS_BEFORE_RESISTANCE: usize = 700;
 
 /// Changes of the active set in a step. More: the first steps pay for exactness they do not need.
 const MAX_SETS: usize = 8;
 
 /// Changes of the active set in a step in which contacts are let go.
-const LET_GO: usize = 4;
+const RELEASE_ROUNDS: usize = 4;
 
 /// Longest turn of a bar in a step, rad.
 const LONGEST_TURN: f64 = 0.4;
 
 /// Part by which a bar's rest length grows in a step until all material is paid out.
-const PAID_OUT: f64 = 0.03;
+const PAY_OUT_RATE: f64 = 0.03;
 
 /// Part of the cable's radius that a push of the whole weight presses in. Smaller: numbers lose digits; larger: contacts are found late.
-const PRESSED: f64 = 1e-3;
+const PENALTY_DEPTH_FRACTION: f64 = 1e-3;
 
 /// Part of the cable's radius by which nothing moves any more.
-const STILL: f64 = 1e-5;
+const MOVE_TOLERANCE: f64 = 1e-5;
 
 /// Times that resistance is raised in a step.
 const MOST_RESISTED: usize = 8;
 
 /// Part of the first resistance that a chain begins with which is nearly at rest.
-const NEAR: f64 = 1e-2;
+const REDUCED_RESISTANCE_FACTOR: f64 = 1e-2;
 
 /// Times that a chain is moved which has come to rest where it could give way.
 const MAX_NUDGES: usize = 2;
 
 /// Part of the cable's radius by which it is moved. Less: rounding moves it as far; more: it is put into obstacles.
-const NUDGED: f64 = 1e-2;
+const PERTURBATION_FRACTION: f64 = 1e-2;
 
 /// Part of the cable's radius by which the first lay is pushed out of obstacles.
-const CLEAR: f64 = 1e-3;
+const FIRST_CLEARANCE_FRACTION: f64 = 1e-3;
 
 /// Part of the cable's radius by which it may be in an obstacle on its way.
-const DEEPEST: f64 = 0.5;
+const OVERLAP_LIMIT: f64 = 0.5;
 
 /// Part by which a bar may be shorter than its material in the first lay of a flexible cable. A stiff one has no pockets: more is laid anew.
 const POCKET: f64 = 0.5;
 
 /// Bars by which an answer may be elsewhere than the chain that was let go from it. Less: what a coarse chain is off by; more: answers that give way
 /// a little are taken for stable.
-const STAYS: f64 = 2.0;
+const STABILITY_DISTANCE_BARS: f64 = 2.0;
 
 /// Half-bandwidth: a node sees two neighbours on each side.
 const HALF_BAND: usize = 5;
@@ -189,10 +189,10 @@ pub(super) fn let_go<'a>(
         return LetGo::Unknown;
     };
     let from = chain.x.clone();
-    if !chain.settle(NEAR) {
+    if !chain.settle(REDUCED_RESISTANCE_FACTOR) {
         return LetGo::Unknown;
     }
-    let near = STAYS * chain.bar;
+    let near = STABILITY_DISTANCE_BARS * chain.bar;
     let stays = from.iter().zip(&chain.x).all(|(a, b)| (a - b).norm() <= near);
     match (chain.stable, stays) {
         (true, true) => LetGo::Stays,
@@ -207,7 +207,7 @@ impl<'a> Chain<'a> {
         let nodes = self.nodes();
         let finer = 2.0 * self.finer;
         let mut fine = Self::new(self.problem, self.time_s, dragged, &Curve::new(&nodes), self.lay, finer)?;
-        let rests = fine.settle(NEAR);
+        let rests = fine.settle(REDUCED_RESISTANCE_FACTOR);
         Some((fine, rests))
     }
 
@@ -311,19 +311,19 @@ impl<'a> Chain<'a> {
             chain.whole.push(whole);
             let pull = curve.at(0.5 * (chain.arc[e] + chain.arc[e + 1])).1;
             let fits = whole * (1.0 + pull / problem.axial_stiffness);
-            chain.rest.push(if way < (1.0 - PAID_OUT) * fits { larger(way, 0.05 * whole) } else { whole });
+            chain.rest.push(if way < (1.0 - PAY_OUT_RATE) * fits { larger(way, 0.05 * whole) } else { whole });
             chain.tension.push(pull);
             for k in [e, e + 1] {
                 chain.load[k] += body * (0.5 * ds);
             }
         }
-        push_chain_out(problem, &chain.held, &|_, _| false, &mut chain.x, CLEAR * problem.radius);
-        (chain.depth(&chain.x) < DEEPEST * problem.radius).then_some(chain)
+        push_chain_out(problem, &chain.held, &|_, _| false, &mut chain.x, FIRST_CLEARANCE_FRACTION * problem.radius);
+        (chain.depth(&chain.x) < OVERLAP_LIMIT * problem.radius).then_some(chain)
     }
 
     /// Stiffness of contacts, N/m.
     fn stiffness(&self) -> f64 {
-        self.scale / (PRESSED * self.problem.radius)
+        self.scale / (PENALTY_DEPTH_FRACTION * self.problem.radius)
     }
 
     /// All pairs of chain and obstacles within `reach`, m.
@@ -394,7 +394,7 @@ impl<'a> Chain<'a> {
         let weight = self.scale / self.problem.length;
         let first = weight / self.bar;
         let mut shift = resistance * first;
-        let still = STILL * self.problem.radius;
+        let still = MOVE_TOLERANCE * self.problem.radius;
         let (mut small, mut nudges) = (false, 0);
         for round in 0..MAX_STEPS {
             self.steps += 1;
@@ -408,7 +408,7 @@ impl<'a> Chain<'a> {
                 if found.is_some() {
                     break;
                 }
-                if exact && round < PATIENT && nudges == 0 {
+                if exact && round < STEPS_BEFORE_RESISTANCE && nudges == 0 {
                     exact = false;
                 } else {
                     shift = larger(shift * 8.0, 1e-6 * first);
@@ -433,7 +433,7 @@ impl<'a> Chain<'a> {
             let mut tries = 0;
             loop {
                 next = self.x.iter().zip(&step).map(|(x, d)| x + d * part).collect();
-                if self.depth(&next) < DEEPEST * self.problem.radius {
+                if self.depth(&next) < OVERLAP_LIMIT * self.problem.radius {
                     break;
                 }
                 part *= 0.5;
@@ -457,7 +457,7 @@ impl<'a> Chain<'a> {
                 // It stands still where it could give way.
                 nudges += 1;
                 self.nudge(nudges);
-                shift = larger(shift, NEAR * first);
+                shift = larger(shift, REDUCED_RESISTANCE_FACTOR * first);
             }
             small = paid && whole && moved < 0.2 * self.bar;
             shift *= if whole && moved < 0.5 * self.bar {
@@ -481,7 +481,8 @@ impl<'a> Chain<'a> {
         for k in (1..n - 1).filter(|&k| !self.held[k]) {
             let phase = std::f64::consts::PI * (waves * k) as f64 / n as f64;
             let along = from[k + 1] - from[k - 1];
-            self.x[k] += perp(along) * (NUDGED * self.problem.radius * phase.sin() / larger(along.norm(), 1e-300));
+            self.x[k] += perp(along)
+                * (PERTURBATION_FRACTION * self.problem.radius * phase.sin() / larger(along.norm(), 1e-300));
         }
     }
 
@@ -490,7 +491,7 @@ impl<'a> Chain<'a> {
         let mut paid = true;
         for (rest, whole) in self.rest.iter_mut().zip(&self.whole) {
             if *rest < *whole {
-                let grown = *rest * (1.0 + PAID_OUT);
+                let grown = *rest * (1.0 + PAY_OUT_RATE);
                 *rest = if grown < *whole { grown } else { *whole };
                 paid &= *rest >= *whole;
             }
@@ -559,7 +560,7 @@ impl<'a> Chain<'a> {
                 let gap = t.gap.gap_m + moved;
                 changed |= t.active != (gap < 0.0);
                 // Two that are let go and taken back by turns would go on for ever: later on none is let go.
-                t.active = gap < 0.0 || (t.active && set >= LET_GO);
+                t.active = gap < 0.0 || (t.active && set >= RELEASE_ROUNDS);
                 // What is new pushes from the next solution on.
                 t.push = if gap < 0.0 { -stiff * gap } else { 0.0 };
             }
@@ -769,7 +770,7 @@ mod tests {
             let mut chain =
                 Chain::new(&problem, 0.0, &[None, None], &Curve::new(&straight.nodes), Some(&straight), 1.0)
                     .ok_or("no chain")?;
-            assert!(chain.settle(NEAR), "{part}");
+            assert!(chain.settle(REDUCED_RESISTANCE_FACTOR), "{part}");
             let off = chain.x.iter().map(|x| (x.y - 1.0).abs()).fold(0.0, larger);
             assert!(chain.stable, "{part}");
             assert_eq!(off < 1e-9, stays, "{part} of the critical force: {off} m aside");

@@ -32,10 +32,10 @@ const FIRST_RISE: f64 = 4.0;
 const MAX_RISES: usize = 60;
 
 /// Part of the cable's radius that a node of the flexible answer may be off what it lies on.
-const ON_IT: f64 = 1e-3;
+const CONTACT_DISTANCE_FRACTION: f64 = 1e-3;
 
 /// Part of an arc that is given up where two contacts leave no cable between them.
-const GIVEN_UP: f64 = 0.25;
+const SURRENDERED_ARC_FRACTION: f64 = 0.25;
 
 /// What happens along the cable, between two arc lengths (m).
 #[derive(Clone, Copy, Debug)]
@@ -364,7 +364,7 @@ impl Elastica {
         curve: &Curve<'_>,
         events: &mut Vec<Event>,
     ) {
-        let within = ON_IT * problem.radius + 1e-9 * problem.length;
+        let within = CONTACT_DISTANCE_FRACTION * problem.radius + 1e-9 * problem.length;
         let nodes = &answer.nodes;
         let along = |i: usize| {
             let side = |k: usize| curve.angles.get(k).map_or(Vec2::zeros(), |a| Vec2::new(a.cos(), a.sin()));
@@ -526,7 +526,7 @@ impl Elastica {
             let need = 0.5 * self.layer(curve.at(events[i].from).1);
             let lack = need - (events[i].from - events[i - 1].to);
             if lack > 0.0 {
-                let spare = |e: &Event| (GIVEN_UP * (e.to - e.from)).min(0.5 * lack);
+                let spare = |e: &Event| (SURRENDERED_ARC_FRACTION * (e.to - e.from)).min(0.5 * lack);
                 let (a, b) = (spare(&events[i - 1]), spare(&events[i]));
                 events[i - 1].to -= a;
                 events[i].from += b;

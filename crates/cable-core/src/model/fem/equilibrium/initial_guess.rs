@@ -11,12 +11,12 @@ use crate::scene::SupportKind;
 const MAX_PASSES: usize = 60;
 
 /// How deep (m) inside an obstacle a first lay is found and pushed out.
-const DEEPEST: f64 = 0.5;
+const DEPENETRATION_DEPTH: f64 = 0.5;
 
 /// Steps in which an end is leaned until it is clear of what is below it, rad, and how many to either side: a half turn. Smaller: the same at
 /// more cost; larger: it begins higher than it needs to.
-const LEAN: f64 = std::f64::consts::PI / 36.0;
-/// See `LEAN`.
+const LEAN_STEP: f64 = std::f64::consts::PI / 36.0;
+/// See `LEAN_STEP`.
 const MOST_LEANS: i32 = 36;
 
 /// Corners of the way of a cable with the arc length at each, m.
@@ -74,7 +74,7 @@ pub fn leaning_way(problem: &Problem) -> Vec<(f64, Vec2)> {
         let down = pull.try_normalize(0.0).unwrap_or_else(|| -Vec2::y());
         // A clamp says to which side it leans.
         let aside = hinge.angle.map_or(1.0, f64::cos) * reach;
-        let lean = if cross(down, Vec2::new(aside, 0.0)) < 0.0 { -LEAN } else { LEAN };
+        let lean = if cross(down, Vec2::new(aside, 0.0)) < 0.0 { -LEAN_STEP } else { LEAN_STEP };
         let leaned = |k: i32| {
             let (sin, cos) = (lean * f64::from(k)).sin_cos();
             at + Vec2::new(cos * down.x - sin * down.y, sin * down.x + cos * down.y) * reach.abs()
@@ -215,7 +215,7 @@ pub fn push_chain_out(
     for _ in 0..MAX_PASSES {
         let mut moved = false;
         for k in (0..x.len()).filter(|&k| !held[k]) {
-            if let Some(g) = problem.world.signed_gap(x[k], DEEPEST)
+            if let Some(g) = problem.world.signed_gap(x[k], DEPENETRATION_DEPTH)
                 && g.gap_m < 0.5 * clear
             {
                 x[k] += g.normal * (clear - g.gap_m);

@@ -31,8 +31,8 @@ const PLAIN_ROUNDS: usize = 8;
 
 /// Least part of the way that friction is taken towards its new normal forces, and by what that part changes from round to round.
 const LEAST_PART: f64 = 0.03;
-const GROW: f64 = 1.1;
-const SHRINK: f64 = 0.6;
+const RESISTANCE_GROWTH: f64 = 1.1;
+const RESISTANCE_SHRINKAGE: f64 = 0.6;
 
 /// The same in a step of relaxation.
 const RELAX_LAG_ROUNDS: usize = 8;
@@ -42,21 +42,21 @@ const MAX_RELAX: usize = 600;
 
 /// Whole load, in weights of the cable, from which dead loads set the first resistance. Less: a way down with a little load is
 /// slower than it need be; more: loads of that many weights throw the cable about.
-const LOADED: f64 = 2.0;
+const DEAD_LOAD_RATIO: f64 = 2.0;
 
 /// Unbalanced force, in tolerances, that is accepted at rest where contact forces are known no better: 1e-3 of the whole load. More:
 /// a node a rounding away from a corner makes any force a rest (6e10 N were taken for one); less: cables that a support
 /// squeezes find none.
-const NEGLIGIBLE: f64 = 1e3;
+const RESIDUAL_LIMIT_TOLERANCES: f64 = 1e3;
 
 /// Part of all loads on a cable that may be held by nothing. Larger: what slides slowly is said to rest. Smaller: what rests is
 /// refused for what its nodes are let off with. Of slopes, posts, beams and drapes at random those that held left up to 4e-5,
 /// those with 0.3 % too little friction 3e-4 and more.
-const WHOLE: f64 = 1e-4;
+const UNHELD_LOAD_FRACTION: f64 = 1e-4;
 /// Unbalanced force of a polished rest, in tolerances, and the iterations that each part of the way to it may take. Less force left: nothing
 /// but rounding is gained; more: what is left at a hundred nodes of a lay that all but slides is seen in the balance of the whole. The first
 /// has what the search left by coming to its last iteration; fewer for it: what slides as a whole on smooth ground is left as it slides.
-const POLISHES: [(f64, usize); 3] = [(1.0, 600), (0.1, 30), (1e-2, 30)];
+const POLISH_STAGES: [(f64, usize); 3] = [(1.0, 600), (0.1, 30), (1e-2, 30)];
 
 /// Times a resting place is sought again because corners were met or left on the way to it.
 const CORNER_ROUNDS: usize = 8;
@@ -106,7 +106,7 @@ impl Dynamics {
             self.adapt_slip();
             self.adapt_stiffness([f64::INFINITY, 0.0], 1.0);
             self.task.max_iterations = REST_ITERATIONS;
-            self.task.most_noise = NEGLIGIBLE * self.task.tolerance;
+            self.task.most_noise = RESIDUAL_LIMIT_TOLERANCES * self.task.tolerance;
             let mut pose = self.still_pose();
             let mut done = self.lag_wholly(&mut pose);
             if done.is_err_and(|f| f.cause != FailureCause::WorkSpent) && self.contacts.slip < SLIDE {
@@ -145,7 +145,7 @@ impl Dynamics {
         let kept = (self.saved.clone(), self.can_restore);
         let (exact, to) = (self.task.tolerance, self.motion.time);
         let mut all = found;
-        for (part, iterations) in POLISHES {
+        for (part, iterations) in POLISH_STAGES {
             self.save();
             self.prepare_way([to, to], Some(dragged));
             self.task.most_noise = exact;
@@ -200,9 +200,9 @@ impl Dynamics {
                 // What goes to and fro gets no nearer by taking as much of the way.
                 if round >= PLAIN_ROUNDS {
                     part = if now < (1.0 - 0.5 * part) * off {
-                        bounded(GROW * part, 0.0, 1.0)
+                        bounded(RESISTANCE_GROWTH * part, 0.0, 1.0)
                     } else {
-                        larger(SHRINK * part, LEAST_PART)
+                        larger(RESISTANCE_SHRINKAGE * part, LEAST_PART)
                     };
                 }
                 off = now;
@@ -265,7 +265,7 @@ impl Dynamics {
     /// and found no rest.
     fn first_resistance(&self) -> f64 {
         let whole = load_scale(&self.problem).1 / self.even_bars as f64;
-        if whole > LOADED * self.bar_weight { whole / 0.1 } else { self.soft_shift() }
+        if whole > DEAD_LOAD_RATIO * self.bar_weight { whole / 0.1 } else { self.soft_shift() }
     }
 
     /// Follows the way down with ever weaker viscous resistance, then finds the resting place itself. On the way what rounding
@@ -274,9 +274,11 @@ impl Dynamics {
         let kept = (self.saved.clone(), self.can_restore);
         self.save();
         let mut found = self.relax_within(f64::INFINITY, to, dragged);
-        if found.is_err_and(|f| f.cause != FailureCause::WorkSpent && f.residual > NEGLIGIBLE * self.task.tolerance) {
+        if found.is_err_and(|f| {
+            f.cause != FailureCause::WorkSpent && f.residual > RESIDUAL_LIMIT_TOLERANCES * self.task.tolerance
+        }) {
             self.restore();
-            found = self.relax_within(NEGLIGIBLE, to, dragged);
+            found = self.relax_within(RESIDUAL_LIMIT_TOLERANCES, to, dragged);
         }
         (self.saved, self.can_restore) = kept;
         found
@@ -338,7 +340,7 @@ impl Dynamics {
                     } else if stubborn
                         && found.is_lawful(&self.task)
                         && resists <= exact
-                        && done.residual <= NEGLIGIBLE * exact
+                        && done.residual <= RESIDUAL_LIMIT_TOLERANCES * exact
                     {
                         self.motion.time = to;
                         return Ok(Converged { iterations: total, residual: done.residual + resists });
@@ -491,7 +493,8 @@ impl Dynamics {
         }
         let left = results::unbalanced(self, &self.motion.x, self.motion.time).norm();
         let scale = load_scale(&self.problem).1;
-        (left > WHOLE * scale).then(|| format!("it slides: {left:.3e} N of {scale:.3e} N are held by nothing"))
+        (left > UNHELD_LOAD_FRACTION * scale)
+            .then(|| format!("it slides: {left:.3e} N of {scale:.3e} N are held by nothing"))
     }
 
     /// How far (m) both ends have moved to `sought` at least, if that is further than the cable is long.

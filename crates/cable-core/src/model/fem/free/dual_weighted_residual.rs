@@ -24,9 +24,9 @@ use crate::model::fem::free::stations::{Layout, SpanEnds};
 
 /// Rounds of the correction, and the part of it below which another round changes nothing that shows.
 const ROUNDS: usize = 8;
-const SETTLED: f64 = 0.01;
+const CORRECTION_TOLERANCE: f64 = 0.01;
 /// By how much finer elements are made where the lack of the present ones says nothing, and how often at most: 4⁵ = 1024 times.
-const FINER: usize = 4;
+const REFINEMENT_FACTOR: usize = 4;
 const MOST_FINER: usize = 5;
 /// Most elements of a span that is only solved for its error: some milliseconds.
 const MOST_CELLS: usize = 1 << 15;
@@ -40,10 +40,10 @@ const ROUNDING: f64 = 8.0;
 const MEMORY: f64 = 1e-7;
 
 /// Arc lengths that differ by less are those of one node of two meshes, m.
-const SAME_PLACE: f64 = 1e-9;
+const NODE_TOLERANCE_M: f64 = 1e-9;
 
 /// The same without friction: tensions of stiff cables beside pulleys agree to that.
-const BALANCE: f64 = 1e-10;
+const SMOOTH_PULLEY_TOLERANCE: f64 = 1e-10;
 
 /// Estimated error of the force vector on any stop, in parts of the greatest tension.
 #[must_use]
@@ -60,14 +60,14 @@ pub fn relative_error(network: &mut Network) -> f64 {
     }
     let memory = match (network.pulleys().is_empty(), network.rubs()) {
         (true, _) => 0.0,
-        (false, false) => BALANCE * largest,
+        (false, false) => SMOOTH_PULLEY_TOLERANCE * largest,
         (false, true) => MEMORY * largest,
     };
     let error = error + rounding(network) + memory;
     // In parts of what the greatest tension is at least.
     let least = if error < 0.5 * largest { largest - error } else { largest };
     let share = if least > 0.0 { error / least } else { error };
-    share * (1.0 + SETTLED)
+    share * (1.0 + CORRECTION_TOLERANCE)
 }
 
 /// Estimated error of the shape, m: what the chords up to a node lack in all, and what the force that closes the span moves its end.
@@ -91,8 +91,8 @@ pub fn position_error(network: &mut Network) -> f64 {
 pub fn apart(some: &[Point], others: &[Point]) -> f64 {
     let mut most = 0.0;
     for p in some {
-        let k = others.partition_point(|o| o.arc_length < p.arc_length - SAME_PLACE);
-        if let Some(o) = others.get(k).filter(|o| (o.arc_length - p.arc_length).abs() <= SAME_PLACE) {
+        let k = others.partition_point(|o| o.arc_length < p.arc_length - NODE_TOLERANCE_M);
+        if let Some(o) = others.get(k).filter(|o| (o.arc_length - p.arc_length).abs() <= NODE_TOLERANCE_M) {
             most = larger(most, (o.at - p.at).norm());
         }
     }
@@ -136,7 +136,7 @@ fn closing_force(network: &Network, ends: SpanEnds, span: &Span) -> Vec2 {
     let mut layout = network.layout.clone();
     let mut force = span.force;
     for _ in 0..MOST_FINER {
-        layout.stops[ends.first..ends.last].iter_mut().for_each(|s| s.cells *= FINER);
+        layout.stops[ends.first..ends.last].iter_mut().for_each(|s| s.cells *= REFINEMENT_FACTOR);
         if layout.stops[ends.first..ends.last].iter().map(|s| s.cells).sum::<usize>() > MOST_CELLS {
             break;
         }
@@ -145,7 +145,7 @@ fn closing_force(network: &Network, ends: SpanEnds, span: &Span) -> Vec2 {
         let Some(fine) = solve(force).or_else(|| solve(guess)) else { continue };
         force = fine.force;
         if let Some(off) = correction(material, &layout, ends, force, goal) {
-            return (force + off - span.force) * (1.0 + SETTLED);
+            return (force + off - span.force) * (1.0 + CORRECTION_TOLERANCE);
         }
     }
     // What is known is how far the finest is from it.
@@ -165,8 +165,8 @@ fn correction(material: &Material, layout: &Layout, ends: SpanEnds, force: Vec2,
             return None;
         }
         before = change.norm();
-        if before <= SETTLED * off.norm() {
-            return Some(off * (1.0 + SETTLED));
+        if before <= CORRECTION_TOLERANCE * off.norm() {
+            return Some(off * (1.0 + CORRECTION_TOLERANCE));
         }
     }
     None

@@ -22,17 +22,17 @@ use crate::model::fem::free::stations::{Hold, Layout, SpanEnds, Wheel};
 /// Newton steps for the pulleys together. Measured: 3 to 8.
 const MAX_STEPS: usize = 40;
 /// Powers of ten by which a fold is rounded off at first: to a tenth of the load, where any start converges.
-const ROUNDED: i32 = 6;
+const FOLD_ROUNDING_DECADES: i32 = 6;
 /// Rounds of bisection.
 const MAX_ROUNDS: usize = 60;
 /// Tensions at a pulley agree when ln of their ratio is off by less than this.
-const BALANCED: f64 = 1e-12;
+const BALANCE_TOLERANCE: f64 = 1e-12;
 /// As above where no step makes it smaller (a stiff cable: ρ has lost its last digits).
-const BALANCED_AT_LEAST: f64 = 1e-8;
+const BALANCE_LIMIT: f64 = 1e-8;
 /// Part of the room to the next stop that a step may take.
-const ROOM: f64 = 0.4;
+const STEP_ROOM_FRACTION: f64 = 0.4;
 /// Least cable between a pulley and the next stop, in parts of the cable.
-const LEAST: f64 = 1e-7;
+const END_CABLE_FRACTION: f64 = 1e-7;
 
 /// Why there is no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -163,7 +163,7 @@ impl Network {
     /// rounded off and then sharpened tenfold at a time.
     fn unfold(&self, ends: SpanEnds, d: Vec2, guess: Vec2) -> Option<Span> {
         let (mut force, mut steps) = (guess, 0);
-        for power in (0..=ROUNDED).rev() {
+        for power in (0..=FOLD_ROUNDING_DECADES).rev() {
             let material = Material { smoothing: self.material.smoothing * 10f64.powi(power), ..self.material };
             let span = span::solve(&material, &self.layout, ends, d, force)?;
             (force, steps) = (span.force, steps + span.steps);
@@ -279,7 +279,7 @@ impl Network {
         let mut now = faults(self);
         for _ in 0..MAX_STEPS {
             let (step, stable) = self.newton_step(pulleys, &now);
-            if size(&now) <= BALANCED {
+            if size(&now) <= BALANCE_TOLERANCE {
                 self.residual =
                     pulleys.iter().map(|&k| self.unbalance(k)).fold(self.residual, |a, b| if b <= a { a } else { b });
                 return stable;
@@ -302,7 +302,7 @@ impl Network {
             }
             if !better {
                 self.move_pulleys(pulleys, &from, &step, 0.0);
-                return self.solve_spans().is_ok() && stable && size(&now) <= BALANCED_AT_LEAST;
+                return self.solve_spans().is_ok() && stable && size(&now) <= BALANCE_LIMIT;
             }
         }
         false
@@ -316,8 +316,8 @@ impl Network {
         let mut limited = Vec::with_capacity(pulleys.len());
         for (i, &k) in pulleys.iter().enumerate() {
             let stops = &self.layout.stops;
-            let down = ROOM * (from[i] - stops[k - 1].leaves());
-            let up = ROOM * (stops[k + 1].arc_length - from[i] - stops[k].lap);
+            let down = STEP_ROOM_FRACTION * (from[i] - stops[k - 1].leaves());
+            let up = STEP_ROOM_FRACTION * (stops[k + 1].arc_length - from[i] - stops[k].lap);
             let mut move_by = bounded(alpha * step[i], -down, up);
             let slid = self.slid(k);
             let friction = self.wheel(k).is_some_and(|w| w.friction > 0.0);
@@ -441,7 +441,7 @@ impl Network {
         let held = if wheel.friction > 0.0 { start - self.slid(stop) } else { start };
         self.try_at(stop, held)?;
         let Some(fault) = self.fault(stop, &wheel) else { return Ok(()) };
-        let least = LEAST * self.layout.length;
+        let least = END_CABLE_FRACTION * self.layout.length;
         let limit = if fault < 0.0 {
             self.layout.stops[stop + 1].arc_length - self.layout.stops[stop].lap - least
         } else {
@@ -493,7 +493,7 @@ impl Network {
         self.layout.stops.swap(stop, other);
         self.held_at.swap(stop, other);
         (self.layout.stops[stop].cells, self.layout.stops[other].cells) = cells;
-        let least = 2.0 * LEAST * self.layout.length * if up { 1.0 } else { -1.0 };
+        let least = 2.0 * END_CABLE_FRACTION * self.layout.length * if up { 1.0 } else { -1.0 };
         let load_at = self.layout.stops[stop].arc_length;
         self.layout.stops[other].arc_length = load_at + least - if up { 0.0 } else { self.layout.stops[other].lap };
         self.ends = self.layout.spans().collect();

@@ -29,20 +29,20 @@ const MAX_HALVINGS: usize = 14;
 /// Sets of modes for each pulley.
 const MAX_MODES: usize = 12;
 /// The equations are solved when none is off by more than this part: of a tension, an angle, and of [`MATERIAL`] of the cable.
-const BALANCED: f64 = 1e-13;
+const RESIDUAL_TOLERANCE: f64 = 1e-13;
 /// The same where no step makes it smaller, as in `network`.
-const BALANCED_AT_LEAST: f64 = 1e-8;
+const RESIDUAL_LIMIT: f64 = 1e-8;
 /// Part of the cable's length that weighs as much as the whole tension. More: steps are judged by tension alone; less: by material.
 const MATERIAL: f64 = 0.01;
 /// Farthest that an end may go round its wheel in a step, rad: more comes out on the other side.
 const MOST_TURN: f64 = 0.5;
 /// Part of what lies between two stops that a step may take.
-const ROOM: f64 = 0.4;
+const STEP_ROOM_FRACTION: f64 = 0.4;
 /// Part of the cone or the length by which a mode is left: how many roundings.
-const PATIENCE: f64 = 30.0;
+const MODE_CHANGE_ROUNDINGS: f64 = 30.0;
 /// A point pulley's cone (in ln T) and the part of the cable that is no slip: rounding.
-const CONE: f64 = 1e-12;
-const STILL: f64 = 1e-13;
+const CONE_ROUNDING: f64 = 1e-12;
+const STEP_TOLERANCE: f64 = 1e-13;
 /// A node of an answer that is no farther than this from a wheel, of its radius, lies on it.
 const ON_WHEEL: f64 = 1e-9;
 
@@ -393,7 +393,7 @@ impl Network {
             let worst = e.residual.amax();
             let tension = self.forces.iter().flatten().fold(0.0, |m, f| larger(m, f.norm()));
             self.residual = larger(self.residual, worst * tension);
-            if worst <= BALANCED {
+            if worst <= RESIDUAL_TOLERANCE {
                 return Ok(());
             }
             let failure = Failure::Unbalanced(first, worst * tension);
@@ -418,11 +418,11 @@ impl Network {
             if !better {
                 self.move_unknowns(&from, &step, 0.0);
                 self.take_unknowns(pulleys)?;
-                return if worst <= BALANCED_AT_LEAST { Ok(()) } else { Err(failure) };
+                return if worst <= RESIDUAL_LIMIT { Ok(()) } else { Err(failure) };
             }
         }
         let worst = e.residual.amax();
-        if worst <= BALANCED_AT_LEAST { Ok(()) } else { Err(Failure::Unbalanced(first, worst)) }
+        if worst <= RESIDUAL_LIMIT { Ok(()) } else { Err(Failure::Unbalanced(first, worst)) }
     }
 
     /// The longest part of a step that keeps the order of the stops and the side of the wheels.
@@ -439,8 +439,8 @@ impl Network {
                 let by = step[column];
                 column += 1;
                 let room = |side: usize| match side {
-                    0 if k > 0 => ROOM * (stops[k].arc_length - stops[k - 1].leaves()),
-                    1 if k + 1 < stops.len() => ROOM * (stops[k + 1].arc_length - stops[k].leaves()),
+                    0 if k > 0 => STEP_ROOM_FRACTION * (stops[k].arc_length - stops[k - 1].leaves()),
+                    1 if k + 1 < stops.len() => STEP_ROOM_FRACTION * (stops[k + 1].arc_length - stops[k].leaves()),
                     _ => f64::INFINITY,
                 };
                 match unknown {
@@ -483,15 +483,17 @@ impl Network {
             let ends = self.ends_at(k, r);
             let [before, after] = self.forces[k];
             changed |= match &mut r.law {
-                Law::Wheel(w) => w.change_mode(&on, &ends, PATIENCE),
+                Law::Wheel(w) => w.change_mode(&on, &ends, MODE_CHANGE_ROUNDINGS),
                 Law::Point { friction, stands, held } if *friction > 0.0 => {
                     let ratio = (ends.t[1] / ends.t[0]).ln();
                     let over = ratio.abs() - *friction * turn_between(before, after).abs();
                     let slid = r.s[0] - *held;
                     let next = match *stands {
-                        Point::Holds if over > CONE => Point::Slides(*friction * ratio.signum()),
+                        Point::Holds if over > CONE_ROUNDING => Point::Slides(*friction * ratio.signum()),
                         // With m = +μ material goes on to the side after: less of it lies before.
-                        Point::Slides(m) if m * slid > 0.0 && slid.abs() > STILL * self.layout.length => Point::Holds,
+                        Point::Slides(m) if m * slid > 0.0 && slid.abs() > STEP_TOLERANCE * self.layout.length => {
+                            Point::Holds
+                        }
                         same => same,
                     };
                     let differs = next != *stands;

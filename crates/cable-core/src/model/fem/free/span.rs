@@ -20,12 +20,12 @@ const MAX_HALVINGS: usize = 40;
 /// Fraction of the promised decrease a step must give (Armijo). Any small number will do.
 const ARMIJO: f64 = 1e-4;
 /// A span is closed when the gap is this part of its length; a few rounding errors of a sum over its elements.
-const CLOSED: f64 = 4e-16;
+const CLOSURE_TOLERANCE: f64 = 4e-16;
 /// Gap, in parts of the length, that is still taken for closed when Newton no longer halves it: the gap of taut stiff
 /// spans stops at about 1e-13. Newton is quadratic here, so a step that does not halve it meets rounding.
-const CLOSED_AT_LEAST: f64 = 1e-10;
+const CLOSURE_LIMIT: f64 = 1e-10;
 /// A step this small, in parts of the force, changes nothing any more.
-const SAME_FORCE: f64 = 1e-15;
+const FORCE_ROUNDING: f64 = 1e-15;
 
 /// What a span looks like under a start force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -154,7 +154,7 @@ pub fn first_guess(material: &Material, layout: &Layout, ends: SpanEnds, d: Vec2
     let up = -load / weight;
     let rise = d.dot(&up);
     let across = d - up * rise;
-    if strain < SLACK || chord == 0.0 {
+    if strain < SLACK_STRAIN || chord == 0.0 {
         let width = across.norm();
         let lambda = if width > 1e-6 * rest {
             (3.0 * ((rest * rest - rise * rise) / (width * width) - 1.0)).max(0.0).sqrt()
@@ -169,7 +169,7 @@ pub fn first_guess(material: &Material, layout: &Layout, ends: SpanEnds, d: Vec2
     let direction = d / chord;
     let sideways = load - direction * load.dot(&direction);
     let beta = sideways.norm_squared() / 24.0;
-    if strain <= 0.0 && beta.sqrt() <= STEEP * weight {
+    if strain <= 0.0 && beta.sqrt() <= CROSS_LOAD_FRACTION * weight {
         return load * 0.5;
     }
     // Taut: T/EA − β/T² = strain, β = (load across the chord)²/24. Concave and rising: Newton from the left is monotone.
@@ -188,10 +188,10 @@ pub fn first_guess(material: &Material, layout: &Layout, ends: SpanEnds, d: Vec2
 }
 
 /// Strain below which a span counts as slack for the first guess: both guesses are good about here.
-const SLACK: f64 = -0.02;
+const SLACK_STRAIN: f64 = -0.02;
 
 /// Part of the load that must act across the chord for the parabola to mean anything.
-const STEEP: f64 = 1e-6;
+const CROSS_LOAD_FRACTION: f64 = 1e-6;
 
 /// Solves a span between points `d` apart (m) from a start force. `None` when Newton fails (a number blew up).
 #[must_use]
@@ -208,7 +208,7 @@ pub fn solve(material: &Material, layout: &Layout, ends: SpanEnds, d: Vec2, gues
             return None;
         }
         let done = |w: Walk, force: Vec2| Some(Span { force, walk: w, steps, residual: step.norm() });
-        if gap.norm() <= CLOSED * size || step.norm() <= SAME_FORCE * (force.norm() + load.norm()) {
+        if gap.norm() <= CLOSURE_TOLERANCE * size || step.norm() <= FORCE_ROUNDING * (force.norm() + load.norm()) {
             return done(w, force);
         }
         let (value, slope) = (w.energy - force.dot(&d), gap.dot(&step));
@@ -228,11 +228,11 @@ pub fn solve(material: &Material, layout: &Layout, ends: SpanEnds, d: Vec2, gues
         match taken {
             Some((f, t)) => {
                 (force, w) = (f, t);
-                if gap.norm() <= CLOSED_AT_LEAST * size && (t.reach - d).norm() > 0.5 * gap.norm() {
+                if gap.norm() <= CLOSURE_LIMIT * size && (t.reach - d).norm() > 0.5 * gap.norm() {
                     return done(w, force);
                 }
             }
-            None if gap.norm() <= CLOSED_AT_LEAST * size => return done(w, force),
+            None if gap.norm() <= CLOSURE_LIMIT * size => return done(w, force),
             None => return None,
         }
     }

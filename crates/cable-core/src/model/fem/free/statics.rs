@@ -27,7 +27,7 @@ const FIRST_SEGMENTS: usize = 40;
 /// Most elements the error estimate may ask for. Beyond, rounding grows faster than the error falls.
 const MOST_SEGMENTS: usize = 4000;
 /// Part of the tolerance the estimate must stay below.
-const SAFETY: f64 = 0.5;
+const ESTIMATE_FRACTION: f64 = 0.5;
 /// Order of the corrected bar.
 const ORDER: f64 = 4.0;
 /// Rounds of mesh refinement.
@@ -228,10 +228,10 @@ impl Statics {
         }
         let mut estimate = dual_weighted_residual::relative_error(&mut network);
         for _ in 0..MAX_MESHES {
-            if !(adaptive && estimate > SAFETY * self.settings.tolerance && segments < MOST_SEGMENTS) {
+            if !(adaptive && estimate > ESTIMATE_FRACTION * self.settings.tolerance && segments < MOST_SEGMENTS) {
                 break;
             }
-            let factor = (estimate / (SAFETY * self.settings.tolerance)).powf(1.0 / ORDER);
+            let factor = (estimate / (ESTIMATE_FRACTION * self.settings.tolerance)).powf(1.0 / ORDER);
             segments = ((segments as f64 * factor.clamp(1.2, 4.0)).ceil() as usize).min(MOST_SEGMENTS);
             network.layout.cut(segments);
             if network.rubbing.is_empty() { network.solve() } else { network.rub() }
@@ -367,7 +367,7 @@ impl Statics {
             estimate = Some(found);
             moved = Some(2.0 / 15.0 * dual_weighted_residual::apart(&coarse.points(false), &fine.points(false)));
             coarse = fine;
-            if found <= SAFETY * self.settings.tolerance {
+            if found <= ESTIMATE_FRACTION * self.settings.tolerance {
                 break;
             }
         }

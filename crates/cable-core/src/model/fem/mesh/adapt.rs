@@ -23,41 +23,41 @@ pub(in crate::model::fem) const LEAST_TURN: f64 = 0.05;
 
 /// Bars beside sliding nodes are kept between these parts of an even bar. Tighter: nodes come and go all the time;
 /// wider: the bars beside a corner are coarse.
-const SHORT: f64 = 0.35;
-/// See `SHORT`.
-const LONG: f64 = 1.6;
+const SHORTEST_BAR_FRACTION: f64 = 0.35;
+/// See `SHORTEST_BAR_FRACTION`.
+const LONGEST_BAR_FRACTION: f64 = 1.6;
 
 /// A node this near (in even bars) to a new sliding node is in its way.
-pub(in crate::model::fem) const NEAR: f64 = 0.1;
+pub(in crate::model::fem) const NODE_REMOVAL_FRACTION: f64 = 0.1;
 
 /// Tension in weights of an even bar from which a corner gets a sliding node, and below which it loses it: a slack
 /// cable lies on corners with its nodes, and the barrier carries it as well.
-const TAUT: f64 = 4.0;
-/// See `TAUT`.
-const SLACK: f64 = 2.0;
+const SLIDING_NODE_TENSION: f64 = 4.0;
+/// See `SLIDING_NODE_TENSION`.
+const MATERIAL_NODE_TENSION: f64 = 2.0;
 
 /// Turn (rad) the wrong way round a corner that a step may end with. The node leaves after the step; with more, its
 /// tangents would lie inside the obstacle.
-const WRONG_TURN: f64 = 0.02;
+const REVERSE_TURN_LIMIT: f64 = 0.02;
 
 /// √(EI/T), in even bars, beyond which a cable's bend is seen by the mesh. Less: chains jerk at corners, node by node; more: what a corner's bend
 /// costs is left out where it need not be.
-const BENT_OVER: f64 = 0.5;
+const RESOLVED_BEND_BARS: f64 = 0.5;
 
 /// Half of the turn (rad) up to which a slack cable may leave a round with one node.
 const MOST_BEND: f64 = 1.0;
 
 /// Half of the turn (rad) up to which the node that takes the place of a sliding one goes where the tangents meet.
-const SHARPEST: f64 = 1.4;
+const TANGENT_NODE_HALF_TURN: f64 = 1.4;
 
 /// Turn (rad) below which a node that leaves its corner is taken out; else it becomes a node of the cable.
-const NEARLY_STRAIGHT: f64 = 0.3;
+const REMOVED_CORNER_TURN: f64 = 0.3;
 
 /// Plain nodes whose two bars are together shorter than this (in even bars) are taken out.
-const SPARE: f64 = 1.3;
+const SPARE_NODE_BARS: f64 = 1.3;
 
 /// Length of the sum of the directions before and after a node below which the cable counts as folded there.
-const FOLDED: f64 = 0.2;
+const FOLD_DIRECTION_SUM: f64 = 0.2;
 
 /// Tension of a taut cable in motion, in units of EA (v/c)^(4/3): something that it hits across at a speed v makes 0.63 of it. Less: sliding nodes come and go
 /// where a falling cable strikes; more: a cable drawn fast over corners jerks at them.
@@ -67,7 +67,7 @@ const IMPACT: f64 = 3.0;
 const NEIGHBOURHOOD: f64 = 0.3;
 
 /// Part by which a change of the mesh may change tension in motion.
-const CHANGED_TENSION: f64 = 0.05;
+const TENSION_CHANGE_LIMIT: f64 = 0.05;
 
 /// Part of the cable's weight that counts as tension there: what is nearly slack may change by as much.
 const WEIGHT_PART: f64 = 0.1;
@@ -272,12 +272,12 @@ impl Dynamics {
         self.keep_answer();
         let before = [k - 1, k].map(|e| self.mesh.path(e, &self.motion.x).length / self.mesh.rest_length[e]);
         let half = (0.5 * self.turn(k)).abs();
-        let out = 1.0 / if half < SHARPEST { half.cos() } else { SHARPEST.cos() };
+        let out = 1.0 / if half < TANGENT_NODE_HALF_TURN { half.cos() } else { TANGENT_NODE_HALF_TURN.cos() };
         let Some(end) = self.mesh.sliding[k].map(|s| s.end) else { return false };
         let x = &self.motion.x;
         let along = self.mesh.path(k - 1, x).direction + self.mesh.path(k, x).direction;
         let outward = perp(along) * -end.sense;
-        let outward = if outward.norm() > FOLDED { outward.normalize() } else { end.mark };
+        let outward = if outward.norm() > FOLD_DIRECTION_SUM { outward.normalize() } else { end.mark };
         let (sliding, place) = (self.mesh.sliding[k].take(), self.motion.x[k]);
         self.motion.x[k] = end.center + outward * (end.radius * out);
         if ![k - 1, k].into_iter().all(|e| self.is_clear(e)) {
@@ -309,7 +309,9 @@ impl Dynamics {
         let Some(node) = self.mesh.sliding[k] else { return false };
         let beside = |j: usize| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
         let fixed = |j: usize| self.mesh.sliding[j].is_none() && !self.removable(j);
-        let blocked = [k - 1, k + 1].into_iter().any(|j| fixed(j) && self.bar_between(j, k) < NEAR * self.even());
+        let blocked = [k - 1, k + 1]
+            .into_iter()
+            .any(|j| fixed(j) && self.bar_between(j, k) < NODE_REMOVAL_FRACTION * self.even());
         if blocked {
             return true;
         }
@@ -321,7 +323,7 @@ impl Dynamics {
         load.normal < 0.0
             || turn < 0.0
             || self.beyond_its_corner(k, &self.motion.x)
-            || (tension < SLACK * self.bar_weight && turn < 2.0 * MOST_BEND)
+            || (tension < MATERIAL_NODE_TENSION * self.bar_weight && turn < 2.0 * MOST_BEND)
     }
 
     /// Angle through which the bars beside node `k` turn, in the sense of a sliding node, rad.
@@ -332,7 +334,7 @@ impl Dynamics {
     /// The sliding nodes of obstacles that the cable, at positions `x` (m), turns round the wrong way: there a corner would
     /// have to pull.
     pub(in crate::model::fem) fn pulled(&self, x: &[Vec2]) -> Option<usize> {
-        self.pulled_by(x, WRONG_TURN)
+        self.pulled_by(x, REVERSE_TURN_LIMIT)
     }
 
     /// See `pulled`; `wrong`: the turn (rad) the wrong way from which it counts.
@@ -356,7 +358,7 @@ impl Dynamics {
 
     /// Whether a bar in the place of node `k` is nearly the way it lies now.
     fn runs_straight(&self, k: usize) -> bool {
-        self.turn(k).abs() < NEARLY_STRAIGHT
+        self.turn(k).abs() < REMOVED_CORNER_TURN
     }
 
     /// Arc length between two nodes, m.
@@ -378,7 +380,7 @@ impl Dynamics {
                     t.pair.weight > 0.0 && t.load(&self.contacts.barrier) > 0.0 && t.pair.gap.feature % 2 == 1;
                 let (bar, arc_length, sliding) =
                     if pressed { self.seat_for(t.node, t.on_segment, &t.pair.gap)? } else { return None };
-                let near = NEAR * self.even();
+                let near = NODE_REMOVAL_FRACTION * self.even();
                 let node = [bar, bar + 1]
                     .into_iter()
                     .find(|&k| self.removable(k) && (self.mesh.arc_length[k] - arc_length).abs() < near);
@@ -435,7 +437,7 @@ impl Dynamics {
         let lengths = [k - 1, k].map(|e| mesh.path(e, x).length);
         let stretch = [0, 1].map(|j| lengths[j] / mesh.rest_length[k - 1 + j]);
         let whole = mesh.rest_length[k - 1] + mesh.rest_length[k];
-        half < SHARPEST
+        half < TANGENT_NODE_HALF_TURN
             && self.may_change(self.least_tension(stretch), &Share::of(lengths.map(|l| l + longer), stretch, whole))
     }
 
@@ -448,7 +450,7 @@ impl Dynamics {
     /// Whether a change of the mesh adds so little to a tension (N) that it does not show.
     fn may_change(&self, tension: f64, share: &Share) -> bool {
         let weight = load_scale(&self.problem).0 * self.problem.length;
-        self.mesh.axial_stiffness * share.added_strain < CHANGED_TENSION * (tension + WEIGHT_PART * weight)
+        self.mesh.axial_stiffness * share.added_strain < TENSION_CHANGE_LIMIT * (tension + WEIGHT_PART * weight)
     }
 
     /// Whether a sliding node between two nodes would bend the cable the right way and its bars would meet nothing.
@@ -468,12 +470,14 @@ impl Dynamics {
         // Nor may it turn a neighbour the wrong way.
         let beside = |k: usize, arc: f64, e: usize, j: usize| {
             self.mesh.sliding[k].is_none_or(|s| {
-                s.feature().is_none() || s.shares_round(sliding) || arc + self.mesh.path(e, x).arcs[j] > -WRONG_TURN
+                s.feature().is_none()
+                    || s.shares_round(sliding)
+                    || arc + self.mesh.path(e, x).arcs[j] > -REVERSE_TURN_LIMIT
             })
         };
         let sides = (before == 0 || beside(before, paths[0].arcs[0], before - 1, 1))
             && (after + 1 == self.mesh.nodes() || beside(after, paths[1].arcs[1], after, 0));
-        turn > -WRONG_TURN && sides && (0..2).all(|j| self.way_is_clear(&paths[j], nodes[j]))
+        turn > -REVERSE_TURN_LIMIT && sides && (0..2).all(|j| self.way_is_clear(&paths[j], nodes[j]))
     }
 
     /// The sliding node that a corner or circle pressing on a bar or node asks for: its bar, arc length and itself.
@@ -491,7 +495,7 @@ impl Dynamics {
         let sense = if gap.normal.dot(&perp(along)) > 0.0 { -1.0 } else { 1.0 };
         // A cable folded back on itself at an obstacle runs neither way round it, one that is bent away from it hits it
         // with a node.
-        if !on_segment && (along.norm() < FOLDED || self.turn(node) * sense < 0.0) {
+        if !on_segment && (along.norm() < FOLD_DIRECTION_SUM || self.turn(node) * sense < 0.0) {
             return None;
         }
         // Seen from beyond the bar the cable must bend round the corner, and be taut.
@@ -499,11 +503,11 @@ impl Dynamics {
         let beyond = (bar + 1).min(last - 1);
         let wrap = sense * angle_between(mesh.path(first, x).direction, mesh.path(beyond, x).direction);
         let tension = mesh.bar(bar).tension(path.length);
-        if !(wrap > 0.0 && tension > TAUT * self.bar_weight) {
+        if !(wrap > 0.0 && tension > SLIDING_NODE_TENSION * self.bar_weight) {
             return None;
         }
         let s = [mesh.arc_length[bar], mesh.arc_length[bar + 1]];
-        let near = NEAR * self.even();
+        let near = NODE_REMOVAL_FRACTION * self.even();
         // The ends of a cable and what hangs on it stay clear of corners.
         let from_start = fraction * (s[1] - s[0]);
         let from_end = (1.0 - fraction) * (s[1] - s[0]);
@@ -535,12 +539,13 @@ impl Dynamics {
     pub(in crate::model::fem) fn bends_visibly(&self, tension: f64) -> bool {
         let stiffness = self.mesh.bending_stiffness;
         let least = self.bar_weight + stiffness / (self.problem.length * self.problem.length);
-        stiffness > 0.0 && (stiffness / if tension > least { tension } else { least }).sqrt() > BENT_OVER * self.even()
+        stiffness > 0.0
+            && (stiffness / if tension > least { tension } else { least }).sqrt() > RESOLVED_BEND_BARS * self.even()
     }
 
     /// Takes out plain nodes in the way of a new sliding node.
     fn clear_around(&mut self, k: usize) {
-        let near = SHORT * self.even();
+        let near = SHORTEST_BAR_FRACTION * self.even();
         let straight = |d: &Self, e: usize| d.mesh.path(e, &d.motion.x).straight;
         if k + 2 < self.mesh.nodes() && self.removable(k + 1) && straight(self, k) < near && self.clear_without(k + 1) {
             self.remove(k + 1);
@@ -564,11 +569,11 @@ impl Dynamics {
             }
             let (before, after) = (self.mesh.sliding[k - 1], self.mesh.sliding[k + 1]);
             let straight = |e: usize| self.mesh.path(e, &self.motion.x).straight;
-            let crowded =
-                (before.is_some() && straight(k - 1) < SHORT * even) || (after.is_some() && straight(k) < SHORT * even);
+            let crowded = (before.is_some() && straight(k - 1) < SHORTEST_BAR_FRACTION * even)
+                || (after.is_some() && straight(k) < SHORTEST_BAR_FRACTION * even);
             let spare = before.is_none()
                 && after.is_none()
-                && self.bar_between(k - 1, k + 1) < SPARE * even
+                && self.bar_between(k - 1, k + 1) < SPARE_NODE_BARS * even
                 && self.runs_straight(k);
             let enclosed = matches!((before, after), (Some(a), Some(b)) if a.shares_round(&b));
             if (crowded || enclosed || spare) && self.clear_without(k) {
@@ -584,7 +589,7 @@ impl Dynamics {
             let x = &self.motion.x;
             let path = self.mesh.path(e, x);
             let unwound = path.arcs.iter().any(|&a| a < -0.1);
-            if length > LONG * even && path.straight > 0.8 * LONG * even && !unwound {
+            if length > LONGEST_BAR_FRACTION * even && path.straight > 0.8 * LONGEST_BAR_FRACTION * even && !unwound {
                 // Even pieces, the straight part permitting; beside a sliding node the odd piece is its.
                 let slides = [e, e + 1].map(|k| self.mesh.sliding[k].is_some());
                 let part = match slides {

@@ -13,7 +13,7 @@
 use crate::math::{Vec2, cross, perp};
 
 /// Rounds with centres nearer than this part of their radius are one and the same.
-const SAME: f64 = 1e-9;
+const COINCIDENT_CENTRE_FRACTION: f64 = 1e-9;
 
 /// One end of a bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +78,11 @@ impl Path {
     #[must_use]
     pub fn between(a: &End, b: &End) -> Self {
         let d = b.center - a.center;
-        if a.radius > 0.0 && b.radius > 0.0 && d.norm() <= SAME * a.radius && a.sense * b.sense > 0.0 {
+        if a.radius > 0.0
+            && b.radius > 0.0
+            && d.norm() <= COINCIDENT_CENTRE_FRACTION * a.radius
+            && a.sense * b.sense > 0.0
+        {
             return Self::round(a, b);
         }
         let rho = b.sense * b.radius - a.sense * a.radius;

@@ -30,17 +30,17 @@ use crate::model::fem::system::self_contact::Coupling;
 const MAX_ROUNDS: usize = 6;
 
 /// Part of a Newton step that may be free without looking for what is in its way.
-const FREE_ENOUGH: f64 = 0.99;
+const FREE_STEP_FRACTION: f64 = 0.99;
 
 /// Least descent of a step held by contacts ahead, part of that of the free one. Less: steps that only bend round corners and gain nothing;
 /// more: good ones are given up.
-const DOWNHILL: f64 = 0.1;
+const LEAST_DESCENT_FRACTION: f64 = 0.1;
 
 /// Landing gap, part of the barrier's reach: about where the barrier holds a node that lands.
-const LANDING: f64 = 0.5;
+const LANDING_GAP_FRACTION: f64 = 0.5;
 
 /// Part of its gap that a contact within the barrier may lose in one step: less than the search of the step lets it.
-const CLOSER: f64 = 0.45;
+const GAP_LOSS_FRACTION: f64 = 0.45;
 
 /// What a step is about to touch.
 #[derive(Clone, Debug)]
@@ -168,7 +168,7 @@ impl Workspace {
     /// Finds the direction again if something is in its way; returns how much of it is free.
     pub(in crate::model::fem) fn look_ahead(&mut self, step: &StepContext<'_>, pose: &Pose) -> f64 {
         let free = self.free_from_here(step, pose, 1.0);
-        if free >= FREE_ENOUGH {
+        if free >= FREE_STEP_FRACTION {
             return free;
         }
         let downhill = self.slope();
@@ -176,7 +176,7 @@ impl Workspace {
         let equations = Equations { system: &mut self.system, factor: &mut self.factor, coupling: &mut self.coupling };
         self.ahead.solve(step, equations, &pose.x, &mut self.direction);
         // In a hurry nothing is asked of the energy.
-        if self.carried.is_empty() && !(self.slope() <= DOWNHILL * downhill) {
+        if self.carried.is_empty() && !(self.slope() <= LEAST_DESCENT_FRACTION * downhill) {
             self.direction.clone_from(&self.plain);
             return free;
         }
@@ -186,7 +186,7 @@ impl Workspace {
 
 /// The gap at which a step is stopped.
 fn landing(gap: f64, reach: f64) -> f64 {
-    if gap > reach { LANDING * reach } else { (1.0 - CLOSER) * gap }
+    if gap > reach { LANDING_GAP_FRACTION * reach } else { (1.0 - GAP_LOSS_FRACTION) * gap }
 }
 
 /// How far the touching point goes in a step.

@@ -11,7 +11,7 @@ use crate::model::fem::system::self_contact::{Coupling, couple};
 const HARDNESS: f64 = 1e5;
 
 /// Change of the way a constraint leaves, in gaps left, that is not followed.
-const SETTLED: f64 = 0.05;
+const DIRECTION_CHANGE_TOLERANCE: f64 = 0.05;
 
 /// What a bar turns about.
 #[derive(Clone, Copy, Debug)]
@@ -123,7 +123,7 @@ impl Stop {
             way -= part * self.normal.dot(&Vec2::new(step[2 * k], step[2 * k + 1]));
         }
         let change = way - self.held_to.unwrap_or(0.0);
-        if !new && change.abs() <= SETTLED * self.least {
+        if !new && change.abs() <= DIRECTION_CHANGE_TOLERANCE * self.least {
             return [false, false];
         }
         self.held_to = Some(way);

@@ -30,14 +30,14 @@ const DECREASE: f64 = 1e-4;
 const MAX_HALVINGS: usize = 30;
 
 /// Unbalanced force, in tolerances, that is accepted where iterating gains nothing more: 3e-5 of the whole load.
-const ENOUGH: f64 = 30.0;
+const STALLED_RESIDUAL_TOLERANCES: f64 = 30.0;
 
 /// Energies are trusted to this part of the sum of their magnitudes.
 const ENERGY_NOISE: f64 = 1e-13;
 
 /// Part of force times coordinate that counts as magnitude: times `ENERGY_NOISE` four roundings of the coordinate. With
 /// none, a stiff pendulum's last iteration is lost in the rounding of 98 N times 1 m and its step is halved for nothing.
-pub const ROUNDED: f64 = 0.01;
+pub const WORK_MAGNITUDE_FRACTION: f64 = 0.01;
 
 /// Rounding of a gap, part of the coordinates it is worked out from. Smaller: a cable squeezed to a gap of 1e-7 m fails for
 /// 0.01 N in 1e6; larger: contact forces are known worse than they could be.
@@ -231,7 +231,8 @@ impl Workspace {
             } else {
                 let away = x[i] - task.predicted[i];
                 if measured {
-                    self.magnitude += scale * ROUNDED * (k * away.norm() + task.force[i].norm()) * x[i].norm();
+                    self.magnitude +=
+                        scale * WORK_MAGNITUDE_FRACTION * (k * away.norm() + task.force[i].norm()) * x[i].norm();
                 }
                 s.add_gradient(i, (away * k - task.force[i]) * scale);
                 s.hessian.add(2 * i, 2 * i, k * scale);
@@ -380,7 +381,7 @@ impl Workspace {
             if excess <= 1.0 && !left {
                 return Ok(done);
             }
-            let enough = larger(residual, drift) <= ENOUGH * task.tolerance && !left;
+            let enough = larger(residual, drift) <= STALLED_RESIDUAL_TOLERANCES * task.tolerance && !left;
             if done.iterations >= task.max_iterations && enough {
                 return Ok(done);
             }

@@ -26,7 +26,7 @@ const MAX_STEPS: usize = 40;
 const PUSH_PARTS: [f64; 3] = [0.7, 0.4, 0.0];
 
 /// Part of the first residual with which what was reached is handed on; with more the minimiser begins anew.
-const NEAR_ENOUGH: f64 = 1e-2;
+const HANDED_ON_RESIDUAL_FRACTION: f64 = 1e-2;
 
 /// Strain that counts as none.
 const ROUNDING: f64 = 1e-12;
@@ -151,7 +151,7 @@ impl Workspace {
             if sound && residual <= task.tolerance && !left && self.flags_hold(mesh, contacts, &pose.x) {
                 return Some(Converged { iterations, residual });
             }
-            self.near_enough = sound && residual < NEAR_ENOUGH * first;
+            self.near_enough = sound && residual < HANDED_ON_RESIDUAL_FRACTION * first;
             if iterations == MAX_STEPS || !sound {
                 return None;
             }

@@ -8,13 +8,13 @@ use crate::model::fem::newton::step_input::{Pose, StepInput};
 
 /// Part of each gap that a Newton step leaves. Smaller: gaps shrink faster than Newton opens them again (with 0.2 twice as many
 /// steps of ends thrown about are halved, five times as many where the cable meets itself); larger: more steps.
-const KEEP: f64 = 0.5;
+const KEPT_GAP_FRACTION: f64 = 0.5;
 
 /// The same for gaps wider than the barrier's reach, in reaches: a little less than where foreseen contacts land.
-const KEEP_REACH: f64 = 0.45;
+const KEPT_REACH_FRACTION: f64 = 0.45;
 
 /// Least part of the cable between a sliding node and its neighbour that one iteration leaves.
-const LEAVE: f64 = 0.3;
+const KEPT_CABLE_FRACTION: f64 = 0.3;
 
 impl Workspace {
     /// The part of the direction in which no node moves too far.
@@ -29,7 +29,7 @@ impl Workspace {
         let StepContext { problem, mesh, contacts, .. } = *step;
         let (direction, geometry) = (&self.direction, problem.world.geometry());
         let move_of = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]);
-        let most = KEEP_REACH * contacts.barrier.reach;
+        let most = KEPT_REACH_FRACTION * contacts.barrier.reach;
         let mut free = fraction;
         for e in 0..mesh.rest_length.len() {
             let slides = [e, e + 1].map(|k| mesh.sliding[k].is_some());
@@ -39,8 +39,8 @@ impl Workspace {
                 let whole = mesh.rest_length[e] / mesh.thermal_stretch + pose.slide[e + 1] - pose.slide[e];
                 let straight = mesh.path(e, &pose.x).straight;
                 let length = if straight > 0.0 && straight < whole { straight } else { whole };
-                if change < 0.0 && -change * free > (1.0 - LEAVE) * length {
-                    free = (1.0 - LEAVE) * length / -change;
+                if change < 0.0 && -change * free > (1.0 - KEPT_CABLE_FRACTION) * length {
+                    free = (1.0 - KEPT_CABLE_FRACTION) * length / -change;
                 }
             }
             if problem.world.is_empty() || slides == [true, true] {
@@ -54,14 +54,14 @@ impl Workspace {
                 let end = |k: usize| mesh.sliding[k].as_ref().map_or(End::point(x[k] + move_of(k) * free), |s| s.end);
                 Path::between(&end(e), &end(e + 1)).ends
             };
-            let sweep = Sweep::new(from, to, KEEP).at_most(most);
+            let sweep = Sweep::new(from, to, KEPT_GAP_FRACTION).at_most(most);
             free *= match contacts.near.of(e, [from, to], sweep.margin) {
                 Some([]) => 1.0,
                 Some(parts) => geometry.free_fraction_among(parts.iter().copied(), &sweep, mesh.rounds(e)),
                 None => geometry.free_fraction_round(&sweep, mesh.rounds(e)),
             };
         }
-        let limits = [KEEP, most, free];
+        let limits = [KEPT_GAP_FRACTION, most, free];
         contacts.own.shape.free_fraction(&pose.x, &mesh.arc_length, &move_of, limits, &mut self.order)
     }
 
@@ -75,7 +75,7 @@ impl Workspace {
         if plain {
             let gaps = self.touches.iter().map(|t| t.pair.gap.gap_m);
             let least = gaps.fold(contacts.barrier.reach, |a, b| if b < a { b } else { a });
-            if fraction * longest(&self.direction) <= (1.0 - KEEP) * least {
+            if fraction * longest(&self.direction) <= (1.0 - KEPT_GAP_FRACTION) * least {
                 return fraction;
             }
         }

@@ -23,11 +23,11 @@ const MATERIAL_DAMPING: f64 = 1e-3;
 const STEP_ITERATIONS: usize = 120;
 
 /// Factors of sliding nodes count as found when they change by less than this.
-const SAME_FACTOR: f64 = 1e-9;
+const SCALE_TOLERANCE: f64 = 1e-9;
 
 /// Friction of the floor for a node counts as found when it changes by less than this part. More: the cones of a report are not those that were
 /// solved for (the checker asks for 1e-3); less: rounds of what moves by rounding.
-const SAME_FLOOR: f64 = 1e-6;
+const FLOOR_FRICTION_TOLERANCE: f64 = 1e-6;
 
 /// Forces at a sliding node within this part of each other are equal: the law is read off bars, whose tension is
 /// known to the residual only.
@@ -182,7 +182,7 @@ impl Dynamics {
         for (k, limit) in limits.iter_mut().enumerate() {
             let reach: f64 = floor_friction::reaches(mesh, k, x, slide).iter().sum();
             let now = friction * normal * reach;
-            changed |= !((now - *limit).abs() <= SAME_FLOOR * (now + *limit));
+            changed |= !((now - *limit).abs() <= FLOOR_FRICTION_TOLERANCE * (now + *limit));
             *limit = now;
         }
         changed
@@ -240,7 +240,7 @@ impl Dynamics {
             if next.sticks() && !node.sticks() {
                 pose.slide[k] = 0.0;
             }
-            let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SAME_FACTOR;
+            let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SCALE_TOLERANCE;
             grips.same &= same(next.factor, node.factor) && same(next.floor_factor, node.floor_factor);
             let off = ((load.factor(node.grip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
             grips.lawful &= off <= LAWFUL * pulls * exponent + slack;
@@ -318,13 +318,13 @@ fn within(from: Vec2, to: Vec2, most: f64) -> Vec2 {
 
 /// Gap (m) that a support keeps from what it is driven against. The bar beside it presses there with hardly a lever: nearer,
 /// and its normal force, 1e14 N at 1e-8 m, is all that Newton sees.
-const STAND_OFF: f64 = 0.2 * REACH;
+const SUPPORT_GAP: f64 = 0.2 * REACH;
 
 /// Rounding of a gap, m.
-const TOUCHING: f64 = 1e-9;
+const GAP_ROUNDING: f64 = 1e-9;
 
 /// Part of its gap that a support keeps in one step.
-const KEEP_GAP: f64 = 0.2;
+const KEPT_SUPPORT_GAP_FRACTION: f64 = 0.2;
 
 /// Halvings of the way of a support that comes too near, before it stays where it is.
 const STAND_OFF_TRIES: usize = 4;
@@ -334,10 +334,10 @@ pub(in crate::model::fem) fn clear_way(problem: &Problem, from: Vec2, to: Vec2) 
     if problem.world.is_empty() || from == to {
         return to;
     }
-    let gap = |p: Vec2| problem.world.signed_gap(p, STAND_OFF).map_or(STAND_OFF, |g| g.gap_m);
+    let gap = |p: Vec2| problem.world.signed_gap(p, SUPPORT_GAP).map_or(SUPPORT_GAP, |g| g.gap_m);
     // A support that the scene puts on a surface may stay on it; none may come nearer than it stands.
-    let least = gap(from) - TOUCHING;
-    let free = problem.world.free_fraction([from, from], [to, to], KEEP_GAP);
+    let least = gap(from) - GAP_ROUNDING;
+    let free = problem.world.free_fraction([from, from], [to, to], KEPT_SUPPORT_GAP_FRACTION);
     let mut part = if free >= 1.0 { 1.0 } else { free };
     for _ in 0..STAND_OFF_TRIES {
         let at = if part >= 1.0 { to } else { from + (to - from) * part };

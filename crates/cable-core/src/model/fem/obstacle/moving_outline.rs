@@ -41,13 +41,13 @@ const LONGEST_WAY_M: f64 = 5e-3;
 const PARTS: [f64; 4] = [1.0, 0.5, 0.25, 0.0625];
 
 /// Part of a gap that is left when what stands in the way pushes back (κ); the sweep asks for less, for rounding.
-const KEEP: [f64; 2] = [0.1, 0.05];
+const KEPT_GAP_FRACTIONS: [f64; 2] = [0.1, 0.05];
 
 /// Rounds of giving gaps back. A node in a corner between outline and ground needs a few; a squeezed one never ends.
 const ROUNDS: usize = 40;
 
 /// Part of the time of a way that counts as nothing.
-const ARRIVED: f64 = 1e-9;
+const ARRIVAL_TOLERANCE: f64 = 1e-9;
 
 /// A hitch that a wall stopped is left behind by so much, m; then the outline waits for it.
 const LEFT_BEHIND_M: f64 = 0.06;
@@ -127,7 +127,7 @@ impl MovingOutline {
     fn goal(&self, time: f64) -> RigidPose {
         let (whole, left) = (self.to.0 - self.from.0, self.to.0 - time);
         // Sums of steps come as near to their end as rounding lets them.
-        if left > ARRIVED * whole { self.from.1.towards(&self.to.1, 1.0 - left / whole) } else { self.to.1 }
+        if left > ARRIVAL_TOLERANCE * whole { self.from.1.towards(&self.to.1, 1.0 - left / whole) } else { self.to.1 }
     }
 
     /// How many steps without inertia its way takes at least.
@@ -299,7 +299,7 @@ impl Dynamics {
             let mut worst = 0.0;
             for (touch, from) in &kept {
                 let gap = &touch.pair.gap;
-                let least = if gap.gap_m > 0.0 { -(1.0 - KEEP[0]) * gap.gap_m } else { 0.0 };
+                let least = if gap.gap_m > 0.0 { -(1.0 - KEPT_GAP_FRACTIONS[0]) * gap.gap_m } else { 0.0 };
                 let lack = least - gap.normal.dot(&(touch.interpolate(x) - from));
                 let shares = touch.shares();
                 let free = [0, 1].map(|j| match shares[j] > 0.0 && mesh.is_free(touch.node + j) {
@@ -327,7 +327,7 @@ impl Dynamics {
         let own = geometry.bodies().len().saturating_sub(1);
         let swept = |e: usize, from: [Vec2; 2], of_outline: bool| {
             let to = mesh.straight(e, x);
-            let sweep = Sweep::new(from, to, KEEP[1]);
+            let sweep = Sweep::new(from, to, KEPT_GAP_FRACTIONS[1]);
             let parts = geometry.parts(sweep.low, sweep.high, sweep.margin);
             let parts = parts.filter(|p: &Part| (p.body == own) == of_outline && !is_passed_by(geometry, *p, from, to));
             geometry.free_fraction_among(parts, &sweep, mesh.rounds(e)) >= 1.0
@@ -340,7 +340,13 @@ impl Dynamics {
         let step = |k: usize| x[k] - self.task.start[k];
         let arc = mesh.arc_length.as_slice();
         let own_way = |order: &mut SortedNodes| {
-            self.contacts.own.shape.free_fraction(&self.task.start, arc, &step, [KEEP[1], f64::INFINITY, 1.0], order)
+            self.contacts.own.shape.free_fraction(
+                &self.task.start,
+                arc,
+                &step,
+                [KEPT_GAP_FRACTIONS[1], f64::INFINITY, 1.0],
+                order,
+            )
         };
         clear && own_way(&mut SortedNodes::default()) >= 1.0
     }

@@ -13,7 +13,7 @@
 
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
-use crate::model::fem::newton::minimize::ROUNDED;
+use crate::model::fem::newton::minimize::WORK_MAGNITUDE_FRACTION;
 use crate::model::fem::newton::step_input::{Pose, StepInput};
 use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::bar_weight::Weight;
@@ -108,7 +108,8 @@ pub fn add(
     s.hessian.add_spring(2 * e, [along * t.x * t.x + geometric, along * t.x * t.y, along * t.y * t.y + geometric]);
     let energy = 0.5 * scale * (stiffness * (p - l) * (p - l) + 2.0 * task.loss_energy(e, lossy, l, p));
     // In a hurry nobody asks how well the energy is known.
-    let rounding = if carried.is_some() { 0.0 } else { scale * ROUNDED * pull.abs() * pose.x[e].norm() };
+    let rounding =
+        if carried.is_some() { 0.0 } else { scale * WORK_MAGNITUDE_FRACTION * pull.abs() * pose.x[e].norm() };
     (energy, energy + rounding)
 }
 
@@ -145,7 +146,7 @@ fn add_sliding(
     }
     let elastic = 0.5 * stiffness * l * strain * strain;
     let viscous = 0.5 * c * late * late;
-    let rounding = ROUNDED * pull.abs() * pose.x[e].norm();
+    let rounding = WORK_MAGNITUDE_FRACTION * pull.abs() * pose.x[e].norm();
     let carried = mesh.thermal_stretch;
     let hung = Weight::of(mesh, e, &path, task.body);
     let sign = [-1.0, 1.0];

@@ -32,7 +32,7 @@ pub fn slip_at_rest(problem: &Problem, force: f64) -> f64 {
 
 /// Steps for which a contact without load is remembered: fewer and trembling contacts creep; many more and a cable
 /// that was lifted and put back is held as if it had stayed.
-const REMEMBERED: usize = 8;
+const MEMORY_STEPS: usize = 8;
 
 /// Steps for which lists of what is near are made. Fewer: they are made more often; more: they are longer.
 const STEPS_AHEAD: f64 = 4.0;
@@ -445,7 +445,7 @@ impl ContactSet {
             });
         }
         let now = all.len();
-        for m in old.iter().filter(|m| m.age < REMEMBERED) {
+        for m in old.iter().filter(|m| m.age < MEMORY_STEPS) {
             let same = |n: &Memory| (n.node, n.on_segment, n.feature) == (m.node, m.on_segment, m.feature);
             let low = all[..now].partition_point(|n| n.node < m.node);
             if !all[low..now].iter().take_while(|n| n.node == m.node).any(same) {

@@ -26,7 +26,7 @@ use crate::model::fem::newton::step_setup::damping_time;
 use crate::problem::Problem;
 
 /// Lowest frequency of constant loss, rad/s (0.1 Hz). Lower: more branches, and a cable that stiffens more; higher: slow swings have less loss.
-const LOWEST: f64 = 0.2 * std::f64::consts::PI;
+const LOWEST_LOSS_FREQUENCY: f64 = 0.2 * std::f64::consts::PI;
 
 /// Ratio of the frequencies of neighbouring branches at most. Greater: the loss factor waves by more than 5 % between them; smaller: more
 /// branches.
@@ -34,7 +34,7 @@ const RATIO: f64 = 10.0;
 
 /// Damping ratio up to which loss is constant. With more the cable would stiffen manyfold (at 0.1 by 5 in four decades): what is asked
 /// beyond is viscous, and of the first axial mode.
-const MOST: f64 = 0.1;
+const CONSTANT_LOSS_RATIO_LIMIT: f64 = 0.1;
 
 /// Width of the band at most, decades. Less: the shortest bars of stiff cables ring with less loss; more: branches that no step sees.
 const MOST_DECADES: f64 = 9.0;
@@ -71,12 +71,12 @@ impl Loss {
     /// Of a cable of even bars of length `bar` (m): constant up to the highest frequency of these.
     pub(in crate::model::fem) fn of(problem: &Problem, bar: f64) -> Self {
         let ratio = problem.cable.damping_ratio;
-        let lowest = LOWEST / problem.time_scale;
+        let lowest = LOWEST_LOSS_FREQUENCY / problem.time_scale;
         let highest = 2.0 * (problem.axial_stiffness / problem.linear_density).sqrt() / bar;
         if !(ratio > 0.0 && highest.is_finite()) {
             return Self::default();
         }
-        let even = if ratio > MOST { MOST } else { ratio };
+        let even = if ratio > CONSTANT_LOSS_RATIO_LIMIT { CONSTANT_LOSS_RATIO_LIMIT } else { ratio };
         Self {
             branches: fit(2.0 * even, [lowest, highest]),
             viscous: damping_time(problem, false) * (1.0 - even / ratio),
@@ -214,10 +214,10 @@ mod tests {
     /// The least and the greatest loss factor over a band, in parts of that asked for.
     #[test]
     fn the_loss_factor_is_constant_from_the_lowest_frequency_to_the_highest() {
-        for (ratio, highest) in [(0.005, 20.0), (0.02, 1e4), (0.05, 1e6), (MOST, 1e5)] {
-            let branches = fit(2.0 * ratio, [LOWEST, highest]);
+        for (ratio, highest) in [(0.005, 20.0), (0.02, 1e4), (0.05, 1e6), (CONSTANT_LOSS_RATIO_LIMIT, 1e5)] {
+            let branches = fit(2.0 * ratio, [LOWEST_LOSS_FREQUENCY, highest]);
             for k in 0..=200 {
-                let omega = LOWEST * (highest / LOWEST).powf(f64::from(k) / 200.0);
+                let omega = LOWEST_LOSS_FREQUENCY * (highest / LOWEST_LOSS_FREQUENCY).powf(f64::from(k) / 200.0);
                 let found = loss_factor(&branches, omega) / (2.0 * ratio);
                 assert!((0.92..1.09).contains(&found), "{ratio}, {omega} rad/s: {found} of what was asked");
             }
@@ -228,7 +228,7 @@ mod tests {
     /// Cycles of strain through the exact update lose what the loss factor says.
     #[test]
     fn steps_lose_what_the_law_says() {
-        let branches = fit(0.04, [LOWEST, 1e4]);
+        let branches = fit(0.04, [LOWEST_LOSS_FREQUENCY, 1e4]);
         for omega in [2.0f64, 30.0, 400.0] {
             let h = std::f64::consts::TAU / omega / 200.0;
             let mut q = vec![0.0; branches.len()];

@@ -22,7 +22,7 @@ use crate::model::fem::time::history::Motion;
 use crate::model::fem::time::momentum::mass_with;
 
 /// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
-const QUIET: f64 = 0.05;
+const PLASTIC_SPEED_LIMIT: f64 = 0.05;
 
 /// What a plastic contact takes of the speed along its normal (m/s, positive away from it), of which its force made so much in the step.
 pub(in crate::model::fem) fn plastic(speed: f64, made: f64) -> f64 {
@@ -60,11 +60,11 @@ const ROUNDING: f64 = 16.0;
 const THIRD: f64 = 0.48;
 
 /// Part by which steps may differ and count as even.
-const EVEN: f64 = 1e-9;
+const EVEN_STEP_TOLERANCE: f64 = 1e-9;
 
 /// Even steps whose bars all pulled before BDF3 has its part: as many as its differences of velocities reach back. With less of a
 /// bar's snap in them chains whose bars rattle gain energy, half of mgL in a fold of 41 bars.
-const SMOOTH: usize = 3;
+const STEPS_BEFORE_BDF3: usize = 3;
 
 /// What a step makes of its history: v = a (x − x̂), x̂ = now x₀ − past x₋ + older x₌.
 #[derive(Clone, Copy, Debug)]
@@ -135,7 +135,7 @@ impl Dynamics {
             // Impulses: what the contact gave in the step, and what is taken of it.
             let made = load / a;
             let taken = plastic(speed, made * sum) / sum;
-            if speed.abs() < QUIET {
+            if speed.abs() < PLASTIC_SPEED_LIMIT {
                 continue;
             }
             let change = touch.interpolate(&m.v) - touch.interpolate(&m.v_before);
@@ -158,19 +158,23 @@ impl Dynamics {
     /// The weights of the history in a step of `h` (s).
     fn weights(&self, h: f64) -> Weights {
         let m = &self.motion;
-        if m.even_steps >= SMOOTH && self.is_even(h) { Weights::blended(h) } else { Weights::bdf2(h, m.step_before) }
+        if m.even_steps >= STEPS_BEFORE_BDF3 && self.is_even(h) {
+            Weights::blended(h)
+        } else {
+            Weights::bdf2(h, m.step_before)
+        }
     }
 
     /// Whether a step of `h` (s) is as long as the one before.
     fn is_even(&self, h: f64) -> bool {
-        (h - self.motion.step_before).abs() <= EVEN * h
+        (h - self.motion.step_before).abs() <= EVEN_STEP_TOLERANCE * h
     }
 
     /// Counts a step of `h` (s). Where contact may change what was, history is not looked for so far back.
     fn note_step(&mut self, h: f64) {
         let count = if self.is_even(h) { self.motion.even_steps } else { 0 };
         let smooth = !self.mesh.spread.is_lumped() && self.gauged.bars.iter().all(|tension| *tension > 0.0);
-        self.motion.even_steps = if smooth { (count + 1).min(SMOOTH) } else { 0 };
+        self.motion.even_steps = if smooth { (count + 1).min(STEPS_BEFORE_BDF3) } else { 0 };
         self.motion.step_before = h;
     }
 
@@ -236,7 +240,7 @@ impl Dynamics {
         self.note_step(h);
         self.note_pace(h);
         self.land(h, a);
-        self.land_on_itself(QUIET, [h, a]);
+        self.land_on_itself(PLASTIC_SPEED_LIMIT, [h, a]);
         self.close_account();
         self.contacts.carriage = None;
         if !self.never_slides {

@@ -80,7 +80,7 @@ pub(in crate::model::fem) struct Checkpoint {
 const ASIDE: f64 = 1e-4;
 
 /// Sine of the turn off a line below which a fold lies in it.
-const IN_LINE: f64 = 1e-6;
+const FOLD_LINE_SINE: f64 = 1e-6;
 
 impl Dynamics {
     /// Moves the middle of each fold that lies in one line a little aside, as a motion begins. In the line itself a bar would
@@ -90,7 +90,7 @@ impl Dynamics {
         for k in 1..x.len().saturating_sub(1) {
             let (a, b) = (x[k] - x[k - 1], x[k + 1] - x[k]);
             let size = a.norm() * b.norm();
-            if mesh.is_free(k) && a.dot(&b) < 0.0 && cross(a, b).abs() <= IN_LINE * size {
+            if mesh.is_free(k) && a.dot(&b) < 0.0 && cross(a, b).abs() <= FOLD_LINE_SINE * size {
                 x[k] += perp(a) * ASIDE;
             }
         }

@@ -8,10 +8,10 @@ use crate::math::Vec2;
 use crate::model::fem::dynamics::{Dynamics, REACH};
 
 /// How long a cable must have been still, s. Shorter: a slow swing that turns round may be caught.
-const STILL_FOR: f64 = 0.5;
+const SLEEP_DELAY_S: f64 = 0.5;
 
 /// How far (m) a node may have moved in that time: five times the reach of the barrier: a trembling contact moves its neighbours by a few.
-const STILL_WITHIN: f64 = 5.0 * REACH;
+const SLEEP_DISTANCE: f64 = 5.0 * REACH;
 
 /// What is watched to know whether the cable is still, and what acted when it fell asleep.
 #[derive(Clone, Debug, Default)]
@@ -30,13 +30,13 @@ impl Dynamics {
     pub(in crate::model::fem) fn watch(&mut self) {
         let time = self.motion.time;
         let same = self.sleep.place.len() == self.motion.x.len();
-        if same && time - self.sleep.since < STILL_FOR && time >= self.sleep.since {
+        if same && time - self.sleep.since < SLEEP_DELAY_S && time >= self.sleep.since {
             return;
         }
-        let near = |(a, b): (&Vec2, &Vec2)| (a - b).norm() <= STILL_WITHIN;
+        let near = |(a, b): (&Vec2, &Vec2)| (a - b).norm() <= SLEEP_DISTANCE;
         let still = same
             && self.sleep.place.iter().zip(&self.motion.x).all(near)
-            && self.sleep.arc_length.iter().zip(&self.mesh.arc_length).all(|(a, b)| (a - b).abs() <= STILL_WITHIN);
+            && self.sleep.arc_length.iter().zip(&self.mesh.arc_length).all(|(a, b)| (a - b).abs() <= SLEEP_DISTANCE);
         // A cable that touches nothing may be at the turn of a slow swing.
         let lies = !self.contacts.rubs.is_empty() || !self.contacts.own.rubs.is_empty();
         if still && lies && self.same_input() {
@@ -74,10 +74,10 @@ impl Dynamics {
             // A hand that takes hold, lets go, or goes on.
             (_, Some(_)) if self.pulled[k] != self.motion.hands[k].is_some() => true,
             (_, Some(to)) if self.pulled[k] => {
-                self.motion.hands[k].is_none_or(|h| (h.end().position() - to).norm() > STILL_WITHIN * 1e-3)
+                self.motion.hands[k].is_none_or(|h| (h.end().position() - to).norm() > SLEEP_DISTANCE * 1e-3)
             }
-            (Some(f), Some(to)) => (f.position() - to).norm() > STILL_WITHIN * 1e-3,
-            (None, Some(to)) => self.support_position(k).is_none_or(|at| (at - to).norm() > STILL_WITHIN * 1e-3),
+            (Some(f), Some(to)) => (f.position() - to).norm() > SLEEP_DISTANCE * 1e-3,
+            (None, Some(to)) => self.support_position(k).is_none_or(|at| (at - to).norm() > SLEEP_DISTANCE * 1e-3),
             _ => false,
         });
         self.prepare_task(to, Some(dragged));

@@ -11,14 +11,14 @@ use crate::model::fem::dynamics::Dynamics;
 
 /// The shortest step is this part of the longest, 1/240 s: strings up to 17 Hz are in tune to 1e-3, of 40 Hz to 6e-3. Less: a cable that
 /// rings costs more than it tells; more: the tones that are in tune are lower.
-const SHORTEST: f64 = 0.125;
+const SHORTEST_STEP_FRACTION: f64 = 0.125;
 
 /// Vibrations of less than this part of the cable's length are left as they are: what is left over from coming to rest rings at
 /// any frequency, and 0.1 mm in 10 m is no motion that a user sees.
-const LEAST: f64 = 1e-5;
+const VIBRATION_FRACTION: f64 = 1e-5;
 
 /// Change of the step from one frame to the next. BDF2 is stable up to 2.4.
-const CHANGE: f64 = 2.0;
+const STEP_CHANGE_LIMIT: f64 = 2.0;
 
 /// What was seen is forgotten with this time, s. Half a period of what needs shorter steps passes in it: with less the step
 /// would be short where a vibration turns and long where it is fastest.
@@ -85,10 +85,10 @@ impl Dynamics {
         let [changes, speeds, time] = pace.seen;
         let frequency = (changes / speeds).sqrt();
         let amplitude = (speeds / (time * length)).sqrt() / frequency;
-        let matters = frequency.is_finite() && amplitude > LEAST * length;
+        let matters = frequency.is_finite() && amplitude > VIBRATION_FRACTION * length;
         let wanted = if matters { (3.0 * self.tolerance).sqrt() / frequency } else { pace.longest };
-        let near = bounded(wanted, pace.step / CHANGE, pace.step * CHANGE);
-        pace.step = near.clamp(SHORTEST * pace.longest, pace.longest);
+        let near = bounded(wanted, pace.step / STEP_CHANGE_LIMIT, pace.step * STEP_CHANGE_LIMIT);
+        pace.step = near.clamp(SHORTEST_STEP_FRACTION * pace.longest, pace.longest);
         let left = (-dt / MEMORY).exp();
         pace.seen = pace.seen.map(|s| s * left);
     }

@@ -12,7 +12,7 @@ use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::dynamics::REACH;
 use crate::model::fem::equilibrium::initial_guess::push_out;
 use crate::model::fem::mesh::adapt::LEAST_TURN;
-use crate::model::fem::mesh::arc_nodes::{SMALL, WIDE, rotate};
+use crate::model::fem::mesh::arc_nodes::{MARKED_ARC_LIMIT, ONE_MARK_BAR_FRACTION, rotate};
 use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode, StickSlip, round_of};
 use crate::model::fem::mesh::tangent_path::{End, angle_between};
 use crate::model::fem::system::friction_state::ContactPair;
@@ -166,9 +166,9 @@ impl Dynamics {
                 continue;
             }
             let round = arc.node.end.radius * arc.turn;
-            let many = 0.5 * arc.turn > WIDE && 0.5 * round > SMALL * self.even();
+            let many = 0.5 * arc.turn > MARKED_ARC_LIMIT && 0.5 * round > ONE_MARK_BAR_FRACTION * self.even();
             let bars = if many { (MARKS * round / self.even()).round() } else { 1.0 };
-            let marks = (arc.turn / if many { WIDE } else { MOST }).ceil().max(bars);
+            let marks = (arc.turn / if many { MARKED_ARC_LIMIT } else { MOST }).ceil().max(bars);
             for i in 0..marks as usize {
                 let part = (i as f64 + 0.5) / marks;
                 let end = arc.node.end;

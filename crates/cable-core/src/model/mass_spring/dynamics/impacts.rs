@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::model::mass_spring::{MassSpringModel, Touch};
 
 /// Distance kept ready for contact beside what is travelled, m.
-pub(in crate::model::mass_spring) const SKIN: f64 = 1e-4;
+pub(in crate::model::mass_spring) const CONTACT_SKIN: f64 = 1e-4;
 /// Greatest speed at which a penetration is pushed out, m/s: more throws the cable off, less lets it sink for longer.
 const PUSH_OUT_SPEED: f64 = 1.0;
 /// Time in which a shallow one is pushed out, s: a cable that rests a few micrometres deep must not jump.
@@ -55,7 +55,7 @@ impl MassSpringModel {
             if self.clearance[e] > 0.0 {
                 continue;
             }
-            let near = SKIN + 2.0 * travel;
+            let near = CONTACT_SKIN + 2.0 * travel;
             let reach = near + self.rest[e];
             self.gaps.clear();
             self.problem.world.segment_gaps(self.x[e], self.x[e + 1], reach, &mut self.gaps);

@@ -10,7 +10,7 @@ use crate::solution::{Warning, WarningKind};
 
 /// Fastest a node may move, m/s. Recoil of a broken rope stays below it (breaking strain times wave speed: 20 m/s for
 /// steel, 300 m/s for nylon); a lower limit cuts that, a higher one lets thin obstacles cost ever shorter sub-steps.
-const FASTEST: f64 = 300.0;
+const NODE_SPEED_LIMIT: f64 = 300.0;
 /// Kinetic energy over what supports, loads and stretch can have given beyond which the motion is not believed. Less
 /// damps real whips, more shows the explosion first.
 const MOST_ENERGY: f64 = 10.0;
@@ -84,9 +84,9 @@ impl MassSpringModel {
         if brake && trouble.energy.is_none_or(|e| energy > e.value) {
             trouble.energy = Some(found(energy, limit));
         }
-        let cut = speed > FASTEST;
+        let cut = speed > NODE_SPEED_LIMIT;
         if cut && trouble.speed.is_none_or(|s| speed > s.value) {
-            trouble.speed = Some(found(speed, FASTEST));
+            trouble.speed = Some(found(speed, NODE_SPEED_LIMIT));
         }
         if cut || brake {
             speed = self.hold_back(if brake { BRAKE } else { 1.0 });
@@ -100,10 +100,10 @@ impl MassSpringModel {
         for i in (0..self.x.len()).filter(|&i| !self.held[i]) {
             self.v[i] *= brake;
             let speed = self.v[i].norm();
-            if speed > FASTEST {
-                self.v[i] *= FASTEST / speed;
+            if speed > NODE_SPEED_LIMIT {
+                self.v[i] *= NODE_SPEED_LIMIT / speed;
             }
-            let left = if speed > FASTEST { FASTEST } else { speed };
+            let left = if speed > NODE_SPEED_LIMIT { NODE_SPEED_LIMIT } else { speed };
             fastest = if left > fastest || left.is_nan() { left } else { fastest };
         }
         fastest
@@ -117,7 +117,7 @@ impl MassSpringModel {
         };
         let fast = trouble.speed.map(|e| {
             let message = format!(
-                "`{name}` moved at {:.0} m/s {}: its velocity was cut to {FASTEST} m/s and the motion from then on is not to be believed; use fem",
+                "`{name}` moved at {:.0} m/s {}: its velocity was cut to {NODE_SPEED_LIMIT} m/s and the motion from then on is not to be believed; use fem",
                 e.value,
                 place(&e)
             );

@@ -9,9 +9,9 @@ use crate::model::mass_spring::{MassSpringModel, SmoothedTarget};
 /// Fraction of the stable sub-step that is used: more is unstable as elements stretch, less is slower.
 const STEP_SAFETY: f64 = 0.8;
 /// Greatest fraction of the cable's radius a node travels in a sub-step: more could pass a thin obstacle.
-const TRAVEL: f64 = 0.25;
+const TRAVEL_RADIUS_FRACTION: f64 = 0.25;
 /// Shortest sub-step, of the stable one: below, motion has run away.
-const SHORTEST: f64 = 1e-6;
+const SHORTEST_SUB_STEP_FRACTION: f64 = 1e-6;
 
 impl MassSpringModel {
     /// Every force but those of supports and contacts, and the tensions.
@@ -123,13 +123,13 @@ impl MassSpringModel {
         let same = self.pulleys.is_empty() && gauge.knows(&self.s);
         while left > 0.0 {
             let fastest = self.calm(&mut trouble);
-            let travel = TRAVEL * self.problem.radius / fastest;
+            let travel = TRAVEL_RADIUS_FRACTION * self.problem.radius / fastest;
             let limit = if !self.problem.world.is_empty() && travel < stable { travel } else { stable };
             let h = self.until_let_go(left / (left / limit).ceil());
             if let Some(e) = self.non_finite() {
                 return Err(e);
             }
-            if h < SHORTEST * if stable < dt_s { stable } else { dt_s } {
+            if h < SHORTEST_SUB_STEP_FRACTION * if stable < dt_s { stable } else { dt_s } {
                 let node = self.v.iter().position(|v| v.norm() >= fastest).unwrap_or(0);
                 return Err(SolveError::StepFailed {
                     model: crate::Model::MassSpring,

@@ -17,12 +17,12 @@ use crate::model::mass_spring::{Anchor, MassSpringModel, Surface, Touch};
 const OFFSET: f64 = 2e-5;
 /// What lies nearer than this to an obstacle at the start was laid there, m: the bars' barrier keeps a millimetre. Less
 /// lets the cable slide while it falls that far, more anchors what hangs beside.
-const LAID: f64 = 2e-3;
+const FIRST_CONTACT_DISTANCE: f64 = 2e-3;
 /// Sliding at which friction is called up whole, m: less takes more steps, more creeps, and near a held end, where a
 /// stiff cable moves by less, friction is called up in part only.
 const SLIP: f64 = 5e-6;
 /// A contact takes the anchor of material this near, in even lengths.
-const NEAR: f64 = 0.75;
+const ANCHOR_REACH_LENGTHS: f64 = 0.75;
 
 /// Friction at one place, frozen for a step.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +78,7 @@ impl Contacts {
         let stiffness = model.problem.force_scale() / OFFSET;
         let mut this = Self { stiffness, anchors, rubs: Vec::new(), pushes: Vec::new() };
         if anew {
-            this.find(model, LAID);
+            this.find(model, FIRST_CONTACT_DISTANCE);
             let laid = this.pushes.iter().filter(|p| p.pair.weight > 0.0).map(|p| p.anchor(model));
             this.anchors.extend(laid);
         }
@@ -151,7 +151,7 @@ impl Contacts {
             let nearest = (0..known)
                 .filter(|&a| !taken[a] && self.anchors[a].surface == Surface::Obstacle(gap.obstacle))
                 .min_by(|&a, &b| (self.anchors[a].s - s).abs().total_cmp(&(self.anchors[b].s - s).abs()))
-                .filter(|&a| (self.anchors[a].s - s).abs() < NEAR * model.even);
+                .filter(|&a| (self.anchors[a].s - s).abs() < ANCHOR_REACH_LENGTHS * model.even);
             let anchor = match nearest {
                 Some(a) => {
                     taken[a] = true;
@@ -272,14 +272,14 @@ impl Contacts {
                 gap: crate::contact::Gap { fraction: push.fraction, ..push.pair.gap },
                 normal: self.stiffness * push.pair.weight * (OFFSET - push.pair.gap.gap_m),
                 friction,
-                slips: limit > 0.0 && friction.abs() >= SLIPPING * limit,
+                slips: limit > 0.0 && friction.abs() >= SLIP_FRACTION * limit,
             });
         }
     }
 }
 
 /// Part of the greatest friction from which on a contact is said to slide.
-const SLIPPING: f64 = 0.999;
+const SLIP_FRACTION: f64 = 0.999;
 
 impl Rub {
     /// How far the material has moved from its anchor, m.
@@ -299,7 +299,7 @@ impl MassSpringModel {
         if on_floor != self.x.len() || !(top > 0.0) {
             return 0.0;
         }
-        let sticks = |n: &usize| (self.x[*n] - self.anchors[*n].at).norm() < SLIPPING * SLIP;
+        let sticks = |n: &usize| (self.x[*n] - self.anchors[*n].at).norm() < SLIP_FRACTION * SLIP;
         let held: f64 = (0..on_floor).filter(sticks).map(|n| mu * normal * self.half_share(n)).sum();
         held / top
     }

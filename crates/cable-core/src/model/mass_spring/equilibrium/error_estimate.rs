@@ -15,7 +15,7 @@ use crate::solution::ErrorEstimates;
 /// Fewer elements than this have no half of use.
 const LEAST_ELEMENTS: usize = 8;
 /// Part of what the coarser two of three meshes differ by that the error of the finest is at least: that of the first order.
-const COARSER: f64 = 0.5;
+const FIRST_ORDER_ERROR_FRACTION: f64 = 0.5;
 
 /// Who goes on beside a chain.
 #[derive(Clone, Debug, Default)]
@@ -54,7 +54,7 @@ impl MassSpringModel {
         self.errors = ErrorEstimates::between(&other, &answer).plus(&rounding);
         if let Some(coarsest) = self.coarser(4, first) {
             let change = ErrorEstimates::between(&coarsest.answer(), &other);
-            self.errors = self.errors.or_larger(&change.times(COARSER));
+            self.errors = self.errors.or_larger(&change.times(FIRST_ORDER_ERROR_FRACTION));
         }
         self.beside = ErrorEstimator::Coarse(Box::new(coarse));
     }

@@ -28,7 +28,7 @@ const TOUCHING_RESIDUAL: f64 = 1e-7;
 /// Stiffness lent to elements that are slack at the start, whose tension there is known (corrected bars are shorter by
 /// their sag, which is more than a stiff spring stretches): how it fades from step to step. More makes truly slack
 /// elements slow, less starts with wild steps.
-const FADE: f64 = 0.1;
+const LENT_STIFFNESS_FADE: f64 = 0.1;
 /// Units in the last place by which positions are off when they are good: strain is off by that over l₀, tension EA
 /// times it. Two positions and the length between them lose about one each, and both springs of a node add up.
 const ULPS: f64 = 8.0;
@@ -44,7 +44,7 @@ const LAST_SHIFT: f64 = 1e3;
 const LEAST_SHIFT: f64 = 1e-14;
 /// Up to this step friction follows the normal forces at every step, which is fastest; where that runs in circles, later
 /// ones first solve with them frozen, for so many steps at most.
-const EAGER: usize = 150;
+const EAGER_FRICTION_STEPS: usize = 150;
 const MOST_FROZEN: usize = 25;
 /// Greatest move in a step where there is something to run into, of the cable's radius: more steps over an edge.
 const MOST_MOVE: f64 = 0.5;
@@ -167,13 +167,13 @@ impl MassSpringModel {
                 shift = (shift * SHIFT_DOWN).max(LEAST_SHIFT * unit);
                 curvature = Curvature::Exact;
                 (energy, worst, node) = (new, left, at);
-                system.fade *= FADE;
+                system.fade *= LENT_STIFFNESS_FADE;
                 let remeshed = !self.pulleys.is_empty() && self.remesh();
                 if remeshed {
                     let fade = system.fade;
                     system = System { fade, ..System::new(self)? };
                 }
-                let due = k < EAGER || left <= tolerance || frozen >= MOST_FROZEN || remeshed;
+                let due = k < EAGER_FRICTION_STEPS || left <= tolerance || frozen >= MOST_FROZEN || remeshed;
                 frozen = if due { 0 } else { frozen + 1 };
                 if due && (contacts.refresh(self) || remeshed) {
                     energy = self.assemble(&mut system, contacts, curvature);

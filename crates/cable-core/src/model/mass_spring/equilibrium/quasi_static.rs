@@ -7,10 +7,10 @@ use crate::model::mass_spring::MassSpringModel;
 /// Longest way of a support between two resting places, of the even length (friction is measured from where the material
 /// was, and a longer way leaves that element) and of the cable's radius where there is something to hit (a longer one
 /// stretches the end so far that Newton's first steps draw a node in under a corner, where it locks).
-const MOST_WAY: f64 = 0.5;
+const SUPPORT_WAY_LENGTHS: f64 = 0.5;
 /// Most resting places in a step, and the shortest part of one that is tried after a failure.
 const MOST_PARTS: f64 = 1e4;
-const SHORTEST: f64 = 1.0 / 1024.0;
+const SHORTEST_PART: f64 = 1.0 / 1024.0;
 
 impl MassSpringModel {
     pub(in crate::model::mass_spring) fn creep(&mut self, dt_s: f64) -> Result<(), SolveError> {
@@ -32,7 +32,7 @@ impl MassSpringModel {
         }
         let within = if self.problem.world.is_empty() { self.even } else { self.even.min(self.problem.radius) };
         let parts = if self.touches_something() || !self.pulleys.is_empty() {
-            (way / (MOST_WAY * within)).ceil().clamp(1.0, MOST_PARTS)
+            (way / (SUPPORT_WAY_LENGTHS * within)).ceil().clamp(1.0, MOST_PARTS)
         } else {
             1.0
         };
@@ -55,7 +55,7 @@ impl MassSpringModel {
                 Err(e) => {
                     *self = kept;
                     part *= 0.5;
-                    if part * parts < SHORTEST {
+                    if part * parts < SHORTEST_PART {
                         return Err(e);
                     }
                 }

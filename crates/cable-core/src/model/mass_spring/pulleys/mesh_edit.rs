@@ -9,18 +9,18 @@ use crate::model::mass_spring::MassSpringModel;
 
 /// Free part of an element beside a pulley, of the even length, below which its other node is taken out: less shortens
 /// the stable step, more remeshes more often.
-const SHORTEST: f64 = 0.3;
+const SHORTEST_FREE_PART: f64 = 0.3;
 /// And beyond which it is halved.
-const LONGEST: f64 = 1.7;
+const LONGEST_FREE_PART: f64 = 1.7;
 /// Beside what cannot be taken out the material stops at this part of the even length.
-const BLOCKED: f64 = 0.1;
+const BLOCKED_FREE_PART: f64 = 0.1;
 /// Greatest sag of a new node, of its element: more comes of slack, whose tension says nothing.
 const MOST_SAG: f64 = 0.1;
 
 impl MassSpringModel {
     /// Material left beside something that does not run through a pulley, m.
     pub(in crate::model::mass_spring) fn least_span(&self) -> f64 {
-        BLOCKED * self.even
+        BLOCKED_FREE_PART * self.even
     }
 
     /// Keeps the elements beside pulleys near the even length; returns whether anything changed.
@@ -30,10 +30,10 @@ impl MassSpringModel {
             for side in 0..2 {
                 let i = self.pulleys[k].node;
                 let e = i - 1 + side;
-                if self.share[e] < SHORTEST * self.even {
+                if self.share[e] < SHORTEST_FREE_PART * self.even {
                     let n = if side == 0 { i - 1 } else { i + 1 };
                     changed |= self.take_out(k, n);
-                } else if self.share[e] > LONGEST * self.even {
+                } else if self.share[e] > LONGEST_FREE_PART * self.even {
                     changed |= self.put_in(k, e);
                 }
             }

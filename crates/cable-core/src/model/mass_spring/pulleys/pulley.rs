@@ -22,7 +22,7 @@ use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 
 /// Tension over the weight of half an element below which the direction of the force there says nothing.
-const SLACK: f64 = 4.0;
+const DIRECTION_TENSION_RATIO: f64 = 4.0;
 
 /// One pulley.
 #[derive(Clone, Copy, Debug)]
@@ -245,7 +245,7 @@ impl MassSpringModel {
         let touch = |r: &Reach, tension: f64, half: Vec2| {
             let force = r.direction * tension + half;
             let size = force.norm();
-            (size, if size > SLACK * half.norm() { force / size } else { r.direction })
+            (size, if size > DIRECTION_TENSION_RATIO * half.norm() { force / size } else { r.direction })
         };
         let (before, from) = touch(&b, tb, body * (-0.5 * self.share[i - 1]));
         let (after, to) = touch(&a, ta, body * (0.5 * self.share[i]));

@@ -20,11 +20,11 @@ use crate::model::settings::Stepping;
 use crate::solution::{Warning, WarningKind};
 
 /// Longest sub-step, s. Longer damps motion and softens contacts visibly, shorter costs in proportion.
-const LONGEST: f64 = 1.0 / 600.0;
+const LONGEST_SUB_STEP_S: f64 = 1.0 / 600.0;
 /// And shortest: a snap that asks for less is damped instead, for a sub-step or two.
-const SHORTEST: f64 = LONGEST / 64.0;
+const SHORTEST_SUB_STEP_S: f64 = LONGEST_SUB_STEP_S / 64.0;
 /// Greatest ω²h² of swings across the cable: 4/3 is unstable, less costs more.
-const SWAY: f64 = 1.0;
+const SWING_STEP_LIMIT: f64 = 1.0;
 
 impl MassSpringModel {
     /// Advances by `dt_s` in sub-steps.
@@ -38,9 +38,10 @@ impl MassSpringModel {
         let mut trouble = self.no_trouble();
         let (mut left, mut count, mut longest) = (dt_s, 0, 0.0);
         while left > 0.0 {
-            let stable = (SWAY / self.sway()).sqrt();
-            let limit = if stable < LONGEST { stable } else { LONGEST };
-            let parts = (left / if limit > SHORTEST { limit } else { SHORTEST } - 1e-9).ceil().max(1.0);
+            let stable = (SWING_STEP_LIMIT / self.sway()).sqrt();
+            let limit = if stable < LONGEST_SUB_STEP_S { stable } else { LONGEST_SUB_STEP_S };
+            let parts =
+                (left / if limit > SHORTEST_SUB_STEP_S { limit } else { SHORTEST_SUB_STEP_S } - 1e-9).ceil().max(1.0);
             let h = left / parts;
             left = if parts > 1.0 { left - h } else { 0.0 };
             self.time_s = end - left;

@@ -23,7 +23,7 @@ const PANEL: f64 = 0.3;
 
 /// A way (rad) so short that what changes on it is known from its start to third order: what is left out is its fourth power
 /// times a part of the tension. Larger: material is off. Smaller: one more look at both tensions where they are to be one.
-pub(in crate::model::spans) const HAIR: f64 = 1e-3;
+pub(in crate::model::spans) const SHORT_ARC: f64 = 1e-3;
 
 /// A way along an arc, in as many stretches as it needs.
 #[derive(Clone, Copy, Debug)]
@@ -65,13 +65,13 @@ impl Way {
             let panels = (way.abs() / PANEL).ceil().max(1.0);
             (way / panels, panels as usize)
         };
-        let turn = if h.abs() <= HAIR { (h, 1.0) } else { sin_cos(h) };
+        let turn = if h.abs() <= SHORT_ARC { (h, 1.0) } else { sin_cos(h) };
         Self { c: from.stretch, count, h, turn, load: from.load }
     }
 
     /// Slides along it with m from the tension `t`; and how it goes on from there.
     pub fn slide(&self, law: &Law, t: f64, m: f64) -> (Step, Rates) {
-        if self.h.abs() <= HAIR {
+        if self.h.abs() <= SHORT_ARC {
             return self.hair(law, t, m);
         }
         let ((sin, cos), mut load) = (self.turn, self.load);

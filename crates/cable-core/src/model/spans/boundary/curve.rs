@@ -22,10 +22,10 @@ use crate::math::{Vec2, bounded, cross, perp, sin_cos};
 
 /// An edge holds the cable if the load presses on it with more than this part of itself. Smaller: a wall that rounding
 /// tilts would hold a cable that hangs beside it. Larger: floors steeper than 89.99° would not hold.
-const PRESSES: f64 = 1e-9;
+const PRESSING_FRACTION: f64 = 1e-9;
 
 /// A direction beyond the end of an arc by less than this (rad) is rounding.
-const ASIDE: f64 = 1e-9;
+const ARC_END_TOLERANCE: f64 = 1e-9;
 
 /// The form of a piece of the curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -265,7 +265,7 @@ impl Curve {
         let piece = self.piece(i);
         match piece.form {
             Form::Edge { tangent, .. } => {
-                piece.extent > 0.0 && -load.dot(&perp(tangent)) * self.sense > PRESSES * load.norm()
+                piece.extent > 0.0 && -load.dot(&perp(tangent)) * self.sense > PRESSING_FRACTION * load.norm()
             }
             Form::Arc { .. } => true,
         }
@@ -375,8 +375,8 @@ impl Curve {
         let Form::Arc { from, .. } = piece.form else { return 0 };
         let x = -self.sense * cross(from, along).atan2(from.dot(&along));
         match piece.extent.is_finite() {
-            true if x < -ASIDE => -1,
-            true if x > piece.extent + ASIDE => 1,
+            true if x < -ARC_END_TOLERANCE => -1,
+            true if x > piece.extent + ARC_END_TOLERANCE => 1,
             _ => 0,
         }
     }

@@ -71,7 +71,7 @@ fn pin(out: &mut Rows, track: &Track<'_>, history: &TensionProfile, e: &Ends, si
     let gap = e.s[side] - old_s;
     let x = e.t[side] - old_t;
     out.of_tension[side] = true;
-    if gap.abs() <= UNMOVED * (e.s[0].abs() + e.s[1].abs()) {
+    if gap.abs() <= END_MOVE_TOLERANCE * (e.s[0].abs() + e.s[1].abs()) {
         out.residual[side] = x;
         out.by[side] = [0.0; 6];
         out.by[side][3 * side + 2] = 1.0;
@@ -86,12 +86,12 @@ fn pin(out: &mut Rows, track: &Track<'_>, history: &TensionProfile, e: &Ends, si
     let m = front.m.abs() * if (target > 0.0) == (side == 0) { -1.0 } else { 1.0 };
     let inner = e.p[side] + (e.p[1 - side] - e.p[side]) * 1e-9;
     let drop = (law.slope(&place, old_t, m) - history.slope(track, inner)).abs() / place.stretch;
-    if drop <= PARALLEL * law.load.norm() {
+    if drop <= SLOPE_DIFFERENCE_FRACTION * law.load.norm() {
         // It slides on as it slid: the material follows the tension along the whole of the old sliding, evenly, which a
         // tension that has not changed yet does not show.
         out.of_tension[side] = false;
         if x == 0.0 {
-            let nudged = old_t + NUDGE * (old_t.abs() + law.load.norm() * size) * target.signum();
+            let nudged = old_t + DIFFERENCE_STEP * (old_t.abs() + law.load.norm() * size) * target.signum();
             let way = history.front(track, e.p[side], nudged, e.p[1 - side]).way;
             out.by[side][3 * side + 2] = way.material_by_tension;
         }
@@ -232,7 +232,7 @@ pub(in crate::model::spans) fn next_mode(
     patience: f64,
 ) -> Mode {
     let friction = track.friction;
-    let (cone, stuck) = (CONE * patience, STUCK * patience);
+    let (cone, stuck) = (CONE_ROUNDING * patience, STICK_ROUNDING * patience);
     if friction <= 0.0 || e.p[1] < e.p[0] {
         return if friction <= 0.0 { Mode::Slide(0.0) } else { mode };
     }
@@ -248,7 +248,7 @@ pub(in crate::model::spans) fn next_mode(
         Mode::Slide(m) => {
             for side in (0..2).filter(|&side| pinned[side]) {
                 let (old_t, old_s) = history.at(track, e.p[side]);
-                if (e.s[side] - old_s).abs() <= UNMOVED * (e.s[0].abs() + e.s[1].abs()) {
+                if (e.s[side] - old_s).abs() <= END_MOVE_TOLERANCE * (e.s[0].abs() + e.s[1].abs()) {
                     // What does not move is drawn the more the more the rest slides away from it.
                     let drawn = (e.t[side] - old_t) * m * if side == 0 { 1.0 } else { -1.0 };
                     let rounding = cone * friction * larger(e.t[0].abs(), e.t[1].abs());
@@ -267,14 +267,14 @@ pub(in crate::model::spans) fn next_mode(
 }
 
 /// Part of a tension by which the cone of friction may be left. Smaller: chatter of rounding; larger: creep.
-const CONE: f64 = 1e-13;
+const CONE_ROUNDING: f64 = 1e-13;
 /// Part of the material coordinate that is rounding.
 const ROUNDING: f64 = 1e-15;
 /// Part of a tension by which it is changed to see what that moves.
-const NUDGE: f64 = 1e-6;
+const DIFFERENCE_STEP: f64 = 1e-6;
 /// Slopes of tension nearer to each other than this part of the load are one.
-const PARALLEL: f64 = 1e-6;
+const SLOPE_DIFFERENCE_FRACTION: f64 = 1e-6;
 /// Part of the material coordinate that an end held on the boundary may be off without having moved.
-const UNMOVED: f64 = 1e-14;
+const END_MOVE_TOLERANCE: f64 = 1e-14;
 /// Part of the material coordinate that is no movement: rounding.
-const STUCK: f64 = 1e-15;
+const STICK_ROUNDING: f64 = 1e-15;

@@ -16,14 +16,14 @@
 
 use crate::math::smaller;
 use crate::model::spans::boundary::capstan::{Step, Track};
-use crate::model::spans::numerics::root::{FLOOR, crossing};
+use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
 
 /// Part of the friction coefficient by which it is changed to see what that moves.
-const NUDGE: f64 = 1e-6;
+const DIFFERENCE_STEP: f64 = 1e-6;
 
 /// A stretch of no more than this (m or rad) is none. Smaller: where friction goes to and fro over the same stretch rounding
 /// leaves a knot more each time. Larger: tension is off by as much times the slope of tension.
-const SLIVER: f64 = 1e-12;
+const SHORTEST_STRETCH: f64 = 1e-12;
 
 /// A point from which the tension follows the law with m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,9 +139,9 @@ impl TensionProfile {
             *tension = low;
             return -friction * sign;
         }
-        let by = NUDGE * friction;
+        let by = DIFFERENCE_STEP * friction;
         let goal = *tension;
-        sign * crossing(-friction, friction, FLOOR * goal.abs(), None, |m| {
+        sign * crossing(-friction, friction, TENSION_ROUNDING * goal.abs(), None, |m| {
             (goal - reach(m * sign), (reach((m - by) * sign) - reach((m + by) * sign)) / (2.0 * by))
         })
     }
@@ -249,7 +249,7 @@ impl TensionProfile {
 
     fn push(&mut self, k: Knot) {
         if let Some(last) = self.knots.last_mut() {
-            if k.p - last.p <= SLIVER {
+            if k.p - last.p <= SHORTEST_STRETCH {
                 // A stretch of no extent.
                 last.m = k.m;
                 return;
@@ -315,7 +315,7 @@ impl TensionProfile {
         let sign = if t < old { 1.0 } else { -1.0 };
         let m = track.friction * sign * if right { 1.0 } else { -1.0 };
         let (mut at, mut way) = (p, Step::none(t));
-        if (t - old).abs() <= FLOOR * t.abs() {
+        if (t - old).abs() <= TENSION_ROUNDING * t.abs() {
             return Front { p, way, m, met: true, old: s };
         }
         while at != to {
@@ -361,7 +361,7 @@ impl TensionProfile {
         }
         // … or they slide towards or away from each other.
         let sign = if left.m > 0.0 { 1.0 } else { -1.0 };
-        let meet = crossing(p1, p2, FLOOR * (t1.abs() + t2.abs()), None, |x| {
+        let meet = crossing(p1, p2, TENSION_ROUNDING * (t1.abs() + t2.abs()), None, |x| {
             let (r, l) = (track.slide(p2, x, t2, right.m).tension, track.slide(p1, x, t1, left.m).tension);
             let place = track.place(x);
             let slope = track.law.slope(&place, r, right.m) - track.law.slope(&place, l, left.m);

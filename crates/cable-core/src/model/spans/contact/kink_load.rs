@@ -12,11 +12,11 @@ use crate::model::spans::failure::Failure;
 use crate::model::spans::run::{CableRun, Contact, Course, RestingLoad};
 
 /// A load so far beyond the end of its chain (m or rad) is in the kink there. Smaller: rounding.
-const BEYOND: f64 = 1e-12;
+const CHAIN_END_ROUNDING: f64 = 1e-12;
 /// Part of the forces that is rounding.
-const CONE: f64 = 1e-12;
+const CONE_ROUNDING: f64 = 1e-12;
 /// Part of the strand that a contact gives way by where a load leaves it, to begin with.
-const GIVES: f64 = 1e-6;
+const GIVE_WAY_FRACTION: f64 = 1e-6;
 
 /// Which way along the boundary the kink lies that a load is in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,7 +84,7 @@ pub(in crate::model::spans) fn enter(strand: &mut CableRun, course: &Course) -> 
     for c in strand.contacts.iter_mut().filter(|c| c.load.is_some_and(|l| l.kink.is_none())) {
         for kink in [Kink::Back, Kink::Ahead] {
             let Some((_, p)) = beyond(course, c, kink) else { continue };
-            if (c.ends.p[0] - p) * kink.sign() > BEYOND {
+            if (c.ends.p[0] - p) * kink.sign() > CHAIN_END_ROUNDING {
                 let knot = Knot { p, s: c.ends.s[0], tension: c.ends.t[0], m: 0.0 };
                 c.ends.p = [p; 2];
                 c.history = TensionProfile::new(knot, knot);
@@ -102,7 +102,7 @@ pub(in crate::model::spans) fn leave(strand: &mut CableRun, course: &Course, j: 
     let f = felt(strand, course, j);
     let c = &strand.contacts[j];
     let Some(kink) = c.kink() else { return Ok(false) };
-    let Some(on) = leaves(course, c, kink, &f, CONE) else { return Ok(false) };
+    let Some(on) = leaves(course, c, kink, &f, CONE_ROUNDING) else { return Ok(false) };
     let (curve, friction) = (&course.curves[c.curve], course.friction(c));
     let mut home = c.home;
     if on {
@@ -141,7 +141,7 @@ fn part(strand: &mut CableRun, course: &Course, j: usize, side: usize) {
 
 /// An end of contact i gives way by a little, for a span to begin there.
 pub(in crate::model::spans) fn give_way(strand: &mut CableRun, i: usize, end: usize) {
-    let gives = GIVES * (strand.to - strand.from);
+    let gives = GIVE_WAY_FRACTION * (strand.to - strand.from);
     let e = &mut strand.contacts[i].ends;
     let (most, sign) = (0.5 * (e.s[1] - e.s[0]), if end == 0 { 1.0 } else { -1.0 });
     let by = if gives < most { gives } else { most };

@@ -4,7 +4,7 @@
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, larger, perp};
 use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
-use crate::model::spans::contact::point_load::LIFTS;
+use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::run::{CableRun, Contact, Course, Next, RestingLoad, Tie};
 use crate::model::spans::verify::penetration;
@@ -73,7 +73,7 @@ pub(in crate::model::spans) fn touch(
         Some(Tie::Hangs(force)) => force,
         _ => Vec2::zeros(),
     };
-    let pressed = l.tip.is_none() || drawn.dot(&l.gap.normal) < -LIFTS * drawn.norm();
+    let pressed = l.tip.is_none() || drawn.dot(&l.gap.normal) < -LIFT_FRACTION * drawn.norm();
     // An end that nothing presses down slides on with its load as it lies down, or comes to lie in a heap.
     let load = course.law.load;
     let down = load - l.gap.normal * load.dot(&l.gap.normal);

@@ -19,20 +19,20 @@ use crate::model::spans::changes::resolve;
 use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
 use crate::model::spans::contact::kink_load;
 use crate::model::spans::failure::Failure;
-use crate::model::spans::numerics::root::{FLOOR, crossing};
+use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
 use crate::model::spans::run::{CableRun, Contact, Course, Next, RestingLoad, Tie};
 
 /// Part of the forces at a load that is rounding. Smaller: chatter at the edge of the cone. Larger: creep.
-const CONE: f64 = 1e-12;
+const CONE_ROUNDING: f64 = 1e-12;
 /// Part of the material coordinate that is no movement.
-const UNMOVED: f64 = 1e-15;
+const MATERIAL_ROUNDING: f64 = 1e-15;
 /// Part of a dead force that lifts an end off what it lies on, or presses it down.
-pub(in crate::model::spans) const LIFTS: f64 = 1e-9;
+pub(in crate::model::spans) const LIFT_FRACTION: f64 = 1e-9;
 /// Equations must hold to this part of the forces; the solver stops at 1e-11.
-const HOLDS: f64 = 1e-7;
+const BALANCE_TOLERANCE: f64 = 1e-7;
 /// A contact's end this near to a load, of the strand's length, may end there. Smaller: it is found after more halvings. Larger: loads
 /// in the air are set down for nothing.
-const CATCHES: f64 = 0.02;
+const CATCH_DISTANCE_FRACTION: f64 = 0.02;
 
 /// What a load feels.
 #[derive(Clone, Copy, Debug)]
@@ -101,12 +101,12 @@ pub(in crate::model::spans) fn next_mode(strand: &CableRun, course: &Course, j: 
     match c.mode {
         Mode::Hold => {
             let (along, press) = (felt.sum.dot(&felt.tangent), larger(felt.press(), 0.0));
-            let beyond = along.abs() > friction * press + CONE * patience * felt.size;
+            let beyond = along.abs() > friction * press + CONE_ROUNDING * patience * felt.size;
             if beyond { Mode::Slide(friction * along.signum()) } else { Mode::Hold }
         }
         Mode::Slide(m) => {
             let moved = c.ends.p[0] - held_at(c);
-            let back = m * moved < 0.0 && moved.abs() > UNMOVED * patience * c.ends.p[0].abs();
+            let back = m * moved < 0.0 && moved.abs() > MATERIAL_ROUNDING * patience * c.ends.p[0].abs();
             if m == 0.0 || back { Mode::Hold } else { c.mode }
         }
     }
@@ -156,12 +156,12 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course, j: usiz
     let f = felt(strand, course, j);
     let unsound =
         |what: &'static str| Failure::Unsound { what, s: c.ends.s[0], at: course.track(c).place(c.ends.p[0]).at };
-    let room = HOLDS * f.size;
+    let room = BALANCE_TOLERANCE * f.size;
     if !(kink_load::press(course, c, &f) >= -room) {
         return Err(unsound("a load is held down"));
     }
     if let Some(kink) = c.kink() {
-        if !kink_load::holds(course, c, kink, &f, HOLDS) {
+        if !kink_load::holds(course, c, kink, &f, BALANCE_TOLERANCE) {
             return Err(unsound("a load is out of its kink"));
         }
     } else if !(f.sum.dot(&f.tangent).abs() <= course.friction(c) * f.press() + room) {
@@ -169,7 +169,7 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course, j: usiz
     }
     for side in (0..2).filter(|&side| strand.is_joined(j, side)) {
         let beside = strand.contacts[j + 2 * side - 1].ends;
-        if !((beside.p[1 - side] - c.ends.p[side]).abs() <= HOLDS * (strand.to - strand.from)) {
+        if !((beside.p[1 - side] - c.ends.p[side]).abs() <= BALANCE_TOLERANCE * (strand.to - strand.from)) {
             return Err(unsound("a load is not where the cable beside it ends"));
         }
     }
@@ -182,7 +182,7 @@ pub(in crate::model::spans) fn settle(strand: &mut CableRun, course: &Course) ->
     for j in 0..strand.contacts.len() {
         if strand.contacts[j].is_load() {
             let f = felt(strand, course, j);
-            if kink_load::press(course, &strand.contacts[j], &f) < -CONE * f.size {
+            if kink_load::press(course, &strand.contacts[j], &f) < -CONE_ROUNDING * f.size {
                 lift(strand, course, j);
                 return Ok(true);
             }
@@ -288,7 +288,10 @@ pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> 
                 let beside = l.arc_length >= from && l.arc_length <= to;
                 let turned =
                     l.arc_length >= c.ends.s[1].min(c.ends.s[0]) && l.arc_length <= c.ends.s[0].max(c.ends.s[1]);
-                if (beside || turned) && off <= CATCHES * (strand.to - strand.from) && best.is_none_or(|b| off < b.0) {
+                if (beside || turned)
+                    && off <= CATCH_DISTANCE_FRACTION * (strand.to - strand.from)
+                    && best.is_none_or(|b| off < b.0)
+                {
                     best = Some((off, j, side, l.arc_length));
                 }
             }
@@ -347,7 +350,7 @@ fn set_down(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     let s = s.arc_length;
     let track = course.track(c);
     let [p0, p1] = c.ends.p;
-    let floor = FLOOR * (strand.to - strand.from);
+    let floor = TENSION_ROUNDING * (strand.to - strand.from);
     let q = crossing(p0, p1, floor, None, |p| {
         let place = track.place(p);
         let (tension, laid) = c.history.at(&track, p);
@@ -380,7 +383,7 @@ fn press_end(strand: &mut CableRun, course: &Course, j: usize) -> bool {
         let Tie::Loose(force) = strand.ties[side] else { continue };
         let c = &strand.contacts[j];
         let normal = course.track(c).place(c.ends.p[side]).normal;
-        if j != end || course.friction(c) <= 0.0 || force.dot(&normal) >= -LIFTS * force.norm() {
+        if j != end || course.friction(c) <= 0.0 || force.dot(&normal) >= -LIFT_FRACTION * force.norm() {
             continue;
         }
         let (p, s, tension) = (c.ends.p[side], c.ends.s[side], c.ends.t[side]);

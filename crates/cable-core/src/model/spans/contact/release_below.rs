@@ -8,12 +8,12 @@
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::changes::resolve;
 use crate::model::spans::contact::friction_memory::{Ends, Mode, TensionProfile};
-use crate::model::spans::numerics::root::{FLOOR, crossing};
+use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
 use crate::model::spans::run::{CableRun, Contact, Course, Next};
 
 /// Pull on a post that is none, of the tensions at the ends of the contact: rounding. Larger than what the check lets pass: contacts
 /// that it refuses are not parted.
-const PULLS: f64 = 1e-9;
+const PULL_ROUNDING: f64 = 1e-9;
 
 /// Whether a bottom of a round boundary lies between two places on it.
 pub(in crate::model::spans) fn hangs_between(track: &Track<'_>, from: f64, to: f64) -> bool {
@@ -37,7 +37,7 @@ pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> b
             continue;
         }
         let past = after(&track, c);
-        let most = -PULLS * (c.ends.t[0].abs() + c.ends.t[1].abs());
+        let most = -PULL_ROUNDING * (c.ends.t[0].abs() + c.ends.t[1].abs());
         track.bottoms(first, last, |p| {
             let pressed = press(&track, &past, p).0;
             if pressed < most && worst.as_ref().is_none_or(|w| pressed < w.0) {
@@ -48,7 +48,7 @@ pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> b
     let Some((_, j, bottom, past)) = worst else { return false };
     let c = &strand.contacts[j];
     let track = course.track(c);
-    let floor = FLOOR * (c.ends.t[0].abs() + c.ends.t[1].abs());
+    let floor = TENSION_ROUNDING * (c.ends.t[0].abs() + c.ends.t[1].abs());
     // Within half a turn P has one zero on either side.
     let edges = [0, 1].map(|side| {
         let half = if side == 0 { -std::f64::consts::PI } else { std::f64::consts::PI };

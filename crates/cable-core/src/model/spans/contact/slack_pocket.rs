@@ -18,16 +18,16 @@ use crate::model::spans::run::{CableRun, Contact, Course, Next};
 
 /// A pocket opens when material is short by this part of the strand. Smaller: rounding opens it. Larger: the cable there is
 /// too short by as much.
-pub(in crate::model::spans) const SHORT: f64 = 1e-11;
+pub(in crate::model::spans) const POCKET_SHORTAGE_FRACTION: f64 = 1e-11;
 /// Spans of less tension than this part of the cable's weight may have become pockets where a step fails. Smaller: it takes
 /// more halvings to come so near. Larger: more of them are tried for nothing.
-const LOOSE: f64 = 1e-2;
+const POCKET_TENSION_FRACTION: f64 = 1e-2;
 /// Ends of two chains this near to each other (m) are one kink.
-const ONE: f64 = 1e-9;
+const KINK_DISTANCE_M: f64 = 1e-9;
 /// Part of a heap's weight by which it may leave the cone of what it lies on: rounding.
-const CONE: f64 = 1e-9;
+const HEAP_CONE_ROUNDING: f64 = 1e-9;
 /// A span drawn across a kink takes at most this part of the contacts beside it.
-const PART: f64 = 0.3;
+const KINK_SPAN_FRACTION: f64 = 0.3;
 
 /// Where the ends of the contacts before and after span k would lie in a kink: p on both, the turn, rad.
 fn kink(strand: &CableRun, course: &Course, k: usize) -> Option<([f64; 2], f64)> {
@@ -39,13 +39,14 @@ fn kink(strand: &CableRun, course: &Course, k: usize) -> Option<([f64; 2], f64)>
     let p = [curve.end(a.home.last), curve.origin(b.home.first)];
     let (u, v) = (curve.place(p[0], a.home), curve.place(p[1], b.home));
     let turn = cross(u.tangent, v.tangent).atan2(u.tangent.dot(&v.tangent)).abs();
-    ((u.at - v.at).norm() <= ONE && turn > 0.0 && p[0] >= a.ends.p[0] && p[1] <= b.ends.p[1]).then_some((p, turn))
+    ((u.at - v.at).norm() <= KINK_DISTANCE_M && turn > 0.0 && p[0] >= a.ends.p[0] && p[1] <= b.ends.p[1])
+        .then_some((p, turn))
 }
 
 /// Spans that may become pockets, those of the least tension first.
 pub(in crate::model::spans) fn candidates(strand: &CableRun, course: &Course, out: &mut Vec<(f64, usize)>) {
     out.clear();
-    let most = LOOSE * course.law.load.norm() * (strand.to - strand.from);
+    let most = POCKET_TENSION_FRACTION * course.law.load.norm() * (strand.to - strand.from);
     for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
         let tension = strand.force(course, k, strand.material(k).0).norm();
         if tension < most && kink(strand, course, k).is_some() {
@@ -104,7 +105,7 @@ pub(in crate::model::spans) fn heap(strand: &CableRun, course: &Course, k: usize
     let side = usize::from(!(press[1] < 0.0));
     let edge = &mut borne[side];
     (edge.press, edge.friction) = (held.dot(&edge.normal), held.dot(&edge.tangent));
-    let most = course.friction([a, b][side]) * edge.press + CONE * held.norm();
+    let most = course.friction([a, b][side]) * edge.press + HEAP_CONE_ROUNDING * held.norm();
     (edge.press >= 0.0 && edge.friction.abs() <= most).then_some(borne)
 }
 
@@ -114,7 +115,7 @@ pub(in crate::model::spans) fn open(strand: &mut CableRun, course: &Course) -> b
     let pockets = (1..strand.contacts.len()).filter(|&k| strand.contacts[k - 1].next == Next::Pocket);
     let Some(k) = pockets.min_by(|&a, &b| surplus(a).total_cmp(&surplus(b))) else { return false };
     let short = -surplus(k);
-    if !(short > SHORT * (strand.to - strand.from)) {
+    if !(short > POCKET_SHORTAGE_FRACTION * (strand.to - strand.from)) {
         return false;
     }
     let Some((_, turn)) = kink(strand, course, k) else { return false };
@@ -122,7 +123,7 @@ pub(in crate::model::spans) fn open(strand: &mut CableRun, course: &Course) -> b
     let half = (0.5 * turn).tan();
     let (mut x, stretch) = (short / (2.0 - turn / half), course.law.stretch(0.0));
     for j in [k - 1, k] {
-        let most = PART * extent(j);
+        let most = KINK_SPAN_FRACTION * extent(j);
         x = if x < most { x } else { most };
     }
     let normal = course.track(&strand.contacts[k]).place(strand.contacts[k].ends.p[0]).normal;

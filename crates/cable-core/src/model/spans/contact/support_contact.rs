@@ -1,18 +1,18 @@
 //! A support may come to lie on a boundary, slide along it, or lift the cable off it.
 
 use crate::math::Vec2;
-use crate::model::spans::changes::ON;
+use crate::model::spans::changes::SUPPORT_CONTACT_DISTANCE_M;
 use crate::model::spans::run::{CableRun, Course, Tie};
 
 /// Part of a contact that the first guess of a lifted end leaves lying at least.
-const LEFT: f64 = 0.02;
+const LYING_FRACTION: f64 = 0.02;
 
 /// Moves an end that is held to `at`, m.
 pub(in crate::model::spans) fn place(strand: &mut CableRun, course: &Course, side: usize, at: Vec2) {
     let outer = if side == 0 { 0 } else { strand.contacts.len().wrapping_sub(1) };
     let on = strand.contacts.get(outer).filter(|c| c.wheel.is_none() && !c.is_load()).and_then(|c| {
         let curve = course.track(c).curve;
-        curve.on_chain(c.home, at, ON)
+        curve.on_chain(c.home, at, SUPPORT_CONTACT_DISTANCE_M)
     });
     match (strand.ties[side], on) {
         (Tie::Lies(_), Some(p)) => {
@@ -60,7 +60,7 @@ fn lift(strand: &mut CableRun, course: &Course, side: usize, j: usize, at: Vec2)
     let reach = if press > 0.0 { (2.0 * c.ends.t[side].abs() * height / press).sqrt() } else { 0.0 };
     let other = c.ends.p[1 - side];
     let sign = if side == 0 { 1.0 } else { -1.0 };
-    let least = (foot - other).abs() * (1.0 - LEFT);
+    let least = (foot - other).abs() * (1.0 - LYING_FRACTION);
     let p = foot + sign * if reach < least { reach } else { least };
     let end = if side == 0 { strand.from } else { strand.to };
     // Of the material there is some must remain for the span.

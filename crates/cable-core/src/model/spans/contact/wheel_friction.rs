@@ -10,10 +10,10 @@ use crate::model::spans::contact::equations;
 use crate::model::spans::contact::friction_memory::{Ends, Held, Knot, Mode, TensionProfile};
 
 /// A wheel is one arc.
-const ROUND: ChainRange = ChainRange { first: 0, last: 0 };
+const WHEEL_RANGE: ChainRange = ChainRange { first: 0, last: 0 };
 /// Part of the cone within which a cable taken over counts as sliding. Less: rounding of the answer decides; more: a cable that holds
 /// is let slide, for as much of its tension.
-const FULL: f64 = 1e-7;
+const SLIDING_CONE_TOLERANCE: f64 = 1e-7;
 
 /// Load (N/m), 1 + αΔT and EA (N) of the cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,7 +66,7 @@ impl WheelFriction {
         let law = Law::new(on.load, on.thermal, on.stiffness);
         Track {
             curve: &self.curve,
-            home: ROUND,
+            home: WHEEL_RANGE,
             law,
             friction: self.curve.friction,
             drag: 0.0,
@@ -83,7 +83,7 @@ impl WheelFriction {
 
     /// Direction of the cable and outward normal at an angle.
     pub fn directions(&self, p: f64) -> [Vec2; 2] {
-        let place = self.curve.place(p, ROUND);
+        let place = self.curve.place(p, WHEEL_RANGE);
         [place.tangent, place.normal]
     }
 
@@ -97,7 +97,9 @@ impl WheelFriction {
             && b.p > a.p
         {
             let reach = |m: f64| self.track(on).slide(a.p, b.p, a.tension, m).tension;
-            let full = |m: f64| (b.tension - reach(m)).abs() <= FULL * (reach(friction) - reach(-friction)).abs();
+            let full = |m: f64| {
+                (b.tension - reach(m)).abs() <= SLIDING_CONE_TOLERANCE * (reach(friction) - reach(-friction)).abs()
+            };
             self.mode = [friction, -friction].into_iter().find(|&m| full(m)).map_or(Mode::Hold, Mode::Slide);
         }
     }

@@ -7,7 +7,7 @@ use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::curve::ChainRange;
 use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part, Pulley};
 use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
-use crate::model::spans::contact::point_load::LIFTS;
+use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::initial::route::{Way, way};
 use crate::model::spans::initial::shortest_path;
 use crate::model::spans::initial::shortest_path::{Bend, Ring};
@@ -15,31 +15,31 @@ use crate::model::spans::initial::tension;
 use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 
 /// Ends of a route this near to a boundary lie on it, of the cable's radius.
-const LIES: f64 = 0.05;
+const LYING_END_RADII: f64 = 0.05;
 /// The same of a free end and of the points of the route behind it, which fall on what is below them. Smaller: an end drawn by hand a
 /// little above the ground hangs from its support, through the ground; larger: what hangs beside an obstacle is laid on it.
-const FALLS: f64 = 1.0;
+const FALLING_END_RADII: f64 = 1.0;
 /// Tension with which the cable is laid at least where it does not lie in one piece, of its weight. Smaller: spans over
 /// hollows shrink to nothing. Larger: friction at a free end has to hold it, and it slides there first.
-const LAID: f64 = 1e-3;
+const FIRST_TENSION_WEIGHTS: f64 = 1e-3;
 /// A route longer than the cable by more than this part is not how it lies: no cable is strained so. It is laid along the string
 /// then. Smaller: a cable laid taut is laid anew with other tensions. Larger: the first guess is far off.
-const LONG: f64 = 0.05;
+const ROUTE_EXCESS_FRACTION: f64 = 0.05;
 /// Points of a route between its ends lie on a boundary if they are this near, of the cable's radius: routes follow the
 /// surface, the centre line is cut off at kinks.
-const NEAR: f64 = 0.5;
+const ROUTE_CONTACT_RADII: f64 = 0.5;
 /// How far along the route, in radii of a post, the cable may come up to it before or after the string does: less than half
 /// a turn, so that turns are not mistaken for each other.
-const ROUND: f64 = 2.5;
+const POST_APPROACH_RADII: f64 = 2.5;
 /// How much further than at its nearest a route that is drawn round a wheel may be from its centre, of the radius. Smaller: the chords of
 /// a coarse polygon are left; larger: of a route that only comes near more is taken for its round.
 const ABOUT: f64 = 0.1;
 /// Rounds of bringing a free end to where the material ends; each gains the digits of the strain.
-const FITS: usize = 6;
+const END_FIT_ROUNDS: usize = 6;
 /// Corners by which a seat goes on at most.
 const MOST_STRETCHED: usize = 8;
 /// A contact guessed keeps at least this part of the strand's material clear of the next.
-const CLEAR: f64 = 1e-4;
+const CONTACT_SPACING_FRACTION: f64 = 1e-4;
 
 /// Something the cable bends round, in order.
 #[derive(Clone, Debug)]
@@ -87,12 +87,13 @@ fn along(
     });
     // Ends that lie: how many points of the route, and the contact. What a load lifts does not.
     let heads = [0, 1].map(|side| {
-        let near = if part.supports[side].is_none() { [FALLS; 2] } else { [LIES, NEAR] };
+        let near =
+            if part.supports[side].is_none() { [FALLING_END_RADII; 2] } else { [LYING_END_RADII, ROUTE_CONTACT_RADII] };
         let near = near.map(|n| n * layout.problem.radius);
         lying(course, &layout.problem.world, near, &way.points, side).filter(|h| match ties[side] {
             Tie::Hangs(force) => {
                 let place = course.curves[h.curve].place(h.p[side], h.home);
-                force.dot(&place.normal) <= LIFTS * force.norm()
+                force.dot(&place.normal) <= LIFT_FRACTION * force.norm()
             }
             _ => true,
         })
@@ -119,7 +120,7 @@ fn along(
     } else {
         0.0
     };
-    let least = LAID * course.law.load.norm() * (to - from);
+    let least = FIRST_TENSION_WEIGHTS * course.law.load.norm() * (to - from);
     if let [Some(a), Some(b)] = &heads
         && (a.count + b.count > way.points.len() && a.curve == b.curve && a.home == b.home)
     {
@@ -161,7 +162,7 @@ fn along(
     // Without a route the way is straight from support to support: round a wheel from tangent to tangent.
     let wheel = |q: &Pulley| layout.problem.supports.get(q.support).is_some_and(|s| s.wheel_radius > 0.0);
     let tangent_ways = layout.problem.route.len() < 2 && part.pulleys.iter().any(wheel);
-    if (slack > LONG || tangent_ways) && heads.iter().all(Option::is_none) && !loose(0) && !loose(1) {
+    if (slack > ROUTE_EXCESS_FRACTION || tangent_ways) && heads.iter().all(Option::is_none) && !loose(0) && !loose(1) {
         tension::relay(&mut strand, course);
     }
     Some(strand)
@@ -262,7 +263,7 @@ fn bends(
         // Round a post the string's points are not those of the cable: where it comes and goes on the route itself.
         let seen = |p: f64, w: f64| {
             let place = curve.place(p, seat.home);
-            if curve.is_round() { way.close(place.at, w, ROUND * place.stretch) } else { w }
+            if curve.is_round() { way.close(place.at, w, POST_APPROACH_RADII * place.stretch) } else { w }
         };
         let s = at(0.5 * (seen(p1, seat.way[0]) + seen(p2, seat.way[1])));
         let mut c = contact(course, index, seat.home, [p1, p2], [s - half, s + half], tension);
@@ -345,7 +346,7 @@ fn end_tie(tie: Tie, p: f64) -> Tie {
 
 /// Keeps material in order, and some of it in each span.
 pub(in crate::model::spans) fn spread(strand: &mut CableRun, course: &Course) {
-    let least = CLEAR * (strand.to - strand.from);
+    let least = CONTACT_SPACING_FRACTION * (strand.to - strand.from);
     let n = strand.contacts.len();
     let mut before = strand.from;
     for j in 0..n {
@@ -377,7 +378,7 @@ pub(in crate::model::spans) fn spread(strand: &mut CableRun, course: &Course) {
         c.history = lay_down(&track, &c.ends, [free, held]);
         // A free end lies where the material ends.
         for side in (0..2).filter(|&side| free[side]) {
-            for _ in 0..FITS {
+            for _ in 0..END_FIT_ROUNDS {
                 // Laid from a free end it is the other end that does not fit.
                 let other = if free[1 - side] { side } else { 1 - side };
                 let (tension, s) = c.history.at(&track, c.ends.p[other]);

@@ -8,16 +8,16 @@
 use crate::math::{Vec2, cross, perp};
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
 use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part};
-use crate::model::spans::changes::ON;
+use crate::model::spans::changes::SUPPORT_CONTACT_DISTANCE_M;
 use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
-use crate::model::spans::contact::point_load::LIFTS;
+use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 use crate::solution::Node;
 
 /// A node this near to a boundary (m) lies on it: a barrier keeps nodes as far off as it reaches, 1e-4 m.
-const NEAR: f64 = 2.5e-4;
+const CONTACT_DISTANCE_M: f64 = 2.5e-4;
 /// Of the material of a strand, what is kept between two contacts at least.
-const CLEAR: f64 = 1e-6;
+const CONTACT_SPACING_FRACTION: f64 = 1e-6;
 
 /// A point of the cable, with the tensions before and after it.
 #[derive(Clone, Copy, Debug)]
@@ -103,18 +103,21 @@ fn seat(layout: &Layout, course: &Course, stations: &mut [Station]) {
             before = None;
             continue;
         }
-        station.lies = world.signed_gap(station.at, NEAR).filter(|g| g.gap_m.abs() <= NEAR).and_then(|gap| {
-            let body = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle)?;
-            let back = cross(along, gap.normal) < 0.0;
-            let index = 2 * body + usize::from(back);
-            let curve = course.curves.get(index)?;
-            let (i, home) = curve.chain(curve.piece_of(gap.feature, station.at)?, course.law.load)?;
-            let mut p = curve.project(i, station.at);
-            if let (true, Some(b)) = (curve.is_round(), before.filter(|b| b.0 == index)) {
-                p += std::f64::consts::TAU * ((b.2 - p) / std::f64::consts::TAU).ceil().max(0.0);
-            }
-            Some((index, home, p))
-        });
+        station.lies = world
+            .signed_gap(station.at, CONTACT_DISTANCE_M)
+            .filter(|g| g.gap_m.abs() <= CONTACT_DISTANCE_M)
+            .and_then(|gap| {
+                let body = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle)?;
+                let back = cross(along, gap.normal) < 0.0;
+                let index = 2 * body + usize::from(back);
+                let curve = course.curves.get(index)?;
+                let (i, home) = curve.chain(curve.piece_of(gap.feature, station.at)?, course.law.load)?;
+                let mut p = curve.project(i, station.at);
+                if let (true, Some(b)) = (curve.is_round(), before.filter(|b| b.0 == index)) {
+                    p += std::f64::consts::TAU * ((b.2 - p) / std::f64::consts::TAU).ceil().max(0.0);
+                }
+                Some((index, home, p))
+            });
         before = station.lies;
     }
 }
@@ -168,7 +171,7 @@ fn laid(
 
 /// Material in order, some of it in every span.
 fn keep_apart(strand: &mut CableRun) -> Option<()> {
-    let least = CLEAR * (strand.to - strand.from);
+    let least = CONTACT_SPACING_FRACTION * (strand.to - strand.from);
     let mut before = strand.from;
     let mut spanned = strand.ties[0].has_span();
     for c in &mut strand.contacts {
@@ -281,7 +284,7 @@ impl Run<'_> {
         if tip {
             let s = if side == 0 { strand.from } else { strand.to };
             match strand.ties[side] {
-                Tie::Held(at) => match self.curve.on_chain(self.home, at, ON) {
+                Tie::Held(at) => match self.curve.on_chain(self.home, at, SUPPORT_CONTACT_DISTANCE_M) {
                     Some(p) => {
                         strand.ties[side] = Tie::Lies(p);
                         return Some((p, s, tension));
@@ -298,7 +301,7 @@ impl Run<'_> {
                     let place = self.curve.place(p, self.home);
                     let along = force.dot(&place.tangent);
                     // What is pressed down rubs by itself.
-                    let pressed = self.curve.friction > 0.0 && force.dot(&place.normal) < -LIFTS * force.norm();
+                    let pressed = self.curve.friction > 0.0 && force.dot(&place.normal) < -LIFT_FRACTION * force.norm();
                     return Some((
                         p,
                         s,

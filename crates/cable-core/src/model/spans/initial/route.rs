@@ -6,7 +6,7 @@ use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part}
 
 /// Part of the way from one end to the other by which a route that is led over things keeps clear of them. Smaller: rounding may let it touch.
 /// Larger: it goes round more than it needs to.
-const CLEAR: f64 = 1e-4;
+const ROUTE_CLEARANCE_FRACTION: f64 = 1e-4;
 
 /// A route with the length along it.
 pub(in crate::model::spans) struct Way {
@@ -167,7 +167,7 @@ fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
         return Vec::new();
     }
     let (low, high) = (a.x.min(b.x), a.x.max(b.x));
-    let clear = CLEAR * (b - a).norm();
+    let clear = ROUTE_CLEARANCE_FRACTION * (b - a).norm();
     let mut top = a.y.max(b.y);
     for body in world.geometry().bodies() {
         let points = body.edges.iter().flat_map(|e| [e.p, e.q]).chain(body.center);
@@ -195,7 +195,7 @@ fn aside(world: &World, p: Vec2, to: Vec2) -> Option<Vec2> {
     let side = if to.x < p.x { -1.0 } else { 1.0 };
     let mut far: Option<(f64, f64)> = None;
     for body in world.geometry().bodies().iter().filter(|b| !b.is_ground()) {
-        let reach = body.offset + if body.center.is_some() { 0.0 } else { CLEAR * (to - p).norm() };
+        let reach = body.offset + if body.center.is_some() { 0.0 } else { ROUTE_CLEARANCE_FRACTION * (to - p).norm() };
         let points = || body.edges.iter().flat_map(|e| [e.p, e.q]).chain(body.center);
         let [least, most] = points().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, m], q| [l.min(q.x), m.max(q.x)]);
         let above = points().any(|q| q.y > p.y);

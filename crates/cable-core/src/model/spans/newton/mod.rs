@@ -40,25 +40,25 @@ const RESIDUAL: f64 = 1e-11;
 const STIFF_RESIDUAL: f64 = 2e-14;
 /// A residual that will do is made better by one more step where it is more than this times T/EA: forces are off by a hundredth of this
 /// part then. Smaller: a step more in each solve. Larger: forces of stiff cables are as exact as their tolerance, 1e-8.
-const EXACT: f64 = 1e-8;
+const REFINED_RESIDUAL_FACTOR: f64 = 1e-8;
 /// Residual that no step makes smaller: rounding.
-const FLOOR: f64 = 5e-15;
+const RESIDUAL_ROUNDING: f64 = 5e-15;
 /// Where no step gains anything the residual is rounding if it is below so many times the one wanted. Larger: a step that
 /// was halved often enough is taken without having been solved.
 const ROUNDING: f64 = 20.0;
 /// A contact's end moves by at most so many radians in one iteration. Larger: it jumps a turn of a post.
 const MOST_TURN: f64 = 0.7;
 /// A span keeps at least this part of its material in one iteration.
-const KEEP: f64 = 0.1;
+const KEPT_MATERIAL_FRACTION: f64 = 0.1;
 /// A step to the end of a piece of boundary goes beyond it by this part of p: more than rounding, less than matters.
-const BEYOND: f64 = 1e-9;
+const PIECE_END_OVERSHOOT: f64 = 1e-9;
 /// Residual below which modes are judged. Larger: a contact slides because an iterate has tensions it will not keep, and
 /// what is held at neither end slides away. Smaller: iterations spent on a mode that will not last.
-const SETTLED: f64 = 1e-3;
+const MODE_RESIDUAL: f64 = 1e-3;
 /// Rounding that is let pass where modes cycle at the edge of the cone, in times of what is rounding.
-const PATIENT: f64 = 1e4;
+const CYCLE_ROUNDINGS: f64 = 1e4;
 /// Iterations without progress after which modes are judged all the same.
-const PATIENCE: usize = 3;
+const STALLED_ITERATIONS: usize = 3;
 /// Changes of mode of one contact while iterating; after that only between converged states.
 const MOST_FLIPS: u32 = 6;
 
@@ -136,7 +136,7 @@ fn tolerance(strand: &CableRun, course: &Course) -> f64 {
 /// force.
 fn is_rough(strand: &CableRun, course: &Course, residual: f64) -> bool {
     let least = least_tension(strand, course);
-    least.is_finite() && residual > larger(FLOOR, EXACT * least / course.law.stiffness)
+    least.is_finite() && residual > larger(RESIDUAL_ROUNDING, REFINED_RESIDUAL_FACTOR * least / course.law.stiffness)
 }
 
 /// The least tension at an end of a span, N; infinite where there is no span.
@@ -172,8 +172,8 @@ fn room(strand: &CableRun, course: &Course, x: &[f64], d: &[f64]) -> f64 {
             let first = if k > 0 { d[6 * k - 1] } else { 0.0 };
             let last = if k < strand.contacts.len() { d[6 * k + 3] } else { 0.0 };
             let (length, change) = (to - from, last - first);
-            if change < 0.0 && alpha * -change > (1.0 - KEEP) * length {
-                alpha = (1.0 - KEEP) * length / -change;
+            if change < 0.0 && alpha * -change > (1.0 - KEPT_MATERIAL_FRACTION) * length {
+                alpha = (1.0 - KEPT_MATERIAL_FRACTION) * length / -change;
             }
         }
         let Some(c) = strand.contacts.get(k) else { continue };
@@ -206,7 +206,7 @@ fn borders(strand: &CableRun, course: &Course, x: &[f64], d: &[f64], mut each: i
                 continue;
             }
             let i = track.curve.locate(p, c.home);
-            let beyond = BEYOND * (1.0 + p.abs());
+            let beyond = PIECE_END_OVERSHOOT * (1.0 + p.abs());
             let way = match dp > 0.0 {
                 true if i < c.home.last => track.curve.end(i) - p + beyond,
                 false if i > c.home.first => track.curve.origin(i) - p - beyond,
@@ -231,7 +231,7 @@ pub(super) fn solve(strand: &mut CableRun, course: &Course, work: &mut Work) -> 
     loop {
         let (mut worst, mut at) = norm(&work.sheet.residual);
         let done = worst <= tolerance(strand, course);
-        if worst <= SETTLED || stalled >= PATIENCE {
+        if worst <= MODE_RESIDUAL || stalled >= STALLED_ITERATIONS {
             let (changed, content) =
                 change_modes(strand, course, if done { 4 * MOST_FLIPS } else { MOST_FLIPS }, &mut work.sheet);
             if changed {
@@ -297,7 +297,7 @@ fn asked(strand: &CableRun, course: &Course, sheet: &System, j: usize, patience:
 /// Whether every contact is in the mode that its state asks for; the sheet is that of the state.
 fn agreed(strand: &CableRun, course: &Course, sheet: &System) -> bool {
     // What is rounding grows with the stiffness as the residual does.
-    let patience = PATIENT * tolerance(strand, course) / RESIDUAL;
+    let patience = CYCLE_ROUNDINGS * tolerance(strand, course) / RESIDUAL;
     (0..strand.contacts.len()).all(|j| asked(strand, course, sheet, j, patience) == strand.contacts[j].mode)
 }
 
@@ -306,7 +306,7 @@ fn change_modes(strand: &mut CableRun, course: &Course, most: u32, sheet: &mut S
     let (mut changed, mut content) = (false, true);
     for j in 0..strand.contacts.len() {
         let flips = strand.contacts[j].flips;
-        let next = asked(strand, course, sheet, j, if flips < MOST_FLIPS { 1.0 } else { PATIENT });
+        let next = asked(strand, course, sheet, j, if flips < MOST_FLIPS { 1.0 } else { CYCLE_ROUNDINGS });
         let c = &mut strand.contacts[j];
         content &= next == c.mode;
         if next != c.mode && c.flips < most {

@@ -28,15 +28,15 @@ const MORE_ROUNDS: usize = 6;
 /// Rounds of Newton's method at most, and the change of tension, as part of it, from which another is worth its cost: what is
 /// left after it is about that squared. A round costs a tenth of an iteration of Newton's method for the whole.
 const ROUNDS: usize = 6;
-const ENOUGH: f64 = 2e-3;
+const ROUND_TOLERANCE: f64 = 2e-3;
 /// Change of tension, as part of it, in the last of all rounds with which its guess is still taken.
-const WORTH: f64 = 0.02;
+const ACCEPTED_TENSION_CHANGE: f64 = 0.02;
 /// A span whose tension would change by more than this factor in a round is not foreseen.
-const WILD: f64 = 4.0;
+const TENSION_CHANGE_LIMIT: f64 = 4.0;
 /// A span whose force changes by no more than this part in a round is where it was. Larger: the guess is off by as much.
-const STILL: f64 = 1e-8;
+const FORCE_TOLERANCE: f64 = 1e-8;
 /// A contact's end follows its span by at most this angle, rad.
-const FOLLOWS: f64 = 0.2;
+const FOLLOWED_ANGLE: f64 = 0.2;
 
 /// A span to first order.
 #[derive(Clone, Copy, Debug, Default)]
@@ -196,12 +196,12 @@ impl Foresight {
             }
             let Some(change) = self.step() else { return Some(false) };
             self.turn(strand, course);
-            if change <= ENOUGH {
+            if change <= ROUND_TOLERANCE {
                 return Some(true);
             }
             last = change;
         }
-        Some(last <= WORTH)
+        Some(last <= ACCEPTED_TENSION_CHANGE)
     }
 
     /// Lets the ends of contacts on arcs follow the directions of their spans.
@@ -222,7 +222,7 @@ impl Foresight {
                 let (tension, place) = (force.norm(), &mut places[side]);
                 l.ends.t[side] = tension;
                 let angle = angle(place.tangent, force);
-                if place.turn == 0.0 || !(angle.abs() <= FOLLOWS) {
+                if place.turn == 0.0 || !(angle.abs() <= FOLLOWED_ANGLE) {
                     continue;
                 }
                 let by = angle / place.turn;
@@ -263,12 +263,12 @@ impl Foresight {
             let change = bar.change[0] + bar.change[1] * before + bar.change[2] * after;
             let now = [0, 1].map(|i| bar.tension[i] + bar.by[i][0] * before + bar.by[i][1] * after);
             for (now, was) in now.into_iter().zip(bar.was) {
-                if !(now <= was * WILD && now >= was / WILD) {
+                if !(now <= was * TENSION_CHANGE_LIMIT && now >= was / TENSION_CHANGE_LIMIT) {
                     return None;
                 }
                 greatest = larger(greatest, (now - was).abs() / was);
             }
-            bar.still = before == 0.0 && after == 0.0 && change.norm() <= STILL * bar.was[0];
+            bar.still = before == 0.0 && after == 0.0 && change.norm() <= FORCE_TOLERANCE * bar.was[0];
             (bar.was, bar.tension) = (now, now);
             bar.force += change;
             bar.material = [bar.material[0] + before, bar.material[1] + after];

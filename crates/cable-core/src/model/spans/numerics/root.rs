@@ -4,7 +4,7 @@
 const ROOT: f64 = 1e-15;
 /// Differences of tension that are rounding, of the tension. Smaller: where old and new tension run alike the search halves
 /// on through rounding. Larger: material is off by this part of the strain.
-pub(in crate::model::spans) const FLOOR: f64 = 1e-14;
+pub(in crate::model::spans) const TENSION_ROUNDING: f64 = 1e-14;
 /// Rounds of such a search at most: halving alone takes 52.
 const MAX_ROUNDS: usize = 100;
 

@@ -7,7 +7,7 @@ use crate::math::{Vec2, cross};
 use crate::model::spans::boundary::curve::Place;
 use crate::model::spans::initial::drained_route::Frame;
 use crate::model::spans::run::Course;
-use crate::model::spans::slack::{CONE, Line, Part, Stretch};
+use crate::model::spans::slack::{CREST_CONE_ROUNDING, Line, Part, Stretch};
 
 /// A heap.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +68,7 @@ fn carried(course: &Course, sides: [Option<(Stretch, Place)>; 2], held: Vec2) ->
     };
     let holds = |side: &(Stretch, Place)| {
         let b = borne(*side);
-        b.press >= 0.0 && b.friction.abs() <= side.0.friction(course) * b.press + CONE * held.norm()
+        b.press >= 0.0 && b.friction.abs() <= side.0.friction(course) * b.press + CREST_CONE_ROUNDING * held.norm()
     };
     if let Some(one) = sides.iter().flatten().find(|s| holds(s)) {
         return Some(Heap { at, edges: [Some(borne(*one)), None] });

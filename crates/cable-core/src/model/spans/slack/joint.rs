@@ -14,14 +14,14 @@
 //! catenary; of all such points that is the one whose catenary is as far from the centre of the round as its radius, where it is nearest.
 
 use crate::math::{Vec2, cross, larger};
-use crate::model::spans::slack::{Drape, HALVINGS, Line, Part, STRAIGHT, Stretch};
+use crate::model::spans::slack::{Drape, HALVINGS, Line, Part, STRAIGHT_TURN, Stretch};
 
 /// Doublings of the force across the load in the search for one that is too large.
 const MOST_DOUBLED: usize = 60;
 
 /// Distance from a round, of its radius, at which a span touches it. Larger: a place where the distance jumps could be taken for a root.
 /// Smaller: where tension hardly changes along the ground, rounding of p leaves more.
-const TOUCHES: f64 = 1e-3;
+const TANGENCY_FRACTION: f64 = 1e-3;
 
 /// A span from one stretch to the next, seen from where its tension comes.
 #[derive(Clone, Copy, Debug)]
@@ -113,7 +113,7 @@ impl Drape<'_> {
     /// Whether a cable under tension would bridge what is between two stretches.
     pub(super) fn bends_in(&self, a: &Stretch, b: &Stretch) -> bool {
         let [before, after] = [a.place(self.course, a.p[1]), b.place(self.course, b.p[0])];
-        cross(before.tangent, after.tangent) * self.course.curves[a.curve].sense > STRAIGHT
+        cross(before.tangent, after.tangent) * self.course.curves[a.curve].sense > STRAIGHT_TURN
     }
 
     /// The span from one edge to the next, `way` being 1 where that is along the cable and −1 where it is against it; from the tension at each
@@ -196,7 +196,7 @@ impl Drape<'_> {
             return Some(None);
         }
         let (h, [m1, m2], off) = seen(near);
-        if !(off.abs() <= TOUCHES * radius && h > 0.0) {
+        if !(off.abs() <= TANGENCY_FRACTION * radius && h > 0.0) {
             return None;
         }
         let (material, _) = sight.catenary(h, m1, m2);

@@ -34,11 +34,11 @@ use crate::model::spans::run::{CableRun, Course, Tie};
 use crate::model::spans::slack::heap::{Heap, heap};
 
 /// Part of the weight of the cable by which a crest may be beyond its cone: rounding.
-const CONE: f64 = 1e-9;
+const CREST_CONE_ROUNDING: f64 = 1e-9;
 /// Part of the cable that there must be too much of: what is as long as its way lies along it, and remembers what friction does.
-const OVER: f64 = 1e-9;
+const EXCESS_CABLE_FRACTION: f64 = 1e-9;
 /// Turn (rad) up to which two stretches are one, and by which what hangs beside a roof may be off its end.
-const STRAIGHT: f64 = 1e-6;
+const STRAIGHT_TURN: f64 = 1e-6;
 /// Halvings of a stretch in the search for where its tension ends.
 const HALVINGS: usize = 60;
 
@@ -125,7 +125,7 @@ pub(in crate::model::spans) fn lay(
         Some(_) => Vec2::zeros(),
     });
     let drawn = drawn[0] + drawn[1];
-    let drape = Drape { course, frame, most: CONE * load.norm() * (to - from) };
+    let drape = Drape { course, frame, most: CREST_CONE_ROUNDING * load.norm() * (to - from) };
     let strand = |drained: Drained| {
         let lines = drape.lines(&roofs, &drained.legs);
         let parts = drape.parts(&lines, ends)?;
@@ -162,7 +162,7 @@ fn pay_out(
 ) -> Option<Vec<Part>> {
     let own = |p: &Part| p.s[1] - p.s[0];
     let mut over = to - from - parts.iter().map(own).sum::<f64>();
-    if !(over > OVER * (to - from)) {
+    if !(over > EXCESS_CABLE_FRACTION * (to - from)) {
         cut(&mut parts, held.iter().position(|h| !h)?, -over)?;
         over = 0.0;
     }
@@ -288,7 +288,7 @@ impl Drape<'_> {
     /// Whether it has no tension between two lines: at a foot, and in a kink that a cable under tension would bridge. None where it
     /// turns with nothing to turn it.
     fn rests(&self, a: &Line, b: &Line) -> Option<bool> {
-        let plumb = |s: &Stretch, p: f64| cross(s.place(self.course, p).tangent, self.frame.up).abs() <= STRAIGHT;
+        let plumb = |s: &Stretch, p: f64| cross(s.place(self.course, p).tangent, self.frame.up).abs() <= STRAIGHT_TURN;
         match (a, b) {
             (Line::Hangs(h), Line::Lies(s)) => match self.rise(*h) < 0.0 {
                 true => Some(true),
@@ -302,7 +302,7 @@ impl Drape<'_> {
                 let [before, after] = [s.place(self.course, s.p[1]), next.place(self.course, next.p[0])];
                 let sense = self.course.curves[s.curve].sense;
                 let turns = self.course.curves[next.curve].sense != sense;
-                Some(turns || cross(before.tangent, after.tangent) * sense > STRAIGHT)
+                Some(turns || cross(before.tangent, after.tangent) * sense > STRAIGHT_TURN)
             }
             _ => Some(true),
         }

@@ -20,7 +20,7 @@ const ROOT: f64 = 1e-12;
 
 /// A cable whose tangent makes less than this angle with its load hangs along it. Smaller: rounding says which side of the
 /// tangent it is on. Larger: steep spans are looked at more closely than they must be.
-const ALONG: f64 = 1e-6;
+const HANGING_ANGLE: f64 = 1e-6;
 
 /// A point of a span inside an obstacle.
 #[derive(Clone, Copy, Debug)]
@@ -53,7 +53,7 @@ struct Arc<'a> {
 /// The tangent of a cable at a point where its force is known.
 pub(in crate::model::spans) fn tangent(at: Vec2, force: Vec2, load: Vec2) -> Option<Side> {
     let normal = perp(force) * -perp(force).dot(&load).signum() / force.norm();
-    (normal.dot(&load) < -ALONG * load.norm()).then_some((at, normal))
+    (normal.dot(&load) < -HANGING_ANGLE * load.norm()).then_some((at, normal))
 }
 
 impl<'a> Arc<'a> {

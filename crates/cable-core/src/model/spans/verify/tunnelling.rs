@@ -9,10 +9,10 @@ use crate::model::spans::verify::penetration;
 const POINTS: usize = 24;
 
 /// A contact's end that moves by more than this (m or rad) may have gone round something. Smaller: more is looked at closely.
-const SMALL: f64 = 0.5;
+const CHECKED_MOVE: f64 = 0.5;
 
 /// A corner this near to a tangent is on it, m: rounding.
-const TOUCHES: f64 = 1e-12;
+const TANGENCY_DISTANCE_M: f64 = 1e-12;
 
 /// Whether the ends of the spans alone tell that nothing was passed: contacts are the same, and every corner lies on the same
 /// side of each span before and after. A span is convex: above its tangents and below its chord, seen against the load.
@@ -22,8 +22,8 @@ pub(in crate::model::spans) fn clear(old: &CableRun, new: &CableRun, course: &Co
         let moved = |side: usize| (a.ends.p[side] - b.ends.p[side]).abs();
         (a.curve, a.home, a.wheel, a.next == Next::Pocket, a.is_load())
             == (b.curve, b.home, b.wheel, b.next == Next::Pocket, b.is_load())
-            && moved(0) < SMALL
-            && moved(1) < SMALL
+            && moved(0) < CHECKED_MOVE
+            && moved(1) < CHECKED_MOVE
     };
     load.x == 0.0
         && load.y < 0.0
@@ -67,7 +67,7 @@ impl Bow {
 
     /// Whether a point between its ends lies below it.
     fn is_above(&self, v: Vec2) -> bool {
-        self.tangents.iter().flatten().any(|(at, normal)| (v - at).dot(normal) <= TOUCHES)
+        self.tangents.iter().flatten().any(|(at, normal)| (v - at).dot(normal) <= TANGENCY_DISTANCE_M)
     }
 
     /// Whether a point between its ends lies above it.
