@@ -40,8 +40,8 @@ pub(in crate::model::mass_spring) struct Wrap {
 impl MassSpringModel {
     /// The turn at the nodes `first..=last`, which touch one obstacle with friction `mu`.
     pub(in crate::model::mass_spring) fn wrap(&self, [first, last]: [usize; 2], mu: f64) -> Wrap {
-        let inner = first.max(1)..=last.min(self.x.len().saturating_sub(2));
-        let turn_at = |n: usize| turn(self.x[n] - self.x[n - 1], self.x[n + 1] - self.x[n]);
+        let inner = first.max(1)..=last.min(self.chain.x.len().saturating_sub(2));
+        let turn_at = |n: usize| turn(self.chain.x[n] - self.chain.x[n - 1], self.chain.x[n + 1] - self.chain.x[n]);
         let (mut whole, mut sharpest) = (0.0, 0.0);
         for n in inner.clone() {
             let t = turn_at(n);
@@ -82,10 +82,10 @@ impl MassSpringModel {
             contact.x_m,
             contact.y_m,
             contact.turn_deg.abs(),
-            self.even
+            self.chain.even
         );
         let values = [uncertain, self.settings.tolerance];
         let warning = Warning::new(WarningKind::Accuracy, name, contact.arc_length_m, values, message);
-        self.warnings.push(Warning { at_m: Some([contact.x_m, contact.y_m]), ..warning });
+        self.report.warnings.push(Warning { at_m: Some([contact.x_m, contact.y_m]), ..warning });
     }
 }

@@ -17,7 +17,7 @@ impl MassSpringModel {
                 // Of even elements: a short one beside a pulley comes and goes, and a run must not change its ways.
                 Stepping::Auto => {
                     let swing = (self.problem.axial_stiffness / self.problem.linear_density).sqrt();
-                    self.even / swing * MOST_SUB_STEPS < 1.0 / 60.0
+                    self.chain.even / swing * MOST_SUB_STEPS < 1.0 / 60.0
                 }
             }
     }

@@ -4,10 +4,9 @@ use std::sync::Arc;
 
 use crate::math::{Vec2, bounded};
 use crate::model::Settings;
-use crate::model::mass_spring::MassSpringModel;
 use crate::model::mass_spring::pulleys::pulley::Pulley;
+use crate::model::mass_spring::{Clock, ContactMemory, MassSpringModel, Report, Rollback, SupportDrives, Wheels};
 use crate::problem::Problem;
-use crate::solution::Cost;
 use crate::state::State;
 
 /// Elements where neither scene nor settings say: fewer is visibly angular, more makes sub-steps shorter and dearer.
@@ -22,6 +21,40 @@ const MIN_MODE_DAMPING: f64 = 0.1;
 const LONGEST_WAY: f64 = 0.95;
 /// Greatest damping ratio of the fastest mode: more shortens the stable step without changing what is seen.
 const MAX_MODE_DAMPING: f64 = 1.0;
+
+part! {
+    /// The masses, and the springs between them.
+    Chain {
+        /// Arc length of each node, m.
+        s: Vec<f64>,
+        /// Unstretched length of each element at the present temperature, m.
+        rest: Vec<f64>,
+        /// Arc length of each element at rest temperature, m: weight and wind go with it.
+        span: Vec<f64>,
+        /// Arc length of the straight part of each element (all of it but what lies on a wheel), m.
+        share: Vec<f64>,
+        /// Length of an element where they are even, m.
+        even: f64,
+        /// Mass of each node, kg.
+        mass: Vec<f64>,
+        /// Lumped mass at each node, kg.
+        lump: Vec<f64>,
+        /// Node of each support.
+        node_of: Vec<usize>,
+        /// Node of each load.
+        load_node: Vec<usize>,
+        /// Position of each node, m.
+        x: Vec<Vec2>,
+        /// Velocity of each node, m/s.
+        v: Vec<Vec2>,
+        /// Force on each node but that of supports and contacts, N.
+        f: Vec<Vec2>,
+        /// Tension of each element, N.
+        tension: Vec<f64>,
+        /// Time constant of the material's loss, s.
+        damping_time_s: f64,
+    }
+}
 
 impl MassSpringModel {
     /// Puts a node at each support and load, the others evenly between them. `slid` is where each support sits, m.
@@ -77,39 +110,13 @@ impl MassSpringModel {
         let x = first_shape(&problem, &s, &node_of);
         let (n, ne, ns) = (s.len(), span.len(), node_of.len());
         let damping_time_s = damping_time(&problem, &rest);
-        let mut model = Self {
-            time_s: 0.0,
-            due_s: 0.0,
-            behind_s: 0.0,
+        let chain = Chain {
             v: vec![Vec2::zeros(); n],
             f: vec![Vec2::zeros(); n],
             tension: vec![0.0; ne],
-            held: vec![false; n],
-            let_go: Vec::new(),
-            held_acceleration: vec![Vec2::zeros(); n],
-            drag: vec![None; ns],
-            clearance: vec![0.0; ne],
-            touches: Vec::with_capacity(2 * ne),
-            gaps: Vec::with_capacity(16),
-            cost: Cost::default(),
-            laid: false,
-            followers: vec![None; ns],
-            pulled: vec![false; ns],
-            hands: vec![None; ns],
             even: problem.length / wanted as f64,
             share: span.clone(),
             lump,
-            pulleys,
-            pulley_at,
-            anchors: Vec::new(),
-            warnings: Vec::new(),
-            settings,
-            driven: 0.0,
-            kept: crate::model::mass_spring::Rollback::default(),
-            beside: crate::model::mass_spring::ErrorEstimator::default(),
-            account: crate::model::mass_spring::dynamics::momentum::Account::default(),
-            errors: crate::solution::ErrorEstimates::default(),
-            problem,
             s,
             rest,
             span,
@@ -118,6 +125,33 @@ impl MassSpringModel {
             load_node,
             x,
             damping_time_s,
+        };
+        let drives = SupportDrives {
+            held: vec![false; n],
+            held_acceleration: vec![Vec2::zeros(); n],
+            drag: vec![None; ns],
+            followers: vec![None; ns],
+            pulled: vec![false; ns],
+            hands: vec![None; ns],
+            ..SupportDrives::default()
+        };
+        let contacts = ContactMemory {
+            clearance: vec![0.0; ne],
+            touches: Vec::with_capacity(2 * ne),
+            gaps: Vec::with_capacity(16),
+            ..ContactMemory::default()
+        };
+        let mut model = Self {
+            problem,
+            settings,
+            clock: Clock::default(),
+            chain,
+            drives,
+            contacts,
+            wheels: Wheels { pulleys, pulley_at },
+            report: Report::default(),
+            laid: false,
+            kept: Rollback::default(),
         };
         model.place_supports();
         model.tidy();
@@ -131,17 +165,17 @@ impl MassSpringModel {
         let fits = |wanted: f64| s.iter().any(|v| (v - wanted).abs() <= 1e-9 * self.problem.length);
         let supports = self.problem.supports.iter().filter_map(|p| p.arc_length);
         let marks = supports.chain(self.problem.loads.iter().map(|l| l.arc_length)).chain([0.0, self.problem.length]);
-        let apart = s.windows(2).all(|w| w[1] - w[0] >= LEAST_SPACING * self.even);
-        let wanted = self.problem.length / self.even;
+        let apart = s.windows(2).all(|w| w[1] - w[0] >= LEAST_SPACING * self.chain.even);
+        let wanted = self.problem.length / self.chain.even;
         let many = (0.5 * wanted..=2.0 * wanted).contains(&(s.len() as f64));
-        let plain = self.pulleys.is_empty() && !self.problem.world.is_empty();
+        let plain = self.wheels.pulleys.is_empty() && !self.problem.world.is_empty();
         (plain && apart && many && marks.into_iter().all(fits)).then(|| s.clone())
     }
 
     /// Brings the elements beside pulleys near the even length.
     pub(super) fn tidy(&mut self) {
         self.measure();
-        for _ in 0..self.x.len() {
+        for _ in 0..self.chain.x.len() {
             if !self.remesh() {
                 break;
             }

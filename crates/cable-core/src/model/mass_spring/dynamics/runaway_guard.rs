@@ -41,9 +41,9 @@ impl MassSpringModel {
     pub(in crate::model::mass_spring) fn no_trouble(&self) -> Trouble {
         let p = &self.problem;
         let g = if p.linear_density > 0.0 { p.weight.norm() / p.linear_density } else { 0.0 };
-        let lumps: f64 = p.supports.iter().map(|s| s.mass * g + s.force.at(self.time_s).norm()).sum();
-        let loads: f64 = p.loads.iter().map(|l| l.force.at(self.time_s).norm()).sum();
-        let pull = p.body_force(self.time_s).norm() * p.length + lumps + loads;
+        let lumps: f64 = p.supports.iter().map(|s| s.mass * g + s.force.at(self.clock.time_s).norm()).sum();
+        let loads: f64 = p.loads.iter().map(|l| l.force.at(self.clock.time_s).norm()).sum();
+        let pull = p.body_force(self.clock.time_s).norm() * p.length + lumps + loads;
         // Falling and being pulled the whole length twice, from the top of its swing to the bottom; and what it can
         // hold in stretch until it breaks.
         let strain = (p.cable.breaking_tension_n / p.axial_stiffness).min(1.0);
@@ -55,30 +55,35 @@ impl MassSpringModel {
     pub(in crate::model::mass_spring) fn calm(&mut self, trouble: &mut Trouble) -> f64 {
         let (mut energy, mut mass, mut momentum) = (0.0, 0.0, Vec2::zeros());
         let (mut fastest, mut node, mut support) = (0.0, 0, 0.0);
-        for i in 0..self.x.len() {
-            let square = self.v[i].norm_squared();
-            if self.held[i] {
+        for i in 0..self.chain.x.len() {
+            let square = self.chain.v[i].norm_squared();
+            if self.drives.held[i] {
                 support = if square > support { square } else { support };
                 continue;
             }
             if square > fastest || square.is_nan() {
                 (fastest, node) = (square, i);
             }
-            mass += self.mass[i];
-            momentum += self.v[i] * self.mass[i];
-            energy += 0.5 * self.mass[i] * square;
+            mass += self.chain.mass[i];
+            momentum += self.chain.v[i] * self.chain.mass[i];
+            energy += 0.5 * self.chain.mass[i] * square;
         }
         let support = f64::sqrt(support);
-        if support > self.driven {
-            self.driven = support;
+        if support > self.drives.driven {
+            self.drives.driven = support;
         }
-        let limit = MOST_ENERGY * (trouble.work + 2.0 * mass * self.driven * self.driven);
-        if energy > limit && !self.held.contains(&true) {
+        let limit = MOST_ENERGY * (trouble.work + 2.0 * mass * self.drives.driven * self.drives.driven);
+        if energy > limit && !self.drives.held.contains(&true) {
             // What flies freely may fall as fast as it likes; only its own motion counts.
             energy -= 0.5 * momentum.norm_squared() / mass;
         }
-        let found =
-            |value, limit| Excess { value, limit, time_s: self.time_s, arc_length_m: self.s[node], at: self.x[node] };
+        let found = |value, limit| Excess {
+            value,
+            limit,
+            time_s: self.clock.time_s,
+            arc_length_m: self.chain.s[node],
+            at: self.chain.x[node],
+        };
         let mut speed = f64::sqrt(fastest);
         let brake = energy > limit;
         if brake && trouble.energy.is_none_or(|e| energy > e.value) {
@@ -97,11 +102,11 @@ impl MassSpringModel {
     /// Brakes and cuts; returns the greatest speed left, m/s.
     fn hold_back(&mut self, brake: f64) -> f64 {
         let mut fastest = 0.0;
-        for i in (0..self.x.len()).filter(|&i| !self.held[i]) {
-            self.v[i] *= brake;
-            let speed = self.v[i].norm();
+        for i in (0..self.chain.x.len()).filter(|&i| !self.drives.held[i]) {
+            self.chain.v[i] *= brake;
+            let speed = self.chain.v[i].norm();
             if speed > NODE_SPEED_LIMIT {
-                self.v[i] *= NODE_SPEED_LIMIT / speed;
+                self.chain.v[i] *= NODE_SPEED_LIMIT / speed;
             }
             let left = if speed > NODE_SPEED_LIMIT { NODE_SPEED_LIMIT } else { speed };
             fastest = if left > fastest || left.is_nan() { left } else { fastest };
@@ -134,7 +139,7 @@ impl MassSpringModel {
         });
         for (e, message) in fast.into_iter().chain(violent) {
             let w = Warning::new(WarningKind::Stabilised, name, e.arc_length_m, [e.value, e.limit], message);
-            self.warnings.push(Warning { at_m: Some([e.at.x, e.at.y]), since_s: Some(e.time_s), ..w });
+            self.report.warnings.push(Warning { at_m: Some([e.at.x, e.at.y]), since_s: Some(e.time_s), ..w });
         }
     }
 }

@@ -68,18 +68,18 @@ pub(in crate::model::mass_spring) struct System {
 
 impl System {
     fn new(model: &MassSpringModel) -> Result<Self, SolveError> {
-        let n = model.x.len();
+        let n = model.chain.x.len();
         let band = if model.problem.bending_stiffness > 0.0 { BENDING_HALF_BANDWIDTH } else { BARS_HALF_BANDWIDTH };
         let factor = BandFactor::new(2 * n, band).map_err(|_| SolveError::Indefinite { model: Model::MassSpring })?;
         Ok(Self {
-            lent: model.tension.clone(),
+            lent: model.chain.tension.clone(),
             fade: 1.0,
             gradient: vec![0.0; 2 * n],
             hessian: BandMatrix::new(2 * n, band),
             factor,
             step: vec![0.0; 2 * n],
-            x: model.x.clone(),
-            s: model.s.clone(),
+            x: model.chain.x.clone(),
+            s: model.chain.s.clone(),
         })
     }
 
@@ -112,29 +112,29 @@ impl System {
 impl MassSpringModel {
     /// Moves the nodes to rest; `anew` forgets where friction held. On an error they are somewhere on the way.
     pub(in crate::model::mass_spring) fn equilibrium(&mut self, anew: bool) -> Result<(), SolveError> {
-        self.v.fill(Vec2::zeros());
-        self.behind_s = 0.0;
+        self.chain.v.fill(Vec2::zeros());
+        self.clock.behind_s = 0.0;
         self.place_supports();
-        if !self.held.contains(&true) && !self.touches_something() {
+        if !self.drives.held.contains(&true) && !self.touches_something() {
             let why = "no support holds the cable and there is nothing that it could lie on".to_owned();
             return Err(SolveError::NoRestingPlace { why });
         }
         self.weigh();
         let mut contacts = Contacts::new(self, anew);
-        for p in &mut self.pulleys {
+        for p in &mut self.wheels.pulleys {
             p.rate = 0.0;
             if anew {
-                p.anchor = self.s[p.node];
+                p.anchor = self.chain.s[p.node];
             }
         }
         self.newton(&mut contacts)?;
-        self.anchors = contacts.commit(self);
-        for k in 0..self.pulleys.len() {
-            let p = &mut self.pulleys[k];
-            let s = self.s[p.node];
+        self.contacts.anchors = contacts.commit(self);
+        for k in 0..self.wheels.pulleys.len() {
+            let p = &mut self.wheels.pulleys[k];
+            let s = self.chain.s[p.node];
             p.anchor = s - friction::return_map(s - p.anchor, PULLEY_SLIP);
         }
-        self.cost.inner_step_s = 0.0;
+        self.report.cost.inner_step_s = 0.0;
         contacts.report(self);
         self.forces();
         self.non_finite().map_or(Ok(()), Err)
@@ -142,7 +142,7 @@ impl MassSpringModel {
 
     fn newton(&mut self, contacts: &mut Contacts) -> Result<(), SolveError> {
         let mut system = System::new(self)?;
-        let unit = self.problem.axial_stiffness / self.rest.iter().copied().fold(f64::INFINITY, f64::min);
+        let unit = self.problem.axial_stiffness / self.chain.rest.iter().copied().fold(f64::INFINITY, f64::min);
         // What meets the ground is as stiff as that: a step must be short for it, too.
         let stiffest = larger(unit, contacts.stiffness(self));
         let tolerance = self.rest_tolerance();
@@ -154,8 +154,8 @@ impl MassSpringModel {
         // Steps since normal forces were taken over into friction.
         let mut frozen = 0;
         for k in 1..=MAX_STEPS {
-            self.cost.iterations = k;
-            self.cost.residual_n = worst;
+            self.report.cost.iterations = k;
+            self.report.cost.residual_n = worst;
             if worst <= tolerance && frozen == 0 {
                 return Ok(());
             }
@@ -168,7 +168,7 @@ impl MassSpringModel {
                 curvature = Curvature::Exact;
                 (energy, worst, node) = (new, left, at);
                 system.fade *= LENT_STIFFNESS_FADE;
-                let remeshed = !self.pulleys.is_empty() && self.remesh();
+                let remeshed = !self.wheels.pulleys.is_empty() && self.remesh();
                 if remeshed {
                     let fade = system.fade;
                     system = System { fade, ..System::new(self)? };
@@ -180,8 +180,8 @@ impl MassSpringModel {
                     (worst, node) = self.unbalanced(&system);
                 }
             } else {
-                self.x.copy_from_slice(&system.x);
-                self.s.copy_from_slice(&system.s);
+                self.chain.x.copy_from_slice(&system.x);
+                self.chain.s.copy_from_slice(&system.s);
                 self.weigh();
                 if solved {
                     shift *= SHIFT_UP;
@@ -198,9 +198,9 @@ impl MassSpringModel {
         }
         Err(SolveError::NotConverged {
             model: Model::MassSpring,
-            iterations: self.cost.iterations,
+            iterations: self.report.cost.iterations,
             residual_n: worst,
-            place: self.problem.place(self.s[node], self.x[node], self.time_s),
+            place: self.problem.place(self.chain.s[node], self.chain.x[node], self.clock.time_s),
         })
     }
 
@@ -208,24 +208,25 @@ impl MassSpringModel {
     /// positions makes of EA.
     fn rest_tolerance(&self) -> f64 {
         let part = if self.touches_something() { TOUCHING_RESIDUAL } else { RESIDUAL };
-        let far = self.x.iter().map(|p| p.amax()).fold(self.problem.length, |a: f64, b| if b > a { b } else { a });
-        let shortest = self.rest.iter().copied().fold(f64::INFINITY, f64::min);
+        let far =
+            self.chain.x.iter().map(|p| p.amax()).fold(self.problem.length, |a: f64, b| if b > a { b } else { a });
+        let shortest = self.chain.rest.iter().copied().fold(f64::INFINITY, f64::min);
         part * self.problem.force_scale() + ULPS * f64::EPSILON * self.problem.axial_stiffness * far / shortest
     }
 
     /// Goes one step; whether the tangent was positive. The place before is kept in the system.
     fn try_step(&mut self, system: &mut System, shift: f64) -> bool {
-        let n = self.x.len();
-        system.x.copy_from_slice(&self.x);
-        system.s.copy_from_slice(&self.s);
+        let n = self.chain.x.len();
+        system.x.copy_from_slice(&self.chain.x);
+        system.s.copy_from_slice(&self.chain.s);
         for i in 0..n {
             system.hessian.add(2 * i, 2 * i, shift);
             system.hessian.add(2 * i + 1, 2 * i + 1, shift);
         }
         for i in 0..n {
-            let slides = self.pulley_at[i].is_some();
+            let slides = self.wheels.pulley_at[i].is_some();
             for axis in 0..2 {
-                if self.held[i] && !(slides && axis == 0) {
+                if self.drives.held[i] && !(slides && axis == 0) {
                     system.gradient[2 * i + axis] = 0.0;
                     system.hessian.pin(2 * i + axis);
                 }
@@ -239,8 +240,8 @@ impl MassSpringModel {
         let limit = if self.problem.world.is_empty() { f64::INFINITY } else { MOST_MOVE * self.problem.radius };
         let mut scale = 1.0;
         for i in 0..n {
-            let (size, limit) = if self.pulley_at[i].is_some() {
-                (system.step[2 * i].abs(), MOST_SLIDE * self.even)
+            let (size, limit) = if self.wheels.pulley_at[i].is_some() {
+                (system.step[2 * i].abs(), MOST_SLIDE * self.chain.even)
             } else {
                 (system.step[2 * i].hypot(system.step[2 * i + 1]), limit)
             };
@@ -250,10 +251,10 @@ impl MassSpringModel {
         }
         for i in 0..n {
             let step = Vec2::new(system.step[2 * i], system.step[2 * i + 1]) * scale;
-            if self.pulley_at[i].is_some() {
-                self.s[i] -= step.x;
+            if self.wheels.pulley_at[i].is_some() {
+                self.chain.s[i] -= step.x;
             } else {
-                self.x[i] -= step;
+                self.chain.x[i] -= step;
             }
         }
         self.weigh();
@@ -265,19 +266,19 @@ impl MassSpringModel {
         system.hessian.clear();
         system.gradient.fill(0.0);
         let mut value = self.assemble_loads(system);
-        for e in 0..self.rest.len() {
+        for e in 0..self.chain.rest.len() {
             value += self.assemble_spring(system, e);
         }
         if self.problem.bending_stiffness > 0.0 {
             value += self.assemble_bending(system, curvature);
         }
         value += contacts.assemble(self, system);
-        let body = self.problem.body_force(self.time_s);
-        for k in 0..self.pulleys.len() {
+        let body = self.problem.body_force(self.clock.time_s);
+        for k in 0..self.wheels.pulleys.len() {
             self.load_pulley(k, body);
-            let p = &self.pulleys[k];
-            let (_, slope, stiff) = friction::at(self.s[p.node] - p.anchor, p.hold, PULLEY_SLIP);
-            value += friction::at(self.s[p.node] - p.anchor, p.hold, PULLEY_SLIP).0;
+            let p = &self.wheels.pulleys[k];
+            let (_, slope, stiff) = friction::at(self.chain.s[p.node] - p.anchor, p.hold, PULLEY_SLIP);
+            value += friction::at(self.chain.s[p.node] - p.anchor, p.hold, PULLEY_SLIP).0;
             system.gradient[2 * p.node] = slope - p.drive;
             system.hessian.add(2 * p.node, 2 * p.node, stiff);
         }
@@ -287,32 +288,33 @@ impl MassSpringModel {
     /// Weight, wind and loads.
     fn assemble_loads(&self, system: &mut System) -> f64 {
         let p = &self.problem;
-        let body = p.body_force(self.time_s);
+        let body = p.body_force(self.clock.time_s);
         let mut value = 0.0;
-        for e in 0..self.rest.len() {
+        for e in 0..self.chain.rest.len() {
             let moment = if self.at_pulley(e) {
                 let r = self.reach(e);
                 // σ moves half of the weight to the other end's side.
                 for (node, other, sign) in [(e, e + 1, 1.0), (e + 1, e, -1.0)] {
-                    if self.pulley_at[node].is_some() && self.pulley_at[other].is_none() {
+                    if self.wheels.pulley_at[node].is_some() && self.wheels.pulley_at[other].is_none() {
                         system.hessian.add(2 * other, 2 * node, 0.5 * sign * body.x);
                         system.hessian.add(2 * other + 1, 2 * node, 0.5 * sign * body.y);
                     }
                 }
-                r.middle * self.share[e] + r.hung / p.thermal_stretch
+                r.middle * self.chain.share[e] + r.hung / p.thermal_stretch
             } else {
-                (self.x[e] + self.x[e + 1]) * (0.5 * self.share[e])
+                (self.chain.x[e] + self.chain.x[e + 1]) * (0.5 * self.chain.share[e])
             };
-            let half = body * (0.5 * self.share[e]);
+            let half = body * (0.5 * self.chain.share[e]);
             value -= body.dot(&moment);
             system.add_gradient(e, -half);
             system.add_gradient(e + 1, -half);
         }
         let g = if p.linear_density > 0.0 { p.weight / p.linear_density } else { Vec2::zeros() };
-        let supports = p.supports.iter().zip(&self.node_of).map(|(u, &k)| (k, u.force.at(self.time_s) + g * u.mass));
-        let loads = p.loads.iter().zip(&self.load_node).map(|(l, &k)| (k, l.force.at(self.time_s)));
+        let supports =
+            p.supports.iter().zip(&self.chain.node_of).map(|(u, &k)| (k, u.force.at(self.clock.time_s) + g * u.mass));
+        let loads = p.loads.iter().zip(&self.chain.load_node).map(|(l, &k)| (k, l.force.at(self.clock.time_s)));
         for (k, force) in supports.chain(loads) {
-            value -= force.dot(&self.x[k]);
+            value -= force.dot(&self.chain.x[k]);
             system.add_gradient(k, -force);
         }
         value
@@ -320,11 +322,11 @@ impl MassSpringModel {
 
     fn assemble_spring(&mut self, system: &mut System, e: usize) -> f64 {
         let r = self.reach(e);
-        let (l0, ea, lambda) = (self.rest[e], self.problem.axial_stiffness, self.problem.thermal_stretch);
+        let (l0, ea, lambda) = (self.chain.rest[e], self.problem.axial_stiffness, self.problem.thermal_stretch);
         let stretch = r.length - l0;
         let (taut, lent) = (stretch > 0.0, system.lent[e] * system.fade);
         let tension = if taut { ea * stretch / l0 } else { 0.0 };
-        self.tension[e] = tension;
+        self.chain.tension[e] = tension;
         if !taut && lent == 0.0 {
             return 0.0;
         }
@@ -333,7 +335,7 @@ impl MassSpringModel {
         let ea = if taut { ea } else { ea * system.fade };
         let across = if tension > lent { tension } else { lent };
         let k = along * (ea / l0) + (Mat2::identity() - along) * if r.free > 0.0 { across / r.free } else { 0.0 };
-        let slides = [self.pulley_at[e].is_some(), self.pulley_at[e + 1].is_some()];
+        let slides = [self.wheels.pulley_at[e].is_some(), self.wheels.pulley_at[e + 1].is_some()];
         let cross = t * (lambda * ea * r.length / (l0 * l0));
         let square = lambda * lambda * ea * r.length * r.length / l0.powi(3);
         for (i, sign, slides) in [(e, -1.0, slides[0]), (e + 1, 1.0, slides[1])] {
@@ -358,15 +360,15 @@ impl MassSpringModel {
 
     fn assemble_bending(&self, system: &mut System, curvature: Curvature) -> f64 {
         let mut value = 0.0;
-        for n in 0..self.x.len() {
+        for n in 0..self.chain.x.len() {
             if let Some(direction) = self.clamp_at(n) {
-                for e in n.saturating_sub(1)..(n + 1).min(self.rest.len()) {
-                    let (bend, x) = (self.clamp_bend(e, direction), [self.x[e], self.x[e + 1]]);
+                for e in n.saturating_sub(1)..(n + 1).min(self.chain.rest.len()) {
+                    let (bend, x) = (self.clamp_bend(e, direction), [self.chain.x[e], self.chain.x[e + 1]]);
                     value += bend.value(&x);
                     system.add_energy([e, e + 1], bend.gradient(&x), &bend.hessian(&x, curvature));
                 }
             } else if let Some(bend) = self.bend_at(n) {
-                let x = [self.x[n - 1], self.x[n], self.x[n + 1]];
+                let x = [self.chain.x[n - 1], self.chain.x[n], self.chain.x[n + 1]];
                 value += bend.value(&x);
                 system.add_energy([n - 1, n, n + 1], bend.gradient(&x), &bend.hessian(&x, curvature));
             }
@@ -377,9 +379,9 @@ impl MassSpringModel {
     /// The largest unbalanced force, N, and its node; NaN wins.
     fn unbalanced(&self, system: &System) -> (f64, usize) {
         let mut out = (0.0, 0);
-        for i in 0..self.x.len() {
+        for i in 0..self.chain.x.len() {
             let g = Vec2::new(system.gradient[2 * i], system.gradient[2 * i + 1]);
-            let force = match (self.pulley_at[i].is_some(), self.held[i]) {
+            let force = match (self.wheels.pulley_at[i].is_some(), self.drives.held[i]) {
                 (true, _) => g.x.abs(),
                 (false, true) => 0.0,
                 (false, false) => g.norm(),
