@@ -85,24 +85,11 @@ pub(super) struct Gauged {
     pub(super) bars: Vec<f64>,
 }
 
-/// The moving cable, or the resting one where it can touch something.
+/// How the cable is divided into bars, and what of the scene sits on which node.
 #[derive(Clone, Debug)]
-pub struct Dynamics {
-    pub(super) problem: Arc<Problem>,
-    pub(super) mesh: Mesh,
-    pub(super) contacts: ContactSet,
-    pub(super) task: StepInput,
-    /// Force of the cable on each node that is held, N.
-    pub(super) reaction: Vec<Vec2>,
-    pub(super) motion: Motion,
-    pub(super) saved: Option<Box<Checkpoint>>,
-    pub(super) can_restore: bool,
-    /// Memory of the pose of a step.
-    pub(super) pose: Pose,
+pub(super) struct Meshing {
     /// Whether corners and posts get sliding nodes.
     pub(super) slides: bool,
-    /// Whether the last step was found to touch nothing but its supports.
-    pub(super) freely: bool,
     /// Whether there is nothing that nodes could slide over: no obstacle and no pulley.
     pub(super) never_slides: bool,
     /// Number of bars of the even mesh.
@@ -111,42 +98,101 @@ pub struct Dynamics {
     pub(super) bar_weight: f64,
     /// Node of each support; None for one that slides.
     pub(super) support_node: Vec<Option<usize>>,
+    /// Node of each point load, and its force.
     pub(super) loads: Vec<(usize, Series)>,
+    /// Whether the last step was found to touch nothing but its supports.
+    pub(super) freely: bool,
+}
+
+/// The memory in which a step is solved; it holds nothing of the state.
+#[derive(Clone, Debug)]
+pub(super) struct SolverMemory {
+    /// Room for the unknowns of a step.
+    pub(super) pose: Pose,
+    /// Room of the solver in contact.
     pub(super) memory: Memory,
+    /// Room of the solver of a cable that touches nothing.
     pub(super) free: FreeStep,
-    /// Loss of taut bars where the cable can touch nothing.
-    pub(super) loss: Loss,
-    /// Room for what a step leaves of each branch.
+    /// Room for what a step leaves of each branch of the loss.
     pub(super) decay: Vec<f64>,
-    pub(super) sleep: Sleep,
-    pub(super) pace: StepSizeController,
-    /// Part of its frequency that a vibration may be off by.
-    pub(super) tolerance: f64,
+    /// Room for the contacts among which corners are looked for.
+    pub(super) touches: Vec<ContactPair>,
+    /// The work that the search for an equilibrium may still do.
+    pub(super) work_left: WorkBudget,
+}
+
+/// How hands lead supports.
+#[derive(Clone, Debug)]
+pub(super) struct HandDrive {
     /// Fastest hand, m/s.
     pub(super) hand_speed: f64,
     /// Stiffness of its spring, N/m, where that was asked for.
     pub(super) hand_stiffness: Option<f64>,
     /// Which of the dragged supports a hand holds by a spring.
     pub(super) pulled: Vec<bool>,
-    pub(super) rested: bool,
-    pub(super) held_back: Vec<usize>,
-    /// Until when the present advance goes, s.
-    pub(super) due: f64,
-    /// The answer of the last step of an advance, as it was balanced: the mesh is changed after it, for the next.
-    pub(super) stepped: Option<Box<CableSolution>>,
-    /// Whether the answer is kept before the mesh is changed, and what was kept.
-    pub(super) keeps: bool,
-    pub(super) kept: Option<Box<CableSolution>>,
-    /// Iterations times nodes that the search for a resting place may still take.
-    pub(super) work_left: WorkBudget,
     /// Room for where hands draw supports in a part of a step.
     aims: Vec<Option<Vec2>>,
-    /// The outline of the robot, if there is one.
-    pub(super) rider: Option<MovingOutline>,
+}
+
+/// How time goes on.
+#[derive(Clone, Debug)]
+pub(super) struct Pacing {
+    /// The length of inner steps.
+    pub(super) pace: StepSizeController,
+    /// Whether the cable sleeps.
+    pub(super) sleep: Sleep,
+    /// Part of its frequency that a vibration may be off by.
+    pub(super) tolerance: f64,
+    /// Until when the present advance goes, s.
+    pub(super) due: f64,
+}
+
+/// What is reported of the last step.
+#[derive(Clone, Debug)]
+pub(super) struct StepAnswers {
+    /// Force of the cable on each node that is held, N.
+    pub(super) reaction: Vec<Vec2>,
+    /// Supports that were stopped short of their target.
+    pub(super) held_back: Vec<usize>,
+    /// The answer of the last step of an advance, as it was balanced: the mesh is changed after it, for the next.
+    pub(super) stepped: Option<Box<CableSolution>>,
+    /// Whether the answer is kept before the mesh is changed.
+    pub(super) keeps: bool,
+    /// What was kept.
+    pub(super) kept: Option<Box<CableSolution>>,
     /// Tension after the last step, on the mesh that it balanced.
     pub(super) gauged: Gauged,
-    /// Room for the contacts among which corners are looked for.
-    pub(super) touches: Vec<ContactPair>,
+}
+
+/// The state to go back to where a step fails.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rollback {
+    /// The last one that was saved, and its memory.
+    pub(super) saved: Option<Box<Checkpoint>>,
+    /// Whether it is of the present step.
+    pub(super) can_restore: bool,
+}
+
+/// The moving cable, or the resting one where it can touch something.
+#[derive(Clone, Debug)]
+pub struct Dynamics {
+    pub(super) problem: Arc<Problem>,
+    pub(super) mesh: Mesh,
+    pub(super) meshing: Meshing,
+    pub(super) contacts: ContactSet,
+    pub(super) motion: Motion,
+    /// Loss of taut bars where the cable can touch nothing.
+    pub(super) loss: Loss,
+    /// The outline of the robot, if there is one.
+    pub(super) rider: Option<MovingOutline>,
+    pub(super) task: StepInput,
+    pub(super) hand_drive: HandDrive,
+    pub(super) pacing: Pacing,
+    pub(super) solver: SolverMemory,
+    pub(super) rollback: Rollback,
+    pub(super) answers: StepAnswers,
+    /// Whether it has come to rest, or moves from a state that did.
+    pub(super) rested: bool,
 }
 
 impl Dynamics {
@@ -182,7 +228,6 @@ impl Dynamics {
         let task = StepInput { tolerance: tolerance(&problem, whole), ..StepInput::default() };
         let mut this = Self {
             contacts: ContactSet::new(barrier, SLIDE, n),
-            reaction: vec![Vec2::zeros(); n],
             motion: Motion {
                 x: lay(&mesh, &way),
                 v: vec![Vec2::zeros(); n],
@@ -198,38 +243,49 @@ impl Dynamics {
                 placement: problem.outline.as_ref().map(|o| o.placement),
                 ..Motion::default()
             },
-            saved: None,
-            can_restore: false,
-            pose: Pose::default(),
-            // A sliding node scales the forces of all that lies beyond it; what touches itself has one scale.
-            slides: !problem.cable.self_contact,
-            never_slides: problem.world.is_empty() && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley),
-            freely: false,
-            even_bars: segments,
-            bar_weight: normal_per_m * even,
-            memory: Memory(None),
-            free: FreeStep::default(),
+            rollback: Rollback::default(),
+            meshing: Meshing {
+                // A sliding node scales the forces of all that lies beyond it; what touches itself has one scale.
+                slides: !problem.cable.self_contact,
+                never_slides: problem.world.is_empty()
+                    && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley),
+                even_bars: segments,
+                bar_weight: normal_per_m * even,
+                support_node,
+                loads,
+                freely: false,
+            },
             loss: if mesh.spread.is_lumped() { Loss::default() } else { Loss::of(&problem, even) },
-            decay: Vec::new(),
-            sleep: Sleep::default(),
-            pace: StepSizeController::new(settings.inner_step_s.unwrap_or(INNER_STEP)),
-            tolerance: settings.tolerance,
-            hand_speed: settings.hand_speed_m_per_s,
-            hand_stiffness: settings.hand_stiffness_n_per_m,
-            pulled: vec![false; problem.supports.len()],
+            solver: SolverMemory {
+                pose: Pose::default(),
+                memory: Memory(None),
+                free: FreeStep::default(),
+                decay: Vec::new(),
+                touches: Vec::with_capacity(n),
+                work_left: WorkBudget::Unlimited,
+            },
+            pacing: Pacing {
+                pace: StepSizeController::new(settings.inner_step_s.unwrap_or(INNER_STEP)),
+                sleep: Sleep::default(),
+                tolerance: settings.tolerance,
+                due: f64::INFINITY,
+            },
+            hand_drive: HandDrive {
+                hand_speed: settings.hand_speed_m_per_s,
+                hand_stiffness: settings.hand_stiffness_n_per_m,
+                pulled: vec![false; problem.supports.len()],
+                aims: Vec::new(),
+            },
+            answers: StepAnswers {
+                reaction: vec![Vec2::zeros(); n],
+                held_back: Vec::new(),
+                stepped: None,
+                keeps: false,
+                kept: None,
+                gauged: Gauged::default(),
+            },
             rested: false,
-            held_back: Vec::new(),
-            due: f64::INFINITY,
-            stepped: None,
-            keeps: false,
-            kept: None,
-            work_left: WorkBudget::Unlimited,
-            aims: Vec::new(),
             rider,
-            gauged: Gauged::default(),
-            touches: Vec::with_capacity(n),
-            support_node,
-            loads,
             mesh,
             task,
             problem,
@@ -265,7 +321,7 @@ impl Dynamics {
 
     /// Where a support is, m.
     pub(super) fn support_position(&self, support: usize) -> Option<Vec2> {
-        match self.support_node.get(support).copied().flatten() {
+        match self.meshing.support_node.get(support).copied().flatten() {
             Some(node) => self.motion.x.get(node).copied(),
             None => self.pulley_center(support),
         }
@@ -281,7 +337,7 @@ impl Dynamics {
     }
 
     pub(super) fn forget_history(&mut self) {
-        self.stepped = None;
+        self.answers.stepped = None;
         let m = &mut self.motion;
         m.x_before.clone_from(&m.x);
         m.v_before.clone_from(&m.v);
@@ -289,7 +345,7 @@ impl Dynamics {
         m.s_before.clone_from(&self.mesh.arc_length);
         m.step_before = 0.0;
         m.branch.clear();
-        self.pace.forget();
+        self.pacing.pace.forget();
         self.forget_account();
     }
 
@@ -328,9 +384,9 @@ impl Dynamics {
         if !self.rested {
             self.settle(dragged)?;
         }
-        self.held_back.clear();
+        self.answers.held_back.clear();
         let end = self.motion.time + dt_s;
-        self.due = end;
+        self.pacing.due = end;
         self.begin_way(end);
         match inertia {
             Inertia::Dynamic => self.begin_account(),
@@ -340,7 +396,7 @@ impl Dynamics {
         if inertia == Inertia::Dynamic && gauge.asks(self.motion.time) {
             self.gauge_tension();
             let at_rest = self.motion.v.iter().all(|v| *v == Vec2::zeros());
-            gauge.begin(self.motion.time, at_rest, &self.gauged.arc_length, |k| self.gauged.tension[k]);
+            gauge.begin(self.motion.time, at_rest, &self.answers.gauged.arc_length, |k| self.answers.gauged.tension[k]);
         }
         if inertia == Inertia::Dynamic && self.sleeps_until(end, dragged) {
             self.motion.time = end;
@@ -351,7 +407,7 @@ impl Dynamics {
             self.open_folds();
         }
         let pieces = match inertia {
-            Inertia::Dynamic => (dt_s / self.pace.step - 1e-9).ceil().max(1.0),
+            Inertia::Dynamic => (dt_s / self.pacing.pace.step - 1e-9).ceil().max(1.0),
             Inertia::QuasiStatic => self.pieces(end, dragged),
         };
         let h = dt_s / pieces;
@@ -379,7 +435,7 @@ impl Dynamics {
             return;
         }
         let most = self.greatest_tension();
-        let least = STIFFNESS * self.bar_weight;
+        let least = STIFFNESS * self.meshing.bar_weight;
         let wanted = if TAUT_STIFFNESS * most > least { TAUT_STIFFNESS * most } else { least };
         let now = self.contacts.barrier.stiffness;
         self.contacts.barrier.stiffness = bounded(wanted * ahead, now * down, now * up);
@@ -434,7 +490,7 @@ impl Dynamics {
             let tried = match inertia {
                 Inertia::Dynamic => self.dynamic_step(piece, dragged),
                 Inertia::QuasiStatic => {
-                    let mut aims = std::mem::take(&mut self.aims);
+                    let mut aims = std::mem::take(&mut self.hand_drive.aims);
                     self.aim(&mut aims, dragged, piece / (due - start));
                     let tried = self.quiet_step(to, &aims).or_else(|failure| {
                         if failure.cause == FailureCause::CornerPulls || depth < QUIET_DEPTH {
@@ -445,7 +501,7 @@ impl Dynamics {
                         self.motion.time = start;
                         self.relax(to, &aims)
                     });
-                    self.aims = aims;
+                    self.hand_drive.aims = aims;
                     tried
                 }
             };
@@ -454,7 +510,7 @@ impl Dynamics {
                 Ok(done) if finite => {
                     total = Converged { iterations: total.iterations + done.iterations, ..done };
                     if inertia == Inertia::Dynamic {
-                        gauge.note(to, &self.gauged.arc_length, |k| self.gauged.tension[k]);
+                        gauge.note(to, &self.answers.gauged.arc_length, |k| self.answers.gauged.tension[k]);
                         gauge.keep();
                     }
                     left -= piece;
@@ -520,9 +576,9 @@ impl Dynamics {
         let node_of = |k: usize| {
             let seat = Seat::Pulley(k);
             let sliding = || self.mesh.sliding.iter().position(|s| s.is_some_and(|s| s.seat == seat));
-            self.support_node.get(k).copied().flatten().or_else(sliding)
+            self.meshing.support_node.get(k).copied().flatten().or_else(sliding)
         };
-        let held = self.held_back.iter().filter_map(|&k| {
+        let held = self.answers.held_back.iter().filter_map(|&k| {
             let (node, s) = (node_of(k)?, self.problem.supports.get(k)?);
             let behind = (self.task.target.get(node)? - self.motion.x[node]).norm();
             let message = format!("support `{}` does not come where it is sent: an obstacle is in its way", s.name);
@@ -531,7 +587,7 @@ impl Dynamics {
         });
         let drawn = self.motion.followers.iter().enumerate().filter_map(|(k, f)| {
             let (f, node) = (f.as_ref().filter(|f| f.behind_m() > 0.0)?, node_of(k)?);
-            Some(held_warning(&self.problem, k, self.mesh.arc_length[node], f, self.hand_speed))
+            Some(held_warning(&self.problem, k, self.mesh.arc_length[node], f, self.hand_drive.hand_speed))
         });
         let warnings = held.chain(drawn).chain(self.hand_warnings()).collect();
         StepReport { cost, warnings }
@@ -563,13 +619,13 @@ impl Dynamics {
     /// The answer at this instant.
     #[must_use]
     pub fn solution(&self) -> CableSolution {
-        self.stepped.as_ref().map_or_else(|| self.solution_now(), |s| CableSolution::clone(s))
+        self.answers.stepped.as_ref().map_or_else(|| self.solution_now(), |s| CableSolution::clone(s))
     }
 
     /// Keeps the answer of a step before the first change of its mesh.
     pub(super) fn keep_answer(&mut self) {
-        if self.keeps && self.kept.is_none() {
-            self.kept = Some(Box::new(self.solution_now()));
+        if self.answers.keeps && self.answers.kept.is_none() {
+            self.answers.kept = Some(Box::new(self.solution_now()));
         }
     }
 

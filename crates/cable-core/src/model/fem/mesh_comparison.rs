@@ -71,7 +71,7 @@ impl TwoMeshes {
             };
             return;
         }
-        if !fine.slides {
+        if !fine.meshing.slides {
             return;
         }
         if let Some(exact) = exact {
@@ -79,9 +79,9 @@ impl TwoMeshes {
             self.errors = beside(&answer, &exact.answer, problem);
             while refinement == Refinement::Allowed
                 && exceeds(&self.errors, &answer, settings)
-                && 2 * fine.even_bars <= MOST_BARS
+                && 2 * fine.meshing.even_bars <= MOST_BARS
             {
-                let bars = 2 * fine.even_bars;
+                let bars = 2 * fine.meshing.even_bars;
                 let Some(finer) = laid_over(problem, settings, fine, bars, &exact.answer, dragged) else { break };
                 let next = finer.solution();
                 let errors = beside(&next, &exact.answer, problem);
@@ -122,7 +122,7 @@ impl TwoMeshes {
                     return;
                 }
                 // The cable has no answer without a mesh from here on.
-                laid_over(problem, settings, fine, fine.even_bars / 2, &answer, dragged).map(Box::new)
+                laid_over(problem, settings, fine, fine.meshing.even_bars / 2, &answer, dragged).map(Box::new)
             }
             (None, Some(mut coarse)) => coarse.advance(dt_s, inertia, dragged).is_ok().then_some(coarse),
             (None, None) => None,
@@ -152,14 +152,14 @@ fn coarser(
     fine: &Dynamics,
     dragged: &[Option<Vec2>],
 ) -> Option<(ErrorEstimates, Dynamics)> {
-    if fine.even_bars < LEAST_BARS {
+    if fine.meshing.even_bars < LEAST_BARS {
         return None;
     }
     let answer = fine.solution();
-    let coarse = laid_over(problem, settings, fine, fine.even_bars / 2, &answer, dragged)?;
+    let coarse = laid_over(problem, settings, fine, fine.meshing.even_bars / 2, &answer, dragged)?;
     let other = coarse.solution();
     let errors = ErrorEstimates::between(&other, &answer).plus(&ErrorEstimates::rounding(&answer, problem));
-    let coarsest = laid_over(problem, settings, fine, fine.even_bars / 4, &answer, dragged);
+    let coarsest = laid_over(problem, settings, fine, fine.meshing.even_bars / 4, &answer, dragged);
     let change = coarsest.map(|c| ErrorEstimates::between(&c.solution(), &other).times(FIRST_ORDER_ERROR_FRACTION));
     Some((change.map_or(errors, |change| errors.or_larger(&change)), coarse))
 }
@@ -183,7 +183,7 @@ fn laid_over(
     dragged: &[Option<Vec2>],
 ) -> Option<Dynamics> {
     let mut other = Dynamics::new(problem.clone(), Settings { segments: Some(bars), ..settings }).ok()?;
-    other.slides = like.slides;
+    other.meshing.slides = like.meshing.slides;
     other.warm_start(answer, like.time(), dragged).ok()?;
     if !other.rested {
         other.settle(dragged).ok()?;

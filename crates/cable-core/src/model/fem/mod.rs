@@ -250,7 +250,7 @@ impl FemModel {
         }
         let message = format!(
             "{} bars show the bend of a stiff cable where it is led round something to {off:.1e} of the greatest tension only; {limit:.1e} was asked for: use more segments",
-            self.dynamics.even_bars
+            self.dynamics.meshing.even_bars
         );
         Some(Warning::new(WarningKind::Accuracy, &self.problem.cable.name, s, [off, limit], message))
     }
@@ -337,7 +337,7 @@ impl FemModel {
     /// over its nodes.
     #[must_use]
     pub fn with_material_nodes(mut self) -> Self {
-        self.dynamics.slides = false;
+        self.dynamics.meshing.slides = false;
         self
     }
 
@@ -363,7 +363,7 @@ impl FemModel {
         (estimate > asked).then(|| {
             let message = format!(
                 "{} elements give the forces to about {estimate:.1e} of the greatest tension; {asked:.1e} was asked for: use more segments",
-                self.dynamics.even_bars
+                self.dynamics.meshing.even_bars
             );
             Warning::new(WarningKind::Accuracy, &self.problem.cable.name, 0.0, [estimate, asked], message)
         })
@@ -408,9 +408,9 @@ impl Mechanics for FemModel {
         if let Some(report) = self.bend() {
             return Ok(report);
         }
-        self.dynamics.work_left = WorkBudget::Left(equilibrium::quasi_static::REST_WORK);
+        self.dynamics.solver.work_left = WorkBudget::Left(equilibrium::quasi_static::REST_WORK);
         let found = self.rest_in_touch();
-        self.dynamics.work_left = WorkBudget::Unlimited;
+        self.dynamics.solver.work_left = WorkBudget::Unlimited;
         found
     }
 
@@ -483,7 +483,9 @@ impl Mechanics for FemModel {
     }
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
-        if let (Some(d), Some(pulled)) = (self.dragged.get_mut(support), self.dynamics.pulled.get_mut(support)) {
+        if let (Some(d), Some(pulled)) =
+            (self.dragged.get_mut(support), self.dynamics.hand_drive.pulled.get_mut(support))
+        {
             (*d, *pulled) = (Some(target_m), false);
         }
     }
@@ -491,7 +493,7 @@ impl Mechanics for FemModel {
     fn pull_support(&mut self, support: usize, hand_m: Vec2) {
         self.drag_support(support, hand_m);
         let kind = self.problem.supports.get(support).map(|s| s.kind);
-        if let Some(pulled) = self.dynamics.pulled.get_mut(support) {
+        if let Some(pulled) = self.dynamics.hand_drive.pulled.get_mut(support) {
             *pulled = matches!(kind, Some(SupportKind::Fixed | SupportKind::Clamped));
         }
     }
@@ -529,7 +531,7 @@ impl Mechanics for FemModel {
     }
 
     fn inner_step_s(&self) -> f64 {
-        self.dynamics.pace.step
+        self.dynamics.pacing.pace.step
     }
 
     fn copy_to_keep(&self) -> Box<dyn Mechanics> {
@@ -538,7 +540,7 @@ impl Mechanics for FemModel {
 
     fn lend(&mut self) -> Option<OwnedResources> {
         Some(OwnedResources {
-            memory: self.dynamics.memory.0.take().map(|memory| memory as Box<dyn std::any::Any + Send>),
+            memory: self.dynamics.solver.memory.0.take().map(|memory| memory as Box<dyn std::any::Any + Send>),
             problem: self.dynamics.problem.clone(),
         })
     }
@@ -548,7 +550,7 @@ impl Mechanics for FemModel {
             memory: None,
             problem: obstacle::moving_outline::with_outline(self.problem.clone()),
         });
-        self.dynamics.memory.0 = own.memory.and_then(|memory| memory.downcast().ok());
+        self.dynamics.solver.memory.0 = own.memory.and_then(|memory| memory.downcast().ok());
         self.dynamics.problem = own.problem;
         self.dynamics.place_outline();
     }

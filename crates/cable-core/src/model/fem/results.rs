@@ -51,11 +51,11 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
 impl Dynamics {
     /// Reads the tension at each node, as [`nodes`] has it.
     pub(in crate::model::fem) fn gauge_tension(&mut self) {
-        let mut gauged = std::mem::take(&mut self.gauged);
+        let mut gauged = std::mem::take(&mut self.answers.gauged);
         let x = &self.motion.x;
         gauged.arc_length.clone_from(&self.mesh.arc_length);
         gauged.bars.clear();
-        if self.never_slides {
+        if self.meshing.never_slides {
             let mesh = &self.mesh;
             gauged.bars.extend(x.windows(2).enumerate().map(|(e, pair)| {
                 let t = mesh.bar(e).tension((pair[1] - pair[0]).norm());
@@ -75,7 +75,7 @@ impl Dynamics {
                 *t = larger(load.tension[0], load.tension[1]);
             }
         }
-        self.gauged = gauged;
+        self.answers.gauged = gauged;
     }
 
     /// Whether the cable slides through any node.
@@ -216,9 +216,9 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
 
 /// What hangs on a free end, N; None for other nodes, and where a lump moves, whose inertia pulls as well.
 fn free_end(d: &Dynamics, node: usize) -> Option<Vec2> {
-    let k = d.support_node.iter().position(|n| *n == Some(node)).filter(|_| !d.mesh.held[node])?;
+    let k = d.meshing.support_node.iter().position(|n| *n == Some(node)).filter(|_| !d.mesh.held[node])?;
     if d.motion.hands[k].is_some() {
-        return Some(d.problem.hung_on(k, d.time()) - d.reaction[node]);
+        return Some(d.problem.hung_on(k, d.time()) - d.answers.reaction[node]);
     }
     let rests = d.problem.supports.get(k)?.mass == 0.0 || !d.inertia_counts();
     rests.then(|| d.problem.hung_on(k, d.time()))
@@ -547,7 +547,7 @@ fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<
     problem
         .supports
         .iter()
-        .zip(&d.support_node)
+        .zip(&d.meshing.support_node)
         .enumerate()
         .filter_map(|(k, (s, node))| {
             let Some(node) = *node else { return pulley(d, k, x, tension) };
@@ -555,7 +555,7 @@ fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<
             let lies = problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach).is_some();
             let hand = d.motion.hands[k];
             let reaction = match node {
-                _ if hand.is_some() => d.reaction[node],
+                _ if hand.is_some() => d.answers.reaction[node],
                 // A dead load is what hangs there: the cable pulls it the other way; a lump it may pull faster. Of one that lies
                 // the ground takes a part, which is the contact's.
                 _ if !d.mesh.held[node] && lies => -problem.hung_on(k, d.time()),
@@ -565,7 +565,7 @@ fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<
                 // On the ground the end's own share of weight and friction is the ground's, not the support's.
                 0 if lies => ends[0],
                 k if k == last && lies => -ends[1],
-                _ => d.reaction[node],
+                _ => d.answers.reaction[node],
             };
             Some(SupportReaction {
                 name: s.name.clone(),

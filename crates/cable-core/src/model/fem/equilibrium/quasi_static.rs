@@ -142,7 +142,7 @@ impl Dynamics {
     /// Brings what is left unbalanced at a rest, which adds up along the cable, down to what can be told from rounding: on from where
     /// the cable lies, or not at all where that does not come to an end.
     pub(in crate::model::fem) fn polish(&mut self, found: Converged, dragged: &[Option<Vec2>]) -> Converged {
-        let kept = (self.saved.clone(), self.can_restore);
+        let kept = (self.rollback.saved.clone(), self.rollback.can_restore);
         let (exact, to) = (self.task.tolerance, self.motion.time);
         let mut all = found;
         for (part, iterations) in POLISH_STAGES {
@@ -160,7 +160,7 @@ impl Dynamics {
             self.accept_pose(&pose, to);
         }
         self.task.tolerance = exact;
-        (self.saved, self.can_restore) = kept;
+        (self.rollback.saved, self.rollback.can_restore) = kept;
         all
     }
 
@@ -171,7 +171,7 @@ impl Dynamics {
             return;
         }
         self.save();
-        let reach = self.problem.length / self.even_bars as f64;
+        let reach = self.problem.length / self.meshing.even_bars as f64;
         let laid = self.motion.x.clone();
         let found = self.rest_step(self.motion.time, dragged).is_ok();
         let near = |(a, b): (&Vec2, &Vec2)| (a - b).norm() <= reach;
@@ -257,21 +257,21 @@ impl Dynamics {
 
     /// Weight of an element over a tenth of a metre: enough to keep slack nodes from wandering.
     fn soft_shift(&self) -> f64 {
-        self.bar_weight / 0.1
+        self.meshing.bar_weight / 0.1
     }
 
     /// The resistance that a way down begins with, N/m: what acts on an element over a tenth of a metre, dead loads with it
     /// where they are what counts. With the weight alone a cable of 5 g/m under 100 N, laid through a post, was thrown about
     /// and found no rest.
     fn first_resistance(&self) -> f64 {
-        let whole = load_scale(&self.problem).1 / self.even_bars as f64;
-        if whole > DEAD_LOAD_RATIO * self.bar_weight { whole / 0.1 } else { self.soft_shift() }
+        let whole = load_scale(&self.problem).1 / self.meshing.even_bars as f64;
+        if whole > DEAD_LOAD_RATIO * self.meshing.bar_weight { whole / 0.1 } else { self.soft_shift() }
     }
 
     /// Follows the way down with ever weaker viscous resistance, then finds the resting place itself. On the way what rounding
     /// hides may be any force: a cable laid in touch begins there. Where that ends in no rest, it may not.
     pub(in crate::model::fem) fn relax(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
-        let kept = (self.saved.clone(), self.can_restore);
+        let kept = (self.rollback.saved.clone(), self.rollback.can_restore);
         self.save();
         let mut found = self.relax_within(f64::INFINITY, to, dragged);
         if found.is_err_and(|f| {
@@ -280,7 +280,7 @@ impl Dynamics {
             self.restore();
             found = self.relax_within(RESIDUAL_LIMIT_TOLERANCES, to, dragged);
         }
-        (self.saved, self.can_restore) = kept;
+        (self.rollback.saved, self.rollback.can_restore) = kept;
         found
     }
 
@@ -300,7 +300,7 @@ impl Dynamics {
         for round in 0..MAX_RELAX {
             self.prepare_task(to, Some(dragged));
             self.adapt_slip();
-            let even = self.problem.length / self.even_bars as f64;
+            let even = self.problem.length / self.meshing.even_bars as f64;
             self.task.inertia.fill(resistance);
             for k in 0..self.mesh.nodes() {
                 self.task.inertia[k] *= self.mesh.share(k) / even;
@@ -378,7 +378,7 @@ impl Dynamics {
     pub fn settle(&mut self, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
         self.refuse()?;
         self.wake();
-        self.held_back.clear();
+        self.answers.held_back.clear();
         self.save();
         self.motion.followers.fill(None);
         self.motion.hands.fill(None);
@@ -451,11 +451,11 @@ impl Dynamics {
         let exact = self.task.tolerance;
         self.task.tolerance = tolerance(&self.problem, 0.0);
         let mut pose = self.still_pose();
-        if self.free.solve(&self.mesh, &self.task, &mut pose).is_some() {
+        if self.solver.free.solve(&self.mesh, &self.task, &mut pose).is_some() {
             self.motion.x.clone_from(&pose.x);
             self.forget_history();
         }
-        self.pose = pose;
+        self.solver.pose = pose;
         self.task.tolerance = exact;
     }
 
@@ -538,7 +538,7 @@ impl Dynamics {
 
     /// Steps without inertia that keep every support's move below half an element.
     pub(in crate::model::fem) fn pieces(&self, end: f64, dragged: &[Option<Vec2>]) -> f64 {
-        let even = self.problem.length / self.even_bars as f64;
+        let even = self.problem.length / self.meshing.even_bars as f64;
         let mut most: f64 = 0.0;
         for (k, s) in self.problem.supports.iter().enumerate() {
             if let (Some((at, _)), Some(now)) = (s.position_at(end), self.support_position(k)) {

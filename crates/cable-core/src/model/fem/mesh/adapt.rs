@@ -142,7 +142,7 @@ impl Dynamics {
 
     /// Length of an even bar, m of arc length.
     pub(in crate::model::fem) fn even(&self) -> f64 {
-        self.problem.length / self.even_bars as f64
+        self.problem.length / self.meshing.even_bars as f64
     }
 
     /// How far outside of contact the cable runs round a corner or circle, m: as far as the barrier
@@ -323,7 +323,7 @@ impl Dynamics {
         load.normal < 0.0
             || turn < 0.0
             || self.beyond_its_corner(k, &self.motion.x)
-            || (tension < MATERIAL_NODE_TENSION * self.bar_weight && turn < 2.0 * MOST_BEND)
+            || (tension < MATERIAL_NODE_TENSION * self.meshing.bar_weight && turn < 2.0 * MOST_BEND)
     }
 
     /// Angle through which the bars beside node `k` turn, in the sense of a sliding node, rad.
@@ -369,10 +369,10 @@ impl Dynamics {
     /// Puts sliding nodes where corners and circles press; returns their seats.
     fn take_hold(&mut self, rests: bool) -> Vec<Seat> {
         let mut taken = Vec::new();
-        if self.problem.world.is_empty() || !self.slides {
+        if self.problem.world.is_empty() || !self.meshing.slides {
             return taken;
         }
-        let mut touches = std::mem::take(&mut self.touches);
+        let mut touches = std::mem::take(&mut self.solver.touches);
         for _ in 0..MAX_CHANGES {
             self.contacts.find(&self.problem, &self.mesh, &self.motion.x, &mut touches);
             let found = touches.iter().find_map(|t| {
@@ -403,7 +403,7 @@ impl Dynamics {
             self.clear_around(node.unwrap_or(bar + 1));
             taken.push(sliding.seat);
         }
-        self.touches = touches;
+        self.solver.touches = touches;
         taken
     }
 
@@ -503,7 +503,7 @@ impl Dynamics {
         let beyond = (bar + 1).min(last - 1);
         let wrap = sense * angle_between(mesh.path(first, x).direction, mesh.path(beyond, x).direction);
         let tension = mesh.bar(bar).tension(path.length);
-        if !(wrap > 0.0 && tension > SLIDING_NODE_TENSION * self.bar_weight) {
+        if !(wrap > 0.0 && tension > SLIDING_NODE_TENSION * self.meshing.bar_weight) {
             return None;
         }
         let s = [mesh.arc_length[bar], mesh.arc_length[bar + 1]];
@@ -538,7 +538,7 @@ impl Dynamics {
     /// sliding node, which carries no moment, would leave it out.
     pub(in crate::model::fem) fn bends_visibly(&self, tension: f64) -> bool {
         let stiffness = self.mesh.bending_stiffness;
-        let least = self.bar_weight + stiffness / (self.problem.length * self.problem.length);
+        let least = self.meshing.bar_weight + stiffness / (self.problem.length * self.problem.length);
         stiffness > 0.0
             && (stiffness / if tension > least { tension } else { least }).sqrt() > RESOLVED_BEND_BARS * self.even()
     }
@@ -618,7 +618,7 @@ impl Dynamics {
         k > 0
             && k + 1 < self.mesh.nodes()
             && self.mesh.is_free(k)
-            && !self.support_node.contains(&Some(k))
-            && self.loads.iter().all(|l| l.0 != k)
+            && !self.meshing.support_node.contains(&Some(k))
+            && self.meshing.loads.iter().all(|l| l.0 != k)
     }
 }

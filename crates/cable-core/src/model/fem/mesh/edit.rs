@@ -55,7 +55,7 @@ impl Dynamics {
         m.w.insert(k, w);
         m.w_before.insert(k, w_before);
         m.s_before.insert(k, arc_length - (w + w_before) * (0.5 * h));
-        self.reaction.insert(k, Vec2::zeros());
+        self.answers.reaction.insert(k, Vec2::zeros());
         self.contacts.floor_slid.insert(k, between);
         self.renumber(|node| Some(if node >= k { node + 1 } else { node }));
     }
@@ -123,7 +123,7 @@ impl Dynamics {
         m.w.remove(k);
         m.w_before.remove(k);
         m.s_before.remove(k);
-        self.reaction.remove(k);
+        self.answers.reaction.remove(k);
         self.contacts.floor_slid.remove(k);
         self.renumber(|node| match node.cmp(&k) {
             std::cmp::Ordering::Less => Some(node),
@@ -133,10 +133,10 @@ impl Dynamics {
     }
 
     fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {
-        for node in &mut self.support_node {
+        for node in &mut self.meshing.support_node {
             *node = node.and_then(&change);
         }
-        for (node, _) in &mut self.loads {
+        for (node, _) in &mut self.meshing.loads {
             *node = change(*node).unwrap_or(*node);
         }
         for clamp in &mut self.mesh.clamps {

@@ -71,7 +71,7 @@ impl Dynamics {
 
     /// The same for a step from one time to another (s): what holds at its start holds to its end.
     pub(in crate::model::fem) fn prepare_step(&mut self, [from, to]: [f64; 2], dragged: Option<&[Option<Vec2>]>) {
-        self.stepped = None;
+        self.answers.stepped = None;
         let (problem, mesh, task) = (&self.problem, &mut self.mesh, &mut self.task);
         let n = mesh.nodes();
         let body = problem.body_force(to);
@@ -81,7 +81,7 @@ impl Dynamics {
         task.to = to;
         task.force.clear();
         task.force.extend((0..n).map(|k| body * mesh.share(k)));
-        for (node, force) in &self.loads {
+        for (node, force) in &self.meshing.loads {
             task.force[*node] += force.at(to);
         }
         task.start.clone_from(&self.motion.x);
@@ -90,7 +90,7 @@ impl Dynamics {
         task.hands.clear();
         mesh.held.fill(false);
         mesh.clamps.clear();
-        for (k, (s, node)) in problem.supports.iter().zip(&self.support_node).enumerate() {
+        for (k, (s, node)) in problem.supports.iter().zip(&self.meshing.support_node).enumerate() {
             let Some(node) = *node else { continue };
             if s.kind == SupportKind::Pulley {
                 continue;
@@ -112,8 +112,8 @@ impl Dynamics {
                 if self.motion.hands[k].is_none() {
                     mesh.held[node] = true;
                     task.target[node] = clear_way(problem, self.motion.x[node], at);
-                    if task.target[node] != at && !self.held_back.contains(&k) {
-                        self.held_back.push(k);
+                    if task.target[node] != at && !self.answers.held_back.contains(&k) {
+                        self.answers.held_back.push(k);
                     }
                 }
                 if let Some(angle) = s.angle
@@ -206,7 +206,7 @@ impl Dynamics {
     ///
     /// What slid the wrong way until its grip was seen to be wrong has not slid at all.
     pub(in crate::model::fem) fn update_grips(&mut self, pose: &mut Pose, one: bool) -> StickSlipChanges {
-        if self.never_slides {
+        if self.meshing.never_slides {
             return StickSlipChanges::FOUND;
         }
         let mut grips =
@@ -262,7 +262,7 @@ impl Dynamics {
 
     /// Whether the cable is flexible and nothing but its supports can touch it on the way to places `to` (m).
     fn moves_freely(&self, to: &[Vec2]) -> bool {
-        let slides = !self.never_slides && self.mesh.sliding.iter().any(Option::is_some);
+        let slides = !self.meshing.never_slides && self.mesh.sliding.iter().any(Option::is_some);
         !slides
             && self.problem.floor_friction.is_none()
             && self.mesh.bending_stiffness == 0.0
@@ -277,19 +277,19 @@ impl Dynamics {
 
     pub(in crate::model::fem) fn minimise(&mut self, pose: &mut Pose) -> Result<Converged, Failure> {
         if self.moves_freely(&pose.x)
-            && let Some(done) = self.free.solve(&self.mesh, &self.task, pose)
+            && let Some(done) = self.solver.free.solve(&self.mesh, &self.task, pose)
         {
             if self.is_out_of_reach(&pose.x) {
-                for (k, reaction) in self.reaction.iter_mut().enumerate() {
-                    *reaction = -self.free.gradient_at(k);
+                for (k, reaction) in self.answers.reaction.iter_mut().enumerate() {
+                    *reaction = -self.solver.free.gradient_at(k);
                 }
-                self.freely = true;
+                self.meshing.freely = true;
                 return Ok(done);
             }
             // It would have met something: from the start again, with contact.
             *pose = self.still_pose();
         }
-        let mut memory = match self.memory.0.take() {
+        let mut memory = match self.solver.memory.0.take() {
             Some(m) if m.nodes() == self.mesh.nodes() => m,
             _ => Box::new(Workspace::new(&self.mesh).map_err(|_| Failure {
                 node: 0,
@@ -297,15 +297,15 @@ impl Dynamics {
                 cause: FailureCause::OutOfMemory,
             })?),
         };
-        memory.work_left = self.work_left;
-        self.freely = false;
+        memory.work_left = self.solver.work_left;
+        self.meshing.freely = false;
         let done = memory.minimise(&self.step_context(), pose);
-        self.work_left = memory.work_left;
+        self.solver.work_left = memory.work_left;
         for k in 0..self.mesh.nodes() {
             let scale = self.task.scale.get(k.saturating_sub(1)).copied().unwrap_or(1.0);
-            self.reaction[k] = -memory.gradient_at(k) / scale;
+            self.answers.reaction[k] = -memory.gradient_at(k) / scale;
         }
-        self.memory.0 = Some(memory);
+        self.solver.memory.0 = Some(memory);
         done
     }
 }

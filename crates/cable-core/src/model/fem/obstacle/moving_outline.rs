@@ -221,7 +221,7 @@ impl Dynamics {
     /// Node of the hitch.
     fn hitch(&self) -> Option<usize> {
         let of_robot = |(s, node): (&SupportPoint, &Option<usize>)| node.filter(|_| s.kind == SupportKind::Robot);
-        let node = self.problem.supports.iter().zip(&self.support_node).find_map(of_robot)?;
+        let node = self.problem.supports.iter().zip(&self.meshing.support_node).find_map(of_robot)?;
         self.mesh.held[node].then_some(node)
     }
 

@@ -145,7 +145,7 @@ impl Dynamics {
         let (count, bars, ea) = (self.loss.branches.len(), self.mesh.rest_length.len(), self.problem.axial_stiffness);
         let viscous = ea * self.loss.viscous * rate;
         let mut stiffness = viscous;
-        let mut decay = std::mem::take(&mut self.decay);
+        let mut decay = std::mem::take(&mut self.solver.decay);
         decay.clear();
         decay.extend(self.loss.branches.iter().map(|b| b.in_step(h)[0]));
         stiffness += self.loss.branches.iter().map(|b| ea * b.in_step(h)[1]).sum::<f64>();
@@ -166,7 +166,7 @@ impl Dynamics {
             self.task.predicted_length[e] = part * late + (1.0 - part) * l * (1.0 + before) - l * kept / stiffness;
             self.task.loss[e][0] = stiffness;
         }
-        self.decay = decay;
+        self.solver.decay = decay;
     }
 
     /// The branches after a step of `h` (s) to places `x` (m), before the motion is there.

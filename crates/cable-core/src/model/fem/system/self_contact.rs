@@ -179,7 +179,7 @@ impl Dynamics {
     /// Takes the normal speed out of contacts of the cable with itself that are faster than `quiet` (m/s); momentum is kept.
     pub(in crate::model::fem) fn land_on_itself(&mut self, quiet: f64, [h, a]: [f64; 2]) {
         let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
-        let mass = |k: usize| mass_with(&self.problem, &self.mesh, &self.support_node, k);
+        let mass = |k: usize| mass_with(&self.problem, &self.mesh, &self.meshing.support_node, k);
         let m = &mut self.motion;
         for rub in &self.contacts.own.rubs {
             let n = rub.pair.normal;

@@ -134,7 +134,7 @@ fn taut_over_a_post() -> Dynamics {
         vec![Obstacle { name: "post".to_owned(), shape: post, friction: Some(0.3) }],
     );
     let mut d = build(&scene);
-    d.slides = false;
+    d.meshing.slides = false;
     d
 }
 

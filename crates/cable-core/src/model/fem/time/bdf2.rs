@@ -116,7 +116,7 @@ impl Dynamics {
     /// press by half too much in the next step; without what the others gave BDF2 would give two thirds of their next impulse only.
     fn land(&mut self, h: f64, a: f64) {
         let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
-        let mass = |k: usize| mass_with(&self.problem, &self.mesh, &self.support_node, k);
+        let mass = |k: usize| mass_with(&self.problem, &self.mesh, &self.meshing.support_node, k);
         let m = &mut self.motion;
         for (touch, load) in self.contacts.pressing() {
             let n = touch.pair.gap.normal;
@@ -173,7 +173,7 @@ impl Dynamics {
     /// Counts a step of `h` (s). Where contact may change what was, history is not looked for so far back.
     fn note_step(&mut self, h: f64) {
         let count = if self.is_even(h) { self.motion.even_steps } else { 0 };
-        let smooth = !self.mesh.spread.is_lumped() && self.gauged.bars.iter().all(|tension| *tension > 0.0);
+        let smooth = !self.mesh.spread.is_lumped() && self.answers.gauged.bars.iter().all(|tension| *tension > 0.0);
         self.motion.even_steps = if smooth { (count + 1).min(STEPS_BEFORE_BDF3) } else { 0 };
         self.motion.step_before = h;
     }
@@ -234,7 +234,7 @@ impl Dynamics {
         }
         self.slide(&pose.slide);
         self.account_for_step(weights, given, slid, &pose.slide);
-        self.pose = pose;
+        self.solver.pose = pose;
         self.motion.time += h;
         self.gauge_tension();
         self.note_step(h);
@@ -243,11 +243,11 @@ impl Dynamics {
         self.land_on_itself(PLASTIC_SPEED_LIMIT, [h, a]);
         self.close_account();
         self.contacts.carriage = None;
-        if !self.never_slides {
-            self.keeps = self.motion.time >= self.due * (1.0 - f64::EPSILON);
+        if !self.meshing.never_slides {
+            self.answers.keeps = self.motion.time >= self.pacing.due * (1.0 - f64::EPSILON);
             self.remesh(false);
-            self.keeps = false;
-            self.stepped = self.kept.take();
+            self.answers.keeps = false;
+            self.answers.stepped = self.answers.kept.take();
             if let Some(node) = self.crossing() {
                 return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerCrossed });
             }
@@ -277,10 +277,10 @@ impl Dynamics {
 
     /// Supports that could not get where they were to be: said, and their hands start again from there.
     fn note_lag(&mut self, pose: &Pose) {
-        for (support, node) in self.support_node.iter().enumerate() {
+        for (support, node) in self.meshing.support_node.iter().enumerate() {
             let Some(k) = node.filter(|&k| self.mesh.held[k]) else { continue };
-            if pose.x[k] != self.task.target[k] && !self.held_back.contains(&support) {
-                self.held_back.push(support);
+            if pose.x[k] != self.task.target[k] && !self.answers.held_back.contains(&support) {
+                self.answers.held_back.push(support);
             }
             if let Some(f) = &mut self.motion.followers[support]
                 && f.position() != pose.x[k]
@@ -305,7 +305,7 @@ impl Dynamics {
         if self.is_out_of_reach(&pose.x) {
             pose
         } else {
-            self.pose = pose;
+            self.solver.pose = pose;
             self.still_pose()
         }
     }
@@ -315,7 +315,7 @@ impl Dynamics {
     fn rub_and_minimise(&mut self, pose: &mut Pose) -> Result<Converged, Failure> {
         let mut done = self.grip_and_minimise(pose)?;
         for _ in 0..RUB_ROUNDS {
-            let same = |change: f64, most: f64| change <= larger(RUB_CHANGE * most, self.bar_weight);
+            let same = |change: f64, most: f64| change <= larger(RUB_CHANGE * most, self.meshing.bar_weight);
             if !self.contacts.renew(&self.problem, &self.mesh, [&pose.x, &self.motion.x], same) {
                 break;
             }
@@ -371,7 +371,7 @@ impl Dynamics {
     /// BDF2 makes of a vibration.
     fn set_inertia(&mut self, weights: Weights, h: f64) {
         let Weights { now, past, a, .. } = weights;
-        let rubs = !(self.meets_nothing() && self.never_slides && self.problem.floor_friction.is_none());
+        let rubs = !(self.meets_nothing() && self.meshing.never_slides && self.problem.floor_friction.is_none());
         let jumps = !self.meets_nothing();
         let (m, task, mesh) = (&self.motion, &mut self.task, &self.mesh);
         for k in 0..m.x.len() {
@@ -389,12 +389,12 @@ impl Dynamics {
             let chord = predicted[e + 1] - predicted[e];
             (self.problem.linear_density * length * a * a, chord)
         }));
-        for (s, node) in self.problem.supports.iter().zip(&self.support_node) {
+        for (s, node) in self.problem.supports.iter().zip(&self.meshing.support_node) {
             if let Some(k) = node {
                 task.inertia[*k] += s.mass * a * a;
             }
         }
-        for (hand, node) in m.hands.iter().zip(&self.support_node) {
+        for (hand, node) in m.hands.iter().zip(&self.meshing.support_node) {
             let (Some(hand), Some(k)) = (hand, *node) else { continue };
             let (stiffness, at) = hand.pull(h, m.x[k]);
             let (inertia, both) = (task.inertia[k], task.inertia[k] + stiffness);
@@ -420,7 +420,7 @@ impl Dynamics {
 
     /// The present pose.
     pub(in crate::model::fem) fn still_pose(&mut self) -> Pose {
-        let mut pose = std::mem::take(&mut self.pose);
+        let mut pose = std::mem::take(&mut self.solver.pose);
         pose.x.clear();
         pose.x.extend_from_slice(self.task.begins());
         pose.slide.clear();

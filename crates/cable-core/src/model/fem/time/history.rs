@@ -98,42 +98,42 @@ impl Dynamics {
 
     /// Keeps the present state to go back to, in the memory of the one kept before.
     pub(in crate::model::fem) fn save(&mut self) {
-        match &mut self.saved {
+        match &mut self.rollback.saved {
             Some(s) => {
                 s.motion.copy_from(&self.motion);
-                s.mesh.copy_from(&self.mesh, !self.never_slides);
+                s.mesh.copy_from(&self.mesh, !self.meshing.never_slides);
                 s.contacts.copy_from(&self.contacts);
-                s.support_node.clone_from(&self.support_node);
-                s.reaction.clone_from(&self.reaction);
+                s.support_node.clone_from(&self.meshing.support_node);
+                s.reaction.clone_from(&self.answers.reaction);
                 s.load_node.clear();
-                s.load_node.extend(self.loads.iter().map(|l| l.0));
+                s.load_node.extend(self.meshing.loads.iter().map(|l| l.0));
             }
             None => {
-                self.saved = Some(Box::new(Checkpoint {
+                self.rollback.saved = Some(Box::new(Checkpoint {
                     motion: self.motion.clone(),
                     mesh: self.mesh.clone(),
                     contacts: self.contacts.clone(),
-                    support_node: self.support_node.clone(),
-                    load_node: self.loads.iter().map(|l| l.0).collect(),
-                    reaction: self.reaction.clone(),
+                    support_node: self.meshing.support_node.clone(),
+                    load_node: self.meshing.loads.iter().map(|l| l.0).collect(),
+                    reaction: self.answers.reaction.clone(),
                 }));
             }
         }
-        self.can_restore = true;
+        self.rollback.can_restore = true;
     }
 
     /// Goes back to the state kept, once.
     pub(in crate::model::fem) fn restore(&mut self) {
-        if let Some(s) = self.saved.as_ref().filter(|_| self.can_restore) {
+        if let Some(s) = self.rollback.saved.as_ref().filter(|_| self.rollback.can_restore) {
             self.motion.copy_from(&s.motion);
-            self.mesh.copy_from(&s.mesh, !self.never_slides);
+            self.mesh.copy_from(&s.mesh, !self.meshing.never_slides);
             self.contacts.copy_from(&s.contacts);
-            self.support_node.clone_from(&s.support_node);
-            self.reaction.clone_from(&s.reaction);
-            for (load, &node) in self.loads.iter_mut().zip(&s.load_node) {
+            self.meshing.support_node.clone_from(&s.support_node);
+            self.answers.reaction.clone_from(&s.reaction);
+            for (load, &node) in self.meshing.loads.iter_mut().zip(&s.load_node) {
                 load.0 = node;
             }
-            self.can_restore = false;
+            self.rollback.can_restore = false;
             self.place_outline();
             self.renew_task();
         }

@@ -114,7 +114,7 @@ impl Dynamics {
 
     /// Mass that moves with a node, kg.
     pub(in crate::model::fem) fn node_mass(&self, node: usize) -> f64 {
-        mass_with(&self.problem, &self.mesh, &self.support_node, node)
+        mass_with(&self.problem, &self.mesh, &self.meshing.support_node, node)
     }
 
     /// Momentum of cable and lumps, kg m/s.
@@ -133,7 +133,7 @@ impl Dynamics {
             }
         }
         sum *= self.problem.linear_density;
-        for (s, node) in self.problem.supports.iter().zip(&self.support_node) {
+        for (s, node) in self.problem.supports.iter().zip(&self.meshing.support_node) {
             if let Some(v) = node.and_then(|k| v.get(k)).filter(|_| s.mass > 0.0) {
                 sum += v * s.mass;
             }
@@ -154,7 +154,7 @@ impl Dynamics {
     /// Half of it runs each way.
     fn slid_by(&self, w: &[f64], counts: impl Fn(Seat) -> bool) -> Vec2 {
         let mut sum = Vec2::zeros();
-        if self.never_slides {
+        if self.meshing.never_slides {
             return sum;
         }
         let (mesh, x) = (&self.mesh, &self.motion.x);
@@ -179,26 +179,26 @@ impl Dynamics {
         sum[WEIGHT] = problem.weight * problem.length;
         sum[LOADS] = (task.body - problem.weight) * problem.length;
         let to = task.to;
-        for (s, _) in problem.supports.iter().zip(&self.support_node).filter(|(_, node)| node.is_some()) {
+        for (s, _) in problem.supports.iter().zip(&self.meshing.support_node).filter(|(_, node)| node.is_some()) {
             sum[WEIGHT] += gravity * s.mass;
             if s.kind == SupportKind::Load {
                 sum[LOADS] += s.force.at(to);
             }
         }
-        for (_, force) in &self.loads {
+        for (_, force) in &self.meshing.loads {
             sum[LOADS] += force.at(to);
         }
         for (k, _) in mesh.held.iter().enumerate().filter(|(_, held)| **held) {
-            sum[SUPPORTS] -= self.reaction[k];
+            sum[SUPPORTS] -= self.answers.reaction[k];
         }
         for &(k, stiffness, at) in &task.hands {
             sum[SUPPORTS] += (at - x[k]) * stiffness;
         }
-        if self.freely {
+        if self.meshing.freely {
             return sum;
         }
         let moves = |k: usize| mesh.sliding[k].is_none();
-        for touch in self.memory.0.iter().flat_map(|m| &m.touches) {
+        for touch in self.solver.memory.0.iter().flat_map(|m| &m.touches) {
             sum[CONTACTS] += touch.pair.gap.normal * (touch.load(&self.contacts.barrier) * touch.felt(moves));
         }
         for rub in &self.contacts.rubs {
@@ -237,7 +237,7 @@ impl Dynamics {
         let now = self.sliding_momentum();
         let mut over = [now[0] - slid[0], now[1] - slid[1]];
         let mut history = [Vec2::zeros(); 2];
-        if !self.never_slides {
+        if !self.meshing.never_slides {
             let (mesh, m) = (&self.mesh, &self.motion);
             for (k, node) in mesh.sliding.iter().enumerate() {
                 let Some(node) = node else { continue };

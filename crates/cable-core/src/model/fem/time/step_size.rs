@@ -51,10 +51,10 @@ impl Dynamics {
     /// Looks at a step of `h` (s) just made. What falls or lands is no vibration.
     pub(in crate::model::fem) fn note_pace(&mut self, h: f64) {
         if !self.is_string() {
-            self.pace.seen = [0.0; 3];
+            self.pacing.pace.seen = [0.0; 3];
             return;
         }
-        let (m, pace) = (&self.motion, &mut self.pace);
+        let (m, pace) = (&self.motion, &mut self.pacing.pace);
         let free = || (0..m.v.len()).filter(|&k| self.mesh.is_free(k)).map(|k| (k, self.mesh.share(k)));
         let (mut length, mut mean) = (0.0, [Vec2::zeros(); 2]);
         for (k, share) in free() {
@@ -81,12 +81,12 @@ impl Dynamics {
 
     /// Chooses the longest step of the next frame, after one of `dt` (s).
     pub(in crate::model::fem) fn set_pace(&mut self, dt: f64) {
-        let (pace, length) = (&mut self.pace, self.problem.length);
+        let (pace, length) = (&mut self.pacing.pace, self.problem.length);
         let [changes, speeds, time] = pace.seen;
         let frequency = (changes / speeds).sqrt();
         let amplitude = (speeds / (time * length)).sqrt() / frequency;
         let matters = frequency.is_finite() && amplitude > VIBRATION_FRACTION * length;
-        let wanted = if matters { (3.0 * self.tolerance).sqrt() / frequency } else { pace.longest };
+        let wanted = if matters { (3.0 * self.pacing.tolerance).sqrt() / frequency } else { pace.longest };
         let near = bounded(wanted, pace.step / STEP_CHANGE_LIMIT, pace.step * STEP_CHANGE_LIMIT);
         pace.step = near.clamp(SHORTEST_STEP_FRACTION * pace.longest, pace.longest);
         let left = (-dt / MEMORY).exp();

@@ -158,7 +158,7 @@ impl Dynamics {
 
     /// Puts sliding nodes on the rounds that the answer lies on.
     fn seat_as_told(&mut self, told: &SolutionCurve<'_>) {
-        if !self.slides {
+        if !self.meshing.slides {
             return;
         }
         for arc in self.arcs_told(told) {

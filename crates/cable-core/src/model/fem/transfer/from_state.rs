@@ -24,7 +24,7 @@ impl Dynamics {
             let (Hold::Pulley(wheel), Some(support)) = (stop.hold, stop.support) else { continue };
             let s = state.and_then(|s| s.on_round(wheel.center, wheel.radius)).unwrap_or(stop.arc_length);
             let k = self.mesh.arc_length.partition_point(|&a| a <= s).clamp(1, self.mesh.nodes() - 1);
-            let room = 0.05 * problem.length / self.even_bars as f64;
+            let room = 0.05 * problem.length / self.meshing.even_bars as f64;
             let (low, high) = (self.mesh.arc_length[k - 1] + room, self.mesh.arc_length[k] - room);
             let at = if low < high { s.clamp(low, high) } else { 0.5 * (low + high) };
             let passing = self.motion.x[k] - self.motion.x[k - 1];
