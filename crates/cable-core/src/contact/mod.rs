@@ -1,4 +1,4 @@
-//! The contact module tells all models where obstacles are, how far away, and how rough.
+//! The contact module gives all models the place, distance and friction of obstacles.
 //!
 //! | room | content |
 //! |---|---|

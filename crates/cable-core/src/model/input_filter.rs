@@ -129,7 +129,7 @@ impl Hand {
         (stiffness, (self.end.position() * self.stiffness + gone * rate) / stiffness)
     }
 
-    /// What an answer tells of it, with its force on the cable, N.
+    /// The report of it in a solution, with its force on the cable, N.
     #[must_use]
     pub fn report(&self, force: Vec2) -> HandReport {
         let end = self.end.position();

@@ -80,7 +80,7 @@ pub trait Mechanics: Send {
         self.advance_gauged(dt_s, inertia, &mut TensionGauge::off())
     }
 
-    /// The same; every inner step with inertia tells `gauge` the tension along the cable.
+    /// As [`Self::advance`]; every inner step with inertia passes the tension along the cable to `gauge`.
     ///
     /// # Errors
     /// As [`Self::advance`].

@@ -32,7 +32,8 @@ pub struct Capabilities {
     pub long_rests: bool,
     /// Its steps can take longer than a display frame: an editor may show a copy on a coarse mesh instead.
     pub long_steps: bool,
-    /// It is a second opinion on a coarse mesh: laws that its answers break are told, and the answers not refused.
+    /// It is a second opinion on a coarse mesh: a solution that breaks a law is reported with its findings
+    /// and not refused.
     pub findings_are_told: bool,
 }
 

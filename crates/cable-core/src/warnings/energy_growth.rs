@@ -20,12 +20,13 @@ use crate::math::{Vec2, larger};
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Energy, Warning, WarningKind};
 
-/// EnergyGrowth that is told, of the energy that goes to and fro meanwhile. Smaller: what the nodes of an answer are wrong by is told; larger: an
-/// unstable motion is shown for longer before it is.
+/// Energy growth that is warned of, as a part of the energy exchanged meanwhile. Smaller: errors of the
+/// nodes of a solution cause warnings; larger: an unstable motion is shown for longer before its warning.
 const GROWTH_LIMIT: f64 = 0.25;
 
-/// EnergyGrowth that is none, of what the cable's weight and loads would give over its length. Bars that sag are drawn straight in E, so that an edit of
-/// the mesh changes it; what violent scenes grow by comes to half of the limit. Smaller: that is told; larger: small motions of long cables may grow unseen.
+/// Energy growth that is ignored, as a part of the work of the cable's weight and loads over its length.
+/// Sagging bars count as straight in E, so that an edit of the mesh changes it; violent scenes reach half
+/// of the limit. Smaller: those cause warnings; larger: small motions of long cables may grow unseen.
 const MIN_GROWTH_FRACTION: f64 = 3e-4;
 
 /// What is least is the greatest of so long a time, s, and of [`RECENT_INSTANTS`] instants. Shorter: a velocity that an integrator swings beyond its

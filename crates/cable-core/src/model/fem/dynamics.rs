@@ -366,7 +366,7 @@ impl Dynamics {
         self.advance_gauged(dt_s, inertia, dragged, &mut TensionGauge::off())
     }
 
-    /// The same; every inner step with inertia tells `gauge` the tension.
+    /// As [`Self::advance`]; every inner step with inertia passes its tension to `gauge`.
     ///
     /// # Errors
     /// As `Mechanics::advance`.

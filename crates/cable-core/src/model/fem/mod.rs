@@ -48,34 +48,40 @@ use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
 use crate::state::State;
 use elastica::Elastica;
 
-/// Part of the greatest tension by which the force on a support may change when a first lay is taken over. Less: coarse meshes lay themselves, in folds; more:
-/// bars too long for the ground, held by friction at both ends, keep a pull that nothing else asks for (25 bars on a robot's ground: 220 %).
+/// The solution of `spans` is accepted as the initial equilibrium if no support force changes by more
+/// than this part of the greatest tension. Smaller: coarse meshes reject it and relax into folds.
+/// Larger: bars that are too long for the ground, held by friction at both ends, keep a tension that
+/// nothing else requires (25 bars on a robot's ground: 220 %).
 const SUPPORT_FORCE_CHANGE_LIMIT: f64 = 0.1;
 
-/// The same of a stiff cable, which is laid as a flexible one: its bending takes part in what supports feel.
+/// The same limit for a stiff cable, whose initial shape is that of a flexible one: its bending
+/// contributes to the support forces.
 const STIFF_SUPPORT_FORCE_CHANGE_LIMIT: f64 = 0.5;
 
-/// Segments from which a first rest begins at that of a coarser mesh. Fewer: meshes that need no help pay for two; more: the way down
-/// of a thousand bars takes minutes.
+/// Number of segments from which on the search for the initial equilibrium begins at that of a coarser
+/// mesh. Fewer: meshes that need no help are solved twice; more: a relaxation of a thousand bars takes
+/// minutes.
 const TWO_MESH_START_SEGMENTS: usize = 500;
-/// How much coarser that mesh is. Less: more meshes, each nearer to the next; more: it lies otherwise than the fine one will.
+/// Ratio of the bar lengths of the two meshes. Smaller: more meshes, each nearer to the next; larger: the
+/// coarse solution differs from that of the fine mesh.
 const FIRST_MESH_COARSENING: usize = 8;
 
-/// What `spans` says of where the cable is laid.
+/// The outcome of starting from the solution of `spans`.
 enum Laid {
-    /// It rests there, and so does the mesh: what there is to say of it.
+    /// The mesh rests in it too; with the warnings about it.
     TakenOver(Vec<Warning>),
-    /// It rests there, but the mesh does not: it lays itself.
+    /// The mesh does not rest in it and relaxes from its own initial guess.
     Alone,
     /// Nothing.
     Unknown,
 }
 
-/// Part of the tolerance that the error of a stiff cable's rest must stay below.
+/// The error estimate of a stiff cable's equilibrium must stay below this part of the tolerance.
 const STIFF_ESTIMATE_FRACTION: f64 = 0.5;
 
-/// Part of its length by which a stiff cable may lie elsewhere than where its mesh has it at rest. Less: coarse meshes are left as they are;
-/// more: another resting place is taken for the same.
+/// A stiff cable's equilibrium may differ from that of its mesh by this part of the cable's length.
+/// Smaller: the equilibrium of coarse meshes is not replaced; larger: another equilibrium is taken for
+/// the same.
 const STIFF_SHIFT_LIMIT: f64 = 0.05;
 
 /// Which part holds the present state.

@@ -79,7 +79,8 @@ pub(in crate::model::spans) fn solve(
         };
         sum.iterations += found.iterations;
         sum.residual = found.residual;
-        // What was passed on the way says better than what is inside on which side of it the cable shall be.
+        // Tunnelled corners are checked before penetrations: they tell on which side of an obstacle
+        // the cable belongs.
         let changed = release(strand, course)?
             || join(strand, course)
             || release_below::part(strand, course)
@@ -158,7 +159,7 @@ fn let_go(strand: &mut CableRun, course: &mut Course, j: usize) -> Result<bool, 
         resolve(strand, course, j);
         return Ok(true);
     }
-    // What lay is held in the air now, or hangs.
+    // An end that rested on this contact becomes a fixed or a free end.
     for side in 0..2 {
         let outer = if side == 0 { j == 0 } else { j == m };
         if outer && !strand.ties[side].has_span() {

@@ -1,4 +1,5 @@
-//! The continuation leads from one instant to another, in as many steps as it takes; it begins with the initial equilibrium.
+//! The continuation finds the initial equilibrium and follows it through time, and halves load steps
+//! that fail.
 
 use crate::contact::swept_corners;
 use crate::math::{Vec2, larger};

@@ -1,7 +1,8 @@
-//! A cable may be counted from its other end.
+//! A cable can be solved from its other end.
 //!
-//! Where friction leaves several rests, which one is found must not depend on the end from which a scene counts its cable: it is laid and
-//! followed counted from its *upper* end, and what is found is turned back.
+//! Where friction allows several equilibria, the one that is found must not depend on the end from which
+//! a scene counts its cable. The cable is therefore solved and followed from its *upper* end, and the
+//! solution is reversed afterwards.
 
 use crate::math::Vec2;
 use crate::model::spans::failure::Failure;

@@ -59,7 +59,7 @@ const MOVE_TOLERANCE: f64 = 1e-5;
 /// Times that resistance is raised in a step.
 const MOST_RESISTED: usize = 8;
 
-/// Part of the first resistance that a chain begins with which is nearly at rest.
+/// A chain that is nearly at rest begins with this part of the first resistance.
 const REDUCED_RESISTANCE_FACTOR: f64 = 1e-2;
 
 /// Times that a chain is moved which has come to rest where it could give way.

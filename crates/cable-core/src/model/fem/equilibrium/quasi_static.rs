@@ -14,9 +14,9 @@ use crate::model::fem::time::bdf2::ROUNDS_EACH;
 use crate::model::{Model, StepReport};
 use crate::state::State;
 
-/// Work of one search for a resting place: iterations times nodes. Less: scenes that come to rest slowly are refused; more: nobody is
-/// told for minutes. It is
-/// 20 000 iterations of 200 nodes, and some 10 s.
+/// Work budget of one search for an equilibrium: iterations times nodes. Smaller: scenes that converge
+/// slowly are refused; larger: a search that fails reports it after minutes. The value is 20 000
+/// iterations of 200 nodes, and takes some 10 s.
 pub(in crate::model::fem) const REST_WORK: usize = 4_000_000;
 
 /// Newton iterations of a step without inertia.
@@ -139,8 +139,8 @@ impl Dynamics {
         Ok(total)
     }
 
-    /// Brings what is left unbalanced at a rest, which adds up along the cable, down to what can be told from rounding: on from where
-    /// the cable lies, or not at all where that does not come to an end.
+    /// Reduces the residual of an equilibrium, which adds up along the cable, to the level of round-off.
+    /// It starts from the present shape, and changes nothing where it does not converge.
     pub(in crate::model::fem) fn polish(&mut self, found: Converged, dragged: &[Option<Vec2>]) -> Converged {
         let kept = (self.rollback.saved.clone(), self.rollback.can_restore);
         let (exact, to) = (self.task.tolerance, self.motion.time);

@@ -175,7 +175,7 @@ impl Workspace {
         self.plain.clone_from(&self.direction);
         let equations = Equations { system: &mut self.system, factor: &mut self.factor, coupling: &mut self.coupling };
         self.ahead.solve(step, equations, &pose.x, &mut self.direction);
-        // In a hurry nothing is asked of the energy.
+        // The undamped Newton does not use the energy.
         if self.carried.is_empty() && !(self.slope() <= LEAST_DESCENT_FRACTION * downhill) {
             self.direction.clone_from(&self.plain);
             return free;

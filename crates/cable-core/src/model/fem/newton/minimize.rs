@@ -132,8 +132,8 @@ pub struct Workspace {
     pub(in crate::model::fem) near_enough: bool,
     /// Iterations times nodes that may still be spent.
     pub(in crate::model::fem) work_left: WorkBudget,
-    /// Iterations in a hurry of this step.
-    pub(in crate::model::fem) hurried: usize,
+    /// Iterations of the undamped Newton in this step.
+    pub(in crate::model::fem) undamped_iterations: usize,
 }
 
 /// Where a line search begins.
@@ -173,7 +173,7 @@ impl Workspace {
             begun: Pose::default(),
             near_enough: false,
             work_left: WorkBudget::Unlimited,
-            hurried: 0,
+            undamped_iterations: 0,
             system,
             factor,
         })
@@ -203,7 +203,7 @@ impl Workspace {
         let mut value = 0.0;
         self.magnitude = 0.0;
         let mut round = Rounding { tolerance: task.tolerance, ..Rounding::default() };
-        // In a hurry nobody asks how well the energy is known.
+        // The undamped Newton does not use the energy, so its round-off is not estimated.
         let measured = self.carried.is_empty();
         for e in 0..mesh.rest_length.len() {
             let carried = self.carried.get(e).copied();

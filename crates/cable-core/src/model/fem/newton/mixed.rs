@@ -6,7 +6,7 @@
 //! technique for forcing convergence in algorithms for constrained optimization", Mathematical Programming Study 16, 1982). Only gaps
 //! are watched, and that none becomes so small that its force drowns in rounding: nothing else keeps a node from creeping up to an
 //! obstacle by a part of its gap in every iteration. What has not converged after a few iterations is left to the minimiser, from the same start.
-//! Where the cable meets itself the minimiser goes first, and what it does not find is tried in a hurry.
+//! Where the cable meets itself the minimiser goes first, and the undamped Newton is tried where it finds nothing.
 
 use crate::contact::friction::Branch;
 use crate::energy::Curvature;
@@ -56,10 +56,10 @@ impl Workspace {
         if !step.task.moves {
             return self.descend(step, pose);
         }
-        if let Some(done) = self.rush(step, SelfTouch::Avoid, pose) {
+        if let Some(done) = self.undamped_newton(step, SelfTouch::Avoid, pose) {
             return Ok(done);
         }
-        let mut in_a_hurry = self.hurried;
+        let mut undamped = self.undamped_iterations;
         let mut done = self.descend(step, pose);
         if done.is_err() && self.near_enough {
             self.go_back(pose);
@@ -67,23 +67,23 @@ impl Workspace {
         }
         if done.is_err() && step.contacts.own.shape.is_on() {
             self.go_back(pose);
-            if let Some(found) = self.rush(step, SelfTouch::Allow, pose) {
+            if let Some(found) = self.undamped_newton(step, SelfTouch::Allow, pose) {
                 done = Ok(found);
             } else {
-                in_a_hurry += self.hurried;
+                undamped += self.undamped_iterations;
             }
         }
-        done.map(|d| Converged { iterations: d.iterations + in_a_hurry, ..d })
+        done.map(|d| Converged { iterations: d.iterations + undamped, ..d })
     }
 
     /// The pose at the end of a step; None where this does not find it, the pose then as it was or not far from it. Unless that
     /// is allowed the cable must not come within reach of itself on the way.
-    fn rush(&mut self, step: &StepContext<'_>, self_touch: SelfTouch, pose: &mut Pose) -> Option<Converged> {
+    fn undamped_newton(&mut self, step: &StepContext<'_>, self_touch: SelfTouch, pose: &mut Pose) -> Option<Converged> {
         self.begun.x.clone_from(&pose.x);
         self.begun.slide.clone_from(&pose.slide);
         self.goal.clone_from(&step.task.target);
         self.carry_pulls(step.mesh, pose);
-        let done = self.rush_on(step, self_touch, pose);
+        let done = self.iterate_undamped(step, self_touch, pose);
         self.carried.clear();
         self.branches.clear();
         if done.is_none() && !self.near_enough {
@@ -128,7 +128,12 @@ impl Workspace {
         self.place(mesh, pose, free);
     }
 
-    fn rush_on(&mut self, step: &StepContext<'_>, self_touch: SelfTouch, pose: &mut Pose) -> Option<Converged> {
+    fn iterate_undamped(
+        &mut self,
+        step: &StepContext<'_>,
+        self_touch: SelfTouch,
+        pose: &mut Pose,
+    ) -> Option<Converged> {
         let StepContext { mesh, contacts, task, .. } = *step;
         self.move_on(step, pose);
         self.branches.clear();
@@ -136,7 +141,7 @@ impl Workspace {
         let mut first = f64::NAN;
         self.near_enough = false;
         for iterations in 0..=MAX_STEPS {
-            self.hurried = iterations;
+            self.undamped_iterations = iterations;
             let value = self.assemble(step, pose, Curvature::Exact);
             if self_touch == SelfTouch::Avoid && !self.coupling.is_empty() {
                 self.near_enough = false;
@@ -319,7 +324,7 @@ mod tests {
         assert!(long < 24 && whole < 560, "{whole} {long}");
     }
 
-    /// Which steps find no answer in a hurry is chance: over many drops it is not.
+    /// Which steps the undamped Newton does not solve is chance: over many drops it is not.
     #[test]
     fn bars_that_buckle_where_they_land_take_few_iterations() {
         let (mut whole, mut long) = (0, 0);
@@ -350,8 +355,8 @@ mod tests {
                 trial.contacts.prepare(&trial.problem, &trial.mesh, &expected.x, &trial.motion.x);
                 let mut memory = Workspace::new(&trial.mesh).unwrap();
                 let (step, mut found) = (trial.step_context(), expected.clone());
-                let rushed = memory.rush(&step, SelfTouch::Avoid, &mut found).is_some();
-                if rushed && memory.descend(&step, &mut expected).is_ok() {
+                let found_undamped = memory.undamped_newton(&step, SelfTouch::Avoid, &mut found).is_some();
+                if found_undamped && memory.descend(&step, &mut expected).is_ok() {
                     let off = found.x.iter().zip(&expected.x).map(|(a, b)| (a - b).norm());
                     worst = off.fold(worst, larger);
                     compared += 1;

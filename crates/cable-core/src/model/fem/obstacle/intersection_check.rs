@@ -1,9 +1,9 @@
 //! This check finds whether the cable, as a mesh has it, runs through obstacles.
 //!
-//! The search of a step crosses nothing (`contact/sweep.rs`). What is looked at here is what nobody searched: ways that change when a
-//! node is put in, moved or taken out beside a corner, and states that come from elsewhere. A bar that is tangent to the round of a
-//! corner is nearer to the corner's edges than the barrier at that end, always; there it is the tangent point that must not
-//! lie over an edge.
+//! The step search is collision-free by construction (`contact/sweep.rs`). This check covers the two
+//! cases that it does not: bars that change when a node is inserted, moved or removed beside a corner,
+//! and adopted states. A bar that is tangent to the round of a corner is always nearer to the corner's
+//! edges than the barrier's reach at that end; there the tangent point must not lie over an edge.
 
 use crate::error::SolveError;
 use crate::math::{Vec2, perp};

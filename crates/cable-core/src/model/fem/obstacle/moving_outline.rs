@@ -58,8 +58,9 @@ const STANDS_M: f64 = 1e-12;
 /// A lack of a gap that counts as none, m.
 const NONE: f64 = 1e-13;
 
-/// Whether a segment that moves evenly stays clear of an edge because its ends stay on one side of the edge's line: a cable
-/// drawn along the ground is told so at once, where the sweep asks again after each gap's breadth.
+/// Returns whether a segment that moves evenly stays clear of an edge because its ends stay on one side of
+/// the edge's line. For a cable that is drawn along the ground this decides at once, where the sweep
+/// advances by one gap's width at a time.
 fn is_passed_by(geometry: &Geometry, part: Part, from: [Vec2; 2], to: [Vec2; 2]) -> bool {
     let Some(body) = geometry.bodies().get(part.body) else { return false };
     let Some(edge) = part.edge.and_then(|k| body.edges.get(k)) else { return false };

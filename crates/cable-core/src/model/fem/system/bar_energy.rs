@@ -107,7 +107,7 @@ pub fn add(
     s.add_gradient(e + 1, t * (pull * scale));
     s.hessian.add_spring(2 * e, [along * t.x * t.x + geometric, along * t.x * t.y, along * t.y * t.y + geometric]);
     let energy = 0.5 * scale * (stiffness * (p - l) * (p - l) + 2.0 * task.loss_energy(e, lossy, l, p));
-    // In a hurry nobody asks how well the energy is known.
+    // The undamped Newton does not use the energy, so its round-off is not estimated.
     let rounding =
         if carried.is_some() { 0.0 } else { scale * WORK_MAGNITUDE_FRACTION * pull.abs() * pose.x[e].norm() };
     (energy, energy + rounding)

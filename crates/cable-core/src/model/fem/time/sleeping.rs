@@ -1,4 +1,4 @@
-//! A cable that lies still is left alone until something changes.
+//! A cable at rest sleeps until something that acts on it changes.
 //!
 //! On rough ground two or three nodes may tremble for ever inside the reach of the barrier. Where no node has left its
 //! place by more than that for a while, and all that acts on the cable is what acted then, nothing more will happen:

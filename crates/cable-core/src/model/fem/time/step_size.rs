@@ -9,8 +9,9 @@
 use crate::math::{Vec2, bounded};
 use crate::model::fem::dynamics::Dynamics;
 
-/// The shortest step is this part of the longest, 1/240 s: strings up to 17 Hz are in tune to 1e-3, of 40 Hz to 6e-3. Less: a cable that
-/// rings costs more than it tells; more: the tones that are in tune are lower.
+/// The shortest step is this part of the longest, 1/240 s: frequencies up to 17 Hz are exact to 1e-3,
+/// those of 40 Hz to 6e-3. Smaller: a vibrating cable costs more than its vibration is worth; larger:
+/// only lower frequencies are exact.
 const SHORTEST_STEP_FRACTION: f64 = 0.125;
 
 /// Vibrations of less than this part of the cable's length are left as they are: what is left over from coming to rest rings at

@@ -105,8 +105,8 @@ impl Dynamics {
         time_s: f64,
         dragged: &[Option<Vec2>],
     ) -> Result<(), SolveError> {
-        let told = SolutionCurve(&answer.nodes);
-        let state = self.as_told(&told, &State::of_nodes(&answer.nodes, time_s));
+        let curve = SolutionCurve(&answer.nodes);
+        let state = self.state_of_solution(&curve, &State::of_nodes(&answer.nodes, time_s));
         self.set_state(&state)?;
         let moves = answer.nodes.iter().any(|n| n.vx_m_per_s != 0.0 || n.vy_m_per_s != 0.0);
         let touches = !self.problem.world.is_empty() || self.problem.floor_friction.is_some();
@@ -114,15 +114,15 @@ impl Dynamics {
             return Ok(());
         }
         self.save();
-        self.lie_as_told(&state);
-        self.seat_as_told(&told);
+        self.restore_positions(&state);
+        self.adopt_sliding_nodes(&curve);
         let mut x = std::mem::take(&mut self.motion.x);
         push_out(&self.problem, &self.mesh, &mut x, 0.9 * REACH);
         self.motion.x = x;
-        self.stretch_as_told(&told);
+        self.adopt_stretch(&curve);
         self.renew_task();
-        self.hold_as_told(&told);
-        self.lie_on_floor_as_told(&told);
+        self.adopt_friction(&curve);
+        self.adopt_floor_friction(&curve);
         if self.rest_step(time_s, dragged).is_ok() {
             self.rested = true;
         } else {
@@ -132,12 +132,12 @@ impl Dynamics {
     }
 
     /// A state with the nodes of this mesh where the answer has them.
-    fn as_told(&self, told: &SolutionCurve<'_>, whole: &State) -> State {
+    fn state_of_solution(&self, curve: &SolutionCurve<'_>, whole: &State) -> State {
         let mut s = whole.arc_length_m.clone();
         s.extend(&self.mesh.arc_length);
         s.sort_by(f64::total_cmp);
         s.dedup();
-        let at = |s: &f64| told.place(*s).or_else(|| whole.position_at(*s)).unwrap_or_default();
+        let at = |s: &f64| curve.place(*s).or_else(|| whole.position_at(*s)).unwrap_or_default();
         State {
             time_s: whole.time_s,
             position_m: s.iter().map(at).collect(),
@@ -148,7 +148,7 @@ impl Dynamics {
     }
 
     /// Nodes of the cable where they were before they were pushed clear of obstacles.
-    fn lie_as_told(&mut self, state: &State) {
+    fn restore_positions(&mut self, state: &State) {
         for k in 0..self.mesh.nodes() {
             if let (None, Some(at)) = (self.mesh.sliding[k], state.position_at(self.mesh.arc_length[k])) {
                 self.motion.x[k] = at;
@@ -157,12 +157,12 @@ impl Dynamics {
     }
 
     /// Puts sliding nodes on the rounds that the answer lies on.
-    fn seat_as_told(&mut self, told: &SolutionCurve<'_>) {
+    fn adopt_sliding_nodes(&mut self, curve: &SolutionCurve<'_>) {
         if !self.meshing.slides {
             return;
         }
-        for arc in self.arcs_told(told) {
-            if self.bends_visibly(told.tension(0.5 * (arc.material[0] + arc.material[1]))) {
+        for arc in self.arcs_of_solution(curve) {
+            if self.bends_visibly(curve.tension(0.5 * (arc.material[0] + arc.material[1]))) {
                 continue;
             }
             let round = arc.node.end.radius * arc.turn;
@@ -173,7 +173,7 @@ impl Dynamics {
                 let part = (i as f64 + 0.5) / marks;
                 let end = arc.node.end;
                 let mark = rotate(end.mark, end.sense * part * arc.turn);
-                let at = told.at_turn(&arc, part * arc.turn);
+                let at = curve.at_turn(&arc, part * arc.turn);
                 self.seat(at, SlidingNode { end: End { mark, ..end }, ..arc.node });
             }
             self.clear_of_nodes(arc.material);
@@ -210,10 +210,10 @@ impl Dynamics {
     }
 
     /// The rounds that the answer lies on, in order.
-    fn arcs_told(&self, told: &SolutionCurve<'_>) -> Vec<Arc> {
+    fn arcs_of_solution(&self, curve: &SolutionCurve<'_>) -> Vec<Arc> {
         let geometry = self.problem.world.geometry();
         let mut out: Vec<Arc> = Vec::new();
-        for (i, n) in told.0.iter().enumerate() {
+        for (i, n) in curve.0.iter().enumerate() {
             let within = ON_ROUND * self.problem.radius;
             let Some(gap) = self.problem.world.signed_gap(n.at(), within).filter(|g| g.gap_m.abs() <= within) else {
                 continue;
@@ -241,7 +241,7 @@ impl Dynamics {
                     balanced: None,
                 },
             };
-            arc.grow(told, radius - clearance);
+            arc.grow(curve, radius - clearance);
             if arc.turn > LEAST_TURN {
                 out.push(arc);
             }
@@ -252,7 +252,7 @@ impl Dynamics {
     /// Gives every bar between two nodes in contact the material that makes its tension that of the answer: rounds are the
     /// barrier's reach wider than the answer's, which between two corners that hold would be a great strain. What that takes is
     /// given by the spans on either side as they can: a loose end all of it, two spans by their lengths.
-    fn stretch_as_told(&mut self, told: &SolutionCurve<'_>) {
+    fn adopt_stretch(&mut self, curve: &SolutionCurve<'_>) {
         let on = |d: &Self, k: usize| {
             d.mesh.sliding[k].is_some()
                 || (d.removable(k) && d.problem.world.signed_gap(d.motion.x[k], 2.0 * REACH).is_some())
@@ -266,7 +266,7 @@ impl Dynamics {
                 continue;
             };
             let next = (last + 1..nodes - 1).find(|&k| on(self, k)).unwrap_or(nodes - 1);
-            self.stretch_run(told, [first, last], next);
+            self.stretch_run(curve, [first, last], next);
             first = last + 1;
         }
         for e in 0..self.mesh.rest_length.len() {
@@ -277,11 +277,11 @@ impl Dynamics {
     }
 
     /// The same for nodes in contact one after the other; `next` is the next that is held or in contact.
-    fn stretch_run(&mut self, told: &SolutionCurve<'_>, [first, last]: [usize; 2], next: usize) {
+    fn stretch_run(&mut self, curve: &SolutionCurve<'_>, [first, last]: [usize; 2], next: usize) {
         let s = self.mesh.arc_length.clone();
         let mut lengths = vec![0.0; last + 1 - first];
         for e in first..last {
-            let strain = told.tension(0.5 * (s[e] + s[e + 1])) / self.mesh.axial_stiffness;
+            let strain = curve.tension(0.5 * (s[e] + s[e + 1])) / self.mesh.axial_stiffness;
             let length = self.mesh.path(e, &self.motion.x).length / (self.mesh.thermal_stretch * (1.0 + strain));
             lengths[e + 1 - first] = lengths[e - first] + length;
         }
@@ -307,7 +307,7 @@ impl Dynamics {
     }
 
     /// Plan view: every node remembers the sliding with which the floor does what the answer asks for there, as far as it can.
-    fn lie_on_floor_as_told(&mut self, told: &SolutionCurve<'_>) {
+    fn adopt_floor_friction(&mut self, curve: &SolutionCurve<'_>) {
         if self.problem.floor_friction.is_none() {
             return;
         }
@@ -318,8 +318,8 @@ impl Dynamics {
             let high = 0.5 * (s[k] + s[(k + 1).min(s.len() - 1)]);
             let asked = match self.mesh.sliding[k] {
                 // What holds there is the floor first, and the round for the rest.
-                Some(_) => Some(Vec2::new(told.tension(low) - told.tension(high), 0.0)),
-                None => match (told.force(low, near), told.force(high, near)) {
+                Some(_) => Some(Vec2::new(curve.tension(low) - curve.tension(high), 0.0)),
+                None => match (curve.force(low, near), curve.force(high, near)) {
                     (Some(before), Some(after)) => Some(after - before + self.task.body * (high - low)),
                     _ => None,
                 },
@@ -332,7 +332,7 @@ impl Dynamics {
     }
 
     /// Every contact remembers the sliding that gives the friction of the answer.
-    fn hold_as_told(&mut self, told: &SolutionCurve<'_>) {
+    fn adopt_friction(&mut self, curve: &SolutionCurve<'_>) {
         let mut touches: Vec<ContactPair> = Vec::new();
         self.contacts.find(&self.problem, &self.mesh, &self.motion.x, &mut touches);
         let s = &self.mesh.arc_length;
@@ -344,7 +344,7 @@ impl Dynamics {
             } else {
                 (0.5 * (s[k] + s[k.saturating_sub(1)]), 0.5 * (s[k] + s[(k + 1).min(s.len() - 1)]))
             };
-            let (Some(before), Some(after)) = (told.force(low, near), told.force(high, near)) else { continue };
+            let (Some(before), Some(after)) = (curve.force(low, near), curve.force(high, near)) else { continue };
             let pushed = before - after - self.task.body * (high - low);
             let normal = pushed.dot(&touch.pair.gap.normal);
             let limit = touch.pair.gap.friction * normal;
@@ -371,13 +371,13 @@ struct Arc {
 
 impl Arc {
     /// Takes in all nodes before and after that lie on a round of this radius (m).
-    fn grow(&mut self, told: &SolutionCurve<'_>, radius: f64) {
+    fn grow(&mut self, curve: &SolutionCurve<'_>, radius: f64) {
         let center = self.node.end.center;
         let lies = |n: &Node| ((n.at() - center).norm() - radius).abs() <= ON_ROUND * radius;
-        let before = told.0[..self.nodes[0]].iter().rev().take_while(|n| lies(n)).count();
-        let after = told.0[self.nodes[1]..].iter().skip(1).take_while(|n| lies(n)).count();
+        let before = curve.0[..self.nodes[0]].iter().rev().take_while(|n| lies(n)).count();
+        let after = curve.0[self.nodes[1]..].iter().skip(1).take_while(|n| lies(n)).count();
         self.nodes = [self.nodes[0] - before, self.nodes[1] + after];
-        let on = &told.0[self.nodes[0]..=self.nodes[1]];
+        let on = &curve.0[self.nodes[0]..=self.nodes[1]];
         let whole: f64 = on.windows(2).map(|n| angle_between(n[0].at() - center, n[1].at() - center)).sum();
         self.turn = whole.abs();
         self.material = [on[0].arc_length_m, on[on.len() - 1].arc_length_m];

@@ -1,9 +1,10 @@
 //! Runs are set up where another model's answer has the cable, with the friction it has there.
 //!
-//! Nodes that lie on one chain of a boundary, one after the other, are a contact. On an arc it goes on from its outer nodes to
-//! where the cable beside it is tangent, s by the length of the arc. What friction remembers are the tensions midway between its
-//! nodes: a chain of bars has its tensions there, and jumps at the nodes. Between two of them the one m that leads from one
-//! to the other is called upon, none beyond the cone.
+//! Consecutive nodes on one chain of a boundary form a contact. On an arc the contact extends from its
+//! outer nodes to the points where the cable beside it is tangent, with the material of the arc's
+//! length. The friction memory is set up from the tensions midway between the nodes: a chain of bars
+//! has its tensions there, and jumps at the nodes. Between two neighbouring tensions the single
+//! mobilised friction coefficient m is used that connects them, limited to the friction cone.
 
 use crate::math::{Vec2, cross, perp};
 use crate::model::spans::boundary::curve::{ChainRange, Curve};

@@ -55,7 +55,8 @@ const PIECE_END_OVERSHOOT: f64 = 1e-9;
 /// Residual below which modes are judged. Larger: a contact slides because an iterate has tensions it will not keep, and
 /// what is held at neither end slides away. Smaller: iterations spent on a mode that will not last.
 const MODE_RESIDUAL: f64 = 1e-3;
-/// Rounding that is let pass where modes cycle at the edge of the cone, in times of what is rounding.
+/// If stick and slip modes cycle, violations of the friction cone up to this multiple of round-off are
+/// tolerated.
 const CYCLE_ROUNDINGS: f64 = 1e4;
 /// Iterations without progress after which modes are judged all the same.
 const STALLED_ITERATIONS: usize = 3;

@@ -1,4 +1,4 @@
-//! The slip predictor tells before a step is solved which contacts will slide in it, and about how far.
+//! The slip predictor estimates, before a step is solved, which contacts will slide in it and how far.
 //!
 //! Newton's method with a wrong set of sliding contacts ends at a state that shows the next wrong set: of ten contacts in a
 //! row one after the other is found to slide. To first order the whole question is one of scalars. With d the gap that a

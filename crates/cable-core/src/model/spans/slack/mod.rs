@@ -1,8 +1,9 @@
-//! A strand that lies without tension.
+//! A run of cable rests on obstacles without tension.
 //!
-//! With more cable than it takes to drain down its route (see `drained_route`), no part of it needs any tension but what hangs: plumb, F is the
-//! weight below, and it is nothing at each foot and in each kink, where a cable under tension would not turn. Between two such points the
-//! cable goes over one crest: from both sides its tension falls as it does where it slides down there,
+//! If there is more cable than its drained route needs (see `drained_route`), only the parts that hang
+//! have tension. They hang plumb: F is the weight below. The tension vanishes at each foot and in each
+//! kink, where a cable under tension would not turn. Between two such points the cable passes over one
+//! crest; on both sides its tension falls as in a cable that slides down there,
 //!
 //! ```text
 //! dT/ds = −b·t ∓ μN,   T ≥ 0

@@ -28,7 +28,8 @@ const ONE_PANEL_FOLD_DISTANCE: f64 = 4.0;
 /// Panels of the quadrature of a span, in v; 5 Gauss points each leave 1e-12.
 const PANEL: f64 = 0.5;
 
-/// Whether an answer is one; its contacts remember it.
+/// Returns an error unless the solution satisfies equilibrium. The caller keeps the stick zones that the
+/// contacts were solved with.
 pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course) -> Result<(), Failure> {
     let mut before = strand.from;
     let greatest = strand

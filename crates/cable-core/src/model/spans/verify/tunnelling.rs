@@ -1,4 +1,5 @@
-//! The shape of the cable as points tells whether it has passed through something (`contact/swept_corners.rs`), and when that need not be asked.
+//! The tunnelling check compares the cable's shape before and after a step as points
+//! (`contact/swept_corners.rs`), and decides when that is not necessary.
 
 use crate::contact::swept_corners::Corner;
 use crate::math::{Vec2, cross, larger, smaller};
